@@ -1,0 +1,98 @@
+/// @file source.h
+/// What a reader of scene files hands over. A reader turns bytes into one of these and knows nothing of
+/// trees, arenas or pictures; `scene/` turns a source into voxels.
+///
+/// Memory: a source keeps at most the file's (decompressed) bytes and what they really hold, never what a
+/// header claims. Streaming methods may be called any number of times and give the same sequence each time.
+#ifndef THIMBLE_TOOLS_READERS_SOURCE_H
+#define THIMBLE_TOOLS_READERS_SOURCE_H
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace thimble::tools {
+
+/// Input that cannot be used. `what()` is one clear sentence without the file's name and without a full stop
+/// at its end: it names the place (line, byte offset, chunk) and the limit. The command prints
+/// `thimble: FILE: sentence` on stderr and exits with status 1.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Rgb {
+  std::uint8_t r = 255, g = 255, b = 255;
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+/// MagicaVoxel's material kinds; kept for the effects, not used by plain colour shading.
+enum class SurfaceKind : std::uint8_t { kDiffuse, kMetal, kGlass, kEmit, kMedia };
+
+/// One palette entry. Parameters as in the file, clamped to their documented ranges; absent ones keep these
+/// defaults.
+struct Material {
+  Rgb color;
+  std::uint8_t alpha = 255;
+  SurfaceKind kind = SurfaceKind::kDiffuse;
+  double weight = 1;        ///< v150 MATT weight or v200 blend weight, 0..1
+  double roughness = 0;     ///< 0..1
+  double specular = 0;      ///< 0..1
+  double ior = 1.3;         ///< index of refraction, >= 1
+  double attenuation = 0;   ///< >= 0
+  double flux = 0;          ///< emission power
+  double emission = 0;      ///< 0..1
+  double density = 0;       ///< media density, >= 0
+  double metalness = 0;     ///< 0..1
+  double transparency = 0;  ///< 0..1
+};
+using Palette = std::array<Material, 256>;
+
+/// Voxels with whole-number positions: `.vox`.
+class VoxelModel {
+ public:
+  virtual ~VoxelModel() = default;
+  using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material)>;
+  /// Calls `visit` for each voxel, in the file's order; a position may repeat (the last one wins). Positions
+  /// are translated so that the smallest on each axis is 0.
+  virtual void for_each(const Visit& visit) const = 0;
+  /// One past the largest position on each axis; all 0 for a file without voxels.
+  virtual std::array<std::int32_t, 3> size() const = 0;
+  virtual const Palette& palette() const = 0;
+};
+
+struct CloudPoint {
+  double x = 0, y = 0, z = 0;  ///< finite, as in the file
+  Rgb color;                   ///< white where the file has none
+  std::uint64_t line = 0;      ///< 1-based line of a text file or 1-based point number of a binary one
+};
+
+/// Points with real coordinates: `.xyz`, `.csv`, `.ply` without faces, Gadget-1 snapshots.
+class PointCloud {
+ public:
+  virtual ~PointCloud() = default;
+  using Visit = std::function<void(const CloudPoint&)>;
+  virtual void for_each(const Visit& visit) const = 0;
+  virtual bool has_color() const = 0;
+};
+
+/// Triangles with real coordinates: `.obj`, `.off`, `.ply` with faces. Polygons are already fanned.
+struct TriangleMesh {
+  std::vector<std::array<double, 3>> positions;         ///< all finite
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`, in range
+  std::vector<Rgb> colors;                              ///< one a position, or empty
+};
+
+using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh>;
+
+/// Called now and then while reading: fraction done, 0..1. May throw to cancel.
+using Progress = std::function<void(double)>;
+
+}  // namespace thimble::tools
+
+#endif
