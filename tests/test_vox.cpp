@@ -1,0 +1,902 @@
+// MagicaVoxel files: hand-built ones for each feature, real ones against figures found with another program.
+#include <doctest/doctest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "readers/vox.h"
+
+using namespace thimble::tools;
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Voxel = std::array<int, 4>;  // x, y, z, colour index
+using Voxels = std::vector<Voxel>;
+using Dictionary = std::vector<std::pair<std::string, std::string>>;
+using Sides = std::array<std::int32_t, 3>;
+
+// ---- a small writer of .vox bytes ----
+
+/// Bytes put one after another.
+class Put {
+ public:
+  Put& u32(std::uint32_t value) {
+    for (int shift = 0; shift < 32; shift += 8) {
+      bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+    }
+    return *this;
+  }
+  Put& i32(std::int32_t value) { return u32(static_cast<std::uint32_t>(value)); }
+  Put& f32(float value) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    return u32(bits);
+  }
+  Put& raw(std::string_view text) {
+    bytes.insert(bytes.end(), text.begin(), text.end());
+    return *this;
+  }
+  Put& raw(const Bytes& more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return *this;
+  }
+  Put& text(std::string_view text) { return u32(static_cast<std::uint32_t>(text.size())).raw(text); }
+  Put& dictionary(const Dictionary& entries) {
+    u32(static_cast<std::uint32_t>(entries.size()));
+    for (const auto& [key, value] : entries) {
+      text(key).text(value);
+    }
+    return *this;
+  }
+
+  Bytes bytes;
+};
+
+Bytes chunk(std::string_view id, const Put& content, const Bytes& children = {}) {
+  return Put()
+      .raw(id)
+      .u32(static_cast<std::uint32_t>(content.bytes.size()))
+      .u32(static_cast<std::uint32_t>(children.size()))
+      .raw(content.bytes)
+      .raw(children)
+      .bytes;
+}
+
+Bytes operator+(Bytes a, const Bytes& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Bytes file(const Bytes& chunks, std::uint32_t version = 200) {
+  return Put().raw("VOX ").u32(version).raw(chunk("MAIN", {}, chunks)).bytes;
+}
+
+Bytes size_chunk(std::array<int, 3> size) {
+  return chunk("SIZE", Put().i32(size[0]).i32(size[1]).i32(size[2]));
+}
+
+Bytes voxels_chunk(const Voxels& voxels) {
+  Put content;
+  content.u32(static_cast<std::uint32_t>(voxels.size()));
+  for (const Voxel& voxel : voxels) {
+    for (const int part : voxel) {
+      content.bytes.push_back(static_cast<std::uint8_t>(part));
+    }
+  }
+  return chunk("XYZI", content);
+}
+
+Bytes model_chunks(std::array<int, 3> size, const Voxels& voxels) {
+  return size_chunk(size) + voxels_chunk(voxels);
+}
+
+Bytes transform_chunk(int id, int child, const std::vector<Dictionary>& frames,
+                      const Dictionary& attributes = {}, int layer = -1) {
+  Put content;
+  content.i32(id).dictionary(attributes).i32(child).i32(-1).i32(layer);
+  content.u32(static_cast<std::uint32_t>(frames.size()));
+  for (const Dictionary& frame : frames) {
+    content.dictionary(frame);
+  }
+  return chunk("nTRN", content);
+}
+
+Bytes group_chunk(int id, const std::vector<int>& children) {
+  Put content;
+  content.i32(id).dictionary({}).u32(static_cast<std::uint32_t>(children.size()));
+  for (const int child : children) {
+    content.i32(child);
+  }
+  return chunk("nGRP", content);
+}
+
+Bytes shape_chunk(int id, const std::vector<std::pair<int, Dictionary>>& models) {
+  Put content;
+  content.i32(id).dictionary({}).u32(static_cast<std::uint32_t>(models.size()));
+  for (const auto& [model, attributes] : models) {
+    content.i32(model).dictionary(attributes);
+  }
+  return chunk("nSHP", content);
+}
+Bytes shape_chunk(int id, int model) {
+  return shape_chunk(id, {{model, {}}});
+}
+
+Bytes layer_chunk(int id, const Dictionary& attributes) {
+  return chunk("LAYR", Put().i32(id).dictionary(attributes).i32(-1));
+}
+
+Dictionary moved(int x, int y, int z) {
+  return {{"_t", std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z)}};
+}
+
+// ---- reading it back ----
+
+std::unique_ptr<VoxelModel> read(const Bytes& bytes) {
+  return read_vox(FileBytes::copy_of(bytes));
+}
+
+Voxels voxels_of(const VoxelModel& model) {
+  Voxels voxels;
+  model.for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+    voxels.push_back({x, y, z, material});
+  });
+  return voxels;
+}
+
+Voxels read_voxels(const Bytes& bytes) {
+  return voxels_of(*read(bytes));
+}
+
+std::string refusal(const Bytes& bytes) {
+  try {
+    read(bytes);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The sentence names each of `parts`.
+void check_refused(const Bytes& bytes, const std::vector<std::string>& parts) {
+  const std::string sentence = refusal(bytes);
+  INFO("sentence: ", sentence);
+  CHECK_FALSE(sentence.empty());
+  for (const std::string& part : parts) {
+    CAPTURE(part);
+    CHECK(sentence.find(part) != std::string::npos);
+  }
+}
+
+// ---- what should come out, by matrices of doubles applied to voxel centres ----
+
+struct Matrix {
+  std::array<std::array<double, 3>, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  std::array<double, 3> shift{};
+
+  std::array<double, 3> turn(const std::array<double, 3>& v) const {
+    std::array<double, 3> result{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        result[i] += rows[i][j] * v[j];
+      }
+    }
+    return result;
+  }
+  Matrix times(const Matrix& inner) const {
+    Matrix product;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        product.rows[i][j] = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          product.rows[i][j] += rows[i][k] * inner.rows[k][j];
+        }
+      }
+      product.shift[i] = turn(inner.shift)[i] + shift[i];
+    }
+    return product;
+  }
+};
+
+/// A signed permutation and the byte that packs it.
+struct Turn {
+  Matrix matrix;
+  int packed = 0;
+};
+
+/// All 48: 24 rotations and their mirrors.
+std::vector<Turn> all_turns() {
+  std::vector<Turn> turns;
+  std::array<std::size_t, 3> columns{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Turn turn;
+      turn.packed = static_cast<int>(columns[0] | columns[1] << 2) | signs << 4;
+      for (std::size_t row = 0; row < 3; ++row) {
+        turn.matrix.rows[row] = {};
+        turn.matrix.rows[row][columns[row]] = (signs >> row & 1) != 0 ? -1 : 1;
+      }
+      turns.push_back(turn);
+    }
+  } while (std::next_permutation(columns.begin(), columns.end()));
+  return turns;
+}
+
+void place(const Matrix& world, std::array<int, 3> size, const Voxels& voxels, Voxels& out) {
+  for (const Voxel& voxel : voxels) {
+    std::array<double, 3> centre{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      centre[i] = voxel[i] + 0.5 - std::floor(size[i] / 2.0);
+    }
+    const std::array<double, 3> turned = world.turn(centre);
+    Voxel placed{0, 0, 0, voxel[3]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      placed[i] = static_cast<int>(std::floor(turned[i] + world.shift[i]));
+    }
+    out.push_back(placed);
+  }
+}
+
+Voxels from_zero(Voxels voxels) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    int low = 1 << 30;
+    for (const Voxel& voxel : voxels) {
+      low = std::min(low, voxel[i]);
+    }
+    for (Voxel& voxel : voxels) {
+      voxel[i] -= low;
+    }
+  }
+  return voxels;
+}
+
+Sides sides_of(const Voxels& voxels) {
+  Sides sides{};
+  for (const Voxel& voxel : voxels) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      sides[i] = std::max(sides[i], voxel[i] + 1);
+    }
+  }
+  return sides;
+}
+
+Voxels random_voxels(std::array<int, 3> size, std::size_t count, std::mt19937& random) {
+  Voxels voxels;
+  for (std::size_t i = 0; i < count; ++i) {
+    Voxel voxel{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      voxel[axis] = static_cast<int>(random() % static_cast<unsigned>(size[axis]));
+    }
+    voxel[3] = 1 + static_cast<int>(random() % 255);
+    voxels.push_back(voxel);
+  }
+  return voxels;
+}
+
+const Voxels kOne{{0, 0, 0, 7}};
+const Bytes kOneModel = model_chunks({1, 1, 1}, kOne);
+
+}  // namespace
+
+TEST_CASE("vox: one model -> its voxels in the file's order, moved to the origin") {
+  const Bytes bytes =
+      file(model_chunks({10, 20, 256}, {{9, 3, 255, 1}, {2, 19, 200, 255}, {2, 3, 255, 9}}), 150);
+  const auto model = read(bytes);
+  const Voxels expected{{7, 0, 55, 1}, {0, 16, 0, 255}, {0, 0, 55, 9}};
+  CHECK(voxels_of(*model) == expected);
+  CHECK(voxels_of(*model) == expected);  // any number of times
+  CHECK(model->size() == Sides{8, 17, 56});
+}
+
+TEST_CASE("vox: index 0 -> empty space, neither delivered nor counted in the size") {
+  const auto model = read(file(model_chunks({9, 9, 9}, {{0, 0, 0, 0}, {5, 5, 5, 3}, {8, 8, 8, 0}})));
+  CHECK(voxels_of(*model) == Voxels{{0, 0, 0, 3}});
+  CHECK(model->size() == Sides{1, 1, 1});
+  const auto empty = read(file(model_chunks({0, 0, 0}, {})));
+  CHECK(voxels_of(*empty).empty());
+  CHECK(empty->size() == Sides{0, 0, 0});
+}
+
+TEST_CASE("vox: no RGBA -> MagicaVoxel's default palette") {
+  const auto model = read(file(kOneModel));
+  const Palette& palette = model->palette();
+  CHECK(palette[1].color == Rgb{255, 255, 255});
+  CHECK(palette[2].color == Rgb{255, 255, 204});
+  CHECK(palette[7].color == Rgb{255, 204, 255});
+  CHECK(palette[37].color == Rgb{204, 255, 255});
+  CHECK(palette[215].color == Rgb{0, 0, 51});
+  CHECK(palette[216].color == Rgb{238, 0, 0});
+  CHECK(palette[225].color == Rgb{17, 0, 0});
+  CHECK(palette[226].color == Rgb{0, 238, 0});
+  CHECK(palette[236].color == Rgb{0, 0, 238});
+  CHECK(palette[246].color == Rgb{238, 238, 238});
+  CHECK(palette[247].color == Rgb{221, 221, 221});
+  CHECK(palette[255].color == Rgb{17, 17, 17});
+  CHECK(palette[255].alpha == 255);
+  CHECK(palette[255].kind == SurfaceKind::kDiffuse);
+}
+
+TEST_CASE("vox: RGBA -> entry c - 1 is colour c, whatever IMAP says") {
+  Put rgba;
+  for (unsigned i = 0; i < 256; ++i) {
+    rgba.u32(i | (255 - i) << 8 | (i ^ 0x55u) << 16 | (i / 2) << 24);
+  }
+  Put map;
+  for (unsigned i = 0; i < 256; ++i) {
+    map.bytes.push_back(static_cast<std::uint8_t>(i * 7 + 3));
+  }
+  const auto model = read(file(kOneModel + chunk("RGBA", rgba) + chunk("IMAP", map)));
+  CHECK(voxels_of(*model) == kOne);
+  for (unsigned c = 1; c < 256; ++c) {
+    const unsigned i = c - 1;
+    const Material& material = model->palette()[c];
+    CHECK(material.color == Rgb{static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(255 - i),
+                                static_cast<std::uint8_t>(i ^ 0x55u)});
+    CHECK(material.alpha == i / 2);
+  }
+}
+
+TEST_CASE("vox: MATT -> kind, weight and the values whose bits are set") {
+  const Put glass = Put()
+                        .i32(5)
+                        .i32(2)
+                        .f32(0.75f)
+                        .u32(0b0111'1111)
+                        .f32(1)
+                        .f32(0.25f)
+                        .f32(0.5f)
+                        .f32(0.125f)
+                        .f32(2)
+                        .f32(3)
+                        .f32(0.375f);
+  const Put metal =
+      Put().i32(9).i32(1).f32(2).u32(0b1000'1000).f32(0.5f);  // weight beyond 1, bit 7 without a value
+  const Put emit = Put().i32(10).i32(3).f32(1).u32(0b0100'0000).f32(std::nanf(""));
+  const auto model =
+      read(file(kOneModel + chunk("MATT", glass) + chunk("MATT", metal) + chunk("MATT", emit), 150));
+  const Material& a = model->palette()[5];
+  CHECK(a.kind == SurfaceKind::kGlass);
+  CHECK(a.weight == 0.75);
+  CHECK(a.roughness == 0.25);
+  CHECK(a.specular == 0.5);
+  CHECK(a.ior == 1.125);
+  CHECK(a.attenuation == 2);
+  CHECK(a.flux == 3);
+  CHECK(a.emission == 0.375);
+  CHECK(a.color == Rgb{255, 255, 51});  // still the palette's
+  const Material& b = model->palette()[9];
+  CHECK(b.kind == SurfaceKind::kMetal);
+  CHECK(b.weight == 1);
+  CHECK(b.ior == 1.5);
+  CHECK(b.roughness == 0);
+  CHECK(model->palette()[10].kind == SurfaceKind::kEmit);
+  CHECK(model->palette()[10].emission == 0);  // NaN leaves the default
+}
+
+TEST_CASE("vox: MATL -> kind and values, newer names before older ones, bad numbers ignored") {
+  const auto matl = [](int id, const Dictionary& entries) {
+    return chunk("MATL", Put().i32(id).dictionary(entries));
+  };
+  const auto model = read(
+      file(kOneModel +
+           matl(1, {{"_type", "_glass"},
+                    {"_weight", "0.5"},
+                    {"_rough", "0.1"},
+                    {"_spec", "0.25"},
+                    {"_ri", "1.5"},
+                    {"_ior", "0.3"},
+                    {"_att", "0.125"},
+                    {"_trans", "0.75"},
+                    {"_alpha", "0.5"}}) +
+           matl(2, {{"_type", "_emit"}, {"_emit", "0.4"}, {"_flux", "4"}, {"_ior", "0.25"}}) +
+           matl(3, {{"_type", "_media"}, {"_d", "0.05"}, {"_density", "0.5"}, {"_alpha", "0.25"}}) +
+           matl(4, {{"_type", "_metal"}, {"_metal", "7"}, {"_rough", "-1"}, {"_sp", "0.5"}, {"_d", "0.05"}}) +
+           matl(5, {{"_rough", "nan"}, {"_spec", "x"}, {"_weight", ""}, {"_ri", "inf"}, {"_emit", "0.5 "}}) +
+           matl(256, {{"_type", "_metal"}})));
+  const Palette& palette = model->palette();
+  CHECK(palette[1].kind == SurfaceKind::kGlass);
+  CHECK(palette[1].weight == 0.5);
+  CHECK(palette[1].roughness == 0.1);
+  CHECK(palette[1].specular == 0.25);
+  CHECK(palette[1].ior == 1.5);
+  CHECK(palette[1].attenuation == 0.125);
+  CHECK(palette[1].transparency == 0.75);
+  CHECK(palette[2].kind == SurfaceKind::kEmit);
+  CHECK(palette[2].emission == 0.4);
+  CHECK(palette[2].flux == 4);
+  CHECK(palette[2].ior == 1.25);
+  CHECK(palette[3].kind == SurfaceKind::kMedia);
+  CHECK(palette[3].density == 0.5);
+  CHECK(palette[3].transparency == 0.25);
+  CHECK(palette[4].kind == SurfaceKind::kMetal);
+  CHECK(palette[4].metalness == 1);
+  CHECK(palette[4].roughness == 0);
+  CHECK(palette[4].specular == 0.5);
+  CHECK(palette[4].density == 0.05);
+  CHECK(palette[5].roughness == 0);
+  CHECK(palette[5].specular == 0);
+  CHECK(palette[5].weight == 1);
+  CHECK(std::isfinite(palette[5].ior));
+  CHECK(palette[255].kind == SurfaceKind::kDiffuse);
+}
+
+TEST_CASE("vox: each of the 48 rotations and mirrors -> as a matrix turns the voxels' centres") {
+  const std::uint32_t seed = 20240517;
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  const std::array<std::array<int, 3>, 4> sizes{{{3, 4, 5}, {2, 2, 2}, {1, 6, 1}, {7, 5, 9}}};
+  const Voxels marker{{0, 0, 0, 200}};  // unturned, so that a shift of the whole model shows
+  for (const Turn& turn : all_turns()) {
+    for (const std::array<int, 3> size : sizes) {
+      CAPTURE(turn.packed);
+      CAPTURE(size[0]);
+      const Voxels voxels = random_voxels(size, 20, random);
+      Matrix world = turn.matrix;
+      world.shift = {5, -3, 11};
+      Dictionary frame = moved(5, -3, 11);
+      frame.emplace_back("_r", std::to_string(turn.packed));
+      Voxels expected;
+      place(Matrix{}, {1, 1, 1}, marker, expected);
+      place(world, size, voxels, expected);
+      expected = from_zero(expected);
+      const auto model =
+          read(file(model_chunks({1, 1, 1}, marker) + model_chunks(size, voxels) +
+                    transform_chunk(0, 1, {{}}) + group_chunk(1, {2, 4}) + transform_chunk(2, 3, {{}}) +
+                    shape_chunk(3, 0) + transform_chunk(4, 5, {frame}) + shape_chunk(5, 1)));
+      CHECK(voxels_of(*model) == expected);
+      CHECK(model->size() == sides_of(expected));
+    }
+  }
+}
+
+TEST_CASE("vox: random nested groups with rotations -> as the product of their matrices") {
+  const std::uint32_t seed = 7;
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  const std::vector<Turn> turns = all_turns();
+  for (int round = 0; round < 40; ++round) {
+    CAPTURE(round);
+    const std::array<int, 3> size{1 + static_cast<int>(random() % 6), 1 + static_cast<int>(random() % 6),
+                                  1 + static_cast<int>(random() % 6)};
+    const Voxels voxels = random_voxels(size, 8, random);
+    Bytes chunks = model_chunks(size, voxels);
+    Voxels expected;
+    // Node 2d is the transform at depth d, 2d + 1 its group, of two children: a shape of its own and the
+    // next.
+    Matrix world;
+    const int depth = 5;
+    for (int level = 0; level < depth; ++level) {
+      const Turn& turn = turns[random() % turns.size()];
+      Matrix local = turn.matrix;
+      std::array<int, 3> shift{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        shift[i] = static_cast<int>(random() % 41) - 20;
+        local.shift[i] = shift[i];
+      }
+      world = world.times(local);
+      Dictionary frame = moved(shift[0], shift[1], shift[2]);
+      frame.emplace_back("_r", std::to_string(turn.packed));
+      std::vector<int> children{100};
+      if (level + 1 < depth) {
+        children.push_back(2 * level + 2);
+      }
+      // Children before parents in the file: order of chunks must not matter.
+      chunks = transform_chunk(2 * level, 2 * level + 1, {frame}) + chunks;
+      chunks = group_chunk(2 * level + 1, children) + chunks;
+      place(world, size, voxels, expected);
+    }
+    chunks = chunks + shape_chunk(100, 0);
+    CHECK(read_voxels(file(chunks)) == from_zero(expected));
+  }
+}
+
+TEST_CASE("vox: a byte that packs no rotation -> refused, all others -> read") {
+  int good = 0;
+  for (int packed = 0; packed < 256; ++packed) {
+    const Bytes bytes =
+        file(kOneModel + transform_chunk(0, 1, {{{"_r", std::to_string(packed)}}}) + shape_chunk(1, 0));
+    const int row0 = packed & 3, row1 = packed >> 2 & 3;
+    if (row0 != 3 && row1 != 3 && row0 != row1) {
+      CHECK(refusal(bytes) == "");
+      ++good;
+    } else {
+      check_refused(bytes, {"nTRN chunk at byte offset", "_r"});
+    }
+  }
+  CHECK(good == 96);
+  for (const char* text : {"256", "-1", "", "4 ", "x"}) {
+    CAPTURE(text);
+    check_refused(file(kOneModel + transform_chunk(0, 1, {{{"_r", text}}}) + shape_chunk(1, 0)), {"_r"});
+  }
+}
+
+TEST_CASE("vox: hidden nodes and layers -> left out with all below them") {
+  const Bytes models = model_chunks({1, 1, 1}, {{0, 0, 0, 1}}) + model_chunks({1, 1, 1}, {{0, 0, 0, 2}}) +
+                       model_chunks({1, 1, 1}, {{0, 0, 0, 3}}) + model_chunks({1, 1, 1}, {{0, 0, 0, 4}});
+  const Bytes shapes = shape_chunk(10, 0) + shape_chunk(11, 1) + shape_chunk(12, 2) + shape_chunk(13, 3);
+  const Bytes top = transform_chunk(0, 1, {{}}) + group_chunk(1, {2, 3, 4, 5}) + group_chunk(6, {11, 12});
+  const auto scene = [&](const Dictionary& third, int fourth_layer) {
+    return file(models + shapes + top + transform_chunk(2, 10, {moved(1, 0, 0)}, {{"_hidden", "0"}}, 0) +
+                transform_chunk(3, 6, {moved(2, 0, 0)}, third, 1) +
+                transform_chunk(4, 12, {moved(3, 0, 0)}, {{"_name", "x"}}, -1) +
+                transform_chunk(5, 13, {moved(4, 0, 0)}, {}, fourth_layer) +
+                layer_chunk(0, {{"_hidden", "0"}}) + layer_chunk(1, {}) +
+                layer_chunk(2, {{"_name", "dark"}, {"_hidden", "1"}}) + layer_chunk(-1, {{"_hidden", "1"}}));
+  };
+  CHECK(read_voxels(scene({}, 0)) ==
+        Voxels{{0, 0, 0, 1}, {1, 0, 0, 2}, {1, 0, 0, 3}, {2, 0, 0, 3}, {3, 0, 0, 4}});
+  CHECK(read_voxels(scene({{"_hidden", "1"}}, 0)) == Voxels{{0, 0, 0, 1}, {2, 0, 0, 3}, {3, 0, 0, 4}});
+  CHECK(read_voxels(scene({{"_hidden", "1"}}, 2)) == Voxels{{0, 0, 0, 1}, {2, 0, 0, 3}});
+  const auto nothing =
+      read(file(kOneModel + transform_chunk(0, 1, {{}}, {{"_hidden", "1"}}) + shape_chunk(1, 0)));
+  CHECK(voxels_of(*nothing).empty());
+  CHECK(nothing->size() == Sides{0, 0, 0});
+}
+
+TEST_CASE("vox: animations -> their first frame") {
+  const Bytes models = model_chunks({1, 1, 1}, {{0, 0, 0, 1}}) + model_chunks({1, 1, 1}, {{0, 0, 0, 2}}) +
+                       model_chunks({1, 1, 1}, {{0, 0, 0, 3}});
+  // Without a scene graph further models are frames.
+  CHECK(read_voxels(file(chunk("PACK", Put().u32(3)) + models, 150)) == Voxels{{0, 0, 0, 1}});
+  CHECK(read_voxels(file(models + transform_chunk(0, 1, {{}}) +
+                         shape_chunk(1, {{2, {{"_f", "4"}}}, {1, {{"_f", "0"}}}, {0, {{"_f", "9"}}}}))) ==
+        Voxels{{0, 0, 0, 2}});
+  Dictionary late = moved(9, 0, 0), early = moved(2, 0, 0);
+  late.emplace_back("_f", "3");
+  early.emplace_back("_f", "1");
+  CHECK(read_voxels(file(models + transform_chunk(0, 1, {{}}) + group_chunk(1, {2, 3}) +
+                         transform_chunk(2, 4, {late, early}) + transform_chunk(3, 4, {{}}) +
+                         shape_chunk(4, 2))) == Voxels{{2, 0, 0, 3}, {0, 0, 0, 3}});
+}
+
+TEST_CASE("vox: unknown chunks, children of chunks and bytes behind MAIN -> ignored") {
+  const Bytes bytes = file(chunk("ABCD", Put().u32(1), chunk("XYZI", Put().u32(99))) + kOneModel +
+                           chunk("rCAM", Put().raw("anything")) + chunk("NOTE", {})) +
+                      Bytes{1, 2, 3};
+  CHECK(read_voxels(bytes) == kOne);
+}
+
+TEST_CASE("vox: what is not a .vox file -> refused with place and limit") {
+  check_refused({}, {"VOX "});
+  check_refused({'V', 'O', 'X'}, {"VOX "});
+  check_refused(Put().raw("VOX!").u32(150).bytes, {"VOX "});
+  check_refused(Put().raw("VOX ").u32(151).bytes, {"151", "150", "200", "byte offset 4"});
+  check_refused(Put().raw("VOX ").u32(150).raw(chunk("SIZE", {})).bytes,
+                {"SIZE chunk at byte offset 8", "MAIN"});
+  check_refused(file({}), {"no model"});
+  check_refused(file(size_chunk({1, 1, 1})), {"SIZE chunk at byte offset 20", "XYZI"});
+  check_refused(file(size_chunk({1, 1, 1}) + kOneModel), {"SIZE chunk at byte offset 20", "XYZI"});
+  check_refused(file(voxels_chunk(kOne)), {"XYZI chunk at byte offset 20", "SIZE"});
+  check_refused(file(size_chunk({1, 257, 1}) + voxels_chunk(kOne)),
+                {"SIZE chunk at byte offset 20", "257", "256"});
+  check_refused(file(size_chunk({1, -1, 1}) + voxels_chunk(kOne)), {"SIZE chunk", "256"});
+  check_refused(file(model_chunks({4, 4, 4}, {{0, 0, 0, 1}, {3, 4, 3, 1}})),
+                {"XYZI chunk at byte offset 44", "byte offset 64", "y axis"});
+  check_refused(file(size_chunk({4, 4, 4}) + chunk("XYZI", Put().u32(0x80000001u).u32(0))),
+                {"XYZI chunk at byte offset 44", "2147483649 voxels"});
+  check_refused(file(size_chunk({4, 4, 4}) + chunk("XYZI", Put().raw("ab"))),
+                {"XYZI chunk at byte offset 44"});
+  check_refused(file(kOneModel + Put().raw("\x01YZ\xff").u32(0xffffffffu).u32(0xffffffffu).bytes),
+                {"?YZ? chunk at byte offset 64", "8589934590"});
+  check_refused(file(kOneModel + Put().raw("nTRN").u32(1).bytes), {"MAIN chunk", "truncated"});
+  check_refused(file(kOneModel + chunk("RGBA", Put().u32(0))), {"RGBA chunk", "truncated"});
+  check_refused(file(kOneModel + chunk("MATL", Put().i32(257).dictionary({}))), {"MATL chunk", "257"});
+  check_refused(file(kOneModel + chunk("MATL", Put().i32(1).u32(0xffffffffu))), {"MATL chunk", "truncated"});
+  check_refused(file(kOneModel + chunk("MATL", Put().i32(1).u32(1).u32(0xfffffff0u).raw("_type"))),
+                {"MATL chunk", "truncated"});
+  check_refused(file(kOneModel + chunk("MATT", Put().i32(1).i32(0).f32(1).u32(2))),
+                {"MATT chunk", "truncated"});
+}
+
+TEST_CASE("vox: a scene graph that is none -> refused with the chunk") {
+  const auto scene = [](const Bytes& chunks) { return file(kOneModel + chunks); };
+  const Bytes shape = shape_chunk(1, 0);
+  check_refused(scene(shape), {"no root"});
+  check_refused(scene(transform_chunk(0, 5, {{}}) + shape), {"nTRN chunk at byte offset 64", "child 5"});
+  check_refused(scene(transform_chunk(0, -1, {{}})), {"child -1"});
+  check_refused(scene(transform_chunk(0, 1, {{}}) + shape + shape), {"nSHP chunk", "node id 1"});
+  check_refused(scene(transform_chunk(-2, 1, {{}})), {"node id -2"});
+  check_refused(scene(shape_chunk(0, 1)), {"nSHP chunk at byte offset 64", "model 1", "1 models"});
+  check_refused(scene(shape_chunk(0, -1)), {"nSHP chunk"});
+  check_refused(scene(transform_chunk(0, 0, {{}})), {"cycle"});
+  check_refused(
+      scene(transform_chunk(0, 2, {{}}) + group_chunk(2, {1, 3}) + transform_chunk(3, 2, {{}}) + shape),
+      {"nGRP chunk", "node 2", "cycle"});
+  check_refused(scene(chunk("nGRP", Put().i32(0).dictionary({}).u32(0x40000000u).i32(1))),
+                {"nGRP chunk", "1073741824"});
+  check_refused(scene(chunk("nSHP", Put().i32(0).dictionary({}).u32(0xffffffffu))),
+                {"nSHP chunk", "truncated"});
+  check_refused(scene(chunk("nTRN", Put().i32(0).dictionary({}).i32(1).i32(-1).i32(0).u32(0xffffffffu))),
+                {"nTRN chunk", "truncated"});
+  CHECK(refusal(scene(shape_chunk(0, std::vector<std::pair<int, Dictionary>>{}))) == "");  // shows nothing
+  CHECK(refusal(scene(transform_chunk(0, 1, {}) + shape)) == "");  // no frame: unmoved
+}
+
+TEST_CASE("vox: translations -> three whole numbers within the limit, also when nested") {
+  const auto scene = [](const char* outer, const char* inner) {
+    return file(kOneModel + transform_chunk(0, 1, {{{"_t", outer}}}) +
+                transform_chunk(1, 2, {{{"_t", inner}}}) + shape_chunk(2, 0));
+  };
+  CHECK(refusal(scene("0 0 16777216", "-16777216 1 0")) == "");
+  CHECK(refusal(scene("  1  2 -3 ", "0 0 0")) == "");
+  check_refused(scene("0 16777217 0", "0 0 0"), {"nTRN chunk", "16777217", "16777216"});
+  check_refused(scene("0 0 -16777217", "0 0 0"), {"-16777217"});
+  check_refused(scene("16777216 0 0", "1 0 0"), {"nTRN chunk", "add up to 16777217", "16777216"});
+  for (const char* text :
+       {"", " ", "1 2", "1 2 3 4", "1,2,3", "1 2 3.5", "99999999999 0 0", "a b c", "+1 2 3"}) {
+    CAPTURE(text);
+    check_refused(scene(text, "0 0 0"), {"nTRN chunk", "_t"});
+  }
+  // The farthest apart that two models can be.
+  const auto model =
+      read(file(kOneModel + group_chunk(0, {1, 2}) + transform_chunk(1, 3, {moved(-(1 << 24), 0, 0)}) +
+                transform_chunk(2, 3, {moved(1 << 24, 0, 0)}) + shape_chunk(3, 0)));
+  CHECK(model->size() == Sides{(1 << 25) + 1, 1, 1});
+  CHECK(voxels_of(*model) == Voxels{{0, 0, 0, 7}, {1 << 25, 0, 0, 7}});
+}
+
+TEST_CASE("vox: graphs that unfold without end -> stopped at a stated limit") {
+  // Group n holds group n + 1 twice: 2^n copies from n chunks.
+  const auto doubling = [](int levels, const Bytes& last) {
+    Bytes chunks = kOneModel;
+    for (int level = 0; level < levels; ++level) {
+      chunks = chunks + group_chunk(level, {level + 1, level + 1});
+    }
+    return file(chunks + last);
+  };
+  CHECK(read_voxels(doubling(10, shape_chunk(10, 0))).size() == 1024);
+  CHECK(read_voxels(doubling(16, shape_chunk(16, 0))).size() == 65536);
+  check_refused(doubling(17, shape_chunk(17, 0)), {"nSHP chunk", "65536 models"});
+  check_refused(doubling(60, shape_chunk(60, 0)), {"65536 models"});
+  check_refused(doubling(60, group_chunk(60, {})), {"1048576 nodes"});
+  // 65,536 copies of a model that lists 40,000 voxels are over 2^31.
+  Bytes large = model_chunks({1, 1, 1}, Voxels(40000, {0, 0, 0, 1}));
+  for (int level = 0; level < 16; ++level) {
+    large = large + group_chunk(level, {level + 1, level + 1});
+  }
+  check_refused(file(large + shape_chunk(16, 0)), {"2147483648 voxels"});
+}
+
+TEST_CASE("vox: a chain of 50,000 nested groups -> read without recursion") {
+  Put chunks;
+  chunks.raw(kOneModel);
+  const int depth = 50000;
+  for (int level = 0; level < depth; ++level) {
+    chunks.raw(group_chunk(level, {level + 1}));
+  }
+  CHECK(read_voxels(file(chunks.bytes + shape_chunk(depth, 0))) == kOne);
+  CHECK(refusal(file(chunks.bytes + group_chunk(depth, {7}))).find("cycle") != std::string::npos);
+}
+
+TEST_CASE("vox: progress -> rises to 1, and what it throws ends the reading") {
+  const Bytes bytes = file(model_chunks({1, 1, 1}, Voxels(500'000, {0, 0, 0, 1})));
+  std::vector<double> seen;
+  read_vox(FileBytes::copy_of(bytes), [&](double done) { seen.push_back(done); });
+  CHECK(seen.size() > 3);
+  CHECK(std::is_sorted(seen.begin(), seen.end()));
+  CHECK(seen.front() > 0);
+  CHECK(seen.back() == 1);
+  CHECK_THROWS_AS(read_vox(FileBytes::copy_of(bytes), [](double) { throw 42; }), int);
+}
+
+namespace {
+
+/// A small file with a bit of everything.
+Bytes sampler() {
+  Put rgba;
+  for (unsigned i = 0; i < 256; ++i) {
+    rgba.u32(i * 0x01010101u);
+  }
+  return file(chunk("PACK", Put().u32(2)) + model_chunks({2, 3, 4}, {{1, 2, 3, 4}, {0, 0, 0, 1}}) +
+              model_chunks({1, 1, 1}, kOne) + transform_chunk(0, 1, {{}}) + group_chunk(1, {2, 4}) +
+              transform_chunk(2, 3, {{{"_r", "40"}, {"_t", "1 -2 3"}}}, {{"_name", "a"}}, 0) +
+              shape_chunk(3, 0) + transform_chunk(4, 5, {moved(7, 8, 9)}) +
+              shape_chunk(5, {{1, {{"_f", "0"}}}}) + layer_chunk(0, {{"_hidden", "0"}}) +
+              chunk("RGBA", rgba) +
+              chunk("MATL", Put().i32(1).dictionary({{"_type", "_metal"}, {"_rough", "0.5"}})) +
+              chunk("MATT", Put().i32(2).i32(2).f32(1).u32(8).f32(0.5f)));
+}
+
+/// Reads and streams; refused or kept within its promises, nothing else.
+bool reads(const Bytes& bytes) {
+  try {
+    const auto model = read(bytes);
+    const Sides sides = model->size();
+    bool inside = true;
+    model->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      inside = inside && x >= 0 && y >= 0 && z >= 0 && x < sides[0] && y < sides[1] && z < sides[2] &&
+               material > 0;
+    });
+    CHECK(inside);
+    return true;
+  } catch (const InputError& error) {
+    CHECK(std::strlen(error.what()) > 10);
+    return false;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("vox: a file cut off at each length -> refused, never more than that") {
+  const Bytes whole = sampler();
+  REQUIRE(reads(whole));
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    CAPTURE(length);
+    CHECK_FALSE(reads(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length))));
+  }
+  // The same with MAIN's size mended, so that the inner checks are the ones that hold.
+  for (std::size_t length = 20; length < whole.size(); ++length) {
+    CAPTURE(length);
+    reads(file(Bytes(whole.begin() + 20, whole.begin() + static_cast<std::ptrdiff_t>(length))));
+  }
+}
+
+TEST_CASE("vox: a file with bytes changed -> refused or read, never more than that") {
+  const std::uint32_t seed = 99;
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  const Bytes whole = sampler();
+  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    Bytes damaged = whole;
+    damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+    reads(damaged);
+  }
+  int read_count = 0;
+  const int rounds = 20000;
+  for (int round = 0; round < rounds; ++round) {
+    Bytes damaged = whole;
+    for (std::uint32_t change = static_cast<std::uint32_t>(random() % 4); change < 4; ++change) {
+      const std::uint32_t what = static_cast<std::uint32_t>(random());
+      // Small numbers and all ones hit more checks than noise does.
+      damaged[random() % damaged.size()] = static_cast<std::uint8_t>(what % 3 == 0   ? what >> 8 & 7
+                                                                     : what % 3 == 1 ? 0xff - (what >> 8 & 1)
+                                                                                     : what >> 8);
+    }
+    read_count += reads(damaged) ? 1 : 0;
+  }
+  CHECK(read_count > 0);
+  CHECK(read_count < rounds);
+}
+
+namespace {
+
+/// Path of the folder with real files, or empty with a message.
+std::string data_folder() {
+  const char* folder = std::getenv("THIMBLE_DATA");
+  if (folder == nullptr) {
+    MESSAGE("skipped: THIMBLE_DATA is not set");
+    return "";
+  }
+  return std::string(folder) + "/";
+}
+
+struct RealFile {
+  const char* path;
+  std::size_t voxels;
+  Sides sides;
+  std::uint32_t crc32;  // of x, y, z (32 bits each, little endian) and the index, voxel after voxel
+};
+
+// Found with a script that shares nothing with the reader: it multiplies matrices and turns voxel centres.
+constexpr RealFile kRealFiles[] = {
+    {"vox/bevy/deer.vox", 355, {16, 9, 22}, 0x166c0da2u},
+    {"vox/bevy/test.vox", 17788, {50, 128, 41}, 0x5d56bfd6u},
+    {"vox/dot_vox/metal-material.vox", 20, {3, 3, 3}, 0xb522b818u},
+    {"vox/dot_vox/placeholder.vox", 4, {2, 2, 2}, 0xbb6ed997u},
+    {"vox/ephtracy/chr_cat.vox", 563, {12, 9, 17}, 0x0deb8817u},
+    {"vox/ephtracy/chr_knight.vox", 398, {18, 8, 15}, 0x41615b37u},
+    {"vox/ephtracy/chr_sol.vox", 294, {11, 7, 16}, 0x09be2aecu},
+    {"vox/ephtracy/deer.vox", 355, {16, 9, 22}, 0x166c0da2u},
+    {"vox/ephtracy/horse.vox", 808, {31, 7, 22}, 0x24bad47cu},
+    {"vox/ephtracy/menger.vox", 160000, {81, 81, 81}, 0x2de9aabau},
+    {"vox/ephtracy/monu0.vox", 12717, {60, 84, 104}, 0xe2821306u},
+    {"vox/ephtracy/monu1.vox", 156942, {80, 80, 115}, 0x1b68f9fbu},
+    {"vox/ephtracy/monu10.vox", 150764, {72, 72, 122}, 0x3b4191bbu},
+    {"vox/ephtracy/nature.vox", 75835, {120, 120, 60}, 0x17d93f64u},
+    {"vox/ephtracy/snow.vox", 1296, {81, 81, 81}, 0xdea06661u},
+    {"vox/ephtracy/teapot.vox", 28411, {126, 79, 61}, 0xdf92a32fu},
+    {"vox/mmmm/alien_saucer2c.vox", 34392, {48, 48, 18}, 0x2837b09eu},
+    {"vox/mmmm/chr_beardo2.vox", 352, {8, 8, 12}, 0xc9a45b2cu},
+    {"vox/mmmm/chr_sports1.vox", 272, {8, 5, 11}, 0x9b3ab41fu},
+    {"vox/mmmm/mob_dog1.vox", 212, {6, 13, 7}, 0x5621f9aau},
+    {"vox/mmmm/obj_container2.vox", 11470, {60, 15, 15}, 0xd748da72u},
+    {"vox/mmmm/obj_curb1.vox", 239, {16, 14, 2}, 0xf7a9bf19u},
+    {"vox/mmmm/obj_rubbish3.vox", 16, {4, 2, 2}, 0xa2956963u},
+    {"vox/mmmm/obj_table2.vox", 116, {10, 10, 5}, 0x78e841a0u},
+    {"vox/mmmm/obj_trashcan2.vox", 181, {6, 5, 12}, 0xd20b961au},
+    {"vox/mmmm/scene_hazmat.vox", 23382, {96, 68, 23}, 0x04330481u},
+    {"vox/mmmm/veh_truck2.vox", 4272, {15, 34, 13}, 0xad666dfau},
+    {"vox/ogt/doom.vox", 3894, {98, 1, 115}, 0x18d22360u},
+    {"vox/ogt/test_groups.vox", 1754, {84, 8, 48}, 0xe6a1c649u},
+};
+
+}  // namespace
+
+TEST_CASE("vox: real files -> the voxels that another program finds in them") {
+  const std::string folder = data_folder();
+  if (folder.empty()) {
+    return;
+  }
+  for (const RealFile& real : kRealFiles) {
+    CAPTURE(real.path);
+    const auto model = read_vox(load_file(folder + real.path));
+    CHECK(model->size() == real.sides);
+    Put stream;
+    std::size_t count = 0;
+    model->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      stream.i32(x).i32(y).i32(z).bytes.push_back(material);
+      ++count;
+    });
+    CHECK(count == real.voxels);
+    CHECK(crc32(0, stream.bytes.data(), static_cast<uInt>(stream.bytes.size())) == real.crc32);
+  }
+}
+
+TEST_CASE("vox: real palettes and materials -> as the files say, the default one as MagicaVoxel writes it") {
+  const std::string folder = data_folder();
+  if (folder.empty()) {
+    return;
+  }
+  const auto fallback = read_vox(load_file(folder + "vox/ephtracy/chr_cat.vox"));  // has no RGBA
+  const auto written = read_vox(load_file(folder + "vox/dot_vox/metal-material.vox"));
+  for (std::size_t c = 1; c < 256; ++c) {
+    CAPTURE(c);
+    CHECK(fallback->palette()[c].color == written->palette()[c].color);
+  }
+  const Palette& metal = written->palette();
+  CHECK(metal[79].kind == SurfaceKind::kMetal);
+  CHECK(metal[85].weight == 0.526316);
+  CHECK(metal[85].roughness == 0.252632);
+  CHECK(metal[249].kind == SurfaceKind::kGlass);
+  CHECK(metal[249].ior == doctest::Approx(1.547368));
+  CHECK(metal[249].attenuation == 0.021053);
+
+  const auto bevy = read_vox(load_file(folder + "vox/bevy/test.vox"));
+  CHECK(bevy->palette()[1].color == Rgb{255, 255, 255});
+  CHECK(bevy->palette()[2].color == Rgb{0xdc, 0x9f, 0xb4});
+  CHECK(bevy->palette()[181].kind == SurfaceKind::kGlass);
+  CHECK(bevy->palette()[181].transparency == 0.98);
+  CHECK(bevy->palette()[232].kind == SurfaceKind::kEmit);
+  CHECK(bevy->palette()[232].emission == 0.4);
+  CHECK(bevy->palette()[238].kind == SurfaceKind::kMedia);
+
+  const auto deer = read_vox(load_file(folder + "vox/ephtracy/deer.vox"));  // MATT
+  CHECK(deer->palette()[1].roughness == doctest::Approx(0.1));
+  CHECK(deer->palette()[1].specular == 0.5);
+}
+
+TEST_CASE("vox: hostile files -> a sentence") {
+  const std::string folder = data_folder();
+  if (folder.empty()) {
+    return;
+  }
+  const auto sentence = [&](const char* name) -> std::string {
+    try {
+      read_vox(load_file(folder + "hostile/" + name));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string overrun = sentence("vox_xyzi_count_overrun.vox");
+  CAPTURE(overrun);
+  CHECK(overrun.find("XYZI chunk at byte offset 44: 2147483647 voxels") == 0);
+  const std::string outside = sentence("vox_ogt59_voxel_outside_size.vox");
+  CAPTURE(outside);
+  CHECK(outside.find("XYZI chunk at byte offset 44: the voxel at byte offset ") == 0);
+  CHECK(sentence("dot_vox_not_a.vox").find("not a MagicaVoxel file") != std::string::npos);
+}

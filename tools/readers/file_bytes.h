@@ -1,0 +1,126 @@
+/// @file file_bytes.h
+/// A whole file in memory, and a cursor that reads numbers out of bytes without ever leaving them.
+///
+/// Every reader starts here: `load_file` turns a path into bytes (and a `.gz` into what it holds),
+/// `ByteReader` walks binary formats. Both throw `InputError` whose sentence says where and why; neither
+/// trusts a size that the file claims.
+#ifndef THIMBLE_TOOLS_READERS_FILE_BYTES_H
+#define THIMBLE_TOOLS_READERS_FILE_BYTES_H
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "readers/source.h"
+
+namespace thimble::tools {
+
+/// What `load_file` refuses to exceed when the caller names no limit: 4 GiB after decompression.
+inline constexpr std::uint64_t kFileLimitBytes = std::uint64_t{4} << 30;
+
+/// Owned bytes that never change. Moves in constant time, and the bytes stay where they are when it does, so
+/// views into them outlive a move; it does not copy.
+class FileBytes {
+ public:
+  FileBytes() = default;
+  FileBytes(FileBytes&& other) noexcept
+      : data_(std::move(other.data_)), size_(std::exchange(other.size_, 0)) {}
+  FileBytes& operator=(FileBytes&& other) noexcept {
+    data_ = std::move(other.data_);
+    size_ = std::exchange(other.size_, 0);
+    return *this;
+  }
+  /// A copy of `bytes`: for tests, fuzzers and data that is already in memory.
+  /// @throws InputError when there is no memory for it.
+  static FileBytes copy_of(std::span<const std::uint8_t> bytes);
+
+  std::span<const std::uint8_t> bytes() const { return {data_.get(), size_}; }
+  std::size_t size() const { return size_; }
+  /// The same bytes as text, for readers of text formats. Not terminated by a zero.
+  std::string_view text() const { return {reinterpret_cast<const char*>(data_.get()), size_}; }
+
+ private:
+  friend class FileBuffer;
+  struct Free {
+    void operator()(std::uint8_t* data) const { std::free(data); }
+  };
+  std::unique_ptr<std::uint8_t, Free> data_;
+  std::size_t size_ = 0;
+};
+
+/// All bytes of the file `path`: a regular file, a pipe or a device such as `/dev/stdin`, read to its end
+/// once.
+///
+/// What begins with the gzip signature (1f 8b) is inflated, whatever its name, all members of it; a name that
+/// ends in `.gz` must begin so. The compressed bytes are never held as a whole, and the memory taken is at
+/// most twice what came out plus 64 KiB, whatever the file's headers say.
+///
+/// @param limit_bytes  the most bytes accepted, counted after inflating; at least 1
+/// @throws InputError  the file cannot be opened or read (with the system's reason), is a directory or empty,
+///   holds more than `limit_bytes`, or its gzip data is truncated, damaged or followed by something else.
+///   Zero bytes after the last member are padding and ignored, as gzip itself does.
+FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes);
+
+/// A cursor over bytes that somebody else owns. Each read checks that its bytes are there and moves past
+/// them; a read that does not fit throws and leaves the cursor where it was.
+///
+/// Plain names read little endian, `_be` ones big endian; neither needs alignment. Floating-point numbers are
+/// IEEE 754 and come back as they stand, NaN included.
+class ByteReader {
+ public:
+  /// @param place         what errors call these bytes ("XYZI chunk at byte offset 44"); it is kept as a copy
+  /// @param first_offset  offset in the file of `bytes[0]`, so that errors name positions in the file
+  explicit ByteReader(std::span<const std::uint8_t> bytes, std::string_view place = "the file",
+                      std::uint64_t first_offset = 0)
+      : bytes_(bytes), place_(place), first_offset_(first_offset) {}
+
+  std::uint8_t u8() { return *take(1).data(); }
+  std::int8_t i8() { return static_cast<std::int8_t>(u8()); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(little(2)); }
+  std::int16_t i16() { return static_cast<std::int16_t>(u16()); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(little(4)); }
+  std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
+  std::uint64_t u64() { return little(8); }
+  float f32();
+  double f64();
+
+  std::uint16_t u16_be() { return static_cast<std::uint16_t>(big(2)); }
+  std::int16_t i16_be() { return static_cast<std::int16_t>(u16_be()); }
+  std::uint32_t u32_be() { return static_cast<std::uint32_t>(big(4)); }
+  std::int32_t i32_be() { return static_cast<std::int32_t>(u32_be()); }
+  std::uint64_t u64_be() { return big(8); }
+  float f32_be();
+  double f64_be();
+
+  /// Offset in the file of the next byte.
+  std::uint64_t offset() const { return first_offset_ + next_; }
+  std::size_t remaining() const { return bytes_.size() - next_; }
+  const std::string& place() const { return place_; }
+
+  void skip(std::uint64_t count) { take(count); }
+  /// The next `count` bytes as they are; the view lives as long as the bytes.
+  std::span<const std::uint8_t> take(std::uint64_t count);
+  /// The next `count` bytes as a range of their own, which no read leaves; this cursor moves past them.
+  ByteReader sub(std::uint64_t count, std::string_view place);
+
+  /// Throws InputError "PLACE: SENTENCE".
+  [[noreturn]] void fail(const std::string& sentence) const;
+
+ private:
+  std::uint64_t little(std::size_t count);
+  std::uint64_t big(std::size_t count);
+
+  std::span<const std::uint8_t> bytes_;
+  std::string place_;
+  std::uint64_t first_offset_ = 0;
+  std::size_t next_ = 0;
+};
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,308 @@
+#include "readers/vox.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "readers/vox_chunk.h"
+#include "readers/vox_palette.h"
+#include "readers/vox_scene.h"
+
+namespace thimble::tools {
+
+namespace {
+
+constexpr std::size_t kVoxelBytes = 4;  // x, y, z, colour index
+constexpr std::uint64_t kReportEveryBytes = 256 * 1024;
+
+/// One SIZE and XYZI pair. `low` and `high` bound the voxels that are there, not the declared box.
+struct Model {
+  std::array<std::uint32_t, 3> size{};
+  std::span<const std::uint8_t> voxels;
+  std::array<std::int32_t, 3> low{256, 256, 256};
+  std::array<std::int32_t, 3> high{-1, -1, -1};
+
+  bool empty() const { return high[0] < 0; }
+};
+
+/// A model placed in the world: world[i] = sign[i] * voxel[axis[i]] + offset[i].
+struct Instance {
+  std::uint32_t model = 0;
+  std::array<std::int32_t, 3> offset{};
+  std::array<std::uint8_t, 3> axis{};
+  std::array<std::int8_t, 3> sign{};
+};
+
+/// Folds the model's pivot into the transform. The centre of voxel v lies at v + 1/2 - pivot; turned to the
+/// negative side it is the centre of the voxel one below the mirrored lattice point.
+Instance make_instance(std::uint32_t number, const Model& model, const VoxTransform& transform) {
+  Instance instance{number, transform.translation, transform.axis, transform.sign};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto pivot = static_cast<std::int32_t>(model.size[transform.axis[i]] / 2);
+    instance.offset[i] += transform.sign[i] > 0 ? -pivot : pivot - 1;
+  }
+  return instance;
+}
+
+/// Tells the caller how far reading is, at most once every `kReportEveryBytes`.
+class Reporter {
+ public:
+  Reporter(const Progress& progress, std::size_t total_bytes)
+      : progress_(progress), total_bytes_(total_bytes) {}
+  void at(std::uint64_t offset) {
+    if (progress_ && offset >= next_) {
+      progress_(static_cast<double>(offset) / static_cast<double>(total_bytes_));
+      next_ = offset + kReportEveryBytes;
+    }
+  }
+  void done() const {
+    if (progress_) {
+      progress_(1);
+    }
+  }
+
+ private:
+  const Progress& progress_;
+  std::size_t total_bytes_;
+  std::uint64_t next_ = kReportEveryBytes;
+};
+
+class VoxFile final : public VoxelModel {
+ public:
+  VoxFile(FileBytes bytes, const Progress& progress) : bytes_(std::move(bytes)) {
+    Reporter reporter(progress, bytes_.size());
+    read_chunks(reporter);
+    place_models();
+    move_to_origin();
+    reporter.done();
+  }
+
+  void for_each(const Visit& visit) const override {
+    for (const Instance& instance : instances_) {
+      const std::span<const std::uint8_t> voxels = models_[instance.model].voxels;
+      for (std::size_t at = 0; at < voxels.size(); at += kVoxelBytes) {
+        const std::uint8_t* voxel = voxels.data() + at;
+        if (voxel[3] == 0) {
+          continue;
+        }
+        const auto world = [&](std::size_t i) {
+          return instance.sign[i] * voxel[instance.axis[i]] + instance.offset[i];
+        };
+        visit(world(0), world(1), world(2), voxel[3]);
+      }
+    }
+  }
+  std::array<std::int32_t, 3> size() const override { return size_; }
+  const Palette& palette() const override { return palette_; }
+
+ private:
+  void read_chunks(Reporter& reporter);
+  void read_size(ByteReader& chunk);
+  void read_voxels(ByteReader& chunk, Reporter& reporter);
+  void check_size_used() const;
+  void place_models();
+  void move_to_origin();
+
+  FileBytes bytes_;
+  Palette palette_ = vox_default_palette();
+  std::vector<Model> models_;
+  std::vector<Instance> instances_;
+  std::array<std::int32_t, 3> size_{};
+
+  // Only while reading.
+  VoxScene scene_;
+  bool size_pending_ = false;  // a SIZE waits for its XYZI
+  std::array<std::uint32_t, 3> pending_size_{};
+  std::string pending_place_;
+};
+
+struct ChunkHead {
+  std::string_view id;
+  std::uint64_t offset;
+  std::uint32_t content_bytes;
+  std::uint32_t children_bytes;
+};
+
+/// Reads the twelve bytes before a chunk and checks that what they announce is there.
+ChunkHead read_head(ByteReader& reader) {
+  ChunkHead head{};
+  head.offset = reader.offset();
+  const auto id = reader.take(4);
+  head.id = {reinterpret_cast<const char*>(id.data()), id.size()};
+  head.content_bytes = reader.u32();
+  head.children_bytes = reader.u32();
+  const std::uint64_t announced = std::uint64_t{head.content_bytes} + head.children_bytes;
+  if (announced > reader.remaining()) {
+    throw InputError(vox_place(head.id, head.offset) + ": " + std::to_string(announced) +
+                     " bytes are announced and " + std::to_string(reader.remaining()) + " are there");
+  }
+  return head;
+}
+
+void VoxFile::read_chunks(Reporter& reporter) {
+  ByteReader file(bytes_.bytes());
+  constexpr std::array<std::uint8_t, 4> kMagic{'V', 'O', 'X', ' '};
+  if (file.remaining() < kMagic.size() || !std::ranges::equal(file.take(kMagic.size()), kMagic)) {
+    throw InputError("is not a MagicaVoxel file: it does not begin with \"VOX \"");
+  }
+  const std::uint32_t version = file.u32();
+  if (version != 150 && version != 200) {
+    throw InputError("version " + std::to_string(version) +
+                     " at byte offset 4 is not supported, only 150 and 200 are");
+  }
+  const ChunkHead main = read_head(file);
+  if (main.id != "MAIN") {
+    throw InputError(vox_place(main.id, main.offset) + ": the first chunk must be MAIN");
+  }
+  file.skip(main.content_bytes);
+  ByteReader chunks = file.sub(main.children_bytes, vox_place(main.id, main.offset));
+  while (chunks.remaining() > 0) {
+    const ChunkHead head = read_head(chunks);
+    ByteReader chunk = chunks.sub(head.content_bytes, vox_place(head.id, head.offset));
+    chunks.skip(head.children_bytes);  // no known chunk but MAIN has children
+    if (head.id == "SIZE") {
+      read_size(chunk);
+    } else if (head.id == "XYZI") {
+      read_voxels(chunk, reporter);
+    } else if (head.id == "RGBA") {
+      vox_read_rgba(chunk, palette_);
+    } else if (head.id == "MATT") {
+      vox_read_matt(chunk, palette_);
+    } else if (head.id == "MATL") {
+      vox_read_matl(chunk, palette_);
+    } else if (head.id == "nTRN") {
+      scene_.add_transform(chunk, head.offset);
+    } else if (head.id == "nGRP") {
+      scene_.add_group(chunk, head.offset);
+    } else if (head.id == "nSHP") {
+      scene_.add_shape(chunk, head.offset);
+    } else if (head.id == "LAYR") {
+      scene_.add_layer(chunk);
+    }
+    // PACK only repeats the number of models, which their chunks tell better.
+    reporter.at(chunks.offset());
+  }
+  check_size_used();
+  if (models_.empty()) {
+    throw InputError(vox_place(main.id, main.offset) + ": holds no model, no XYZI chunk is there");
+  }
+}
+
+void VoxFile::check_size_used() const {
+  if (size_pending_) {
+    throw InputError(pending_place_ + ": no XYZI chunk follows before the next SIZE or the end");
+  }
+}
+
+void VoxFile::read_size(ByteReader& chunk) {
+  check_size_used();
+  for (std::uint32_t& side : pending_size_) {
+    side = chunk.u32();
+    if (side > kVoxModelSideLimit) {
+      chunk.fail("a side of " + std::to_string(side) + " voxels is over the limit of " +
+                 std::to_string(kVoxModelSideLimit));
+    }
+  }
+  size_pending_ = true;
+  pending_place_ = chunk.place();
+}
+
+void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
+  if (!size_pending_) {
+    chunk.fail("no SIZE chunk stands before it");
+  }
+  size_pending_ = false;
+  Model model;
+  model.size = pending_size_;
+  const std::uint32_t count = chunk.u32();
+  if (chunk.remaining() / kVoxelBytes < count) {
+    chunk.fail(std::to_string(count) + " voxels of 4 bytes do not fit the " +
+               std::to_string(chunk.remaining()) + " bytes that are left");
+  }
+  const std::uint64_t first_offset = chunk.offset();
+  model.voxels = chunk.take(std::uint64_t{count} * kVoxelBytes);
+  for (std::size_t at = 0; at < model.voxels.size(); at += kVoxelBytes) {
+    const std::uint8_t* voxel = model.voxels.data() + at;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (voxel[i] >= model.size[i]) {
+        chunk.fail("the voxel at byte offset " + std::to_string(first_offset + at) + " lies at " +
+                   std::to_string(voxel[i]) + " on the " + "xyz"[i] + " axis, outside its model of " +
+                   std::to_string(model.size[i]) + " voxels");
+      }
+      if (voxel[3] != 0) {
+        model.low[i] = std::min(model.low[i], std::int32_t{voxel[i]});
+        model.high[i] = std::max(model.high[i], std::int32_t{voxel[i]});
+      }
+    }
+    if (at % kReportEveryBytes == 0) {
+      reporter.at(first_offset + at);
+    }
+  }
+  models_.push_back(model);
+}
+
+void VoxFile::place_models() {
+  if (scene_.empty()) {
+    // Files from before the scene graph: further models are frames of an animation.
+    instances_.push_back(make_instance(0, models_.front(), VoxTransform{}));
+    return;
+  }
+  std::uint64_t placed_voxels = 0;
+  scene_.place_models([&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
+    if (number >= models_.size()) {
+      throw InputError(vox_place("nSHP", offset) + ": model " + std::to_string(number) +
+                       " is not among the " + std::to_string(models_.size()) + " models of this file");
+    }
+    if (instances_.size() == kVoxInstanceLimit) {
+      throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
+                       std::to_string(kVoxInstanceLimit) + " models");
+    }
+    const Model& model = models_[number];
+    placed_voxels += model.voxels.size() / kVoxelBytes;
+    if (placed_voxels > kVoxPlacedVoxelLimit) {
+      throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
+                       std::to_string(kVoxPlacedVoxelLimit) + " voxels");
+    }
+    instances_.push_back(make_instance(number, model, transform));
+  });
+  scene_ = VoxScene{};
+}
+
+void VoxFile::move_to_origin() {
+  std::array<std::int32_t, 3> low{};
+  std::array<std::int32_t, 3> high{};
+  bool any = false;
+  std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty(); });
+  for (const Instance& instance : instances_) {
+    const Model& model = models_[instance.model];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t axis = instance.axis[i];
+      const std::int32_t a = instance.sign[i] * model.low[axis] + instance.offset[i];
+      const std::int32_t b = instance.sign[i] * model.high[axis] + instance.offset[i];
+      low[i] = any ? std::min({low[i], a, b}) : std::min(a, b);
+      high[i] = any ? std::max({high[i], a, b}) : std::max(a, b);
+    }
+    any = true;
+  }
+  for (std::size_t i = 0; any && i < 3; ++i) {
+    // At most 2^25 + 512 apart, by the limit on translations.
+    size_[i] = high[i] - low[i] + 1;
+    for (Instance& instance : instances_) {
+      instance.offset[i] -= low[i];
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<VoxelModel> read_vox(FileBytes bytes, const Progress& progress) {
+  return std::make_unique<VoxFile>(std::move(bytes), progress);
+}
+
+}  // namespace thimble::tools

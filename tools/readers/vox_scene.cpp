@@ -1,0 +1,281 @@
+#include "readers/vox_scene.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "readers/vox.h"
+#include "readers/vox_chunk.h"
+
+namespace thimble::tools {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kChunkNames{"nTRN", "nGRP", "nSHP"};  // by Node::Kind
+constexpr std::uint32_t kNoNode = UINT32_MAX;
+
+/// `_t`: three whole numbers with blanks between them.
+std::array<std::int32_t, 3> parse_translation(std::string_view text, const ByteReader& chunk) {
+  std::array<std::int32_t, 3> translation{};
+  std::string_view rest = text;
+  for (std::int32_t& coordinate : translation) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+    const std::string_view word = rest.substr(0, rest.find(' '));
+    const std::optional<std::int32_t> number = vox_number<std::int32_t>(word);
+    if (!number) {
+      chunk.fail("translation \"_t\" is not three whole numbers of 32 bits");
+    }
+    if (*number < -kVoxTranslationLimit || *number > kVoxTranslationLimit) {
+      chunk.fail("translation " + std::to_string(*number) + " is beyond the limit of +-" +
+                 std::to_string(kVoxTranslationLimit));
+    }
+    coordinate = *number;
+    rest.remove_prefix(word.size());
+  }
+  if (rest.find_first_not_of(' ') != std::string_view::npos) {
+    chunk.fail("translation \"_t\" is not three whole numbers of 32 bits");
+  }
+  return translation;
+}
+
+/// `_r`: a signed permutation matrix in a byte, written in decimal.
+///
+///     bit   7   6      5      4      3 2     1 0
+///           -   row 2  row 1  row 0  row 1   row 0
+///               1: the row is negative | column of the row's entry; row 2 has the column left over
+void parse_rotation(std::string_view text, const ByteReader& chunk, VoxTransform& transform) {
+  const std::optional<std::uint8_t> packed = vox_number<std::uint8_t>(text);
+  const unsigned bits = packed.value_or(0xff);
+  const unsigned row0 = bits & 3u;
+  const unsigned row1 = bits >> 2 & 3u;
+  if (!packed || row0 == 3 || row1 == 3 || row0 == row1) {
+    chunk.fail("rotation \"_r\" is not a byte that packs a rotation");
+  }
+  transform.axis = {static_cast<std::uint8_t>(row0), static_cast<std::uint8_t>(row1),
+                    static_cast<std::uint8_t>(3 - row0 - row1)};
+  for (unsigned row = 0; row < 3; ++row) {
+    transform.sign[row] = (bits >> (4 + row) & 1u) != 0 ? std::int8_t{-1} : std::int8_t{1};
+  }
+}
+
+/// `_f`, the frame that an entry is for; frames are counted from 0 and the first is 0 when none is given.
+std::int64_t parse_frame(std::string_view text, const ByteReader& chunk) {
+  const std::optional<std::int64_t> frame = vox_number<std::int64_t>(text);
+  if (!frame) {
+    chunk.fail("frame \"_f\" is not a whole number");
+  }
+  return *frame;
+}
+
+/// Of frames in any order, the lowest; of equal ones, the first.
+class FirstFrame {
+ public:
+  bool take(std::int64_t frame) {
+    const bool earlier = !any_ || frame < lowest_;
+    lowest_ = earlier ? frame : lowest_;
+    any_ = true;
+    return earlier;
+  }
+
+ private:
+  bool any_ = false;
+  std::int64_t lowest_ = 0;
+};
+
+}  // namespace
+
+VoxTransform VoxTransform::after(const VoxTransform& child) const {
+  VoxTransform both;
+  for (std::size_t i = 0; i < 3; ++i) {
+    both.axis[i] = child.axis[axis[i]];
+    both.sign[i] = static_cast<std::int8_t>(sign[i] * child.sign[axis[i]]);
+    both.translation[i] = sign[i] * child.translation[axis[i]] + translation[i];
+  }
+  return both;
+}
+
+VoxScene::Node VoxScene::read_head(ByteReader& chunk, Kind kind, std::uint64_t offset) const {
+  Node node;
+  node.kind = kind;
+  node.offset = offset;
+  node.id = chunk.i32();
+  if (node.id < 0) {
+    chunk.fail("node id " + std::to_string(node.id) + " is negative");
+  }
+  vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
+    if (key == "_hidden") {
+      node.hidden = value == "1";
+    }
+  });
+  return node;
+}
+
+void VoxScene::add(const Node& node) {
+  nodes_.push_back(node);
+}
+
+void VoxScene::add_transform(ByteReader& chunk, std::uint64_t offset) {
+  Node node = read_head(chunk, Kind::kTransform, offset);
+  const std::int32_t child = chunk.i32();
+  chunk.skip(4);  // reserved
+  node.layer = chunk.i32();
+  const std::uint32_t frame_count = chunk.u32();
+  FirstFrame first;
+  for (std::uint32_t i = 0; i < frame_count; ++i) {
+    VoxTransform transform;
+    std::int64_t frame = 0;
+    vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
+      if (key == "_t") {
+        transform.translation = parse_translation(value, chunk);
+      } else if (key == "_r") {
+        parse_rotation(value, chunk, transform);
+      } else if (key == "_f") {
+        frame = parse_frame(value, chunk);
+      }
+    });
+    if (first.take(frame)) {
+      node.transform = transform;
+    }
+  }
+  node.first_child = static_cast<std::uint32_t>(children_.size());
+  node.child_count = 1;
+  children_.push_back(child);
+  add(node);
+}
+
+void VoxScene::add_group(ByteReader& chunk, std::uint64_t offset) {
+  Node node = read_head(chunk, Kind::kGroup, offset);
+  const std::uint32_t count = chunk.u32();
+  if (chunk.remaining() / 4 < count) {
+    chunk.fail(std::to_string(count) + " children do not fit the " + std::to_string(chunk.remaining()) +
+               " bytes that are left");
+  }
+  node.first_child = static_cast<std::uint32_t>(children_.size());
+  node.child_count = count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    children_.push_back(chunk.i32());
+  }
+  add(node);
+}
+
+void VoxScene::add_shape(ByteReader& chunk, std::uint64_t offset) {
+  Node node = read_head(chunk, Kind::kShape, offset);
+  const std::uint32_t count = chunk.u32();
+  FirstFrame first;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t model = chunk.u32();
+    std::int64_t frame = 0;
+    vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
+      if (key == "_f") {
+        frame = parse_frame(value, chunk);
+      }
+    });
+    if (first.take(frame)) {
+      node.first_child = model;
+      node.child_count = 1;
+    }
+  }
+  add(node);
+}
+
+void VoxScene::add_layer(ByteReader& chunk) {
+  const std::int32_t id = chunk.i32();
+  bool hidden = false;
+  vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
+    if (key == "_hidden") {
+      hidden = value == "1";
+    }
+  });
+  if (hidden && id >= 0) {  // -1 stands for no layer
+    hidden_layers_.push_back(id);
+  }
+}
+
+/// Index of the node with that id, `kNoNode` without one. `nodes_` is sorted.
+std::uint32_t VoxScene::find(std::int32_t id) const {
+  const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), id,
+                                      [](const Node& node, std::int32_t wanted) { return node.id < wanted; });
+  return found != nodes_.end() && found->id == id ? static_cast<std::uint32_t>(found - nodes_.begin())
+                                                  : kNoNode;
+}
+
+void VoxScene::place_models(const Place& place) {
+  // By id, and by place in the file among equals, so that the error names the second of two.
+  std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) { return a.id < b.id; });
+  for (std::size_t i = 1; i < nodes_.size(); ++i) {
+    if (nodes_[i].id == nodes_[i - 1].id) {
+      throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(nodes_[i].kind)], nodes_[i].offset) +
+                       ": node id " + std::to_string(nodes_[i].id) +
+                       " is already that of the node at byte offset " + std::to_string(nodes_[i - 1].offset));
+    }
+  }
+  std::sort(hidden_layers_.begin(), hidden_layers_.end());
+
+  struct Step {
+    std::uint32_t node;
+    std::uint32_t next_child;
+    VoxTransform world;
+  };
+  std::vector<Step> path;
+  std::uint32_t visits = 0;
+
+  const auto fail = [](const Node& node, const std::string& sentence) {
+    throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(node.kind)], node.offset) + ": " +
+                     sentence);
+  };
+  const auto enter = [&](std::uint32_t index, const VoxTransform& parent) {
+    Node& node = nodes_[index];
+    if (++visits > kVoxVisitLimit) {
+      fail(node, "the scene graph has more than the limit of " + std::to_string(kVoxVisitLimit) +
+                     " nodes, shared ones counted each time");
+    }
+    if (node.on_path) {
+      fail(node, "node " + std::to_string(node.id) + " contains itself: the scene graph has a cycle");
+    }
+    if (node.hidden || std::binary_search(hidden_layers_.begin(), hidden_layers_.end(), node.layer)) {
+      return;
+    }
+    if (node.kind == Kind::kShape) {
+      if (node.child_count > 0) {
+        place(node.first_child, parent, node.offset);
+      }
+      return;
+    }
+    const VoxTransform world = node.kind == Kind::kTransform ? parent.after(node.transform) : parent;
+    for (const std::int32_t coordinate : world.translation) {
+      if (coordinate < -kVoxTranslationLimit || coordinate > kVoxTranslationLimit) {
+        fail(node, "nested translations add up to " + std::to_string(coordinate) +
+                       ", beyond the limit of +-" + std::to_string(kVoxTranslationLimit));
+      }
+    }
+    node.on_path = true;
+    path.push_back({index, 0, world});
+  };
+
+  const std::uint32_t root = find(0);
+  if (root == kNoNode) {
+    fail(nodes_.front(), "the scene graph has no root, node 0");
+  }
+  enter(root, VoxTransform{});
+  while (!path.empty()) {
+    Step& step = path.back();
+    Node& node = nodes_[step.node];
+    if (step.next_child == node.child_count) {
+      node.on_path = false;
+      path.pop_back();
+      continue;
+    }
+    const std::int32_t id = children_[node.first_child + step.next_child];
+    ++step.next_child;
+    const std::uint32_t child = find(id);
+    if (child == kNoNode) {
+      fail(node, "child " + std::to_string(id) + " is no node of this file");
+    }
+    const VoxTransform world = step.world;  // `enter` may move the path
+    enter(child, world);
+  }
+}
+
+}  // namespace thimble::tools

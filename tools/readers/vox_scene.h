@@ -1,0 +1,74 @@
+/// @file vox_scene.h
+/// The scene graph of a `.vox` file: nTRN, nGRP and nSHP nodes, layers, and where they put the models.
+/// Internal to the `.vox` reader.
+///
+/// Node 0 is the root. An nTRN turns and moves its one child, an nGRP holds children, an nSHP shows a model.
+/// Nodes may be shared, so the graph is a directed one without cycles rather than a tree.
+#ifndef THIMBLE_TOOLS_READERS_VOX_SCENE_H
+#define THIMBLE_TOOLS_READERS_VOX_SCENE_H
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "readers/file_bytes.h"
+
+namespace thimble::tools {
+
+/// A rotation or mirror of the lattice, then a translation:
+/// world[i] = sign[i] * local[axis[i]] + translation[i].
+struct VoxTransform {
+  std::array<std::uint8_t, 3> axis{0, 1, 2};  ///< a permutation
+  std::array<std::int8_t, 3> sign{1, 1, 1};   ///< 1 or -1
+  std::array<std::int32_t, 3> translation{};
+
+  /// This transform after `child`.
+  VoxTransform after(const VoxTransform& child) const;
+};
+
+/// Collects nodes while chunks are read, then walks them.
+class VoxScene {
+ public:
+  /// Each takes the content of one chunk. @throws InputError for what a node alone shows to be wrong.
+  void add_transform(ByteReader& chunk, std::uint64_t offset);
+  void add_group(ByteReader& chunk, std::uint64_t offset);
+  void add_shape(ByteReader& chunk, std::uint64_t offset);
+  void add_layer(ByteReader& chunk);
+
+  bool empty() const { return nodes_.empty(); }
+
+  /// Called for each visible model, in order: the model's number as in the file (it may be none), where it is
+  /// put, and the byte offset of the nSHP chunk for errors.
+  using Place = std::function<void(std::uint32_t model, const VoxTransform& transform, std::uint64_t offset)>;
+  /// Walks from node 0, depth first, with a stack of its own: depth is bounded by the number of nodes, work
+  /// by `kVoxVisitLimit`. Hidden nodes, and nodes of hidden layers, are left out with all below them.
+  /// @throws InputError  a missing root, child or unique id; a cycle; a limit of vox.h
+  void place_models(const Place& place);
+
+ private:
+  enum class Kind : std::uint8_t { kTransform, kGroup, kShape };
+  struct Node {
+    std::int32_t id = 0;
+    Kind kind = Kind::kTransform;
+    bool hidden = false;
+    bool on_path = false;           ///< the walk is inside it now
+    std::int32_t layer = -1;        ///< nTRN only; -1 is none
+    std::uint64_t offset = 0;       ///< of the chunk, for errors
+    std::uint32_t first_child = 0;  ///< in `children_`; of an nSHP the model, if it has one
+    std::uint32_t child_count = 0;
+    VoxTransform transform;  ///< nTRN only
+  };
+
+  Node read_head(ByteReader& chunk, Kind kind, std::uint64_t offset) const;
+  void add(const Node& node);
+  std::uint32_t find(std::int32_t id) const;
+
+  std::vector<Node> nodes_;
+  std::vector<std::int32_t> children_;       ///< ids
+  std::vector<std::int32_t> hidden_layers_;  ///< ids
+};
+
+}  // namespace thimble::tools
+
+#endif
