@@ -1,0 +1,55 @@
+/// @file generators.h
+/// Scenes that need no file.
+///
+///   points:N    N voxels uniformly random in the world, repetitions allowed: the paper's workload
+///   cluster:N   N voxels of a mixture of Plummer spheres, as star clusters have them
+///   spheres     solid balls of several sizes and colours: the paper's Figure 2
+///   water       a basin with an island and floating bodies of glass and metal
+///
+/// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`.
+///
+/// A scene is a function of kind, count, seed and depth: integer arithmetic and a random generator of
+/// our own make it the same on every machine. It is laid out in fractions of the world, so another depth
+/// shows the same scene finer or coarser. World axes are right-handed, z up.
+#ifndef THIMBLE_TOOLS_SCENE_GENERATORS_H
+#define THIMBLE_TOOLS_SCENE_GENERATORS_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "readers/source.h"
+#include "scene/voxel_sink.h"
+
+namespace thimble::tools {
+
+enum class GeneratorKind : std::uint8_t { kPoints, kCluster, kSpheres, kWater };
+
+inline constexpr std::uint64_t kMaxGeneratorPoints = 1'000'000'000;
+
+struct GeneratorSpec {
+  GeneratorKind kind = GeneratorKind::kPoints;
+  std::uint64_t count = 0;  ///< points and cluster: 0 .. kMaxGeneratorPoints; else not used
+  std::uint64_t seed = 1;
+  int depth = 10;  ///< 1..12
+};
+
+/// 10 for points and cluster, 6 for spheres and water.
+int default_depth(GeneratorKind kind);
+
+/// What `text` asks for. Nothing when the part before the first `:` or `,` is not one of the four names, so
+/// that it may be a file (`points.xyz`). InputError when the name is one of them and the rest is wrong.
+std::optional<GeneratorSpec> parse_generator(const std::string& text);
+
+/// Streams the scene. `points` and `cluster` call `sink` exactly `count` times, positions may repeat, all
+/// material 0. `spheres` and `water` call it for solid voxels: in `spheres` once for each ball that
+/// holds the voxel (few touch), in `water` once. Time grows with the calls; the solid scenes have roughly an
+/// eighth (spheres) to a quarter (water) of the world's 8^depth voxels, so depths above 9 take long. No heap.
+void generate(const GeneratorSpec& spec, const VoxelSink& sink);
+
+/// The palette that the material numbers refer to; index 0 is the default material.
+Palette generator_palette(GeneratorKind kind);
+
+}  // namespace thimble::tools
+
+#endif

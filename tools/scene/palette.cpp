@@ -1,0 +1,177 @@
+#include "scene/palette.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::size_t kMaxColors = 255;
+
+using Channels = std::array<std::uint8_t, 3>;
+
+/// A bin in use: its rounded average and how many colours it stands for.
+struct Swatch {
+  Channels average{};
+  std::uint16_t bin = 0;
+  std::uint64_t count = 0;
+};
+
+/// A box of the median cut: swatches [first, last) of the list, and its longest side.
+struct Box {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::size_t axis = 0;
+  std::uint64_t extent = 0;
+  std::uint64_t count = 0;
+};
+
+std::uint8_t rounded_average(std::uint64_t sum, std::uint64_t count) {
+  return static_cast<std::uint8_t>((sum + count / 2) / count);
+}
+
+std::vector<Swatch> used_bins(const ColorHistogram& histogram) {
+  std::vector<Swatch> swatches;
+  for (std::size_t index = 0; index < kColorBins; ++index) {
+    const ColorHistogram::Bin& bin = histogram.bin(index);
+    if (bin.count == 0) {
+      continue;
+    }
+    Swatch swatch{.average = {}, .bin = static_cast<std::uint16_t>(index), .count = bin.count};
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      swatch.average[channel] = rounded_average(bin.sum[channel], bin.count);
+    }
+    swatches.push_back(swatch);
+  }
+  return swatches;
+}
+
+Box measure(const std::vector<Swatch>& swatches, std::size_t first, std::size_t last) {
+  Box box{.first = first, .last = last};
+  Channels low{255, 255, 255};
+  Channels high{};
+  for (std::size_t i = first; i < last; ++i) {
+    box.count += swatches[i].count;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      low[channel] = std::min(low[channel], swatches[i].average[channel]);
+      high[channel] = std::max(high[channel], swatches[i].average[channel]);
+    }
+  }
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const auto extent = static_cast<std::uint64_t>(high[channel] - low[channel]);
+    if (extent > box.extent) {
+      box.extent = extent;
+      box.axis = channel;
+    }
+  }
+  return box;
+}
+
+/// Where to cut `box` (two swatches at least) after sorting it along its longest side: both parts get about
+/// half the colours and at least one swatch.
+std::size_t cut(std::vector<Swatch>& swatches, const Box& box) {
+  const auto begin = swatches.begin() + static_cast<std::ptrdiff_t>(box.first);
+  const auto end = swatches.begin() + static_cast<std::ptrdiff_t>(box.last);
+  std::sort(begin, end, [axis = box.axis](const Swatch& a, const Swatch& b) {
+    return a.average[axis] != b.average[axis] ? a.average[axis] < b.average[axis] : a.bin < b.bin;
+  });
+  std::uint64_t below = swatches[box.first].count;
+  std::size_t middle = box.first + 1;
+  while (middle + 1 < box.last && below < box.count / 2) {
+    below += swatches[middle].count;
+    ++middle;
+  }
+  return middle;
+}
+
+/// Boxes of swatches, at most kMaxColors. The box cut next is the one with the most colours times extent;
+/// the earliest on a tie.
+std::vector<Box> median_cut(std::vector<Swatch>& swatches) {
+  std::vector<Box> boxes{measure(swatches, 0, swatches.size())};
+  while (boxes.size() < kMaxColors) {
+    std::size_t best = 0;
+    std::uint64_t best_weight = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const std::uint64_t weight = boxes[i].extent * boxes[i].count;
+      if (weight > best_weight) {
+        best = i;
+        best_weight = weight;
+      }
+    }
+    if (best_weight == 0) {
+      break;
+    }
+    const Box whole = boxes[best];
+    const std::size_t middle = cut(swatches, whole);
+    boxes[best] = measure(swatches, whole.first, middle);
+    boxes.push_back(measure(swatches, middle, whole.last));
+  }
+  return boxes;
+}
+
+Rgb average_of(const ColorHistogram& histogram, const std::vector<Swatch>& swatches, const Box& box) {
+  std::array<std::uint64_t, 3> sum{};
+  for (std::size_t i = box.first; i < box.last; ++i) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      sum[channel] += histogram.bin(swatches[i].bin).sum[channel];
+    }
+  }
+  return {rounded_average(sum[0], box.count), rounded_average(sum[1], box.count),
+          rounded_average(sum[2], box.count)};
+}
+
+int square(int value) {
+  return value * value;
+}
+
+}  // namespace
+
+Material default_material() {
+  Material material;
+  material.color = {236, 236, 232};
+  return material;
+}
+
+PaletteMap::PaletteMap(const ColorHistogram& histogram) : table_(kColorBins) {
+  palette_.fill(default_material());
+  std::vector<Swatch> swatches = used_bins(histogram);
+  if (swatches.empty()) {
+    return;
+  }
+  std::vector<Box> boxes;
+  if (swatches.size() <= kMaxColors) {
+    for (std::size_t i = 0; i < swatches.size(); ++i) {
+      boxes.push_back(measure(swatches, i, i + 1));
+    }
+  } else {
+    boxes = median_cut(swatches);
+  }
+  colors_ = static_cast<int>(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    palette_[i + 1].color = average_of(histogram, swatches, boxes[i]);
+    for (std::size_t j = boxes[i].first; j < boxes[i].last; ++j) {
+      table_[swatches[j].bin] = static_cast<std::uint8_t>(i + 1);
+    }
+  }
+  // Bins nobody counted: the nearest entry.
+  for (std::size_t bin = 0; bin < kColorBins; ++bin) {
+    if (table_[bin] != 0) {
+      continue;
+    }
+    const std::array<int, 3> middle{static_cast<int>(bin >> 10) * 8 + 4,
+                                    static_cast<int>(bin >> 5 & 31) * 8 + 4,
+                                    static_cast<int>(bin & 31) * 8 + 4};
+    int nearest = std::numeric_limits<int>::max();
+    for (std::size_t entry = 1; entry <= boxes.size(); ++entry) {
+      const Rgb color = palette_[entry].color;
+      const int distance =
+          square(middle[0] - color.r) + square(middle[1] - color.g) + square(middle[2] - color.b);
+      if (distance < nearest) {
+        nearest = distance;
+        table_[bin] = static_cast<std::uint8_t>(entry);
+      }
+    }
+  }
+}
+
+}  // namespace thimble::tools
