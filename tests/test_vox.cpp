@@ -662,6 +662,11 @@ TEST_CASE("vox: graphs that unfold without end -> stopped at a stated limit") {
   CHECK(read_voxels(doubling(16, shape_chunk(16, 0))).size() == 65536);
   check_refused(doubling(17, shape_chunk(17, 0)), {"nSHP chunk", "65536 models"});
   check_refused(doubling(60, shape_chunk(60, 0)), {"65536 models"});
+  Bytes one_more = kOneModel + group_chunk(0, {1, 17}) + shape_chunk(17, 0);
+  for (int level = 1; level < 17; ++level) {
+    one_more = one_more + group_chunk(level, {level + 1, level + 1});
+  }
+  check_refused(file(one_more), {"65536 models"});
   check_refused(doubling(60, group_chunk(60, {})), {"1048576 nodes"});
   // 65,536 copies of a model that lists 40,000 voxels are over 2^31.
   Bytes large = model_chunks({1, 1, 1}, Voxels(40000, {0, 0, 0, 1}));

@@ -182,23 +182,20 @@ class Inflater {
     between_members_ = false;
   }
 
+  /// One call of zlib. Output that finds no room waits for the next call, which comes: a member's trailer is
+  /// input that zlib leaves alone until all output before it is out.
   void inflate_step() {
-    // Output may be pending although all input is eaten, so this goes on until a call leaves room unused.
-    bool room_left = false;
-    while (!room_left && !between_members_) {
-      const std::span<std::uint8_t> room = out_.room();
-      const std::size_t offered = std::min(room.size(), std::size_t{1} << 30);
-      stream_.next_out = room.data();
-      stream_.avail_out = static_cast<uInt>(offered);
-      const int result = inflate(&stream_, Z_NO_FLUSH);
-      out_.grew(offered - stream_.avail_out);
-      room_left = stream_.avail_out > 0;
-      if (result == Z_STREAM_END) {
-        between_members_ = true;
-      } else if (result != Z_OK && result != Z_BUF_ERROR) {
-        throw InputError("gzip data is damaged near byte offset " + std::to_string(offset()) + ": " +
-                         (stream_.msg != nullptr ? stream_.msg : "zlib refuses it"));
-      }
+    const std::span<std::uint8_t> room = out_.room();
+    const std::size_t offered = std::min(room.size(), std::size_t{1} << 30);
+    stream_.next_out = room.data();
+    stream_.avail_out = static_cast<uInt>(offered);
+    const int result = inflate(&stream_, Z_NO_FLUSH);
+    out_.grew(offered - stream_.avail_out);
+    if (result == Z_STREAM_END) {
+      between_members_ = true;
+    } else if (result != Z_OK) {
+      throw InputError("gzip data is damaged near byte offset " + std::to_string(offset()) + ": " +
+                       (stream_.msg != nullptr ? stream_.msg : "zlib refuses it"));
     }
   }
 
