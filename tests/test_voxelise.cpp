@@ -1,0 +1,541 @@
+// Triangles to voxels, held to an exact test of another kind, and closed surfaces to a flood from outside.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scene/random.h"
+#include "scene/voxelise.h"
+#include "scene/world_fit.h"
+
+namespace {
+
+using namespace thimble::tools;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kEffort = 1;
+#else
+constexpr int kEffort = 10;
+#endif
+
+__extension__ typedef __int128 Wide;
+
+// ---- the exact judge: the triangle is clipped by the cube's six closed half spaces in rational numbers
+
+struct Rational {
+  std::array<Wide, 3> p;
+  Wide w;  // > 0; the point is p / w
+};
+
+Wide gcd(Wide a, Wide b) {
+  a = a < 0 ? -a : a;
+  b = b < 0 ? -b : b;
+  while (b != 0) {
+    const Wide rest = a % b;
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
+Rational reduced(Rational r) {
+  const Wide divisor = gcd(gcd(r.p[0], r.p[1]), gcd(r.p[2], r.w));
+  for (Wide& component : r.p) {
+    component /= divisor;
+  }
+  r.w /= divisor;
+  return r;
+}
+
+/// Sutherland and Hodgman, keeping what touches.
+bool clip_says_meets(const UnitTriangle& triangle, const UnitPoint& center, std::int32_t half) {
+  std::vector<Rational> polygon;
+  for (const UnitPoint& vertex : triangle) {
+    polygon.push_back({{vertex[0], vertex[1], vertex[2]}, 1});
+  }
+  for (std::size_t plane = 0; plane < 6; ++plane) {
+    const std::size_t axis = plane / 2;
+    const Wide sign = plane % 2 == 0 ? 1 : -1;
+    const Wide limit = center[axis] - sign * half;
+    std::vector<Rational> kept;
+    const auto inside = [&](const Rational& r) { return sign * (r.p[axis] - limit * r.w); };
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Rational& a = polygon[i];
+      const Rational& b = polygon[(i + 1) % polygon.size()];
+      const Wide da = inside(a);
+      const Wide db = inside(b);
+      if (da >= 0) {
+        kept.push_back(a);
+      }
+      if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
+        Rational cross{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          cross.p[k] = da > 0 ? da * b.p[k] - db * a.p[k] : db * a.p[k] - da * b.p[k];
+        }
+        cross.w = da > 0 ? da * b.w - db * a.w : db * a.w - da * b.w;
+        kept.push_back(reduced(cross));
+      }
+    }
+    polygon = kept;
+  }
+  return !polygon.empty();
+}
+
+/// Coordinates 1 .. 2^(level+8) - 1, half of the time on a grid plane or a voxel's middle.
+UnitPoint random_point(SplitMix64& random, int level) {
+  const std::int32_t top = (kUnitsPerVoxel << level) - 1;
+  UnitPoint point;
+  for (std::int32_t& component : point) {
+    component = random.between(1, top);
+    const std::uint32_t kind = random.below(4);
+    if (kind < 2) {
+      component = std::clamp(component & (kind == 0 ? ~255 : ~127), 1, top);
+    }
+  }
+  return point;
+}
+
+UnitTriangle random_triangle(SplitMix64& random, int level) {
+  UnitTriangle triangle{random_point(random, level), random_point(random, level),
+                        random_point(random, level)};
+  const std::int32_t top = (kUnitsPerVoxel << level) - 1;
+  switch (random.below(8)) {
+    case 0:  // a point
+      triangle[1] = triangle[2] = triangle[0];
+      break;
+    case 1:  // a segment, two vertices equal
+      triangle[2] = triangle[random.below(2)];
+      break;
+    case 2:  // a segment, three different vertices
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        triangle[1][axis] += (triangle[0][axis] ^ triangle[1][axis]) & 1;
+        triangle[1][axis] = std::min(triangle[1][axis], top - 1 + (triangle[0][axis] & 1));
+        triangle[2][axis] = (triangle[0][axis] + triangle[1][axis]) / 2;
+      }
+      break;
+    case 3:  // small
+      for (std::size_t i = 1; i < 3; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          triangle[i][axis] = std::clamp(triangle[0][axis] + random.between(-300, 300), 1, top);
+        }
+      }
+      break;
+    case 4:  // in a coordinate plane
+      triangle[1][1] = triangle[2][1] = triangle[0][1];
+      break;
+    default:
+      break;
+  }
+  return triangle;
+}
+
+// ---- meshes
+
+TriangleMesh tetrahedron() {
+  return {
+      {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}, {}};
+}
+
+TriangleMesh box() {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.push_back({i & 1 ? 1.0 : -1.0, i & 2 ? 0.8 : -0.8, i & 4 ? 0.6 : -0.6});
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+/// An octahedron, each triangle cut into four `rounds` times and pushed out to the unit sphere.
+TriangleMesh sphere(int rounds) {
+  TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+                    {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
+                    {}};
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<std::array<std::uint32_t, 3>> finer;
+    // Every triangle makes midpoints of its own: equal positions must seal without shared indices.
+    const auto midpoint = [&mesh](std::uint32_t a, std::uint32_t b) {
+      std::array<double, 3> m{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        m[axis] = mesh.positions[a][axis] + mesh.positions[b][axis];
+      }
+      const double length = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+      mesh.positions.push_back({m[0] / length, m[1] / length, m[2] / length});
+      return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+    };
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const std::uint32_t ab = midpoint(a, b);
+      const std::uint32_t bc = midpoint(b, c);
+      const std::uint32_t ca = midpoint(c, a);
+      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    }
+    mesh.triangles = finer;
+  }
+  return mesh;
+}
+
+/// Turned by a random unit quaternion.
+TriangleMesh rotated(TriangleMesh mesh, SplitMix64& random) {
+  std::array<double, 4> q{};
+  double norm = 0;
+  while (norm < 0.01) {
+    norm = 0;
+    for (double& component : q) {
+      component = random.between(-1000, 1000) / 1000.0;
+      norm += component * component;
+    }
+  }
+  const double s = 2 / norm;
+  const auto [w, x, y, z] = q;
+  for (auto& p : mesh.positions) {
+    const auto [a, b, c] = p;
+    p = {a * (1 - s * (y * y + z * z)) + b * s * (x * y - w * z) + c * s * (x * z + w * y),
+         a * s * (x * y + w * z) + b * (1 - s * (x * x + z * z)) + c * s * (y * z - w * x),
+         a * s * (x * z - w * y) + b * s * (y * z + w * x) + c * (1 - s * (x * x + y * y))};
+  }
+  return mesh;
+}
+
+/// A world with a border of one voxel around it, and what a flood of 26 neighbours through empty voxels
+/// reaches from the border.
+struct Flood {
+  int side;
+  std::vector<char> cells;  // 0 enclosed, 1 solid, 2 reached
+  std::int64_t solid = 0, enclosed = 0;
+
+  std::size_t at(int x, int y, int z) const {
+    const int row = side + 2;
+    return static_cast<std::size_t>(((z + 1) * row + y + 1) * row + x + 1);
+  }
+};
+
+Flood flood(const TriangleMesh& mesh, int level) {
+  Flood result{1 << level, {}};
+  const int side = result.side;
+  result.cells.resize(static_cast<std::size_t>(side + 2) * static_cast<std::size_t>(side + 2) *
+                      static_cast<std::size_t>(side + 2));
+  voxelise(mesh, level, false, nullptr,
+           [&](int x, int y, int z, std::uint8_t) { result.cells[result.at(x, y, z)] = 1; });
+  std::vector<std::array<int, 3>> stack{{-1, -1, -1}};
+  result.cells[result.at(-1, -1, -1)] = 2;
+  while (!stack.empty()) {
+    const auto [x, y, z] = stack.back();
+    stack.pop_back();
+    for (int i = 0; i < 27; ++i) {
+      const int nx = x + i % 3 - 1;
+      const int ny = y + i / 3 % 3 - 1;
+      const int nz = z + i / 9 - 1;
+      if (std::min({nx, ny, nz}) >= -1 && std::max({nx, ny, nz}) <= side &&
+          result.cells[result.at(nx, ny, nz)] == 0) {
+        result.cells[result.at(nx, ny, nz)] = 2;
+        stack.push_back({nx, ny, nz});
+      }
+    }
+  }
+  for (const char cell : result.cells) {
+    result.solid += cell == 1;
+    result.enclosed += cell == 0;
+  }
+  return result;
+}
+
+/// Volume of the quantised surface, in voxels.
+double volume(const TriangleMesh& mesh, int level) {
+  const auto units = quantise_vertices(mesh, level, false);
+  double six = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    std::array<std::array<double, 3>, 3> v{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      v[0][axis] = units[i][axis];
+      v[1][axis] = units[j][axis];
+      v[2][axis] = units[k][axis];
+    }
+    six += v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) +
+           v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+           v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+  }
+  return std::abs(six) / 6 / std::pow(kUnitsPerVoxel, 3);
+}
+
+/// The flood stops at the surface: what it does not reach and what is solid hold the whole volume, and what
+/// it does not reach is no more than the volume.
+void check_sealed(const TriangleMesh& mesh, int level) {
+  const Flood result = flood(mesh, level);
+  const double inside = volume(mesh, level);
+  CHECK(static_cast<double>(result.enclosed) <= inside + 1e-6);
+  CHECK(inside <= static_cast<double>(result.enclosed + result.solid) + 1e-6);
+  CHECK(result.enclosed > 0);
+}
+
+using VoxelSet = std::set<std::array<int, 3>>;
+
+VoxelSet voxels_of(const TriangleMesh& mesh, int level, bool z_up = false) {
+  VoxelSet voxels;
+  voxelise(mesh, level, z_up, nullptr, [&](int x, int y, int z, std::uint8_t) { voxels.insert({x, y, z}); });
+  return voxels;
+}
+
+/// Throw-away: vertices and triangles of a well-formed OFF file.
+TriangleMesh read_off(const std::string& path) {
+  std::ifstream file(path);
+  std::string word;
+  std::size_t vertices = 0;
+  std::size_t faces = 0;
+  std::size_t edges = 0;
+  file >> word >> vertices >> faces >> edges;
+  TriangleMesh mesh;
+  mesh.positions.resize(vertices);
+  mesh.triangles.resize(faces);
+  for (auto& p : mesh.positions) {
+    file >> p[0] >> p[1] >> p[2];
+  }
+  for (auto& t : mesh.triangles) {
+    file >> edges >> t[0] >> t[1] >> t[2];
+  }
+  CHECK(file.good());
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("voxelise: random triangles and cubes -> the answer of exact rational clipping") {
+  constexpr std::uint64_t kSeed = 20250101;
+  SplitMix64 random(kSeed);
+  int met = 0;
+  const int rounds = 20000 * kEffort;
+  for (int i = 0; i < rounds; ++i) {
+    const int level = 1 + static_cast<int>(random.below(3));
+    const UnitTriangle triangle = random_triangle(random, level);
+    const int block = static_cast<int>(random.below(2));
+    const std::int32_t half = kUnitsPerVoxel / 2 << block;
+    UnitPoint center;
+    for (std::int32_t& component : center) {
+      component = random.between(0, (1 << (level - block)) - 1) * 2 * half + half;
+    }
+    const bool expected = clip_says_meets(triangle, center, half);
+    met += expected;
+    CAPTURE(kSeed);
+    CAPTURE(i);
+    REQUIRE(TriangleBoxTest(triangle).meets(center, half) == expected);
+    // The same in the largest world: no width runs out.
+    const int shift = 12 - level;
+    UnitTriangle large = triangle;
+    UnitPoint large_center = center;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      large_center[axis] <<= shift;
+      for (UnitPoint& vertex : large) {
+        vertex[axis] <<= shift;
+      }
+    }
+    REQUIRE(TriangleBoxTest(large).meets(large_center, half << shift) == expected);
+  }
+  CHECK(met > rounds / 10);
+  CHECK(met < rounds - rounds / 10);
+}
+
+TEST_CASE("voxelise: one triangle, small or large -> each voxel it meets exactly once, and no other") {
+  constexpr std::uint64_t kSeed = 77;
+  SplitMix64 random(kSeed);
+  for (int i = 0; i < 40 * kEffort; ++i) {
+    const int level = 1 + static_cast<int>(random.below(4));
+    const UnitTriangle triangle = random_triangle(random, level);
+    std::vector<int> seen(std::size_t{1} << 3 * level);
+    voxelise_triangle(triangle, 5, [&](int x, int y, int z, std::uint8_t material) {
+      CHECK(material == 5);
+      REQUIRE((std::min({x, y, z}) >= 0 && std::max({x, y, z}) < 1 << level));
+      ++seen[static_cast<std::size_t>((z << level | y) << level | x)];
+    });
+    for (int z = 0; z < 1 << level; ++z) {
+      for (int y = 0; y < 1 << level; ++y) {
+        for (int x = 0; x < 1 << level; ++x) {
+          const UnitPoint center{x * 256 + 128, y * 256 + 128, z * 256 + 128};
+          CAPTURE(kSeed);
+          CAPTURE(i);
+          REQUIRE(seen[static_cast<std::size_t>((z << level | y) << level | x)] ==
+                  (clip_says_meets(triangle, center, 128) ? 1 : 0));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("voxelise: the largest triangles of the largest world -> exact to the last unit") {
+  constexpr std::int32_t kTop = (1 << 20) - 1;
+  // The plane x + y + z = 2^20 + 1: the cube around its middle meets it, the cubes a unit off do not.
+  const TriangleBoxTest test({{{kTop, 1, 1}, {1, kTop, 1}, {1, 1, kTop}}});
+  constexpr std::int32_t kSum = kTop + 2;
+  constexpr std::int32_t kThird = kSum / 3;
+  constexpr std::int32_t kRest = kSum - 3 * kThird;
+  CHECK(test.meets({kThird - 100, kThird - 100, kThird + kRest - 100}, 100));
+  CHECK(test.meets({kThird + 100, kThird + 100, kThird + kRest + 100}, 100));
+  CHECK_FALSE(test.meets({kThird - 100, kThird - 100, kThird + kRest - 101}, 100));
+  CHECK_FALSE(test.meets({kThird + 100, kThird + 101, kThird + kRest + 100}, 100));
+  // Every corner triple of the world, against its eighths and itself; the sanitizer watches the widths.
+  for (int corners = 0; corners < 512; ++corners) {
+    UnitTriangle triangle{};
+    for (int i = 0; i < 9; ++i) {
+      triangle[static_cast<std::size_t>(i / 3)][static_cast<std::size_t>(i % 3)] =
+          corners >> i & 1 ? kTop : 1;
+    }
+    const TriangleBoxTest corner_test(triangle);
+    CHECK(corner_test.meets({1 << 19, 1 << 19, 1 << 19}, 1 << 19));
+    const UnitPoint& first = triangle[0];
+    CHECK(corner_test.meets({first[0] < 2 ? 1 << 18 : 3 << 18, first[1] < 2 ? 1 << 18 : 3 << 18,
+                             first[2] < 2 ? 1 << 18 : 3 << 18},
+                            1 << 18));
+  }
+}
+
+TEST_CASE("voxelise: points on a middle, a face, an edge, a corner -> 1, 2, 4, 8 voxels") {
+  const auto count = [](const UnitPoint& p) {
+    int voxels = 0;
+    voxelise_triangle({p, p, p}, 0, [&](int, int, int, std::uint8_t) { ++voxels; });
+    return voxels;
+  };
+  CHECK(count({384, 384, 384}) == 1);
+  CHECK(count({512, 384, 384}) == 2);
+  CHECK(count({512, 384, 512}) == 4);
+  CHECK(count({512, 512, 512}) == 8);
+}
+
+TEST_CASE("voxelise: closed meshes turned at random -> a flood from outside does not get in") {
+  // 26 neighbours is more than a ray needs: a ray that leaves a voxel by an edge or a corner still enters
+  // one that touches it.
+  constexpr std::uint64_t kSeed = 4242;
+  SplitMix64 random(kSeed);
+  for (int i = 0; i < 3 * kEffort; ++i) {
+    const int level = 4 + static_cast<int>(random.below(2));
+    CAPTURE(kSeed);
+    CAPTURE(i);
+    check_sealed(rotated(tetrahedron(), random), level);
+    check_sealed(rotated(box(), random), level);
+    check_sealed(rotated(sphere(static_cast<int>(random.below(5))), random), level);
+  }
+  check_sealed(box(), 5);
+  check_sealed(sphere(3), 5);
+}
+
+TEST_CASE("voxelise: any level -> the longest axis fills the world, the others are centred") {
+  for (int level = 1; level <= 12; ++level) {
+    const auto units = quantise_vertices(box(), level, true);
+    UnitPoint low = units[0];
+    UnitPoint high = units[0];
+    for (const UnitPoint& p : units) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], p[axis]);
+        high[axis] = std::max(high[axis], p[axis]);
+      }
+    }
+    const std::int32_t world = kUnitsPerVoxel << level;
+    CHECK(low[0] == 1);
+    CHECK(high[0] == world - 1);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CHECK(low[axis] + high[axis] == world);
+    }
+    CHECK(std::abs(high[1] - low[1] - 0.8 * (world - 2)) <= 1);
+  }
+  const VoxelSet voxels = voxels_of(box(), 6, true);
+  CHECK(voxels.begin()->front() == 0);
+  CHECK(voxels.rbegin()->front() == 63);
+}
+
+TEST_CASE("voxelise: map coordinates -> the same voxels as near zero") {
+  TriangleMesh near = sphere(3);
+  for (auto& p : near.positions) {
+    for (double& component : p) {
+      component = std::round(component * 4096) / 4096;
+    }
+  }
+  TriangleMesh far = near;
+  for (auto& p : far.positions) {
+    p = {p[0] + 6.0e5, p[1] + 4.0e6, p[2] - 120.5};
+  }
+  CHECK(voxels_of(near, 6) == voxels_of(far, 6));
+}
+
+TEST_CASE("voxelise: extreme magnitudes -> still fill the world") {
+  for (const double scale : {1e-320, 1e-300, 1.0, 1e300, 1.7e308}) {
+    TriangleMesh mesh = tetrahedron();
+    for (auto& p : mesh.positions) {
+      for (double& component : p) {
+        component *= scale;
+      }
+    }
+    CAPTURE(scale);
+    CHECK(voxels_of(mesh, 4) == voxels_of(tetrahedron(), 4));
+  }
+}
+
+TEST_CASE("voxelise: y up -> turned by (x, -z, y); z up -> left as it is") {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 4, 0}, {0, 0, 2}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  const auto turned = quantise_vertices(mesh, 8, false);
+  CHECK(turned[2][2] == (256 << 8) - 1);  // y became height
+  CHECK(turned[3][1] < turned[0][1]);     // +z became -y
+  CHECK(turned[1][0] > turned[0][0]);     // x stays
+  const auto straight = quantise_vertices(mesh, 8, true);
+  CHECK(straight[2][1] == (256 << 8) - 1);
+  CHECK(straight[3][2] > straight[0][2]);
+}
+
+TEST_CASE("voxelise: flat, thin and empty meshes -> one layer, one voxel, an error") {
+  TriangleMesh quad{{{0, 5, 0}, {1, 5, 0}, {1, 5, 1}, {0, 5, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  const VoxelSet layer = voxels_of(quad, 4);
+  CHECK(layer.size() == 256);
+  for (const auto& voxel : layer) {
+    CHECK(voxel[2] == 8);
+  }
+  const TriangleMesh dot{{{3, 3, 3}}, {{0, 0, 0}}, {}};
+  CHECK(voxels_of(dot, 4) == VoxelSet{{8, 8, 8}});
+  CHECK(voxels_of(dot, 1) == VoxelSet{{1, 1, 1}});
+  CHECK_THROWS_WITH_AS(voxels_of({{{0, 0, 0}}, {}, {}}, 4), "no triangles", InputError);
+}
+
+TEST_CASE("voxelise: a vertex that no triangle uses -> does not shrink the rest") {
+  TriangleMesh mesh = tetrahedron();
+  mesh.positions.push_back({1000, 1000, 1000});
+  CHECK(voxels_of(mesh, 4) == voxels_of(tetrahedron(), 4));
+}
+
+TEST_CASE("voxelise: vertex colours -> palette index of their average") {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {{255, 0, 30}, {0, 255, 30}, {0, 0, 31}}};
+  CHECK(triangle_color(mesh, 0) == Rgb{85, 85, 30});
+  const PaletteMap colors(triangle_colors(mesh));
+  int voxels = 0;
+  voxelise(mesh, 3, false, &colors, [&](int, int, int, std::uint8_t material) {
+    ++voxels;
+    CHECK(colors.palette()[material].color == Rgb{85, 85, 30});
+  });
+  CHECK(voxels > 0);
+  voxelise(mesh, 3, false, nullptr, [](int, int, int, std::uint8_t material) { CHECK(material == 0); });
+}
+
+TEST_CASE("voxelise: a sink that throws -> the exception comes through") {
+  CHECK_THROWS_AS(voxelise(tetrahedron(), 3, false, nullptr, [](int, int, int, std::uint8_t) { throw 1; }),
+                  int);
+}
+
+TEST_CASE("voxelise: closed scans of THIMBLE_DATA -> sealed, volume kept") {
+  const char* data = std::getenv("THIMBLE_DATA");
+  if (data == nullptr) {
+    MESSAGE("skipped: THIMBLE_DATA is not set");
+    return;
+  }
+  for (const char* name : {"/mesh/bunny00.off", "/mesh/armadillo.off"}) {
+    const TriangleMesh mesh = read_off(data + std::string(name));
+    CAPTURE(std::string(name));
+    check_sealed(mesh, 6);
+    const auto start = std::chrono::steady_clock::now();
+    std::uint64_t calls = 0;
+    voxelise(mesh, 10, false, nullptr, [&](int, int, int, std::uint8_t) { ++calls; });
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    MESSAGE(std::string(name), ": ", mesh.triangles.size(), " triangles, depth 10: ", calls, " calls, ", seconds.count(),
+            " s");
+    CHECK(calls > mesh.triangles.size());
+  }
+}
