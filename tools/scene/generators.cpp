@@ -232,7 +232,8 @@ struct Ball {
   std::uint8_t material;
 };
 
-/// The voxels whose centre is in the ball.
+/// The voxels whose centre is in the ball, and the one that holds the ball's centre, so that a ball smaller
+/// than a voxel does not vanish.
 void fill_ball(const Ball& ball, int depth, const VoxelSink& sink) {
   const int shift = kWorldBits - depth;
   const std::int32_t side = std::int32_t{1} << depth;
@@ -247,7 +248,9 @@ void fill_ball(const Ball& ball, int depth, const VoxelSink& sink) {
       const std::int64_t left = square(ball.radius) - square(voxel_center(y, depth) - ball.center[1]) -
                                 square(voxel_center(z, depth) - ball.center[2]);
       for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        if (square(voxel_center(x, depth) - ball.center[0]) <= left) {
+        const bool holds_center =
+            x == ball.center[0] >> shift && y == ball.center[1] >> shift && z == ball.center[2] >> shift;
+        if (holds_center || square(voxel_center(x, depth) - ball.center[0]) <= left) {
           sink(x, y, z, ball.material);
         }
       }

@@ -1,0 +1,305 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scene/generators.h"
+#include "scene/random.h"
+
+namespace {
+
+using namespace thimble::tools;
+
+/// CRC-32 as zlib computes it, of x, y, z as two bytes each, low byte first, and the material.
+class StreamCrc {
+ public:
+  void add(int x, int y, int z, std::uint8_t material) {
+    for (const int component : {x, y, z}) {
+      byte(static_cast<std::uint8_t>(component));
+      byte(static_cast<std::uint8_t>(component >> 8));
+    }
+    byte(material);
+  }
+  std::uint32_t value() const { return ~state_; }
+
+ private:
+  void byte(std::uint8_t value) {
+    state_ ^= value;
+    for (int bit = 0; bit < 8; ++bit) {
+      state_ = state_ >> 1 ^ (0xEDB88320U & (0U - (state_ & 1U)));
+    }
+  }
+  std::uint32_t state_ = 0xFFFFFFFFU;
+};
+
+struct Digest {
+  std::uint64_t calls = 0;
+  std::uint32_t crc = 0;
+};
+
+Digest digest(const std::string& text) {
+  Digest result;
+  StreamCrc crc;
+  generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t material) {
+    ++result.calls;
+    crc.add(x, y, z, material);
+  });
+  result.crc = crc.value();
+  return result;
+}
+
+std::vector<std::array<int, 4>> voxels_of(const std::string& text) {
+  std::vector<std::array<int, 4>> voxels;
+  generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t material) {
+    voxels.push_back({x, y, z, material});
+  });
+  return voxels;
+}
+
+std::set<std::array<int, 3>> places_of(const std::string& text) {
+  std::set<std::array<int, 3>> places;
+  generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t) { places.insert({x, y, z}); });
+  return places;
+}
+
+}  // namespace
+
+TEST_CASE("random: SplitMix64 -> the published generator's numbers") {
+  // The first outputs for seed 1234567, as listed for other implementations (Rosetta Code, "Pseudo-random
+  // numbers/Splitmix64").
+  SplitMix64 random(1234567);
+  CHECK(random.next() == 6457827717110365317U);
+  CHECK(random.next() == 3203168211198807973U);
+  CHECK(random.next() == 9817491932198370423U);
+  CHECK(random.next() == 4593380528125082431U);
+  CHECK(random.next() == 16408922859458223821U);
+}
+
+TEST_CASE("generators: a spec in full and by default -> as written") {
+  const auto points = parse_generator("points:1000000,seed=7,depth=12");
+  REQUIRE(points.has_value());
+  CHECK(points->kind == GeneratorKind::kPoints);
+  CHECK(points->count == 1000000);
+  CHECK(points->seed == 7);
+  CHECK(points->depth == 12);
+  const auto cluster = parse_generator("cluster:0");
+  REQUIRE(cluster.has_value());
+  CHECK(cluster->kind == GeneratorKind::kCluster);
+  CHECK(cluster->count == 0);
+  CHECK(cluster->seed == 1);
+  CHECK(cluster->depth == 10);
+  CHECK(parse_generator("spheres")->depth == 6);
+  CHECK(parse_generator("water,depth=1")->depth == 1);
+  CHECK(parse_generator("water,depth=8,seed=18446744073709551615")->seed == 18446744073709551615U);
+  CHECK(parse_generator("points:1000000000")->count == kMaxGeneratorPoints);
+}
+
+TEST_CASE("generators: names of files -> no generator") {
+  for (const char* text :
+       {"", "points.xyz", "point:3", "./water", "waters", "Spheres", " spheres", "clusters:3", "a,b"}) {
+    CAPTURE(std::string(text));
+    CHECK_FALSE(parse_generator(text).has_value());
+  }
+}
+
+TEST_CASE("generators: a name with bad parameters -> an error") {
+  for (const char* text : {"points",
+                           "points:",
+                           "points:x",
+                           "points:-1",
+                           "points:+1",
+                           "points:1e6",
+                           "points:1.0",
+                           "points: 1",
+                           "points:1000000001",
+                           "points:99999999999999999999999",
+                           "points,seed=1",
+                           "points:1,",
+                           "points:1,seed",
+                           "points:1,seed=",
+                           "points:1,seed=-1",
+                           "points:1,seed=18446744073709551616",
+                           "points:1,depth=0",
+                           "points:1,depth=13",
+                           "points:1,depth=x",
+                           "points:1,depth=5,depth=6",
+                           "points:1,colour=3",
+                           "points:1,,seed=1",
+                           "points:1,seed=1,",
+                           "points:1:2",
+                           "cluster",
+                           "cluster,depth=4",
+                           "spheres:3",
+                           "spheres,",
+                           "spheres:",
+                           "water:1",
+                           "water,Seed=1",
+                           "water,=1",
+                           "water,seed=1=2"}) {
+    CAPTURE(std::string(text));
+    CHECK_THROWS_AS(parse_generator(text), InputError);
+  }
+  CHECK_THROWS_WITH_AS(parse_generator("points:1,depth=13"), "depth must be a whole number 1..12, not \"13\"",
+                       InputError);
+}
+
+TEST_CASE("generators: golden streams -> the same on every machine") {
+  struct Golden {
+    const char* text;
+    std::uint64_t calls;
+    std::uint32_t crc;
+  };
+  for (const Golden& golden :
+       {Golden{"points:1000", 1000, 0x1BCAFE78}, Golden{"points:1000,seed=7,depth=12", 1000, 0xB2960E60},
+        Golden{"cluster:20000", 20000, 0x95E68EE9},
+        Golden{"cluster:1000,seed=18446744073709551615,depth=12", 1000, 0x9D3FCCAB},
+        Golden{"spheres", 28327, 0x342B0D8D}, Golden{"spheres,seed=2,depth=5", 3543, 0xA8B3342A},
+        Golden{"water", 70136, 0x9BCF6D0C}, Golden{"water,seed=2,depth=5", 8171, 0xDF75EFD3}}) {
+    const Digest result = digest(golden.text);
+    CAPTURE(std::string(golden.text));
+    CHECK(result.calls == golden.calls);
+    CHECK(result.crc == golden.crc);
+  }
+}
+
+TEST_CASE("generators: another seed -> another scene; the same seed -> the same") {
+  for (const char* text : {"points:100", "cluster:100", "spheres", "water"}) {
+    const std::string name = text;
+    CAPTURE(name);
+    CHECK(digest(name).crc == digest(name + ",seed=1").crc);
+    CHECK(digest(name).crc != digest(name + ",seed=2").crc);
+  }
+}
+
+TEST_CASE("generators: every kind at every depth -> inside the world, materials in the palette") {
+  for (const char* text : {"points:2000", "cluster:2000", "spheres", "water"}) {
+    const bool solid = text[0] == 's' || text[0] == 'w';
+    for (int depth = 1; depth <= (solid ? 6 : 12); ++depth) {
+      const std::string spec = std::string(text) + ",depth=" + std::to_string(depth);
+      CAPTURE(spec);
+      const Palette palette = generator_palette(parse_generator(spec)->kind);
+      std::uint64_t calls = 0;
+      generate(*parse_generator(spec), [&](int x, int y, int z, std::uint8_t material) {
+        ++calls;
+        REQUIRE((x >= 0 && y >= 0 && z >= 0 && x < 1 << depth && y < 1 << depth && z < 1 << depth));
+        REQUIRE((solid ? material > 0 && !(palette[material].color == palette[0].color) : material == 0));
+      });
+      CHECK((calls == 2000 || (solid && calls > 0)));
+    }
+  }
+}
+
+TEST_CASE("generators: points and clusters at a smaller depth -> the same points, coarser") {
+  for (const char* text : {"points:500", "cluster:500"}) {
+    const auto fine = voxels_of(std::string(text) + ",depth=12");
+    const auto coarse = voxels_of(std::string(text) + ",depth=5");
+    REQUIRE(fine.size() == coarse.size());
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        REQUIRE((fine[i][axis] >> 7) == coarse[i][axis]);
+      }
+    }
+  }
+}
+
+TEST_CASE("generators: points -> uniform in the world, repetitions allowed") {
+  // 512 cells of 200 expected; chi-square with 511 degrees of freedom has mean 511, deviation 32.
+  std::array<int, 512> cells{};
+  generate(*parse_generator("points:102400,depth=9"), [&](int x, int y, int z, std::uint8_t) {
+    ++cells[static_cast<std::size_t>((z >> 6) * 64 + (y >> 6) * 8 + (x >> 6))];
+  });
+  double chi_square = 0;
+  for (const int count : cells) {
+    chi_square += (count - 200.0) * (count - 200.0) / 200;
+  }
+  CHECK(chi_square > 511 - 5 * 32);
+  CHECK(chi_square < 511 + 5 * 32);
+  // 4096 draws out of 4096 voxels leave about 1 / e of them empty.
+  CHECK(places_of("points:4096,depth=4").size() ==
+        doctest::Approx(4096 * (1 - std::exp(-1.0))).epsilon(0.05));
+}
+
+TEST_CASE("generators: cluster -> crowded in places, a thin halo everywhere") {
+  const auto clustered = places_of("cluster:50000,depth=6");
+  const auto uniform = places_of("points:50000,depth=6");
+  CHECK(clustered.size() * 2 < uniform.size());
+  std::set<std::array<int, 3>> cells;
+  for (const auto& [x, y, z] : clustered) {
+    cells.insert({x >> 4, y >> 4, z >> 4});
+  }
+  CHECK(cells.size() > 56);
+}
+
+TEST_CASE("generators: spheres -> a dozen or so of solid balls of several colours that keep apart") {
+  std::set<int> materials;
+  std::set<std::array<int, 3>> places;
+  std::size_t calls = 0;
+  generate(*parse_generator("spheres"), [&](int x, int y, int z, std::uint8_t material) {
+    ++calls;
+    materials.insert(material);
+    places.insert({x, y, z});
+  });
+  CHECK(materials.size() == 7);
+  CHECK(places.size() == calls);
+  // Pieces that do not touch, by faces.
+  std::size_t pieces = 0;
+  while (!places.empty()) {
+    ++pieces;
+    std::vector<std::array<int, 3>> stack{*places.begin()};
+    places.erase(places.begin());
+    while (!stack.empty()) {
+      const auto voxel = stack.back();
+      stack.pop_back();
+      for (std::size_t face = 0; face < 6; ++face) {
+        auto next = voxel;
+        next[face / 2] += face % 2 == 0 ? 1 : -1;
+        if (places.erase(next) != 0) {
+          stack.push_back(next);
+        }
+      }
+    }
+  }
+  CHECK(pieces == 14);
+}
+
+TEST_CASE(
+    "generators: water -> each voxel once; water, sand, rock, glass and metal; the basin holds the water") {
+  const auto voxels = voxels_of("water");
+  std::vector<std::uint8_t> grid(64 * 64 * 64);
+  std::array<int, 6> counts{};
+  for (const auto& [x, y, z, material] : voxels) {
+    auto& cell = grid[static_cast<std::size_t>((z * 64 + y) * 64 + x)];
+    REQUIRE(cell == 0);
+    cell = static_cast<std::uint8_t>(material);
+    ++counts[static_cast<std::size_t>(material)];
+  }
+  for (std::size_t material = 1; material < 6; ++material) {
+    CAPTURE(material);
+    CHECK(counts[material] > 50);
+  }
+  for (const auto& [x, y, z, material] : voxels) {
+    if (material == 1) {
+      // Something beside and below each voxel of water.
+      REQUIRE((x > 0 && y > 0 && z > 0 && x < 63 && y < 63));
+      for (const int neighbour :
+           {(z * 64 + y) * 64 + x - 1, (z * 64 + y) * 64 + x + 1, (z * 64 + y - 1) * 64 + x,
+            (z * 64 + y + 1) * 64 + x, ((z - 1) * 64 + y) * 64 + x}) {
+        REQUIRE(grid[static_cast<std::size_t>(neighbour)] != 0);
+      }
+    }
+  }
+  const Palette palette = generator_palette(GeneratorKind::kWater);
+  CHECK(palette[1].kind == SurfaceKind::kGlass);
+  CHECK(palette[1].ior == 1.33);
+  CHECK(palette[4].kind == SurfaceKind::kGlass);
+  CHECK(palette[5].kind == SurfaceKind::kMetal);
+}
+
+TEST_CASE("generators: a sink that throws -> the exception comes through") {
+  for (const char* text : {"points:10", "cluster:10", "spheres", "water"}) {
+    CHECK_THROWS_AS(generate(*parse_generator(text), [](int, int, int, std::uint8_t) { throw 1; }), int);
+  }
+}

@@ -1,0 +1,138 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+#include "scene/palette.h"
+#include "scene/random.h"
+
+namespace {
+
+using namespace thimble::tools;
+
+Rgb random_color(SplitMix64& random) {
+  const std::uint64_t bits = random.next();
+  return {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+          static_cast<std::uint8_t>(bits >> 16)};
+}
+
+ColorHistogram histogram_of(const std::vector<Rgb>& colors) {
+  ColorHistogram histogram;
+  for (const Rgb& color : colors) {
+    histogram.add(color);
+  }
+  return histogram;
+}
+
+/// The colour of bin number `bin`'s lowest corner.
+Rgb bin_color(std::uint32_t bin) {
+  return {static_cast<std::uint8_t>(bin >> 10 << 3), static_cast<std::uint8_t>((bin >> 5 & 31) << 3),
+          static_cast<std::uint8_t>((bin & 31) << 3)};
+}
+
+int largest_difference(Rgb a, Rgb b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+}  // namespace
+
+TEST_CASE("palette: no colours -> everything is the default material") {
+  const PaletteMap map{ColorHistogram{}};
+  CHECK(map.colors() == 0);
+  CHECK(map.index({0, 0, 0}) == 0);
+  CHECK(map.index({255, 255, 255}) == 0);
+  CHECK(map.palette()[0].color == default_material().color);
+  CHECK(map.palette()[255].color == default_material().color);
+}
+
+TEST_CASE("palette: one colour -> kept exactly, index 0 stays the default") {
+  const PaletteMap map(histogram_of({{17, 201, 93}}));
+  CHECK(map.colors() == 1);
+  CHECK(map.index({17, 201, 93}) == 1);
+  CHECK(map.palette()[1].color == Rgb{17, 201, 93});
+  CHECK(map.palette()[0].color == default_material().color);
+  // A colour that was not counted still gets the nearest entry, never 0.
+  CHECK(map.index({255, 0, 0}) == 1);
+}
+
+TEST_CASE("palette: a bin of several colours -> their rounded average") {
+  const PaletteMap map(histogram_of({{16, 16, 16}, {16, 16, 17}, {16, 23, 17}}));
+  CHECK(map.colors() == 1);
+  CHECK(map.palette()[1].color == Rgb{16, 18, 17});
+}
+
+TEST_CASE("palette: 255 bins -> exact; 256 -> median cut within a bin's distance") {
+  for (const std::uint32_t count : {255U, 256U}) {
+    std::vector<Rgb> colors;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      colors.push_back(bin_color(i * 127));
+    }
+    const PaletteMap map(histogram_of(colors));
+    CHECK(map.colors() == 255);
+    int wrong = 0;
+    for (const Rgb& color : colors) {
+      const std::uint8_t index = map.index(color);
+      CHECK(index != 0);
+      wrong += !(map.palette()[index].color == color);
+    }
+    CHECK(wrong == (count == 255 ? 0 : 2));  // two bins share the entry between them
+  }
+}
+
+TEST_CASE("palette: all 32,768 bins -> 255 entries, no colour far from its own") {
+  std::vector<Rgb> colors;
+  for (std::uint32_t bin = 0; bin < kColorBins; ++bin) {
+    colors.push_back(bin_color(bin));
+  }
+  const PaletteMap map(histogram_of(colors));
+  CHECK(map.colors() == 255);
+  int worst = 0;
+  for (const Rgb& color : colors) {
+    worst = std::max(worst, largest_difference(color, map.palette()[map.index(color)].color));
+  }
+  CHECK(worst <= 32);  // 255 boxes in 32^3 bins: about five bins a side
+}
+
+TEST_CASE("palette: many colours in another order -> the same palette") {
+  constexpr std::uint64_t kSeed = 9;
+  SplitMix64 random(kSeed);
+  std::vector<Rgb> colors;
+  for (int i = 0; i < 5000; ++i) {
+    colors.push_back(random_color(random));
+  }
+  const PaletteMap forward(histogram_of(colors));
+  std::reverse(colors.begin(), colors.end());
+  const PaletteMap backward(histogram_of(colors));
+  CAPTURE(kSeed);
+  for (std::size_t i = 0; i < 256; ++i) {
+    CHECK(forward.palette()[i].color == backward.palette()[i].color);
+  }
+  for (const Rgb& color : colors) {
+    REQUIRE(forward.index(color) == backward.index(color));
+  }
+}
+
+TEST_CASE("palette: a rare colour among many shades -> the frequent ones get the entries") {
+  // A wide noise of single colours and a narrow, frequent gradient: the gradient must stay smooth.
+  constexpr std::uint64_t kSeed = 3;
+  SplitMix64 random(kSeed);
+  ColorHistogram histogram;
+  for (int i = 0; i < 2000; ++i) {
+    histogram.add(random_color(random));
+  }
+  for (int shade = 0; shade < 256; shade += 8) {
+    for (int i = 0; i < 100000; ++i) {
+      const auto level = static_cast<std::uint8_t>(shade);
+      histogram.add({level, level, level});
+    }
+  }
+  const PaletteMap map(histogram);
+  CAPTURE(kSeed);
+  for (int shade = 0; shade < 256; shade += 8) {
+    const auto level = static_cast<std::uint8_t>(shade);
+    CAPTURE(shade);
+    CHECK(largest_difference({level, level, level}, map.palette()[map.index({level, level, level})].color) <=
+          1);
+  }
+}
