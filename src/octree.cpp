@@ -71,6 +71,7 @@ void Octree::make_merged(uint32_t index, uint8_t material, uint8_t rank) {
   make_leaf(index, material);
   set_link(index, material | (uint32_t{rank} << kRankShift));
   nodes_[index].next_flags |= kMerged;
+  grow_bounds({}, level_);  // where the block lies is not known here
 }
 
 /// The rank of the piece that the material of a solid block or voxel stands for.
@@ -107,8 +108,23 @@ void Octree::clear() {
   root_ = kNone;
   voxels_ = 0;
   solid_added_ = 0;
+  bounds_ = {};
   threshold_hint_ = 0;
   path_low_ = level_;
+}
+
+void Octree::grow_bounds(Vec3i corner, int block_level) {
+  const int32_t side = int32_t{1} << block_level;
+  const bool first = bounds_.empty();
+  for (int axis = 0; axis < 3; ++axis) {
+    const int32_t low = corner[axis];
+    if (first || low < bounds_.min[axis]) {
+      bounds_.min[axis] = low;
+    }
+    if (first || low + side > bounds_.max[axis]) {
+      bounds_.max[axis] = low + side;
+    }
+  }
 }
 
 /// A node with nothing in it. The caller has counted: there is one.
@@ -297,6 +313,7 @@ Status Octree::insert_block(Vec3i corner, int block_level, uint8_t material) {
   }
   uint32_t needed = try_insert(corner, block_level, material);
   if (needed == 0) {
+    grow_bounds(corner, block_level);
     return Status::kOk;
   }
   if (!coarsen_ || capacity_ == 0) {

@@ -36,6 +36,9 @@ class Arena {
     return bytes_.subspan(first, size);
   }
 
+  /// The bytes not taken yet, for a structure whose size shows only as it grows; it then takes what it used.
+  Bytes rest() const { return bytes_.subspan(used_); }
+
   /// Gives back everything taken since `used_bytes()` was `mark`.
   void rewind(size_t mark) {
     if (mark < used_) {

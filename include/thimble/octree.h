@@ -148,6 +148,9 @@ class Octree {
   int material(Vec3i voxel) const;
 
   int level() const { return level_; }
+  /// A box that holds everything solid. It grows with what is inserted and does not shrink with what is
+  /// removed; once anything was coarsened it is the whole world.
+  const VoxelBox& bounds() const { return bounds_; }
   bool empty() const { return used_ == 0; }
   /// Solid volume in voxels, 0 .. 2^36, added volume included.
   uint64_t voxels() const { return voxels_; }
@@ -231,6 +234,7 @@ class Octree {
 
   uint32_t try_insert(Vec3i corner, int block_level, uint8_t material);
   uint32_t try_insert_voxel(uint32_t index, uint32_t octant, uint8_t material);
+  void grow_bounds(Vec3i corner, int block_level);
   void insert_merged(Vec3i corner, int block_level, uint8_t material);
   void remove_voxel(uint32_t index, uint32_t octant);
   uint32_t build_path(Vec3i corner, int from_level, int block_level, uint8_t material);
@@ -253,6 +257,7 @@ class Octree {
   uint32_t root_ = kNone;
   uint64_t voxels_ = 0;
   uint64_t solid_added_ = 0;
+  VoxelBox bounds_;
   /// The path to the last place changed: path_[k] is the node at level k above cursor_, valid for levels
   /// path_low_ .. level_ while the tree is not empty.
   Vec3i cursor_;

@@ -1,0 +1,348 @@
+// Writing compact trees, from sorted keys and from the mutable octree. Either source is walked level by
+// level, twice: once into a counter that finds the shape, once into a writer.
+#include "bits.h"
+#include "compact_header.h"
+#include "thimble/compact_tree.h"
+#include "thimble/crc32.h"
+#include "thimble/morton.h"
+#include "thimble/octree.h"
+
+namespace thimble {
+namespace {
+
+using namespace compact_header;
+
+// Finds the shape, volume, bounds and materials of what a walk shows it.
+struct Counter {
+  CompactShape shape;
+  uint64_t volume = 0;
+  VoxelBox bounds;
+  int first_material = -1;
+  bool overflow = false;
+
+  void see_material(uint8_t material) {
+    if (first_material < 0) {
+      first_material = material;
+    }
+    if (material != first_material) {
+      shape.many_materials = true;
+    }
+  }
+  void inner(unsigned) { count_node(); }
+  void solid(const Vec3i& corner, int level, uint8_t material, bool merged) {
+    count_node();
+    ++shape.solid_blocks;
+    shape.merged = shape.merged || merged;
+    volume += uint64_t{1} << (3 * level);
+    grow_bounds(&bounds, corner, level, 0);
+    see_material(material);
+  }
+  void voxels(const Vec3i& corner, unsigned mask, const uint8_t (&materials)[8]) {
+    count_node();
+    const unsigned count = bits::popcount8(mask);
+    if (shape.voxel_bits > UINT32_MAX - count) {
+      overflow = true;
+    }
+    shape.voxel_bits += count;
+    volume += count;
+    grow_bounds(&bounds, corner, 1, mask);
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      if (((mask >> octant) & 1U) != 0) {
+        see_material(materials[octant]);
+      }
+    }
+  }
+  void count_node() {
+    if (++shape.nodes == 0) {
+      overflow = true;
+    }
+  }
+};
+
+// Writes masks, merged bits and materials in the order of the walk.
+struct Writer {
+  uint8_t* masks;
+  uint8_t* merged_bits;      // null when nothing is merged
+  uint8_t* block_materials;  // null when there is one material
+  uint8_t* voxel_materials;
+  uint32_t index = 0;
+
+  void inner(unsigned mask) { masks[index++] = static_cast<uint8_t>(mask); }
+  void solid(const Vec3i&, int, uint8_t material, bool merged) {
+    if (merged) {
+      merged_bits[index >> 3] = static_cast<uint8_t>(merged_bits[index >> 3] | 1U << (index & 7U));
+    }
+    masks[index++] = 0;
+    if (block_materials != nullptr) {
+      *block_materials++ = material;
+    }
+  }
+  void voxels(const Vec3i&, unsigned mask, const uint8_t (&materials)[8]) {
+    masks[index++] = static_cast<uint8_t>(mask);
+    if (voxel_materials == nullptr) {
+      return;
+    }
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      if (((mask >> octant) & 1U) != 0) {
+        *voxel_materials++ = materials[octant];
+      }
+    }
+  }
+};
+
+// Sorted keys as a source. `Key` is a bare code (32 bits) or a code above an 8-bit material (64 bits).
+template <class Key>
+struct KeySource {
+  static constexpr int kCodeShift = sizeof(Key) == 4 ? 0 : 8;
+  Span<const Key> keys;
+  int world_level;
+  uint8_t material_of_all;
+
+  int level() const { return world_level; }
+  uint64_t solid_added() const { return 0; }
+  Key code(size_t i) const { return keys[i] >> kCodeShift; }
+  uint8_t material(size_t i) const {
+    return kCodeShift == 0 ? material_of_all : static_cast<uint8_t>(keys[i] & 0xFFU);
+  }
+  // Whether the keys from `i` on fill the block of `block_level` that starts at key i with one material. Keys
+  // are unique, so it is full when the key 8^level - 1 places on is the block's last voxel.
+  bool fills_block(size_t i, int block_level) const {
+    const Key low_bits = static_cast<Key>((uint64_t{1} << (3 * block_level)) - 1);
+    if ((code(i) & low_bits) != 0 || low_bits >= keys.size - i) {
+      return false;
+    }
+    const size_t last = i + static_cast<size_t>(low_bits);
+    if (code(last) != (code(i) | low_bits)) {
+      return false;
+    }
+    if (kCodeShift != 0) {
+      for (size_t j = i + 1; j <= last; ++j) {
+        if (material(j) != material(i)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  template <class Sink>
+  void walk_level(int level, Sink* sink) const {
+    size_t i = 0;
+    while (i < keys.size) {
+      if (level < world_level && fills_block(i, level + 1)) {
+        i += size_t{1} << (3 * (level + 1));  // inside a solid block of a higher level
+        continue;
+      }
+      if (fills_block(i, level)) {
+        sink->solid(morton_voxel(code(i)), level, material(i), false);
+        i += size_t{1} << (3 * level);
+        continue;
+      }
+      const Key prefix = code(i) >> (3 * level);
+      unsigned mask = 0;
+      if (level > 1) {
+        for (; i < keys.size && (code(i) >> (3 * level)) == prefix; ++i) {
+          mask |= 1U << ((code(i) >> (3 * (level - 1))) & 7U);
+        }
+        sink->inner(mask);
+        continue;
+      }
+      uint8_t materials[8] = {};
+      for (; i < keys.size && (code(i) >> 3) == prefix; ++i) {
+        const unsigned octant = static_cast<unsigned>(code(i) & 7U);
+        mask |= 1U << octant;
+        materials[octant] = material(i);
+      }
+      sink->voxels(morton_voxel(static_cast<uint64_t>(prefix) << 3), mask, materials);
+    }
+  }
+};
+
+// The mutable octree as a source: for each level a walk down to it in Morton order, which is that level's
+// breadth-first order.
+struct OctreeSource {
+  const Octree& octree;
+
+  int level() const { return octree.level(); }
+  uint64_t solid_added() const { return octree.solid_added(); }
+
+  template <class Sink>
+  void walk_level(int level, Sink* sink) const {
+    // stack[k]: the node of level k on the path, and the octants of its parent not yet visited from its own
+    // on.
+    struct Frame {
+      uint32_t next_child;
+      uint8_t octants;
+    } stack[kMaxLevel + 1];
+    uint32_t index = octree.root();
+    int at = octree.level();
+    Vec3i corner;
+    while (index != Octree::kNone) {
+      const Octree::NodeView node = octree.node(index);
+      if (at == level) {
+        show(node, corner, level, sink);
+      }
+      stack[at] = {Octree::kNone, 0};
+      if (at > level && node.mask != 0) {
+        stack[at] = {node.first_child, node.mask};
+      }
+      // The next node in order: the first child not yet visited of the lowest node on the path that has one.
+      while (at <= octree.level() && stack[at].octants == 0) {
+        ++at;
+      }
+      if (at > octree.level()) {
+        return;
+      }
+      Frame& frame = stack[at];
+      const unsigned octant = static_cast<unsigned>(__builtin_ctz(frame.octants));
+      frame.octants = static_cast<uint8_t>(frame.octants & (frame.octants - 1U));
+      index = frame.next_child;
+      frame.next_child = index == Octree::kNone ? Octree::kNone : octree.node(index).next;
+      --at;
+      const int32_t side = int32_t{1} << at;
+      for (int axis = 0; axis < 3; ++axis) {
+        corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
+      }
+    }
+  }
+
+  template <class Sink>
+  void show(const Octree::NodeView& node, const Vec3i& corner, int level, Sink* sink) const {
+    if (node.mask == 0) {
+      sink->solid(corner, level, node.material, node.merged);
+      return;
+    }
+    if (level > 1) {
+      sink->inner(node.mask);
+      return;
+    }
+    uint8_t materials[8] = {};
+    uint32_t voxel = node.first_child;
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      if (((node.mask >> octant) & 1U) == 0) {
+        continue;
+      }
+      materials[octant] = node.material;
+      if (node.has_children && voxel != Octree::kNone) {
+        const Octree::NodeView view = octree.node(voxel);
+        materials[octant] = view.material;
+        voxel = view.next;
+      }
+    }
+    sink->voxels(corner, node.mask, materials);
+  }
+};
+
+template <class Source>
+Counter count(const Source& source) {
+  Counter counter;
+  counter.shape.level = source.level();
+  for (int level = source.level(); level >= 1; --level) {
+    source.walk_level(level, &counter);
+  }
+  return counter;
+}
+
+void write_directory(const CompactShape& shape, uint8_t* base, const Sections& at) {
+  const bool block_ranks = shape.many_materials && shape.solid_blocks != 0;
+  uint32_t children = 0;
+  uint32_t solid_blocks = 0;
+  for (uint32_t index = 0; index < shape.nodes; ++index) {
+    if ((index & ((1U << shape.rank_shift) - 1)) == 0) {
+      const size_t block = index >> shape.rank_shift;
+      bits::store32(base + at.ranks + 4 * block, children);
+      if (block_ranks) {
+        bits::store32(base + at.block_ranks + 4 * block, solid_blocks);
+      }
+    }
+    const uint8_t mask = base[at.masks + index];
+    children += bits::popcount8(mask);
+    solid_blocks += mask == 0 ? 1U : 0U;
+  }
+}
+
+template <class Source>
+Status write(const Source& source, Bytes out, size_t* size, int rank_shift) {
+  if (rank_shift < kMinRankShift || rank_shift > kMaxRankShift) {
+    return Status::kOutOfRange;
+  }
+  Counter counter = count(source);
+  CompactShape& shape = counter.shape;
+  shape.rank_shift = rank_shift;
+  const size_t bytes = counter.overflow ? 0 : compact_bytes(shape);
+  if (size != nullptr) {
+    *size = bytes;
+  }
+  if (bytes == 0) {
+    return Status::kOutOfRange;
+  }
+  if (bytes > out.size) {
+    return Status::kOutOfMemory;
+  }
+
+  uint8_t* base = out.data;
+  const Sections at = sections_of(shape);
+  // Everything behind the masks starts as 0: padding, and bits that are set one by one.
+  for (size_t i = at.masks + shape.nodes; i < bytes; ++i) {
+    base[i] = 0;
+  }
+  Writer writer{base + at.masks, base + at.merged, nullptr, nullptr};
+  if (shape.many_materials) {
+    writer.block_materials = base + at.materials;
+    writer.voxel_materials = base + at.materials + shape.solid_blocks;
+  }
+  for (int level = source.level(); level >= 1; --level) {
+    source.walk_level(level, &writer);
+  }
+  write_directory(shape, base, at);
+
+  bits::store32(base, kMagic);
+  base[kLevelOffset] = static_cast<uint8_t>(shape.level);
+  base[kRankShiftOffset] = static_cast<uint8_t>(shape.rank_shift);
+  base[kFlagsOffset] = static_cast<uint8_t>((shape.many_materials ? kManyMaterialsFlag : 0U) |
+                                            (shape.merged ? kMergedFlag : 0U));
+  base[kMaterialOffset] =
+      static_cast<uint8_t>(shape.many_materials || counter.first_material < 0 ? 0 : counter.first_material);
+  bits::store32(base + kSizeOffset, static_cast<uint32_t>(bytes));
+  bits::store32(base + kNodesOffset, shape.nodes);
+  bits::store32(base + kSolidBlocksOffset, shape.solid_blocks);
+  bits::store32(base + kVoxelBitsOffset, shape.voxel_bits);
+  for (int axis = 0; axis < 3; ++axis) {
+    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.min[axis]));
+    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.max[axis]));
+  }
+  bits::store64(base + kVoxelCountOffset, counter.volume);
+  bits::store64(base + kSolidAddedOffset, source.solid_added());
+  const uint32_t front = crc32({base, kChecksumOffset});
+  bits::store32(base + kChecksumOffset, crc32({base + kChecksumStart, bytes - kChecksumStart}, front));
+  return Status::kOk;
+}
+
+}  // namespace
+
+CompactShape compact_shape(const Octree& octree, int rank_shift) {
+  CompactShape shape = count(OctreeSource{octree}).shape;
+  shape.rank_shift = rank_shift;
+  return shape;
+}
+
+Status compact_from_octree(const Octree& octree, Bytes out, size_t* written, int rank_shift) {
+  return write(OctreeSource{octree}, out, written, rank_shift);
+}
+
+Status compact_from_keys(Span<const uint32_t> keys, int level, uint8_t material, Bytes out, size_t* needed,
+                         int rank_shift) {
+  if (level < kMinLevel || level > 10) {
+    return Status::kOutOfRange;
+  }
+  return write(KeySource<uint32_t>{keys, level, material}, out, needed, rank_shift);
+}
+
+Status compact_from_keys(Span<const uint64_t> keys, int level, Bytes out, size_t* needed, int rank_shift) {
+  if (level < kMinLevel || level > kMaxLevel) {
+    return Status::kOutOfRange;
+  }
+  return write(KeySource<uint64_t>{keys, level, 0}, out, needed, rank_shift);
+}
+
+}  // namespace thimble

@@ -1,0 +1,131 @@
+#include "output/image.h"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cstring>
+#include <span>
+
+#include "output/output_file.h"
+#include "readers/source.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace thimble::tools {
+namespace {
+
+std::string ending_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  const std::size_t slash = path.rfind('/');
+  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) {
+    return {};
+  }
+  std::string ending = path.substr(dot);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+}  // namespace
+
+ImageKind image_kind(const std::string& path) {
+  const std::string ending = ending_of(path);
+  if (ending == ".ppm" || path == "-") {
+    return ImageKind::kPpm;
+  }
+  if (ending == ".pgm") {
+    return ImageKind::kPgm;
+  }
+  if (ending == ".pbm") {
+    return ImageKind::kPbm;
+  }
+  if (ending == ".png") {
+    return ImageKind::kPng;
+  }
+  throw InputError("the picture's ending must be .ppm, .pgm, .pbm or .png");
+}
+
+PixelFormat pixel_format(ImageKind kind) {
+  switch (kind) {
+    case ImageKind::kPbm:
+      return PixelFormat::kMono1;
+    case ImageKind::kPgm:
+      return PixelFormat::kGray8;
+    case ImageKind::kPpm:
+    case ImageKind::kPng:
+      return PixelFormat::kRgb888;
+  }
+  return PixelFormat::kRgb888;
+}
+
+std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind) {
+  std::vector<std::uint8_t> pixels = image.pixels;
+  if (kind == ImageKind::kPbm) {
+    // 1 is black in a PBM; the padding at a row's end stays 0.
+    const std::size_t row = row_bytes(PixelFormat::kMono1, image.width_px);
+    const unsigned spare = static_cast<unsigned>(8 * row - static_cast<std::size_t>(image.width_px));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const unsigned keep = (i + 1) % row == 0 ? 0xFFU << spare : 0xFFU;
+      pixels[i] = static_cast<std::uint8_t>(~pixels[i] & keep);
+    }
+  }
+  return pixels;
+}
+
+void write_image(const std::string& path, ImageKind kind, const Image& image) {
+  OutputFile file(path);
+  const std::vector<std::uint8_t> pixels = file_pixels(image, kind);
+  const std::string size = std::to_string(image.width_px) + " " + std::to_string(image.height_px) + "\n";
+  switch (kind) {
+    case ImageKind::kPpm:
+      file.write("P6\n" + size + "255\n");
+      break;
+    case ImageKind::kPgm:
+      file.write("P5\n" + size + "255\n");
+      break;
+    case ImageKind::kPbm:
+      file.write("P4\n" + size);
+      break;
+    case ImageKind::kPng: {
+      std::vector<unsigned char> png;
+      const auto append = [](void* context, void* data, int count) {
+        auto* out = static_cast<std::vector<unsigned char>*>(context);
+        const auto* bytes = static_cast<const unsigned char*>(data);
+        out->insert(out->end(), bytes, bytes + count);
+      };
+      if (stbi_write_png_to_func(append, &png, image.width_px, image.height_px, 3, pixels.data(),
+                                 3 * image.width_px) == 0) {
+        throw OutputError(path + ": the PNG encoder ran out of memory");
+      }
+      file.write(std::span<const unsigned char>(png));
+      file.commit();
+      return;
+    }
+  }
+  file.write(std::span<const unsigned char>(pixels));
+  file.commit();
+}
+
+void write_pfm(const std::string& path, std::int32_t width_px, std::int32_t height_px,
+               const std::vector<float>& values) {
+  static_assert(std::endian::native == std::endian::little, "the scale -1 says little-endian");
+  OutputFile file(path);
+  file.write("Pf\n" + std::to_string(width_px) + " " + std::to_string(height_px) + "\n-1.0\n");
+  const std::size_t width = static_cast<std::size_t>(width_px);
+  for (std::size_t row = static_cast<std::size_t>(height_px); row-- > 0;) {
+    std::vector<unsigned char> bytes(4 * width);
+    std::memcpy(bytes.data(), values.data() + row * width, bytes.size());
+    file.write(std::span<const unsigned char>(bytes));
+  }
+  file.commit();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,44 @@
+/// @file image.h
+/// Pictures as files: PPM (P6), PGM (P5), PBM (P4), PNG, and PFM for distances.
+#ifndef THIMBLE_TOOLS_OUTPUT_IMAGE_H
+#define THIMBLE_TOOLS_OUTPUT_IMAGE_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "thimble/pixel.h"
+
+namespace thimble::tools {
+
+enum class ImageKind : std::uint8_t { kPpm, kPgm, kPbm, kPng };
+
+/// By the ending of `path`; `-` (standard output) is a PPM. Throws InputError naming the endings
+/// that are known.
+ImageKind image_kind(const std::string& path);
+
+/// The core's pixel format that a picture of that kind is drawn in.
+PixelFormat pixel_format(ImageKind kind);
+
+/// A picture in the core's layout: rows from the top, without gaps.
+struct Image {
+  std::int32_t width_px = 0;
+  std::int32_t height_px = 0;
+  PixelFormat format = PixelFormat::kRgb888;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// The pixel bytes as the file holds them (a PNG's before compression): the core's, except that a PBM has 1
+/// for black.
+std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind);
+
+/// Writes the picture. Throws OutputError.
+void write_image(const std::string& path, ImageKind kind, const Image& image);
+
+/// Writes float32 values, row by row from the top, as a little-endian PFM (whose rows go from the bottom).
+void write_pfm(const std::string& path, std::int32_t width_px, std::int32_t height_px,
+               const std::vector<float>& values);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,142 @@
+#include "output/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+
+namespace thimble::tools {
+namespace {
+
+// Names of temporary files in use, for the signal handler: plain arrays, because a handler may not allocate.
+constexpr std::size_t kSlots = 8;
+constexpr std::size_t kNameBytes = 4096;
+struct Slot {
+  std::atomic<bool> used{false};
+  std::atomic<bool> named{false};
+  std::array<char, kNameBytes> name{};
+};
+std::array<Slot, kSlots>& slots() {
+  static std::array<Slot, kSlots> all;
+  return all;
+}
+
+void remember(const std::string& name) {
+  for (Slot& slot : slots()) {
+    bool expected = false;
+    if (name.size() < kNameBytes && slot.used.compare_exchange_strong(expected, true)) {
+      std::memcpy(slot.name.data(), name.c_str(), name.size() + 1);
+      slot.named = true;
+      return;
+    }
+  }
+}
+
+void forget(const std::string& name) {
+  for (Slot& slot : slots()) {
+    if (slot.named && name == slot.name.data()) {
+      slot.named = false;
+      slot.used = false;
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+void discard_unfinished_output() {
+  for (Slot& slot : slots()) {
+    if (slot.named) {
+      ::unlink(slot.name.data());
+    }
+  }
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path) {
+  if (path == "-") {
+    file_ = stdout;
+    return;
+  }
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) {
+    fail(EISDIR);
+  }
+  if (exists && !S_ISREG(info.st_mode)) {
+    file_ = std::fopen(path.c_str(), "wb");
+  } else if (exists && ::access(path.c_str(), W_OK) != 0) {
+    fail(errno);
+  } else {
+    temporary_ = path + ".XXXXXX";
+    const int descriptor = ::mkstemp(temporary_.data());
+    if (descriptor < 0) {
+      temporary_.clear();
+      fail(errno);
+    }
+    remember(temporary_);
+    // mkstemp makes private files; the result gets the mode that any new file would, or that of the file it
+    // replaces.
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    if (::fchmod(descriptor, exists ? info.st_mode & 07777U : 0666U & ~mask) != 0) {
+      // Not all file systems have modes.
+    }
+    file_ = ::fdopen(descriptor, "wb");
+  }
+  if (file_ == nullptr) {
+    fail(errno);
+  }
+}
+
+OutputFile::~OutputFile() {
+  if (file_ != nullptr && file_ != stdout) {
+    std::fclose(file_);
+  }
+  if (!temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+    forget(temporary_);
+  }
+}
+
+void OutputFile::fail(int error) {
+  throw OutputError((path_ == "-" ? std::string("standard output") : path_) +
+                    ": cannot be written: " + std::strerror(error));
+}
+
+void OutputFile::write(std::string_view text) {
+  if (!text.empty() && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) {
+    fail(errno);
+  }
+}
+
+void OutputFile::write(std::span<const unsigned char> bytes) {
+  write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void OutputFile::commit() {
+  if (std::fflush(file_) != 0) {
+    fail(errno);
+  }
+  if (file_ == stdout) {
+    return;
+  }
+  std::FILE* file = file_;
+  file_ = nullptr;
+  if (std::fclose(file) != 0) {
+    fail(errno);
+  }
+  if (temporary_.empty()) {
+    return;
+  }
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    fail(errno);
+  }
+  forget(temporary_);
+  temporary_.clear();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,51 @@
+/// @file output_file.h
+/// Files that are either complete or not there: bytes go to a temporary name beside the target, which takes
+/// the target's name at the end.
+#ifndef THIMBLE_TOOLS_OUTPUT_OUTPUT_FILE_H
+#define THIMBLE_TOOLS_OUTPUT_OUTPUT_FILE_H
+
+#include <cstdio>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace thimble::tools {
+
+/// An output that cannot be written; `what()` is the whole sentence, the file's name included.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One output. `-` is standard output, written straight on. What exists and is no regular file (a device, a
+/// pipe) is written to directly too.
+class OutputFile {
+ public:
+  /// Opens `path` for writing. Throws OutputError (no such folder, no permission, ...).
+  explicit OutputFile(const std::string& path);
+  /// Without `commit` nothing is left behind.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Throws OutputError when the bytes cannot be written (disk full).
+  void write(std::string_view text);
+  void write(std::span<const unsigned char> bytes);
+  /// Flushes and gives the file its name. Throws OutputError, leaving a file of that name as it was.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error);
+
+  std::string path_;
+  std::string temporary_;  ///< empty when written to directly
+  std::FILE* file_ = nullptr;
+};
+
+/// Deletes the temporary file of the output being written, if any. Safe to call from a signal handler.
+void discard_unfinished_output();
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,27 @@
+/// @file units.h
+/// Numbers as a person reads and writes them.
+#ifndef THIMBLE_TOOLS_OUTPUT_UNITS_H
+#define THIMBLE_TOOLS_OUTPUT_UNITS_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace thimble::tools {
+
+/// 48000000 as "48,000,000".
+std::string grouped(std::uint64_t number);
+
+/// "65536", "64K", "2M", "1G" (powers of 1024, either case, an optional B or iB after the letter) as bytes;
+/// nothing for anything else and for what exceeds 2^63 - 1.
+std::optional<std::uint64_t> parse_bytes(std::string_view text);
+
+/// A double with the fewest digits up to 17 significant ones that read back as the same double.
+std::string shortest(double number);
+/// A double with 17 significant digits.
+std::string digits17(double number);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,286 @@
+#include "scene/built_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include "output/units.h"
+#include "thimble/morton.h"
+#include "thimble/render.h"
+
+namespace thimble::tools {
+namespace {
+
+Bytes aligned(Bytes bytes, std::size_t alignment) {
+  const std::size_t past = reinterpret_cast<std::size_t>(bytes.data) & (alignment - 1);
+  return bytes.subspan(past == 0 ? 0 : alignment - past);
+}
+
+}  // namespace
+
+BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress)
+    : options_(options) {
+  for (const Material& material : source.palette()) {
+    palette_.push_back({material.color.r, material.color.g, material.color.b});
+  }
+  const auto start = std::chrono::steady_clock::now();
+  memory_ = options.memory_bytes ? HostMemory(static_cast<std::size_t>(*options.memory_bytes))
+                                 : HostMemory::largest();
+  try {
+    build(source, false, progress);
+  } catch (const Shortage&) {
+    bool fits = false;
+    if (options.coarsen && options.structure != StructureKind::kDense) {
+      try {
+        build(source, true, progress);
+        fits = true;
+      } catch (const Shortage&) {
+        // Not even a coarse tree has room beside the band.
+      }
+    }
+    if (!fits) {
+      if (!options.memory_bytes) {
+        throw InputError("the scene does not fit into this machine's memory");
+      }
+      // How much it would take is found by building it without a budget.
+      BuildOptions unlimited = options;
+      unlimited.memory_bytes.reset();
+      unlimited.coarsen = false;
+      const std::uint64_t needed = BuiltScene(source, unlimited, progress).high_water_bytes();
+      throw InputError("needs " + grouped(needed) + " bytes, the budget is " +
+                       grouped(*options.memory_bytes) + " (--memory); give it more" +
+                       (options.structure == StructureKind::kDense ? " or another --structure"
+                        : options.coarsen                          ? ""
+                                                                   : ", a smaller --depth or --coarsen"));
+    }
+  }
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void BuiltScene::build(const SceneSource& source, bool coarsen, const Progress& progress) {
+  arena_ = Arena(memory_.bytes());
+  band_ = {};
+  if (options_.band_bytes != 0) {
+    if (arena_.take(render_bytes()).empty()) {
+      throw Shortage{};
+    }
+    band_ = arena_.take(static_cast<std::size_t>(options_.band_bytes));
+    if (band_.empty()) {
+      throw Shortage{};
+    }
+  }
+  if (options_.structure == StructureKind::kDense) {
+    build_dense(source, progress);
+  } else if (options_.structure == StructureKind::kPool || coarsen || !source.is_point_set()) {
+    build_pool(source, coarsen, progress);
+  } else if (source.single_material() && source.level() <= 10) {
+    build_keys<std::uint32_t>(source, progress);
+  } else {
+    build_keys<std::uint64_t>(source, progress);
+  }
+}
+
+void BuiltScene::build_dense(const SceneSource& source, const Progress& progress) {
+  const auto extent = source.extent();
+  const Vec3i size{std::max(extent[0], 1), std::max(extent[1], 1), std::max(extent[2], 1)};
+  const Bytes bytes = arena_.take(dense_grid_bytes(size));
+  if (bytes.empty() || DenseGrid::init(bytes, size, &dense_) != Status::kOk) {
+    // The size is known without building: 2^36 voxels and more need no try.
+    const std::uint64_t needed = arena_.used_bytes() + dense_grid_bytes(size);
+    throw InputError("a dense grid of " + std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
+                     std::to_string(size.z) + " voxels takes " + grouped(dense_grid_bytes(size)) +
+                     " bytes; with " + grouped(arena_.used_bytes()) +
+                     " for the renderer and its band that is " + grouped(needed) + ", the budget is " +
+                     grouped(arena_.capacity_bytes()) + " (--memory)");
+  }
+  source.stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+        if (dense_.set({x, y, z}) != Status::kOk) {
+          throw InputError("a voxel lies outside the dense grid");
+        }
+      },
+      progress);
+}
+
+void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progress& progress) {
+  const bool compact = options_.structure == StructureKind::kCompact;
+  const Bytes rest = aligned(arena_.rest(), alignof(std::uint64_t));
+  // Without coarsening the pool may take all and the compact tree what it leaves. A pool that coarsens fills
+  // what it gets, so a quarter is kept back for the compact tree.
+  const std::size_t pool_bytes = compact && coarsen ? rest.size / 4 * 3 : rest.size;
+  if (octree_.init(rest.subspan(0, pool_bytes), source.level()) != Status::kOk) {
+    throw Shortage{};
+  }
+  octree_.set_coarsen(coarsen);
+  const bool keep_greatest = source.is_point_set() && !source.single_material();
+  source.stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        const Vec3i voxel{x, y, z};
+        if (keep_greatest && octree_.material(voxel) >= material) {
+          return;
+        }
+        const Status status = octree_.insert(voxel, material);
+        if (status == Status::kOutOfMemory) {
+          throw Shortage{};
+        }
+        if (status != Status::kOk) {
+          throw InputError("voxel " + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) +
+                           " lies outside the world");
+        }
+      },
+      progress);
+
+  const std::size_t pool_used = Octree::octree_bytes(octree_.nodes_high_water());
+  if (!compact) {
+    arena_.take(static_cast<std::size_t>(rest.data - arena_.rest().data) + std::min(pool_used, pool_bytes),
+                1);
+    return;
+  }
+  const Bytes target = aligned(rest.subspan(coarsen ? pool_bytes : pool_used), alignof(std::uint64_t));
+  std::size_t size = 0;
+  Status status = compact_from_octree(octree_, target, &size);
+  while (status == Status::kOutOfMemory && coarsen && octree_.nodes_used() > 1) {
+    const std::uint64_t nodes = octree_.nodes_used();
+    const std::uint64_t fewer = std::min(nodes - 1, std::max<std::uint64_t>(1, nodes * target.size / size));
+    if (octree_.coarsen_to(static_cast<std::size_t>(fewer)) != Status::kOk) {
+      break;
+    }
+    status = compact_from_octree(octree_, target, &size);
+  }
+  if (status != Status::kOk) {
+    throw Shortage{};
+  }
+  arena_.note_scratch(static_cast<std::size_t>(target.data - arena_.rest().data) + size);
+  keep_compact(target.subspan(0, size));
+}
+
+template <class Key>
+void BuiltScene::build_keys(const SceneSource& source, const Progress& progress) {
+  constexpr bool kBare = sizeof(Key) == 4;
+  const int key_bits = 3 * source.level() + (kBare ? 0 : 8);
+  const Bytes rest = aligned(arena_.rest(), alignof(std::uint64_t));
+  const std::size_t capacity = std::min<std::size_t>(rest.size / sizeof(Key), UINT32_MAX);
+  Key* keys = reinterpret_cast<Key*>(rest.data);
+  std::size_t count = 0;
+  std::size_t most = 0;
+  const auto tidy = [&] {
+    most = std::max(most, count);
+    sort_keys(Span<Key>(keys, count), key_bits);
+    count = unique_keys(Span<Key>(keys, count));
+  };
+  source.stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        if (count == capacity) {
+          // Repeats may have filled it; a list that stays nearly full is a shortage, not a reason to sort for
+          // ever.
+          tidy();
+          if (count > capacity - capacity / 16) {
+            throw Shortage{};
+          }
+        }
+        if (count == capacity) {
+          throw Shortage{};
+        }
+        const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                               static_cast<std::uint32_t>(z));
+        keys[count++] = static_cast<Key>(kBare ? code : code << 8 | material);
+      },
+      progress);
+  tidy();
+
+  const Bytes target = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
+  std::size_t size = 0;
+  const Span<const Key> sorted(keys, count);
+  Status status = Status::kOk;
+  if constexpr (kBare) {
+    status = compact_from_keys(sorted, source.level(), 0, target, &size);
+  } else {
+    status = compact_from_keys(sorted, source.level(), target, &size);
+  }
+  if (status != Status::kOk) {
+    throw Shortage{};
+  }
+  const std::size_t offset = static_cast<std::size_t>(rest.data - arena_.rest().data);
+  arena_.note_scratch(std::max(offset + most * sizeof(Key),
+                               static_cast<std::size_t>(target.data - arena_.rest().data) + size));
+  keep_compact(target.subspan(0, size));
+}
+
+// Moves the tree to the front of what is free and takes its bytes.
+void BuiltScene::keep_compact(Bytes tree) {
+  const Bytes home = arena_.take(tree.size);
+  std::memmove(home.data, tree.data, tree.size);
+  if (CompactTree::open(home, &compact_) != Status::kOk) {
+    throw InputError("internal error: the compact tree just built is damaged");
+  }
+}
+
+int BuiltScene::level() const {
+  switch (options_.structure) {
+    case StructureKind::kDense:
+      return dense_.level();
+    case StructureKind::kPool:
+      return octree_.level();
+    case StructureKind::kCompact:
+      return compact_.level();
+  }
+  return kMinLevel;
+}
+
+VoxelBox BuiltScene::bounds() const {
+  switch (options_.structure) {
+    case StructureKind::kDense:
+      return dense_.bounds();
+    case StructureKind::kPool:
+      return octree_.bounds();
+    case StructureKind::kCompact:
+      return compact_.bounds();
+  }
+  return {};
+}
+
+std::uint64_t BuiltScene::voxels() const {
+  switch (options_.structure) {
+    case StructureKind::kDense:
+      return dense_.voxel_count();
+    case StructureKind::kPool:
+      return octree_.voxels();
+    case StructureKind::kCompact:
+      return compact_.voxel_count();
+  }
+  return 0;
+}
+
+std::uint64_t BuiltScene::solid_added() const {
+  return options_.structure == StructureKind::kPool ? octree_.solid_added() : compact_.solid_added();
+}
+
+std::uint64_t BuiltScene::nodes() const {
+  return options_.structure == StructureKind::kPool ? octree_.nodes_used() : compact_.node_count();
+}
+
+std::uint64_t BuiltScene::tree_bytes() const {
+  switch (options_.structure) {
+    case StructureKind::kDense:
+      return dense_.used_bytes();
+    case StructureKind::kPool:
+      return octree_.used_bytes();
+    case StructureKind::kCompact:
+      return compact_.size_bytes();
+  }
+  return 0;
+}
+
+Status BuiltScene::closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const {
+  switch (options_.structure) {
+    case StructureKind::kDense:
+      return thimble::closest_hit(dense_, ray, hit, options);
+    case StructureKind::kPool:
+      return thimble::closest_hit(octree_, ray, hit, options);
+    case StructureKind::kCompact:
+      return thimble::closest_hit(compact_, ray, hit, options);
+  }
+  return Status::kBadArgument;
+}
+
+}  // namespace thimble::tools

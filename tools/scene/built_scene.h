@@ -1,0 +1,84 @@
+/// @file built_scene.h
+/// A scene inside one arena: the structure that is traced, and room for one band of pixels.
+#ifndef THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
+#define THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/host_memory.h"
+#include "scene/scene_source.h"
+#include "thimble/arena.h"
+#include "thimble/compact_tree.h"
+#include "thimble/dense_grid.h"
+#include "thimble/octree.h"
+#include "thimble/pixel.h"
+#include "thimble/trace.h"
+
+namespace thimble::tools {
+
+enum class StructureKind : std::uint8_t { kDense, kPool, kCompact };
+
+struct BuildOptions {
+  StructureKind structure = StructureKind::kCompact;
+  std::optional<std::uint64_t> memory_bytes;  ///< --memory: everything between reader and display
+  bool coarsen = false;                       ///< --coarsen
+  std::uint64_t band_bytes = 0;               ///< one band of pixels, and what the renderer keeps
+};
+
+/// Built once, then only read. Layout of the arena, front to back:
+///
+///   render state and band | pool of nodes, or list of keys, while building | compact tree
+///
+/// At the end the compact tree moves down over the workspace. `arena.high_water_bytes()` is the most that was
+/// in use.
+class BuiltScene {
+ public:
+  /// Streams `source` into memory of its own. Throws InputError when it does not fit the budget (the sentence
+  /// says how much it would need), and what `source` throws.
+  BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress = {});
+
+  StructureKind structure() const { return options_.structure; }
+  int level() const;
+  /// A box that holds everything solid.
+  VoxelBox bounds() const;
+  /// Solid volume in voxels.
+  std::uint64_t voxels() const;
+  std::uint64_t solid_added() const;
+  /// Nodes of the structure that is traced; 0 for a dense grid.
+  std::uint64_t nodes() const;
+  std::uint64_t tree_bytes() const;
+  std::uint64_t budget_bytes() const { return arena_.capacity_bytes(); }
+  std::uint64_t high_water_bytes() const { return arena_.high_water_bytes(); }
+  double build_seconds() const { return build_seconds_; }
+  const std::vector<Rgb8>& palette() const { return palette_; }
+  Bytes band() const { return band_; }
+  const CompactTree& compact() const { return compact_; }
+
+  Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
+
+ private:
+  struct Shortage {};  // thrown inside `build`: the budget is too small
+
+  void build(const SceneSource& source, bool coarsen, const Progress& progress);
+  void build_dense(const SceneSource& source, const Progress& progress);
+  void build_pool(const SceneSource& source, bool coarsen, const Progress& progress);
+  template <class Key>
+  void build_keys(const SceneSource& source, const Progress& progress);
+  void keep_compact(Bytes tree);
+
+  BuildOptions options_;
+  HostMemory memory_;
+  Arena arena_;
+  Bytes band_;
+  CompactTree compact_;
+  Octree octree_;
+  DenseGrid dense_;
+  std::vector<Rgb8> palette_;
+  double build_seconds_ = 0;
+};
+
+}  // namespace thimble::tools
+
+#endif

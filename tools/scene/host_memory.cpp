@@ -1,0 +1,56 @@
+#include "scene/host_memory.h"
+
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <new>
+#include <utility>
+
+namespace thimble::tools {
+namespace {
+
+uint8_t* reserve(std::size_t size) {
+  void* address =
+      ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return address == MAP_FAILED ? nullptr : static_cast<uint8_t*>(address);
+}
+
+}  // namespace
+
+HostMemory::HostMemory(std::size_t size) : size_(size) {
+  if (size != 0) {
+    data_ = reserve(size);
+    if (data_ == nullptr) {
+      throw std::bad_alloc();
+    }
+  }
+}
+
+HostMemory HostMemory::largest() {
+  HostMemory memory;
+  for (std::size_t size = std::size_t{64} << 30; size >= std::size_t{1} << 20; size /= 2) {
+    memory.data_ = reserve(size);
+    if (memory.data_ != nullptr) {
+      memory.size_ = size;
+      return memory;
+    }
+  }
+  throw std::bad_alloc();
+}
+
+HostMemory::~HostMemory() {
+  if (data_ != nullptr) {
+    ::munmap(data_, size_);
+  }
+}
+
+HostMemory::HostMemory(HostMemory&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+HostMemory& HostMemory::operator=(HostMemory&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+}  // namespace thimble::tools

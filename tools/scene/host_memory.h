@@ -1,0 +1,34 @@
+/// @file host_memory.h
+/// The one block of bytes that a scene lives in on the host.
+#ifndef THIMBLE_TOOLS_SCENE_HOST_MEMORY_H
+#define THIMBLE_TOOLS_SCENE_HOST_MEMORY_H
+
+#include <cstddef>
+
+#include "thimble/span.h"
+
+namespace thimble::tools {
+
+/// Address space whose pages take memory only once they are written. It stands for a board's RAM, so it is
+/// one contiguous block that never grows.
+class HostMemory {
+ public:
+  HostMemory() = default;
+  /// Exactly `size` bytes. Throws std::bad_alloc when the system refuses.
+  explicit HostMemory(std::size_t size);
+  /// As many bytes as the system lets us reserve, 64 GiB at most: for a scene without a budget.
+  static HostMemory largest();
+  ~HostMemory();
+  HostMemory(HostMemory&& other) noexcept;
+  HostMemory& operator=(HostMemory&& other) noexcept;
+
+  Bytes bytes() const { return {data_, size_}; }
+
+ private:
+  uint8_t* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace thimble::tools
+
+#endif

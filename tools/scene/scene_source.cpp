@@ -1,0 +1,220 @@
+#include "scene/scene_source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "readers/read_any.h"
+#include "scene/fit_points.h"
+#include "scene/generators.h"
+#include "scene/palette.h"
+#include "scene/voxelise.h"
+#include "thimble/ray.h"
+
+namespace thimble::tools {
+namespace {
+
+// Calls `progress` once every so many voxels with the part done.
+class Meter {
+ public:
+  Meter(const Progress& progress, std::uint64_t total) : progress_(progress), total_(total) {}
+  void step() {
+    constexpr std::uint64_t kEvery = 1 << 16;
+    if (++done_ % kEvery == 0 && progress_ && total_ != 0) {
+      progress_(std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)));
+    }
+  }
+
+ private:
+  const Progress& progress_;
+  std::uint64_t total_;
+  std::uint64_t done_ = 0;
+};
+
+void check_depth(int depth) {
+  if (depth < kMinLevel || depth > kMaxLevel) {
+    throw InputError("--depth must be " + std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
+  }
+}
+
+class GeneratedScene final : public SceneSource {
+ public:
+  explicit GeneratedScene(const GeneratorSpec& spec) : spec_(spec), palette_(generator_palette(spec.kind)) {
+    level_ = spec.depth;
+  }
+  std::string kind() const override {
+    switch (spec_.kind) {
+      case GeneratorKind::kPoints:
+        return "generator points";
+      case GeneratorKind::kCluster:
+        return "generator cluster";
+      case GeneratorKind::kSpheres:
+        return "generator spheres";
+      case GeneratorKind::kWater:
+        return "generator water";
+    }
+    return "generator";
+  }
+  std::uint64_t points() const override { return is_point_set() ? spec_.count : 0; }
+  bool is_point_set() const override {
+    return spec_.kind == GeneratorKind::kPoints || spec_.kind == GeneratorKind::kCluster;
+  }
+  bool single_material() const override { return is_point_set(); }
+  const Palette& palette() const override { return palette_; }
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    Meter meter(progress, is_point_set() ? spec_.count : std::uint64_t{1} << (3 * spec_.depth - 3));
+    generate(spec_, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      sink(x, y, z, material);
+      meter.step();
+    });
+  }
+
+ private:
+  GeneratorSpec spec_;
+  Palette palette_;
+};
+
+class VoxelModelScene final : public SceneSource {
+ public:
+  VoxelModelScene(std::unique_ptr<VoxelModel> model, std::optional<int> depth) : model_(std::move(model)) {
+    const auto size = model_->size();
+    const std::int32_t largest = std::max({size[0], size[1], size[2]});
+    int needed = kMinLevel;
+    while (needed <= kMaxLevel && (std::int32_t{1} << needed) < largest) {
+      ++needed;
+    }
+    if (needed > kMaxLevel) {
+      throw InputError("the scene is " + std::to_string(largest) + " voxels long; the largest world has " +
+                       std::to_string(1 << kMaxLevel));
+    }
+    level_ = depth.value_or(needed);
+    if (level_ < needed) {
+      throw InputError("the scene is " + std::to_string(largest) + " voxels long and needs --depth " +
+                       std::to_string(needed));
+    }
+    model_->for_each([&](auto, auto, auto, auto) { ++voxels_; });
+  }
+  std::string kind() const override { return "voxel model"; }
+  std::uint64_t points() const override { return voxels_; }
+  bool is_point_set() const override { return false; }
+  bool single_material() const override { return false; }
+  std::array<std::int32_t, 3> extent() const override { return model_->size(); }
+  const Palette& palette() const override { return model_->palette(); }
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    Meter meter(progress, voxels_);
+    model_->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      sink(x, y, z, material);
+      meter.step();
+    });
+  }
+
+ private:
+  std::unique_ptr<VoxelModel> model_;
+  std::uint64_t voxels_ = 0;
+};
+
+class PointScene final : public SceneSource {
+ public:
+  PointScene(std::unique_ptr<PointCloud> cloud, const SceneArguments& arguments)
+      : cloud_(std::move(cloud)),
+        survey_(survey_points(*cloud_)),
+        colors_(survey_.colors),
+        as_voxels_(arguments.as_voxels) {
+    constexpr int kDefaultDepth = 9;
+    level_ = arguments.depth.value_or(as_voxels_ ? smallest_level(survey_) : kDefaultDepth);
+  }
+  std::string kind() const override {
+    return as_voxels_ ? "points as voxels" : "point cloud, fitted to the world";
+  }
+  std::uint64_t points() const override { return survey_.points; }
+  bool is_point_set() const override { return true; }
+  bool single_material() const override { return colors_.colors() == 0; }
+  std::array<std::int32_t, 3> extent() const override {
+    if (!as_voxels_) {
+      return SceneSource::extent();
+    }
+    std::array<std::int32_t, 3> result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result[axis] = static_cast<std::int32_t>(std::clamp(survey_.bounds.max[axis], 0.0, 4095.0)) + 1;
+    }
+    return result;
+  }
+  const Palette& palette() const override { return colors_.palette(); }
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    Meter meter(progress, survey_.points);
+    const VoxelSink counted = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      sink(x, y, z, material);
+      meter.step();
+    };
+    if (as_voxels_) {
+      place_points(*cloud_, level_, &colors_, counted);
+    } else {
+      fit_points(*cloud_, survey_, level_, &colors_, counted);
+    }
+  }
+
+ private:
+  std::unique_ptr<PointCloud> cloud_;
+  PointSurvey survey_;
+  PaletteMap colors_;
+  bool as_voxels_;
+};
+
+class MeshScene final : public SceneSource {
+ public:
+  MeshScene(TriangleMesh mesh, const SceneArguments& arguments)
+      : mesh_(std::move(mesh)), colors_(triangle_colors(mesh_)), z_up_(arguments.z_up) {
+    constexpr int kDefaultDepth = 9;
+    level_ = arguments.depth.value_or(kDefaultDepth);
+    if (mesh_.triangles.empty()) {
+      throw InputError("no triangles");
+    }
+  }
+  std::string kind() const override { return "triangle mesh, voxelised"; }
+  std::uint64_t points() const override { return mesh_.positions.size(); }
+  bool is_point_set() const override { return false; }
+  bool single_material() const override { return colors_.colors() == 0; }
+  const Palette& palette() const override { return colors_.palette(); }
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    voxelise(mesh_, level_, z_up_, &colors_, sink, progress);
+  }
+
+ private:
+  TriangleMesh mesh_;
+  PaletteMap colors_;
+  bool z_up_;
+};
+
+}  // namespace
+
+std::array<std::int32_t, 3> SceneSource::extent() const {
+  const std::int32_t side = std::int32_t{1} << level_;
+  return {side, side, side};
+}
+
+std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress) {
+  if (arguments.depth) {
+    check_depth(*arguments.depth);
+  }
+  if (auto spec = parse_generator(arguments.scene)) {
+    if (arguments.as_voxels) {
+      throw InputError("--as-voxels is for point files");
+    }
+    if (arguments.depth) {
+      spec->depth = *arguments.depth;
+    }
+    return std::make_unique<GeneratedScene>(*spec);
+  }
+  Source source = read_scene_file(arguments.scene, progress);
+  if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
+    return std::make_unique<PointScene>(std::move(*cloud), arguments);
+  }
+  if (arguments.as_voxels) {
+    throw InputError("--as-voxels is for point files");
+  }
+  if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
+    return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);
+  }
+  return std::make_unique<MeshScene>(std::move(std::get<TriangleMesh>(source)), arguments);
+}
+
+}  // namespace thimble::tools

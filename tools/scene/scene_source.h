@@ -1,0 +1,53 @@
+/// @file scene_source.h
+/// A scene as a stream of voxels, wherever it comes from: the SCENE argument of every subcommand.
+#ifndef THIMBLE_TOOLS_SCENE_SCENE_SOURCE_H
+#define THIMBLE_TOOLS_SCENE_SCENE_SOURCE_H
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "readers/source.h"
+#include "scene/voxel_sink.h"
+
+namespace thimble::tools {
+
+struct SceneArguments {
+  std::string scene;         ///< a file's path or a generator
+  std::optional<int> depth;  ///< --depth
+  bool as_voxels = false;    ///< --as-voxels
+  bool z_up = false;         ///< --z-up
+};
+
+/// Streams the same voxels as often as it is asked to.
+class SceneSource {
+ public:
+  virtual ~SceneSource() = default;
+  /// What it is, for a person: ".vox model", "point cloud, fitted", "generator points", ...
+  virtual std::string kind() const = 0;
+  /// The world is 2^level voxels a side.
+  int level() const { return level_; }
+  /// What the input counts: points, voxels of the file, vertices; known before streaming.
+  virtual std::uint64_t points() const = 0;
+  /// Whether it is made of single voxels strewn about, of which a list is smaller than a pool of nodes.
+  virtual bool is_point_set() const = 0;
+  /// Whether all voxels have material 0.
+  virtual bool single_material() const = 0;
+  /// One past the greatest index on each axis that can occur: what a dense grid must hold.
+  virtual std::array<std::int32_t, 3> extent() const;
+  virtual const Palette& palette() const = 0;
+  /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
+  virtual void stream(const VoxelSink& sink, const Progress& progress) const = 0;
+
+ protected:
+  int level_ = 1;
+};
+
+/// Opens SCENE: parses a generator or reads a file. Throws InputError.
+std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress = {});
+
+}  // namespace thimble::tools
+
+#endif
