@@ -23,16 +23,9 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
   // Forward, in 1/4096 of the ray's integers for a perspective camera (below 2^32), plain for an orthographic
   // one.
   Vec3<int64_t> forward;
-  Vec3i origin;
   uint64_t length = static_cast<uint32_t>(camera.depth_per_t_q8());
   for (int axis = 0; axis < 3; ++axis) {
-    if (camera.is_perspective()) {
-      forward[axis] = at_middle(camera, axis) >> 20;
-      origin[axis] = camera.constant()[axis];
-    } else {
-      forward[axis] = camera.constant()[axis];
-      origin[axis] = Camera::round(at_middle(camera, axis));
-    }
+    forward[axis] = camera.is_perspective() ? at_middle(camera, axis) >> 20 : camera.direction()[axis];
   }
   length = camera.is_perspective() ? length << 4 : (length + 128) >> 8;
   if (length == 0 || bounds.empty()) {
@@ -45,7 +38,7 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
     int64_t dot = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t plane = ((corner >> axis) & 1U) != 0 ? bounds.max[axis] : bounds.min[axis];
-      dot += int64_t{plane * Q8::kOne - origin[axis]} * forward[axis];
+      dot += int64_t{plane * Q8::kOne - camera.eye()[axis].raw} * forward[axis];
     }
     near_dot = dot < near_dot ? dot : near_dot;
     far_dot = dot > far_dot ? dot : far_dot;
