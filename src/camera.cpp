@@ -14,7 +14,7 @@
 // its vector within 1.8 * 2^-30, and s f, s |x|, s |y| are below sqrt(3) * 2^20 each (some component of the
 // corner is at least its length / sqrt(3)): with up, a product of two, at most 4 * 1.8 * 1.8 * 2^-10 = 0.013.
 // The cotangent's relative error 2^-28: 0.007. The sizes' common block exponent, 2^-31 of the largest: below
-// 0.002. Rounding to 32.32 and 16,384 steps of that: 2^-18. Sum below 0.0225; test_camera.cpp measures 0.003.
+// 0.002. Rounding to 32.32 and 16,384 steps of that: 2^-18. Sum below 0.0225; test_camera.cpp measures 0.002.
 // The scale s itself may be off by 2^-29, which moves no ray.
 //
 // Orthographic: origins are rounded to 1/256 voxel per component, again within 57/64 in all; steps within
@@ -183,8 +183,9 @@ Status Camera::set(const PerspectiveView& view, int level) {
   // of them 31 bits: `fraction` bits after it, 9 .. 30.
   const uint64_t focal_q39 =
       half_angle_cotangent_q39(view.fov_degrees) * static_cast<uint32_t>(view.height_px);  // below 2^60
-  const uint64_t width_q39 = static_cast<uint64_t>(view.width_px) << 39;
-  const int fraction = 70 - bit_width(focal_q39 > width_q39 ? focal_q39 : width_q39);
+  const int32_t side_px = view.width_px > view.height_px ? view.width_px : view.height_px;
+  const uint64_t side_q39 = static_cast<uint64_t>(side_px) << 39;
+  const int fraction = 70 - bit_width(focal_q39 > side_q39 ? focal_q39 : side_q39);
   const uint64_t focal = shift_rounded(focal_q39, 39 - fraction);
   const uint64_t right = static_cast<uint64_t>(view.width_px - 1) << fraction;
   const uint64_t above = static_cast<uint64_t>(view.height_px - 1) << fraction;
