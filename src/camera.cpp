@@ -17,10 +17,10 @@
 // 0.002. Rounding to 32.32 and 16,384 steps of that: 2^-18. Sum below 0.0225; test_camera.cpp measures 0.002.
 // The scale s itself may be off by 2^-29, which moves no ray.
 //
-// Orthographic: origins are rounded to 1/256 voxel per component, again within 57/64 in all; steps within
-// 1.8 * 2^-30 of half the picture's diagonal (11,585 pixels at most), below 2^-15 pixel. The direction D = s
-// F + e is the same for all pixels, so e is known; at planar depth z it moves a ray by at most z |e| / (F.D).
-// z is largest in the corner of the world that lies furthest ahead.
+// Orthographic: origins are rounded to 1/256 voxel per component, again within 57/64 in all; steps are within
+// 5.8 * 2^-30 of themselves, over half the picture's diagonal (11,585 pixels at most) 5/65536 pixel. The
+// direction D = s F + e is the same for all pixels, so e is known; at planar depth z it moves a ray by at
+// most z |e| / (F.D). z is largest in the corner of the world that lies furthest ahead.
 #include "thimble/camera.h"
 
 #include "cotangent.h"
@@ -339,8 +339,8 @@ Status Camera::set(const OrthographicView& view, int level) {
       return Status::kOutOfRange;
     }
   }
-  // What rounding them moves a ray by; 2 more than rounded up for the steps' own errors.
-  const uint64_t origin_px_q16 = divide(kRoundingQ8 * width << 14, span) + 3;
+  // What rounding them moves a ray by; 5 more than rounded up for the steps' own errors.
+  const uint64_t origin_px_q16 = divide(kRoundingQ8 * width << 14, span) + 6;
   if (origin_px_q16 > kMustPxQ16) {
     return Status::kTooFine;
   }
