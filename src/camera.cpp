@@ -14,13 +14,13 @@
 // its vector within 1.8 * 2^-30, and s f, s |x|, s |y| are below sqrt(3) * 2^20 each (some component of the
 // corner is at least its length / sqrt(3)): with up, a product of two, at most 4 * 1.8 * 1.8 * 2^-10 = 0.013.
 // The cotangent's relative error 2^-28: 0.007. The sizes' common block exponent, 2^-31 of the largest: below
-// 0.002. Rounding to 32.32 and 16,384 steps of that: 2^-18. Sum below 0.0225; test_camera.cpp measures 0.003.
+// 0.002. Rounding to 32.32 and 16,384 steps of that: 2^-18. Sum below 0.0225; test_camera.cpp measures 0.002.
 // The scale s itself may be off by 2^-29, which moves no ray.
 //
-// Orthographic: origins are rounded to 1/256 voxel per component, again within 57/64 in all; steps within
-// 1.8 * 2^-30 of half the picture's diagonal (11,585 pixels at most), below 2^-15 pixel. The direction D = s
-// F + e is the same for all pixels, so e is known; at planar depth z it moves a ray by at most z |e| / (F.D).
-// z is largest in the corner of the world that lies furthest ahead.
+// Orthographic: origins are rounded to 1/256 voxel per component, again within 57/64 in all; steps are within
+// 5.8 * 2^-30 of themselves, over half the picture's diagonal (11,585 pixels at most) 5/65536 pixel. The
+// direction D = s F + e is the same for all pixels, so e is known; at planar depth z it moves a ray by at
+// most z |e| / (F.D). z is largest in the corner of the world that lies furthest ahead.
 #include "thimble/camera.h"
 
 #include "cotangent.h"
@@ -183,8 +183,9 @@ Status Camera::set(const PerspectiveView& view, int level) {
   // of them 31 bits: `fraction` bits after it, 9 .. 30.
   const uint64_t focal_q39 =
       half_angle_cotangent_q39(view.fov_degrees) * static_cast<uint32_t>(view.height_px);  // below 2^60
-  const uint64_t width_q39 = static_cast<uint64_t>(view.width_px) << 39;
-  const int fraction = 70 - bit_width(focal_q39 > width_q39 ? focal_q39 : width_q39);
+  const int32_t side_px = view.width_px > view.height_px ? view.width_px : view.height_px;
+  const uint64_t side_q39 = static_cast<uint64_t>(side_px) << 39;
+  const int fraction = 70 - bit_width(focal_q39 > side_q39 ? focal_q39 : side_q39);
   const uint64_t focal = shift_rounded(focal_q39, 39 - fraction);
   const uint64_t right = static_cast<uint64_t>(view.width_px - 1) << fraction;
   const uint64_t above = static_cast<uint64_t>(view.height_px - 1) << fraction;
@@ -338,8 +339,8 @@ Status Camera::set(const OrthographicView& view, int level) {
       return Status::kOutOfRange;
     }
   }
-  // What rounding them moves a ray by; 2 more than rounded up for the steps' own errors.
-  const uint64_t origin_px_q16 = divide(kRoundingQ8 * width << 14, span) + 3;
+  // What rounding them moves a ray by; 5 more than rounded up for the steps' own errors.
+  const uint64_t origin_px_q16 = divide(kRoundingQ8 * width << 14, span) + 6;
   if (origin_px_q16 > kMustPxQ16) {
     return Status::kTooFine;
   }
