@@ -14,9 +14,14 @@ ProgressBar::ProgressBar(std::string label, bool quiet)
       next_(std::chrono::steady_clock::now() + std::chrono::milliseconds(500)) {}
 
 ProgressBar::~ProgressBar() {
+  clear();
+}
+
+void ProgressBar::clear() {
   if (shown_) {
     std::fputs("\r\033[K", stderr);
     std::fflush(stderr);
+    shown_ = false;
   }
 }
 

@@ -18,6 +18,8 @@ class ProgressBar {
 
   /// `done`: 0..1. Draws at most ten times a second.
   void update(double done);
+  /// Takes the bar off the screen, so that a line can be printed.
+  void clear();
 
  private:
   std::string label_;

@@ -6,7 +6,6 @@
 
 #include "output/units.h"
 #include "thimble/morton.h"
-#include "thimble/render.h"
 
 namespace thimble::tools {
 namespace {
@@ -279,6 +278,19 @@ Status BuiltScene::closest_hit(const Ray& ray, Hit* hit, const TraceOptions& opt
       return thimble::closest_hit(octree_, ray, hit, options);
     case StructureKind::kCompact:
       return thimble::closest_hit(compact_, ray, hit, options);
+  }
+  return Status::kBadArgument;
+}
+
+Status BuiltScene::render_band(const Camera& camera, const Shading& shading, const Band& band,
+                               RenderCounts* counts, const TraceOptions& options) const {
+  switch (options_.structure) {
+    case StructureKind::kDense:
+      return thimble::render_band(dense_, camera, shading, band, counts, options);
+    case StructureKind::kPool:
+      return thimble::render_band(octree_, camera, shading, band, counts, options);
+    case StructureKind::kCompact:
+      return thimble::render_band(compact_, camera, shading, band, counts, options);
   }
   return Status::kBadArgument;
 }

@@ -14,6 +14,7 @@
 #include "thimble/dense_grid.h"
 #include "thimble/octree.h"
 #include "thimble/pixel.h"
+#include "thimble/render.h"
 #include "thimble/trace.h"
 
 namespace thimble::tools {
@@ -57,6 +58,8 @@ class BuiltScene {
   const CompactTree& compact() const { return compact_; }
 
   Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
+  Status render_band(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
+                     const TraceOptions& options) const;
 
  private:
   struct Shortage {};  // thrown inside `build`: the budget is too small

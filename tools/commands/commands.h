@@ -1,0 +1,27 @@
+/// @file commands.h
+/// The subcommands: one file each, and one line here.
+#ifndef THIMBLE_TOOLS_COMMANDS_COMMANDS_H
+#define THIMBLE_TOOLS_COMMANDS_COMMANDS_H
+
+namespace CLI {
+class App;
+}
+
+namespace thimble::tools {
+
+// Each adds its subcommand with options, help and what it does when it is chosen.
+void add_render(CLI::App& app);
+void add_trace(CLI::App& app);
+void add_table(CLI::App& app);
+void add_info(CLI::App& app);
+
+inline void add_all_commands(CLI::App& app) {
+  add_render(app);
+  add_trace(app);
+  add_table(app);
+  add_info(app);
+}
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,73 @@
+/// @file options.h
+/// Options that several subcommands share, and what they turn into.
+#ifndef THIMBLE_TOOLS_COMMANDS_OPTIONS_H
+#define THIMBLE_TOOLS_COMMANDS_OPTIONS_H
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
+#include "thimble/camera.h"
+#include "thimble/trace.h"
+
+namespace CLI {
+class App;
+}
+
+namespace thimble::tools {
+
+/// SCENE, --depth, --memory and the rest that decides what is built.
+struct SceneOptions {
+  SceneArguments arguments;
+  std::optional<std::uint64_t> memory_bytes;
+  bool coarsen = false;
+  StructureKind structure = StructureKind::kCompact;
+  bool quiet = false;
+  std::string stats_path;
+
+  void add_to(CLI::App& app);
+  std::unique_ptr<SceneSource> open() const;
+  /// Builds inside the budget, with `band_bytes` for pixels (0: none are drawn).
+  BuiltScene build(const SceneSource& source, std::uint64_t band_bytes) const;
+};
+
+/// --engine: which arithmetic traces.
+struct EngineOptions {
+  std::string name = "auto";
+
+  void add_to(CLI::App& app);
+  TraceOptions trace_options() const;
+  /// What `auto` stands for here.
+  std::string resolved() const { return name == "auto" ? "ray64" : name; }
+};
+
+using Real3 = std::array<double, 3>;
+
+/// --size, --projection, --eye and the rest that decides where the picture is taken from.
+struct ViewOptions {
+  std::int32_t width_px = 800;
+  std::int32_t height_px = 600;
+  bool orthographic = false;
+  std::optional<Real3> eye;
+  std::optional<Real3> target;
+  std::optional<Real3> up;
+  double fov_degrees = 60;
+  std::optional<double> span;
+  int direction_bits = 0;
+
+  void add_to(CLI::App& app);
+  /// The camera for a world of 2^level; what is not given frames `bounds`. Throws InputError.
+  Camera camera(int level, const VoxelBox& bounds) const;
+};
+
+/// --direction-bits, for subcommands that have no camera too.
+void add_direction_bits(CLI::App& app, int* bits);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,284 @@
+// thimble table: the paper's Table I and II on this machine, beside the paper's own figures.
+//
+// Every frame is judged: pixels are drawn at random and their rays handed to the exact reference, which holds
+// the scene's voxels in a grid of its own, filled from the generator and not from the tree.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "output/output_file.h"
+#include "output/plot.h"
+#include "output/progress.h"
+#include "output/units.h"
+#include "reference/reference.h"
+#include "scene/generators.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::int32_t kWidthPx = 800;
+constexpr std::int32_t kHeightPx = 600;
+constexpr int kFrames = 5;
+constexpr int kJudgedPixels = 10000;
+
+struct TableCommand {
+  std::vector<std::uint64_t> points{1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 20000000};
+  std::string scene = "points";
+  int depth = 10;
+  bool quiet = false;
+  std::string json_path;
+  std::string plot_path;
+  EngineOptions engine;
+};
+
+struct PaperRow {
+  std::uint64_t points;
+  double perspective_seconds;   // Table I
+  double orthographic_seconds;  // Table II
+};
+// Tables I and II of "Real Time Ray Tracing in a Space Limited Environment", seconds a frame.
+constexpr std::array<PaperRow, 9> kPaper{{{1, 0.105575, 0.007379},
+                                          {10, 0.310432, 0.015365},
+                                          {100, 0.828678, 0.057024},
+                                          {1000, 1.980592, 0.153735},
+                                          {10000, 4.469226, 0.373861},
+                                          {100000, 7.086494, 0.866302},
+                                          {1000000, 3.390397, 1.49762},
+                                          {10000000, 1.172221, 0.883987},
+                                          {20000000, 0.942457, 0.669997}}};
+
+std::optional<double> paper_seconds(std::uint64_t points, bool orthographic) {
+  for (const PaperRow& row : kPaper) {
+    if (row.points == points) {
+      return orthographic ? row.orthographic_seconds : row.perspective_seconds;
+    }
+  }
+  return std::nullopt;
+}
+
+struct Row {
+  std::uint64_t points = 0;
+  bool orthographic = false;
+  double seconds = 0;  // median
+  std::uint64_t hits = 0;
+  std::uint64_t mismatches = 0;
+};
+
+// The view of frame `index`: the whole world fills the picture, and every frame is seen from a slightly
+// different place.
+Camera camera_of(const TableCommand& command, bool orthographic, int index) {
+  const double side = 1 << command.depth;
+  const double drift = 0.003 * side * (index + 1);
+  ViewOptions view;
+  view.width_px = kWidthPx;
+  view.height_px = kHeightPx;
+  view.orthographic = orthographic;
+  view.target = Real3{side / 2 + drift / 3, side / 2, side / 2 + drift / 5};
+  if (orthographic) {
+    view.eye = Real3{(*view.target)[0], -1, (*view.target)[2]};  // along y
+    view.span = side * kWidthPx / kHeightPx;
+  } else {
+    view.eye = Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
+  }
+  return view.camera(command.depth, {});
+}
+
+std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid& grid, const Camera& camera,
+                               const TraceOptions& options, std::mt19937_64* random) {
+  std::uint64_t mismatches = 0;
+  for (int i = 0; i < kJudgedPixels / kFrames; ++i) {
+    const std::int32_t x = static_cast<std::int32_t>((*random)() % kWidthPx);
+    const std::int32_t y = static_cast<std::int32_t>((*random)() % kHeightPx);
+    const Ray ray = camera.ray(x, y);
+    Hit hit;
+    if (built.closest_hit(ray, &hit, options) != Status::kOk) {
+      throw InputError("--engine does not take the rays of this view");
+    }
+    reference::Ray judged;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      judged.origin_q8[axis] = ray.origin[static_cast<int>(axis)].raw;
+      judged.direction[axis] = ray.direction[static_cast<int>(axis)];
+    }
+    reference::Hit ours;
+    ours.hit = hit.kind == HitKind::kHit;
+    ours.voxel = {hit.voxel.x, hit.voxel.y, hit.voxel.z};
+    ours.t_numerator = hit.t_numerator;
+    ours.t_denominator = hit.t_denominator;
+    ours.axis = hit.axis;
+    mismatches += reference::same_answer(ours, reference::walk(grid, judged)) ? 0U : 1U;
+  }
+  return mismatches;
+}
+
+Row measure(const TableCommand& command, const BuiltScene& built, const reference::BitGrid& grid,
+            bool orthographic, std::uint64_t points, const std::function<void(double)>& progress) {
+  const TraceOptions options = command.engine.trace_options();
+  std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, kWidthPx, kHeightPx));
+  std::vector<double> seconds;
+  Row row;
+  row.points = points;
+  row.orthographic = orthographic;
+  std::mt19937_64 random(points);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    // Everything a frame needs is done again: the camera, its depth range, clearing, rays and shading.
+    const auto start = std::chrono::steady_clock::now();
+    const Camera camera = camera_of(command, orthographic, frame);
+    Shading shading;
+    const DepthRange range = depth_range(camera, built.bounds());
+    shading.near_q8 = range.near_q8;
+    shading.far_q8 = range.far_q8;
+    Band band;
+    band.pixels = Bytes(pixels.data(), pixels.size());
+    band.rows = kHeightPx;
+    RenderCounts counts;
+    if (built.render_band(camera, shading, band, &counts, options) != Status::kOk) {
+      throw InputError("--engine does not take the rays of this view");
+    }
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    row.hits = counts.hits;
+    row.mismatches += count_mismatches(built, grid, camera, options, &random);
+    progress(static_cast<double>(frame + 1) / kFrames);
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + kFrames / 2, seconds.end());
+  row.seconds = seconds[kFrames / 2];
+  return row;
+}
+
+void print_row(const Row& row) {
+  const std::optional<double> paper = paper_seconds(row.points, row.orthographic);
+  std::array<char, 64> beside{};
+  if (paper) {
+    std::snprintf(beside.data(), beside.size(), "%10.6f %8.1fx", *paper, *paper / row.seconds);
+  } else {
+    std::snprintf(beside.data(), beside.size(), "%10s %9s", "-", "-");
+  }
+  std::printf("%12s  %-12s %10.6f %s %9s %11s\n", grouped(row.points).c_str(),
+              row.orthographic ? "orthographic" : "perspective", row.seconds, beside.data(),
+              grouped(row.hits).c_str(), grouped(row.mismatches).c_str());
+  std::fflush(stdout);
+}
+
+void write_json(const TableCommand& command, const std::vector<Row>& rows) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Row& row : rows) {
+    nlohmann::ordered_json object;
+    object["points"] = row.points;
+    object["projection"] = row.orthographic ? "orthographic" : "perspective";
+    object["seconds"] = row.seconds;
+    const std::optional<double> paper = paper_seconds(row.points, row.orthographic);
+    object["paper_seconds"] = paper ? nlohmann::ordered_json(*paper) : nlohmann::ordered_json(nullptr);
+    object["hits"] = row.hits;
+    object["exact_mismatches"] = row.mismatches;
+    object["engine"] = command.engine.resolved();
+    json.push_back(object);
+  }
+  OutputFile file(command.json_path);
+  file.write(json.dump(2) + "\n");
+  file.commit();
+}
+
+void write_plot(const TableCommand& command, const std::vector<Row>& rows) {
+  Plot plot;
+  plot.title = "One frame of 800 x 600 pixels";
+  plot.x_label =
+      "points in the world of 2^" + std::to_string(command.depth) + " a side (" + command.scene + ")";
+  plot.y_label = "seconds a frame";
+  for (const bool orthographic : {false, true}) {
+    const std::string name = orthographic ? "orthographic" : "perspective";
+    Series ours{"Thimble, " + name, false, {}};
+    Series paper{"the paper, " + name, true, {}};
+    for (const Row& row : rows) {
+      if (row.orthographic != orthographic || row.points == 0) {
+        continue;
+      }
+      const double x = static_cast<double>(row.points);
+      ours.points.emplace_back(x, row.seconds);
+      if (const auto seconds = paper_seconds(row.points, orthographic)) {
+        paper.points.emplace_back(x, *seconds);
+      }
+    }
+    plot.series.push_back(ours);
+    plot.series.push_back(paper);
+  }
+  write_log_plot(command.plot_path, plot);
+}
+
+void run(const TableCommand& command) {
+  std::printf("%12s  %-12s %10s %10s %9s %9s %11s\n", "points", "projection", "seconds", "paper", "faster",
+              "hits", "mismatches");
+  std::vector<Row> rows;
+  for (const std::uint64_t points : command.points) {
+    ProgressBar bar(grouped(points) + " points", command.quiet);
+    SceneArguments arguments;
+    arguments.scene = command.scene + ":" + std::to_string(points);
+    arguments.depth = command.depth;
+    const auto source = open_scene(arguments);
+    BuildOptions build;
+    build.memory_bytes.reset();
+    const BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
+    const int side = 1 << command.depth;
+    reference::BitGrid grid({side, side, side});
+    source->stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+          grid.set({x, y, z});
+        },
+        [&](double done) { bar.update(0.3 + done * 0.3); });
+    std::vector<Row> pair;
+    for (const bool orthographic : {false, true}) {
+      pair.push_back(measure(command, built, grid, orthographic, points,
+                             [&](double done) { bar.update(0.6 + 0.2 * (done + (orthographic ? 1 : 0))); }));
+    }
+    bar.clear();
+    for (const Row& row : pair) {
+      print_row(row);
+      rows.push_back(row);
+    }
+  }
+  if (!command.json_path.empty()) {
+    write_json(command, rows);
+  }
+  if (!command.plot_path.empty()) {
+    write_plot(command, rows);
+  }
+}
+
+}  // namespace
+
+void add_table(CLI::App& app) {
+  auto command = std::make_shared<TableCommand>();
+  CLI::App* sub = app.add_subcommand(
+      "table",
+      "the paper's Tables I and II on this machine: seconds a frame (median of 5, each from a slightly "
+      "different place) "
+      "at 800 x 600, beside the paper's; pixels that differ from the exact reference, of 10,000 judged");
+  sub->add_option("--points", command->points, "numbers of points (default: the paper's, 1 to 20,000,000)")
+      ->delimiter(',')
+      ->type_name("N,N,...")
+      ->check(CLI::Range(std::uint64_t{0}, kMaxGeneratorPoints));
+  sub->add_option("--scene", command->scene, "points (uniformly random) or cluster")
+      ->check(CLI::IsMember({"points", "cluster"}))
+      ->default_str("points");
+  sub->add_option("--depth", command->depth, "world of 2^L voxels a side; the paper's was probably smaller")
+      ->type_name("L")
+      ->check(CLI::Range(kMinLevel, kMaxLevel))
+      ->default_str("10");
+  sub->add_option("--json", command->json_path,
+                  "an array, one object a row: points, projection, seconds, paper_seconds (null where the "
+                  "paper has none), "
+                  "hits, exact_mismatches, engine")
+      ->type_name("FILE.json");
+  sub->add_option("--plot", command->plot_path, "seconds against points")->type_name("FILE.svg");
+  sub->add_flag("--quiet", command->quiet, "no progress bar");
+  command->engine.add_to(*sub);
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

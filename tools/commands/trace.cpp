@@ -1,0 +1,188 @@
+// thimble trace: rays from a file, hits to a file.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "output/hit_csv.h"
+#include "output/output_file.h"
+#include "output/progress.h"
+#include "output/stats.h"
+#include "output/units.h"
+#include "readers/file_bytes.h"
+
+namespace thimble::tools {
+namespace {
+
+struct TraceCommand {
+  SceneOptions scene;
+  EngineOptions engine;
+  std::string rays_path;
+  std::string output = "-";
+  int direction_bits = 0;
+};
+
+[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& sentence) {
+  throw OutputError(path + ": line " + std::to_string(line) + ": " + sentence);
+}
+
+// The six numbers of a line, or nothing when it does not hold just six numbers.
+std::optional<std::array<double, 6>> parse_line(std::string_view line) {
+  std::array<double, 6> numbers{};
+  const char* at = line.data();
+  const char* end = at + line.size();
+  const auto skip_blanks = [&] {
+    while (at != end && (*at == ' ' || *at == '\t')) {
+      ++at;
+    }
+  };
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    skip_blanks();
+    if (at != end && *at == '+') {
+      ++at;
+    }
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    if (error == std::errc::result_out_of_range) {
+      // Too large or too small for a double: infinite or zero, which the caller judges.
+      numbers[i] = std::strtod(std::string(at, next).c_str(), nullptr);
+    } else if (error != std::errc{}) {
+      return std::nullopt;
+    }
+    at = next;
+    skip_blanks();
+    if (i + 1 < numbers.size() && (at == end || *at++ != ',')) {
+      return std::nullopt;
+    }
+  }
+  return at == end ? std::optional(numbers) : std::nullopt;
+}
+
+// The ray as it is traced: origin to the nearest 1/256 voxel; a direction of integers within the limit as it
+// is, any other scaled so that its largest component is the limit. A zero component stays zero.
+Ray quantise(const std::array<double, 6>& numbers, int level, int direction_bits, const std::string& path,
+             std::size_t line) {
+  const double low = static_cast<double>(kMinOriginWorlds) * (1 << level);
+  const double high = static_cast<double>(kMaxOriginWorlds) * (1 << level);
+  for (const double number : numbers) {
+    if (!std::isfinite(number)) {
+      fail(path, line, "a ray has a coordinate that is not a finite number");
+    }
+  }
+  Ray ray;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double value = numbers[static_cast<std::size_t>(axis)];
+    if (value < low || value > high) {
+      fail(path, line,
+           "the origin's " + shortest(value) + " is outside the accepted " + shortest(low) + " to " +
+               shortest(high) + " (-4 to 5 world sizes)");
+    }
+    ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(std::lround(value * Q8::kOne)));
+  }
+  double largest = 0;
+  bool whole = true;
+  for (std::size_t i = 3; i < 6; ++i) {
+    largest = std::max(largest, std::abs(numbers[i]));
+    whole = whole && numbers[i] == std::trunc(numbers[i]);
+  }
+  if (largest == 0) {
+    fail(path, line, "the direction is zero");
+  }
+  const double limit = direction_bits == 0 ? kMaxDirection : (1 << direction_bits) - 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double value = numbers[static_cast<std::size_t>(axis) + 3];
+    const double scaled = whole && largest <= limit ? value : value / largest * limit;
+    ray.direction[axis] = static_cast<std::int32_t>(std::lround(scaled));
+  }
+  return ray;
+}
+
+void run(const TraceCommand& command) {
+  const auto source = command.scene.open();
+  const BuiltScene built = command.scene.build(*source, 0);
+  FileBytes bytes;
+  try {
+    bytes = load_file(command.rays_path);
+  } catch (const InputError& error) {
+    throw OutputError(command.rays_path + ": " + error.what());
+  }
+  const std::string_view text = bytes.text();
+  const TraceOptions options = command.engine.trace_options();
+
+  OutputFile output(command.output);
+  output.write(std::string(kHitColumns) + "\n");
+  ProgressBar bar("tracing", command.scene.quiet);
+  Stats stats(command.scene.arguments.scene, *source, built);
+  stats.engine = command.engine.resolved();
+  std::string lines;
+  std::size_t line_number = 0;
+  bool first = true;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    ++line_number;
+    if (!line.empty() && line.back() == '\r') {
+      line.remove_suffix(1);
+    }
+    if (line.find_first_not_of(" \t") == std::string_view::npos) {
+      continue;
+    }
+    const auto numbers = parse_line(line);
+    // A first line of names is a header; one that begins like a number is a ray gone wrong.
+    const bool header = !numbers && first && line.find_first_of("0123456789") == std::string_view::npos;
+    first = false;
+    if (header) {
+      continue;
+    }
+    if (!numbers) {
+      fail(command.rays_path, line_number, "is not six numbers ox,oy,oz,dx,dy,dz");
+    }
+    const Ray ray = quantise(*numbers, built.level(), command.direction_bits, command.rays_path, line_number);
+    Hit hit;
+    if (built.closest_hit(ray, &hit, options) != Status::kOk) {
+      fail(command.rays_path, line_number, "--engine " + command.engine.name + " does not take this ray");
+    }
+    append_hit(&lines, ray, hit);
+    ++stats.rays;
+    stats.hits += hit.kind == HitKind::kHit ? 1U : 0U;
+    stats.node_visits += hit.visits;
+    constexpr std::size_t kFlushBytes = 1 << 20;
+    if (lines.size() > kFlushBytes) {
+      output.write(lines);
+      lines.clear();
+      bar.update(static_cast<double>(at) / static_cast<double>(text.size()));
+    }
+  }
+  stats.frame_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  output.write(lines);
+  output.commit();
+  if (!command.scene.stats_path.empty()) {
+    write_stats(command.scene.stats_path, stats);
+  }
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app) {
+  auto command = std::make_shared<TraceCommand>();
+  CLI::App* sub = app.add_subcommand("trace", "trace rays from a file");
+  command->scene.add_to(*sub);
+  sub->add_option("--rays", command->rays_path,
+                  "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed")
+      ->required()
+      ->type_name("FILE.csv");
+  sub->add_option("-o,--output", command->output, std::string("one line a ray: ") + kHitColumns)
+      ->type_name("FILE.csv")
+      ->default_str("-");
+  add_direction_bits(*sub, &command->direction_bits);
+  command->engine.add_to(*sub);
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

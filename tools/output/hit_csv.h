@@ -1,0 +1,26 @@
+/// @file hit_csv.h
+/// Hits as lines of CSV, the same columns wherever hits are written.
+#ifndef THIMBLE_TOOLS_OUTPUT_HIT_CSV_H
+#define THIMBLE_TOOLS_OUTPUT_HIT_CSV_H
+
+#include <string>
+
+#include "thimble/ray.h"
+
+namespace thimble::tools {
+
+/// The column names: hit 0/1; voxel; t (17 significant digits; point = q-origin / 256 + t * q-direction, in
+/// voxels); axis; nodes visited; q-origin in 1/256 voxel and q-direction as integers, both as traced.
+inline constexpr const char* kHitColumns = "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz";
+
+/// Appends one line's values for these columns and a line feed. Voxel, t and axis of a miss are empty.
+void append_hit(std::string* text, const Ray& ray, const Hit& hit);
+
+/// t as the nearest double: numerator and denominator are exact, so the division is the only rounding.
+inline double hit_t(const Hit& hit) {
+  return static_cast<double>(hit.t_numerator) / hit.t_denominator;
+}
+
+}  // namespace thimble::tools
+
+#endif

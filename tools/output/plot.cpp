@@ -1,0 +1,129 @@
+#include "output/plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "output/output_file.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr double kWidth = 760;
+constexpr double kHeight = 460;
+constexpr double kLeft = 84;
+constexpr double kRight = 20;
+constexpr double kTop = 44;
+constexpr double kBottom = 112;
+
+// A range of whole decades.
+struct Decades {
+  int low = 0;
+  int high = 1;
+
+  void hold(double value, bool first) {
+    const int floor = static_cast<int>(std::floor(std::log10(value)));
+    const int ceil = static_cast<int>(std::ceil(std::log10(value)));
+    low = first ? floor : std::min(low, floor);
+    high = first ? std::max(ceil, floor + 1) : std::max(high, ceil);
+  }
+  double part(double value) const { return (std::log10(value) - low) / (high - low); }
+};
+
+std::string decade_text(int decade) {
+  if (decade >= 0 && decade <= 3) {
+    return std::to_string(static_cast<int>(std::lround(std::pow(10, decade))));
+  }
+  if (decade == -1) {
+    return "0.1";
+  }
+  return "10<tspan dy=\"-5\" font-size=\"9\">" + std::to_string(decade) + "</tspan>";
+}
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
+std::string line(double x1, double y1, double x2, double y2, const char* kind) {
+  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
+         number(y2) + "\" class=\"" + kind + "\"/>\n";
+}
+
+std::string label(double x, double y, const char* anchor, const std::string& text,
+                  const std::string& more = {}) {
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
+         text + "</text>\n";
+}
+
+}  // namespace
+
+void write_log_plot(const std::string& path, const Plot& plot) {
+  // Okabe and Ito's colours, which stay apart for most kinds of colour vision and on both grounds.
+  constexpr std::array<const char*, 6> kColors{"#0072b2", "#d55e00", "#009e73",
+                                               "#cc79a7", "#e69f00", "#56b4e9"};
+  Decades x_range;
+  Decades y_range;
+  bool first = true;
+  for (const Series& series : plot.series) {
+    for (const auto& [x, y] : series.points) {
+      x_range.hold(x, first);
+      y_range.hold(y, first);
+      first = false;
+    }
+  }
+  const auto x_at = [&](double x) { return kLeft + x_range.part(x) * (kWidth - kLeft - kRight); };
+  const auto y_at = [&](double y) {
+    return kHeight - kBottom - y_range.part(y) * (kHeight - kTop - kBottom);
+  };
+
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(kHeight) +
+      "\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\n"
+      "svg { background: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: "
+      "#222222 }\n@media (prefers-color-scheme: dark) { svg { background: #15181c } text { fill: #e6e6e6 "
+      "} .grid { stroke: #3a3f45 } .axis { stroke: #e6e6e6 } }\n</style>\n";
+  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
+  for (int decade = x_range.low; decade <= x_range.high; ++decade) {
+    const double x = x_at(std::pow(10, decade));
+    svg += line(x, kTop, x, kHeight - kBottom, "grid") +
+           label(x, kHeight - kBottom + 18, "middle", decade_text(decade));
+  }
+  for (int decade = y_range.low; decade <= y_range.high; ++decade) {
+    const double y = y_at(std::pow(10, decade));
+    svg += line(kLeft, y, kWidth - kRight, y, "grid") + label(kLeft - 8, y + 4, "end", decade_text(decade));
+  }
+  svg += line(kLeft, kTop, kLeft, kHeight - kBottom, "axis") +
+         line(kLeft, kHeight - kBottom, kWidth - kRight, kHeight - kBottom, "axis");
+  svg += label((kLeft + kWidth - kRight) / 2, kHeight - kBottom + 40, "middle", plot.x_label);
+  const double middle = (kTop + kHeight - kBottom) / 2;
+  svg += label(20, middle, "middle", plot.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
+
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Series& series = plot.series[i];
+    const std::string color = kColors[i % kColors.size()];
+    const std::string dash = series.dashed ? " stroke-dasharray=\"6 4\"" : "";
+    svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + " points=\"";
+    for (const auto& [x, y] : series.points) {
+      svg += number(x_at(x)) + "," + number(y_at(y)) + " ";
+    }
+    svg += "\"/>\n";
+    for (const auto& [x, y] : series.points) {
+      svg += "<circle cx=\"" + number(x_at(x)) + "\" cy=\"" + number(y_at(y)) + "\" r=\"3\" fill=\"" + color +
+             "\"/>\n";
+    }
+    const double column = kLeft + static_cast<double>(i % 2) * (kWidth - kLeft - kRight) / 2;
+    const double row = kHeight - kBottom + 62 + static_cast<double>(i / 2) * 18;
+    svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
+           "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
+    svg += label(column + 36, row, "start", series.name);
+  }
+  svg += "</svg>\n";
+  OutputFile file(path);
+  file.write(svg);
+  file.commit();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,31 @@
+/// @file plot.h
+/// Line plots as SVG files that stand on their own: axes with units, legend, readable on light and dark
+/// ground.
+#ifndef THIMBLE_TOOLS_OUTPUT_PLOT_H
+#define THIMBLE_TOOLS_OUTPUT_PLOT_H
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thimble::tools {
+
+struct Series {
+  std::string name;
+  bool dashed = false;
+  std::vector<std::pair<double, double>> points;  ///< x, y, both above 0
+};
+
+struct Plot {
+  std::string title;
+  std::string x_label;  ///< with unit
+  std::string y_label;  ///< with unit
+  std::vector<Series> series;
+};
+
+/// Writes the plot with logarithmic axes. At most six series keep colours of their own. Throws OutputError.
+void write_log_plot(const std::string& path, const Plot& plot);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,46 @@
+#include "output/stats.h"
+
+#include <nlohmann/json.hpp>
+
+#include "output/output_file.h"
+
+namespace thimble::tools {
+
+Stats::Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built)
+    : scene(scene_name),
+      depth(built.level()),
+      points(source.points()),
+      voxels(built.voxels()),
+      nodes(built.nodes()),
+      tree_bytes(built.tree_bytes()),
+      budget_bytes(built.budget_bytes()),
+      high_water_bytes(built.high_water_bytes()),
+      solid_added(built.solid_added()),
+      build_seconds(built.build_seconds()) {}
+
+void write_stats(const std::string& path, const Stats& stats) {
+  nlohmann::ordered_json json;
+  json["scene"] = stats.scene;
+  json["depth"] = stats.depth;
+  json["points"] = stats.points;
+  json["voxels"] = stats.voxels;
+  json["nodes"] = stats.nodes;
+  json["tree_bytes"] = stats.tree_bytes;
+  json["budget_bytes"] = stats.budget_bytes;
+  json["high_water_bytes"] = stats.high_water_bytes;
+  json["solid_added"] = stats.solid_added;
+  json["build_seconds"] = stats.build_seconds;
+  json["frame_seconds"] = stats.frame_seconds;
+  json["rays"] = stats.rays;
+  json["hits"] = stats.hits;
+  json["node_visits"] = stats.node_visits;
+  json["threads"] = stats.threads;
+  json["engine"] = stats.engine;
+  json["frame_crc32"] = stats.frame_crc32;
+  OutputFile file(path);
+  // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
+  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,41 @@
+/// @file stats.h
+/// The counts, bytes and times of one run, for people and for programs.
+#ifndef THIMBLE_TOOLS_OUTPUT_STATS_H
+#define THIMBLE_TOOLS_OUTPUT_STATS_H
+
+#include <cstdint>
+#include <string>
+
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
+
+namespace thimble::tools {
+
+struct Stats {
+  std::string scene;
+  int depth = 0;
+  std::uint64_t points = 0;
+  std::uint64_t voxels = 0;
+  std::uint64_t nodes = 0;
+  std::uint64_t tree_bytes = 0;
+  std::uint64_t budget_bytes = 0;
+  std::uint64_t high_water_bytes = 0;
+  std::uint64_t solid_added = 0;
+  double build_seconds = 0;
+  double frame_seconds = 0;
+  std::uint64_t rays = 0;
+  std::uint64_t hits = 0;
+  std::uint64_t node_visits = 0;
+  int threads = 1;
+  std::string engine;
+  std::string frame_crc32;  ///< 8 hex digits; empty where no frame was drawn
+
+  Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);
+};
+
+/// Writes all of them as one JSON object with the members' names. Throws OutputError.
+void write_stats(const std::string& path, const Stats& stats);
+
+}  // namespace thimble::tools
+
+#endif
