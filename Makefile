@@ -1,8 +1,59 @@
-# The front door. Everything is described in CMakeLists.txt; this only calls it.
-BUILD ?= build/release
+# The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
+.DEFAULT_GOAL := help
+.PHONY: help deps all run test bench format tidy clean \
+  deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
 
-.PHONY: all test
-all:
-	cmake -S . -B $(BUILD) -G Ninja && cmake --build $(BUILD)
-test: all
-	cd $(BUILD) && ctest --output-on-failure
+CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
+# Everything that is ours and formatted by clang-format.
+FORMATTED = find include src platform tools tests \( -name '*.h' -o -name '*.cpp' \) -print
+
+help: ## Say what there is
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' $(MAKEFILE_LIST) | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
+
+deps: ## Install what building, testing and measuring need (apt-get; as root or by sudo)
+	@.ci/deps build tools test boards bench
+deps-build:
+	@.ci/deps build tools
+deps-test:
+	@.ci/deps build tools test boards
+deps-bench:
+	@.ci/deps build tools bench
+deps-format:
+	@.ci/deps format
+
+all: deps-build ## Build the library and the thimble command (build/release)
+	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF
+	@cmake --build build/release -- --quiet
+run: all ## Render three scenes within fixed budgets into out/ and print what they took
+	@sh tools/run_demo.sh build/release/thimble out
+
+release:
+	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON
+	@cmake --build build/release -- --quiet
+sanitize:
+	@$(CONFIGURE) -B build/sanitize -DTHIMBLE_SANITIZE=ON -DTHIMBLE_GOLDEN=OFF
+	@cmake --build build/sanitize -- --quiet
+clang:
+	@$(CONFIGURE) -B build/clang -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TOOLS=OFF -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=ON
+	@cmake --build build/clang -- --quiet
+fuzz:
+	@$(CONFIGURE) -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_FUZZ=ON
+	@cmake --build build/fuzz --target thimble_fuzzers -- --quiet
+# One ctest over all builds, so that there is one summary.
+test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzing
+	@$(MAKE) --no-print-directory release sanitize clang fuzz
+	@printf 'subdirs(release sanitize clang fuzz)\n' > build/CTestTestfile.cmake
+	@ctest --test-dir build --output-on-failure -j 2 $(CTEST_ARGS)
+
+bench: deps-bench ## Build and run the benchmarks
+	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF
+	@cmake --build build/release -- --quiet
+	@build/release/thimble_benchmarks $(BENCH_ARGS)
+
+format: deps-format ## Format every source with clang-format
+	@$(FORMATTED) | xargs clang-format -i
+tidy: deps-test ## Lint the core, the tools and the ports with clang-tidy
+	@sh tests/checks/tidy.sh . build/tidy src tools platform tests/reference
+
+clean: ## Remove everything that was built
+	@rm -rf build out

@@ -1,0 +1,48 @@
+#!/bin/sh
+# Compiles the core for TARGET and judges the objects: symbols (symbols.sh) and the worst stack (stack_bound).
+# core_on.sh TARGET ROOT WORK_DIR STACK_BOUND STACK_CSV
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+target=$1
+work=$3
+stack_bound=$4
+budgets=$5
+cd "$2"
+bare='-Os -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -fno-unwind-tables
+  -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections'
+case $target in
+  host)
+    prefix=
+    flags='-O2 -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics'
+    [ "$(uname -m)" = x86_64 ] && flags="$flags -mpopcnt"
+    ;;
+  cortex-m0 | cortex-m3) prefix=arm-none-eabi- flags="-mcpu=$target -mthumb $bare" ;;
+  rv32)
+    prefix=riscv64-unknown-elf-
+    flags="-march=rv32imac -misa-spec=2.2 -mabi=ilp32 -mcmodel=medany -msmall-data-limit=0 $bare"
+    ;;
+  *)
+    echo "core_on: no such target: $target" >&2
+    exit 2
+    ;;
+esac
+if ! command -v ${prefix}g++ >/dev/null 2>&1; then
+  echo "skipped: ${prefix}g++ is not installed"
+  exit 77
+fi
+rm -rf "$work"
+mkdir -p "$work"
+# Without -fno-ipa-icf two equal functions share a body and one of them vanishes from the call graph.
+for source in src/*.cpp; do
+  if ! ${prefix}g++ -std=c++20 $flags -fno-ipa-icf -fcallgraph-info=su,da -Wall -Wextra -Werror -nostdinc++ -Iinclude \
+    -c "$source" -o "$work/$(basename "$source" .cpp).o"; then
+    echo "core_on: $source does not compile for $target" >&2
+    exit 1
+  fi
+done
+failed=0
+sh "$here/symbols.sh" "$prefix" "$here/symbols_$target.txt" "$work"/*.o || failed=1
+echo "code and constants on $target, bytes:"
+${prefix}size -t "$work"/*.o
+"$stack_bound" "$target" "$budgets" "$work"/*.ci || failed=1
+exit $failed
