@@ -147,7 +147,7 @@ Dictionary moved(int x, int y, int z) {
 // ---- reading it back ----
 
 std::unique_ptr<VoxelModel> read(const Bytes& bytes) {
-  return read_vox(FileBytes::copy_of(bytes));
+  return read_vox(share(FileBytes::copy_of(bytes)));
 }
 
 Voxels voxels_of(const VoxelModel& model) {
@@ -690,12 +690,12 @@ TEST_CASE("vox: a chain of 50,000 nested groups -> read without recursion") {
 TEST_CASE("vox: progress -> rises to 1, and what it throws ends the reading") {
   const Bytes bytes = file(model_chunks({1, 1, 1}, Voxels(500'000, {0, 0, 0, 1})));
   std::vector<double> seen;
-  read_vox(FileBytes::copy_of(bytes), [&](double done) { seen.push_back(done); });
+  read_vox(share(FileBytes::copy_of(bytes)), [&](double done) { seen.push_back(done); });
   CHECK(seen.size() > 3);
   CHECK(std::is_sorted(seen.begin(), seen.end()));
   CHECK(seen.front() > 0);
   CHECK(seen.back() == 1);
-  CHECK_THROWS_AS(read_vox(FileBytes::copy_of(bytes), [](double) { throw 42; }), int);
+  CHECK_THROWS_AS(read_vox(share(FileBytes::copy_of(bytes)), [](double) { throw 42; }), int);
 }
 
 namespace {
@@ -838,7 +838,7 @@ TEST_CASE("vox: real files -> the voxels that another program finds in them") {
   }
   for (const RealFile& real : kRealFiles) {
     CAPTURE(real.path);
-    const auto model = read_vox(load_file(folder + real.path));
+    const auto model = read_vox(share(load_file(folder + real.path)));
     CHECK(model->size() == real.sides);
     Put stream;
     std::size_t count = 0;
@@ -856,8 +856,8 @@ TEST_CASE("vox: real palettes and materials -> as the files say, the default one
   if (folder.empty()) {
     return;
   }
-  const auto fallback = read_vox(load_file(folder + "vox/ephtracy/chr_cat.vox"));  // has no RGBA
-  const auto written = read_vox(load_file(folder + "vox/dot_vox/metal-material.vox"));
+  const auto fallback = read_vox(share(load_file(folder + "vox/ephtracy/chr_cat.vox")));  // has no RGBA
+  const auto written = read_vox(share(load_file(folder + "vox/dot_vox/metal-material.vox")));
   for (std::size_t c = 1; c < 256; ++c) {
     CAPTURE(c);
     CHECK(fallback->palette()[c].color == written->palette()[c].color);
@@ -870,7 +870,7 @@ TEST_CASE("vox: real palettes and materials -> as the files say, the default one
   CHECK(metal[249].ior == doctest::Approx(1.547368));
   CHECK(metal[249].attenuation == 0.021053);
 
-  const auto bevy = read_vox(load_file(folder + "vox/bevy/test.vox"));
+  const auto bevy = read_vox(share(load_file(folder + "vox/bevy/test.vox")));
   CHECK(bevy->palette()[1].color == Rgb{255, 255, 255});
   CHECK(bevy->palette()[2].color == Rgb{0xdc, 0x9f, 0xb4});
   CHECK(bevy->palette()[181].kind == SurfaceKind::kGlass);
@@ -879,7 +879,7 @@ TEST_CASE("vox: real palettes and materials -> as the files say, the default one
   CHECK(bevy->palette()[232].emission == 0.4);
   CHECK(bevy->palette()[238].kind == SurfaceKind::kMedia);
 
-  const auto deer = read_vox(load_file(folder + "vox/ephtracy/deer.vox"));  // MATT
+  const auto deer = read_vox(share(load_file(folder + "vox/ephtracy/deer.vox")));  // MATT
   CHECK(deer->palette()[1].roughness == doctest::Approx(0.1));
   CHECK(deer->palette()[1].specular == 0.5);
 }
@@ -891,7 +891,7 @@ TEST_CASE("vox: hostile files -> a sentence") {
   }
   const auto sentence = [&](const char* name) -> std::string {
     try {
-      read_vox(load_file(folder + "hostile/" + name));
+      read_vox(share(load_file(folder + "hostile/" + name)));
     } catch (const InputError& error) {
       return error.what();
     }

@@ -21,7 +21,7 @@ struct Enough {};  // thrown out of for_each: a small file may place very many v
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace thimble::tools;
   try {
-    const std::unique_ptr<VoxelModel> model = read_vox(FileBytes::copy_of({data, size}));
+    const std::unique_ptr<VoxelModel> model = read_vox(share(FileBytes::copy_of({data, size})));
     const auto sides = model->size();
     int visited = 0;
     model->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {

@@ -232,6 +232,11 @@ FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
   return buffer.finish();
 }
 
+SharedBytes share(FileBytes bytes) {
+  auto kept = std::make_shared<const FileBytes>(std::move(bytes));
+  return {kept->bytes(), kept};
+}
+
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes) {
   limit_bytes = std::clamp<std::uint64_t>(limit_bytes, 1, SIZE_MAX - 1);
   const Descriptor file(path);

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <utility>
 
+#include "readers/shared_bytes.h"
 #include "readers/source.h"
 
 namespace thimble::tools {
@@ -52,6 +53,9 @@ class FileBytes {
   std::unique_ptr<std::uint8_t, Free> data_;
   std::size_t size_ = 0;
 };
+
+/// The same bytes for readers that share them.
+SharedBytes share(FileBytes bytes);
 
 /// All bytes of the file `path`: a regular file, a pipe or a device such as `/dev/stdin`, read to its end
 /// once.

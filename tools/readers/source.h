@@ -58,10 +58,11 @@ class VoxelModel {
  public:
   virtual ~VoxelModel() = default;
   using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material)>;
-  /// Calls `visit` for each voxel, in the file's order; a position may repeat (the last one wins). Positions
-  /// are translated so that the smallest on each axis is 0.
+  /// Calls `visit` for each voxel, in the file's order; a position may repeat (the last one wins). The
+  /// models' declared boxes are moved together so that the lowest corner of them all is 0,0,0: a single model
+  /// keeps its indices.
   virtual void for_each(const Visit& visit) const = 0;
-  /// One past the largest position on each axis; all 0 for a file without voxels.
+  /// Extent of the models' boxes on each axis, at least one past the largest position; all 0 without voxels.
   virtual std::array<std::int32_t, 3> size() const = 0;
   virtual const Palette& palette() const = 0;
 };

@@ -21,14 +21,11 @@ namespace {
 constexpr std::size_t kVoxelBytes = 4;  // x, y, z, colour index
 constexpr std::uint64_t kReportEveryBytes = 256 * 1024;
 
-/// One SIZE and XYZI pair. `low` and `high` bound the voxels that are there, not the declared box.
+/// One SIZE and XYZI pair.
 struct Model {
   std::array<std::uint32_t, 3> size{};
   std::span<const std::uint8_t> voxels;
-  std::array<std::int32_t, 3> low{256, 256, 256};
-  std::array<std::int32_t, 3> high{-1, -1, -1};
-
-  bool empty() const { return high[0] < 0; }
+  bool empty = true;  ///< no voxel with a colour
 };
 
 /// A model placed in the world: world[i] = sign[i] * voxel[axis[i]] + offset[i].
@@ -75,8 +72,8 @@ class Reporter {
 
 class VoxFile final : public VoxelModel {
  public:
-  VoxFile(FileBytes bytes, const Progress& progress) : bytes_(std::move(bytes)) {
-    Reporter reporter(progress, bytes_.size());
+  VoxFile(SharedBytes file, const Progress& progress) : file_(std::move(file)) {
+    Reporter reporter(progress, file_.bytes.size());
     read_chunks(reporter);
     place_models();
     move_to_origin();
@@ -109,7 +106,7 @@ class VoxFile final : public VoxelModel {
   void place_models();
   void move_to_origin();
 
-  FileBytes bytes_;
+  SharedBytes file_;
   Palette palette_ = vox_default_palette();
   std::vector<Model> models_;
   std::vector<Instance> instances_;
@@ -146,7 +143,7 @@ ChunkHead read_head(ByteReader& reader) {
 }
 
 void VoxFile::read_chunks(Reporter& reporter) {
-  ByteReader file(bytes_.bytes());
+  ByteReader file(file_.bytes);
   constexpr std::array<std::uint8_t, 4> kMagic{'V', 'O', 'X', ' '};
   if (file.remaining() < kMagic.size() || !std::ranges::equal(file.take(kMagic.size()), kMagic)) {
     throw InputError("is not a MagicaVoxel file: it does not begin with \"VOX \"");
@@ -235,11 +232,8 @@ void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
                    std::to_string(voxel[i]) + " on the " + "xyz"[i] + " axis, outside its model of " +
                    std::to_string(model.size[i]) + " voxels");
       }
-      if (voxel[3] != 0) {
-        model.low[i] = std::min(model.low[i], std::int32_t{voxel[i]});
-        model.high[i] = std::max(model.high[i], std::int32_t{voxel[i]});
-      }
     }
+    model.empty = model.empty && voxel[3] == 0;
     if (at % kReportEveryBytes == 0) {
       reporter.at(first_offset + at);
     }
@@ -278,20 +272,22 @@ void VoxFile::move_to_origin() {
   std::array<std::int32_t, 3> low{};
   std::array<std::int32_t, 3> high{};
   bool any = false;
-  std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty(); });
+  std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty; });
   for (const Instance& instance : instances_) {
     const Model& model = models_[instance.model];
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t axis = instance.axis[i];
-      const std::int32_t a = instance.sign[i] * model.low[axis] + instance.offset[i];
-      const std::int32_t b = instance.sign[i] * model.high[axis] + instance.offset[i];
+      const std::int32_t a = instance.offset[i];
+      const std::int32_t b =
+          instance.sign[i] * (static_cast<std::int32_t>(model.size[axis]) - 1) + instance.offset[i];
       low[i] = any ? std::min({low[i], a, b}) : std::min(a, b);
       high[i] = any ? std::max({high[i], a, b}) : std::max(a, b);
     }
     any = true;
   }
   for (std::size_t i = 0; any && i < 3; ++i) {
-    // At most 2^25 + 512 apart, by the limit on translations.
+    // The boxes that the file declares count, not only what is solid in them, so that the voxels of a single
+    // model keep their indices. At most 2^25 + 512 apart, by the limit on translations.
     size_[i] = high[i] - low[i] + 1;
     for (Instance& instance : instances_) {
       instance.offset[i] -= low[i];
@@ -301,8 +297,8 @@ void VoxFile::move_to_origin() {
 
 }  // namespace
 
-std::unique_ptr<VoxelModel> read_vox(FileBytes bytes, const Progress& progress) {
-  return std::make_unique<VoxFile>(std::move(bytes), progress);
+std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress) {
+  return std::make_unique<VoxFile>(std::move(file), progress);
 }
 
 }  // namespace thimble::tools

@@ -48,7 +48,7 @@ inline constexpr std::uint64_t kVoxPlacedVoxelLimit = std::uint64_t{1} << 31;
 /// side
 ///   over 256; a voxel outside its model; a scene graph without node 0, with an id used twice, a missing node
 ///   or model or a cycle; a rotation byte that is none; any of the limits above
-std::unique_ptr<VoxelModel> read_vox(FileBytes bytes, const Progress& progress = {});
+std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

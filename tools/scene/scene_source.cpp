@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "readers/file_bytes.h"
 #include "readers/read_any.h"
 #include "scene/fit_points.h"
 #include "scene/generators.h"
@@ -204,7 +205,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const P
     }
     return std::make_unique<GeneratedScene>(*spec);
   }
-  Source source = read_scene_file(arguments.scene, progress);
+  Source source = read_any(arguments.scene, share(load_file(arguments.scene)), progress);
   if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
     return std::make_unique<PointScene>(std::move(*cloud), arguments);
   }
