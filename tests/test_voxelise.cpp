@@ -534,8 +534,8 @@ TEST_CASE("voxelise: closed scans of THIMBLE_DATA -> sealed, volume kept") {
     std::uint64_t calls = 0;
     voxelise(mesh, 10, false, nullptr, [&](int, int, int, std::uint8_t) { ++calls; });
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    MESSAGE(std::string(name), ": ", mesh.triangles.size(), " triangles, depth 10: ", calls, " calls, ", seconds.count(),
-            " s");
+    MESSAGE(std::string(name), ": ", mesh.triangles.size(), " triangles, depth 10: ", calls, " calls, ",
+            seconds.count(), " s");
     CHECK(calls > mesh.triangles.size());
   }
 }
