@@ -1,0 +1,169 @@
+#include "readers/gadget.h"
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "readers/text.h"
+
+namespace thimble::tools {
+
+namespace {
+
+constexpr std::uint32_t kHeaderBytes = 256;
+constexpr std::size_t kMarkerBytes = 4;
+constexpr std::size_t kTypes = 6;
+
+enum class ByteOrder : std::uint8_t { kLittle, kBig };
+
+std::uint64_t load(std::span<const std::uint8_t> bytes, std::size_t offset, std::size_t count,
+                   ByteOrder order) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t shift = 8 * (order == ByteOrder::kBig ? count - 1 - i : i);
+    value |= std::uint64_t{bytes[offset + i]} << shift;
+  }
+  return value;
+}
+
+/// A record's data, without the markers.
+struct Record {
+  std::size_t offset = 0;
+  std::uint32_t size_bytes = 0;
+  std::size_t end() const { return offset + size_bytes + kMarkerBytes; }
+};
+
+/// The record whose first marker is at `offset`; both markers are in the file and agree.
+Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, ByteOrder order) {
+  const std::string place = "record at byte offset " + std::to_string(offset);
+  if (bytes.size() - offset < kMarkerBytes) {
+    throw InputError(place + ": the file ends in its marker");
+  }
+  Record record;
+  record.offset = offset + kMarkerBytes;
+  record.size_bytes = static_cast<std::uint32_t>(load(bytes, offset, kMarkerBytes, order));
+  const std::uint64_t left = bytes.size() - record.offset;
+  if (std::uint64_t{record.size_bytes} + kMarkerBytes > left) {
+    throw InputError(place + ": its length is " + std::to_string(record.size_bytes) + " bytes, but " +
+                     std::to_string(left) + " bytes are left");
+  }
+  const std::uint64_t marker = load(bytes, record.offset + record.size_bytes, kMarkerBytes, order);
+  if (marker != record.size_bytes) {
+    throw InputError(place + ": its length is " + std::to_string(record.size_bytes) +
+                     " before the data and " + std::to_string(marker) + " after it");
+  }
+  return record;
+}
+
+class GadgetCloud final : public PointCloud {
+ public:
+  SharedBytes file;
+  ByteOrder order = ByteOrder::kLittle;
+  std::array<std::uint32_t, kTypes> counts{};
+  std::size_t positions_offset = 0;
+  std::size_t number_bytes = sizeof(float);
+
+  void for_each(const Visit& visit) const override {
+    CloudPoint point;
+    std::size_t offset = positions_offset;
+    for (std::size_t type = 0; type < kTypes; ++type) {
+      point.color = kGadgetColors[type];
+      for (std::uint32_t i = 0; i < counts[type]; ++i) {
+        point.x = number(offset);
+        point.y = number(offset + number_bytes);
+        point.z = number(offset + 2 * number_bytes);
+        offset += 3 * number_bytes;
+        ++point.line;
+        visit(point);
+      }
+    }
+  }
+  bool has_color() const override { return true; }
+
+ private:
+  double number(std::size_t offset) const {
+    const std::uint64_t bits = load(file.bytes, offset, number_bytes, order);
+    if (number_bytes == sizeof(float)) {
+      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    }
+    return std::bit_cast<double>(bits);
+  }
+};
+
+ByteOrder byte_order(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() >= kMarkerBytes) {
+    for (const ByteOrder order : {ByteOrder::kLittle, ByteOrder::kBig}) {
+      const std::uint64_t marker = load(bytes, 0, kMarkerBytes, order);
+      if (marker == kHeaderBytes) {
+        return order;
+      }
+      if (marker == 8 && bytes.size() >= 8 && bytes[4] == 'H' && bytes[5] == 'E') {
+        throw InputError("this is a Gadget snapshot of format 2; only format 1 is supported");
+      }
+    }
+  }
+  throw InputError(
+      "the file does not begin with a record of 256 bytes, as a Gadget snapshot of format 1 does");
+}
+
+}  // namespace
+
+bool looks_like_gadget(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kMarkerBytes + kHeaderBytes + kMarkerBytes) {
+    return false;
+  }
+  for (const ByteOrder order : {ByteOrder::kLittle, ByteOrder::kBig}) {
+    if (load(bytes, 0, kMarkerBytes, order) == kHeaderBytes &&
+        load(bytes, kMarkerBytes + kHeaderBytes, kMarkerBytes, order) == kHeaderBytes) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Source read_gadget(SharedBytes file, const Progress& progress) {
+  auto cloud = std::make_unique<GadgetCloud>();
+  const std::span<const std::uint8_t> bytes = file.bytes;
+  cloud->order = byte_order(bytes);
+  const Record header = record_at(bytes, 0, cloud->order);
+  std::uint64_t particles = 0;
+  for (std::size_t type = 0; type < kTypes; ++type) {
+    cloud->counts[type] = static_cast<std::uint32_t>(load(bytes, header.offset + 4 * type, 4, cloud->order));
+    particles += cloud->counts[type];
+  }
+  if (particles == 0) {
+    throw InputError("the header counts no particles");
+  }
+  const Record positions = record_at(bytes, header.end(), cloud->order);
+  if (positions.size_bytes == particles * 3 * sizeof(float)) {
+    cloud->number_bytes = sizeof(float);
+  } else if (positions.size_bytes == particles * 3 * sizeof(double)) {
+    cloud->number_bytes = sizeof(double);
+  } else {
+    throw InputError("the header counts " + std::to_string(particles) +
+                     " particles, but the record of positions at byte offset " +
+                     std::to_string(header.end()) + " has " + std::to_string(positions.size_bytes) +
+                     " bytes, not " + std::to_string(particles * 12) + " or " +
+                     std::to_string(particles * 24));
+  }
+  cloud->positions_offset = positions.offset;
+  cloud->file = std::move(file);
+  for (std::size_t offset = positions.end(); offset < bytes.size();) {
+    offset = record_at(bytes, offset, cloud->order).end();
+  }
+  ProgressMeter meter(progress, bytes.size());
+  const std::size_t point_bytes = 3 * cloud->number_bytes;
+  cloud->for_each([&](const CloudPoint& point) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+      throw InputError("the position of particle " + std::to_string(point.line) + " is not finite");
+    }
+    meter.at(positions.offset + static_cast<std::size_t>(point.line) * point_bytes);
+  });
+  meter.done();
+  return std::unique_ptr<PointCloud>(std::move(cloud));
+}
+
+}  // namespace thimble::tools

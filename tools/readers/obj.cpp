@@ -1,0 +1,221 @@
+#include "readers/obj.h"
+
+#include <tiny_obj_loader.h>
+
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <istream>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include "readers/mesh.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+
+namespace {
+
+// The library comes in both precisions; map coordinates need the double one.
+static_assert(std::is_same_v<tinyobj::real_t, double>, "link tinyobjloader::tinyobjloader_double");
+
+/// Hands the `v` and `f` statements of a file to a stream, one a time, as "v words\n". So whoever is called
+/// back from the parser can ask which statement it is about.
+class StatementBuffer final : public std::streambuf {
+ public:
+  StatementBuffer(std::string_view text, const Progress& progress)
+      : lines_(text), meter_(progress, text.size()) {}
+
+  /// The current statement's words after `v` or `f`.
+  std::string_view arguments() const { return std::string_view(statement_).substr(1, statement_.size() - 2); }
+  /// The line on which the current statement begins.
+  std::uint64_t line() const { return first_line_; }
+  /// For the callbacks: what throws in `underflow` would be swallowed by the stream.
+  void report_progress() { meter_.at(lines_.offset()); }
+
+ protected:
+  int_type underflow() override {
+    std::string_view line;
+    while (lines_.next(line)) {
+      first_line_ = lines_.line_number();
+      std::string_view rest = line;
+      const std::string_view keyword = take_word(rest);
+      const bool is_wanted = keyword == "v" || keyword == "f";
+      const bool is_comment = keyword.starts_with('#');
+      if (is_wanted) {
+        statement_.assign(keyword);
+        statement_ += ' ';
+      }
+      append(rest, is_wanted);
+      while (!is_comment && !line.empty() && line.back() == '\\' && lines_.next(line)) {
+        append(line, is_wanted);
+      }
+      if (is_wanted) {
+        statement_ += '\n';
+        setg(statement_.data(), statement_.data(), statement_.data() + statement_.size());
+        return traits_type::to_int_type(statement_.front());
+      }
+    }
+    return traits_type::eof();
+  }
+
+ private:
+  void append(std::string_view words, bool is_wanted) {
+    if (!is_wanted) {
+      return;
+    }
+    words = words.substr(0, words.find('#'));
+    if (words.ends_with('\\')) {
+      words.remove_suffix(1);
+    }
+    // The parser knows blanks and tabs only, and ends at a zero byte: a '?' makes it the error that it is.
+    for (const char c : words) {
+      statement_ += is_space(c) ? ' ' : (c == 0 ? '?' : c);
+    }
+    statement_ += ' ';
+  }
+
+  LineReader lines_;
+  ProgressMeter meter_;
+  std::string statement_;
+  std::uint64_t first_line_ = 0;
+};
+
+class ObjParser {
+ public:
+  ObjParser(std::string_view text, const Progress& progress) : buffer_(text, progress) {}
+
+  Source parse() {
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void* self, double, double, double, double) {
+      static_cast<ObjParser*>(self)->vertex();
+    };
+    callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
+      static_cast<ObjParser*>(self)->face(indices, static_cast<std::size_t>(count));
+    };
+    std::istream stream(&buffer_);
+    std::string warning;
+    std::string error;
+    const bool done = tinyobj::LoadObjWithCallback(stream, callbacks, this, nullptr, &warning, &error);
+    if (!done || stream.bad() || !error.empty()) {
+      throw InputError("tinyobjloader: " + one_line(error + warning));
+    }
+    if (highest_index_ >= mesh_.positions.size() && face_count_ != 0) {
+      fail_index(highest_line_, static_cast<std::int64_t>(highest_index_) + 1);
+    }
+    if (!all_colored_) {
+      mesh_.colors = {};
+    }
+    return mesh_or_points(std::move(mesh_), face_count_);
+  }
+
+ private:
+  static std::string one_line(std::string text) {
+    for (char& c : text) {
+      c = (c >= ' ' && c <= '~') ? c : ' ';
+    }
+    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) {
+      text.pop_back();
+    }
+    return text.empty() ? "the file cannot be read" : text;
+  }
+
+  /// One vertex. The numbers are read from the statement again: exactly rounded, and without mistaking what
+  /// is no number for 0.
+  void vertex() {
+    static constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
+    buffer_.report_progress();
+    if (mesh_.positions.size() >= kMeshVertexLimit) {
+      fail_at_line(buffer_.line(),
+                   "the mesh has more than " + std::to_string(kMeshVertexLimit) + " vertices");
+    }
+    std::string_view words = buffer_.arguments();
+    std::array<double, 3> position{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      position[i] = finite_number(take_word(words), buffer_.line(), kNames[i]);
+    }
+    std::array<double, 3> color{};
+    bool colored = true;
+    for (double& component : color) {
+      colored = colored && parse_number(take_word(words), component) == NumberKind::kFinite;
+    }
+    mesh_.positions.push_back(position);
+    all_colored_ = all_colored_ && colored;
+    if (all_colored_) {
+      mesh_.colors.push_back({unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])});
+    }
+  }
+
+  void face(const tinyobj::index_t* indices, std::size_t corners) {
+    buffer_.report_progress();
+    check_corners();
+    ++face_count_;
+    PolygonFan fan(mesh_);
+    const std::size_t vertex_count = mesh_.positions.size();
+    for (std::size_t i = 0; i < corners; ++i) {
+      const std::int64_t written = indices[i].vertex_index;
+      const std::int64_t index =
+          written > 0 ? written - 1 : static_cast<std::int64_t>(vertex_count) + written;
+      if (written == 0 || index < 0) {
+        fail_index(buffer_.line(), written);
+      }
+      // A vertex may come after the faces that use it, so whether the index is too high shows at the end.
+      if (static_cast<std::uint64_t>(index) > highest_index_ || highest_line_ == 0) {
+        highest_index_ = static_cast<std::uint64_t>(index);
+        highest_line_ = buffer_.line();
+      }
+      fan.add(static_cast<std::uint32_t>(index));
+    }
+  }
+
+  /// The parser takes "x" for 0 and 4294967297 for 1; holds the fields of all corners to be integers.
+  void check_corners() const {
+    std::string_view words = buffer_.arguments();
+    for (std::string_view corner = take_word(words); !corner.empty(); corner = take_word(words)) {
+      std::string_view rest = corner;
+      for (int field = 0; !rest.empty() || field == 0; ++field) {
+        const std::size_t slash = rest.find('/');
+        const std::string_view number = rest.substr(0, slash);
+        std::int64_t value = 0;
+        const bool may_be_empty = field > 0;
+        if (field > 2 || !((may_be_empty && number.empty()) || parse_integer(number, value)) ||
+            value > INT32_MAX || value < -INT32_MAX) {
+          fail_at_line(buffer_.line(), "the corner " + quoted(corner) + " of a face is not an index");
+        }
+        rest.remove_prefix(slash == std::string_view::npos ? rest.size() : slash + 1);
+      }
+    }
+  }
+
+  [[noreturn]] void fail_index(std::uint64_t line, std::int64_t index) const {
+    fail_at_line(line, "the face has the index " + std::to_string(index) + ", but there " +
+                           (mesh_.positions.size() == 1
+                                ? "is 1 vertex"
+                                : "are " + std::to_string(mesh_.positions.size()) + " vertices") +
+                           (index <= 0 ? " before it, counted from 1" : " in the file, counted from 1"));
+  }
+
+  StatementBuffer buffer_;
+  TriangleMesh mesh_;
+  bool all_colored_ = true;
+  std::uint64_t face_count_ = 0;
+  std::uint64_t highest_index_ = 0;
+  std::uint64_t highest_line_ = 0;
+};
+
+}  // namespace
+
+Source read_obj(SharedBytes file, const Progress& progress) {
+  ObjParser parser(file.text(), progress);
+  Source source = parser.parse();
+  if (progress) {
+    progress(1);
+  }
+  return source;
+}
+
+}  // namespace thimble::tools

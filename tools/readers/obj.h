@@ -1,0 +1,31 @@
+/// @file obj.h
+/// `.obj` meshes (Wavefront), parsed by tinyobjloader.
+///
+/// What is read: vertices `v x y z`, with colours `v x y z r g b` (0 to 1) when every vertex has one, and
+/// faces `f` of any number of corners, whose indices count from 1 or, negative, back from the last vertex.
+/// A line may go on after a backslash; # begins a comment anywhere. All other statements are ignored, and no
+/// other file is opened: materials, normals, texture coordinates, groups, lines and curves play no part.
+/// Faces of fewer than three corners make no triangle. A file without faces becomes a point cloud.
+///
+/// tinyobjloader reads what is no number as 0, so each line is checked here before it gets there; and the
+/// parser is used through its callbacks, which hold one statement at a time, and given only `v` and `f`
+/// statements, because some of the others allocate whatever a number in them says.
+#ifndef THIMBLE_TOOLS_READERS_OBJ_H
+#define THIMBLE_TOOLS_READERS_OBJ_H
+
+#include "readers/shared_bytes.h"
+#include "readers/source.h"
+
+namespace thimble::tools {
+
+/// Reads all of `file` and keeps none of it.
+///
+/// Memory: 24 bytes a vertex (27 with colour), 12 a triangle, at most three times that while it grows, and
+/// the longest line twice.
+/// @throws InputError  naming the line: a coordinate that is missing or no finite number, an index that is
+///   zero, no integer or no vertex of the file
+Source read_obj(SharedBytes file, const Progress& progress = {});
+
+}  // namespace thimble::tools
+
+#endif

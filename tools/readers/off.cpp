@@ -1,0 +1,202 @@
+#include "readers/off.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "readers/mesh.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+
+namespace {
+
+struct Keyword {
+  bool known = false;
+  bool has_normals = false;
+  bool has_colors = false;
+};
+
+Keyword parse_keyword(std::string_view word) {
+  Keyword keyword;
+  if (word.starts_with("ST")) {
+    word.remove_prefix(2);
+  }
+  if (word.starts_with('C')) {
+    keyword.has_colors = true;
+    word.remove_prefix(1);
+  }
+  if (word.starts_with('N')) {
+    keyword.has_normals = true;
+    word.remove_prefix(1);
+  }
+  keyword.known = word == "OFF";
+  return keyword;
+}
+
+class OffParser {
+ public:
+  OffParser(std::string_view text, const Progress& progress)
+      : words_(text, '#'), meter_(progress, text.size()) {}
+
+  Source parse() {
+    header();
+    vertices();
+    faces();
+    meter_.done();
+    return mesh_or_points(std::move(mesh_), face_count_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(words_.line(), sentence); }
+
+  void header() {
+    const std::string_view word = words_.next();
+    keyword_ = parse_keyword(word);
+    if (!keyword_.known) {
+      fail("the file begins with " + quoted(word) + ", not with OFF, COFF, NOFF, CNOFF or ST before these");
+    }
+    vertex_count_ = count("vertices");
+    face_count_ = count("faces");
+    count("edges");
+    words_.skip_line();
+    if (vertex_count_ > kMeshVertexLimit) {
+      fail("the mesh has " + std::to_string(vertex_count_) + " vertices, the limit is " +
+           std::to_string(kMeshVertexLimit));
+    }
+    // The shortest vertex is "0 0 0" with what separates it from the next, the shortest face "0".
+    check_room(vertex_count_, 6, "vertices");
+    check_room(face_count_, 2, "faces");
+  }
+
+  std::uint64_t count(const char* what) {
+    const std::string_view word = words_.next();
+    std::int64_t value = 0;
+    if (word == "BINARY") {
+      fail("binary OFF is not supported");
+    }
+    if (!parse_integer(word, value) || value < 0) {
+      fail(std::string("the number of ") + what + " is " + quoted(word));
+    }
+    return static_cast<std::uint64_t>(value);
+  }
+
+  void check_room(std::uint64_t declared, std::uint64_t least_bytes, const char* what) const {
+    const std::uint64_t room = (std::uint64_t{words_.remaining()} + 1) / least_bytes;
+    if (declared > room) {
+      throw InputError("the header declares " + std::to_string(declared) + " " + what +
+                       ", but the file has room for " + std::to_string(room) + " at most");
+    }
+  }
+
+  double number(const char* what, std::uint64_t vertex) {
+    const std::string_view word = words_.next();
+    if (word.empty()) {
+      throw InputError("the file ends in vertex " + std::to_string(vertex) + " of " +
+                       std::to_string(vertex_count_));
+    }
+    double value = 0;
+    if (parse_number(word, value) != NumberKind::kFinite) {
+      // The sentence is made only when it is needed: this runs for every coordinate.
+      finite_number(word, words_.line(), std::string(what) + " of vertex " + std::to_string(vertex));
+    }
+    return value;
+  }
+
+  void vertices() {
+    mesh_.positions.reserve(static_cast<std::size_t>(vertex_count_));
+    std::vector<std::array<float, 3>> colors;
+    bool bytes_only = true;
+    bool above_one = false;
+    if (keyword_.has_colors) {
+      colors.reserve(static_cast<std::size_t>(vertex_count_));
+    }
+    for (std::uint64_t vertex = 0; vertex < vertex_count_; ++vertex) {
+      std::array<double, 3> position{};
+      for (double& coordinate : position) {
+        coordinate = number("a coordinate", vertex);
+      }
+      mesh_.positions.push_back(position);
+      if (keyword_.has_colors) {
+        for (int i = 0; keyword_.has_normals && i < 3; ++i) {
+          number("the normal", vertex);
+        }
+        std::array<float, 3> color{};
+        for (float& component : color) {
+          const double value = number("the color", vertex);
+          bytes_only = bytes_only && value == std::floor(value);
+          above_one = above_one || value > 1;
+          component = static_cast<float>(std::fmax(0, std::fmin(value, 255)));
+        }
+        colors.push_back(color);
+      }
+      words_.skip_line();
+      meter_.at(words_.offset());
+    }
+    const double full = bytes_only && above_one ? 255 : 1;
+    mesh_.colors.reserve(colors.size());
+    for (const std::array<float, 3>& color : colors) {
+      mesh_.colors.push_back({unit_to_byte(static_cast<double>(color[0]) / full),
+                              unit_to_byte(static_cast<double>(color[1]) / full),
+                              unit_to_byte(static_cast<double>(color[2]) / full)});
+    }
+  }
+
+  std::int64_t integer(std::uint64_t face) {
+    const std::string_view word = words_.next();
+    std::int64_t value = 0;
+    if (word.empty()) {
+      throw InputError("the file ends in face " + std::to_string(face) + " of " +
+                       std::to_string(face_count_));
+    }
+    if (!parse_integer(word, value)) {
+      fail(quoted(word) + " in face " + std::to_string(face) + " is not a whole number");
+    }
+    return value;
+  }
+
+  void faces() {
+    mesh_.triangles.reserve(static_cast<std::size_t>(face_count_));
+    for (std::uint64_t face = 0; face < face_count_; ++face) {
+      const std::int64_t corners = integer(face);
+      if (corners < 0) {
+        fail("face " + std::to_string(face) + " has " + std::to_string(corners) + " corners");
+      }
+      PolygonFan fan(mesh_);
+      for (std::int64_t i = 0; i < corners; ++i) {
+        const std::int64_t index = integer(face);
+        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
+          fail("face " + std::to_string(face) + " has the index " + std::to_string(index) +
+               ", which is not one of the " + std::to_string(vertex_count_) + " vertices");
+        }
+        fan.add(static_cast<std::uint32_t>(index));
+      }
+      words_.skip_line();
+      meter_.at(words_.offset());
+    }
+  }
+
+  WordReader words_;
+  ProgressMeter meter_;
+  Keyword keyword_;
+  std::uint64_t vertex_count_ = 0;
+  std::uint64_t face_count_ = 0;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+bool looks_like_off(std::span<const std::uint8_t> bytes) {
+  const SharedBytes file{bytes, nullptr};
+  return parse_keyword(WordReader(file.text(), '#').next()).known;
+}
+
+Source read_off(SharedBytes file, const Progress& progress) {
+  return OffParser(file.text(), progress).parse();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,77 @@
+#include "readers/read_any.h"
+
+#include <array>
+#include <utility>
+
+#include "readers/gadget.h"
+#include "readers/obj.h"
+#include "readers/off.h"
+#include "readers/ply.h"
+#include "readers/text.h"
+#include "readers/xyz.h"
+
+namespace thimble::tools {
+
+namespace {
+
+// The one place that knows all formats. The row of `.vox` goes first, above `.ply`.
+constexpr std::array<ReaderRow, 5> kRows{{
+    {".ply", "PLY mesh or points", read_ply, looks_like_ply},
+    {".obj", "Wavefront mesh", read_obj, nullptr},
+    {".off", "OFF mesh", read_off, looks_like_off},
+    {".xyz .csv", "points, one a line", read_xyz, nullptr},
+    {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget},
+}};
+
+bool has_ending(std::string_view path, std::string_view ending) {
+  return path.size() > ending.size() &&
+         equals_ignoring_case(path.substr(path.size() - ending.size()), ending);
+}
+
+}  // namespace
+
+std::span<const ReaderRow> reader_rows() {
+  return kRows;
+}
+
+const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes) {
+  if (has_ending(path, ".gz")) {
+    path.remove_suffix(3);
+  }
+  for (const ReaderRow& row : kRows) {
+    std::string_view endings = row.endings;
+    for (std::string_view ending = take_word(endings); !ending.empty(); ending = take_word(endings)) {
+      if (has_ending(path, ending)) {
+        return &row;
+      }
+    }
+  }
+  for (const ReaderRow& row : kRows) {
+    if (row.looks_like != nullptr && row.looks_like(bytes)) {
+      return &row;
+    }
+  }
+  return nullptr;
+}
+
+std::string reader_endings() {
+  std::string out;
+  for (const ReaderRow& row : kRows) {
+    std::string_view endings = row.endings;
+    for (std::string_view ending = take_word(endings); !ending.empty(); ending = take_word(endings)) {
+      out += (out.empty() ? "" : ", ") + std::string(ending);
+    }
+  }
+  return out;
+}
+
+Source read_any(std::string_view path, SharedBytes file, const Progress& progress) {
+  const ReaderRow* row = find_reader(path, file.bytes);
+  if (row == nullptr) {
+    throw InputError("neither the name nor the contents tell what this file is; known endings are " +
+                     reader_endings());
+  }
+  return row->read(std::move(file), progress);
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,132 @@
+/// @file text.h
+/// Lines, words and numbers of text formats: shared by the readers of `.ply`, `.obj`, `.off` and `.xyz`.
+///
+/// Conventions: lines count from 1 and end with LF, CRLF or a CR alone. Numbers are decimal and written with
+/// a point whatever the locale says; a leading + is accepted. Nothing here allocates except to throw.
+#ifndef THIMBLE_TOOLS_READERS_TEXT_H
+#define THIMBLE_TOOLS_READERS_TEXT_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "readers/source.h"
+
+namespace thimble::tools {
+
+/// Throws InputError "line LINE: SENTENCE".
+[[noreturn]] void fail_at_line(std::uint64_t line, const std::string& sentence);
+
+/// `word` in single quotes for an error's sentence: cut to a length that fits on a line, bytes that do not
+/// print replaced by '?'.
+std::string quoted(std::string_view word);
+
+/// What a word is when read as a number.
+enum class NumberKind : std::uint8_t {
+  kFinite,
+  kNotFinite,  ///< "nan", "inf", or a decimal number beyond the range of double
+  kGarbage,    ///< anything else, such as "1.5x", "1,5", "0x10" or nothing
+};
+
+/// Reads all of `word`. `value` is set when the result is kFinite: the double nearest to the decimal number,
+/// 0 for one that is too small to be anything else.
+NumberKind parse_number(std::string_view word, double& value);
+
+/// The finite number that `word` is.
+/// @param what  names the place within the line, for example "x of vertex 3"
+/// @throws InputError naming the line for anything that is no finite number
+double finite_number(std::string_view word, std::uint64_t line, const std::string& what);
+
+/// Reads all of `word` as an integer of 64 bits; false for anything else, and `value` is then unchanged.
+bool parse_integer(std::string_view word, std::int64_t& value);
+
+/// Blank, tab, line end, vertical tab and form feed.
+constexpr bool is_space(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+/// Takes the first word (a run without spaces) off the front of `line`; empty when there is none.
+std::string_view take_word(std::string_view& line);
+
+/// True when `word` equals `lower_case` but for the case of ASCII letters.
+bool equals_ignoring_case(std::string_view word, std::string_view lower_case);
+
+/// Cuts text into lines.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : text_(text) {}
+
+  /// The next line without its end; false after the last. An empty last line is no line.
+  bool next(std::string_view& line);
+  /// Number of the line that `next` gave last; 0 before the first.
+  std::uint64_t line_number() const { return line_number_; }
+  /// Bytes consumed so far.
+  std::size_t offset() const { return next_; }
+
+ private:
+  std::string_view text_;
+  std::size_t next_ = 0;
+  std::uint64_t line_number_ = 0;
+};
+
+/// Cuts text into words without regard to lines, but knows which line it is on.
+class WordReader {
+ public:
+  /// @param comment     a character that hides the rest of its line where a word could start, or 0 for none
+  /// @param first_line  number of the line that `text` starts with
+  explicit WordReader(std::string_view text, char comment = 0, std::uint64_t first_line = 1)
+      : text_(text), comment_(comment), line_(first_line) {}
+
+  /// The next word; empty at the end of the text.
+  std::string_view next();
+  /// The next word if there is one on the current line; otherwise empty and nothing is consumed but spaces.
+  std::string_view next_on_line();
+  /// Passes over what is left of the current line.
+  void skip_line();
+  /// Line of the word that was read last, or of the line end reached by `skip_line`.
+  std::uint64_t line() const { return line_; }
+  std::size_t offset() const { return next_; }
+  std::size_t remaining() const { return text_.size() - next_; }
+
+ private:
+  bool at_line_end() const { return text_[next_] == '\n' || text_[next_] == '\r'; }
+  void pass_line_end();
+  std::string_view word_here();
+
+  std::string_view text_;
+  std::size_t next_ = 0;
+  char comment_;
+  std::uint64_t line_;
+};
+
+/// Calls a `Progress` about once a quarter of a megabyte, so that asking costs nothing.
+class ProgressMeter {
+ public:
+  ProgressMeter(const Progress& progress, std::size_t total_bytes)
+      : progress_(progress), total_bytes_(total_bytes) {}
+
+  void at(std::size_t offset) {
+    if (offset >= due_) {
+      due_ = offset + kStepBytes;
+      if (progress_) {
+        progress_(static_cast<double>(offset) / static_cast<double>(total_bytes_ + 1));
+      }
+    }
+  }
+  void done() const {
+    if (progress_) {
+      progress_(1);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kStepBytes = 1 << 18;
+  const Progress& progress_;
+  std::size_t total_bytes_;
+  std::size_t due_ = kStepBytes;
+};
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,296 @@
+#include "readers/xyz.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "readers/mesh.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+
+namespace {
+
+/// Columns of x, y, z, r, g, b.
+constexpr std::size_t kFields = 6;
+constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+
+constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+constexpr bool is_comma(char c) {
+  return c == ',' || c == ';';
+}
+
+/// Cuts a line into columns.
+class ColumnReader {
+ public:
+  explicit ColumnReader(std::string_view line) : rest_(line.substr(0, line.find('#'))) { skip_blanks(); }
+
+  /// The next column; false at the end. It is empty where two separators meet.
+  bool next(std::string_view& column) {
+    if (rest_.empty()) {
+      return false;
+    }
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_blank(rest_[end]) && !is_comma(rest_[end])) {
+      ++end;
+    }
+    column = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    skip_blanks();
+    if (!rest_.empty() && is_comma(rest_.front())) {
+      rest_.remove_prefix(1);
+      skip_blanks();
+    }
+    return true;
+  }
+
+ private:
+  void skip_blanks() {
+    while (!rest_.empty() && is_blank(rest_.front())) {
+      rest_.remove_prefix(1);
+    }
+  }
+  std::string_view rest_;
+};
+
+enum class ColorScale : std::uint8_t { kNone, kUnit, kByte, kWord };
+
+/// Where things are in a file, found by the first pass and used by all others.
+struct Layout {
+  std::array<std::size_t, kFields> columns{0, 1, 2, kNoColumn, kNoColumn, kNoColumn};
+  ColorScale color = ColorScale::kNone;
+  std::size_t first_point_offset = 0;
+  std::uint64_t first_point_line = 1;
+};
+
+constexpr std::array<const char*, kFields> kFieldNames{"x", "y", "z", "red", "green", "blue"};
+
+/// Looks at colour columns without trusting them to be colours.
+struct ColorSurvey {
+  bool all_bytes = true;      ///< whole numbers 0..255, digits only
+  bool all_numbers = true;    ///< finite and not negative
+  bool has_fraction = false;  ///< something else than digits
+  double highest = 0;
+  std::uint64_t bad_line = 0;
+
+  void see(std::string_view word, std::uint64_t line) {
+    const bool digits =
+        !word.empty() && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+    double value = 0;
+    if (parse_number(word, value) != NumberKind::kFinite || value < 0) {
+      all_bytes = false;
+      if (all_numbers) {
+        all_numbers = false;
+        bad_line = line;
+      }
+      return;
+    }
+    has_fraction = has_fraction || !digits;
+    all_bytes = all_bytes && digits && value <= 255;
+    highest = std::max(highest, value);
+  }
+};
+
+/// Reads the points of `text` and calls `visit(point, words)`; the words of columns that a line does not have
+/// are empty.
+template <class VisitLine>
+void read_points(std::string_view text, const Layout& layout, ProgressMeter& meter, const VisitLine& visit) {
+  LineReader lines(text.substr(layout.first_point_offset));
+  std::size_t last_needed = 0;
+  for (const std::size_t column : layout.columns) {
+    last_needed = column == kNoColumn ? last_needed : std::max(last_needed, column);
+  }
+  std::string_view line;
+  CloudPoint point;
+  while (lines.next(line)) {
+    meter.at(layout.first_point_offset + lines.offset());
+    ColumnReader columns(line);
+    std::string_view column;
+    std::array<std::string_view, kFields> words{};
+    std::size_t count = 0;
+    for (; count <= last_needed && columns.next(column); ++count) {
+      for (std::size_t field = 0; field < kFields; ++field) {
+        if (layout.columns[field] == count) {
+          words[field] = column;
+        }
+      }
+    }
+    if (count == 0) {
+      continue;
+    }
+    point.line = layout.first_point_line + lines.line_number() - 1;
+    point.x = finite_number(words[0], point.line, kFieldNames[0]);
+    point.y = finite_number(words[1], point.line, kFieldNames[1]);
+    point.z = finite_number(words[2], point.line, kFieldNames[2]);
+    visit(point, words);
+  }
+}
+
+std::uint8_t color_byte(std::string_view word, ColorScale scale) {
+  double value = 0;
+  parse_number(word, value);
+  const double full = scale == ColorScale::kUnit ? 1 : (scale == ColorScale::kByte ? 255 : 65535);
+  return unit_to_byte(value / full);
+}
+
+class XyzCloud final : public PointCloud {
+ public:
+  XyzCloud(SharedBytes file, const Layout& layout) : file_(std::move(file)), layout_(layout) {}
+
+  void for_each(const Visit& visit) const override {
+    const Progress no_progress;
+    ProgressMeter meter(no_progress, 0);
+    read_points(file_.text(), layout_, meter,
+                [&](CloudPoint& point, const std::array<std::string_view, kFields>& words) {
+                  if (has_color()) {
+                    point.color = {color_byte(words[3], layout_.color), color_byte(words[4], layout_.color),
+                                   color_byte(words[5], layout_.color)};
+                  }
+                  visit(point);
+                });
+  }
+  bool has_color() const override { return layout_.color != ColorScale::kNone; }
+
+ private:
+  SharedBytes file_;
+  Layout layout_;
+};
+
+std::string_view without_quotes(std::string_view name) {
+  if (name.starts_with("//")) {
+    name.remove_prefix(2);
+  }
+  if (name.size() >= 2 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front()) {
+    name = name.substr(1, name.size() - 2);
+  }
+  return name;
+}
+
+/// Finds the columns that a header names.
+void read_header(std::string_view line, Layout& layout) {
+  static constexpr std::array<std::pair<const char*, std::size_t>, 9> kNames{
+      {{"x", 0}, {"y", 1}, {"z", 2}, {"r", 3}, {"g", 4}, {"b", 5}, {"red", 3}, {"green", 4}, {"blue", 5}}};
+  std::array<std::size_t, kFields> found{};
+  found.fill(kNoColumn);
+  ColumnReader columns(line);
+  std::string_view column;
+  for (std::size_t i = 0; columns.next(column);) {
+    const std::string_view name = without_quotes(column);
+    if (i == 0 && name.empty() && column == "//") {
+      continue;  // "// x y z": the slashes are no column.
+    }
+    for (const auto& [known, field] : kNames) {
+      if (equals_ignoring_case(name, known) && found[field] == kNoColumn) {
+        found[field] = i;
+      }
+    }
+    ++i;
+  }
+  if (std::find(found.begin(), found.begin() + 3, kNoColumn) == found.begin() + 3) {
+    std::copy(found.begin(), found.begin() + 3, layout.columns.begin());
+  }
+  if (std::find(found.begin() + 3, found.end(), kNoColumn) == found.end()) {
+    std::copy(found.begin() + 3, found.end(), layout.columns.begin() + 3);
+  }
+}
+
+/// What stands before the points.
+struct Preamble {
+  bool has_header = false;
+  std::int64_t announced = -1;  ///< number of points, or -1
+};
+
+Preamble read_preamble(std::string_view text, Layout& layout) {
+  Preamble preamble;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  const std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  layout.first_point_offset = begin;
+  LineReader lines(text.substr(begin));
+  std::string_view line;
+  while (lines.next(line)) {
+    ColumnReader columns(line);
+    std::string_view first;
+    std::string_view second;
+    if (!columns.next(first)) {
+      continue;
+    }
+    double value = 0;
+    const bool is_single = !columns.next(second);
+    if (preamble.announced < 0 && is_single && parse_integer(first, preamble.announced) &&
+        preamble.announced >= 0) {
+      layout.first_point_offset = begin + lines.offset();
+      layout.first_point_line = lines.line_number() + 1;
+      continue;
+    }
+    preamble.announced = std::max<std::int64_t>(preamble.announced, -1);
+    // "nan" in the first column is a bad coordinate rather than a name.
+    if (parse_number(first, value) == NumberKind::kGarbage && !first.empty()) {
+      const char c = without_quotes(first).empty() ? first.front() : without_quotes(first).front();
+      const bool is_name = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '/';
+      if (is_name) {
+        preamble.has_header = true;
+        read_header(line, layout);
+        layout.first_point_offset = begin + lines.offset();
+        layout.first_point_line = lines.line_number() + 1;
+      }
+    }
+    break;
+  }
+  return preamble;
+}
+
+}  // namespace
+
+Source read_xyz(SharedBytes file, const Progress& progress) {
+  Layout layout;
+  const Preamble preamble = read_preamble(file.text(), layout);
+  const bool names_color = layout.columns[3] != kNoColumn;
+  if (!preamble.has_header) {
+    layout.columns = {0, 1, 2, 3, 4, 5};
+  }
+  ProgressMeter meter(progress, file.bytes.size());
+  ColorSurvey survey;
+  std::uint64_t count = 0;
+  read_points(file.text(), layout, meter,
+              [&](const CloudPoint& point, const std::array<std::string_view, kFields>& words) {
+                ++count;
+                // Without a header, one line that does not look like a colour settles the matter.
+                for (std::size_t i = 3; i < kFields && (names_color || survey.all_bytes); ++i) {
+                  survey.see(words[i], point.line);
+                }
+              });
+  if (count == 0) {
+    throw InputError("the file holds no points");
+  }
+  if (preamble.announced >= 0 && static_cast<std::uint64_t>(preamble.announced) != count) {
+    throw InputError("the first line announces " + std::to_string(preamble.announced) +
+                     " points, but the file holds " + std::to_string(count));
+  }
+  if (names_color) {
+    if (!survey.all_numbers) {
+      fail_at_line(survey.bad_line, "the color is missing, negative or not a number");
+    }
+    if (survey.highest > 65535) {
+      throw InputError("the columns of the color hold values above 65535");
+    }
+    layout.color = survey.highest > 255
+                       ? ColorScale::kWord
+                       : (survey.highest <= 1 && survey.has_fraction ? ColorScale::kUnit : ColorScale::kByte);
+  } else if (!preamble.has_header && survey.all_bytes) {
+    layout.color = ColorScale::kByte;
+  }
+  if (layout.color == ColorScale::kNone) {
+    std::fill(layout.columns.begin() + 3, layout.columns.end(), kNoColumn);
+  }
+  meter.done();
+  return std::unique_ptr<PointCloud>(std::make_unique<XyzCloud>(std::move(file), layout));
+}
+
+}  // namespace thimble::tools

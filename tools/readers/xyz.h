@@ -1,0 +1,41 @@
+/// @file xyz.h
+/// `.xyz` and `.csv` point clouds: one point a line.
+///
+/// Columns are separated by blanks, tabs, commas or semicolons (a comma or semicolon may have blanks around
+/// it; two of them in a row, an empty column, are an error). Blank lines are skipped, and so is everything
+/// from # to the end of a line. A byte order mark is skipped. Numbers have a decimal point, never a decimal
+/// comma.
+///
+/// In order, each optional:
+/// 1. A first line that is a single whole number announces the number of points (as in chemistry's files and
+///    `.pts`); it must then be right, which finds files that were cut off.
+/// 2. A line whose first column is not a number is a header, once, before all points. Columns named x, y, z
+///    (any case, quotes allowed, a leading // allowed) are the coordinates; without these three names they
+///    are the first three columns. Columns named r, g, b or red, green, blue are the colour.
+/// 3. Points. Columns that mean nothing are not read, whatever they hold.
+///
+/// Colour without a header: columns 4 to 6, when in the whole file every line has them and all are whole
+/// numbers from 0 to 255 without a sign. Otherwise they are normals or something else and ignored. A
+/// header that names no colour says that there is none.
+/// Colour by a header: 0 to 255; or 0 to 1 when no value in the file is above 1 and one is written with a
+/// fraction or exponent; or 0 to 65535 when a value is above 255.
+///
+/// Element symbols in the first column (molecules) are not read.
+#ifndef THIMBLE_TOOLS_READERS_XYZ_H
+#define THIMBLE_TOOLS_READERS_XYZ_H
+
+#include "readers/shared_bytes.h"
+#include "readers/source.h"
+
+namespace thimble::tools {
+
+/// Checks the whole file once; the result keeps `file` and parses it anew for each `for_each`, so that no
+/// memory depends on the number of points. `CloudPoint::line` is the line in the file.
+/// @throws InputError  naming the line: a column that is missing, empty or no number, a coordinate that is
+/// not
+///   finite, a colour out of range; an announced number of points that is wrong; no points at all
+Source read_xyz(SharedBytes file, const Progress& progress = {});
+
+}  // namespace thimble::tools
+
+#endif
