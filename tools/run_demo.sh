@@ -8,7 +8,7 @@ mkdir -p "$out"
 
 # json_value FILE KEY: a number or a string of a flat JSON object, however it is laid out.
 json_value() {
-  tr '\n' ' ' <"$1" | sed -n \
+  { tr '\n' ' ' <"$1"; echo; } | sed -n \
     -e 's/.*"'"$2"'"[[:space:]]*:[[:space:]]*"\([^"]*\)".*/\1/p' -e t \
     -e 's/.*"'"$2"'"[[:space:]]*:[[:space:]]*\([^][:space:],}]*\).*/\1/p'
 }
