@@ -1,0 +1,42 @@
+#!/bin/sh
+# Renders three scenes, each within a fixed budget of memory, and prints what they took. run_demo.sh THIMBLE OUT_DIR
+# Every picture is written twice, as PNG and as PPM, by two runs that must agree in the CRC-32 of their pixels.
+set -eu
+thimble=$1
+out=$2
+mkdir -p "$out"
+
+# json_value FILE KEY: a number or a string of a flat JSON object, however it is laid out.
+json_value() {
+  { tr '\n' ' ' <"$1"; echo; } | sed -n \
+    -e 's/.*"'"$2"'"[[:space:]]*:[[:space:]]*"\([^"]*\)".*/\1/p' -e t \
+    -e 's/.*"'"$2"'"[[:space:]]*:[[:space:]]*\([^][:space:],}]*\).*/\1/p'
+}
+
+# draw NAME BUDGET SCENE PROJECTION
+draw() {
+  for ending in png ppm; do
+    "$thimble" render "$3" --projection "$4" --memory "$2" --quiet --stats "$out/$1.$ending.json" -o "$out/$1.$ending"
+  done
+  png=$(json_value "$out/$1.png.json" frame_crc32)
+  ppm=$(json_value "$out/$1.ppm.json" frame_crc32)
+  if [ -z "$png" ] || [ "$png" != "$ppm" ]; then
+    echo "run: $1.png and $1.ppm are not the same picture (CRC-32 '$png' and '$ppm')" >&2
+    exit 1
+  fi
+  mv "$out/$1.png.json" "$out/$1.json"
+  rm "$out/$1.ppm.json"
+  for key in budget_bytes high_water_bytes voxels depth frame_seconds; do
+    json_value "$out/$1.json" $key
+  done | tr '\n' ' ' | awk -v name="$1" 'NF != 5 {
+      print "run: " name ".json lacks a key" > "/dev/stderr"
+      exit 1
+    }
+    { printf "%-22s %12d %12d %10d %6d %16.3f\n", name, $1, $2, $3, $4, $5 }'
+}
+
+printf '%-22s %12s %12s %10s %6s %16s\n' scene 'budget bytes' 'used bytes' voxels depth 'seconds a frame'
+draw spheres-perspective 256K spheres perspective
+draw spheres-orthographic 256K spheres orthographic
+draw cluster-perspective 16M cluster:1000000 perspective
+echo "pictures: $out/*.png, $out/*.ppm"
