@@ -35,7 +35,7 @@ struct Shading {
   int32_t far_q8 = 256;
   /// kColor: brightness of the faces -x, +x, -y, +y, -z, +z, 256 = the palette's own colour; see
   /// `light_from`.
-  uint16_t face_light[6] = {219, 112, 238, 93, 77, 256};
+  uint16_t face_light[6] = {160, 122, 199, 83, 44, 238};
 };
 
 /// What kDepth gives at `far_q8` and beyond: well above black, so that everything hit is seen.

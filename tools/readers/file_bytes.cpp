@@ -226,7 +226,7 @@ FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
   FileBuffer buffer(bytes.size());
   buffer.reserve(bytes.size());
   if (!bytes.empty()) {
-    std::copy(bytes.begin(), bytes.end(), buffer.room().begin());
+    std::memcpy(buffer.room().data(), bytes.data(), bytes.size());
     buffer.grew(bytes.size());
   }
   return buffer.finish();

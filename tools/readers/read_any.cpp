@@ -1,5 +1,6 @@
 #include "readers/read_any.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -8,14 +9,25 @@
 #include "readers/off.h"
 #include "readers/ply.h"
 #include "readers/text.h"
+#include "readers/vox.h"
 #include "readers/xyz.h"
 
 namespace thimble::tools {
 
 namespace {
 
-// The one place that knows all formats. The row of `.vox` goes first, above `.ply`.
-constexpr std::array<ReaderRow, 5> kRows{{
+Source read_vox_source(SharedBytes file, const Progress& progress) {
+  return read_vox(std::move(file), progress);
+}
+
+bool looks_like_vox(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kMagic = "VOX ";
+  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+}
+
+// The one place that knows all formats.
+constexpr std::array<ReaderRow, 6> kRows{{
+    {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply},
     {".obj", "Wavefront mesh", read_obj, nullptr},
     {".off", "OFF mesh", read_off, looks_like_off},
