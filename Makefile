@@ -22,22 +22,22 @@ deps-format:
 	@.ci/deps format
 
 all: deps-build ## Build the library and the thimble command (build/release)
-	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF
+	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@cmake --build build/release -- --quiet
 run: all ## Render three scenes within fixed budgets into out/ and print what they took
 	@sh tools/run_demo.sh build/release/thimble out
 
 release:
-	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON
+	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON >/dev/null
 	@cmake --build build/release -- --quiet
 sanitize:
-	@$(CONFIGURE) -B build/sanitize -DTHIMBLE_SANITIZE=ON -DTHIMBLE_GOLDEN=OFF
+	@$(CONFIGURE) -B build/sanitize -DTHIMBLE_SANITIZE=ON -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@cmake --build build/sanitize -- --quiet
 clang:
-	@$(CONFIGURE) -B build/clang -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TOOLS=OFF -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=ON
+	@$(CONFIGURE) -B build/clang -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TOOLS=OFF -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=ON >/dev/null
 	@cmake --build build/clang -- --quiet
 fuzz:
-	@$(CONFIGURE) -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_FUZZ=ON
+	@$(CONFIGURE) -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_FUZZ=ON >/dev/null
 	@cmake --build build/fuzz --target thimble_fuzzers -- --quiet
 # One ctest over all builds, so that there is one summary.
 test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzing
@@ -46,7 +46,7 @@ test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzin
 	@ctest --test-dir build --output-on-failure -j 2 $(CTEST_ARGS)
 
 bench: deps-bench ## Build and run the benchmarks
-	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF
+	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@cmake --build build/release -- --quiet
 	@build/release/thimble_benchmarks $(BENCH_ARGS)
 

@@ -1,9 +1,9 @@
 #!/bin/sh
 # What the core's objects ask of the outside, and what they leave in RAM: only undefined symbols of an allow-list
 # (one name or pattern a line), no writable data, no constructors that run before main.
-# symbols.sh TOOL_PREFIX ALLOW_LIST FILE... (objects or archives)
+# symbols.sh TOOL_PREFIX ALLOW_LIST FILE... (objects or archives; the prefix `host` is none)
 set -eu
-prefix=$1
+prefix=${1#host}
 allow=$2
 shift 2
 failed=0
