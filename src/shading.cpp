@@ -104,7 +104,7 @@ int32_t planar_depth_q8(const Hit& hit, const Camera& camera) {
 
 Rgb8 shade(const Hit& hit, const Ray& ray, const Camera& camera, const Shading& shading) {
   if (hit.kind != HitKind::kHit) {
-    return shading.background;
+    return shading.mode == ShadeMode::kMono ? Rgb8{0, 0, 0} : shading.background;
   }
   switch (shading.mode) {
     case ShadeMode::kMono:

@@ -26,7 +26,7 @@ struct Shading {
   /// Colours by material index; an index beyond it takes `default_color`. May be empty.
   Span<const Rgb8> palette;
   Rgb8 default_color{230, 230, 230};
-  /// Where a ray hits nothing.
+  /// Where a ray hits nothing; kMono is black there.
   Rgb8 background{0, 0, 0};
   /// kDepth: distances along the camera's forward vector, in 1/256 voxel, that get full brightness and the
   /// least (`kFarBrightness`); see `depth_range`. Nearer and farther ones are clamped. Any two numbers will

@@ -250,7 +250,7 @@ constexpr Vec3i kLowest{128, 128, 128};
 constexpr Vec3i kHighest{side_q8(12) - 128, side_q8(12) - 128, side_q8(12) - 128};
 
 constexpr Frame kFrames[] = {
-    pinhole("empty_depth_rgb888", kEmpty, kFront5, kMiddle5, 60, kDepth, kRgb888, 9, 7),
+    pinhole("empty_depth_rgb888", kEmpty, kFront5, kMiddle5, 38, kDepth, kRgb888, 9, 7),
     parallel("empty_mono_mono1", kEmpty, kFront5, kMiddle5, 40, kMono, kMono1, 11, 5),
 
     // A solid cube: as one block, from far away, from a corner through edges, from inside.
@@ -265,29 +265,29 @@ constexpr Frame kFrames[] = {
             15),
 
     // Every format and every shade mode of one view, and both projections.
-    pinhole("spheres_depth_mono1", kSpheres, kFront5, kMiddle5, 60, kDepth, kMono1, 61, 37),
-    pinhole("spheres_depth_gray4", kSpheres, kFront5, kMiddle5, 60, kDepth, kGray4, 61, 37),
-    pinhole("spheres_depth_gray8", kSpheres, kFront5, kMiddle5, 60, kDepth, kGray8, 61, 37),
-    pinhole("spheres_depth_rgb565", kSpheres, kFront5, kMiddle5, 60, kDepth, kRgb565, 61, 37),
-    pinhole("spheres_depth_rgb888", kSpheres, kFront5, kMiddle5, 60, kDepth, kRgb888, 61, 37),
-    pinhole("spheres_normal_rgb888", kSpheres, kFront5, kMiddle5, 60, kNormal, kRgb888, 61, 37),
-    pinhole("spheres_color_rgb888", kSpheres, kFront5, kMiddle5, 60, kColor, kRgb888, 61, 37),
-    pinhole("spheres_mono_mono1", kSpheres, kFront5, kMiddle5, 60, kMono, kMono1, 61, 37),
+    pinhole("spheres_depth_mono1", kSpheres, kFront5, kMiddle5, 38, kDepth, kMono1, 61, 37),
+    pinhole("spheres_depth_gray4", kSpheres, kFront5, kMiddle5, 38, kDepth, kGray4, 61, 37),
+    pinhole("spheres_depth_gray8", kSpheres, kFront5, kMiddle5, 38, kDepth, kGray8, 61, 37),
+    pinhole("spheres_depth_rgb565", kSpheres, kFront5, kMiddle5, 38, kDepth, kRgb565, 61, 37),
+    pinhole("spheres_depth_rgb888", kSpheres, kFront5, kMiddle5, 38, kDepth, kRgb888, 61, 37),
+    pinhole("spheres_normal_rgb888", kSpheres, kFront5, kMiddle5, 38, kNormal, kRgb888, 61, 37),
+    pinhole("spheres_color_rgb888", kSpheres, kFront5, kMiddle5, 38, kColor, kRgb888, 61, 37),
+    pinhole("spheres_mono_mono1", kSpheres, kFront5, kMiddle5, 38, kMono, kMono1, 61, 37),
     parallel("spheres_parallel_depth_gray8", kSpheres, kFront5, kMiddle5, 42, kDepth, kGray8, 61, 37),
     parallel("spheres_parallel_color_rgb565", kSpheres, kFront5, kMiddle5, 42, kColor, kRgb565, 33, 21),
-    with_bits(pinhole("spheres_depth_gray8_8_bits", kSpheres, kFront5, kMiddle5, 60, kDepth, kGray8, 33, 21),
+    with_bits(pinhole("spheres_depth_gray8_8_bits", kSpheres, kFront5, kMiddle5, 38, kDepth, kGray8, 33, 21),
               8, true),
-    with_bits(pinhole("spheres_depth_gray8_20_bits", kSpheres, kFront5, kMiddle5, 60, kDepth, kGray8, 33, 21),
+    with_bits(pinhole("spheres_depth_gray8_20_bits", kSpheres, kFront5, kMiddle5, 38, kDepth, kGray8, 33, 21),
               20, false),
 
-    pinhole("many_spheres_color_rgb888", kManySpheres, kFront6, kMiddle6, 60, kColor, kRgb888, 61, 37),
-    pinhole("many_spheres_depth_mono1_128x64", kManySpheres, kFront6, kMiddle6, 50, kDepth, kMono1, 128, 64),
+    pinhole("many_spheres_color_rgb888", kManySpheres, kFront6, kMiddle6, 34, kColor, kRgb888, 61, 37),
+    pinhole("many_spheres_depth_mono1_128x64", kManySpheres, kFront6, kMiddle6, 30, kDepth, kMono1, 128, 64),
     parallel("many_spheres_parallel_normal_rgb565", kManySpheres, kFront6, kMiddle6, 90, kNormal, kRgb565, 33,
              21),
 
-    pinhole("few_points_color_rgb888", kFewPoints, kFront6, kMiddle6, 60, kColor, kRgb888, 61, 37),
+    pinhole("few_points_color_rgb888", kFewPoints, kFront6, kMiddle6, 34, kColor, kRgb888, 61, 37),
     parallel("few_points_parallel_mono_mono1", kFewPoints, kFront6, kMiddle6, 110, kMono, kMono1, 61, 37),
-    pinhole("points_depth_gray4", kPoints, kFront6, kMiddle6, 60, kDepth, kGray4, 61, 37),
+    pinhole("points_depth_gray4", kPoints, kFront6, kMiddle6, 34, kDepth, kGray4, 61, 37),
     pinhole("points_color_rgb565_inside", kPoints, {8000, 8100, 8200}, {9000, 16000, 7000}, 100, kColor,
             kRgb565, 33, 21),
     // The paper's first tracer: parallel, straight, black and white.
@@ -310,8 +310,8 @@ constexpr Frame kFrames[] = {
     pinhole("checkerboard_normal_rgb888_inside", kCheckerboard, {2048, 2048, 2048}, {2048, 4096, 2048}, 120,
             kNormal, kRgb888, 15, 9),
 
-    pinhole("coarsened_depth_gray8", kCoarsened, kFront6, kMiddle6, 60, kDepth, kGray8, 61, 37),
-    pinhole("coarsened_color_rgb888", kCoarsened, kFront6, kMiddle6, 60, kColor, kRgb888, 61, 37),
+    pinhole("coarsened_depth_gray8", kCoarsened, kFront6, kMiddle6, 34, kDepth, kGray8, 61, 37),
+    pinhole("coarsened_color_rgb888", kCoarsened, kFront6, kMiddle6, 34, kColor, kRgb888, 61, 37),
     parallel("coarsened_parallel_normal_rgb565", kCoarsened, kFront6, kMiddle6, 90, kNormal, kRgb565, 33, 21),
 
     // The largest world, from beside its corners and from its other end, with the longest numbers.
