@@ -1,9 +1,13 @@
 #include "thimble/shading.h"
 
+#include "bits.h"
 #include "wide_arithmetic.h"
 
 namespace thimble {
 namespace {
+
+// From full brightness to that of the far plane.
+constexpr uint32_t kDepthFall = 255 - kFarBrightness;
 
 // The camera's affine function at the middle of the picture, in 32.32.
 int64_t at_middle(const Camera& camera, int axis) {
@@ -20,14 +24,17 @@ uint8_t channel(uint8_t albedo, uint32_t light) {
 }  // namespace
 
 DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
-  // Forward, in 1/4096 of the ray's integers for a perspective camera (below 2^32), plain for an orthographic
-  // one.
+  // Forward and its length in one unit: 1/4096 of the ray's integers for a perspective camera (a component is
+  // below 2^32), 1/256 for an orthographic one (below 2^28).
   Vec3<int64_t> forward;
   uint64_t length = static_cast<uint32_t>(camera.depth_per_t_q8());
-  for (int axis = 0; axis < 3; ++axis) {
-    forward[axis] = camera.is_perspective() ? at_middle(camera, axis) >> 20 : camera.direction()[axis];
+  if (camera.is_perspective()) {
+    length <<= 4;
   }
-  length = camera.is_perspective() ? length << 4 : (length + 128) >> 8;
+  for (int axis = 0; axis < 3; ++axis) {
+    forward[axis] =
+        camera.is_perspective() ? at_middle(camera, axis) >> 20 : int64_t{camera.direction()[axis]} * 256;
+  }
   if (length == 0 || bounds.empty()) {
     return {};
   }
@@ -82,36 +89,43 @@ Face face_of(const Hit& hit, const Vec3i& direction) {
 }
 
 int32_t planar_depth_q8(const Hit& hit, const Camera& camera) {
-  // depth = numerator * (depth_per_t / denominator), the fraction with 11 more bits: depth_per_t_q8 is below
-  // 2^29, the denominator is 256 * direction.
+  // depth = numerator * (depth_per_t / denominator), with the denominator 256 * direction. The dividend is
+  // shifted until it fills 32 bits: the direction has at most 20, so the quotient has at least 12.
   const uint32_t direction = static_cast<uint32_t>(hit.t_denominator) >> 8;
-  if (direction == 0) {
+  const uint32_t depth_per_t = static_cast<uint32_t>(camera.depth_per_t_q8());
+  if (direction == 0 || depth_per_t == 0) {
     return 0;  // starts inside: t = 0
   }
-  const uint32_t ratio_q11 = (static_cast<uint32_t>(camera.depth_per_t_q8()) << 3) / direction;
-  const uint64_t depth = (uint64_t{static_cast<uint32_t>(hit.t_numerator)} * ratio_q11) >> 11;
+  const int shift = 32 - bits::bit_length(depth_per_t);
+  const uint32_t ratio = (depth_per_t << shift) / direction;
+  const uint64_t depth = (uint64_t{static_cast<uint32_t>(hit.t_numerator)} * ratio) >> (shift + 8);
   return depth < INT32_MAX ? static_cast<int32_t>(depth) : INT32_MAX;
 }
 
 Rgb8 shade(const Hit& hit, const Ray& ray, const Camera& camera, const Shading& shading) {
   if (hit.kind != HitKind::kHit) {
-    return shading.background;
+    return shading.mode == ShadeMode::kMono ? Rgb8{0, 0, 0} : shading.background;
   }
   switch (shading.mode) {
     case ShadeMode::kMono:
       return {255, 255, 255};
     case ShadeMode::kDepth: {
       const int32_t depth = planar_depth_q8(hit, camera);
-      const int32_t clamped = depth < shading.near_q8  ? shading.near_q8
-                              : depth > shading.far_q8 ? shading.far_q8
-                                                       : depth;
-      const uint32_t range = static_cast<uint32_t>(shading.far_q8 - shading.near_q8);
-      // 8 bits of quotient from at most 24 bits over 24: both are shifted until the dividend times 215 fits.
-      uint32_t part = static_cast<uint32_t>(clamped - shading.near_q8);
-      const int excess = range >= (1U << 24) ? 8 : 0;
-      const uint32_t scaled = range >> excess;
-      part >>= excess;
-      const uint32_t fall = scaled == 0 ? 0 : part * (255U - kFarBrightness) / scaled;
+      // In this order, so that planes that coincide or are swapped make a step at the near one, not a
+      // division by 0.
+      uint32_t fall = 0;
+      if (depth > shading.near_q8) {
+        fall = kDepthFall;
+        if (depth < shading.far_q8) {
+          // Differences as unsigned numbers: planes may lie as far apart as int32_t reaches.
+          const uint32_t near_plane = static_cast<uint32_t>(shading.near_q8);
+          const uint32_t range = static_cast<uint32_t>(shading.far_q8) - near_plane;
+          const uint32_t part = static_cast<uint32_t>(depth) - near_plane;
+          // part <= range; cut to 24 bits where range has more, so that the product with 215 fits in 32.
+          const int excess = range >= (1U << 24) ? 8 : 0;
+          fall = (part >> excess) * kDepthFall / (range >> excess);
+        }
+      }
       const uint8_t gray = static_cast<uint8_t>(255U - fall);
       return {gray, gray, gray};
     }

@@ -3,9 +3,8 @@
 ///
 /// A picture is rows from the top, pixels from the left:
 ///
-///   kMono1   1 bit, the leftmost pixel in the highest bit of a byte, 1 = lit (white); thresholded by an 8 x
-///   8 ordered
-///            dither, so greys show as patterns
+///   kMono1   1 bit, the leftmost pixel in the highest bit of a byte, 1 = lit (white); thresholded by an
+///            8 x 8 ordered dither, so greys show as patterns
 ///   kGray4   4 bits, the left pixel in the high nibble, 15 = white
 ///   kGray8   1 byte, 255 = white
 ///   kRgb565  2 bytes, little-endian: rrrrrggg gggbbbbb

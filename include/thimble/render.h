@@ -44,7 +44,7 @@ struct RenderCounts {
   uint64_t rays = 0;
   uint64_t hits = 0;
   uint64_t node_visits = 0;
-  uint64_t step_limited = 0;  ///< rays stopped by TraceOptions::max_visits; their pixels show the background
+  uint64_t step_limited = 0;  ///< rays stopped by TraceOptions::max_visits; their pixels look like misses
 };
 constexpr size_t render_bytes() {
   return sizeof(Camera) + sizeof(Shading) + sizeof(RenderCounts);

@@ -26,11 +26,11 @@ struct Shading {
   /// Colours by material index; an index beyond it takes `default_color`. May be empty.
   Span<const Rgb8> palette;
   Rgb8 default_color{230, 230, 230};
-  /// Where a ray hits nothing.
+  /// Where a ray hits nothing; kMono is black there.
   Rgb8 background{0, 0, 0};
   /// kDepth: distances along the camera's forward vector, in 1/256 voxel, that get full brightness and the
-  /// least
-  /// (`kFarBrightness`); see `depth_range`. Nearer and farther ones are clamped.
+  /// least (`kFarBrightness`); see `depth_range`. Nearer and farther ones are clamped. Any two numbers will
+  /// do: where far is not beyond near, everything up to near is bright and everything behind it dim.
   int32_t near_q8 = 0;
   int32_t far_q8 = 256;
   /// kColor: brightness of the faces -x, +x, -y, +y, -z, +z, 256 = the palette's own colour; see
@@ -41,8 +41,8 @@ struct Shading {
 /// What kDepth gives at `far_q8` and beyond: well above black, so that everything hit is seen.
 inline constexpr int kFarBrightness = 40;
 
-/// The near and far planes for `camera` that just hold `bounds`: distances of its nearest and farthest
-/// corner. Near is at least 0, far at least one voxel beyond near.
+/// The near and far planes for `camera` that just hold `bounds`, a box in the world: distances of its nearest
+/// and farthest corner, rounded down. Near is at least 0, far at least one voxel beyond near.
 struct DepthRange {
   int32_t near_q8 = 0;
   int32_t far_q8 = 256;
@@ -64,8 +64,9 @@ struct Face {
 Face face_of(const Hit& hit, const Vec3i& direction);
 
 /// Distance of the hit along the camera's forward vector, in 1/256 voxel: t * camera.depth_per_t_q8(),
-/// relative error at most 2^-10 for faces that the ray does not graze (one 32-bit division, one 64-bit
-/// product).
+/// rounded down twice, so too small by at most 2^-11 of itself and one unit; INT32_MAX where it would be
+/// more, which no hit of this camera's rays reaches. 0 for a ray that starts inside. One 32-bit division, one
+/// 64-bit product.
 int32_t planar_depth_q8(const Hit& hit, const Camera& camera);
 
 /// The colour of one pixel. One 32-bit division for kDepth, none else.
