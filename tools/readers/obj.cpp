@@ -68,7 +68,7 @@ class StatementBuffer final : public std::streambuf {
     if (!is_wanted) {
       return;
     }
-    words = words.substr(0, words.find('#'));
+    words = without_comment(words);
     if (words.ends_with('\\')) {
       words.remove_suffix(1);
     }

@@ -3,9 +3,10 @@
 ///
 /// What is read: vertices `v x y z`, with colours `v x y z r g b` (0 to 1) when every vertex has one, and
 /// faces `f` of any number of corners, whose indices count from 1 or, negative, back from the last vertex.
-/// A line may go on after a backslash; # begins a comment anywhere. All other statements are ignored, and no
-/// other file is opened: materials, normals, texture coordinates, groups, lines and curves play no part.
-/// Faces of fewer than three corners make no triangle. A file without faces becomes a point cloud.
+/// A line may go on after a backslash; a # that begins a word begins a comment. All other statements are
+/// ignored, and no other file is opened: materials, normals, texture coordinates, groups, lines and curves
+/// play no part. Faces of fewer than three corners make no triangle. A file without faces becomes a point
+/// cloud.
 ///
 /// tinyobjloader reads what is no number as 0, so each line is checked here before it gets there; and the
 /// parser is used through its callbacks, which hold one statement at a time, and given only `v` and `f`

@@ -103,6 +103,15 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+    if (at == 0 || is_space(line[at - 1]) || line[at - 1] == ',' || line[at - 1] == ';') {
+      return line.substr(0, at);
+    }
+  }
+  return line;
+}
+
 bool equals_ignoring_case(std::string_view word, std::string_view lower_case) {
   if (word.size() != lower_case.size()) {
     return false;

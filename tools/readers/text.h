@@ -49,6 +49,10 @@ constexpr bool is_space(char c) {
 /// Takes the first word (a run without spaces) off the front of `line`; empty when there is none.
 std::string_view take_word(std::string_view& line);
 
+/// `line` up to a # that begins a comment: one at the front or after a space, comma or semicolon. (In
+/// "1.#IND", which some programs write for NaN, it is part of the word.)
+std::string_view without_comment(std::string_view line);
+
 /// True when `word` equals `lower_case` but for the case of ASCII letters.
 bool equals_ignoring_case(std::string_view word, std::string_view lower_case);
 

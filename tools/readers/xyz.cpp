@@ -30,7 +30,7 @@ constexpr bool is_comma(char c) {
 /// Cuts a line into columns.
 class ColumnReader {
  public:
-  explicit ColumnReader(std::string_view line) : rest_(line.substr(0, line.find('#'))) { skip_blanks(); }
+  explicit ColumnReader(std::string_view line) : rest_(without_comment(line)) { skip_blanks(); }
 
   /// The next column; false at the end. It is empty where two separators meet.
   bool next(std::string_view& column) {

@@ -1,0 +1,61 @@
+/// @file check_reader.h
+/// What every fuzz target of a reader does with its input.
+#ifndef THIMBLE_TESTS_FUZZ_CHECK_READER_H
+#define THIMBLE_TESTS_FUZZ_CHECK_READER_H
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "readers/shared_bytes.h"
+#include "readers/source.h"
+
+namespace thimble::tools::test {
+
+inline void require(bool condition) {
+  if (!condition) {
+    std::abort();
+  }
+}
+
+/// Aborts when a promise of source.h is broken or anything but an InputError is thrown; returns 0.
+inline int check_reader(Source (*read)(SharedBytes, const Progress&), std::span<const std::uint8_t> bytes) {
+  Source source;
+  try {
+    source = read({bytes, nullptr}, {});
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    require(!what.empty() && what.back() != '.' && what.find('\n') == std::string::npos);
+    return 0;
+  }
+  if (const auto* mesh = std::get_if<TriangleMesh>(&source)) {
+    require(!mesh->positions.empty());
+    require(mesh->colors.empty() || mesh->colors.size() == mesh->positions.size());
+    for (const auto& position : mesh->positions) {
+      require(std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]));
+    }
+    for (const auto& triangle : mesh->triangles) {
+      for (const std::uint32_t corner : triangle) {
+        require(corner < mesh->positions.size());
+      }
+    }
+    return 0;
+  }
+  std::uint64_t count = 0;
+  std::get<std::unique_ptr<PointCloud>>(source)->for_each([&](const CloudPoint& point) {
+    require(std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z));
+    require(point.line != 0);
+    ++count;
+  });
+  require(count != 0);
+  return 0;
+}
+
+}  // namespace thimble::tools::test
+
+#endif

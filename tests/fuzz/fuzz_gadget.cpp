@@ -1,0 +1,9 @@
+// libFuzzer target: read_gadget on any bytes. Refused with an InputError or read with every promise of source.h kept.
+//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools -Itests -DTINYOBJLOADER_USE_DOUBLE
+//     tests/fuzz/fuzz_gadget.cpp tools/readers/{gadget,mesh,text}.cpp -o fuzz_gadget    (obj: and -ltinyobjloader_double)
+#include "fuzz/check_reader.h"
+#include "readers/gadget.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return thimble::tools::test::check_reader(thimble::tools::read_gadget, {data, size});
+}
