@@ -64,6 +64,11 @@ class Scene {
   std::vector<std::uint8_t> tree_bytes_;
 };
 
+struct RowRange {
+  int first;
+  int rows;
+};
+
 Vec3Q8 point(int x, int y, int z) {
   return {Q8::from_raw(x), Q8::from_raw(y), Q8::from_raw(z)};
 }
@@ -271,14 +276,15 @@ TEST_CASE("render_band: rows outside, stride or bytes too small -> refused, noth
   const PixelFormat format = PixelFormat::kRgb565;
   const std::size_t line = row_bytes(format, kWidthPx);
   std::vector<std::uint8_t> bytes(line * kHeightPx, kGuard);
-  constexpr std::pair<int, int> kRowsOutside[] = {
+  constexpr RowRange kRowsOutside[] = {
       {-1, 1},           {0, -1},        {0, kHeightPx + 1},     {kHeightPx, 1}, {kHeightPx - 1, 2},
       {1, INT32_MAX},    {INT32_MAX, 1}, {INT32_MAX, INT32_MAX}, {INT32_MIN, 1}, {0, INT32_MIN},
       {kHeightPx + 1, 0}};
-  for (const auto& [first, rows] : kRowsOutside) {
-    CAPTURE(first);
-    CAPTURE(rows);
-    check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, first, rows));
+  for (const RowRange& range : kRowsOutside) {
+    CAPTURE(range.first);
+    CAPTURE(range.rows);
+    check_refused(Status::kBadArgument, scene.compact, camera,
+                  band_over(bytes, format, range.first, range.rows));
   }
   check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, 0, 1, line - 1));
   check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, 0, 1, 1));

@@ -1,7 +1,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -160,8 +159,10 @@ TEST_CASE("planar_depth_q8: a start inside, or a camera never set up -> 0") {
 
 TEST_CASE("shade depth: distance grows -> brightness falls from 255 at near to kFarBrightness at far") {
   const Camera camera = camera_along_x();
-  for (const auto& [near_q8, far_q8] : {std::array{0, 256}, std::array{1000, 70000}, std::array{0, 1 << 24},
-                                        std::array{-500, 8000000}, std::array{77, 78}, std::array{5, 7}}) {
+  constexpr DepthRange kRanges[] = {{0, 256}, {1000, 70000}, {0, 1 << 24}, {-500, 8000000}, {77, 78}, {5, 7}};
+  for (const DepthRange& range : kRanges) {
+    const std::int32_t near_q8 = range.near_q8;
+    const std::int32_t far_q8 = range.far_q8;
     CAPTURE(near_q8);
     CAPTURE(far_q8);
     int before = 255;
