@@ -27,8 +27,8 @@ struct Rgb8 {
   uint8_t r = 0;
   uint8_t g = 0;
   uint8_t b = 0;
-  friend constexpr bool operator==(const Rgb8& a, const Rgb8& b) {
-    return a.r == b.r && a.g == b.g && a.b == b.b;
+  friend constexpr bool operator==(const Rgb8& one, const Rgb8& other) {
+    return one.r == other.r && one.g == other.g && one.b == other.b;
   }
 };
 
