@@ -57,6 +57,9 @@ class OffParser {
   void header() {
     const std::string_view word = words_.next();
     keyword_ = parse_keyword(word);
+    if (word.empty()) {
+      throw InputError("the file is empty or holds only comments");
+    }
     if (!keyword_.known) {
       fail("the file begins with " + quoted(word) + ", not with OFF, COFF, NOFF, CNOFF or ST before these");
     }

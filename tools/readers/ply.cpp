@@ -323,7 +323,7 @@ class AsciiBody {
   std::string_view next() {
     const std::string_view word = words_.next();
     if (word.empty()) {
-      throw InputError("the file ends before all that the header declares");
+      fail("the file ends before all that the header declares");
     }
     return word;
   }
@@ -392,8 +392,9 @@ class BinaryBody {
   static void finish() {}
 
  private:
-  [[noreturn]] static void fail_early() {
-    throw InputError("the file ends before all that the header declares");
+  [[noreturn]] void fail_early() const {
+    throw InputError("after byte offset " + std::to_string(next_) +
+                     ": the file ends before all that the header declares");
   }
   std::uint64_t take(std::size_t count) {
     if (count > remaining()) {
