@@ -198,7 +198,7 @@ bool looks_like_off(std::span<const std::uint8_t> bytes) {
   return parse_keyword(WordReader(file.text(), '#').next()).known;
 }
 
-Source read_off(SharedBytes file, const Progress& progress) {
+Source read_off(const SharedBytes& file, const Progress& progress) {
   return OffParser(file.text(), progress).parse();
 }
 
