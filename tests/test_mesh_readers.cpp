@@ -215,7 +215,7 @@ TEST_CASE("off: what is wrong -> an error that names the place") {
   CHECK(contains(error_of(read_off, "OFF BINARY\n"), "binary OFF"));
   CHECK(contains(error_of(read_off, "4OFF\n4 1 0\n"), "'4OFF'"));
   CHECK(contains(error_of(read_off, "off\n"), "line 1"));
-  CHECK(contains(error_of(read_off, ""), "''"));
+  CHECK(contains(error_of(read_off, ""), "empty"));
   CHECK(contains(error_of(read_off, "OFF\n0 0 0\n"), "no vertices"));
   CHECK(
       contains(error_of(read_off, "OFF\n4 1 0\n" + square + "3 0 1 4\n"), "line 7: face 0 has the index 4"));

@@ -24,7 +24,8 @@ inline void require(bool condition) {
 }
 
 /// Aborts when a promise of source.h is broken or anything but an InputError is thrown; returns 0.
-inline int check_reader(Source (*read)(SharedBytes, const Progress&), std::span<const std::uint8_t> bytes) {
+inline int check_reader(Source (*read)(const SharedBytes&, const Progress&),
+                        std::span<const std::uint8_t> bytes) {
   Source source;
   try {
     source = read({bytes, nullptr}, {});

@@ -1,6 +1,6 @@
-// libFuzzer target: read_gadget on any bytes. Refused with an InputError or read with every promise of source.h kept.
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools -Itests -DTINYOBJLOADER_USE_DOUBLE
-//     tests/fuzz/fuzz_gadget.cpp tools/readers/{gadget,mesh,text}.cpp -o fuzz_gadget    (obj: and -ltinyobjloader_double)
+// libFuzzer target: read_gadget on any bytes: refused with an InputError, or every promise of source.h kept.
+//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools -Itests
+//     tests/fuzz/fuzz_gadget.cpp tools/readers/{gadget,mesh,text}.cpp -o fuzz_gadget
 #include "fuzz/check_reader.h"
 #include "readers/gadget.h"
 

@@ -1,6 +1,6 @@
-// libFuzzer target: read_obj on any bytes. Refused with an InputError or read with every promise of source.h kept.
+// libFuzzer target: read_obj on any bytes: refused with an InputError, or every promise of source.h kept.
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools -Itests -DTINYOBJLOADER_USE_DOUBLE
-//     tests/fuzz/fuzz_obj.cpp tools/readers/{obj,mesh,text}.cpp -o fuzz_obj    (obj: and -ltinyobjloader_double)
+//     tests/fuzz/fuzz_obj.cpp tools/readers/{obj,mesh,text}.cpp -ltinyobjloader_double -o fuzz_obj
 #include "fuzz/check_reader.h"
 #include "readers/obj.h"
 

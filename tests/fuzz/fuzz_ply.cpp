@@ -1,6 +1,6 @@
-// libFuzzer target: read_ply on any bytes. Refused with an InputError or read with every promise of source.h kept.
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools -Itests -DTINYOBJLOADER_USE_DOUBLE
-//     tests/fuzz/fuzz_ply.cpp tools/readers/{ply,mesh,text}.cpp -o fuzz_ply    (obj: and -ltinyobjloader_double)
+// libFuzzer target: read_ply on any bytes: refused with an InputError, or every promise of source.h kept.
+//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools -Itests
+//     tests/fuzz/fuzz_ply.cpp tools/readers/{ply,mesh,text}.cpp -o fuzz_ply
 #include "fuzz/check_reader.h"
 #include "readers/ply.h"
 

@@ -14,7 +14,7 @@
 
 namespace thimble::tools::test {
 
-using Reader = Source (*)(SharedBytes, const Progress&);
+using Reader = Source (*)(const SharedBytes&, const Progress&);
 
 /// Path of THIMBLE_DATA, or empty after saying on stderr that the calling test is skipped.
 std::filesystem::path data_folder();

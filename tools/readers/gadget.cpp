@@ -124,7 +124,7 @@ bool looks_like_gadget(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
-Source read_gadget(SharedBytes file, const Progress& progress) {
+Source read_gadget(const SharedBytes& file, const Progress& progress) {
   auto cloud = std::make_unique<GadgetCloud>();
   const std::span<const std::uint8_t> bytes = file.bytes;
   cloud->order = byte_order(bytes);
@@ -150,7 +150,7 @@ Source read_gadget(SharedBytes file, const Progress& progress) {
                      std::to_string(particles * 24));
   }
   cloud->positions_offset = positions.offset;
-  cloud->file = std::move(file);
+  cloud->file = file;
   for (std::size_t offset = positions.end(); offset < bytes.size();) {
     offset = record_at(bytes, offset, cloud->order).end();
   }

@@ -43,7 +43,7 @@ bool looks_like_gadget(std::span<const std::uint8_t> bytes);
 /// @throws InputError  naming the byte offset or the particle: no such snapshot, markers that disagree or
 ///   leave the file, positions that are not as many as the header's particles, a position that is not finite,
 ///   no particles
-Source read_gadget(SharedBytes file, const Progress& progress = {});
+Source read_gadget(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

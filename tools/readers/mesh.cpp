@@ -1,5 +1,6 @@
 #include "readers/mesh.h"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -59,7 +60,7 @@ std::uint8_t unit_to_byte(double component) {
   if (!(component > 0)) {
     return 0;
   }
-  return component >= 1 ? std::uint8_t{255} : static_cast<std::uint8_t>(component * 255 + 0.5);
+  return component >= 1 ? std::uint8_t{255} : static_cast<std::uint8_t>(std::floor(component * 255 + 0.5));
 }
 
 }  // namespace thimble::tools

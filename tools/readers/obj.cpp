@@ -209,7 +209,7 @@ class ObjParser {
 
 }  // namespace
 
-Source read_obj(SharedBytes file, const Progress& progress) {
+Source read_obj(const SharedBytes& file, const Progress& progress) {
   ObjParser parser(file.text(), progress);
   Source source = parser.parse();
   if (progress) {

@@ -25,7 +25,7 @@ namespace thimble::tools {
 /// the longest line twice.
 /// @throws InputError  naming the line: a coordinate that is missing or no finite number, an index that is
 ///   zero, no integer or no vertex of the file
-Source read_obj(SharedBytes file, const Progress& progress = {});
+Source read_obj(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

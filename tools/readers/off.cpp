@@ -57,6 +57,9 @@ class OffParser {
   void header() {
     const std::string_view word = words_.next();
     keyword_ = parse_keyword(word);
+    if (word.empty()) {
+      throw InputError("the file is empty or holds only comments");
+    }
     if (!keyword_.known) {
       fail("the file begins with " + quoted(word) + ", not with OFF, COFF, NOFF, CNOFF or ST before these");
     }
@@ -195,7 +198,7 @@ bool looks_like_off(std::span<const std::uint8_t> bytes) {
   return parse_keyword(WordReader(file.text(), '#').next()).known;
 }
 
-Source read_off(SharedBytes file, const Progress& progress) {
+Source read_off(const SharedBytes& file, const Progress& progress) {
   return OffParser(file.text(), progress).parse();
 }
 

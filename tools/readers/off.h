@@ -34,7 +34,7 @@ bool looks_like_off(std::span<const std::uint8_t> bytes);
 /// @throws InputError  naming the line: no keyword, a count that the bytes cannot hold, a file that ends
 /// early,
 ///   a word that is no finite number, an index that is no vertex
-Source read_off(SharedBytes file, const Progress& progress = {});
+Source read_off(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

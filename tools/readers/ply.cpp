@@ -323,7 +323,7 @@ class AsciiBody {
   std::string_view next() {
     const std::string_view word = words_.next();
     if (word.empty()) {
-      throw InputError("the file ends before all that the header declares");
+      fail("the file ends before all that the header declares");
     }
     return word;
   }
@@ -392,8 +392,9 @@ class BinaryBody {
   static void finish() {}
 
  private:
-  [[noreturn]] static void fail_early() {
-    throw InputError("the file ends before all that the header declares");
+  [[noreturn]] void fail_early() const {
+    throw InputError("after byte offset " + std::to_string(next_) +
+                     ": the file ends before all that the header declares");
   }
   std::uint64_t take(std::size_t count) {
     if (count > remaining()) {
@@ -619,7 +620,7 @@ class PlyCloud final : public PointCloud {
 };
 
 template <class Body>
-Source read_body(SharedBytes file, const Header& header, const Progress& progress) {
+Source read_body(const SharedBytes& file, const Header& header, const Progress& progress) {
   const Element* vertices = nullptr;
   bool has_polygons = false;
   for (const Element& element : header.elements) {
@@ -654,8 +655,7 @@ Source read_body(SharedBytes file, const Header& header, const Progress& progres
   }
   body.finish();
   meter.done();
-  return std::unique_ptr<PointCloud>(
-      std::make_unique<PlyCloud<Body>>(std::move(file), *vertices, first_vertex));
+  return std::unique_ptr<PointCloud>(std::make_unique<PlyCloud<Body>>(file, *vertices, first_vertex));
 }
 
 }  // namespace
@@ -665,12 +665,12 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes) {
          (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
 }
 
-Source read_ply(SharedBytes file, const Progress& progress) {
+Source read_ply(const SharedBytes& file, const Progress& progress) {
   const Header header = HeaderParser(file.text()).parse();
   if (header.encoding == Encoding::kAscii) {
-    return read_body<AsciiBody>(std::move(file), header, progress);
+    return read_body<AsciiBody>(file, header, progress);
   }
-  return read_body<BinaryBody>(std::move(file), header, progress);
+  return read_body<BinaryBody>(file, header, progress);
 }
 
 }  // namespace thimble::tools

@@ -35,7 +35,7 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes);
 /// allocated for it.
 /// @throws InputError  a broken header; a count that the bytes cannot hold; a file that ends early; text that
 ///   is no number; a coordinate that is not finite; an index out of range; no vertex
-Source read_ply(SharedBytes file, const Progress& progress = {});
+Source read_ply(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

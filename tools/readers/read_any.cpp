@@ -77,13 +77,13 @@ std::string reader_endings() {
   return out;
 }
 
-Source read_any(std::string_view path, SharedBytes file, const Progress& progress) {
+Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress) {
   const ReaderRow* row = find_reader(path, file.bytes);
   if (row == nullptr) {
     throw InputError("neither the name nor the contents tell what this file is; known endings are " +
                      reader_endings());
   }
-  return row->read(std::move(file), progress);
+  return row->read(file, progress);
 }
 
 }  // namespace thimble::tools

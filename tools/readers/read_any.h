@@ -17,7 +17,7 @@ namespace thimble::tools {
 struct ReaderRow {
   const char* endings;  ///< lower case with their points, separated by blanks; may be empty
   const char* name;     ///< what the format is called in help and errors
-  Source (*read)(SharedBytes file, const Progress& progress);
+  Source (*read)(const SharedBytes& file, const Progress& progress);
   /// Recognises the format by its first bytes, for files with another ending or none; may be null.
   bool (*looks_like)(std::span<const std::uint8_t> bytes);
 };
@@ -34,7 +34,7 @@ std::string reader_endings();
 
 /// Reads `file`, the contents of `path` already decompressed.
 /// @throws InputError  no reader knows the file, or the reader's own errors
-Source read_any(std::string_view path, SharedBytes file, const Progress& progress = {});
+Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

@@ -248,7 +248,7 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
 
 }  // namespace
 
-Source read_xyz(SharedBytes file, const Progress& progress) {
+Source read_xyz(const SharedBytes& file, const Progress& progress) {
   Layout layout;
   const Preamble preamble = read_preamble(file.text(), layout);
   const bool names_color = layout.columns[3] != kNoColumn;
@@ -290,7 +290,7 @@ Source read_xyz(SharedBytes file, const Progress& progress) {
     std::fill(layout.columns.begin() + 3, layout.columns.end(), kNoColumn);
   }
   meter.done();
-  return std::unique_ptr<PointCloud>(std::make_unique<XyzCloud>(std::move(file), layout));
+  return std::unique_ptr<PointCloud>(std::make_unique<XyzCloud>(file, layout));
 }
 
 }  // namespace thimble::tools

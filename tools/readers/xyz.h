@@ -34,7 +34,7 @@ namespace thimble::tools {
 /// @throws InputError  naming the line: a column that is missing, empty or no number, a coordinate that is
 /// not
 ///   finite, a colour out of range; an announced number of points that is wrong; no points at all
-Source read_xyz(SharedBytes file, const Progress& progress = {});
+Source read_xyz(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 
