@@ -10,9 +10,9 @@ namespace {
 
 constexpr uint32_t kFullMask = 0xFF;
 
-/// Which octant of its block of `level` holds `position`.
+/// Which octant of its block of `level` (1..12) holds `position`.
 constexpr uint32_t octant_of(Vec3i position, int level) {
-  const int shift = level - 1;
+  const uint32_t shift = static_cast<uint32_t>(level - 1) & 31;
   const uint32_t x = (static_cast<uint32_t>(position.x) >> shift) & 1;
   const uint32_t y = (static_cast<uint32_t>(position.y) >> shift) & 1;
   const uint32_t z = (static_cast<uint32_t>(position.z) >> shift) & 1;

@@ -28,8 +28,8 @@ constexpr uint32_t kLastThreshold = 63 * kMantissa;
 
 }  // namespace
 
-/// The ratio of a code: a small floating-point number, code / 256 its exponent plus 27, code % 256 its fraction.
-/// Its parts obey the bounds of `Ratio`.
+/// The ratio of a code: a small floating-point number, code / 256 its exponent plus 27, code % 256 its
+/// fraction. Its parts obey the bounds of `Ratio`.
 Octree::Ratio Octree::threshold(uint32_t code) {
   const uint32_t exponent = code >> kMantissaBits;
   const uint64_t digits = kMantissa + (code & (kMantissa - 1));
@@ -191,7 +191,7 @@ void Octree::free_nodes(uint32_t wanted) {
   if (freed_below > 0) {
     freed = pass(Pass::kMergeBelow, candidate, wanted, next_ratio);
   }
-  freed += pass(Pass::kMergeWithin, candidate, wanted - freed, next_ratio);
+  pass(Pass::kMergeWithin, candidate, wanted - freed, next_ratio);
   path_[level_] = root_;
   path_low_ = level_;
 }

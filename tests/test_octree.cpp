@@ -551,7 +551,8 @@ TEST_CASE(
       Pool pool(bytes, offset);
       Octree tree;
       REQUIRE(tree.init(pool.bytes(), level) == Status::kOk);
-      CHECK(tree.capacity_bytes() <= bytes);
+      const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(pool.bytes().data)) % 4;
+      CHECK(tree.capacity() == (bytes < padding ? 0 : (bytes - padding) / 8));
       bool refused = false;
       for (const auto& [index, material] : model) {
         const Status status = tree.insert(position(index), material);
@@ -929,6 +930,11 @@ TEST_CASE(
   CHECK(text_of(tree) == "M5");
   CHECK(tree.voxels() == 8);
   CHECK(tree.solid_added() == 6);
+  REQUIRE(tree.init(small.bytes(), 1) == Status::kOk);
+  tree.set_coarsen(true);
+  CHECK(tree.insert({0, 0, 0}, 4) == Status::kOk);
+  CHECK(tree.insert({1, 0, 0}, 5) == Status::kOk);
+  CHECK(text_of(tree) == "M4");
   // A full world keeps its material and is marked, because it is no longer exact.
   REQUIRE(tree.init(one.bytes(), 4) == Status::kOk);
   tree.set_coarsen(true);
@@ -1030,6 +1036,74 @@ TEST_CASE(
   REQUIRE(tree.coarsen_to(3) == Status::kOk);
   CHECK(text_of(tree) == "(129 M1 M1)");
   CHECK(tree.solid_added() == 63);
+}
+
+TEST_CASE(
+    "octree: merging makes eight merged blocks of one material -> one block, and edits elsewhere stay "
+    "right") {
+  Pool pool = Pool::of_nodes(200);
+  Octree tree;
+  REQUIRE(tree.init(pool.bytes(), 3) == Status::kOk);
+  // One 4 x 4 x 4 block of eight voxel nodes, each of material 1 but for its last voxel.
+  for (std::uint64_t index = 0; index < 64; ++index) {
+    REQUIRE(tree.insert(position(index), index % 8 == 7 ? 2 : 1) == Status::kOk);
+  }
+  REQUIRE(tree.insert({7, 7, 7}, 3) == Status::kOk);
+  CHECK(tree.nodes_used() == 1 + 1 + 8 * 9 + 2);
+  REQUIRE(tree.coarsen_to(1 + 1 + 8 + 2) == Status::kOk);
+  CHECK(text_of(tree) == "(129 M1 (128 (128:3)))");
+  CHECK(tree.insert({6, 7, 7}, 3) == Status::kOk);
+  CHECK(text_of(tree) == "(129 M1 (128 (192:3)))");
+  CHECK(tree.solid_added() == 0);
+}
+
+TEST_CASE("octree: pieces of a merged block that was split -> no larger than the block they stand for") {
+  Pool pool = Pool::of_nodes(100);
+  Octree tree;
+  REQUIRE(tree.init(pool.bytes(), 4) == Status::kOk);
+  // Half the world of material 1, merged; what is left of it after a removal are blocks of 1 to 4^3 voxels.
+  REQUIRE(tree.insert_block({0, 0, 0}, 3, 1) == Status::kOk);
+  REQUIRE(tree.insert({1, 1, 1}, 2) == Status::kOk);
+  REQUIRE(tree.make_room(99) == Status::kOk);
+  REQUIRE(text_of(tree) == "M1");
+  REQUIRE(tree.remove({0, 0, 0}) == Status::kOk);
+  // All but one small merged block in the lowest 4 x 4 x 4 go; then comes a true block as large as that one
+  // was.
+  for (std::uint64_t block = 2; block < 8; ++block) {
+    for (std::uint64_t index = block * 8; index < block * 8 + 8; ++index) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+  }
+  for (std::uint64_t index = 1; index < 8; ++index) {
+    REQUIRE(tree.remove(position(index)) == Status::kOk);
+  }
+  REQUIRE(tree.insert_block({0, 0, 0}, 1, 6) == Status::kOk);
+  CHECK(tree.material({2, 0, 0}) == 1);
+  // A tie of two blocks of eight voxels: the lower one's material.
+  for (std::uint64_t octant = 1; octant < 8; ++octant) {
+    for (std::uint64_t index = octant * 64; index < (octant + 1) * 64; ++index) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+    for (std::uint64_t index = octant * 512; index < (octant + 1) * 512; ++index) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+  }
+  CHECK(text_of(tree) == "(1 (1 (3 S6 M1)))");
+  REQUIRE(tree.coarsen_to(3) == Status::kOk);
+  CHECK(text_of(tree) == "(1 (1 M6))");
+  // And a block merged from single voxels stays that small a piece: two true voxels outweigh its parts.
+  REQUIRE(tree.init(pool.bytes(), 2) == Status::kOk);
+  REQUIRE(tree.insert({0, 0, 0}, 3) == Status::kOk);
+  REQUIRE(tree.insert({3, 3, 3}, 4) == Status::kOk);
+  REQUIRE(tree.coarsen_to(1) == Status::kOk);
+  for (std::uint64_t index = 0; index < 8; ++index) {
+    REQUIRE(tree.remove(position(index)) == Status::kOk);
+  }
+  REQUIRE(tree.insert({0, 0, 0}, 6) == Status::kOk);
+  REQUIRE(tree.insert({1, 0, 0}, 6) == Status::kOk);
+  CHECK(text_of(tree) == "(255 (3:6) M3 M3 M3 M3 M3 M3 M3)");
+  REQUIRE(tree.coarsen_to(1) == Status::kOk);
+  CHECK(text_of(tree) == "M6");
 }
 
 }  // namespace thimble::tools

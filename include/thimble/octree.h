@@ -32,9 +32,9 @@
 /// and Regression Trees, 1984, chapter 3), hence nested: what a larger pool merges, a smaller one merges too.
 /// Nothing solid ever becomes empty. A merge that adds nothing (a solid block of several materials)
 /// comes first, and costs only the difference between its materials. A merged block gets the material of the
-/// largest solid piece of one material that was put into it (a solid block, or the voxels of one voxel node;
-/// the lowest in Morton order on a tie), and is marked, because a hit on it reports the block and not a
-/// voxel.
+/// largest solid piece of one material that was put into it (a solid block, the voxels of a voxel node of
+/// one material, a single voxel; the lowest in Morton order on a tie), and is marked, because a hit on it
+/// reports the block and not a voxel.
 ///
 /// What it does not do: share equal subtrees, store empty space, keep normals. One writer, or many readers,
 /// at a time.
@@ -100,6 +100,7 @@ class Octree {
   /// Whether insertion coarsens the tree when the pool is full, instead of returning `kOutOfMemory`. It then
   /// frees at least 1/16 of the pool at a time, so that streaming stays in proportion to what is
   /// streamed. A pool of at least one node then takes everything: at worst the world ends as one solid block.
+  /// What is inserted where the merging that it caused has just filled in counts as added volume.
   void set_coarsen(bool coarsen) { coarsen_ = coarsen; }
 
   // --- changing the tree -------------------------------------------------------------------------------
