@@ -19,9 +19,9 @@ constexpr int kCameras = 300;
 #else
 constexpr int kCameras = 3000;
 #endif
-constexpr std::int32_t kExtremes[] = {INT32_MIN, INT32_MIN + 1, -65536,   -1,      0,       1,
-                                      255,       256,           65536,    1 << 23, 1 << 24, (1 << 24) + 1,
-                                      1 << 30,   INT32_MAX - 1, INT32_MAX};
+constexpr std::int32_t kExtremes[] = {
+    INT32_MIN, INT32_MIN + 1, -(1 << 26), -65536,        -1,       0, 1, 255, 256, 65536, 1 << 23,
+    1 << 24,   (1 << 24) + 1, 1 << 30,    INT32_MAX - 1, INT32_MAX};
 
 int between(SplitMix64& random, std::int64_t low, std::int64_t high) {
   return static_cast<int>(low + random.below(static_cast<std::uint64_t>(high - low + 1)));
@@ -194,9 +194,12 @@ TEST_CASE("shade depth: planes at the ends of the numbers, equal or swapped -> i
         CHECK(gray <= before);
         CHECK(gray >= kFarBrightness);
         before = gray;
+        const std::int32_t seen = planar_depth_q8(hit_at(depth), camera);
         if (far_q8 <= near_q8) {
-          const std::int32_t seen = planar_depth_q8(hit_at(depth), camera);
           CHECK(gray == (seen <= near_q8 ? 255 : kFarBrightness));
+        } else {
+          const double part = std::clamp((double(seen) - near_q8) / (double(far_q8) - near_q8), 0.0, 1.0);
+          CHECK(std::fabs(gray - (255 - part * (255 - kFarBrightness))) <= 1.0);
         }
       }
     }
@@ -388,7 +391,9 @@ TEST_CASE(
   shading.face_light[0] = 128;  // -x, which a ray towards +x sees
   CHECK(color(1, {1, 0, 0}) == Rgb8{100, 50, 25});
   CHECK(color(1, {-1, 0, 0}) == palette[1]);
-  shading.face_light[0] = 65535;  // clamped, not wrapped
+  shading.face_light[0] = 700;  // clamped, not wrapped
+  CHECK(color(1, {1, 0, 0}) == Rgb8{255, 255, 136});
+  shading.face_light[0] = 65535;
   CHECK(color(1, {1, 0, 0}) == Rgb8{255, 255, 255});
   shading.face_light[0] = 0;
   CHECK(color(1, {1, 0, 0}) == Rgb8{0, 0, 0});
