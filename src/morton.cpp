@@ -3,10 +3,11 @@
 namespace thimble {
 namespace {
 
-constexpr int kDigitBits = 8;
+// 64 buckets: their counters take 512 bytes of stack, which a small chip can spare.
+constexpr int kDigitBits = 6;
 constexpr uint32_t kDigits = 1U << kDigitBits;
 // Runs up to this length are finished by insertion: cheaper than clearing the counters.
-constexpr size_t kShortRun = 48;
+constexpr size_t kShortRun = 24;
 
 template <class Key>
 void insertion_sort(Key* keys, size_t count) {

@@ -113,6 +113,7 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
     }
   }
 
+  const Rgb8 background = shade(Hit{}, Ray{}, camera, shading);
   RenderCounts done;
   for (int32_t row = 0; row < band.rows; ++row) {
     const int32_t y = band.first_row + row;
@@ -126,7 +127,7 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
       RowRays rays(camera, run, y);
       for (int32_t x = run; x < end; ++x, rays.next()) {
         if (missed) {
-          store_pixel(line, x, y, band.format, shading.background);
+          store_pixel(line, x, y, band.format, background);
           continue;
         }
         const Ray ray = rays.ray();

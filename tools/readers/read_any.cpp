@@ -16,8 +16,8 @@ namespace thimble::tools {
 
 namespace {
 
-Source read_vox_source(SharedBytes file, const Progress& progress) {
-  return read_vox(std::move(file), progress);
+Source read_vox_source(const SharedBytes& file, const Progress& progress) {
+  return read_vox(file, progress);
 }
 
 bool looks_like_vox(std::span<const std::uint8_t> bytes) {
