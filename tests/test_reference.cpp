@@ -1,0 +1,518 @@
+// The judge is judged here: by cases worked out by hand, one for each sentence of the definition, and by a
+// third way of finding the answer that shares no line with the other two.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "reference/reference.h"
+#include "support/ray_cases.h"
+
+using namespace thimble::reference;
+using namespace thimble::tests;
+
+namespace {
+
+__extension__ typedef __int128 Int128;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kScale = 1;
+#else
+constexpr int kScale = 8;
+#endif
+
+Hit expect_hit(const Voxel& voxel, std::int64_t numerator, std::int64_t denominator, int axis) {
+  return {true, voxel, numerator, denominator, axis};
+}
+
+// Holds both judges to one answer worked out by hand, in a grid of 4096 voxels a side.
+void expect(const std::vector<Voxel>& voxels, const Ray& ray, const Hit& expected) {
+  const BitGrid grid({4096, 4096, 4096}, voxels);
+  const Hit by_force = brute_force(voxels, ray);
+  const Hit by_walk = walk(grid, ray);
+  const Hit by_long_walk = walk(grid, ray, nullptr, EmptyBlocks::kWalk);
+  CHECK_MESSAGE(same_answer(by_force, expected), describe(ray), ": brute force: ", describe(by_force),
+                ", expected: ", describe(expected));
+  CHECK_MESSAGE(same_answer(by_walk, expected), describe(ray), ": walk: ", describe(by_walk),
+                ", expected: ", describe(expected));
+  CHECK_MESSAGE(same_answer(by_long_walk, expected), describe(ray),
+                ": walk without skipping: ", describe(by_long_walk), ", expected: ", describe(expected));
+}
+
+// The third way: every time at which the ray passes any lattice plane of the grid, in order; between two of
+// them the ray stays in one voxel, which is the one that owns the point halfway.
+Hit by_midpoints(const BitGrid& grid, const Ray& ray) {
+  struct Time {
+    Int128 numerator;
+    Int128 denominator;
+    bool operator<(const Time& other) const {
+      return numerator * other.denominator < other.numerator * denominator;
+    }
+    bool operator==(const Time& other) const { return !(*this < other) && !(other < *this); }
+  };
+  std::vector<Time> times = {{0, 1}};
+  std::array<std::vector<Time>, 3> times_of_axis;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Int128 speed = Int128{256} * ray.direction[axis];
+    for (int plane = 0; plane <= grid.size()[axis] && speed != 0; ++plane) {
+      const Int128 distance = Int128{256} * plane - ray.origin_q8[axis];
+      const Time time = speed > 0 ? Time{distance, speed} : Time{-distance, -speed};
+      if (time.numerator > 0) {
+        times.push_back(time);
+        times_of_axis[axis].push_back(time);
+      }
+    }
+  }
+  std::sort(times.begin(), times.end());
+  times.push_back({times.back().numerator + times.back().denominator, times.back().denominator});
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const Time& from = times[i];
+    const Time& to = times[i + 1];
+    if (from == to) {
+      continue;
+    }
+    const Int128 numerator = from.numerator * to.denominator + to.numerator * from.denominator;
+    const Int128 denominator = 2 * from.denominator * to.denominator;
+    Voxel voxel{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Int128 point_q8 = ray.origin_q8[axis] * denominator + 256 * ray.direction[axis] * numerator;
+      const Int128 quotient = point_q8 / (256 * denominator);
+      voxel[axis] = static_cast<int>(point_q8 % (256 * denominator) < 0 ? quotient - 1 : quotient);
+    }
+    if (grid.test(voxel)) {
+      Hit hit{true, voxel, static_cast<std::int64_t>(from.numerator),
+              static_cast<std::int64_t>(from.denominator), -1};
+      for (int axis = 2; axis >= 0; --axis) {
+        const auto& own = times_of_axis[static_cast<std::size_t>(axis)];
+        if (std::find(own.begin(), own.end(), from) != own.end()) {
+          hit.axis = axis;
+        }
+      }
+      return hit;
+    }
+  }
+  return {};
+}
+
+Voxel random_size(std::mt19937_64& random, int largest) {
+  Voxel size{};
+  for (int& side : size) {
+    side = static_cast<int>(pick(random, 1, largest));
+  }
+  return size;
+}
+
+}  // namespace
+
+TEST_CASE("reference: a ray straight at a face -> exact t, axis of the face") {
+  expect({{3, 0, 0}}, {{128, 128, 128}, {1, 0, 0}}, expect_hit({3, 0, 0}, 5, 2, 0));
+  expect({{3, 0, 0}}, {{128, 128, 128}, {2, 0, 0}}, expect_hit({3, 0, 0}, 5, 4, 0));
+  expect({{0, 3, 0}}, {{128, 128, 128}, {0, 7, 0}}, expect_hit({0, 3, 0}, 5, 14, 1));
+  expect({{0, 0, 3}}, {{128, 128, 5 * 256}, {0, 0, -1}}, expect_hit({0, 0, 3}, 1, 1, 2));
+  expect({{3, 0, 0}}, {{128, 128, 128}, {-1, 0, 0}}, Hit{});
+}
+
+TEST_CASE("reference: a slanted ray -> t is an exact fraction") {
+  // From the origin along (3, 5, 0): y = 1 at 1/5, x = 1 at 1/3, y = 2 at 2/5.
+  expect({{0, 1, 0}}, {{0, 0, 0}, {3, 5, 0}}, expect_hit({0, 1, 0}, 1, 5, 1));
+  expect({{1, 1, 0}}, {{0, 0, 0}, {3, 5, 0}}, expect_hit({1, 1, 0}, 1, 3, 0));
+  expect({{1, 2, 0}}, {{0, 0, 0}, {3, 5, 0}}, expect_hit({1, 2, 0}, 2, 5, 1));
+  expect({{1, 0, 0}}, {{0, 0, 0}, {3, 5, 0}}, Hit{});
+}
+
+TEST_CASE("reference: several voxels on the way -> the one entered first") {
+  expect({{9, 0, 0}, {3, 0, 0}, {5, 0, 0}}, {{128, 0, 0}, {1, 0, 0}}, expect_hit({3, 0, 0}, 5, 2, 0));
+  expect({{9, 0, 0}, {3, 0, 0}, {5, 0, 0}}, {{11 * 256, 0, 0}, {-1, 0, 0}}, expect_hit({9, 0, 0}, 1, 1, 0));
+  expect({{3, 0, 0}, {3, 0, 0}}, {{128, 0, 0}, {1, 0, 0}}, expect_hit({3, 0, 0}, 5, 2, 0));
+}
+
+TEST_CASE("reference: touching an edge or a corner in a point -> no hit") {
+  // (1, -1) from (0, 2): through voxel (0,1), the point (1,1), voxel (1,0). Four voxels meet in that point.
+  const Ray ray{{0, 512, 128}, {1, -1, 0}};
+  expect({{1, 1, 0}, {0, 0, 0}}, ray, Hit{});
+  expect({{1, 1, 0}, {0, 0, 0}, {1, 0, 0}}, ray, expect_hit({1, 0, 0}, 1, 1, 0));
+  // Through the corner (1,1,1) downwards in z: the six voxels around it that are only touched.
+  const Ray corner{{0, 0, 512}, {1, 1, -1}};
+  expect({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {1, 0, 1}, {0, 1, 1}}, corner, Hit{});
+  expect({{1, 1, 0}}, corner, expect_hit({1, 1, 0}, 1, 1, 0));
+  // The reversed ray comes through the same point from the other side.
+  expect({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {1, 0, 1}, {0, 1, 1}}, {{512, 512, 0}, {-1, -1, 1}},
+         Hit{});
+}
+
+TEST_CASE("reference: a ray within a face -> the box that owns the face") {
+  const Ray in_y_plane{{0, 256, 128}, {1, 0, 0}};
+  expect({{3, 0, 0}}, in_y_plane, Hit{});
+  expect({{3, 0, 0}, {4, 1, 0}}, in_y_plane, expect_hit({4, 1, 0}, 4, 1, 0));
+  // Slanted within the plane, and the other way round.
+  expect({{3, 0, 1}, {3, 1, 1}}, {{0, 256, 0}, {2, 0, 1}}, expect_hit({3, 1, 1}, 3, 2, 0));
+  expect({{3, 0, 0}, {4, 1, 0}}, {{9 * 256, 256, 128}, {-1, 0, 0}}, expect_hit({4, 1, 0}, 4, 1, 0));
+}
+
+TEST_CASE("reference: a ray along an edge -> the box that owns the edge") {
+  const Ray along_edge{{0, 256, 256}, {1, 0, 0}};
+  expect({{3, 0, 0}, {3, 0, 1}, {3, 1, 0}}, along_edge, Hit{});
+  expect({{3, 0, 0}, {3, 0, 1}, {3, 1, 0}, {5, 1, 1}}, along_edge, expect_hit({5, 1, 1}, 5, 1, 0));
+}
+
+TEST_CASE("reference: a ray within the faces of the grid -> the low ones are inside, the high ones are not") {
+  const BitGrid grid({1, 1, 1}, {{0, 0, 0}});
+  CHECK(walk(grid, {{-256, 0, 0}, {1, 0, 0}}).hit);
+  CHECK_FALSE(walk(grid, {{-256, 256, 0}, {1, 0, 0}}).hit);
+  CHECK_FALSE(walk(grid, {{-256, 0, 256}, {1, 0, 0}}).hit);
+  CHECK(walk(grid, {{-256, 255, 255}, {1, 0, 0}}).hit);
+  CHECK_FALSE(walk(grid, {{-256, -1, 0}, {1, 0, 0}}).hit);
+}
+
+TEST_CASE("reference: entered through an edge or a corner -> the lowest of the axes") {
+  expect({{1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}, expect_hit({1, 1, 1}, 1, 1, 0));
+  expect({{1, 1, 1}}, {{256, 0, 0}, {0, 3, 3}}, expect_hit({1, 1, 1}, 1, 3, 1));
+  expect({{1, 1, 1}}, {{256, 768, 768}, {0, -1, -1}}, expect_hit({1, 1, 1}, 1, 1, 1));
+  expect({{1, 1, 1}}, {{128, 0, 0}, {1, 2, 2}}, expect_hit({1, 1, 1}, 1, 2, 0));
+  expect({{1, 1, 1}}, {{300, 0, 0}, {1, 2, 2}}, expect_hit({1, 1, 1}, 1, 2, 1));
+  // Through a face of one axis only, although another axis starts on a plane of the voxel.
+  expect({{1, 1, 1}}, {{256, 0, 300}, {1, 4, 0}}, expect_hit({1, 1, 1}, 1, 4, 1));
+}
+
+TEST_CASE("reference: positive length from t = 0 on -> t 0, axis -1") {
+  const std::vector<Voxel> solid = {{2, 2, 2}};
+  const Hit inside = expect_hit({2, 2, 2}, 0, 1, -1);
+  expect(solid, {{600, 600, 600}, {1, 0, 0}}, inside);
+  expect(solid, {{600, 600, 600}, {-5, 3, 1}}, inside);
+  // On a face, going in.
+  expect(solid, {{512, 600, 600}, {1, 0, 0}}, inside);
+  expect(solid, {{768, 600, 600}, {-1, 0, 0}}, inside);
+  // On the high corner, going in: the point belongs to voxel (3,3,3), the length to (2,2,2).
+  expect({{2, 2, 2}, {3, 3, 3}}, {{768, 768, 768}, {-1, -1, -1}}, inside);
+  expect({{3, 3, 3}}, {{768, 768, 768}, {-1, -1, -1}}, Hit{});
+  // On the low face, running in it: the box owns it. On the high face it does not.
+  expect(solid, {{512, 600, 600}, {0, 1, 0}}, inside);
+  expect(solid, {{768, 600, 600}, {0, 1, 0}}, Hit{});
+}
+
+TEST_CASE("reference: starting on a face and leaving -> not a hit") {
+  const std::vector<Voxel> solid = {{2, 2, 2}};
+  expect(solid, {{512, 600, 600}, {-1, 0, 0}}, Hit{});
+  expect(solid, {{768, 600, 600}, {1, 0, 0}}, Hit{});
+  expect(solid, {{512, 512, 600}, {-1, 1, 0}}, Hit{});
+  expect({{2, 2, 2}, {3, 2, 2}}, {{768, 600, 600}, {1, 0, 0}}, expect_hit({3, 2, 2}, 0, 1, -1));
+}
+
+TEST_CASE("reference: from outside the grid -> the same rule, or a miss when pointing away") {
+  expect({{0, 0, 0}}, {{-256, 128, 128}, {1, 0, 0}}, expect_hit({0, 0, 0}, 1, 1, 0));
+  expect({{0, 0, 0}}, {{-256, -256, -256}, {1, 1, 1}}, expect_hit({0, 0, 0}, 1, 1, 0));
+  expect({{0, 0, 0}}, {{0, 128, 128}, {1, 0, 0}}, expect_hit({0, 0, 0}, 0, 1, -1));
+  expect({{0, 0, 0}}, {{-1, 128, 128}, {-1, 0, 0}}, Hit{});
+  expect({{0, 0, 0}}, {{-256, 256, 128}, {1, -1, 0}}, Hit{});  // touches the corner (0, 0) and stays outside
+}
+
+TEST_CASE("reference: the largest world at the limits -> exact") {
+  constexpr std::int64_t kWorldQ8 = 4096 * 256;
+  // From -4 worlds to the last voxel at the smallest direction: t = 4 * 4096 + 4095.
+  expect({{4095, 4095, 4095}}, {{-4 * kWorldQ8, kWorldQ8 - 1, kWorldQ8 - 1}, {1, 0, 0}},
+         expect_hit({4095, 4095, 4095}, 20479, 1, 0));
+  // The main diagonal from 5 worlds: every crossing is a corner.
+  expect({{0, 0, 0}},
+         {{5 * kWorldQ8, 5 * kWorldQ8, 5 * kWorldQ8}, {-kMaxDirection, -kMaxDirection, -kMaxDirection}},
+         expect_hit({0, 0, 0}, 5 * 4096 - 1, kMaxDirection, 0));
+  // y reaches 1 at t = 1/256, when x is 4096 - 1/256: still inside the last voxel of the row.
+  expect({{4095, 1, 0}}, {{0, 255, 0}, {kMaxDirection, 1, 0}}, expect_hit({4095, 1, 0}, 1, 256, 1));
+  expect({{4095, 1, 0}}, {{0, 254, 0}, {kMaxDirection, 1, 0}}, Hit{});
+  expect({{4095, 1, 0}}, {{1, 255, 0}, {kMaxDirection, 1, 0}},
+         Hit{});  // x is 4096 then: touched, not entered
+}
+
+TEST_CASE("reference: a ray that cannot be represented -> refused by every judge") {
+  const BitGrid grid({2, 2, 2});
+  for (const Ray& ray : {Ray{{0, 0, 0}, {0, 0, 0}}, Ray{{0, 0, 0}, {kMaxDirection + 1, 0, 0}},
+                         Ray{{0, 0, 0}, {0, 0, -kMaxDirection - 1}}, Ray{{0, kMaxOriginQ8 + 1, 0}, {1, 0, 0}},
+                         Ray{{0, 0, -kMaxOriginQ8 - 1}, {1, 0, 0}}}) {
+    CHECK_THROWS_AS(brute_force({}, ray), std::invalid_argument);
+    CHECK_THROWS_AS(judge_blocks({}, ray), std::invalid_argument);
+    CHECK_THROWS_AS(walk(grid, ray), std::invalid_argument);
+  }
+}
+
+TEST_CASE("reference: comparing answers -> as fractions, and every field counts") {
+  const Hit hit = expect_hit({1, 2, 3}, 2, 6, 1);
+  CHECK(same_answer(hit, expect_hit({1, 2, 3}, 1, 3, 1)));
+  CHECK_FALSE(same_answer(hit, expect_hit({1, 2, 3}, 1, 4, 1)));
+  CHECK_FALSE(same_answer(hit, expect_hit({1, 2, 3}, 1, 3, 2)));
+  CHECK_FALSE(same_answer(hit, expect_hit({1, 2, 4}, 1, 3, 1)));
+  CHECK_FALSE(same_answer(hit, Hit{}));
+  CHECK_FALSE(same_answer(Hit{}, hit));
+  CHECK(same_answer(Hit{}, {false, {9, 9, 9}, 1, 2, 0}));
+  // Products that do not fit in 64 bits.
+  constexpr std::int64_t kHuge = std::int64_t{1} << 62;
+  CHECK_FALSE(same_t(expect_hit({}, kHuge, 4, 0), expect_hit({}, 0, 4, 0)));
+  CHECK(hit.t() == 1.0 / 3.0);
+}
+
+TEST_CASE("reference: merged blocks -> lowest corner of the block, t of its face") {
+  const std::vector<Block> blocks = {{{8, 0, 0}, 3}, {{4, 0, 0}, 0}, {{0, 16, 0}, 4}};
+  CHECK(same_answer(judge_blocks(blocks, {{0, 1000, 1000}, {1, 0, 0}}), expect_hit({8, 0, 0}, 8, 1, 0)));
+  CHECK(same_answer(judge_blocks(blocks, {{0, 100, 100}, {2, 0, 0}}), expect_hit({4, 0, 0}, 2, 1, 0)));
+  CHECK(same_answer(judge_blocks(blocks, {{3000, 1000, 1000}, {1, 1, 1}}), expect_hit({8, 0, 0}, 0, 1, -1)));
+  CHECK(same_answer(judge_blocks(blocks, {{0, 0, 0}, {0, 1, 0}}), expect_hit({0, 16, 0}, 16, 1, 1)));
+  CHECK_FALSE(judge_blocks(blocks, {{2048, 2048, 2048}, {1, -1, 0}}).hit);  // touches an edge of the first
+  CHECK_THROWS_AS(judge_blocks({{{4, 0, 0}, 3}}, {{0, 0, 0}, {1, 0, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(judge_blocks({{{0, 0, 0}, 13}}, {{0, 0, 0}, {1, 0, 0}}), std::invalid_argument);
+  // A block of the whole world and one voxel at its end, seen from the same place: overlapping, and it shows.
+  CHECK_THROWS_AS(judge_blocks({{{0, 0, 0}, 12}, {{4095, 0, 0}, 0}}, {{1 << 21, 0, 0}, {-1, 0, 0}}),
+                  std::logic_error);
+}
+
+TEST_CASE("reference: a block entered where only its inner planes tie -> axis of the block's own face") {
+  // (-1, 1) from (4, 1) reaches x = 3 and y = 2 together: a corner of voxel (2, 2), the middle of a block's
+  // side.
+  const Ray ray{{1024, 256, 600}, {-1, 1, 0}};
+  CHECK(same_answer(judge_blocks({{{2, 2, 2}, 1}}, ray), expect_hit({2, 2, 2}, 1, 1, 1)));
+  CHECK(same_answer(judge_blocks({{{2, 2, 2}, 0}}, ray), expect_hit({2, 2, 2}, 1, 1, 0)));
+}
+
+TEST_CASE("reference: blocks split into voxels -> the block of the voxel hit first, at the same t") {
+  const std::uint64_t seed = 20260701;
+  std::mt19937_64 random(seed);
+  std::int64_t hits = 0;
+  for (int world = 0; world < 20 * kScale; ++world) {
+    // Each 2^3 block of an 8^3 world is empty, one block, or some single voxels.
+    std::vector<Block> blocks;
+    std::vector<Voxel> voxels;
+    std::map<Voxel, Voxel> block_of;
+    for (int index = 0; index < 64; ++index) {
+      const Voxel lowest = {index % 4 * 2, index / 4 % 4 * 2, index / 16 * 2};
+      const std::int64_t choice = pick(random, 0, 5);
+      const bool merged = choice == 0;
+      if (merged) {
+        blocks.push_back({lowest, 1});
+      }
+      for (int corner = 0; corner < 8; ++corner) {
+        const Voxel voxel = {lowest[0] + corner % 2, lowest[1] + corner / 2 % 2, lowest[2] + corner / 4};
+        const bool single = choice == 1 && pick(random, 0, 1) == 0;
+        if (single) {
+          blocks.push_back({voxel, 0});
+        }
+        if (merged || single) {
+          voxels.push_back(voxel);
+          block_of[voxel] = merged ? lowest : voxel;
+        }
+      }
+    }
+    RayCases rays(random(), {8, 8, 8});
+    for (int i = 0; i < 200; ++i) {
+      const Ray ray = rays.next().ray;
+      const Hit of_block = judge_blocks(blocks, ray);
+      const Hit of_voxel = brute_force(voxels, ray);
+      bool agree = of_block.hit == of_voxel.hit;
+      if (agree && of_voxel.hit) {
+        ++hits;
+        // The voxel may have been entered through more planes at that t: those within the block do not count.
+        agree = of_block.voxel == block_of[of_voxel.voxel] && same_t(of_block, of_voxel) &&
+                of_block.axis >= of_voxel.axis && (of_block.axis == -1) == (of_voxel.axis == -1);
+      }
+      REQUIRE_MESSAGE(agree, "seed ", seed, " world ", world, " ", describe(ray), ": blocks ",
+                      describe(of_block), ", voxels ", describe(of_voxel));
+    }
+  }
+  CHECK(hits > 20 * kScale * 20);
+}
+
+TEST_CASE("bit grid: random sets and clears -> as a set of voxels, and empty cubes are empty") {
+  const std::uint64_t seed = 20260702;
+  std::mt19937_64 random(seed);
+  const Voxel size = {70, 9, 130};
+  BitGrid grid(size);
+  std::set<Voxel> model;
+  for (int i = 0; i < 3000; ++i) {
+    const Voxel voxel = {static_cast<int>(pick(random, 0, 69)), static_cast<int>(pick(random, 0, 8)),
+                         static_cast<int>(pick(random, 0, 40))};
+    const bool solid = pick(random, 0, 2) > 0;
+    grid.set(voxel, solid);
+    if (solid) {
+      model.insert(voxel);
+    } else {
+      model.erase(voxel);
+    }
+  }
+  CHECK(grid.count() == static_cast<std::int64_t>(model.size()));
+  for (int z = -1; z <= size[2]; ++z) {
+    for (int y = -1; y <= size[1]; ++y) {
+      for (int x = -1; x <= size[0]; ++x) {
+        REQUIRE(grid.test({x, y, z}) == (model.count({x, y, z}) != 0));
+      }
+    }
+  }
+  CHECK(grid.empty_log2_side({0, 0, 129}) == 6);
+  CHECK_THROWS_AS(grid.set({70, 0, 0}), std::out_of_range);
+  CHECK_THROWS_AS(grid.set({0, -1, 0}), std::out_of_range);
+  CHECK_THROWS_AS(BitGrid({0, 1, 1}), std::invalid_argument);
+  CHECK_THROWS_AS(BitGrid({1, 1, 4097}), std::invalid_argument);
+}
+
+TEST_CASE("reference: random rays in small worlds of any size -> walk, brute force and midpoints agree") {
+  const std::uint64_t seed = 20260703;
+  std::mt19937_64 random(seed);
+  Statistics statistics;
+  std::array<std::int64_t, kWorldKinds> hits{};
+  for (int round = 0; round < 270 * kScale; ++round) {
+    const std::size_t kind = static_cast<std::size_t>(round) % kWorldKinds;
+    const int power = 1 << pick(random, 0, 3);
+    const Voxel size = round % 3 == 0 ? Voxel{power, power, power} : random_size(random, 11);
+    const World world = make_world(static_cast<WorldKind>(kind), size, random);
+    const BitGrid grid(size, world.voxels);
+    RayCases rays(random(), size, world.voxels);
+    for (int i = 0; i < 60; ++i) {
+      const RayCase given = rays.next();
+      const Hit by_force = brute_force(world.voxels, given.ray);
+      const Hit by_walk = walk(grid, given.ray, &statistics);
+      const Hit by_long_walk = walk(grid, given.ray, nullptr, EmptyBlocks::kWalk);
+      const Hit halfway = i % 4 == 0 ? by_midpoints(grid, given.ray) : by_force;
+      hits[kind] += by_force.hit ? 1 : 0;
+      const bool agree = same_answer(by_force, by_walk) && same_answer(by_force, by_long_walk) &&
+                         same_answer(by_force, halfway);
+      REQUIRE_MESSAGE(agree, "seed ", seed, " round ", round, " ", world.name, " ", describe(given.ray),
+                      ": brute force ", describe(by_force), ", walk ", describe(by_walk),
+                      ", walk without skipping ", describe(by_long_walk), ", midpoints ", describe(halfway));
+    }
+  }
+  MESSAGE("seed ", seed, ": ", describe(statistics));
+  CHECK(statistics.tied_crossings > statistics.rays / 10);
+  CHECK(statistics.corner_crossings > statistics.rays / 100);
+  CHECK(statistics.tied_hits > statistics.rays / 100);
+  CHECK(statistics.starts_inside > statistics.rays / 100);
+  CHECK(hits[static_cast<std::size_t>(WorldKind::kEmpty)] == 0);
+  for (std::size_t kind = 1; kind < kWorldKinds; ++kind) {
+    CHECK(hits[kind] > 60 * kScale);
+  }
+}
+
+TEST_CASE("reference: large sparse worlds -> skipping empty blocks changes nothing, brute force agrees") {
+  const std::uint64_t seed = 20260704;
+  std::mt19937_64 random(seed);
+  Statistics skipping;
+  Statistics walking;
+  const std::vector<Voxel> sizes = {{64, 64, 64},       {65, 63, 129},   {200, 7, 130}, {1024, 1024, 1024},
+                                    {4096, 4096, 4096}, {4096, 1, 3000}, {800, 600, 1}};
+  for (const Voxel& size : sizes) {
+    for (const WorldKind kind : {WorldKind::kSingle, WorldKind::kSparse, WorldKind::kCorners}) {
+      const World world = make_world(kind, size, random);
+      const BitGrid grid(size, world.voxels);
+      RayCases rays(random(), size, world.voxels);
+      for (int i = 0; i < 60 * kScale; ++i) {
+        const Ray ray = rays.next().ray;
+        const Hit skipped = walk(grid, ray, &skipping);
+        const Hit walked = walk(grid, ray, &walking, EmptyBlocks::kWalk);
+        const Hit by_force = i % 4 == 0 ? brute_force(world.voxels, ray) : walked;
+        REQUIRE_MESSAGE((same_answer(skipped, walked) && same_answer(walked, by_force)), "seed ", seed, " ",
+                        world.name, " ", describe(ray), ": skipping ", describe(skipped), ", walking ",
+                        describe(walked), ", brute force ", describe(by_force));
+      }
+    }
+  }
+  MESSAGE("seed ", seed, ": skipping: ", describe(skipping));
+  MESSAGE("seed ", seed, ": walking: ", describe(walking));
+  CHECK(skipping.hits == walking.hits);
+  CHECK(skipping.hits > skipping.rays / 10);
+  CHECK(skipping.tied_hits == walking.tied_hits);
+  CHECK(skipping.starts_inside == walking.starts_inside);
+  CHECK(skipping.tied_crossings > 0);
+  CHECK(skipping.tied_crossings < walking.tied_crossings);
+  CHECK(skipping.steps < walking.steps / 4);
+}
+
+TEST_CASE("reference: the diagonal through an empty grid -> every crossing is a corner") {
+  const BitGrid grid({10, 10, 10});
+  Statistics statistics;
+  walk(grid, {{0, 0, 0}, {3, 3, 3}}, &statistics, EmptyBlocks::kWalk);
+  CHECK(statistics.rays == 1);
+  CHECK(statistics.hits == 0);
+  CHECK(statistics.steps == 10);
+  CHECK(statistics.tied_crossings == 9);
+  CHECK(statistics.corner_crossings == 9);
+  CHECK(statistics.tied_rays == 1);
+  walk(grid, {{0, 0, 128}, {1, 1, 0}}, &statistics, EmptyBlocks::kWalk);
+  CHECK(statistics.tied_crossings == 18);
+  CHECK(statistics.corner_crossings == 9);
+}
+
+TEST_CASE(
+    "ray cases: any size and limits -> within them, at least a quarter aimed, aimed ones do meet the edge") {
+  const std::uint64_t seed = 20260705;
+  std::mt19937_64 random(seed);
+  std::array<std::int64_t, kRayKinds> kinds{};
+  std::int64_t all = 0;
+  std::int64_t aimed = 0;
+  std::array<std::int64_t, 3> zeros{};
+  std::int64_t at_limit = 0;
+  for (const Voxel& size :
+       {Voxel{1, 1, 1}, Voxel{2, 2, 2}, Voxel{5, 64, 9}, Voxel{1024, 1024, 1024}, Voxel{4096, 4096, 4096}}) {
+    RayLimits limits = full_limits(size);
+    if (size[0] == 1024) {  // a narrower path's limits
+      limits.direction = 2047;
+      limits.origin_low_q8 = {-1000, 0, -256 * 1024};
+    }
+    const std::vector<Voxel> targets =
+        size[0] == 5 ? std::vector<Voxel>{{4, 63, 8}, {0, 0, 0}} : std::vector<Voxel>{};
+    RayCases rays(random(), size, limits, targets);
+    for (int i = 0; i < 1000 * kScale; ++i) {
+      const RayCase given = rays.next();
+      REQUIRE_MESSAGE(within(limits, given.ray), "seed ", seed, " ", describe(given.ray), " kind ",
+                      static_cast<int>(given.kind));
+      ++all;
+      aimed += given.aimed() ? 1 : 0;
+      ++kinds[static_cast<std::size_t>(given.kind)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        zeros[axis] += given.ray.direction[axis] == 0 ? 1 : 0;
+        at_limit += given.ray.direction[axis] == limits.direction ? 1 : 0;
+      }
+      if (given.aimed() && size[0] <= 5) {
+        // Some pair of lattice planes of different axes is passed at the same t >= 0.
+        bool met = false;
+        for (std::size_t a = 0; a < 3 && !met; ++a) {
+          for (std::size_t b = a + 1; b < 3 && !met; ++b) {
+            for (int plane_a = 0; plane_a <= size[a] && !met; ++plane_a) {
+              for (int plane_b = 0; plane_b <= size[b] && !met; ++plane_b) {
+                const std::int64_t to_a = 256 * std::int64_t{plane_a} - given.ray.origin_q8[a];
+                const std::int64_t to_b = 256 * std::int64_t{plane_b} - given.ray.origin_q8[b];
+                const std::int64_t da = given.ray.direction[a];
+                const std::int64_t db = given.ray.direction[b];
+                met = da != 0 && db != 0 && to_a * db == to_b * da && (to_a == 0 || (to_a > 0) == (da > 0));
+              }
+            }
+          }
+        }
+        REQUIRE_MESSAGE(met, "seed ", seed, " ", describe(given.ray));
+      }
+    }
+  }
+  CHECK(4 * aimed >= all);
+  CHECK(at_limit > all / 64);
+  for (const std::int64_t count : kinds) {
+    CHECK(count > all / 32);
+  }
+  for (const std::int64_t count : zeros) {
+    CHECK(count > all / 16);
+  }
+}
+
+TEST_CASE("ray cases: the same seed -> the same rays with every compiler") {
+  const std::vector<Voxel> targets = {{3, 3, 3}};
+  RayCases rays(1, {16, 20, 7}, targets);
+  std::uint64_t digest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Ray ray = rays.next().ray;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      digest = (digest ^ static_cast<std::uint64_t>(ray.origin_q8[axis])) * 0x100000001b3U;
+      digest = (digest ^ static_cast<std::uint64_t>(ray.direction[axis])) * 0x100000001b3U;
+    }
+  }
+  CHECK(digest == 4590432721302552591U);
+}
