@@ -222,7 +222,8 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
     corner = child_corner(corner, octant, level);
     crossings.descend(octant, corner, level);
   }
-  const Vec3i& extent = grid.size();
+  const int32_t side = int32_t{1} << grid.level();
+  const Vec3i extent{side, side, side};
   for (;;) {
     if (hit.visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
@@ -263,8 +264,11 @@ Structure describe(const Octree& tree) {
   const int32_t side = int32_t{1} << tree.level();
   return {tree.level(), {side, side, side}, tree.bounds()};
 }
+// Reflected in the middle of the world, as the trees are, and not of the grid: its planes, those beyond the
+// grid too, are then the world's, which the ranges of both widths are made for.
 Structure describe(const DenseGrid& grid) {
-  return {grid.level(), grid.size(), grid.bounds()};
+  const int32_t side = int32_t{1} << grid.level();
+  return {grid.level(), {side, side, side}, grid.bounds()};
 }
 
 template <class Crossings>
