@@ -90,7 +90,11 @@ struct Request {
 template <class Crossings>
 void report(const MirroredRay& ray, const Vec3i& extent, const Crossings& crossings, const Vec3i& corner,
             int level, Hit* hit) {
-  const int axis = crossings.entered(corner);
+  int axis = crossings.entered(corner);
+  // A damaged tree can begin the ray within a block, so that no face of it was entered: `t` keeps its range.
+  if (axis >= 0 && (ray.direction[axis] == 0 || corner[axis] * Q8::kOne < ray.origin_q8[axis])) {
+    axis = -1;
+  }
   hit->axis = static_cast<int8_t>(axis);
   hit->block_level = static_cast<uint8_t>(level);
   for (int a = 0; a < 3; ++a) {
