@@ -158,24 +158,25 @@ class Crossings32 {
     const Vec3i& d = ray_.direction;
     num_ = 0;
     den_ = 1;
+    end_num_ = 1;
+    end_den_ = 0;  // never
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t low = distance(axis, ray_.box_min[axis]);
-      end_[axis] = distance(axis, ray_.box_max[axis]);
-      if (end_[axis] <= 0 || (d[axis] == 0 && low > 0)) {
+      const int32_t high = distance(axis, ray_.box_max[axis]);
+      if (high <= 0 || (d[axis] == 0 && low > 0)) {
         return false;
       }
       if (low > 0 && low * den_ > num_ * d[axis]) {
         num_ = low;
         den_ = d[axis];
       }
-    }
-    passed();
-    for (int axis = 0; axis < 3; ++axis) {
-      if (d[axis] != 0 && end_[axis] * den_ <= passed_[axis]) {
-        return false;
+      if (d[axis] != 0 && high * end_den_ < end_num_ * d[axis]) {
+        end_num_ = high;
+        end_den_ = d[axis];
       }
     }
-    return true;
+    passed();
+    return before_end();
   }
 
   void enter(const Vec3i&, int) {}
@@ -204,8 +205,7 @@ class Crossings32 {
       num_ = z;
       den_ = d.z;
     }
-    if (((crossed & 1U) != 0 && x >= end_.x) || ((crossed & 2U) != 0 && y >= end_.y) ||
-        ((crossed & 4U) != 0 && z >= end_.z)) {
+    if (!before_end()) {
       return 0;
     }
     passed();
@@ -227,11 +227,16 @@ class Crossings32 {
   int32_t distance(int axis, int32_t number) const { return number * Q8::kOne - ray_.origin_q8[axis]; }
   void passed() { passed_ = {num_ * ray_.direction.x, num_ * ray_.direction.y, num_ * ray_.direction.z}; }
 
+  // The ray ends where the 64-bit path ends it, so that both visit the same nodes.
+  bool before_end() const { return num_ * end_den_ < end_num_ * den_; }
+
   const MirroredRay& ray_;
-  Vec3i end_;        // distances to the planes at which the ray leaves the box
   Vec3i passed_;     // num_ * direction: a plane at distance s is behind when s * den_ <= passed_
   int32_t num_ = 0;  // distance to the plane of the present crossing; 0 at the origin
   int32_t den_ = 1;  // direction component of that plane's axis
+  // The same for the plane through which the ray leaves the box.
+  int32_t end_num_ = 1;
+  int32_t end_den_ = 0;
 };
 
 }  // namespace thimble

@@ -90,7 +90,11 @@ struct Request {
 template <class Crossings>
 void report(const MirroredRay& ray, const Vec3i& extent, const Crossings& crossings, const Vec3i& corner,
             int level, Hit* hit) {
-  const int axis = crossings.entered(corner);
+  int axis = crossings.entered(corner);
+  // A damaged tree can begin the ray within a block, so that no face of it was entered: `t` keeps its range.
+  if (axis >= 0 && (ray.direction[axis] == 0 || corner[axis] * Q8::kOne < ray.origin_q8[axis])) {
+    axis = -1;
+  }
   hit->axis = static_cast<int8_t>(axis);
   hit->block_level = static_cast<uint8_t>(level);
   for (int a = 0; a < 3; ++a) {
@@ -222,7 +226,8 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
     corner = child_corner(corner, octant, level);
     crossings.descend(octant, corner, level);
   }
-  const Vec3i& extent = grid.size();
+  const int32_t side = int32_t{1} << grid.level();
+  const Vec3i extent{side, side, side};
   for (;;) {
     if (hit.visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
@@ -263,8 +268,11 @@ Structure describe(const Octree& tree) {
   const int32_t side = int32_t{1} << tree.level();
   return {tree.level(), {side, side, side}, tree.bounds()};
 }
+// Reflected in the middle of the world, as the trees are, and not of the grid: its planes, those beyond the
+// grid too, are then the world's, which the ranges of both widths are made for.
 Structure describe(const DenseGrid& grid) {
-  return {grid.level(), grid.size(), grid.bounds()};
+  const int32_t side = int32_t{1} << grid.level();
+  return {grid.level(), {side, side, side}, grid.bounds()};
 }
 
 template <class Crossings>

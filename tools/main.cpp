@@ -1,14 +1,20 @@
 // The `thimble` command: chooses the subcommand and turns every failure into one sentence and a status, 1 for
 // input and output that cannot be used, 2 for wrong usage.
+#include <fcntl.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/output_file.h"
+#include "output/units.h"
 #include "readers/source.h"
 
 namespace {
@@ -22,46 +28,103 @@ extern "C" void clean_up_and_die(int signal_number) {
   std::raise(signal_number);
 }
 
+// What was wrong with the usage, as one sentence.
+std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  using thimble::tools::in_quotes;
+  const auto chosen = app.get_subcommands();
+  const std::string command = chosen.empty() ? "thimble" : "thimble " + chosen.front()->get_name();
+  const std::string advice = "; " + command + " --help lists what there is";
+  if (chosen.empty()) {
+    if (argc < 2) {
+      return "a subcommand is required" + advice;
+    }
+    const std::string first = argv[1];
+    return in_quotes(first) + (first.starts_with("-") ? " is not an option here" : " is not a subcommand") +
+           advice;
+  }
+  if (error.get_name() == "ExtrasError") {
+    for (const std::string& extra : chosen.front()->remaining()) {
+      if (extra.size() > 1 && extra.starts_with("-")) {
+        return in_quotes(extra) + " is not an option of " + command + advice;
+      }
+    }
+    for (const std::string& extra : chosen.front()->remaining()) {
+      return in_quotes(extra) + " is one argument too many" + advice;
+    }
+  }
+  if (error.get_name() == "ArgumentMismatch") {
+    const std::string text = error.what();
+    const std::string name = text.substr(0, text.find(':'));
+    const bool twice =
+        text.find("received") != std::string::npos && text.find("At Most") != std::string::npos;
+    return name + (twice ? " is given more than once" : " needs a value") + advice;
+  }
+  return error.what() + advice;
+}
+
+// Standard streams that are closed would be taken by the next file opened, and a picture would get the
+// sentences meant for a person. Reading from and writing to these stand-ins fails, as it should.
+void occupy_standard_descriptors() {
+  for (int descriptor = 0; descriptor <= 2; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY) < 0) {
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_standard_descriptors();
   std::signal(SIGINT, clean_up_and_die);
   std::signal(SIGTERM, clean_up_and_die);
+  std::signal(SIGHUP, clean_up_and_die);
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of the write, with a sentence
+  std::signal(SIGXFSZ, SIG_IGN);  // and so is the limit on a file's size
 
   CLI::App app(
-      "Thimble: a voxel ray tracer in a fixed block of memory.\nThe same picture, bit for bit, on every "
+      "Thimble, a voxel ray tracer in a fixed block of memory: the same picture, bit for bit, on every "
       "machine.",
       "thimble");
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.formatter(thimble::tools::help_formatter());
   thimble::tools::add_all_commands(app);
+  app.footer("thimble SUBCOMMAND --help describes each.");
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->footer("");
+  }
   // The file that an input error is about, for the sentence: the subcommand's first argument.
   const auto subject = [&]() -> std::string {
     for (const CLI::App* command : app.get_subcommands()) {
       if (const CLI::Option* scene = command->get_option_no_throw("scene");
           scene != nullptr && scene->count() > 0) {
-        return scene->results().front() + ": ";
+        const std::string name = scene->results().front();
+        return (name.empty() ? "\"\"" : name) + ": ";
       }
     }
     return {};
   };
+  std::string sentence;
+  int status = kInputStatus;
   try {
     app.parse(argc, argv);
+    thimble::tools::check_standard_output();
     return 0;
-  } catch (const CLI::CallForHelp& help) {
-    return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    app.exit(error, std::cout, std::cerr);
-    return error.get_exit_code() == 0 ? 0 : kUsageStatus;
+    if (error.get_exit_code() == 0) {
+      return app.exit(error);  // --help
+    }
+    sentence = usage_sentence(app, error, argc, argv);
+    status = kUsageStatus;
   } catch (const thimble::tools::InputError& error) {
-    std::fprintf(stderr, "thimble: %s%s\n", subject().c_str(), error.what());
+    sentence = subject() + error.what();
   } catch (const thimble::tools::OutputError& error) {
-    std::fprintf(stderr, "thimble: %s\n", error.what());
+    sentence = error.what();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "thimble: %snot enough memory on this machine\n", subject().c_str());
+    sentence = subject() + "not enough memory on this machine";
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "thimble: %s%s\n", subject().c_str(), error.what());
+    sentence = subject() + error.what();
   }
-  return kInputStatus;
+  std::fprintf(stderr, "thimble: %s\n", thimble::tools::printable(sentence).c_str());
+  return status;
 }

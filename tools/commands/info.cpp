@@ -1,11 +1,13 @@
 // thimble info: what a scene is, and what it takes.
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <set>
 
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "output/output_file.h"
 #include "output/stats.h"
 #include "output/units.h"
 
@@ -28,18 +30,23 @@ const char* name_of(SurfaceKind kind) {
   return "unknown";
 }
 
-void row(const char* label, const std::string& value) {
-  std::printf("%-20s %s\n", label, value.c_str());
-}
-
 void run(const SceneOptions& options) {
+  check_distinct({&options.stats_path, 1}, {&options.arguments.scene, 1});
+  std::unique_ptr<OutputFile> stats_file;
+  if (!options.stats_path.empty()) {
+    stats_file = std::make_unique<OutputFile>(options.stats_path);
+  }
+  std::string text;
+  const auto row = [&](const std::string& label, const std::string& value) {
+    text += label + std::string(21 - label.size(), ' ') + value + "\n";
+  };
   const auto source = options.open();
   const BuiltScene built = options.build(*source, 0);
   const VoxelBox box = built.bounds();
   const double bytes_per_voxel =
       built.voxels() == 0 ? 0 : static_cast<double>(built.tree_bytes()) / static_cast<double>(built.voxels());
 
-  row("scene", options.arguments.scene);
+  row("scene", printable(options.arguments.scene));
   row("kind", source->kind());
   row("depth", std::to_string(built.level()) + " (a world of " + std::to_string(1 << built.level()) +
                    " voxels a side)");
@@ -47,9 +54,11 @@ void run(const SceneOptions& options) {
     row("points", grouped(source->points()));
   }
   row("solid voxels", grouped(built.voxels()));
-  row("occupied box", std::to_string(box.min.x) + "," + std::to_string(box.min.y) + "," +
-                          std::to_string(box.min.z) + " to " + std::to_string(box.max.x) + "," +
-                          std::to_string(box.max.y) + "," + std::to_string(box.max.z) + " (exclusive)");
+  row("occupied box", box.empty()
+                          ? "none"
+                          : std::to_string(box.min.x) + "," + std::to_string(box.min.y) + "," +
+                                std::to_string(box.min.z) + " to " + std::to_string(box.max.x) + "," +
+                                std::to_string(box.max.y) + "," + std::to_string(box.max.z) + " (exclusive)");
 
   // Which palette entries the voxels use, counted over the stream.
   std::set<int> used;
@@ -72,7 +81,9 @@ void run(const SceneOptions& options) {
     row("nodes", grouped(built.nodes()));
   }
   std::array<char, 64> ratio{};
-  std::snprintf(ratio.data(), ratio.size(), " (%.2f a voxel)", bytes_per_voxel);
+  if (built.voxels() != 0) {
+    std::snprintf(ratio.data(), ratio.size(), " (%.2f a voxel)", bytes_per_voxel);
+  }
   row("structure bytes", grouped(built.tree_bytes()) + ratio.data());
   row("most bytes in use", grouped(built.high_water_bytes()));
   if (built.solid_added() != 0) {
@@ -87,16 +98,20 @@ void run(const SceneOptions& options) {
     }
     row("compact tree", "sound");
   }
-  if (!options.stats_path.empty()) {
-    write_stats(options.stats_path, Stats(options.arguments.scene, *source, built));
+  if (stats_file != nullptr) {
+    stats_file->write(stats_text(Stats(options.arguments.scene, *source, built)));
+    stats_file->commit();
   }
+  OutputFile output("-");
+  output.write(text);
+  output.commit();
 }
 
 }  // namespace
 
 void add_info(CLI::App& app) {
   auto options = std::make_shared<SceneOptions>();
-  CLI::App* sub = app.add_subcommand("info", "validate and describe a scene");
+  CLI::App* sub = app.add_subcommand("info", "Validate a scene and say what it is and what it takes.");
   options->add_to(*sub);
   sub->callback([options] { run(*options); });
 }

@@ -2,10 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <map>
 
+#include "commands/arguments.h"
 #include "output/progress.h"
 #include "output/units.h"
 
@@ -13,35 +12,29 @@ namespace thimble::tools {
 namespace {
 
 // "X,Y,Z" as three finite numbers.
-std::optional<Real3> parse_triple(const std::string& text) {
+std::optional<Real3> parse_triple(std::string_view text) {
   Real3 result{};
-  const char* at = text.data();
-  const char* end = at + text.size();
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto [next, error] = std::from_chars(at, end, result[i]);
-    if (error != std::errc{} || !std::isfinite(result[i])) {
+    const std::size_t comma = text.find(',');
+    const auto number = parse_real(text.substr(0, comma));
+    if (!number || (comma == std::string_view::npos) != (i == 2)) {
       return std::nullopt;
     }
-    at = next;
-    if (i < 2 && (at == end || *at++ != ',')) {
-      return std::nullopt;
-    }
+    result[i] = *number;
+    text.remove_prefix(i == 2 ? text.size() : comma + 1);
   }
-  return at == end ? std::optional<Real3>(result) : std::nullopt;
+  return result;
 }
 
 void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value,
                 const std::string& help) {
-  app.add_option_function<std::string>(
-         name,
-         [name, value](const std::string& text) {
-           *value = parse_triple(text);
-           if (!*value) {
-             throw CLI::ValidationError(name, "\"" + text + "\" is not X,Y,Z");
-           }
-         },
-         help)
-      ->type_name("X,Y,Z");
+  add_text_option(
+      app, name, "X,Y,Z",
+      [value](const std::string& text) {
+        *value = parse_triple(text);
+        return *value ? "" : "is not three numbers X,Y,Z";
+      },
+      help);
 }
 
 Real3 minus(const Real3& a, const Real3& b) {
@@ -63,15 +56,25 @@ Real3 unit(const Real3& a) {
   return scaled(a, 1 / std::sqrt(dot(a, a)));
 }
 
+double largest(const Real3& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+}
+
 // A real vector as integers of 30 bits in the same direction.
 Vec3i to_integers(const Real3& vector) {
-  const double largest = std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
+  const double scale = largest(vector);
   Vec3i result;
   for (int axis = 0; axis < 3; ++axis) {
     result[axis] = static_cast<std::int32_t>(
-        std::lround(vector[static_cast<std::size_t>(axis)] / largest * kMaxViewComponent));
+        std::lround(vector[static_cast<std::size_t>(axis)] / scale * kMaxViewComponent));
   }
   return result;
+}
+
+// The other way, components within -1 .. 1.
+Real3 to_reals(const Vec3i& vector) {
+  return scaled({static_cast<double>(vector.x), static_cast<double>(vector.y), static_cast<double>(vector.z)},
+                1.0 / kMaxViewComponent);
 }
 
 std::string text_of(const Real3& v) {
@@ -108,10 +111,6 @@ Axes axes_of(const Real3& forward, const Real3& up) {
   return axes;
 }
 
-Real3 default_up_for(const Real3& forward) {
-  return forward[0] == 0 && forward[1] == 0 ? Real3{0, 1, 0} : Real3{0, 0, 1};
-}
-
 std::array<Real3, 8> corners_of(const VoxelBox& box) {
   std::array<Real3, 8> corners{};
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -131,42 +130,36 @@ constexpr double kFill = 0.94;
 }  // namespace
 
 void SceneOptions::add_to(CLI::App& app) {
-  app.add_option(
-         "scene", arguments.scene,
-         "a file (.vox .ply .obj .off .xyz .csv, Gadget-1 snapshot, .gz of any) or a generator: points:N, "
-         "cluster:N, spheres, water, each with ,seed=S,depth=L")
+  app.add_option("scene", arguments.scene,
+                 "a file (.vox .ply .obj .off .xyz .csv, a Gadget-1 snapshot, .gz of any) or a generator: "
+                 "points:N, cluster:N, spheres or water, each with ,seed=S,depth=L")
       ->required()
       ->type_name("SCENE");
-  app.add_option("--depth", arguments.depth,
-                 "world of 2^L voxels a side, 1 to 12 (default: the least that holds a .vox or --as-voxels "
-                 "file, 9 for "
-                 "other files, 10 for points and cluster, 6 for spheres and water)")
-      ->type_name("L")
-      ->check(CLI::Range(kMinLevel, kMaxLevel));
+  add_whole_option(
+      app, "--depth", "L", kMinLevel, kMaxLevel,
+      [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
+      "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox or --as-voxels "
+      "file, 9 for other files, 10 for points and cluster, 6 for spheres and water)");
   app.add_flag("--as-voxels", arguments.as_voxels,
-               "point files: coordinates are voxel indices, not scaled or moved");
+               "point files: coordinates are voxel indices; nothing is scaled, turned or moved");
   app.add_flag("--z-up", arguments.z_up, "meshes: z is up in the file (default: y is)");
-  app.add_option_function<std::string>(
-         "--memory",
-         [this](const std::string& text) {
-           memory_bytes = parse_bytes(text);
-           if (!memory_bytes) {
-             throw CLI::ValidationError("--memory",
-                                        "\"" + text + "\" is no number of bytes such as 65536, 64K or 2M");
-           }
-         },
-         "one arena of BYTES for all that lies between reader and display (64K, 2M)")
-      ->type_name("BYTES");
-  app.add_flag("--coarsen", coarsen, "when --memory is short, merge blocks instead of failing");
-  app.add_option("--structure", structure, "what is built and traced: dense, pool or compact")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, StructureKind>{{"dense", StructureKind::kDense},
-                                                                       {"pool", StructureKind::kPool},
-                                                                       {"compact", StructureKind::kCompact}},
-                                  CLI::ignore_case))
+  add_text_option(
+      app, "--memory", "BYTES",
+      [this](const std::string& text) {
+        memory_bytes = parse_bytes(text);
+        return memory_bytes ? "" : "is not a number of bytes such as 65536, 64K or 2M";
+      },
+      "the budget, such as 65536, 64K or 2M: one block of memory for all that lies between reader and "
+      "display (default: as much as it takes)");
+  app.add_flag("--coarsen", coarsen,
+               "when --memory is short, merge blocks of voxels instead of failing; this only adds solid");
+  add_choice_option(
+      app, "--structure", {"dense", "pool", "compact"},
+      [this](std::size_t index) { structure = static_cast<StructureKind>(index); },
+      "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
       ->default_str("compact");
-  app.add_flag("--quiet", quiet, "no progress bar and no summary");
-  app.add_option("--stats", stats_path, "write counts, bytes and times as JSON")->type_name("FILE.json");
+  app.add_flag("--quiet", quiet, "no progress bar and no summary on standard error");
+  add_path_option(app, "--stats", "FILE.json", &stats_path, "write counts, bytes and times as JSON");
 }
 
 std::unique_ptr<SceneSource> SceneOptions::open() const {
@@ -185,9 +178,10 @@ BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_byt
 }
 
 void EngineOptions::add_to(CLI::App& app) {
-  app.add_option("--engine", name,
-                 "auto, ray64 or ray32: the width of the arithmetic; the picture is the same")
-      ->check(CLI::IsMember({"auto", "ray64", "ray32"}))
+  static const std::vector<std::string> kNames{"auto", "ray64", "ray32"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more")
       ->default_str("auto");
 }
 
@@ -198,65 +192,77 @@ TraceOptions EngineOptions::trace_options() const {
 }
 
 void add_direction_bits(CLI::App& app, int* bits) {
-  app.add_option("--direction-bits", *bits,
-                 "bits of a ray's direction, 8 to 20 (default: as many as are needed)")
-      ->type_name("N")
-      ->check(CLI::Range(kMinDirectionBits, kMaxDirectionBits));
+  add_whole_option(
+      app, "--direction-bits", "N", kMinDirectionBits, kMaxDirectionBits,
+      [bits](std::int64_t number) { *bits = static_cast<int>(number); },
+      "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
 void ViewOptions::add_to(CLI::App& app) {
-  app.add_option_function<std::string>(
-         "--size",
-         [this](const std::string& text) {
-           const std::size_t x = text.find('x');
-           int width = 0;
-           int height = 0;
-           const char* end = text.data() + text.size();
-           const bool sound = x != std::string::npos &&
-                              std::from_chars(text.data(), text.data() + x, width).ptr == text.data() + x &&
-                              std::from_chars(text.data() + x + 1, end, height).ptr == end && width >= 1 &&
-                              height >= 1 && width <= kMaxPicturePx && height <= kMaxPicturePx;
-           if (!sound) {
-             throw CLI::ValidationError("--size", "\"" + text + "\" is not WxH with sides of 1 to " +
-                                                      std::to_string(kMaxPicturePx) + " pixels");
-           }
-           width_px = width;
-           height_px = height;
-         },
-         "the picture's size in pixels")
-      ->type_name("WxH")
+  add_text_option(
+      app, "--size", "WxH",
+      [this](const std::string& text) -> std::string {
+        const std::size_t x = text.find('x');
+        const auto width = parse_whole(text.substr(0, x), 1, kMaxPicturePx);
+        const auto height =
+            x == std::string::npos ? std::nullopt : parse_whole(text.substr(x + 1), 1, kMaxPicturePx);
+        if (!width || !height) {
+          return "is not WxH with sides of 1 to " + std::to_string(kMaxPicturePx) + " pixels";
+        }
+        width_px = static_cast<std::int32_t>(*width);
+        height_px = static_cast<std::int32_t>(*height);
+        return {};
+      },
+      "the picture's size in pixels")
       ->default_str("800x600");
-  app.add_option("--projection", orthographic, "perspective or orthographic")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, bool>{{"perspective", false}, {"orthographic", true}}, CLI::ignore_case))
-      ->default_str("perspective")
-      ->type_name("NAME");
+  add_choice_option(
+      app, "--projection", {"perspective", "orthographic"},
+      [this](std::size_t index) { orthographic = index == 1; }, "how rays leave the camera")
+      ->default_str("perspective");
   add_triple(app, "--eye", &eye, "where the camera is, in voxels (default: where it sees the whole scene)");
-  add_triple(app, "--target", &target, "what it looks at (default: the middle of the scene)");
-  add_triple(app, "--up", &up, "what is up in the picture (default: 0,0,1; 0,1,0 when looking along z)");
-  app.add_option("--fov", fov_degrees, "perspective: vertical field of view, 1 to 120 degrees")
-      ->type_name("DEG")
-      ->check(CLI::Range(1.0, 120.0))
+  add_triple(app, "--target", &target, "what it looks at, in voxels (default: the middle of the scene)");
+  add_triple(app, "--up", &up, "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
+  add_text_option(
+      app, "--fov", "DEG",
+      [this](const std::string& text) {
+        const auto degrees = parse_real(text);
+        fov_degrees = degrees.value_or(0);
+        return fov_degrees >= 1 && fov_degrees <= 120 ? "" : "is not a number from 1 to 120";
+      },
+      "perspective: vertical field of view in degrees, 1 to 120")
       ->default_str("60");
-  app.add_option("--span", span, "orthographic: width of the picture in voxels (default: the whole scene)")
-      ->type_name("V")
-      ->check(CLI::PositiveNumber);
+  add_text_option(
+      app, "--span", "V",
+      [this](const std::string& text) {
+        span = parse_real(text);
+        return span && *span > 0 ? "" : "is not a number above 0";
+      },
+      "orthographic: width of the picture in voxels (default: the whole scene)");
   add_direction_bits(app, &direction_bits);
 }
 
-Camera ViewOptions::camera(int level, const VoxelBox& occupied) const {
+Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* note) const {
   const std::int32_t side = std::int32_t{1} << level;
   const VoxelBox box = occupied.empty() ? VoxelBox{{0, 0, 0}, {side, side, side}} : occupied;
   const auto corners = corners_of(box);
   const Real3 center = scaled(plus(corners[0], corners[7]), 0.5);
   const Real3 looked_at = target.value_or(center);
-  const Real3 forward = eye ? minus(looked_at, *eye) : kDefaultForward;
-  if (dot(forward, forward) == 0) {
+  if (eye) {
+    to_q8(*eye, level, "--eye");
+  }
+  const Real3 difference = eye ? minus(looked_at, *eye) : kDefaultForward;
+  if (largest(difference) == 0) {
     throw InputError("--eye and --target are the same point");
   }
-  const Real3 upward = up.value_or(default_up_for(forward));
-  const Real3 sideways = cross(forward, upward);
-  if (!(dot(sideways, sideways) > 0)) {
+  if (up && largest(*up) == 0) {
+    throw InputError("--up 0,0,0 has no direction");
+  }
+  // What the core will be given, so that both mean the same axes.
+  const Vec3i forward_view = to_integers(difference);
+  const Vec3i up_view = up ? to_integers(*up) : default_up(forward_view);
+  const Real3 forward = to_reals(forward_view);
+  const Real3 upward = to_reals(up_view);
+  if (largest(cross(forward, upward)) == 0) {
     throw InputError("--up is parallel to the direction of view");
   }
   const Axes axes = axes_of(forward, upward);
@@ -267,6 +273,7 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied) const {
   double distance = 0;
   double half_width = 0;
   double reach = 0;
+  bool partial = false;
   for (const Real3& corner : corners) {
     const Real3 offset = minus(corner, looked_at);
     const double x = std::abs(dot(offset, axes.right));
@@ -282,6 +289,7 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied) const {
   Real3 eye_point = eye.value_or(minus(looked_at, scaled(axes.forward, distance)));
   if (!eye) {
     // A narrow view would want to stand farther back than rays may start: it stays within the limits.
+    const double wanted = distance;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double limit = axes.forward[axis] > 0 ? static_cast<double>(kMinOriginWorlds) * side
                                                   : static_cast<double>(kMaxOriginWorlds) * side;
@@ -291,20 +299,29 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied) const {
       }
     }
     eye_point = minus(looked_at, scaled(axes.forward, distance));
+    if (distance < wanted) {
+      for (double& coordinate : eye_point) {  // what rounding may have added
+        coordinate = std::clamp(coordinate, static_cast<double>(kMinOriginWorlds) * side,
+                                static_cast<double>(kMaxOriginWorlds) * side);
+      }
+      partial = true;
+    }
   }
 
+  const Vec3Q8 eye_q8 = to_q8(eye_point, level, eye ? "--eye" : "the eye for this --target,");
   Camera result;
   Status status = Status::kOk;
   std::string advice;
   if (orthographic) {
     OrthographicView view;
-    view.eye = to_q8(eye_point, level, "--eye");
-    view.forward = to_integers(forward);
-    view.up = to_integers(upward);
+    view.eye = eye_q8;
+    view.forward = forward_view;
+    view.up = up_view;
     const double least = static_cast<double>(least_orthographic_span(width_px, level).raw) / Q14::kOne;
     const auto to_q14 = [](double voxels) {
       if (!(voxels * Q14::kOne <= INT32_MAX)) {
-        throw InputError("--span " + shortest(voxels) + " is beyond 131,071 voxels");
+        throw InputError("a picture " + shortest(voxels) +
+                         " voxels wide is beyond the limit of 131,071 (--span)");
       }
       return Q14::from_raw(static_cast<std::int32_t>(std::max(1L, std::lround(voxels * Q14::kOne))));
     };
@@ -317,6 +334,12 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied) const {
       view.span = to_q14(least);  // a scene of a few voxels is shown smaller instead
       status = result.set(view, level);
     }
+    // A long thin picture of the whole scene may be wider than rays may start: then it shows less.
+    for (int tries = 0; status == Status::kOutOfRange && !span && tries < 64; ++tries) {
+      view.span = to_q14(static_cast<double>(view.span.raw) / Q14::kOne * 0.8);
+      status = result.set(view, level);
+      partial = true;
+    }
     advice = status == Status::kTooFine
                  ? "the pixels are too fine for origins in 1/256 voxel; --span " +
                        shortest(std::ceil(least * 100) / 100) + " or more always works for this --size"
@@ -324,21 +347,28 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied) const {
                    "--eye helps";
   } else {
     PerspectiveView view;
-    view.eye = to_q8(eye_point, level, "--eye");
-    view.forward = to_integers(forward);
-    view.up = to_integers(upward);
+    view.eye = eye_q8;
+    view.forward = forward_view;
+    view.up = up_view;
     view.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(std::lround(fov_degrees * Q16::kOne)));
     view.width_px = width_px;
     view.height_px = height_px;
     view.direction_bits = direction_bits;
     status = result.set(view, level);
-    advice = "directions of 20 bits cannot be kept within 1/8 pixel; a wider --fov or a smaller --size helps";
+    advice = status == Status::kTooFine && direction_bits != 0
+                 ? "directions of " + std::to_string(direction_bits) +
+                       " bits are too coarse for this picture; leave out --direction-bits"
+                 : "directions of 20 bits cannot be kept within 1/8 pixel; a wider --fov or a smaller --size "
+                   "helps";
   }
   if (status == Status::kBadArgument) {
     throw InputError("--up is parallel to the direction of view");
   }
   if (status != Status::kOk) {
     throw InputError(std::string("the camera: ") + status_text(status) + ": " + advice);
+  }
+  if (partial && note != nullptr) {
+    *note = "the whole scene cannot be seen at once from within -4 to 5 world sizes; a part of it is shown";
   }
   return result;
 }

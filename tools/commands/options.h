@@ -61,8 +61,9 @@ struct ViewOptions {
   int direction_bits = 0;
 
   void add_to(CLI::App& app);
-  /// The camera for a world of 2^level; what is not given frames `bounds`. Throws InputError.
-  Camera camera(int level, const VoxelBox& bounds) const;
+  /// The camera for a world of 2^level; what is not given frames `bounds`. Where that cannot be, because rays
+  /// may not start that far away, `note` (may be null) gets a sentence that says so. Throws InputError.
+  Camera camera(int level, const VoxelBox& bounds, std::string* note = nullptr) const;
 };
 
 /// --direction-bits, for subcommands that have no camera too.

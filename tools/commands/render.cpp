@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "output/hit_csv.h"
@@ -27,7 +27,6 @@ struct RenderCommand {
   EngineOptions engine;
   ViewOptions view;
   ShadeMode shade = ShadeMode::kDepth;
-  bool shade_given = false;
   std::string output;
   std::string hits_path;
   std::string depth_path;
@@ -46,10 +45,9 @@ std::int32_t band_rows(const RenderCommand& command, PixelFormat format) {
 }
 
 // Pixel by pixel once more, for the files that hold hits and distances.
-void write_hits(const RenderCommand& command, const BuiltScene& built, const Camera& camera) {
-  std::unique_ptr<OutputFile> csv;
-  if (!command.hits_path.empty()) {
-    csv = std::make_unique<OutputFile>(command.hits_path);
+void write_hits(const RenderCommand& command, const BuiltScene& built, const Camera& camera, OutputFile* csv,
+                OutputFile* pfm) {
+  if (csv != nullptr) {
     csv->write(std::string("px,py,") + kHitColumns + "\n");
   }
   std::vector<float> distances;
@@ -62,11 +60,11 @@ void write_hits(const RenderCommand& command, const BuiltScene& built, const Cam
       if (built.closest_hit(ray, &hit, command.engine.trace_options()) != Status::kOk) {
         throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
       }
-      if (csv) {
+      if (csv != nullptr) {
         text += std::to_string(x) + ',' + std::to_string(y) + ',';
         append_hit(&text, ray, hit);
       }
-      if (!command.depth_path.empty()) {
+      if (pfm != nullptr) {
         const double length =
             std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
                        static_cast<double>(ray.direction.z));
@@ -74,28 +72,38 @@ void write_hits(const RenderCommand& command, const BuiltScene& built, const Cam
                                                       : std::numeric_limits<float>::infinity());
       }
     }
-    if (csv) {
+    if (csv != nullptr) {
       csv->write(text);
     }
     bar.update(static_cast<double>(y) / camera.height_px());
   }
-  if (csv) {
-    csv->commit();
-  }
-  if (!command.depth_path.empty()) {
-    write_pfm(command.depth_path, camera.width_px(), camera.height_px(), distances);
+  if (pfm != nullptr) {
+    write_pfm(pfm, camera.width_px(), camera.height_px(), distances);
   }
 }
 
+// Opened before the work begins, so that a folder that is not there is known at once.
+std::unique_ptr<OutputFile> open_output(const std::string& path) {
+  return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
+}
+
 void run(const RenderCommand& command) {
-  const ImageKind kind = image_kind(command.output);
+  const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
+  const std::array<std::string, 4> outputs{command.output, command.hits_path, command.depth_path,
+                                           command.scene.stats_path};
+  check_distinct(outputs, {&command.scene.arguments.scene, 1});
+  std::array<std::unique_ptr<OutputFile>, 4> files;
+  std::transform(outputs.begin(), outputs.end(), files.begin(), open_output);
+  const auto& [picture, hits_file, depth_file, stats_file] = files;
+
   const PixelFormat format = pixel_format(kind);
   const std::int32_t width = command.view.width_px;
   const std::int32_t height = command.view.height_px;
   const std::int32_t rows = band_rows(command, format);
   const auto source = command.scene.open();
   const BuiltScene built = command.scene.build(*source, band_bytes(format, width, rows));
-  const Camera camera = command.view.camera(built.level(), built.bounds());
+  std::string note;
+  const Camera camera = command.view.camera(built.level(), built.bounds(), &note);
 
   Shading shading;
   shading.mode = command.shade;
@@ -125,9 +133,10 @@ void run(const RenderCommand& command) {
     bar.update(static_cast<double>(y) / height);
   }
 
-  write_image(command.output, kind, image);
-  if (!command.hits_path.empty() || !command.depth_path.empty()) {
-    write_hits(command, built, camera);
+  bar.clear();
+  write_image(picture.get(), kind, image);
+  if (hits_file != nullptr || depth_file != nullptr) {
+    write_hits(command, built, camera, hits_file.get(), depth_file.get());
   }
 
   Stats stats(command.scene.arguments.scene, *source, built);
@@ -140,10 +149,18 @@ void run(const RenderCommand& command) {
   std::array<char, 9> crc{};
   std::snprintf(crc.data(), crc.size(), "%08lx", crc32_z(0, pixels.data(), pixels.size()));
   stats.frame_crc32 = crc.data();
-  if (!command.scene.stats_path.empty()) {
-    write_stats(command.scene.stats_path, stats);
+  if (stats_file != nullptr) {
+    stats_file->write(stats_text(stats));
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->commit();
+    }
   }
   if (!command.scene.quiet) {
+    if (!note.empty()) {
+      std::fprintf(stderr, "note: %s\n", note.c_str());
+    }
     std::fprintf(
         stderr,
         "%s voxels in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
@@ -161,26 +178,32 @@ void run(const RenderCommand& command) {
 
 void add_render(CLI::App& app) {
   auto command = std::make_shared<RenderCommand>();
-  CLI::App* sub = app.add_subcommand("render", "draw a scene as a picture");
+  CLI::App* sub = app.add_subcommand("render", "Draw a scene as a picture.");
   command->scene.add_to(*sub);
-  sub->add_option("-o,--output", command->output,
-                  "the picture: .ppm, .pgm, .pbm or .png; - is a PPM on standard output")
-      ->required()
-      ->type_name("FILE");
+  add_text_option(
+      *sub, "-o,--output", "FILE",
+      [command](const std::string& text) {
+        command->output = text;
+        return image_kind(text) ? "" : "does not end in .ppm, .pgm, .pbm or .png";
+      },
+      "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output")
+      ->required();
   command->view.add_to(*sub);
-  sub->add_option("--shade", command->shade, "depth, normal, color or mono")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ShadeMode>{{"depth", ShadeMode::kDepth},
-                                                                           {"normal", ShadeMode::kNormal},
-                                                                           {"color", ShadeMode::kColor},
-                                                                           {"mono", ShadeMode::kMono}},
-                                          CLI::ignore_case))
-      ->default_str("depth")
-      ->type_name("MODE");
-  sub->add_option("--hits", command->hits_path, std::string("a line a pixel: px,py,") + kHitColumns)
-      ->type_name("FILE.csv");
-  sub->add_option("--depth-image", command->depth_path,
-                  "distance in voxels along the unit ray, +inf for a miss")
-      ->type_name("FILE.pfm");
+  add_choice_option(
+      *sub, "--shade", {"depth", "normal", "color", "mono"},
+      [command](std::size_t index) {
+        constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
+                                    ShadeMode::kMono};
+        command->shade = kModes[index];
+      },
+      "brightness by distance, the face's direction, the palette in one light, or white where anything is")
+      ->default_str("depth");
+  add_path_option(*sub, "--hits", "FILE.csv", &command->hits_path,
+                  std::string("what each pixel's ray hits, a line a pixel, row by row from the top left: "
+                              "px,py,") +
+                      kHitColumns + ", as trace writes them");
+  add_path_option(*sub, "--depth-image", "FILE.pfm", &command->depth_path,
+                  "distance in voxels along the unit ray as float32, +inf for a miss");
   command->engine.add_to(*sub);
   sub->callback([command] { run(*command); });
 }

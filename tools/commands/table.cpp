@@ -7,11 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "output/output_file.h"
@@ -166,7 +166,7 @@ void print_row(const Row& row) {
   std::fflush(stdout);
 }
 
-void write_json(const TableCommand& command, const std::vector<Row>& rows) {
+void write_json(OutputFile* file, const TableCommand& command, const std::vector<Row>& rows) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
     nlohmann::ordered_json object;
@@ -180,12 +180,11 @@ void write_json(const TableCommand& command, const std::vector<Row>& rows) {
     object["engine"] = command.engine.resolved();
     json.push_back(object);
   }
-  OutputFile file(command.json_path);
-  file.write(json.dump(2) + "\n");
-  file.commit();
+  file->write(json.dump(2) + "\n");
+  file->commit();
 }
 
-void write_plot(const TableCommand& command, const std::vector<Row>& rows) {
+void write_plot(OutputFile* file, const TableCommand& command, const std::vector<Row>& rows) {
   Plot plot;
   plot.title = "One frame of 800 x 600 pixels";
   plot.x_label =
@@ -208,10 +207,21 @@ void write_plot(const TableCommand& command, const std::vector<Row>& rows) {
     plot.series.push_back(ours);
     plot.series.push_back(paper);
   }
-  write_log_plot(command.plot_path, plot);
+  file->write(log_plot_text(plot));
+  file->commit();
 }
 
 void run(const TableCommand& command) {
+  check_distinct(std::array{command.json_path, command.plot_path}, {});
+  // Opened before the work begins, so that a folder that is not there is known at once.
+  std::unique_ptr<OutputFile> json_file;
+  std::unique_ptr<OutputFile> plot_file;
+  if (!command.json_path.empty()) {
+    json_file = std::make_unique<OutputFile>(command.json_path);
+  }
+  if (!command.plot_path.empty()) {
+    plot_file = std::make_unique<OutputFile>(command.plot_path);
+  }
   std::printf("%12s  %-12s %10s %10s %9s %9s %11s\n", "points", "projection", "seconds", "paper", "faster",
               "hits", "mismatches");
   std::vector<Row> rows;
@@ -242,11 +252,11 @@ void run(const TableCommand& command) {
       rows.push_back(row);
     }
   }
-  if (!command.json_path.empty()) {
-    write_json(command, rows);
+  if (json_file != nullptr) {
+    write_json(json_file.get(), command, rows);
   }
-  if (!command.plot_path.empty()) {
-    write_plot(command, rows);
+  if (plot_file != nullptr) {
+    write_plot(plot_file.get(), command, rows);
   }
 }
 
@@ -256,26 +266,42 @@ void add_table(CLI::App& app) {
   auto command = std::make_shared<TableCommand>();
   CLI::App* sub = app.add_subcommand(
       "table",
-      "the paper's Tables I and II on this machine: seconds a frame (median of 5, each from a slightly "
-      "different place) "
-      "at 800 x 600, beside the paper's; pixels that differ from the exact reference, of 10,000 judged");
-  sub->add_option("--points", command->points, "numbers of points (default: the paper's, 1 to 20,000,000)")
-      ->delimiter(',')
-      ->type_name("N,N,...")
-      ->check(CLI::Range(std::uint64_t{0}, kMaxGeneratorPoints));
-  sub->add_option("--scene", command->scene, "points (uniformly random) or cluster")
-      ->check(CLI::IsMember({"points", "cluster"}))
+      "The paper's Tables I and II on this machine: seconds a frame of 800 x 600 pixels (the median of 5, "
+      "each "
+      "from a slightly different place) beside the paper's, and how many of 10,000 pixels differ from the "
+      "exact reference.");
+  add_text_option(
+      *sub, "--points", "N,N,...",
+      [command](const std::string& text) -> std::string {
+        command->points.clear();
+        for (std::size_t at = 0; at <= text.size();) {
+          const std::size_t comma = std::min(text.find(',', at), text.size());
+          const auto number = parse_whole(std::string_view(text).substr(at, comma - at), 0,
+                                          static_cast<std::int64_t>(kMaxGeneratorPoints));
+          if (!number) {
+            return "is not a list of whole numbers from 0 to " + std::to_string(kMaxGeneratorPoints);
+          }
+          command->points.push_back(static_cast<std::uint64_t>(*number));
+          at = comma + 1;
+        }
+        return {};
+      },
+      "numbers of points (default: the paper's, 1 to 20,000,000)");
+  add_choice_option(
+      *sub, "--scene", {"points", "cluster"},
+      [command](std::size_t index) { command->scene = index == 0 ? "points" : "cluster"; },
+      "uniformly random points, or points that crowd")
       ->default_str("points");
-  sub->add_option("--depth", command->depth, "world of 2^L voxels a side; the paper's was probably smaller")
-      ->type_name("L")
-      ->check(CLI::Range(kMinLevel, kMaxLevel))
+  add_whole_option(
+      *sub, "--depth", "L", kMinLevel, kMaxLevel,
+      [command](std::int64_t level) { command->depth = static_cast<int>(level); },
+      "the world is 2^L voxels a side, L from 1 to 12; the paper's was probably smaller")
       ->default_str("10");
-  sub->add_option("--json", command->json_path,
-                  "an array, one object a row: points, projection, seconds, paper_seconds (null where the "
-                  "paper has none), "
-                  "hits, exact_mismatches, engine")
-      ->type_name("FILE.json");
-  sub->add_option("--plot", command->plot_path, "seconds against points")->type_name("FILE.svg");
+  add_path_option(
+      *sub, "--json", "FILE.json", &command->json_path,
+      "an array, one object a row: points, projection, seconds, paper_seconds (null where the paper "
+      "has none), hits, exact_mismatches, engine");
+  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "seconds against points");
   sub->add_flag("--quiet", command->quiet, "no progress bar");
   command->engine.add_to(*sub);
   sub->callback([command] { run(*command); });

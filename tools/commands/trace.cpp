@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "output/hit_csv.h"
@@ -43,7 +45,7 @@ std::optional<std::array<double, 6>> parse_line(std::string_view line) {
   };
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     skip_blanks();
-    if (at != end && *at == '+') {
+    if (end - at > 1 && *at == '+' && at[1] != '-') {
       ++at;
     }
     const auto [next, error] = std::from_chars(at, end, numbers[i]);
@@ -101,28 +103,32 @@ Ray quantise(const std::array<double, 6>& numbers, int level, int direction_bits
   return ray;
 }
 
-void run(const TraceCommand& command) {
-  const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source, 0);
-  FileBytes bytes;
-  try {
-    bytes = load_file(command.rays_path);
-  } catch (const InputError& error) {
-    throw OutputError(command.rays_path + ": " + error.what());
+// Whether a line holds names only: a header. A line with a number among its columns is a ray gone wrong.
+bool is_header(std::string_view line) {
+  while (true) {
+    const std::size_t comma = line.find(',');
+    std::string_view column = line.substr(0, comma);
+    column.remove_prefix(std::min(column.find_first_not_of(" \t+"), column.size()));
+    double number = 0;
+    if (std::from_chars(column.data(), column.data() + column.size(), number).ec !=
+        std::errc::invalid_argument) {
+      return false;
+    }
+    if (comma == std::string_view::npos) {
+      return true;
+    }
+    line.remove_prefix(comma + 1);
   }
-  const std::string_view text = bytes.text();
-  const TraceOptions options = command.engine.trace_options();
+}
 
-  OutputFile output(command.output);
-  output.write(std::string(kHitColumns) + "\n");
-  ProgressBar bar("tracing", command.scene.quiet);
-  Stats stats(command.scene.arguments.scene, *source, built);
-  stats.engine = command.engine.resolved();
-  std::string lines;
+// Calls `visit` with each ray of the file; throws for the first line that is none.
+void for_each_ray(const TraceCommand& command, std::string_view text, int level,
+                  const std::function<void(const Ray&, std::size_t line, std::size_t offset)>& visit) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   std::size_t line_number = 0;
   bool first = true;
-  const auto start = std::chrono::steady_clock::now();
-  for (std::size_t at = 0; at < text.size();) {
+  while (at < text.size()) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string_view line = text.substr(at, end - at);
     at = end + 1;
@@ -134,19 +140,54 @@ void run(const TraceCommand& command) {
       continue;
     }
     const auto numbers = parse_line(line);
-    // A first line of names is a header; one that begins like a number is a ray gone wrong.
-    const bool header = !numbers && first && line.find_first_of("0123456789") == std::string_view::npos;
+    const bool header = !numbers && first && is_header(line);
     first = false;
     if (header) {
       continue;
     }
     if (!numbers) {
-      fail(command.rays_path, line_number, "is not six numbers ox,oy,oz,dx,dy,dz");
+      fail(command.rays_path, line_number, "these are not the six numbers ox,oy,oz,dx,dy,dz");
     }
-    const Ray ray = quantise(*numbers, built.level(), command.direction_bits, command.rays_path, line_number);
+    visit(quantise(*numbers, level, command.direction_bits, command.rays_path, line_number), line_number, at);
+  }
+}
+
+void run(const TraceCommand& command) {
+  const std::array<std::string, 2> outputs{command.output, command.scene.stats_path};
+  const std::array<std::string, 2> inputs{command.scene.arguments.scene, command.rays_path};
+  check_distinct(outputs, inputs);
+  OutputFile output(command.output);
+  std::unique_ptr<OutputFile> stats_file;
+  if (!command.scene.stats_path.empty()) {
+    stats_file = std::make_unique<OutputFile>(command.scene.stats_path);
+  }
+  const auto source = command.scene.open();
+  const BuiltScene built = command.scene.build(*source, 0);
+  FileBytes bytes;
+  try {
+    bytes = load_file(command.rays_path);
+  } catch (const InputError& error) {
+    throw OutputError(command.rays_path + ": " + error.what());
+  }
+  const std::string_view text = bytes.text();
+  const TraceOptions options = command.engine.trace_options();
+
+  // All rays are judged before the first answer is written: standard output cannot be taken back.
+  for_each_ray(command, text, built.level(), [&](const Ray& ray, std::size_t line, std::size_t) {
+    if (command.engine.name == "ray32" && !accepts_32(ray, built.level())) {
+      fail(command.rays_path, line, "--engine ray32 does not take this ray; auto does");
+    }
+  });
+  output.write(std::string(kHitColumns) + "\n");
+  ProgressBar bar("tracing", command.scene.quiet);
+  Stats stats(command.scene.arguments.scene, *source, built);
+  stats.engine = command.engine.resolved();
+  std::string lines;
+  const auto start = std::chrono::steady_clock::now();
+  for_each_ray(command, text, built.level(), [&](const Ray& ray, std::size_t line, std::size_t offset) {
     Hit hit;
     if (built.closest_hit(ray, &hit, options) != Status::kOk) {
-      fail(command.rays_path, line_number, "--engine " + command.engine.name + " does not take this ray");
+      fail(command.rays_path, line, "--engine " + command.engine.name + " does not take this ray");
     }
     append_hit(&lines, ray, hit);
     ++stats.rays;
@@ -156,14 +197,15 @@ void run(const TraceCommand& command) {
     if (lines.size() > kFlushBytes) {
       output.write(lines);
       lines.clear();
-      bar.update(static_cast<double>(at) / static_cast<double>(text.size()));
+      bar.update(static_cast<double>(offset) / static_cast<double>(text.size()));
     }
-  }
+  });
   stats.frame_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   output.write(lines);
   output.commit();
-  if (!command.scene.stats_path.empty()) {
-    write_stats(command.scene.stats_path, stats);
+  if (stats_file != nullptr) {
+    stats_file->write(stats_text(stats));
+    stats_file->commit();
   }
 }
 
@@ -171,14 +213,14 @@ void run(const TraceCommand& command) {
 
 void add_trace(CLI::App& app) {
   auto command = std::make_shared<TraceCommand>();
-  CLI::App* sub = app.add_subcommand("trace", "trace rays from a file");
+  CLI::App* sub = app.add_subcommand("trace", "Trace rays from a file.");
   command->scene.add_to(*sub);
-  sub->add_option("--rays", command->rays_path,
+  add_path_option(*sub, "--rays", "FILE.csv", &command->rays_path,
                   "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed")
-      ->required()
-      ->type_name("FILE.csv");
-  sub->add_option("-o,--output", command->output, std::string("one line a ray: ") + kHitColumns)
-      ->type_name("FILE.csv")
+      ->required();
+  add_path_option(*sub, "-o,--output", "FILE.csv", &command->output,
+                  std::string("a header line, then one line a ray: ") + kHitColumns +
+                      "; point = q-origin / 256 + t * q-direction, in voxels; - is standard output")
       ->default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_to(*sub);

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "output/output_file.h"
-#include "readers/source.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -36,7 +35,7 @@ std::string ending_of(const std::string& path) {
 
 }  // namespace
 
-ImageKind image_kind(const std::string& path) {
+std::optional<ImageKind> image_kind(const std::string& path) {
   const std::string ending = ending_of(path);
   if (ending == ".ppm" || path == "-") {
     return ImageKind::kPpm;
@@ -50,7 +49,7 @@ ImageKind image_kind(const std::string& path) {
   if (ending == ".png") {
     return ImageKind::kPng;
   }
-  throw InputError("the picture's ending must be .ppm, .pgm, .pbm or .png");
+  return std::nullopt;
 }
 
 PixelFormat pixel_format(ImageKind kind) {
@@ -80,19 +79,18 @@ std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind) {
   return pixels;
 }
 
-void write_image(const std::string& path, ImageKind kind, const Image& image) {
-  OutputFile file(path);
+void write_image(OutputFile* file, ImageKind kind, const Image& image) {
   const std::vector<std::uint8_t> pixels = file_pixels(image, kind);
   const std::string size = std::to_string(image.width_px) + " " + std::to_string(image.height_px) + "\n";
   switch (kind) {
     case ImageKind::kPpm:
-      file.write("P6\n" + size + "255\n");
+      file->write("P6\n" + size + "255\n");
       break;
     case ImageKind::kPgm:
-      file.write("P5\n" + size + "255\n");
+      file->write("P5\n" + size + "255\n");
       break;
     case ImageKind::kPbm:
-      file.write("P4\n" + size);
+      file->write("P4\n" + size);
       break;
     case ImageKind::kPng: {
       std::vector<unsigned char> png;
@@ -103,29 +101,25 @@ void write_image(const std::string& path, ImageKind kind, const Image& image) {
       };
       if (stbi_write_png_to_func(append, &png, image.width_px, image.height_px, 3, pixels.data(),
                                  3 * image.width_px) == 0) {
-        throw OutputError(path + ": the PNG encoder ran out of memory");
+        throw OutputError("the PNG encoder ran out of memory");
       }
-      file.write(std::span<const unsigned char>(png));
-      file.commit();
+      file->write(std::span<const unsigned char>(png));
       return;
     }
   }
-  file.write(std::span<const unsigned char>(pixels));
-  file.commit();
+  file->write(std::span<const unsigned char>(pixels));
 }
 
-void write_pfm(const std::string& path, std::int32_t width_px, std::int32_t height_px,
+void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,
                const std::vector<float>& values) {
   static_assert(std::endian::native == std::endian::little, "the scale -1 says little-endian");
-  OutputFile file(path);
-  file.write("Pf\n" + std::to_string(width_px) + " " + std::to_string(height_px) + "\n-1.0\n");
+  file->write("Pf\n" + std::to_string(width_px) + " " + std::to_string(height_px) + "\n-1.0\n");
   const std::size_t width = static_cast<std::size_t>(width_px);
   for (std::size_t row = static_cast<std::size_t>(height_px); row-- > 0;) {
     std::vector<unsigned char> bytes(4 * width);
     std::memcpy(bytes.data(), values.data() + row * width, bytes.size());
-    file.write(std::span<const unsigned char>(bytes));
+    file->write(std::span<const unsigned char>(bytes));
   }
-  file.commit();
 }
 
 }  // namespace thimble::tools

@@ -4,6 +4,7 @@
 #define THIMBLE_TOOLS_OUTPUT_IMAGE_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,12 @@
 
 namespace thimble::tools {
 
+class OutputFile;
+
 enum class ImageKind : std::uint8_t { kPpm, kPgm, kPbm, kPng };
 
-/// By the ending of `path`; `-` (standard output) is a PPM. Throws InputError naming the endings
-/// that are known.
-ImageKind image_kind(const std::string& path);
+/// By the ending of `path`; `-` (standard output) is a PPM. Nothing for an ending that is not known.
+std::optional<ImageKind> image_kind(const std::string& path);
 
 /// The core's pixel format that a picture of that kind is drawn in.
 PixelFormat pixel_format(ImageKind kind);
@@ -32,11 +34,11 @@ struct Image {
 /// for black.
 std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind);
 
-/// Writes the picture. Throws OutputError.
-void write_image(const std::string& path, ImageKind kind, const Image& image);
+/// Writes the picture, header and all; committing is the caller's. Throws OutputError.
+void write_image(OutputFile* file, ImageKind kind, const Image& image);
 
 /// Writes float32 values, row by row from the top, as a little-endian PFM (whose rows go from the bottom).
-void write_pfm(const std::string& path, std::int32_t width_px, std::int32_t height_px,
+void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,
                const std::vector<float>& values);
 
 }  // namespace thimble::tools

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 namespace thimble::tools {
@@ -56,7 +57,43 @@ void discard_unfinished_output() {
   }
 }
 
-OutputFile::OutputFile(const std::string& path) : path_(path) {
+void check_standard_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw OutputError(std::string("standard output: cannot be written: ") + std::strerror(errno));
+  }
+}
+
+void check_distinct(std::span<const std::string> paths, std::span<const std::string> inputs) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    if (a == b) {
+      return true;
+    }
+    struct stat first {};
+    struct stat second {};
+    return a != "-" && b != "-" && ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 &&
+           S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+  };
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    // A device such as /dev/null takes anything any number of times.
+    struct stat info {};
+    const bool device = ::stat(paths[i].c_str(), &info) == 0 && S_ISCHR(info.st_mode);
+    if (paths[i].empty() || (device && paths[i] != "-")) {
+      continue;
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same(paths[i], paths[j])) {
+        throw OutputError((paths[i] == "-" ? "standard output" : paths[i]) + ": two outputs cannot share it");
+      }
+    }
+    for (const std::string& input : inputs) {
+      if (paths[i] != "-" && same(paths[i], input)) {
+        throw OutputError(paths[i] + ": is an input and would be overwritten");
+      }
+    }
+  }
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   if (path == "-") {
     file_ = stdout;
     return;
@@ -71,7 +108,14 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   } else if (exists && ::access(path.c_str(), W_OK) != 0) {
     fail(errno);
   } else {
-    temporary_ = path + ".XXXXXX";
+    // Beside the target, so that renaming it is one step; short, so that any name the target has will do.
+    if (exists) {
+      if (char* const real = ::realpath(path.c_str(), nullptr)) {
+        target_ = real;
+        std::free(real);
+      }
+    }
+    temporary_ = target_.substr(0, target_.rfind('/') + 1) + ".thimble-XXXXXX";
     const int descriptor = ::mkstemp(temporary_.data());
     if (descriptor < 0) {
       temporary_.clear();
@@ -132,7 +176,7 @@ void OutputFile::commit() {
   if (temporary_.empty()) {
     return;
   }
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
     fail(errno);
   }
   forget(temporary_);

@@ -19,7 +19,7 @@ class OutputError : public std::runtime_error {
 };
 
 /// One output. `-` is standard output, written straight on. What exists and is no regular file (a device, a
-/// pipe) is written to directly too.
+/// pipe) is written to directly too. A symbolic link stays one: the file that it leads to is replaced.
 class OutputFile {
  public:
   /// Opens `path` for writing. Throws OutputError (no such folder, no permission, ...).
@@ -39,9 +39,17 @@ class OutputFile {
   [[noreturn]] void fail(int error);
 
   std::string path_;
+  std::string target_;     ///< `path_` behind symbolic links
   std::string temporary_;  ///< empty when written to directly
   std::FILE* file_ = nullptr;
 };
+
+/// Throws OutputError when something printed on standard output did not get there.
+void check_standard_output();
+
+/// Throws OutputError when two of `paths` are one file, or when one of them is among `inputs`: whoever writes
+/// there last would win, and an input would be gone. Empty paths are skipped.
+void check_distinct(std::span<const std::string> paths, std::span<const std::string> inputs);
 
 /// Deletes the temporary file of the output being written, if any. Safe to call from a signal handler.
 void discard_unfinished_output();

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "output/output_file.h"
-
 namespace thimble::tools {
 namespace {
 
@@ -60,7 +58,7 @@ std::string label(double x, double y, const char* anchor, const std::string& tex
 
 }  // namespace
 
-void write_log_plot(const std::string& path, const Plot& plot) {
+std::string log_plot_text(const Plot& plot) {
   // Okabe and Ito's colours, which stay apart for most kinds of colour vision and on both grounds.
   constexpr std::array<const char*, 6> kColors{"#0072b2", "#d55e00", "#009e73",
                                                "#cc79a7", "#e69f00", "#56b4e9"};
@@ -121,9 +119,7 @@ void write_log_plot(const std::string& path, const Plot& plot) {
     svg += label(column + 36, row, "start", series.name);
   }
   svg += "</svg>\n";
-  OutputFile file(path);
-  file.write(svg);
-  file.commit();
+  return svg;
 }
 
 }  // namespace thimble::tools

@@ -23,8 +23,8 @@ struct Plot {
   std::vector<Series> series;
 };
 
-/// Writes the plot with logarithmic axes. At most six series keep colours of their own. Throws OutputError.
-void write_log_plot(const std::string& path, const Plot& plot);
+/// The plot as SVG text, with logarithmic axes. At most six series keep colours of their own.
+std::string log_plot_text(const Plot& plot);
 
 }  // namespace thimble::tools
 

@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "output/output_file.h"
-
 namespace thimble::tools {
 
 Stats::Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built)
@@ -18,7 +16,7 @@ Stats::Stats(const std::string& scene_name, const SceneSource& source, const Bui
       solid_added(built.solid_added()),
       build_seconds(built.build_seconds()) {}
 
-void write_stats(const std::string& path, const Stats& stats) {
+std::string stats_text(const Stats& stats) {
   nlohmann::ordered_json json;
   json["scene"] = stats.scene;
   json["depth"] = stats.depth;
@@ -37,10 +35,8 @@ void write_stats(const std::string& path, const Stats& stats) {
   json["threads"] = stats.threads;
   json["engine"] = stats.engine;
   json["frame_crc32"] = stats.frame_crc32;
-  OutputFile file(path);
   // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
-  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-  file.commit();
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace thimble::tools

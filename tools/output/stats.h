@@ -33,8 +33,8 @@ struct Stats {
   Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);
 };
 
-/// Writes all of them as one JSON object with the members' names. Throws OutputError.
-void write_stats(const std::string& path, const Stats& stats);
+/// All of them as one JSON object with the members' names.
+std::string stats_text(const Stats& stats);
 
 }  // namespace thimble::tools
 

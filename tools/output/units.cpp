@@ -51,4 +51,23 @@ std::string digits17(double number) {
   return std::string(text.data(), static_cast<std::size_t>(length));
 }
 
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char letter : text) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (code < 0x20 || code == 0x7F) {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\x%02x", static_cast<unsigned>(code));
+      out += escape.data();
+    } else {
+      out += letter;
+    }
+  }
+  return out;
+}
+
+std::string in_quotes(std::string_view text) {
+  return '"' + printable(text) + '"';
+}
+
 }  // namespace thimble::tools

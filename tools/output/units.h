@@ -22,6 +22,12 @@ std::string shortest(double number);
 /// A double with 17 significant digits.
 std::string digits17(double number);
 
+/// `text` for a sentence on a terminal: control characters, line feeds too, as \xNN, so that a file's name
+/// can neither break the sentence nor steer the terminal. UTF-8 stays as it is.
+std::string printable(std::string_view text);
+/// The same in double quotes.
+std::string in_quotes(std::string_view text);
+
 }  // namespace thimble::tools
 
 #endif

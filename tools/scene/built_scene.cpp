@@ -15,6 +15,12 @@ Bytes aligned(Bytes bytes, std::size_t alignment) {
   return bytes.subspan(past == 0 ? 0 : alignment - past);
 }
 
+// How many keys a full list may keep after its repeats are gone: one that stays nearly full would be sorted
+// for ever. Never falls as `capacity` grows.
+constexpr std::size_t most_after_tidying(std::size_t capacity) {
+  return capacity - capacity / 16 - (capacity >= 1 && capacity < 16 ? 1 : 0);
+}
+
 }  // namespace
 
 BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress)
@@ -45,7 +51,7 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
       BuildOptions unlimited = options;
       unlimited.memory_bytes.reset();
       unlimited.coarsen = false;
-      const std::uint64_t needed = BuiltScene(source, unlimited, progress).high_water_bytes();
+      const std::uint64_t needed = BuiltScene(source, unlimited, progress).least_budget_bytes();
       throw InputError("needs " + grouped(needed) + " bytes, the budget is " +
                        grouped(*options.memory_bytes) + " (--memory); give it more" +
                        (options.structure == StructureKind::kDense ? " or another --structure"
@@ -53,6 +59,7 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
                                                                    : ", a smaller --depth or --coarsen"));
     }
   }
+  least_budget_bytes_ = least_budget_bytes_ == 0 ? high_water_bytes() : least_budget_bytes_;
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -162,23 +169,23 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
   Key* keys = reinterpret_cast<Key*>(rest.data);
   std::size_t count = 0;
   std::size_t most = 0;
+  bool tidied = false;
   const auto tidy = [&] {
     most = std::max(most, count);
     sort_keys(Span<Key>(keys, count), key_bits);
     count = unique_keys(Span<Key>(keys, count));
   };
+  std::uint64_t streamed = 0;
   source.stream(
       [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        ++streamed;
         if (count == capacity) {
-          // Repeats may have filled it; a list that stays nearly full is a shortage, not a reason to sort for
-          // ever.
+          // Repeats may have filled it.
           tidy();
-          if (count > capacity - capacity / 16) {
+          tidied = true;
+          if (count > most_after_tidying(capacity) || capacity == 0) {
             throw Shortage{};
           }
-        }
-        if (count == capacity) {
-          throw Shortage{};
         }
         const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                                                static_cast<std::uint32_t>(z));
@@ -186,6 +193,11 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
       },
       progress);
   tidy();
+  // The same demand at the end, so that whether a scene fits is a matter of its counts and not of their
+  // order.
+  if (tidied && count > most_after_tidying(capacity)) {
+    throw Shortage{};
+  }
 
   const Bytes target = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
   std::size_t size = 0;
@@ -202,6 +214,18 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
   const std::size_t offset = static_cast<std::size_t>(rest.data - arena_.rest().data);
   arena_.note_scratch(std::max(offset + most * sizeof(Key),
                                static_cast<std::size_t>(target.data - arena_.rest().data) + size));
+  // The fewest keys that would have done: all that came, or room enough for the different ones when tidied.
+  std::size_t fewest = count + count / 15;
+  while (most_after_tidying(fewest) < count) {
+    ++fewest;
+  }
+  while (fewest > 0 && most_after_tidying(fewest - 1) >= count) {
+    --fewest;
+  }
+  fewest = static_cast<std::size_t>(std::min<std::uint64_t>(fewest, streamed));
+  least_budget_bytes_ =
+      arena_.used_bytes() + std::max(offset + fewest * sizeof(Key),
+                                     static_cast<std::size_t>(target.data - arena_.rest().data) + size);
   keep_compact(target.subspan(0, size));
 }
 

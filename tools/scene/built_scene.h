@@ -52,6 +52,9 @@ class BuiltScene {
   std::uint64_t tree_bytes() const;
   std::uint64_t budget_bytes() const { return arena_.capacity_bytes(); }
   std::uint64_t high_water_bytes() const { return arena_.high_water_bytes(); }
+  /// The least budget that this scene can be built in without coarsening; at most `high_water_bytes()` of a
+  /// build without one, less where points repeat.
+  std::uint64_t least_budget_bytes() const { return least_budget_bytes_; }
   double build_seconds() const { return build_seconds_; }
   const std::vector<Rgb8>& palette() const { return palette_; }
   Bytes band() const { return band_; }
@@ -79,6 +82,7 @@ class BuiltScene {
   Octree octree_;
   DenseGrid dense_;
   std::vector<Rgb8> palette_;
+  std::uint64_t least_budget_bytes_ = 0;
   double build_seconds_ = 0;
 };
 

@@ -1,0 +1,111 @@
+/// @file scene_under_test.h
+/// One set of voxels in every structure that the core traces, and in the reference's grid; and the comparison
+/// of an engine's answer with the reference's.
+#ifndef THIMBLE_TESTS_SUPPORT_SCENE_UNDER_TEST_H
+#define THIMBLE_TESTS_SUPPORT_SCENE_UNDER_TEST_H
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reference/reference.h"
+#include "thimble/compact_tree.h"
+#include "thimble/dense_grid.h"
+#include "thimble/octree.h"
+#include "thimble/trace.h"
+
+namespace thimble::tests {
+
+/// Bytes on the heap of exactly that size, so that AddressSanitizer sees the first byte beyond; `offset`
+/// moves the start off its alignment.
+class HeapBytes {
+ public:
+  explicit HeapBytes(std::size_t size, std::size_t offset = 0)
+      : storage_(new std::uint8_t[size + offset]), offset_(offset), size_(size) {}
+  Bytes span() const { return {storage_.get() + offset_, size_}; }
+  ConstBytes view() const { return {storage_.get() + offset_, size_}; }
+
+ private:
+  std::unique_ptr<std::uint8_t[]> storage_;
+  std::size_t offset_;
+  std::size_t size_;
+};
+
+/// Which material a voxel of a test scene has: a hash of its place with as many values as `materials`.
+std::uint8_t material_at(const reference::Voxel& voxel, unsigned materials, std::uint64_t salt);
+
+reference::Ray to_reference(const Ray& ray);
+Ray to_core(const reference::Ray& ray);
+
+/// The compact tree's bytes of an octree; exactly as many as `compact_bytes` says.
+HeapBytes compact_of(const Octree& octree, int rank_shift = kDefaultRankShift, std::size_t offset = 0);
+/// The same from the voxels' Morton keys, sorted by the core. 32-bit keys want one material.
+HeapBytes compact_of_keys_32(const std::vector<reference::Voxel>& voxels, int level, std::uint8_t material,
+                             int rank_shift = kDefaultRankShift);
+HeapBytes compact_of_keys_64(const std::vector<reference::Voxel>& voxels, int level, unsigned materials,
+                             std::uint64_t salt, int rank_shift = kDefaultRankShift);
+
+/// Opens bytes that must be a compact tree; throws `std::logic_error` when they are none.
+CompactTree open_or_throw(const HeapBytes& bytes);
+
+/// Whether an engine's hit is the reference's: kind, voxel, t as a fraction, axis.
+bool same_answer(const Hit& hit, const reference::Hit& expected);
+
+/// "miss", "step limit" or "voxel (i, j, k) t n/d axis a block b material m".
+std::string describe(const Hit& hit);
+
+/// The voxels in all structures. The dense grid is there where it takes at most 1 MiB.
+class SceneUnderTest {
+ public:
+  /// `size` is the grid's; the trees' world is the least cube of a power of two that holds it.
+  SceneUnderTest(const reference::Voxel& size, const std::vector<reference::Voxel>& voxels,
+                 unsigned materials = 1, std::uint64_t salt = 0, int rank_shift = kDefaultRankShift);
+  SceneUnderTest(const SceneUnderTest&) = delete;
+  SceneUnderTest& operator=(const SceneUnderTest&) = delete;
+
+  int level() const { return level_; }
+  const reference::BitGrid& reference() const { return reference_; }
+  const std::vector<reference::Voxel>& voxels() const { return voxels_; }
+
+  const Octree& pool() const { return pool_; }
+  /// Made from the pool.
+  const CompactTree& compact() const { return compact_; }
+  /// Made from keys.
+  const CompactTree& from_keys() const { return from_keys_; }
+  const std::optional<DenseGrid>& dense() const { return dense_; }
+  /// Whether the pool's, the 64-bit keys' and (one material, level to 10) the 32-bit keys' bytes are equal.
+  bool same_bytes() const { return same_bytes_; }
+
+  struct Tally {
+    std::int64_t traced = 0;      ///< answers compared
+    std::int64_t narrow = 0;      ///< rays that the 32-bit path takes
+    std::int64_t mismatches = 0;  ///< answers that differ
+    std::string first;            ///< what the first ones were
+    Tally& operator+=(const Tally& other);
+  };
+  /// Traces `ray` in every structure and width, closest and any hit, and compares with `expected`.
+  void compare(const Ray& ray, const reference::Hit& expected, Tally& tally) const;
+
+ private:
+  std::vector<reference::Voxel> voxels_;
+  unsigned materials_;
+  std::uint64_t salt_;
+  int level_;
+  reference::BitGrid reference_;
+  std::vector<std::uint8_t> pool_bytes_;
+  Octree pool_;
+  HeapBytes compact_bytes_;
+  HeapBytes keys_bytes_;
+  CompactTree compact_;
+  CompactTree from_keys_;
+  std::vector<std::uint8_t> dense_bytes_;
+  std::optional<DenseGrid> dense_;
+  bool same_bytes_ = true;
+};
+
+}  // namespace thimble::tests
+
+#endif

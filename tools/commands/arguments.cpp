@@ -1,0 +1,184 @@
+#include "commands/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "output/units.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::size_t kHelpColumn = 30;
+constexpr std::size_t kHelpWidth = 100;
+
+// `text` broken at blanks so that no line is wider than the help, the first one beginning at `column`.
+std::string wrapped(const std::string& text, std::size_t column) {
+  std::string out;
+  std::size_t used = column;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t length = end - at;
+    if (used > column && used + 1 + length > kHelpWidth) {
+      out += '\n' + std::string(column, ' ');
+      used = column;
+    } else if (used > column) {
+      out += ' ';
+      ++used;
+    }
+    out.append(text, at, length);
+    used += length;
+    at = end + 1;
+  }
+  return out;
+}
+
+std::string entry(const std::string& label, const std::string& text) {
+  std::string out = "  " + label;
+  if (out.size() + 2 > kHelpColumn) {
+    out += '\n' + std::string(kHelpColumn, ' ');
+  } else {
+    out.resize(kHelpColumn, ' ');
+  }
+  return out + wrapped(text, kHelpColumn) + '\n';
+}
+
+class HelpFormatter final : public CLI::Formatter {
+ public:
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped(app->get_description(), 0) + "\n\n";
+  }
+  std::string make_subcommand(const CLI::App* sub) const override {
+    return entry(sub->get_name(), sub->get_description());
+  }
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    std::string label = is_positional ? option->get_type_name() : option->get_name(false, true);
+    const std::size_t comma = label.find(',');
+    if (comma != std::string::npos) {
+      label.insert(comma + 1, " ");
+    }
+    if (!is_positional && option->get_type_size() != 0) {
+      label += " " + option->get_type_name();
+    }
+    std::string text = option->get_description();
+    if (!option->get_default_str().empty()) {
+      text += " (default: " + option->get_default_str() + ")";
+    }
+    if (option->get_required() && !is_positional) {
+      text += " (required)";
+    }
+    return entry(label, text);
+  }
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    std::string usage = "Usage: " + name;
+    for (const CLI::Option* option :
+         app->get_options([](const CLI::Option* o) { return o->get_required(); })) {
+      usage += " ";
+      if (!option->get_positional()) {
+        usage += option->get_name().substr(0, option->get_name().find(',')) + " ";
+      }
+      usage += option->get_type_name();
+    }
+    usage += " [OPTIONS]";
+    if (!app->get_subcommands({}).empty()) {
+      usage = "Usage: " + name + " SUBCOMMAND [OPTIONS]";
+    }
+    return usage + "\n";
+  }
+};
+
+}  // namespace
+
+std::optional<std::int64_t> parse_whole(std::string_view text, std::int64_t low, std::int64_t high) {
+  std::int64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || next != end || number < low || number > high) {
+    return std::nullopt;
+  }
+  return number;
+}
+
+std::optional<double> parse_real(std::string_view text) {
+  double number = 0;
+  const char* end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || next != end || !std::isfinite(number)) {
+    return std::nullopt;
+  }
+  return number;
+}
+
+CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                             std::function<std::string(const std::string&)> take, const std::string& help) {
+  const std::size_t comma = name.find(',');
+  const std::string shown = comma == std::string::npos ? name : name.substr(comma + 1);
+  return app
+      .add_option_function<std::string>(
+          name,
+          [shown, take = std::move(take)](const std::string& text) {
+            const std::string fault = take(text);
+            if (!fault.empty()) {
+              throw CLI::ValidationError(shown, in_quotes(text) + " " + fault);
+            }
+          },
+          help)
+      ->type_name(type_name);
+}
+
+CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                              std::int64_t low, std::int64_t high, std::function<void(std::int64_t)> take,
+                              const std::string& help) {
+  return add_text_option(
+      app, name, type_name,
+      [=](const std::string& text) -> std::string {
+        const auto number = parse_whole(text, low, high);
+        if (!number) {
+          return "is not a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+        }
+        take(*number);
+        return {};
+      },
+      help);
+}
+
+CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                               std::function<void(std::size_t)> take, const std::string& help) {
+  std::string type_name;
+  for (const std::string& word : words) {
+    type_name += (type_name.empty() ? "" : "|") + word;
+  }
+  return add_text_option(
+      app, name, type_name,
+      [words, take = std::move(take)](const std::string& text) -> std::string {
+        const auto found = std::find(words.begin(), words.end(), CLI::detail::to_lower(text));
+        if (found == words.end()) {
+          std::string fault = "is not ";
+          for (std::size_t i = 0; i < words.size(); ++i) {
+            fault += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+          }
+          return fault;
+        }
+        take(static_cast<std::size_t>(found - words.begin()));
+        return {};
+      },
+      help);
+}
+
+CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                             std::string* path, const std::string& help) {
+  return add_text_option(
+      app, name, type_name,
+      [path](const std::string& text) -> std::string {
+        *path = text;
+        return text.empty() ? "is not a file's name" : "";
+      },
+      help);
+}
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() {
+  return std::make_shared<HelpFormatter>();
+}
+
+}  // namespace thimble::tools
