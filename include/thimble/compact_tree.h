@@ -102,7 +102,7 @@ class CompactTree {
   uint32_t first_child(uint32_t index) const;
   /// Whether the solid block `index` was made by coarsening.
   bool is_merged(uint32_t index) const {
-    return merged_bits_ != nullptr && ((merged_bits_[index >> 3] >> (index & 7U)) & 1U) != 0;
+    return merged_bits_ != nullptr && ((uint32_t{merged_bits_[index >> 3]} >> (index & 7U)) & 1U) != 0;
   }
   /// Material of the solid block `index`.
   uint8_t block_material(uint32_t index) const;
