@@ -36,7 +36,7 @@ draw() {
 }
 
 printf '%-22s %12s %12s %10s %6s %16s\n' scene 'budget bytes' 'used bytes' voxels depth 'seconds a frame'
-draw spheres-perspective 256K spheres perspective
-draw spheres-orthographic 256K spheres orthographic
-draw cluster-perspective 16M cluster:1000000 perspective
+draw spheres-perspective 64K spheres perspective
+draw spheres-orthographic 64K spheres orthographic
+draw cluster-perspective 6M cluster:1000000 perspective
 echo "pictures: $out/*.png, $out/*.ppm"

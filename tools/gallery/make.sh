@@ -1,0 +1,22 @@
+#!/bin/sh
+# Renders the pictures of the README into this folder. make.sh THIMBLE DATA_DIR
+# DATA_DIR holds the files named below; stars.xyz is made from the star catalogue as the README shows.
+set -eu
+thimble=$1
+data=$2
+out=$(dirname "$0")
+size="--size 480x360 --quiet"
+
+$thimble render spheres --depth 9 $size --eye -130,-300,520 --target 256,256,262 --fov 52 -o "$out/spheres-perspective.png"
+$thimble render spheres --depth 9 $size --projection orthographic --span 860 -o "$out/spheres-orthographic.png"
+$thimble render cluster:1000000 $size --eye 40,-420,900 --target 512,512,470 --fov 48 -o "$out/cluster.png"
+$thimble render "$data/vox/ephtracy/monu10.vox" $size --shade color --fov 30 -o "$out/monu10.png"
+$thimble render "$data/vox/ephtracy/nature.vox" $size --shade color --fov 30 -o "$out/nature.png"
+$thimble render "$data/vox/ogt/test_groups.vox" $size --shade color --eye 20,-62,48 --target 43,4,25 --fov 52 \
+  -o "$out/test_groups.png"
+$thimble render "$data/mesh/dragon_vrip_res2.ply.gz" --depth 10 $size --shade depth --eye 300,-760,620 \
+  --target 512,512,425 --fov 44 -o "$out/dragon.png"
+$thimble render "$data/cloud/building.ply" $size --shade depth --fov 32 -o "$out/building.png"
+$thimble render "$data/nbody/galaxy_littleendian.dat" $size --shade color --eye 100,60,700 --target 256,256,256 \
+  -o "$out/galaxy.png"
+$thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --target 512,512,512 --fov 44 -o "$out/stars.png"
