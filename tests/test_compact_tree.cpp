@@ -336,6 +336,20 @@ TEST_CASE("compact tree: every flipped bit -> reported, and tracing stays inside
   CHECK(sound < flips / 2);
 }
 
+TEST_CASE("compact tree: counts beyond 2^32 bytes and a size of 0 -> refused") {
+  // compact_bytes says 0 for such counts; a header that says 0 too once passed, and its nodes were anywhere.
+  for (const std::ptrdiff_t count_offset : {16, 20, 24}) {
+    const HeapBytes bytes = small_tree(Kind::kMaterials);
+    std::fill_n(bytes.span().begin() + 8, 4, std::uint8_t{0});
+    std::fill_n(bytes.span().begin() + count_offset, 4, std::uint8_t{0xFF});
+    CompactTree tree;
+    CHECK(CompactTree::open(bytes.view(), &tree) == Status::kDamaged);
+    std::uint32_t place = 0;
+    CHECK(CompactTree::validate(bytes.view(), &place) != nullptr);
+    CHECK(place == 8);
+  }
+}
+
 TEST_CASE(
     "compact tree: random damage under a valid checksum -> tracing stays inside the bytes and the bound") {
   const std::vector<Ray> rays = some_rays(4, 100);
