@@ -45,7 +45,8 @@ const char* read_header(ConstBytes bytes, CompactShape* shape, uint32_t* place) 
   shape->solid_blocks = bits::load32(base + kSolidBlocksOffset);
   shape->voxel_bits = bits::load32(base + kVoxelBitsOffset);
   const size_t size = bits::load32(base + kSizeOffset);
-  if (size != compact_bytes(*shape)) {
+  // compact_bytes is 0 for counts beyond all bytes, which a size of 0 must not agree with.
+  if (size == 0 || size != compact_bytes(*shape)) {
     return fault(place, kSizeOffset, "size does not match the counts");
   }
   if (size > bytes.size) {

@@ -152,9 +152,9 @@ TEST_CASE("compact tree: a full world of 2^10 -> one node, at most 64 bytes") {
   CHECK(tree.uniform_material() == 3);
 
   OwnedPool by_box(2000, 10);
-  REQUIRE(by_box.pool.insert_box({{0, 0, 0}, {1024, 1024, 500}}, 3) == Status::kOk);
+  REQUIRE(by_box.pool.insert_box({{0, 0, 0}, {1024, 1024, 448}}, 3) == Status::kOk);
   CHECK(compact_of(by_box.pool).view().size > 64);
-  REQUIRE(by_box.pool.insert_box({{0, 0, 500}, {1024, 1024, 1024}}, 3) == Status::kOk);
+  REQUIRE(by_box.pool.insert_box({{0, 0, 448}, {1024, 1024, 1024}}, 3) == Status::kOk);
   CHECK(equal(compact_of(by_box.pool), block_bytes));
 }
 
@@ -334,6 +334,20 @@ TEST_CASE("compact tree: every flipped bit -> reported, and tracing stays inside
   // Some bits say things that no structure contradicts: a material, the volume added.
   CHECK(sound > 0);
   CHECK(sound < flips / 2);
+}
+
+TEST_CASE("compact tree: counts beyond 2^32 bytes and a size of 0 -> refused") {
+  // compact_bytes says 0 for such counts; a header that says 0 too once passed, and its nodes were anywhere.
+  for (const std::ptrdiff_t count_offset : {16, 20, 24}) {
+    const HeapBytes bytes = small_tree(Kind::kMaterials);
+    std::fill_n(bytes.span().begin() + 8, 4, std::uint8_t{0});
+    std::fill_n(bytes.span().begin() + count_offset, 4, std::uint8_t{0xFF});
+    CompactTree tree;
+    CHECK(CompactTree::open(bytes.view(), &tree) == Status::kDamaged);
+    std::uint32_t place = 0;
+    CHECK(CompactTree::validate(bytes.view(), &place) != nullptr);
+    CHECK(place == 8);
+  }
 }
 
 TEST_CASE(

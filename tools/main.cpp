@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -42,24 +43,26 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, in
     return in_quotes(first) + (first.starts_with("-") ? " is not an option here" : " is not a subcommand") +
            advice;
   }
-  if (error.get_name() == "ExtrasError") {
-    for (const std::string& extra : chosen.front()->remaining()) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const std::vector<std::string> extras = app.remaining(true);
+    for (const std::string& extra : extras) {
       if (extra.size() > 1 && extra.starts_with("-")) {
         return in_quotes(extra) + " is not an option of " + command + advice;
       }
     }
-    for (const std::string& extra : chosen.front()->remaining()) {
-      return in_quotes(extra) + " is one argument too many" + advice;
+    if (!extras.empty()) {
+      return in_quotes(extras.front()) + " is one argument too many" + advice;
     }
   }
-  if (error.get_name() == "ArgumentMismatch") {
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const std::string text = error.what();
     const std::string name = text.substr(0, text.find(':'));
     const bool twice =
         text.find("received") != std::string::npos && text.find("At Most") != std::string::npos;
     return name + (twice ? " is given more than once" : " needs a value") + advice;
   }
-  return error.what() + advice;
+  const std::string text = error.what();
+  return (text == "scene is required" ? "SCENE is required" : text) + advice;
 }
 
 // Standard streams that are closed would be taken by the next file opened, and a picture would get the

@@ -41,7 +41,7 @@ void run(const SceneOptions& options) {
     text += label + std::string(21 - label.size(), ' ') + value + "\n";
   };
   const auto source = options.open();
-  const BuiltScene built = options.build(*source, 0);
+  const BuiltScene built = options.build(*source, 0, 0);
   const VoxelBox box = built.bounds();
   const double bytes_per_voxel =
       built.voxels() == 0 ? 0 : static_cast<double>(built.tree_bytes()) / static_cast<double>(built.voxels());

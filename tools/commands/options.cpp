@@ -167,13 +167,15 @@ std::unique_ptr<SceneSource> SceneOptions::open() const {
   return open_scene(arguments, [&](double done) { bar.update(done); });
 }
 
-BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_bytes) const {
+BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_bytes,
+                               std::uint64_t least_band_bytes) const {
   ProgressBar bar("building", quiet);
   BuildOptions options;
   options.structure = structure;
   options.memory_bytes = memory_bytes;
   options.coarsen = coarsen;
   options.band_bytes = band_bytes;
+  options.least_band_bytes = least_band_bytes;
   return BuiltScene(source, options, [&](double done) { bar.update(done); });
 }
 
@@ -299,7 +301,11 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
       }
     }
     eye_point = minus(looked_at, scaled(axes.forward, distance));
-    if (distance < wanted) {
+    const bool reachable = std::all_of(looked_at.begin(), looked_at.end(), [&](double coordinate) {
+      return coordinate >= static_cast<double>(kMinOriginWorlds) * side &&
+             coordinate <= static_cast<double>(kMaxOriginWorlds) * side;
+    });
+    if (reachable && distance < wanted) {
       for (double& coordinate : eye_point) {  // what rounding may have added
         coordinate = std::clamp(coordinate, static_cast<double>(kMinOriginWorlds) * side,
                                 static_cast<double>(kMaxOriginWorlds) * side);
@@ -325,7 +331,10 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
       }
       return Q14::from_raw(static_cast<std::int32_t>(std::max(1L, std::lround(voxels * Q14::kOne))));
     };
-    view.span = to_q14(span.value_or(2 * half_width / kFill));
+    const double whole = 2 * half_width / kFill;
+    constexpr double kMostSpan = 131071;
+    partial = !span && whole > kMostSpan;
+    view.span = to_q14(span.value_or(std::min(whole, kMostSpan)));
     view.width_px = width_px;
     view.height_px = height_px;
     view.direction_bits = direction_bits;

@@ -32,8 +32,9 @@ struct SceneOptions {
 
   void add_to(CLI::App& app);
   std::unique_ptr<SceneSource> open() const;
-  /// Builds inside the budget, with `band_bytes` for pixels (0: none are drawn).
-  BuiltScene build(const SceneSource& source, std::uint64_t band_bytes) const;
+  /// Builds inside the budget, with `band_bytes` for pixels (0: none are drawn), or at least
+  /// `least_band_bytes` when the budget is short.
+  BuiltScene build(const SceneSource& source, std::uint64_t band_bytes, std::uint64_t least_band_bytes) const;
 };
 
 /// --engine: which arithmetic traces.

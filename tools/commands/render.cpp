@@ -34,7 +34,7 @@ struct RenderCommand {
 
 constexpr std::int32_t kMostBandRows = 16;
 
-// Rows in a band: as many as a sixteenth of the budget holds.
+// Rows in a band: as many as a sixteenth of the budget holds, fewer when the scene needs the room.
 std::int32_t band_rows(const RenderCommand& command, PixelFormat format) {
   std::uint64_t rows = kMostBandRows;
   if (command.scene.memory_bytes) {
@@ -99,9 +99,10 @@ void run(const RenderCommand& command) {
   const PixelFormat format = pixel_format(kind);
   const std::int32_t width = command.view.width_px;
   const std::int32_t height = command.view.height_px;
-  const std::int32_t rows = band_rows(command, format);
   const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source, band_bytes(format, width, rows));
+  const BuiltScene built = command.scene.build(*source, band_bytes(format, width, band_rows(command, format)),
+                                               band_bytes(format, width, 1));
+  const auto rows = static_cast<std::int32_t>(built.band().size / row_bytes(format, width));
   std::string note;
   const Camera camera = command.view.camera(built.level(), built.bounds(), &note);
 
@@ -151,6 +152,11 @@ void run(const RenderCommand& command) {
   stats.frame_crc32 = crc.data();
   if (stats_file != nullptr) {
     stats_file->write(stats_text(stats));
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->flush();  // a full disk is found before any of them takes its name
+    }
   }
   for (const auto& file : files) {
     if (file != nullptr) {

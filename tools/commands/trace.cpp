@@ -162,7 +162,7 @@ void run(const TraceCommand& command) {
     stats_file = std::make_unique<OutputFile>(command.scene.stats_path);
   }
   const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source, 0);
+  const BuiltScene built = command.scene.build(*source, 0, 0);
   FileBytes bytes;
   try {
     bytes = load_file(command.rays_path);

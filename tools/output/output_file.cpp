@@ -161,10 +161,14 @@ void OutputFile::write(std::span<const unsigned char> bytes) {
   write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-void OutputFile::commit() {
+void OutputFile::flush() {
   if (std::fflush(file_) != 0) {
     fail(errno);
   }
+}
+
+void OutputFile::commit() {
+  flush();
   if (file_ == stdout) {
     return;
   }

@@ -32,6 +32,8 @@ class OutputFile {
   /// Throws OutputError when the bytes cannot be written (disk full).
   void write(std::string_view text);
   void write(std::span<const unsigned char> bytes);
+  /// Hands all bytes to the system, so that `commit` has little left that can fail. Throws OutputError.
+  void flush();
   /// Flushes and gives the file its name. Throws OutputError, leaving a file of that name as it was.
   void commit();
 

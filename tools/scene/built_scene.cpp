@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <new>
 
 #include "output/units.h"
 #include "thimble/morton.h"
@@ -13,6 +14,27 @@ namespace {
 Bytes aligned(Bytes bytes, std::size_t alignment) {
   const std::size_t past = reinterpret_cast<std::size_t>(bytes.data) & (alignment - 1);
   return bytes.subspan(past == 0 ? 0 : alignment - past);
+}
+
+// What a dense grid of the scene must hold. A grid's world is the least that holds the grid, and the world
+// decides how rays are quantised: where --depth asks for a larger one, the longest side grows until it is
+// that.
+Vec3i dense_size(const SceneSource& source) {
+  const auto extent = source.extent();
+  Vec3i size{std::max(extent[0], 1), std::max(extent[1], 1), std::max(extent[2], 1)};
+  int longest = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    longest = size[axis] > size[longest] ? axis : longest;
+  }
+  size[longest] = std::max(size[longest], (std::int32_t{1} << (source.level() - 1)) + 1);
+  return size;
+}
+
+// Bytes of an arena that a renderer with such a band takes first.
+std::uint64_t used_before_structure(std::uint64_t band_bytes) {
+  constexpr std::uint64_t kAlign = alignof(std::uint64_t);
+  const auto up = [](std::uint64_t bytes) { return (bytes + kAlign - 1) / kAlign * kAlign; };
+  return band_bytes == 0 ? 0 : up(up(render_bytes()) + band_bytes);
 }
 
 // How many keys a full list may keep after its repeats are gone: one that stays nearly full would be sorted
@@ -29,48 +51,73 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
     palette_.push_back({material.color.r, material.color.g, material.color.b});
   }
   const auto start = std::chrono::steady_clock::now();
-  memory_ = options.memory_bytes ? HostMemory(static_cast<std::size_t>(*options.memory_bytes))
-                                 : HostMemory::largest();
   try {
-    build(source, false, progress);
-  } catch (const Shortage&) {
-    bool fits = false;
-    if (options.coarsen && options.structure != StructureKind::kDense) {
-      try {
-        build(source, true, progress);
-        fits = true;
-      } catch (const Shortage&) {
-        // Not even a coarse tree has room beside the band.
-      }
+    memory_ = options.memory_bytes ? HostMemory(static_cast<std::size_t>(*options.memory_bytes))
+                                   : HostMemory::largest();
+  } catch (const std::bad_alloc&) {
+    throw InputError(options.memory_bytes ? "this machine does not give " + grouped(*options.memory_bytes) +
+                                                " bytes (--memory)"
+                                          : "this machine has no memory left for the scene");
+  }
+  if (!try_to_build(source, progress)) {
+    if (!options.memory_bytes) {
+      throw InputError("the scene does not fit into this machine's memory");
     }
-    if (!fits) {
-      if (!options.memory_bytes) {
-        throw InputError("the scene does not fit into this machine's memory");
-      }
-      // How much it would take is found by building it without a budget.
+    std::uint64_t needed = 0;
+    std::string part;
+    if (options.structure == StructureKind::kDense) {
+      // Known without building it.
+      const Vec3i size = dense_size(source);
+      needed = used_before_structure(options.least_band_bytes) + dense_grid_bytes(size);
+      part = " (" + grouped(dense_grid_bytes(size)) + " of them the grid of " + std::to_string(size.x) +
+             " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels)";
+    } else {
       BuildOptions unlimited = options;
       unlimited.memory_bytes.reset();
       unlimited.coarsen = false;
-      const std::uint64_t needed = BuiltScene(source, unlimited, progress).least_budget_bytes();
-      throw InputError("needs " + grouped(needed) + " bytes, the budget is " +
-                       grouped(*options.memory_bytes) + " (--memory); give it more" +
-                       (options.structure == StructureKind::kDense ? " or another --structure"
-                        : options.coarsen                          ? ""
-                                                                   : ", a smaller --depth or --coarsen"));
+      unlimited.band_bytes = options.least_band_bytes;
+      needed = BuiltScene(source, unlimited, progress).least_budget_bytes();
     }
+    const bool dense = options.structure == StructureKind::kDense;
+    throw InputError(
+        (options.coarsen && !dense ? "too little even for a coarse tree: in full it needs " : "needs ") +
+        grouped(needed) + " bytes" + part + ", the budget is " + grouped(*options.memory_bytes) +
+        " (--memory); give it more" +
+        (dense             ? " or another --structure"
+         : options.coarsen ? ""
+                           : ", a smaller --depth or --coarsen"));
   }
   least_budget_bytes_ = least_budget_bytes_ == 0 ? high_water_bytes() : least_budget_bytes_;
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void BuiltScene::build(const SceneSource& source, bool coarsen, const Progress& progress) {
+// A band of the least size leaves more room for the scene; merging blocks is the last resort.
+bool BuiltScene::try_to_build(const SceneSource& source, const Progress& progress) {
+  const bool may_coarsen = options_.coarsen && options_.structure != StructureKind::kDense;
+  for (int attempt = 0; attempt < (may_coarsen ? 4 : 2); ++attempt) {
+    const bool least = attempt % 2 == 1;
+    if (least && options_.least_band_bytes == options_.band_bytes) {
+      continue;
+    }
+    try {
+      build(source, least ? options_.least_band_bytes : options_.band_bytes, attempt >= 2, progress);
+      return true;
+    } catch (const Shortage&) {
+      // The next attempt makes do with less.
+    }
+  }
+  return false;
+}
+
+void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool coarsen,
+                       const Progress& progress) {
   arena_ = Arena(memory_.bytes());
   band_ = {};
-  if (options_.band_bytes != 0) {
+  if (band_bytes != 0) {
     if (arena_.take(render_bytes()).empty()) {
       throw Shortage{};
     }
-    band_ = arena_.take(static_cast<std::size_t>(options_.band_bytes));
+    band_ = arena_.take(static_cast<std::size_t>(band_bytes));
     if (band_.empty()) {
       throw Shortage{};
     }
@@ -87,17 +134,10 @@ void BuiltScene::build(const SceneSource& source, bool coarsen, const Progress& 
 }
 
 void BuiltScene::build_dense(const SceneSource& source, const Progress& progress) {
-  const auto extent = source.extent();
-  const Vec3i size{std::max(extent[0], 1), std::max(extent[1], 1), std::max(extent[2], 1)};
+  const Vec3i size = dense_size(source);
   const Bytes bytes = arena_.take(dense_grid_bytes(size));
   if (bytes.empty() || DenseGrid::init(bytes, size, &dense_) != Status::kOk) {
-    // The size is known without building: 2^36 voxels and more need no try.
-    const std::uint64_t needed = arena_.used_bytes() + dense_grid_bytes(size);
-    throw InputError("a dense grid of " + std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
-                     std::to_string(size.z) + " voxels takes " + grouped(dense_grid_bytes(size)) +
-                     " bytes; with " + grouped(arena_.used_bytes()) +
-                     " for the renderer and its band that is " + grouped(needed) + ", the budget is " +
-                     grouped(arena_.capacity_bytes()) + " (--memory)");
+    throw Shortage{};
   }
   source.stream(
       [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {

@@ -25,7 +25,8 @@ struct BuildOptions {
   StructureKind structure = StructureKind::kCompact;
   std::optional<std::uint64_t> memory_bytes;  ///< --memory: everything between reader and display
   bool coarsen = false;                       ///< --coarsen
-  std::uint64_t band_bytes = 0;               ///< one band of pixels, and what the renderer keeps
+  std::uint64_t band_bytes = 0;               ///< one band of pixels; 0: nothing is rendered
+  std::uint64_t least_band_bytes = 0;         ///< what will do for a band when the budget is short
 };
 
 /// Built once, then only read. Layout of the arena, front to back:
@@ -67,7 +68,8 @@ class BuiltScene {
  private:
   struct Shortage {};  // thrown inside `build`: the budget is too small
 
-  void build(const SceneSource& source, bool coarsen, const Progress& progress);
+  bool try_to_build(const SceneSource& source, const Progress& progress);
+  void build(const SceneSource& source, std::uint64_t band_bytes, bool coarsen, const Progress& progress);
   void build_dense(const SceneSource& source, const Progress& progress);
   void build_pool(const SceneSource& source, bool coarsen, const Progress& progress);
   template <class Key>
