@@ -74,7 +74,7 @@ void light_from(const Vec3i& toward_light, uint16_t (&face_light)[6]) {
 }
 
 Face face_of(const Hit& hit, const Vec3i& direction) {
-  int axis = hit.axis;
+  int axis = int{hit.axis};
   if (axis < 0) {
     axis = 0;
     for (int other = 1; other < 3; ++other) {

@@ -12,7 +12,8 @@ constexpr int kBrickSide = 8;
 
 // Position within an 8 x 8 x 8 arrangement, x fastest.
 std::size_t index_in_8_cubed(int x, int y, int z) {
-  return static_cast<std::size_t>(x + 8 * (y + 8 * z));
+  const int index = x + 8 * (y + 8 * z);
+  return static_cast<std::size_t>(index);
 }
 
 std::size_t brick_in_cell(const Voxel& voxel) {
@@ -56,7 +57,8 @@ std::size_t BitGrid::cell_index(const Voxel& voxel) const {
   const int x = voxel[0] / kCellSide;
   const int y = voxel[1] / kCellSide;
   const int z = voxel[2] / kCellSide;
-  return static_cast<std::size_t>(x + cells_[0] * (y + cells_[1] * z));
+  const int index = x + cells_[0] * (y + cells_[1] * z);
+  return static_cast<std::size_t>(index);
 }
 
 void BitGrid::set(const Voxel& voxel, bool solid) {

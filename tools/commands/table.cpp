@@ -112,7 +112,7 @@ std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid
     ours.voxel = {hit.voxel.x, hit.voxel.y, hit.voxel.z};
     ours.t_numerator = hit.t_numerator;
     ours.t_denominator = hit.t_denominator;
-    ours.axis = hit.axis;
+    ours.axis = int{hit.axis};
     mismatches += reference::same_answer(ours, reference::walk(grid, judged)) ? 0U : 1U;
   }
   return mismatches;

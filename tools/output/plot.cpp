@@ -112,8 +112,9 @@ std::string log_plot_text(const Plot& plot) {
       svg += "<circle cx=\"" + number(x_at(x)) + "\" cy=\"" + number(y_at(y)) + "\" r=\"3\" fill=\"" + color +
              "\"/>\n";
     }
+    const std::size_t legend_row = i / 2;
     const double column = kLeft + static_cast<double>(i % 2) * (kWidth - kLeft - kRight) / 2;
-    const double row = kHeight - kBottom + 62 + static_cast<double>(i / 2) * 18;
+    const double row = kHeight - kBottom + 62 + 18 * static_cast<double>(legend_row);
     svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
            "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
     svg += label(column + 36, row, "start", series.name);
