@@ -60,7 +60,7 @@ class DenseGrid {
   /// The bit of a voxel inside the grid.
   bool bit(const Vec3i& at) const {
     const uint64_t index = bit_index(at);
-    return ((bits_[static_cast<size_t>(index >> 3)] >> (index & 7U)) & 1U) != 0;
+    return ((uint32_t{bits_[static_cast<size_t>(index >> 3)]} >> (index & 7U)) & 1U) != 0;
   }
 
  private:
