@@ -287,6 +287,8 @@ TEST_CASE("command: an output that is an input or another output -> refused, not
                 {"scene.csv", "input"});
   check_refused({"render", scene, "-o", "-", "--hits", "-"}, 1, {"standard output"});
   check_refused({"render", scene, "-o", folder.path("p.ppm"), "--hits", folder.path("p.ppm")}, 1, {"p.ppm"});
+  check_refused({"render", scene, "-o", folder.path("p.ppm"), "--hits", folder.path("./p.ppm")}, 1,
+                {"p.ppm"});
   check_refused({"render", scene, "-o", folder.path("p.ppm"), "--stats", scene}, 1, {scene, "input"});
   CHECK(read_text(rays) == "0,0,0,1,1,1\n");
   CHECK(read_text(scene) == "1 2 3\n");
