@@ -310,8 +310,13 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
         coordinate = std::clamp(coordinate, static_cast<double>(kMinOriginWorlds) * side,
                                 static_cast<double>(kMaxOriginWorlds) * side);
       }
-      partial = true;
     }
+    // What the margin gives away may be enough to see it all even so.
+    partial = !orthographic && std::any_of(corners.begin(), corners.end(), [&](const Real3& corner) {
+      const Real3 offset = minus(corner, eye_point);
+      const double reach_y = dot(offset, axes.forward) * tan_y;
+      return std::abs(dot(offset, axes.up)) > reach_y || std::abs(dot(offset, axes.right)) > reach_y * aspect;
+    });
   }
 
   const Vec3Q8 eye_q8 = to_q8(eye_point, level, eye ? "--eye" : "the eye for this --target,");

@@ -26,6 +26,8 @@ namespace {
 
 constexpr std::int32_t kWidthPx = 800;
 constexpr std::int32_t kHeightPx = 600;
+// In a smaller world 800 pixels are finer than the 1/256 voxel that orthographic rays start on.
+constexpr int kLeastLevel = 5;
 constexpr int kFrames = 5;
 constexpr int kJudgedPixels = 10000;
 
@@ -293,9 +295,9 @@ void add_table(CLI::App& app) {
       "uniformly random points, or points that crowd")
       ->default_str("points");
   add_whole_option(
-      *sub, "--depth", "L", kMinLevel, kMaxLevel,
+      *sub, "--depth", "L", kLeastLevel, kMaxLevel,
       [command](std::int64_t level) { command->depth = static_cast<int>(level); },
-      "the world is 2^L voxels a side, L from 1 to 12; the paper's was probably smaller")
+      "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
       ->default_str("10");
   add_path_option(
       *sub, "--json", "FILE.json", &command->json_path,

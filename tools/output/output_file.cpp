@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace thimble::tools {
 namespace {
@@ -68,10 +70,19 @@ void check_distinct(std::span<const std::string> paths, std::span<const std::str
     if (a == b) {
       return true;
     }
+    if (a == "-" || b == "-") {
+      return false;
+    }
+    std::error_code ignored;
+    const auto first_path = std::filesystem::weakly_canonical(a, ignored);
+    const auto second_path = std::filesystem::weakly_canonical(b, ignored);
+    if (!first_path.empty() && first_path == second_path) {
+      return true;
+    }
     struct stat first {};
     struct stat second {};
-    return a != "-" && b != "-" && ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 &&
-           S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+    return ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 && S_ISREG(first.st_mode) &&
+           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
   };
   for (std::size_t i = 0; i < paths.size(); ++i) {
     // A device such as /dev/null takes anything any number of times.

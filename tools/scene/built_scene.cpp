@@ -176,7 +176,8 @@ void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progr
       },
       progress);
 
-  const std::size_t pool_used = Octree::octree_bytes(octree_.nodes_high_water());
+  // `rest` is aligned, so the pool needs none of the slack that octree_bytes allows for.
+  const std::size_t pool_used = Octree::octree_bytes(octree_.nodes_high_water()) - Octree::octree_bytes(0);
   if (!compact) {
     arena_.take(static_cast<std::size_t>(rest.data - arena_.rest().data) + std::min(pool_used, pool_bytes),
                 1);

@@ -1,0 +1,333 @@
+// The command as a user meets it: exit statuses, help, sentences, and files that are whole or not there.
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+
+void check_refused(const Words& words, int status, const Words& named) {
+  const CommandResult result = run_command(words);
+  std::string line;
+  for (const std::string& word : words) {
+    line += word + " ";
+  }
+  CAPTURE(line);
+  CAPTURE(result.describe());
+  CHECK(result.status == status);
+  CHECK(result.out.empty());
+  CHECK(is_one_sentence(result.err));
+  for (const std::string& name : named) {
+    CAPTURE(name);
+    CHECK(result.err.find(name) != std::string::npos);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("command: --help -> exit 0, on standard output, every option named, no line wider than 100") {
+  struct Help {
+    std::string subcommand;
+    Words names;
+  };
+  const Words scene{"SCENE",       "--depth", "--as-voxels", "--z-up",   "--memory",          "--coarsen",
+                    "--structure", "--quiet", "--stats",     "points:N", "dense|pool|compact"};
+  std::vector<Help> all{
+      {"render",
+       {"--output", "--size", "--projection", "--eye", "--target", "--up", "--fov", "--span", "--shade",
+        "--hits", "--depth-image", "--engine", "--direction-bits"}},
+      {"trace",
+       {"--rays", "--output", "--engine", "--direction-bits", "ox,oy,oz,dx,dy,dz",
+        "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz"}},
+      {"info", {}},
+      {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine"}}};
+  for (Help& help : all) {
+    if (help.subcommand != "table") {
+      help.names.insert(help.names.end(), scene.begin(), scene.end());
+    }
+    const CommandResult result = run_command({help.subcommand, "--help"});
+    CAPTURE(help.subcommand);
+    CHECK(result.status == 0);
+    CHECK(result.err.empty());
+    for (const std::string& name : help.names) {
+      CAPTURE(name);
+      CHECK(result.out.find(name) != std::string::npos);
+    }
+    for (const std::string& line : lines_of(result.out)) {
+      CHECK(line.size() <= 100);
+    }
+  }
+  const CommandResult top = run_command({"--help"});
+  CHECK(top.status == 0);
+  for (const Help& help : all) {
+    CHECK(top.out.find("  " + help.subcommand + " ") != std::string::npos);
+  }
+}
+
+TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is wrong") {
+  check_refused({}, 2, {"subcommand"});
+  check_refused({"paint"}, 2, {"\"paint\""});
+  check_refused({"--verbose"}, 2, {"\"--verbose\""});
+  check_refused({"render"}, 2, {"SCENE"});
+  check_refused({"render", "spheres"}, 2, {"--output"});
+  check_refused({"trace", "spheres"}, 2, {"--rays"});
+  check_refused({"render", "spheres", "more", "-o", "-"}, 2, {"\"more\""});
+  check_refused({"info", "spheres", "--depth"}, 2, {"--depth"});
+  check_refused({"info", "spheres", "--depth", "3", "--depth", "4"}, 2, {"--depth", "more than once"});
+  check_refused({"render", "spheres", "-o", "picture.bmp"}, 2, {"\"picture.bmp\"", ".ppm", ".png"});
+  check_refused({"render", "spheres", "-o", ""}, 2, {"--output"});
+  // What is not built yet is unknown, never ignored.
+  for (const char* option : {"--board", "--threads", "--effects", "--samples", "--cutoff", "--bounces"}) {
+    check_refused({"render", "spheres", "-o", "picture.ppm", option, "1"}, 2,
+                  {std::string("\"") + option + "\""});
+  }
+  for (const char* subcommand : {"bake", "memory", "accuracy", "effects", "particles", "sim", "boards"}) {
+    check_refused({subcommand}, 2, {std::string("\"") + subcommand + "\""});
+  }
+}
+
+TEST_CASE("command: values out of range -> status 2, the option, the value and the limits named") {
+  const auto render = [](const std::string& option, const std::string& value, const Words& named) {
+    Words all = named;
+    all.push_back(option + ": \"" + value + "\"");
+    check_refused({"render", "spheres", "-o", "picture.ppm", option, value}, 2, all);
+  };
+  for (const char* value : {"0", "13", "-1", "x", "", "3.5", "3x", "99999999999999999999"}) {
+    render("--depth", value, {"1 to 12"});
+  }
+  for (const char* value :
+       {"0x5", "5x0", "5", "5x", "x5", "5x5x5", "-5x5", "16385x5", "5x16385", "5 x 5", ""}) {
+    render("--size", value, {"WxH", "16384"});
+  }
+  for (const char* value : {"0.99", "120.01", "nan", "inf", "-60", "60deg", ""}) {
+    render("--fov", value, {"1 to 120"});
+  }
+  for (const char* value : {"0", "-1", "nan", "inf", "-inf", "1e999", "wide"}) {
+    render("--span", value, {"above 0"});
+  }
+  for (const char* option : {"--eye", "--target", "--up"}) {
+    for (const char* value : {"1,2", "1,2,3,4", "1,2,x", "nan,0,0", "inf,0,0", "1;2;3", "", ",,", "1,2,3 "}) {
+      render(option, value, {"X,Y,Z"});
+    }
+  }
+  for (const char* value : {"-1", "64X", "1e6", "K", "", "9223372036854775808", "99999999999999999999999"}) {
+    render("--memory", value, {"64K"});
+  }
+  render("--shade", "pretty", {"depth, normal, color or mono"});
+  render("--structure", "bvh", {"dense, pool or compact"});
+  render("--projection", "fisheye", {"perspective or orthographic"});
+  render("--engine", "gpu", {"auto, ray64 or ray32"});
+  for (const char* value : {"7", "21", "auto"}) {
+    render("--direction-bits", value, {"8 to 20"});
+  }
+  for (const char* value : {"x", "5,", ",5", "-5", "1000000001", "1,,2", ""}) {
+    check_refused({"table", "--points", value}, 2, {"--points", "1000000000"});
+  }
+}
+
+TEST_CASE("command: scenes that cannot be read -> status 1, the file and the fault named") {
+  const TemporaryFolder folder;
+  check_refused({"info", folder.path("none.vox")}, 1, {folder.path("none.vox"), "No such file"});
+  check_refused({"info", folder.path()}, 1, {folder.path(), "directory"});
+  check_refused({"info", folder.write("empty.ply", "")}, 1, {"empty.ply", "empty"});
+  check_refused({"info", folder.write("what.bin", "something")}, 1, {"what.bin", ".vox"});
+  check_refused({"info", folder.write("bad.xyz", "1 2 3\n4 five 6\n")}, 1, {"bad.xyz", "line 2"});
+  check_refused({"info", "--as-voxels", folder.write("far.xyz", "1 2 3\n4 5 4096\n")}, 1,
+                {"far.xyz", "point 2", "4095"});
+  check_refused({"info", "--as-voxels", "--depth", "3", folder.write("deep.xyz", "1 2 3\n4 5 8\n")}, 1,
+                {"deep.xyz", "point 2", "0..7"});
+  check_refused({"info", folder.path("two\nlines.xyz")}, 1, {"two\\x0alines.xyz"});
+  check_refused({"info", ""}, 1, {"\"\""});
+  check_refused({"info", "points:many"}, 1, {"points:many", "\"many\""});
+  check_refused({"info", "points:5,depth=13"}, 1, {"12"});
+  check_refused({"info", "points:5,color=3"}, 1, {"points:5,color=3"});
+  check_refused({"info", "spheres", "--as-voxels"}, 1, {"--as-voxels"});
+}
+
+TEST_CASE("command: names with blanks, UTF-8 and line feeds -> read, and told without breaking the line") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a b\n\xC3\xBC.xyz", "1 2 3\n");
+  const CommandResult result = run_command({"info", "--as-voxels", path});
+  CHECK(result.status == 0);
+  CHECK(result.out.find("a b\\x0a\xC3\xBC.xyz\n") != std::string::npos);
+}
+
+TEST_CASE("command: cameras that cannot be -> status 1 and what to change") {
+  const auto render = [](const Words& options, const Words& named) {
+    Words words{"render", "spheres", "-o", "-"};
+    words.insert(words.end(), options.begin(), options.end());
+    check_refused(words, 1, named);
+  };
+  render({"--eye", "1,2,3", "--target", "1,2,3"}, {"--eye", "--target"});
+  render({"--eye", "1,2,3", "--target", "1,2,9", "--up", "0,0,-4"}, {"--up", "parallel"});
+  render({"--up", "0,0,0"}, {"--up"});
+  render({"--eye", "0,0,321"}, {"--eye", "321", "-256 to 320"});
+  render({"--eye", "0,-1e300,0"}, {"--eye", "-256 to 320"});
+  render({"--target", "1e300,0,0"}, {"--target", "-256 to 320"});
+  render({"--projection", "orthographic", "--span", "1e9"}, {"--span", "131,071"});
+  render({"--projection", "orthographic", "--span", "1e-9"}, {"--span"});
+  render({"--projection", "orthographic", "--span", "5000"}, {"--span"});
+  render({"--fov", "1", "--size", "16384x16384"}, {"--fov", "--size"});
+}
+
+TEST_CASE("command: --eye with leading minus, point or plus in --up -> understood") {
+  for (const char* eye : {"-30,2,3", "-.5,-70,3", "1e1,-7e1,.5"}) {
+    const CommandResult result = run_command({"render", "spheres", "--size", "4x3", "-o", "-", "--eye", eye});
+    CAPTURE(result.describe());
+    CHECK(result.status == 0);
+  }
+}
+
+TEST_CASE("command: an output that cannot be written -> status 1, its name, and nothing left behind") {
+  const TemporaryFolder folder;
+  const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
+  const std::string ppm = folder.path("gone/picture.ppm");
+  check_refused({"render", "spheres", "-o", ppm}, 1, {ppm, "No such file"});
+  check_refused({"trace", "spheres", "--rays", rays, "-o", folder.path("gone/hits.csv")}, 1,
+                {"gone/hits.csv"});
+  check_refused({"trace", "spheres", "--rays", rays, "-o", folder.path()}, 1, {folder.path(), "directory"});
+  check_refused({"trace", "spheres", "--rays", rays, "-o", "/dev/full"}, 1, {"/dev/full", "No space"});
+  check_refused({"table", "--points", "1", "--json", folder.path("gone/t.json")}, 1, {"gone/t.json"});
+  check_refused({"info", "spheres", "--stats", folder.path("gone/s.json")}, 1, {"gone/s.json"});
+  std::filesystem::create_directory(folder.path("folder.ppm"));
+  check_refused({"render", "spheres", "-o", folder.path("folder.ppm")}, 1, {"folder.ppm", "directory"});
+  // One output of several: none appears.
+  for (const char* option : {"--hits", "--depth-image", "--stats"}) {
+    check_refused({"render", "spheres", "--quiet", "-o", folder.path("p.ppm"), option, "/dev/full"}, 1,
+                  {"/dev/full"});
+    check_refused({"render", "spheres", "--quiet", "-o", folder.path("p.ppm"), option, folder.path("gone/x")},
+                  1, {"gone/x"});
+  }
+  CHECK(folder.names() == Words{"folder.ppm", "rays.csv"});
+}
+
+TEST_CASE("command: standard output that takes nothing -> status 1") {
+  const TemporaryFolder folder;
+  const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
+  CommandLimits full;
+  full.output_path = "/dev/full";
+  for (const Words& words : {Words{"info", "spheres"}, Words{"render", "spheres", "--quiet", "-o", "-"},
+                             Words{"trace", "spheres", "--rays", rays}, Words{"table", "--points", "1"}}) {
+    const CommandResult result = run_command(words, full);
+    CAPTURE(words.front());
+    CHECK(result.status == 1);
+    CHECK(is_one_sentence(result.err));
+    CHECK(result.err.find("standard output") != std::string::npos);
+  }
+}
+
+TEST_CASE("command: a failure -> a file of the output's name keeps its bytes") {
+  const TemporaryFolder folder;
+  const std::string picture = folder.write("p.ppm", "old picture");
+  const std::string hits = folder.write("h.csv", "old hits");
+  const std::string bad = folder.write("bad.csv", "0,0,0,1,1,1\n0,0,0,0,0,0\n");
+  check_refused({"render", "spheres", "-o", picture, "--hits", hits, "--memory", "1000"}, 1, {"1,000"});
+  check_refused({"render", folder.path("none.vox"), "-o", picture, "--hits", hits}, 1, {"none.vox"});
+  check_refused({"render", "spheres", "-o", picture, "--hits", hits, "--stats", "/dev/full", "--quiet"}, 1,
+                {"/dev/full"});
+  check_refused({"trace", "spheres", "--rays", bad, "-o", hits}, 1, {"bad.csv", "line 2"});
+  CHECK(read_text(picture) == "old picture");
+  CHECK(read_text(hits) == "old hits");
+  // A disk that is full, or the like: the limit on a file's size ends the write in its middle.
+  CommandLimits small;
+  small.file_size_bytes = 20000;
+  const CommandResult result =
+      run_command({"render", "spheres", "--quiet", "-o", picture, "--size", "200x100"}, small);
+  CAPTURE(result.describe());
+  CHECK(result.status == 1);
+  CHECK(is_one_sentence(result.err));
+  CHECK(result.err.find(picture) != std::string::npos);
+  CHECK(read_text(picture) == "old picture");
+  CHECK(folder.names() == Words{"bad.csv", "h.csv", "p.ppm"});
+}
+
+TEST_CASE("command: a folder without write permission -> status 1, nothing changed") {
+  if (::geteuid() == 0) {
+    MESSAGE("skipped: root may write anywhere");
+    return;
+  }
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path("shut"));
+  std::filesystem::permissions(folder.path("shut"),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  check_refused({"render", "spheres", "-o", folder.path("shut/p.ppm")}, 1, {"shut/p.ppm", "Permission"});
+  std::filesystem::permissions(folder.path("shut"), std::filesystem::perms::owner_all);
+}
+
+TEST_CASE("command: success over a file -> replaced whole, its mode and a link to it kept, no temporary") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("p.ppm", std::string(100000, 'x'));
+  std::filesystem::permissions(path,
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  std::filesystem::create_symlink("p.ppm", folder.path("link.ppm"));
+  const CommandResult result =
+      run_command({"render", "spheres", "--size", "4x3", "-o", folder.path("link.ppm"), "--quiet"});
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
+  CHECK(std::filesystem::is_symlink(folder.path("link.ppm")));
+  CHECK(read_text(path).size() == std::string("P6\n4 3\n255\n").size() + 36);
+  CHECK((std::filesystem::status(path).permissions() & std::filesystem::perms::others_read) ==
+        std::filesystem::perms::none);
+  CHECK(folder.names() == Words{"link.ppm", "p.ppm"});
+}
+
+TEST_CASE("command: an output that is an input or another output -> refused, nothing lost") {
+  const TemporaryFolder folder;
+  const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
+  const std::string scene = folder.write("scene.csv", "1 2 3\n");
+  check_refused({"trace", "spheres", "--rays", rays, "-o", rays}, 1, {rays, "input"});
+  check_refused({"trace", scene, "--rays", rays, "-o", folder.path("./scene.csv")}, 1,
+                {"scene.csv", "input"});
+  check_refused({"render", scene, "-o", "-", "--hits", "-"}, 1, {"standard output"});
+  check_refused({"render", scene, "-o", folder.path("p.ppm"), "--hits", folder.path("p.ppm")}, 1, {"p.ppm"});
+  check_refused({"render", scene, "-o", folder.path("p.ppm"), "--hits", folder.path("./p.ppm")}, 1,
+                {"p.ppm"});
+  check_refused({"render", scene, "-o", folder.path("p.ppm"), "--stats", scene}, 1, {scene, "input"});
+  CHECK(read_text(rays) == "0,0,0,1,1,1\n");
+  CHECK(read_text(scene) == "1 2 3\n");
+  CHECK(folder.names() == Words{"rays.csv", "scene.csv"});
+}
+
+TEST_CASE(
+    "command: -o - -> standard output holds the file's bytes and nothing else, with and without --quiet") {
+  const TemporaryFolder folder;
+  const Words render{"render", "spheres", "--size", "31x17"};
+  const auto with = [](Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  CHECK(run_command(with(render, {"-o", folder.path("p.ppm")})).status == 0);
+  const std::string file = read_text(folder.path("p.ppm"));
+  const CommandResult loud = run_command(with(render, {"-o", "-"}));
+  CHECK(loud.status == 0);
+  CHECK(loud.out == file);
+  CHECK(loud.err.find("28,327 voxels") != std::string::npos);
+  const CommandResult quiet = run_command(with(render, {"-o", "-", "--quiet"}));
+  CHECK(quiet.status == 0);
+  CHECK(quiet.out == file);
+  CHECK(quiet.err.empty());
+
+  const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
+  CHECK(run_command({"trace", "spheres", "--rays", rays, "-o", folder.path("h.csv")}).status == 0);
+  const CommandResult traced = run_command({"trace", "spheres", "--rays", rays});
+  CHECK(traced.status == 0);
+  CHECK(traced.out == read_text(folder.path("h.csv")));
+  CHECK(traced.err.empty());
+}
+
+TEST_CASE("command: a pipe as scene, a device as output -> both work") {
+  const TemporaryFolder folder;
+  const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
+  CHECK(run_command({"trace", "spheres", "--rays", rays, "-o", "/dev/null"}).status == 0);
+  CHECK(run_command({"info", "points:0"}).status == 0);
+  CHECK(run_command({"info", "points:1", "--depth", "1"}).status == 0);
+  // Standard input is empty here.
+  check_refused({"info", "/dev/stdin"}, 1, {"/dev/stdin"});
+}

@@ -1,0 +1,117 @@
+// `thimble info`: what it says of each kind of scene.
+#include <doctest/doctest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+
+// label -> value, from columns of blanks.
+std::map<std::string, std::string> info(const Words& words) {
+  Words all{"info"};
+  all.insert(all.end(), words.begin(), words.end());
+  const CommandResult result = run_command(all);
+  CAPTURE(result.describe());
+  REQUIRE(result.status == 0);
+  CHECK(result.err.empty());
+  std::map<std::string, std::string> rows;
+  for (const std::string& line : lines_of(result.out)) {
+    const std::size_t end = line.find("  ");
+    REQUIRE(end != std::string::npos);
+    rows[line.substr(0, end)] = line.substr(line.find_first_not_of(' ', end));
+  }
+  return rows;
+}
+
+std::string little(std::uint32_t number) {
+  std::string bytes;
+  for (int shift = 0; shift < 32; shift += 8) {
+    bytes += static_cast<char>(number >> shift & 255U);
+  }
+  return bytes;
+}
+
+std::string chunk(const std::string& id, const std::string& content, const std::string& children = "") {
+  return id + little(static_cast<std::uint32_t>(content.size())) +
+         little(static_cast<std::uint32_t>(children.size())) + content + children;
+}
+
+}  // namespace
+
+TEST_CASE("info: a generator -> depth, points, voxels, a sound compact tree") {
+  auto rows = info({"points:1000,depth=7,seed=3"});
+  CHECK(rows["scene"] == "points:1000,depth=7,seed=3");
+  CHECK(rows["kind"] == "generator points");
+  CHECK(rows["depth"] == "7 (a world of 128 voxels a side)");
+  CHECK(rows["points"] == "1,000");
+  CHECK(rows["materials"] == "1: 1 diffuse");
+  CHECK(rows["compact tree"] == "sound");
+  CHECK(info({"points:1000,depth=7", "--depth", "5"})["depth"].starts_with("5 "));
+  rows = info({"points:0"});
+  CHECK(rows["solid voxels"] == "0");
+  CHECK(rows["occupied box"] == "none");
+  // A full world, whatever the order of its points, is one node.
+  rows = info({"points:40000,depth=3"});
+  CHECK(rows["solid voxels"] == "512");
+}
+
+TEST_CASE("info: a .vox of two voxels and two materials -> its own indices, the least world that holds it") {
+  const TemporaryFolder folder;
+  const std::string size = little(20) + little(5) + little(9);
+  const std::string voxels =
+      little(2) + std::string("\x00\x01\x02\x05", 4) + std::string("\x13\x04\x08\x07", 4);
+  const std::string vox =
+      "VOX " + little(150) + chunk("MAIN", "", chunk("SIZE", size) + chunk("XYZI", voxels));
+  const std::string path = folder.write("two.vox", vox);
+  auto rows = info({path});
+  CHECK(rows["scene"] == path);
+  CHECK(rows["depth"] == "5 (a world of 32 voxels a side)");
+  CHECK(rows["solid voxels"] == "2");
+  CHECK(rows["occupied box"] == "0,1,2 to 20,5,9 (exclusive)");
+  CHECK(rows["materials"] == "2: 2 diffuse");
+  const CommandResult small = run_command({"info", path, "--depth", "4"});
+  CHECK(small.status == 1);
+  CHECK(small.err.find("20 voxels") != std::string::npos);
+  CHECK(small.err.find("--depth 5") != std::string::npos);
+}
+
+TEST_CASE("info: a mesh -> voxelised, y up turned to z up unless --z-up") {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.write("plate.obj", "v 0 0 0\nv 8 0 0\nv 8 0 4\nv 0 0 4\nf 1 2 3\nf 1 3 4\n");
+  auto turned = info({path, "--depth", "3"});
+  CHECK(turned["kind"] == "triangle mesh, voxelised");
+  auto kept = info({path, "--depth", "3", "--z-up"});
+  CHECK(turned["occupied box"] != kept["occupied box"]);
+  CHECK(info({path})["depth"].starts_with("9 "));
+}
+
+TEST_CASE("info: points -> fitted to the world, or as voxel indices with --as-voxels") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("p.xyz", "10 20 30\n12 25 31\n12 25 31\n");
+  auto rows = info({path, "--as-voxels"});
+  CHECK(rows["points"] == "3");
+  CHECK(rows["solid voxels"] == "2");
+  CHECK(rows["depth"].starts_with("5 "));
+  CHECK(rows["occupied box"] == "10,20,30 to 13,26,32 (exclusive)");
+  rows = info({path});
+  CHECK(rows["depth"].starts_with("9 "));
+  CHECK(rows["solid voxels"] == "2");
+}
+
+TEST_CASE("info: --stats -> the keys of every command, the frame's being zero or empty") {
+  const TemporaryFolder folder;
+  info({"spheres", "--stats", folder.path("s.json"), "--structure", "pool"});
+  const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
+  CHECK(stats["voxels"] == 28327);
+  CHECK(stats["rays"] == 0);
+  CHECK(stats["frame_crc32"] == "");
+  CHECK(stats["high_water_bytes"] <= stats["budget_bytes"]);
+}

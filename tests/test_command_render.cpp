@@ -1,0 +1,705 @@
+// `thimble render`: pictures, hits, distances, cameras, budgets, each judged by something that is not the
+// renderer.
+#include <doctest/doctest.h>
+#include <zlib.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/hit_rows.h"
+#include "support/ray_cases.h"
+#include "support/run_command.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wcast-align"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#define STB_IMAGE_IMPLEMENTATION
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+using nlohmann::json;
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+CommandResult render(const Words& words) {
+  const CommandResult result = run_command(Words{"render"} + words);
+  CAPTURE(result.describe());
+  CHECK(result.status == 0);
+  return result;
+}
+
+std::string crc_of(std::string_view bytes) {
+  std::array<char, 9> text{};
+  std::snprintf(text.data(), text.size(), "%08lx",
+                crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+  return text.data();
+}
+
+struct Rendered {
+  std::vector<HitRow> hits;
+  json stats;
+  std::string picture;
+};
+
+// Renders into `folder` and reads back the hits, the stats and the PPM.
+Rendered render_all(const TemporaryFolder& folder, const Words& words) {
+  render(words + Words{"-o", folder.path("all.ppm"), "--hits", folder.path("all.csv"), "--stats",
+                       folder.path("all.json"), "--quiet"});
+  return {parse_hits(read_text(folder.path("all.csv")), true),
+          json::parse(read_text(folder.path("all.json"))), read_text(folder.path("all.ppm"))};
+}
+
+World world_of(WorldKind kind, const reference::Voxel& size, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  return make_world(kind, size, random);
+}
+
+std::uint64_t number_after(const std::string& text, const std::string& word) {
+  std::uint64_t number = 0;
+  const std::size_t at = text.find(word);
+  REQUIRE(at != std::string::npos);
+  for (std::size_t i = at + word.size(); i < text.size() && (std::isdigit(text[i]) != 0 || text[i] == ',');
+       ++i) {
+    number = text[i] == ',' ? number : number * 10 + static_cast<std::uint64_t>(text[i] - '0');
+  }
+  return number;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "render: ppm, pgm, pbm, png -> header, size and CRC-32 of the pixel bytes; the PNG's pixels are the "
+    "PPM's") {
+  const TemporaryFolder folder;
+  for (const char* shade : {"depth", "normal", "color", "mono"}) {
+    const auto draw = [&](const std::string& ending, const std::string& header, std::size_t bytes) {
+      const std::string path = folder.path("p." + ending);
+      render({"spheres", "--size", "37x21", "--shade", shade, "-o", path, "--stats", folder.path("s.json"),
+              "--quiet"});
+      const std::string file = read_text(path);
+      CAPTURE(path);
+      const json stats = json::parse(read_text(folder.path("s.json")));
+      if (ending != "png") {
+        CHECK(file.starts_with(header));
+        CHECK(file.size() == header.size() + bytes);
+        CHECK(stats["frame_crc32"] == crc_of(std::string_view(file).substr(header.size())));
+      }
+      return std::pair(file, stats["frame_crc32"].get<std::string>());
+    };
+    const std::string header = "P6\n37 21\n255\n";
+    const auto [ppm, ppm_crc] = draw("ppm", header, 37 * 21 * 3);
+    draw("pgm", "P5\n37 21\n255\n", 37 * 21);
+    const auto [pbm, pbm_crc] = draw("pbm", "P4\n37 21\n", 5 * 21);
+    for (std::size_t row = 0; row < 21; ++row) {
+      CHECK((static_cast<unsigned char>(pbm[std::string("P4\n37 21\n").size() + row * 5 + 4]) & 7U) == 0);
+    }
+    const auto [png, png_crc] = draw("png", "", 0);
+    CHECK(png_crc == ppm_crc);
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    unsigned char* pixels =
+        stbi_load_from_memory(reinterpret_cast<const unsigned char*>(png.data()),
+                              static_cast<int>(png.size()), &width, &height, &channels, 0);
+    REQUIRE(pixels != nullptr);
+    CHECK(width == 37);
+    CHECK(height == 21);
+    REQUIRE(channels == 3);
+    CHECK(std::memcmp(pixels, ppm.data() + header.size(), 37 * 21 * 3) == 0);
+    stbi_image_free(pixels);
+    // Something is in the picture, and not everything.
+    CHECK(std::set<char>(ppm.begin() + 13, ppm.end()).size() >= 2);
+  }
+}
+
+TEST_CASE("render: --hits and --depth-image -> every pixel as the exact reference says, both projections") {
+  const TemporaryFolder folder;
+  struct Case {
+    WorldKind kind;
+    reference::Voxel size;
+    Words options;
+  };
+  const Words parallel{"--projection", "orthographic"};
+  const std::vector<Case> cases{
+      {WorldKind::kRandom, {16, 16, 16}, {}},
+      {WorldKind::kSparse, {100, 70, 40}, {}},
+      {WorldKind::kSparse, {100, 70, 40}, parallel},
+      {WorldKind::kCheckerboard, {8, 8, 8}, parallel},
+      {WorldKind::kCheckerboard, {8, 8, 8}, {"--eye", "4,-9,4"}},
+      {WorldKind::kShell, {12, 12, 12}, {"--eye", "6,6,6", "--target", "6,6,0", "--fov", "120"}},
+      {WorldKind::kDense, {20, 20, 20}, {"--eye", "10.5,10.25,9.75", "--target", "0,0,0"}},
+      {WorldKind::kCorners, {2000, 2000, 2000}, {"--eye", "-10,-10,-10", "--target", "2000,2000,2000"}},
+      {WorldKind::kCheckerboard,
+       {8, 8, 8},
+       parallel + Words{"--eye", "-3,-3,-3", "--target", "4,4,4", "--span", "16"}},
+  };
+  std::uint64_t seed = 7100;
+  for (const Case& one : cases) {
+    CAPTURE(++seed);
+    const World world = world_of(one.kind, one.size, seed);
+    const std::string scene = folder.write("world.xyz", as_xyz(world.voxels));
+    const reference::BitGrid grid(one.size, world.voxels);
+    const Rendered all = render_all(
+        folder, Words{scene, "--as-voxels", "--size", "61x43", "--depth-image", folder.path("all.pfm")} +
+                    one.options);
+    REQUIRE(all.hits.size() == 61 * 43);
+    const std::string pfm = read_text(folder.path("all.pfm"));
+    const std::string header = "Pf\n61 43\n-1.0\n";
+    REQUIRE(pfm.starts_with(header));
+    REQUIRE(pfm.size() == header.size() + 61 * 43 * 4);
+    std::size_t hits = 0;
+    std::size_t visits = 0;
+    std::string first_fault;
+    for (std::size_t i = 0; i < all.hits.size(); ++i) {
+      const HitRow& row = all.hits[i];
+      if (row.px != static_cast<int>(i % 61) || row.py != static_cast<int>(i / 61)) {
+        first_fault = "not row by row from the top left";
+        break;
+      }
+      hits += row.hit ? 1U : 0U;
+      visits += static_cast<std::size_t>(row.nodes);
+      float distance = 0;  // a PFM's rows go from the bottom
+      std::memcpy(&distance, pfm.data() + header.size() + 4 * ((42 - i / 61) * 61 + i % 61), 4);
+      float expected = std::numeric_limits<float>::infinity();
+      if (row.hit) {
+        long double squares = 0;
+        for (const std::int64_t d : row.ray.direction) {
+          squares += static_cast<long double>(d) * static_cast<long double>(d);
+        }
+        expected = static_cast<float>(reference::walk(grid, row.ray).t() * std::sqrt(squares));
+      }
+      std::string fault = judge(grid, row);
+      if (fault.empty() && distance != expected &&
+          !(std::abs(distance - expected) <= std::abs(expected) * 1.2e-7F)) {
+        fault = "distance " + std::to_string(distance) + ", not " + std::to_string(expected);
+      }
+      if (first_fault.empty()) {
+        first_fault = fault;
+      }
+    }
+    CHECK(first_fault == "");
+    CHECK(hits > 0);
+    CHECK(all.stats["hits"] == hits);
+    CHECK(all.stats["rays"] == 61 * 43);
+    CHECK(all.stats["voxels"] == world.voxels.size());
+    CHECK(all.stats["node_visits"] > 0);
+    CHECK(all.stats["node_visits"] <= visits);
+  }
+}
+
+TEST_CASE("render: one voxel off the middle -> seen up, down, left and right as right = forward x up says") {
+  const TemporaryFolder folder;
+  const auto where = [&](const std::string& voxel, const Words& options) {
+    const std::string scene = folder.write("one.xyz", voxel + "\n");
+    double x = 0;
+    double y = 0;
+    int count = 0;
+    for (const HitRow& row :
+         render_all(folder, Words{scene, "--as-voxels", "--depth", "4", "--size", "60x60"} + options).hits) {
+      x += row.hit ? row.px - 29.5 : 0;
+      y += row.hit ? row.py - 29.5 : 0;
+      count += row.hit ? 1 : 0;
+    }
+    REQUIRE(count > 0);
+    const double near = 4;
+    return std::string(y / count < -near  ? "up"
+                       : y / count > near ? "down"
+                                          : "") +
+           (x / count < -near  ? "left"
+            : x / count > near ? "right"
+                               : "");
+  };
+  for (const Words& projection :
+       {Words{"--projection", "perspective"}, Words{"--projection", "orthographic", "--span", "20"}}) {
+    const Words along_y = Words{"--eye", "8.5,-15,8.5", "--target", "8.5,8,8.5"} + projection;
+    CHECK(where("8 8 14", along_y) == "up");
+    CHECK(where("8 8 2", along_y) == "down");
+    CHECK(where("14 8 8", along_y) == "right");
+    CHECK(where("2 8 8", along_y) == "left");
+    CHECK(where("14 8 14", along_y) == "upright");
+    CHECK(where("8 8 14", along_y + Words{"--up", "0,0,-3"}) == "down");
+    CHECK(where("14 8 8", along_y + Words{"--up", "0,0,-3"}) == "left");
+    CHECK(where("8 8 14", along_y + Words{"--up", "1,0,0"}) == "left");
+    const Words along_x = Words{"--eye", "-15,8.5,8.5", "--target", "8,8.5,8.5"} + projection;
+    CHECK(where("8 14 8", along_x) == "left");
+    CHECK(where("8 8 14", along_x) == "up");
+    // Along z there is no up by z: y is up.
+    const Words down_z = Words{"--eye", "8.5,8.5,31", "--target", "8.5,8.5,8"} + projection;
+    CHECK(where("8 14 8", down_z) == "up");
+    CHECK(where("14 8 8", down_z) == "right");
+    const Words up_z = Words{"--eye", "8.5,8.5,-15", "--target", "8.5,8.5,8"} + projection;
+    CHECK(where("8 14 8", up_z) == "up");
+    CHECK(where("14 8 8", up_z) == "left");
+  }
+}
+
+TEST_CASE("render: --span -> the picture's width in voxels; a wall of voxels is drawn pixel by pixel") {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(17);
+  std::set<std::pair<int, int>> wall;  // x, z
+  std::vector<reference::Voxel> voxels;
+  for (int x = 0; x < 16; ++x) {
+    for (int z = 0; z < 16; ++z) {
+      if (random() % 2 == 0) {
+        wall.insert({x, z});
+        voxels.push_back({x, 8, z});
+      }
+    }
+  }
+  const std::string scene = folder.write("wall.xyz", as_xyz(voxels));
+  const Rendered all = render_all(
+      folder, {scene, "--as-voxels", "--depth", "4", "--projection", "orthographic", "--eye", "8,-5,8",
+               "--target", "8,0,8", "--span", "16", "--size", "64x48", "--shade", "mono"});
+  for (const HitRow& row : all.hits) {
+    const int x = row.px / 4;
+    const int z = (56 - row.py - 1) / 4;  // 48 rows are 12 voxels: z from 2 to 14
+    REQUIRE(row.hit == wall.contains({x, z}));
+    if (row.hit) {
+      REQUIRE(row.voxel == reference::Voxel{x, 8, z});
+      REQUIRE(row.axis == 1);
+    }
+    const std::size_t at =
+        std::string("P6\n64 48\n255\n").size() + 3 * static_cast<std::size_t>(row.py * 64 + row.px);
+    REQUIRE(static_cast<unsigned char>(all.picture[at]) == (row.hit ? 255 : 0));
+  }
+}
+
+TEST_CASE("render: --fov -> vertical; 90 degrees see as far up and down as the wall is away") {
+  const TemporaryFolder folder;
+  std::vector<reference::Voxel> voxels;
+  for (int x = 0; x < 32; ++x) {
+    for (int z = 0; z < 32; ++z) {
+      voxels.push_back({x, 16, z});
+    }
+  }
+  const std::string scene = folder.write("wall.xyz", as_xyz(voxels));
+  for (const auto& [width, height] : {std::pair(40, 20), std::pair(20, 40), std::pair(30, 30)}) {
+    const Rendered all =
+        render_all(folder, {scene, "--as-voxels", "--eye", "16,0,16", "--target", "16,1,16", "--fov", "90",
+                            "--size", std::to_string(width) + "x" + std::to_string(height)});
+    const double pixel = 32.0 / height;
+    int judged = 0;
+    for (const HitRow& row : all.hits) {
+      const double x = 16 + (row.px + 0.5 - width / 2.0) * pixel;
+      const double z = 16 - (row.py + 0.5 - height / 2.0) * pixel;
+      const auto unsure = [&](double v) { return std::abs(v - std::round(v)) < pixel / 8; };
+      if (unsure(x) || unsure(z)) {
+        continue;
+      }
+      ++judged;
+      const bool inside = x > 0 && x < 32 && z > 0 && z < 32;
+      REQUIRE(row.hit == inside);
+      if (inside) {
+        REQUIRE(row.voxel == reference::Voxel{static_cast<int>(x), 16, static_cast<int>(z)});
+      }
+    }
+    CHECK(judged > width * height / 8);
+  }
+}
+
+namespace {
+
+using Triple = std::array<double, 3>;
+
+// Solves c = k0 * a + k1 * b + k2 * d.
+Triple solve(const Triple& a, const Triple& b, const Triple& d, const Triple& c) {
+  const auto det = [](const Triple& u, const Triple& v, const Triple& w) {
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) - v[0] * (u[1] * w[2] - u[2] * w[1]) +
+           w[0] * (u[1] * v[2] - u[2] * v[1]);
+  };
+  const double all = det(a, b, d);
+  return {det(c, b, d) / all, det(a, c, d) / all, det(a, b, c) / all};
+}
+
+Triple origin_of(const HitRow& row) {
+  Triple result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result[axis] = static_cast<double>(row.ray.origin_q8[axis]) / 256;
+  }
+  return result;
+}
+Triple direction_of(const HitRow& row) {
+  Triple result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result[axis] = static_cast<double>(row.ray.direction[axis]);
+  }
+  return result;
+}
+Triple minus(const Triple& a, const Triple& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+}  // namespace
+
+TEST_CASE("render: the default camera -> all eight corners of what is occupied are in the picture") {
+  const TemporaryFolder folder;
+  struct Case {
+    reference::Voxel low;
+    reference::Voxel high;  // inclusive
+    std::string depth;
+  };
+  const std::vector<Case> cases{
+      {{0, 0, 0}, {31, 31, 31}, "5"},     {{3, 3, 3}, {3, 3, 3}, "4"},
+      {{0, 0, 7}, {255, 255, 7}, "8"},    {{5, 200, 9}, {5, 200, 255}, "8"},
+      {{0, 17, 17}, {255, 17, 17}, "8"},  {{2000, 2000, 2000}, {2019, 2009, 2039}, "12"},
+      {{4090, 0, 0}, {4095, 3, 9}, "12"}, {{0, 0, 0}, {4095, 4095, 4095}, "12"}};
+  int runs = 0;
+  int notes = 0;
+  for (const Case& one : cases) {
+    const std::string scene = folder.write("box.xyz", as_xyz({one.low, one.high}));
+    for (const auto& [width, height] :
+         {std::pair(9, 7), std::pair(80, 60), std::pair(60, 80), std::pair(90, 9), std::pair(7, 63)}) {
+      for (const char* fov : {"1", "5", "30", "60", "90", "120", ""}) {
+        const bool parallel = std::string(fov).empty();
+#ifdef __SANITIZE_ADDRESS__
+        if (++runs % 7 != 0) {
+          continue;
+        }
+#else
+        ++runs;
+#endif
+        Words words{"render",
+                    scene,
+                    "--as-voxels",
+                    "--depth",
+                    one.depth,
+                    "--size",
+                    std::to_string(width) + "x" + std::to_string(height),
+                    "-o",
+                    "/dev/null"};
+        words[words.size() - 1] = folder.path("p.pbm");
+        words = words + Words{"--hits", folder.path("h.csv")} +
+                (parallel ? Words{"--projection", "orthographic"} : Words{"--fov", fov});
+        const CommandResult result = run_command(words);
+        CAPTURE(one.depth);
+        CAPTURE(one.low[0]);
+        CAPTURE(width);
+        CAPTURE(height);
+        CAPTURE(fov);
+        CAPTURE(result.describe());
+        REQUIRE(result.status == 0);
+        const std::vector<HitRow> rows = parse_hits(read_text(folder.path("h.csv")), true);
+        const HitRow& top_left = rows[0];
+        const HitRow& top_right = rows[static_cast<std::size_t>(width - 1)];
+        const HitRow& bottom_left = rows[static_cast<std::size_t>((height - 1) * width)];
+        bool inside = true;
+        for (unsigned corner = 0; corner < 8; ++corner) {
+          Triple point{};
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            point[axis] = ((corner >> axis) & 1U) != 0 ? one.high[axis] + 1 : one.low[axis];
+          }
+          double x = 0;  // 0 at the first pixel centre, 1 at the last
+          double y = 0;
+          if (parallel) {
+            const Triple k = solve(minus(origin_of(top_right), origin_of(top_left)),
+                                   minus(origin_of(bottom_left), origin_of(top_left)), direction_of(top_left),
+                                   minus(point, origin_of(top_left)));
+            x = k[0];
+            y = k[1];
+            inside = inside && k[2] > 0;
+          } else {
+            const Triple first = direction_of(top_left);
+            const Triple k =
+                solve(first, minus(direction_of(top_right), first), minus(direction_of(bottom_left), first),
+                      minus(point, origin_of(top_left)));
+            x = k[1] / k[0];
+            y = k[2] / k[0];
+            inside = inside && k[0] > 0;
+          }
+          const double px = x * (width - 1);
+          const double py = y * (height - 1);
+          inside = inside && px > -0.5 && px < width - 0.5 && py > -0.5 && py < height - 0.5;
+        }
+        // Where rays may not start far enough away, the command says so, and only there.
+        const bool noted = result.err.find("note: ") != std::string::npos;
+        CHECK(inside != noted);
+        const bool narrow = width == 90 || width == 7 || std::string(fov) == "1" || std::string(fov) == "5";
+        CHECK((!noted || narrow));
+        notes += noted ? 1 : 0;
+      }
+    }
+  }
+  CHECK(notes < runs / 4);
+}
+
+TEST_CASE("render: the paper's first tracer, 800 x 600 x 1 -> 60,000 bytes, and the picture is the grid") {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(3);
+  std::set<std::pair<int, int>> solid{{799, 599}, {0, 0}};
+  while (solid.size() < 5000) {
+    solid.insert({static_cast<int>(random() % 800), static_cast<int>(random() % 600)});
+  }
+  std::vector<reference::Voxel> voxels;
+  for (const auto& [x, y] : solid) {
+    voxels.push_back({x, y, 0});
+  }
+  const std::string scene = folder.write("flat.xyz", as_xyz(voxels));
+  const Words words{scene,          "--as-voxels",
+                    "--structure",  "dense",
+                    "--shade",      "mono",
+                    "--projection", "orthographic",
+                    "--eye",        "400,300,5",
+                    "--target",     "400,300,0",
+                    "--span",       "800",
+                    "-o",           folder.path("p.pbm"),
+                    "--stats",      folder.path("s.json")};
+  render(words + Words{"--quiet"});
+  const json stats = json::parse(read_text(folder.path("s.json")));
+  CHECK(stats["tree_bytes"] == 60000);
+  CHECK(stats["voxels"] == 5000);
+  CHECK(stats["hits"] == 5000);
+  const std::string picture = read_text(folder.path("p.pbm"));
+  const std::string header = "P4\n800 600\n";
+  REQUIRE(picture.size() == header.size() + 60000);
+  int wrong = 0;
+  for (int y = 0; y < 600; ++y) {
+    for (int x = 0; x < 800; ++x) {
+      const auto byte =
+          static_cast<unsigned char>(picture[header.size() + static_cast<std::size_t>(y * 100 + x / 8)]);
+      const bool white = ((byte >> (7 - x % 8)) & 1) == 0;
+      wrong += white != solid.contains({x, 599 - y}) ? 1 : 0;
+    }
+  }
+  CHECK(wrong == 0);
+
+  const CommandResult refused = run_command(Words{"render"} + words + Words{"--memory", "60000"});
+  CAPTURE(refused.describe());
+  CHECK(refused.status == 1);
+  CHECK(refused.err.find("60,000 of them the grid of 800 x 600 x 1 voxels") != std::string::npos);
+  const std::uint64_t needed = number_after(refused.err, "needs ");
+  CHECK(needed > 60000);
+  CHECK(needed < 61000);
+  CHECK(run_command(Words{"render"} + words + Words{"--memory", std::to_string(needed)}).status == 0);
+  CHECK(run_command(Words{"render"} + words + Words{"--memory", std::to_string(needed - 1)}).status == 1);
+}
+
+TEST_CASE("render: the paper's own sum, 800 x 600 x 800 -> 48,000,000 bytes, named by the refusal") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("far.xyz", "0 0 0\n799 599 799\n");
+  const Words words{"info", scene, "--as-voxels", "--structure", "dense"};
+  const CommandResult refused = run_command(words + Words{"--memory", "47999999"});
+  CHECK(refused.status == 1);
+  CHECK(is_one_sentence(refused.err));
+  CHECK(number_after(refused.err, "needs ") == 48000000);
+  const CommandResult fits =
+      run_command(words + Words{"--memory", "48000000", "--stats", folder.path("s.json")});
+  CHECK(fits.status == 0);
+  const json stats = json::parse(read_text(folder.path("s.json")));
+  CHECK(stats["tree_bytes"] == 48000000);
+  CHECK(stats["high_water_bytes"] == 48000000);
+  CHECK(stats["budget_bytes"] == 48000000);
+}
+
+TEST_CASE("render: every structure and engine -> the same picture and, but for the nodes, the same hits") {
+  const TemporaryFolder folder;
+  const World world = world_of(WorldKind::kRandom, {24, 20, 9}, 91);
+  const std::string scene = folder.write("world.xyz", as_xyz(world.voxels));
+  const std::vector<Words> scenes{{scene, "--as-voxels"},
+                                  {scene, "--as-voxels", "--depth", "9"},
+                                  {"spheres"},
+                                  {"points:3000,depth=5"},
+                                  {"points:0,depth=3"}};
+  for (const Words& one : scenes) {
+    for (const char* projection : {"perspective", "orthographic"}) {
+      std::vector<std::string> first;
+      std::string first_picture;
+      for (const char* structure : {"dense", "pool", "compact"}) {
+        for (const char* engine : {"auto", "ray64", "ray32"}) {
+          const Rendered all = render_all(folder, one + Words{"--size", "40x30", "--projection", projection,
+                                                              "--structure", structure, "--engine", engine});
+          std::vector<std::string> lines;
+          for (const std::string& line : lines_of(read_text(folder.path("all.csv")))) {
+            std::vector<std::string> columns = split(line);
+            columns[8] = "";
+            std::string joined;
+            for (const std::string& column : columns) {
+              joined += column + ",";
+            }
+            lines.push_back(joined);
+          }
+          CAPTURE(one.front());
+          CAPTURE(one.back());
+          CAPTURE(projection);
+          CAPTURE(structure);
+          CAPTURE(engine);
+          if (first.empty()) {
+            first = lines;
+            first_picture = all.picture;
+          }
+          // "points" has no colours, so that a dense grid can show what the trees do.
+          CHECK(all.picture == first_picture);
+          CHECK(lines == first);
+          CHECK(all.stats["engine"] == (std::string(engine) == "ray32" ? "ray32" : "ray64"));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("render: --engine ray32 on rays that need more -> status 1, nothing written") {
+  const TemporaryFolder folder;
+  const CommandResult result = run_command({"render", "points:9", "-o", folder.path("p.ppm"), "--engine",
+                                            "ray32", "--direction-bits", "20", "--size", "9x9"});
+  CHECK(result.status == 1);
+  CHECK(is_one_sentence(result.err));
+  CHECK(result.err.find("ray32") != std::string::npos);
+  CHECK(folder.names().empty());
+}
+
+TEST_CASE("render: every budget -> the exact need is named and is exact; high water never above the budget") {
+  const TemporaryFolder folder;
+  const World world = world_of(WorldKind::kSparse, {60, 50, 40}, 5);
+  const std::string sparse = folder.write("world.xyz", as_xyz(world.voxels));
+  const std::string colored = folder.write("colored.xyz", [&] {
+    std::string text;
+    for (std::size_t i = 0; i < world.voxels.size(); ++i) {
+      const auto& v = world.voxels[i];
+      text += std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + " " +
+              std::to_string(i % 7 * 30) + " " + std::to_string(i % 3 * 100) + " 9\n";
+    }
+    return text;
+  }());
+  // The third has many more points than voxels.
+  const std::vector<Words> scenes{{sparse, "--as-voxels"},
+                                  {colored, "--as-voxels"},
+                                  {"points:20000,depth=4"},
+                                  {"points:500,depth=8"},
+                                  {"spheres,depth=5"}};
+  for (const Words& one : scenes) {
+    for (const char* structure : {"compact", "pool", "dense"}) {
+      for (const char* size : {"16x12", "400x8"}) {
+        const Words words = Words{"render",  "-o",      folder.path("p.ppm"),  "--size", size, "--structure",
+                                  structure, "--stats", folder.path("s.json"), "--quiet"} +
+                            one;
+        CAPTURE(one.front());
+        CAPTURE(structure);
+        CAPTURE(size);
+        const CommandResult none = run_command(words + Words{"--memory", "0"});
+        CHECK(none.status == 1);
+        const std::uint64_t needed = number_after(none.err, "needs ");
+        CHECK(run_command(words + Words{"--memory", std::to_string(needed)}).status == 0);
+        const json exact = json::parse(read_text(folder.path("s.json")));
+        CHECK(exact["budget_bytes"] == needed);
+        CHECK(exact["high_water_bytes"] <= needed);
+        CHECK(exact["solid_added"] == 0);
+        for (const std::uint64_t budget :
+             {needed - 1, needed - 7, needed / 2, needed / 16, std::uint64_t{100}, std::uint64_t{1}}) {
+          const CommandResult less = run_command(words + Words{"--memory", std::to_string(budget)});
+          CHECK(less.status == 1);
+          CHECK(is_one_sentence(less.err));
+          CHECK(number_after(less.err, "needs ") == needed);
+        }
+        for (const std::uint64_t budget : {needed + 1, needed + 4000, needed * 3, needed * 100}) {
+          CHECK(run_command(words + Words{"--memory", std::to_string(budget)}).status == 0);
+          const json stats = json::parse(read_text(folder.path("s.json")));
+          CHECK(stats["budget_bytes"] == budget);
+          CHECK(stats["high_water_bytes"] <= budget);
+          CHECK(stats["frame_crc32"] == exact["frame_crc32"]);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "render: --coarsen -> from some budget on a picture that only has more in it, never a ray that hits "
+    "later") {
+  const TemporaryFolder folder;
+  for (const Words& one :
+       {Words{"spheres,depth=6"}, Words{"points:2000,depth=7"}, Words{"cluster:3000,depth=7"}}) {
+    for (const char* structure : {"compact", "pool"}) {
+      const Words words = one + Words{"--size", "48x36",     "--structure", structure,
+                                      "--eye",  "20,-30,40", "--target",    "30,30,30"};
+      const Rendered full = render_all(folder, words);
+      const CommandResult none =
+          run_command(Words{"render", "-o", folder.path("p.ppm"), "--memory", "0"} + words);
+      const std::uint64_t needed = number_after(none.err, "needs ");
+      int pictures = 0;
+      for (std::uint64_t budget = needed - 1; budget > 0; budget = budget * 3 / 5) {
+        CAPTURE(one.front());
+        CAPTURE(structure);
+        CAPTURE(budget);
+        const CommandResult result = run_command(
+            Words{"render", "-o", folder.path("p.ppm"), "--memory", std::to_string(budget), "--coarsen",
+                  "--hits", folder.path("h.csv"), "--stats", folder.path("s.json"), "--quiet"} +
+            words);
+        CAPTURE(result.describe());
+        if (result.status != 0) {
+          CHECK(result.status == 1);
+          CHECK(is_one_sentence(result.err));
+          CHECK(number_after(result.err, "needs ") == needed);
+          continue;
+        }
+        ++pictures;
+        const json stats = json::parse(read_text(folder.path("s.json")));
+        CHECK(stats["high_water_bytes"] <= budget);
+        CHECK(stats["budget_bytes"] == budget);
+        // What a merged block added and the scene filled later counts as added: never too little.
+        const auto true_voxels = full.stats["voxels"].get<std::uint64_t>();
+        CHECK(stats["voxels"] >= true_voxels);
+        CHECK(stats["voxels"] <= true_voxels + stats["solid_added"].get<std::uint64_t>());
+        const std::vector<HitRow> rows = parse_hits(read_text(folder.path("h.csv")), true);
+        REQUIRE(rows.size() == full.hits.size());
+        int lost = 0;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const bool later =
+              full.hits[i].hit && rows[i].hit && std::stod(rows[i].t) > std::stod(full.hits[i].t);
+          lost += (full.hits[i].hit && !rows[i].hit) || later || !(rows[i].ray == full.hits[i].ray) ? 1 : 0;
+        }
+        CHECK(lost == 0);
+        if (budget < needed / 2) {
+          CHECK(stats["solid_added"] > 0);
+        }
+      }
+      CHECK(pictures >= 3);
+    }
+  }
+}
+
+TEST_CASE("render: --stats -> every key of the contract, with its type") {
+  const TemporaryFolder folder;
+  const json stats = render_all(folder, {"cluster:1000", "--size", "16x12", "--memory", "1M"}).stats;
+  for (const char* key : {"depth", "points", "voxels", "nodes", "tree_bytes", "budget_bytes",
+                          "high_water_bytes", "solid_added", "rays", "hits", "node_visits", "threads"}) {
+    CAPTURE(key);
+    CHECK(stats[key].is_number_unsigned());
+  }
+  for (const char* key : {"build_seconds", "frame_seconds"}) {
+    CHECK(stats[key].is_number_float());
+    CHECK(stats[key] > 0);
+  }
+  for (const char* key : {"scene", "engine", "frame_crc32"}) {
+    CHECK(stats[key].is_string());
+  }
+  CHECK(stats["scene"] == "cluster:1000");
+  CHECK(stats["depth"] == 10);
+  CHECK(stats["points"] == 1000);
+  CHECK(stats["threads"] == 1);
+  CHECK(stats["budget_bytes"] == 1 << 20);
+  CHECK(stats["rays"] == 16 * 12);
+  CHECK(stats["frame_crc32"].get<std::string>().size() == 8);
+}

@@ -1,0 +1,335 @@
+// `thimble trace`: the contract of its lines, how rays are quantised, and every answer against the exact
+// reference.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/hit_rows.h"
+#include "support/ray_cases.h"
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+
+struct Traced {
+  CommandResult result;
+  std::vector<HitRow> rows;
+};
+
+// Traces `rays` in `scene`, which is read as voxels when it ends in .xyz.
+Traced trace(const TemporaryFolder& folder, const std::string& scene, const std::string& rays,
+             const Words& options = {}) {
+  Words words{"trace", scene, "--rays", folder.write("rays.csv", rays), "-o", folder.path("hits.csv")};
+  if (scene.ends_with(".xyz")) {
+    words.push_back("--as-voxels");
+  }
+  words.insert(words.end(), options.begin(), options.end());
+  Traced traced{run_command(words), {}};
+  CAPTURE(traced.result.describe());
+  REQUIRE(traced.result.status == 0);
+  traced.rows = parse_hits(read_text(folder.path("hits.csv")), false);
+  return traced;
+}
+
+std::string full_text(double number) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", number);
+  return text.data();
+}
+
+using Direction = std::array<std::int64_t, 3>;
+
+}  // namespace
+
+TEST_CASE(
+    "trace: a ray at a voxel, one past it, one inside it -> the lines of the contract, value by value") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("one.xyz", "3 1 2\n");
+  trace(folder, scene,
+        "ox,oy,oz,dx,dy,dz\n"
+        "0,1.5,2.5,2,0,0\n"
+        "0,5,5,1,0,0\n"
+        "3.5,1.5,2.5,0,0,-7\n"
+        "-1,-3,-2,1,1,1\n");
+  const std::vector<std::string> lines = lines_of(read_text(folder.path("hits.csv")));
+  REQUIRE(lines.size() == 5);
+  CHECK(lines[0] == kHitHeader);
+  const auto without_nodes = [](const std::string& line) {
+    std::string text;
+    const std::vector<std::string> columns = split(line);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      text += (i == 0 ? "" : ",") + (i == 6 ? "*" : columns[i]);
+    }
+    return text;
+  };
+  CHECK(without_nodes(lines[1]) == "1,3,1,2,1.5,0,*,0,384,640,2,0,0");
+  CHECK(without_nodes(lines[2]) == "0,,,,,,*,0,1280,1280,1,0,0");
+  CHECK(without_nodes(lines[3]) == "1,3,1,2,0,-1,*,896,384,640,0,0,-7");
+  // Through the edge x = 3, y = 1 at t = 4, two axes at once: the lower one.
+  CHECK(without_nodes(lines[4]) == "1,3,1,2,4,0,*,-256,-768,-512,1,1,1");
+}
+
+TEST_CASE(
+    "trace: header or none, CRLF, blanks, empty lines, signs, exponents, no last line feed -> the same "
+    "rays") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("one.xyz", "3 1 2\n");
+  const auto answers = [&](const std::string& rays) {
+    trace(folder, scene, rays);
+    return read_text(folder.path("hits.csv"));
+  };
+  const std::string plain = answers("0,1.5,2.5,2,0,0\n1,1,1,0,-1,3\n");
+  for (const char* rays :
+       {"ox,oy,oz,dx,dy,dz\n0,1.5,2.5,2,0,0\n1,1,1,0,-1,3\n", "0,1.5,2.5,2,0,0\n1,1,1,0,-1,3",
+        "ox,oy,oz,dx,dy,dz\r\n0,1.5,2.5,2,0,0\r\n1,1,1,0,-1,3\r\n",
+        "\n\n 0 ,\t1.5, 2.5,2 ,0,0 \n   \n1,1,1,0,-1,3\n\n",
+        "-0,+1.5,25e-1,2.000,-0,-0.0\n1e0,0.1E+1,1.,0,-1,3\n",
+        "x0,y0,z0,x1,y1,z1\n0,1.5,2.5,2,0,0\n1,1,1,0,-1,3\n",
+        "\"ox\",\"oy\",\"oz\",\"dx\",\"dy\",\"dz\"\n0,1.5,2.5,2,0,0\n1,1,1,0,-1,3\n",
+        "\xEF\xBB\xBFox,oy,oz,dx,dy,dz\n0,1.5,2.5,2,0,0\n1,1,1,0,-1,3\n"}) {
+    CAPTURE(rays);
+    CHECK(answers(rays) == plain);
+  }
+  CHECK(answers("ox,oy,oz,dx,dy,dz\n") == std::string(kHitHeader) + "\n");
+}
+
+TEST_CASE("trace: a line that is no ray -> status 1, file and line named, nothing written, stdout included") {
+  const TemporaryFolder folder;
+  const std::string good = "ox,oy,oz,dx,dy,dz\n0,0,0,1,1,1\n";
+  for (const char* bad : {"nan,0,0,1,0,0",    "0,0,0,1,0,NaN",     "inf,0,0,1,0,0",     "0,0,0,-inf,0,0",
+                          "0,0,0,1e999,0,0",  "0,0,0,0,0,0",       "0,0,0,-0,0,0.0",    "0,0,0,1e-999,0,0",
+                          "320.01,0,0,1,0,0", "0,-256.01,0,1,0,0", "0,0,1e300,1,0,0",   "0,0,0,1,0,0,0",
+                          "0,0,0,1,0",        "0,0,0,1,0,",        ",0,0,1,0,0",        "0,0,0,1,0,0x10",
+                          "0,0,0,1,0,one",    "0 0 0 1 0 0",       "0;0;0;1;0;0",       "+-1,0,0,1,0,0",
+                          "--1,0,0,1,0,0",    "ox,oy,oz,dx,dy,dz", "0,0,0,1,0,0 # ray", "\x01"}) {
+    CAPTURE(bad);
+    const std::string rays = folder.write("rays.csv", good + bad + "\n0,0,0,1,1,1\n");
+    const std::string hits = folder.write("hits.csv", "as it was");
+    const CommandResult filed = run_command({"trace", "spheres", "--rays", rays, "-o", hits});
+    CAPTURE(filed.describe());
+    CHECK(filed.status == 1);
+    CHECK(is_one_sentence(filed.err));
+    CHECK(filed.err.find(rays + ": line 3: ") != std::string::npos);
+    CHECK(read_text(hits) == "as it was");
+    CHECK(folder.names() == Words{"hits.csv", "rays.csv"});
+    CHECK(run_command({"trace", "spheres", "--rays", rays}).out.empty());
+  }
+  // The first line is a header only when nothing in it is a number.
+  for (const char* bad : {"1,2,3,4,5,z", "nan,nan,nan,nan,nan,nan,nan", "0,0,0,1,0", "a,b,c,1,2,3"}) {
+    CAPTURE(bad);
+    const CommandResult result = run_command({"trace", "spheres", "--rays", folder.write("rays.csv", bad)});
+    CHECK(result.status == 1);
+    CHECK(result.err.find("line 1: ") != std::string::npos);
+  }
+  const CommandResult empty = run_command({"trace", "spheres", "--rays", folder.write("rays.csv", "")});
+  CHECK(empty.status == 1);
+  CHECK(empty.err.find("rays.csv") != std::string::npos);
+  CHECK(run_command({"trace", "spheres", "--rays", folder.path("none.csv")}).err.find("none.csv") !=
+        std::string::npos);
+}
+
+TEST_CASE("trace: origins at the very limits, -4 and 5 world sizes -> accepted, and the next number is not") {
+  const TemporaryFolder folder;
+  for (const char* depth : {"1", "6", "12"}) {
+    const double side = 1 << std::stoi(depth);
+    const Words options{"--depth", depth};
+    const std::string low = full_text(-4 * side);
+    const std::string high = full_text(5 * side);
+    CHECK(trace(folder, "points:4", low + "," + high + ",0,1,-1,0\n" + high + ",0," + low + ",-1,0,1\n",
+                options)
+              .rows.size() == 2);
+    for (const double beyond : {std::nextafter(-4 * side, -1e9), std::nextafter(5 * side, 1e9)}) {
+      const CommandResult result =
+          run_command({"trace", "points:4", "--depth", depth, "--rays",
+                       folder.write("rays.csv", "0,0," + full_text(beyond) + ",1,0,0\n")});
+      CHECK(result.status == 1);
+      CHECK(result.err.find("line 1") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE(
+    "trace: directions of integers up to 65535 -> as given; others turn by less than 2^-15, zeros stay") {
+  const TemporaryFolder folder;
+  constexpr std::uint64_t kSeed = 60601;
+  CAPTURE(kSeed);
+  std::mt19937_64 random(kSeed);
+  std::string text;
+  std::vector<std::array<double, 6>> rays;
+  for (int i = 0; i < 20000; ++i) {
+    std::array<double, 6> ray{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 40), 1LL << 40)), -34);  // -64 .. 64
+    }
+    const int kind = i % 4;
+    for (std::size_t axis = 3; axis < 6; ++axis) {
+      if (kind == 0) {
+        ray[axis] = static_cast<double>(pick(random, -65535, 65535));
+      } else if (kind == 1) {
+        ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 52), 1LL << 52)),
+                               static_cast<int>(pick(random, -1000, 900)) * (axis == 3 ? 0 : 1) - 52);
+      } else if (kind == 2) {
+        ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 52), 1LL << 52)), -52);
+      } else {
+        ray[axis] = static_cast<double>(pick(random, -(1LL << 50), 1LL << 50));
+      }
+      if (pick(random, 0, 5) == 0) {
+        ray[axis] = 0;
+      }
+    }
+    if (ray[3] == 0 && ray[4] == 0 && ray[5] == 0) {
+      ray[5] = kind == 1 ? 5e-324 : 1;
+    }
+    rays.push_back(ray);
+    for (std::size_t i2 = 0; i2 < 6; ++i2) {
+      text += full_text(ray[i2]) + (i2 == 5 ? "\n" : ",");
+    }
+  }
+  const Traced traced = trace(folder, "spheres", text);
+  REQUIRE(traced.rows.size() == rays.size());
+  long double worst = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CAPTURE(i);
+    const reference::Ray& ray = traced.rows[i].ray;
+    std::array<long double, 3> a{};
+    std::array<long double, 3> b{};
+    long double largest = 0;
+    bool whole = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      REQUIRE(std::abs(static_cast<double>(ray.origin_q8[axis]) - rays[i][axis] * 256) <= 0.5);
+      a[axis] = rays[i][axis + 3];
+      b[axis] = static_cast<long double>(ray.direction[axis]);
+      largest = std::max(largest, std::abs(a[axis]));
+      whole = whole && rays[i][axis + 3] == std::trunc(rays[i][axis + 3]);
+      REQUIRE((rays[i][axis + 3] != 0 || ray.direction[axis] == 0));
+      REQUIRE((ray.direction[axis] == 0 || (ray.direction[axis] > 0) == (a[axis] > 0)));
+    }
+    if (whole && largest <= 65535) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        REQUIRE(static_cast<double>(ray.direction[axis]) == rays[i][axis + 3]);
+      }
+      continue;
+    }
+    long double dot = 0;
+    long double cross = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      a[axis] /= largest;  // long double has the exponents, the sum of squares might not
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t y = (axis + 1) % 3;
+      const std::size_t z = (axis + 2) % 3;
+      const long double part = a[y] * b[z] - a[z] * b[y];
+      dot += a[axis] * b[axis];
+      cross += part * part;
+    }
+    worst = std::max(worst, std::atan2(std::sqrt(cross), dot));
+  }
+  CHECK(worst < std::ldexp(1.0L, -15));
+  CHECK(worst > 0);
+}
+
+TEST_CASE("trace: --direction-bits -> directions within them, and the default takes what 20 bits give") {
+  const TemporaryFolder folder;
+  for (const int bits : {8, 13, 20}) {
+    const Traced traced = trace(folder, "spheres", "1,2,3,0.3,-1,0.7\n1,2,3,3,-2,1\n",
+                                {"--direction-bits", std::to_string(bits)});
+    CHECK(traced.rows[0].ray.direction[1] == -((1 << bits) - 1));
+    CHECK(traced.rows[1].ray.direction == Direction{3, -2, 1});
+  }
+}
+
+TEST_CASE("trace: random rays, many aimed at edges and corners -> every one as the exact reference says") {
+  const TemporaryFolder folder;
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kRays = 1500;
+#else
+  constexpr int kRays = 15000;
+#endif
+  struct Case {
+    WorldKind kind;
+    reference::Voxel size;
+  };
+  std::uint64_t seed = 880;
+  for (const Case& one :
+       {Case{WorldKind::kRandom, {16, 16, 16}}, Case{WorldKind::kCheckerboard, {32, 32, 32}},
+        Case{WorldKind::kSparse, {512, 512, 512}}, Case{WorldKind::kSparse, {4096, 4096, 4096}},
+        Case{WorldKind::kCorners, {4096, 4096, 4096}}, Case{WorldKind::kShell, {24, 24, 24}},
+        Case{WorldKind::kDense, {32, 32, 32}}, Case{WorldKind::kSingle, {64, 64, 64}}}) {
+    ++seed;
+    std::mt19937_64 random(seed);
+    const World world = make_world(one.kind, one.size, random);
+    const reference::BitGrid grid(one.size, world.voxels);
+    RayCases cases(seed, one.size, world.voxels);
+    std::string text;
+    std::vector<reference::Ray> given;
+    for (int i = 0; i < kRays; ++i) {
+      const reference::Ray ray = cases.next().ray;
+      given.push_back(ray);
+      for (const std::int64_t origin : ray.origin_q8) {
+        text += full_text(static_cast<double>(origin) / 256) + ",";
+      }
+      text += std::to_string(ray.direction[0]) + "," + std::to_string(ray.direction[1]) + "," +
+              std::to_string(ray.direction[2]) + "\n";
+    }
+    int depth = 1;
+    while ((1 << depth) < one.size[0]) {
+      ++depth;
+    }
+    const std::string scene = folder.write("world.xyz", as_xyz(world.voxels));
+    for (const char* structure : {"compact", "pool", "dense"}) {
+      if (std::string(structure) == "dense" && one.size[0] > 512) {
+        continue;  // 8 GiB
+      }
+      const Traced traced =
+          trace(folder, scene, text, {"--depth", std::to_string(depth), "--structure", structure});
+      REQUIRE(traced.rows.size() == given.size());
+      int hits = 0;
+      std::string first_fault;
+      for (std::size_t i = 0; i < given.size(); ++i) {
+        hits += traced.rows[i].hit ? 1 : 0;
+        std::string fault = traced.rows[i].ray == given[i]
+                                ? judge(grid, traced.rows[i])
+                                : "the ray is not traced as given: " + reference::describe(given[i]);
+        if (first_fault.empty()) {
+          first_fault = fault;
+        }
+      }
+      CAPTURE(seed);
+      CAPTURE(structure);
+      CHECK(first_fault == "");
+      CHECK(hits > 0);
+    }
+  }
+}
+
+TEST_CASE("trace: --engine ray32 -> the same lines, or the line of the first ray that needs more") {
+  const TemporaryFolder folder;
+  const std::string rays = "1,2,3,300,-200,100\n-9,30,30,5,0,0\n70,70,70,-255,-255,-254\n";
+  trace(folder, "spheres", rays);
+  const std::string wide = read_text(folder.path("hits.csv"));
+  trace(folder, "spheres", rays, {"--engine", "ray32"});
+  CHECK(read_text(folder.path("hits.csv")) == wide);
+  const CommandResult result = run_command({"trace", "spheres", "--engine", "ray32", "--rays",
+                                            folder.write("rays.csv", rays + "1,2,3,1000000,1,1\n")});
+  CHECK(result.status == 1);
+  CHECK(result.out.empty());
+  CHECK(result.err.find("line 4") != std::string::npos);
+}
+
+TEST_CASE("trace: empty scene, one voxel, deepest world -> answers, not errors") {
+  const TemporaryFolder folder;
+  const Traced empty = trace(folder, "points:0", "0,0,0,1,1,1\n");
+  CHECK(!empty.rows[0].hit);
+  const Traced one =
+      trace(folder, folder.write("corner.xyz", "4095 4095 4095\n"), "-16384,4095.5,4095.5,1,0,0\n");
+  CHECK(one.rows[0].hit);
+  CHECK(one.rows[0].t == "20479");
+}
