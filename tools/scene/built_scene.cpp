@@ -43,6 +43,31 @@ constexpr std::size_t most_after_tidying(std::size_t capacity) {
   return capacity - capacity / 16 - (capacity >= 1 && capacity < 16 ? 1 : 0);
 }
 
+// How many different voxels `source` streams. For reporting only, in memory beside the arena: the voxels are
+// counted in as many turns as keep a list of them below 256 MiB, each turn a part of the world.
+std::uint64_t count_distinct(const SceneSource& source, const Progress& progress) {
+  constexpr std::uint64_t kMostKeys = std::uint64_t{1} << 25;
+  std::uint64_t streamed = 0;
+  source.stream([&](auto, auto, auto, auto) { ++streamed; }, progress);
+  const std::uint64_t turns = streamed / kMostKeys + 1;
+  std::uint64_t distinct = 0;
+  for (std::uint64_t turn = 0; turn < turns; ++turn) {
+    std::vector<std::uint64_t> codes;
+    source.stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+          const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                                 static_cast<std::uint32_t>(z));
+          if (code % turns == turn) {
+            codes.push_back(code);
+          }
+        },
+        progress);
+    std::sort(codes.begin(), codes.end());
+    distinct += static_cast<std::uint64_t>(std::unique(codes.begin(), codes.end()) - codes.begin());
+  }
+  return distinct;
+}
+
 }  // namespace
 
 BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress)
@@ -89,6 +114,10 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
   }
   least_budget_bytes_ = least_budget_bytes_ == 0 ? high_water_bytes() : least_budget_bytes_;
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  // The tree knows what each merge added when it was made; voxels that came later and were already covered
+  // are taken off by counting what the source really has.
+  const bool coarsened = structure() == StructureKind::kPool ? octree_.solid_added() != 0 : compact_.merged();
+  solid_added_ = coarsened ? voxels() - count_distinct(source, progress) : 0;
 }
 
 // A band of the least size leaves more room for the scene; merging blocks is the last resort.
@@ -313,10 +342,6 @@ std::uint64_t BuiltScene::voxels() const {
       return compact_.voxel_count();
   }
   return 0;
-}
-
-std::uint64_t BuiltScene::solid_added() const {
-  return options_.structure == StructureKind::kPool ? octree_.solid_added() : compact_.solid_added();
 }
 
 std::uint64_t BuiltScene::nodes() const {

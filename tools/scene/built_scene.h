@@ -47,7 +47,8 @@ class BuiltScene {
   VoxelBox bounds() const;
   /// Solid volume in voxels.
   std::uint64_t voxels() const;
-  std::uint64_t solid_added() const;
+  /// Voxels that coarsening added: the solid volume less the source's different voxels.
+  std::uint64_t solid_added() const { return solid_added_; }
   /// Nodes of the structure that is traced; 0 for a dense grid.
   std::uint64_t nodes() const;
   std::uint64_t tree_bytes() const;
@@ -85,6 +86,7 @@ class BuiltScene {
   DenseGrid dense_;
   std::vector<Rgb8> palette_;
   std::uint64_t least_budget_bytes_ = 0;
+  std::uint64_t solid_added_ = 0;
   double build_seconds_ = 0;
 };
 
