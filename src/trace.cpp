@@ -1,5 +1,5 @@
-// The traversal: down the octree to the child the ray is in, across to the next, up when it leaves the node.
-// One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two small
+// The traversal: from each node to those of its children that the ray passes through, in the order in which it
+// does. One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two small
 // adaptors below.
 #include "thimble/trace.h"
 
@@ -11,8 +11,7 @@ namespace {
 
 // A node as the loop needs it: which children there are, and where they are found.
 struct NodeRef {
-  uint32_t link = 0;  // compact: number of the first child; pool: index of the first child. At level 1 the
-                      // node's own index
+  uint32_t link = 0;  // compact: number of the first child; pool: index of the first child
   uint8_t mask = 0;
 };
 
@@ -23,26 +22,25 @@ struct CompactNodes {
   bool empty() const { return tree.empty(); }
   uint32_t root() const { return 0; }
   // False for a node number outside the tree, which only a damaged tree leads to.
-  bool load(uint32_t index, int level, NodeRef* node) const {
+  bool load(uint32_t index, uint8_t* mask) const {
     if (index >= tree.node_count()) {
       return false;
     }
-    node->mask = tree.mask(index);
-    // Counting bits is left out where nobody follows the link.
-    node->link = level > 1 && node->mask != 0 ? tree.first_child(index) : index;
+    *mask = tree.mask(index);
     return true;
   }
+  // Where the children are; counts bits, so it is asked only when one of them is wanted.
+  uint32_t link(uint32_t index) const { return tree.first_child(index); }
   uint32_t child(const NodeRef& node, unsigned octant) const {
     return node.link + bits::popcount8(node.mask & ((1U << octant) - 1));
   }
   bool merged(uint32_t index) const { return tree.is_merged(index); }
   uint8_t block_material(uint32_t index) const { return tree.block_material(index); }
-  uint8_t voxel_material(const NodeRef& node, unsigned octant) const {
+  uint8_t voxel_material(uint32_t index, uint8_t mask, unsigned octant) const {
     if (!tree.many_materials()) {
       return tree.uniform_material();
     }
-    return tree.voxel_material(tree.first_child(node.link) +
-                               bits::popcount8(node.mask & ((1U << octant) - 1)));
+    return tree.voxel_material(child({tree.first_child(index), mask}, octant));
   }
 };
 
@@ -52,15 +50,14 @@ struct PoolNodes {
   int level() const { return tree.level(); }
   bool empty() const { return tree.empty(); }
   uint32_t root() const { return tree.root(); }
-  bool load(uint32_t index, int level, NodeRef* node) const {
+  bool load(uint32_t index, uint8_t* mask) const {
     if (index == Octree::kNone) {
       return false;
     }
-    const Octree::NodeView view = tree.node(index);
-    node->mask = view.mask;
-    node->link = level > 1 ? view.first_child : index;
+    *mask = tree.node(index).mask;
     return true;
   }
+  uint32_t link(uint32_t index) const { return tree.node(index).first_child; }
   // Children are a chain in the order of their octants.
   uint32_t child(const NodeRef& node, unsigned octant) const {
     uint32_t index = node.link;
@@ -72,12 +69,12 @@ struct PoolNodes {
   }
   bool merged(uint32_t index) const { return tree.node(index).merged; }
   uint8_t block_material(uint32_t index) const { return tree.node(index).material; }
-  uint8_t voxel_material(const NodeRef& node, unsigned octant) const {
-    const Octree::NodeView view = tree.node(node.link);
+  uint8_t voxel_material(uint32_t index, uint8_t mask, unsigned octant) const {
+    const Octree::NodeView view = tree.node(index);
     if (!view.has_children) {
       return view.material;
     }
-    return tree.node(child({view.first_child, node.mask}, octant)).material;
+    return tree.node(child({view.first_child, mask}, octant)).material;
   }
 };
 
@@ -86,198 +83,199 @@ struct Request {
   bool any;  // only the kind is wanted
 };
 
-// Fills in what was hit: the block of `level` at `corner` (mirrored), entered at the present crossing.
-template <class Crossings>
-void report(const MirroredRay& ray, const Vec3i& extent, const Crossings& crossings, const Vec3i& corner,
+// Fills in what was hit: the block of `level` at `corner` (mirrored) in a world of `side`.
+template <class Int>
+void report(const MirroredRay& ray, int32_t side, const Crossings<Int>& crossings, const Vec3i& corner,
             int level, Hit* hit) {
   const int axis = crossings.entered(corner);
   hit->axis = static_cast<int8_t>(axis);
   hit->block_level = static_cast<uint8_t>(level);
   for (int a = 0; a < 3; ++a) {
-    const int32_t side = int32_t{1} << level;
-    hit->voxel[a] = ((ray.flip >> a) & 1U) != 0 ? extent[a] - side - corner[a] : corner[a];
+    const int32_t block = int32_t{1} << level;
+    hit->voxel[a] = ((ray.flip >> a) & 1U) != 0 ? side - block - corner[a] : corner[a];
   }
   if (axis >= 0) {
-    hit->t_numerator = corner[axis] * Q8::kOne - ray.origin_q8[axis];
+    hit->t_numerator = ray.distance(axis, corner[axis]);
     hit->t_denominator = ray.direction[axis] * Q8::kOne;
-  } else {
-    hit->t_numerator = 0;
-    hit->t_denominator = 1;
   }
 }
 
-Vec3i child_corner(const Vec3i& corner, unsigned octant, int child_level) {
-  return {corner.x | static_cast<int32_t>((octant & 1U) << child_level),
-          corner.y | static_cast<int32_t>(((octant >> 1) & 1U) << child_level),
-          corner.z | static_cast<int32_t>(((octant >> 2) & 1U) << child_level)};
-}
+// A node on the way down. Octants are mirrored ones.
+template <class Int>
+struct Step {
+  typename Crossings<Int>::Orders orders;
+  NodeRef node;
+  uint8_t octant;  // the child that the loop is in
+  uint8_t rest;    // children still to visit, as bits
+};
 
-template <class Nodes, class Crossings>
+// The children along the ray's path, in order, are the set bits of (mask & path) from the lowest up: in the
+// mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
+// through empty octants: it takes the next bit, or goes up to the next level that has one left.
+template <class Nodes, class Int>
 Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request) {
   Hit hit;
-  Crossings crossings(ray);
-  if (nodes.empty() || !crossings.begin()) {
+  const Crossings<Int> crossings(ray);
+  Int num;
+  Int den;
+  if (nodes.empty() || !crossings.enter_box(&num, &den)) {
     return hit;
   }
 
   const int world_level = nodes.level();
   const int32_t side = int32_t{1} << world_level;
-  const Vec3i extent{side, side, side};
-  NodeRef stack[kMaxLevel + 1];
-  NodeRef node;
+  const int32_t middle = side / 2;
+  Step<Int> stack[kMaxLevel + 1];
+  uint32_t pending = 0;  // bit k: stack[k].rest is not 0
+  typename Crossings<Int>::Orders orders = crossings.orders({middle, middle, middle});
   uint32_t index = nodes.root();
   int level = world_level;
-  Vec3i corner;
-  crossings.enter(corner, level);
+  // While the node holds the ray's origin, its path is that of the part ahead.
+  bool inside = ray.within(side);
 
-  // Each turn arrives at the node `index` of `level` at `corner`. The ray only moves forward, so there are at
-  // most 3 * 2^world_level crossings and world_level arrivals between two of them.
+  const auto path_of_node = [&]() {
+    uint32_t path = mirrored_octants(crossings.path(orders, level), ray.flip);
+    if (inside) {
+      path &= octants_from(ray.origin_octant(level));
+    }
+    return path;
+  };
+  const auto enter_child = [&](unsigned octant) {
+    inside = inside && octant == ray.origin_octant(level);
+    stack[level].octant = static_cast<uint8_t>(octant);
+    crossings.descend(octant, level, &orders);
+    --level;
+  };
+  const auto report_block = [&]() {
+    Vec3i corner;
+    for (int above = world_level; above > level; --above) {
+      const unsigned octant = stack[above].octant;
+      corner.x |= static_cast<int32_t>((octant & 1U) << (above - 1));
+      corner.y |= static_cast<int32_t>(((octant >> 1) & 1U) << (above - 1));
+      corner.z |= static_cast<int32_t>(((octant >> 2) & 1U) << (above - 1));
+    }
+    report(ray, side, crossings, corner, level, &hit);
+  };
+
+  // Each turn arrives at the node `index` of `level`. The ray passes at most 3 * 2^k nodes of a level whose
+  // nodes are 1/2^k of the world.
   for (;;) {
     if (hit.visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
       return hit;
     }
     ++hit.visits;
-    if (!nodes.load(index, level, &node)) {
+    uint8_t mask;
+    if (!nodes.load(index, &mask)) {
       return hit;
     }
-    if (node.mask == 0) {  // a solid block
+    if (mask == 0) {  // a solid block
       hit.kind = HitKind::kHit;
       if (request.any) {
         return hit;
       }
       hit.material = nodes.block_material(index);
-      const bool merged = nodes.merged(index);
       // A truly full block: the voxel entered is found by going down as if it had children.
-      while (!merged && level > 0) {
-        const unsigned octant = crossings.octant(corner, level);
-        --level;
-        corner = child_corner(corner, octant, level);
-        crossings.descend(octant, corner, level);
+      while (level > 0 && !nodes.merged(index)) {
+        enter_child(bits::lowest_bit(path_of_node()));
       }
-      report(ray, extent, crossings, corner, level, &hit);
+      report_block();
       return hit;
     }
 
-    unsigned octant = crossings.octant(corner, level);
-    while (((node.mask >> (octant ^ ray.flip)) & 1U) == 0) {
-      const unsigned crossed = crossings.leave(octant, corner, level);
-      if (crossed == 0) {
-        return hit;
+    NodeRef node{0, mask};
+    uint32_t rest = crossings.path(orders, level) & mask;
+    if (rest != 0) {
+      rest = mirrored_octants(rest, ray.flip);
+      if (inside) {
+        rest &= octants_from(ray.origin_octant(level));
       }
-      if ((crossed & octant) == 0) {
-        octant |= crossed;  // a sibling
-        continue;
-      }
-      // Out of the node: up to the one that holds both the place left and the place entered.
-      const Vec3i from = child_corner(corner, octant, level - 1);
-      const int32_t step = int32_t{1} << (level - 1);
-      const Vec3i to{from.x + ((crossed & 1U) != 0 ? step : 0), from.y + ((crossed & 2U) != 0 ? step : 0),
-                     from.z + ((crossed & 4U) != 0 ? step : 0)};
-      level =
-          bits::highest_bit(static_cast<uint32_t>((from.x ^ to.x) | (from.y ^ to.y) | (from.z ^ to.z))) + 1;
-      if (level > world_level) {
-        return hit;
-      }
-      node = stack[level];
-      octant = (static_cast<uint32_t>(to.x) >> (level - 1) & 1U) |
-               (static_cast<uint32_t>(to.y) >> (level - 1) & 1U) << 1 |
-               (static_cast<uint32_t>(to.z) >> (level - 1) & 1U) << 2;
-      const int32_t keep = ~((int32_t{1} << level) - 1);
-      corner = {to.x & keep, to.y & keep, to.z & keep};
-      crossings.enter(corner, level);
     }
-
-    if (level == 1) {  // a voxel
+    if (rest == 0) {
+      if (pending == 0) {
+        return hit;
+      }
+      level = static_cast<int>(bits::lowest_bit(pending));
+      inside = false;  // what holds the origin comes first
+      orders = stack[level].orders;
+      node = stack[level].node;
+      rest = stack[level].rest;
+    } else if (level == 1) {  // a voxel
       hit.kind = HitKind::kHit;
       if (request.any) {
         return hit;
       }
-      hit.material = nodes.voxel_material(node, octant ^ ray.flip);
-      report(ray, extent, crossings, child_corner(corner, octant, 0), 0, &hit);
+      const unsigned octant = bits::lowest_bit(rest);
+      hit.material = nodes.voxel_material(index, mask, octant ^ ray.flip);
+      stack[level].octant = static_cast<uint8_t>(octant);
+      level = 0;
+      report_block();
       return hit;
+    } else {
+      node.link = nodes.link(index);
+      stack[level].orders = orders;
+      stack[level].node = node;
     }
-    stack[level] = node;
+    const unsigned octant = bits::lowest_bit(rest);
+    rest &= rest - 1;
+    stack[level].rest = static_cast<uint8_t>(rest);
+    pending = (pending & ~(uint32_t{1} << level)) | static_cast<uint32_t>(rest != 0) << level;
     index = nodes.child(node, octant ^ ray.flip);
-    --level;
-    corner = child_corner(corner, octant, level);
-    crossings.descend(octant, corner, level);
+    enter_child(octant);
   }
 }
 
 // The dense grid has no empty space to skip: from voxel to voxel.
-template <class Crossings>
+template <class Int>
 Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
   Hit hit;
-  Crossings crossings(ray);
-  if (grid.voxel_count() == 0 || !crossings.begin()) {
+  const Crossings<Int> crossings(ray);
+  Int num;
+  Int den;
+  if (grid.voxel_count() == 0 || !crossings.enter_box(&num, &den)) {
     return hit;
   }
-  Vec3i corner;
-  int level = grid.level();
-  crossings.enter(corner, level);
-  while (level > 0) {
-    const unsigned octant = crossings.octant(corner, level);
-    --level;
-    corner = child_corner(corner, octant, level);
-    crossings.descend(octant, corner, level);
-  }
-  const Vec3i& extent = grid.size();
+  const int32_t side = int32_t{1} << grid.level();
+  Vec3i corner = crossings.cell_at(num, den, grid.level());
+  auto orders = crossings.orders({corner.x + 1, corner.y + 1, corner.z + 1});
   for (;;) {
     if (hit.visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
       return hit;
     }
     ++hit.visits;
-    const Vec3i voxel{(ray.flip & 1U) != 0 ? extent.x - 1 - corner.x : corner.x,
-                      (ray.flip & 2U) != 0 ? extent.y - 1 - corner.y : corner.y,
-                      (ray.flip & 4U) != 0 ? extent.z - 1 - corner.z : corner.z};
+    const Vec3i voxel{(ray.flip & 1U) != 0 ? side - 1 - corner.x : corner.x,
+                      (ray.flip & 2U) != 0 ? side - 1 - corner.y : corner.y,
+                      (ray.flip & 4U) != 0 ? side - 1 - corner.z : corner.z};
     if (grid.bit(voxel)) {
       hit.kind = HitKind::kHit;
       if (!request.any) {
-        report(ray, extent, crossings, corner, 0, &hit);
+        report(ray, side, crossings, corner, 0, &hit);
       }
       return hit;
     }
-    const unsigned crossed = crossings.leave(0, corner, 0);
-    if (crossed == 0) {
-      return hit;
-    }
+    const unsigned crossed = crossings.leave(orders);
     corner = {corner.x + static_cast<int32_t>(crossed & 1U),
               corner.y + static_cast<int32_t>((crossed >> 1) & 1U),
               corner.z + static_cast<int32_t>((crossed >> 2) & 1U)};
-    crossings.enter(corner, 0);
+    if (corner.x >= ray.box_max.x || corner.y >= ray.box_max.y || corner.z >= ray.box_max.z) {
+      return hit;
+    }
+    crossings.advance(crossed, &orders);
   }
 }
 
-struct Structure {
-  int level;
-  Vec3i extent;
-  VoxelBox bounds;
-};
-Structure describe(const CompactTree& tree) {
-  const int32_t side = int32_t{1} << tree.level();
-  return {tree.level(), {side, side, side}, tree.bounds()};
-}
-Structure describe(const Octree& tree) {
-  const int32_t side = int32_t{1} << tree.level();
-  return {tree.level(), {side, side, side}, tree.bounds()};
-}
-Structure describe(const DenseGrid& grid) {
-  return {grid.level(), grid.size(), grid.bounds()};
-}
-
-template <class Crossings>
+template <class Int>
 Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<CompactNodes, Crossings>(CompactNodes{tree}, ray, request);
+  return walk_octree<CompactNodes, Int>(CompactNodes{tree}, ray, request);
 }
-template <class Crossings>
+template <class Int>
 Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<PoolNodes, Crossings>(PoolNodes{tree}, ray, request);
+  return walk_octree<PoolNodes, Int>(PoolNodes{tree}, ray, request);
 }
-template <class Crossings>
+template <class Int>
 Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
-  return walk_grid<Crossings>(grid, ray, request);
+  return walk_grid<Int>(grid, ray, request);
 }
 
 // Chips with 32-bit registers take the narrow path whenever they may.
@@ -285,22 +283,23 @@ constexpr bool kPrefer32 = sizeof(void*) <= 4;
 
 template <class Target>
 Status trace(const Target& target, const Ray& ray, const TraceOptions& options, bool any, Hit* hit) {
-  const Structure structure = describe(target);
-  const Status status = check_ray(ray, structure.level);
+  const int level = target.level();
+  const Status status = check_ray(ray, level);
   if (status != Status::kOk) {
     return status;
   }
   bool narrow = options.width == Width::k32;
   if (narrow || (kPrefer32 && options.width == Width::kAuto)) {
-    const bool accepted = accepts_32(ray, structure.level);
+    const bool accepted = accepts_32(ray, level);
     if (narrow && !accepted) {
       return Status::kOutOfRange;
     }
     narrow = accepted;
   }
-  const MirroredRay mirrored(ray, structure.extent, structure.bounds);
+  // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
+  const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());
   const Request request{options.max_visits, any};
-  *hit = narrow ? walk<Crossings32>(target, mirrored, request) : walk<Crossings64>(target, mirrored, request);
+  *hit = narrow ? walk<int32_t>(target, mirrored, request) : walk<int64_t>(target, mirrored, request);
   return Status::kOk;
 }
 
