@@ -1,25 +1,26 @@
-// Where a ray goes among the planes of the voxel lattice: the arithmetic of tracing, in 32 or 64 bits with the
-// same answers. Internal to src/. DESIGN.md, "Tracing", derives the bounds.
+// Where a ray goes among the planes of the voxel lattice: the arithmetic of tracing, in 32 or 64 bits with
+// the same answers. Internal to src/. DESIGN.md, "Tracing", derives the bounds.
 //
 // It works on a mirrored ray, whose direction has no negative component: the axes with a negative one are
 // reflected in the middle of the world, which turns the half-open rule for them around as it must (a ray that
 // starts on a face and leaves downwards starts in the voxel below).
 //
-// With s the distance from the origin to a plane and d the direction's component on that axis (both of one
-// sign for what lies ahead), the ray crosses a plane of axis a before one of axis b when s_a / d_a < s_b / d_b.
-// So the sign of one number says which comes first:
+// With s the distance from the origin to a plane and d the direction's component on that axis, the ray
+// crosses a plane of axis a before one of axis b when s_a / d_a < s_b / d_b. So the sign of one number says
+// which comes first:
 //
 //   order_ab = s_a * d_b - s_b * d_a        < 0: a's plane first    > 0: b's first    0: both at once
 //
-// It is linear in both planes' numbers, hence all that a step to another node changes is an addition. A ray
-// spends a positive length in a box when, for every pair of axes, it crosses the lower plane of each before
-// the upper plane of the other. That is a question about a pair of axes at a time, and three of these numbers
-// answer it for all eight octants of a node.
+// It is linear in both planes' numbers, so a step to another node changes it by an addition. The ray spends a
+// positive length in a box when, for every pair of axes, it crosses the lower plane of each before the upper
+// plane of the other: a question about two axes at a time. Hence three such numbers, one a pair, tell for all
+// eight octants of a node at once which of them the ray passes through. No product, no division, no time.
 #ifndef THIMBLE_SRC_CROSSINGS_H
 #define THIMBLE_SRC_CROSSINGS_H
 
 #include <stdint.h>
 
+#include "bits.h"
 #include "thimble/ray.h"
 
 namespace thimble {
@@ -64,17 +65,19 @@ struct MirroredRay {
   int32_t distance(int axis, int32_t number) const { return number * Q8::kOne - origin_q8[axis]; }
 };
 
-// The eight octants as bits of a byte, changed from the mirrored numbering to the tree's or back: octant o
-// moves to o ^ flip.
-inline uint32_t mirrored_octants(uint32_t octants, unsigned flip) {
+// Octants as bits of a byte, changed from the mirrored numbering to the tree's or back: octant o moves to
+// o ^ flip. Works on all bytes of a word at once.
+template <class Word>
+constexpr Word mirrored_octants(Word octants, unsigned flip) {
+  constexpr Word kBytes = static_cast<Word>(~Word{0}) / 0xFFU;
   if ((flip & 1U) != 0) {
-    octants = (octants & 0x55U) << 1 | (octants >> 1 & 0x55U);
+    octants = (octants & kBytes * 0x55U) << 1 | (octants >> 1 & kBytes * 0x55U);
   }
   if ((flip & 2U) != 0) {
-    octants = (octants & 0x33U) << 2 | (octants >> 2 & 0x33U);
+    octants = (octants & kBytes * 0x33U) << 2 | (octants >> 2 & kBytes * 0x33U);
   }
   if ((flip & 4U) != 0) {
-    octants = (octants & 0x0FU) << 4 | octants >> 4;
+    octants = (octants & kBytes * 0x0FU) << 4 | (octants >> 4 & kBytes * 0x0FU);
   }
   return octants;
 }
@@ -85,12 +88,131 @@ constexpr uint32_t octants_from(unsigned octant) {
          ((octant & 4U) != 0 ? 0xF0U : 0xFFU);
 }
 
+// The way through a node of a ray that crosses it: which octants it passes through, and the same for them.
+//
+// Its state is one number for each pair of axes, the order of the upper plane of the first axis against the
+// lower plane of the second, in units that shrink with the node (times 2^k for nodes of 1/2^k of the world).
+// In these units moving a plane by half a node always changes an order by the same `half`s, so everything
+// that the state is compared with is made once a ray. The ray crosses the node, so the state lies between 0
+// and 2 * (half_a + half_b), and that is below 2^32 or 2^64 at every level when it is at the first.
+template <class Int, class Unsigned>
+class NodePath {
+ public:
+  struct State {
+    Unsigned xy;
+    Unsigned yz;
+    Unsigned zx;
+  };
+
+  NodePath(const MirroredRay& ray, int level)
+      : xy_(ray, 0, 1, level, 0xAAU, 0xCCU),
+        yz_(ray, 1, 2, level, 0xCCU, 0xF0U),
+        zx_(ray, 2, 0, level, 0xF0U, 0xAAU) {
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      const unsigned x = octant & 1U;
+      const unsigned y = octant >> 1 & 1U;
+      const unsigned z = octant >> 2;
+      descent_[octant] = {xy_.descent(x, y), yz_.descent(y, z), zx_.descent(z, x)};
+    }
+  }
+
+  // At the world, which the ray crosses.
+  State start() const { return {xy_.start, yz_.start, zx_.start}; }
+  // From a node to its child `octant` (mirrored), which the ray crosses.
+  void descend(unsigned octant, State* state) const {
+    const State& change = descent_[octant];
+    state->xy = 2 * (state->xy - change.xy);
+    state->yz = 2 * (state->yz - change.yz);
+    state->zx = 2 * (state->zx - change.zx);
+  }
+  // The octants, as bits in the tree's numbering, in which the line spends a positive length.
+  uint32_t octants(const State& state) const {
+    return xy_.octants(state.xy) & yz_.octants(state.yz) & zx_.octants(state.zx);
+  }
+
+ private:
+  // Seen along the third axis the node is a square of four quadrants and the ray a line over them. As the
+  // state grows the line moves across the square, and every quadrant has its stretch of the state:
+  //
+  //   state       0    least    most       middle      middle+least   middle+most   2 * middle
+  //   a only      #########################
+  //   neither           ##############################################               (half_a >= half_b)
+  //   both                      ####################################################
+  //   b only                               #########################################
+  //
+  // (with half_a < half_b, `neither` and `both` change places). At `middle` itself the line passes through
+  // the centre and only touches the other two.
+  //
+  // An axis along which the ray does not move: its planes up to the origin were crossed before all others,
+  // those ahead never are. Only a plane at the origin needs care, which without it would be a tie: `none_a`
+  // and `none_b` shift the bounds by one, and all states are then multiples of the other component.
+  struct Pair {
+    Unsigned start;
+    Unsigned half_a;
+    Unsigned half_b;
+    Unsigned bound[6];
+    uint8_t quadrants[8];  // by the number of bounds above the state
+
+    Pair(const MirroredRay& ray, int a, int b, int level, unsigned above_a, unsigned above_b) {
+      const Unsigned d_a = static_cast<Unsigned>(ray.direction[a]);
+      const Unsigned d_b = static_cast<Unsigned>(ray.direction[b]);
+      half_a = d_a << (level + 7);
+      half_b = d_b << (level + 7);
+      start =
+          static_cast<Unsigned>(static_cast<Int>(ray.distance(a, int32_t{1} << level)) * ray.direction[b] -
+                                static_cast<Int>(ray.distance(b, 0)) * ray.direction[a]);
+      const Unsigned none_a = d_a == 0 ? 1 : 0;
+      const Unsigned none_b = d_b == 0 ? 1 : 0;
+      const bool a_steep = half_a >= half_b;
+      const Unsigned least = a_steep ? half_b : half_a;
+      const Unsigned most = a_steep ? half_a : half_b;
+      const Unsigned middle = half_a + half_b;
+      bound[0] = least + 1 - none_b;
+      bound[1] = most + 1 - none_b;
+      bound[2] = middle + none_a;
+      bound[3] = middle + 1 - none_b;
+      bound[4] = middle + least + none_a;
+      bound[5] = middle + most + none_a;
+      const unsigned only_a = above_a & ~above_b;
+      const unsigned only_b = above_b & ~above_a;
+      const unsigned both = above_a & above_b;
+      const unsigned neither = ~(above_a | above_b) & 0xFFU;
+      const unsigned first = a_steep ? neither : both;
+      const unsigned second = a_steep ? both : neither;
+      // From no bound above the state to all six.
+      const uint32_t low =
+          only_b | (second | only_b) << 8 | (neither | both | only_b) << 16 | (neither | both) << 24;
+      const uint32_t high = (neither | both | only_a) | (first | only_a) << 8 | only_a << 16;
+      const bool along = d_a == 0 && d_b == 0;  // the ray is a point here, and the other pairs say where
+      bits::store32(quadrants, along ? 0xFFFFFFFFU : mirrored_octants(low, ray.flip));
+      bits::store32(quadrants + 4, along ? 0xFFFFFFFFU : mirrored_octants(high, ray.flip));
+    }
+
+    Unsigned descent(unsigned a, unsigned b) const { return (a != 0 ? 0 : half_b) + (b != 0 ? half_a : 0); }
+    uint32_t octants(Unsigned state) const {
+      unsigned above = 0;
+      above += state < bound[0] ? 1U : 0U;
+      above += state < bound[1] ? 1U : 0U;
+      above += state < bound[2] ? 1U : 0U;
+      above += state < bound[3] ? 1U : 0U;
+      above += state < bound[4] ? 1U : 0U;
+      above += state < bound[5] ? 1U : 0U;
+      return quadrants[above];
+    }
+  };
+
+  Pair xy_;
+  Pair yz_;
+  Pair zx_;
+  State descent_[8];
+};
+
 // `Int` is int64_t for all rays, int32_t for those that `accepts_32` takes: with R the largest distance to a
 // plane of the world and D the largest direction component, R * D < 2^31.
 template <class Int>
 class Crossings {
  public:
-  // The three orders, of the planes that halve a node (trees) or of those that a cell is left by (grids).
+  // The three orders of the planes that a cell is left by.
   struct Orders {
     Int xy;
     Int yz;
@@ -100,10 +222,7 @@ class Crossings {
   explicit Crossings(const MirroredRay& ray)
       : ray_(ray),
         d_{ray.direction.x, ray.direction.y, ray.direction.z},
-        none_{ray.direction.x == 0, ray.direction.y == 0, ray.direction.z == 0},
-        xy_(0xAAU, 0xCCU, ray.flip),
-        yz_(0xCCU, 0xF0U, ray.flip),
-        zx_(0xF0U, 0xAAU, ray.flip) {}
+        none_{ray.direction.x == 0, ray.direction.y == 0, ray.direction.z == 0} {}
 
   // Whether the ray spends a positive length in its box; it then enters it at t = num / den (times 256).
   bool enter_box(Int* num, Int* den) const {
@@ -128,7 +247,8 @@ class Crossings {
     return true;
   }
 
-  // The cell in which the ray goes on from t = num / den (times 256), in a world of 2^level that it is in then.
+  // The cell in which the ray goes on from t = num / den (times 256), in a world of 2^level that it is in
+  // then.
   Vec3i cell_at(Int num, Int den, int level) const {
     Vec3i cell;
     for (int axis = 0; axis < 3; ++axis) {
@@ -148,29 +268,8 @@ class Crossings {
     return {s.x * d_.y - s.y * d_.x, s.y * d_.z - s.z * d_.y, s.z * d_.x - s.x * d_.z};
   }
 
-  // The octants, in the tree's numbering, in which the whole line spends a positive length, of a node of
-  // `level` that it crosses; `orders` are those of its middle planes.
-  uint32_t path(const Orders& orders, int level) const {
-    const Vec3<Int> step = quarter(level);
-    return xy_.path(orders.xy, step.x, step.y, none_.x, none_.y) &
-           yz_.path(orders.yz, step.y, step.z, none_.y, none_.z) &
-           zx_.path(orders.zx, step.z, step.x, none_.z, none_.x);
-  }
-
-  // From the middle planes of a node of `level` to those of its child `octant` (mirrored), which lie half of
-  // half its side away.
-  void descend(unsigned octant, int level, Orders* orders) const {
-    const Vec3<Int> step = quarter(level);
-    const Int x = (octant & 1U) != 0 ? 1 : -1;
-    const Int y = (octant & 2U) != 0 ? 1 : -1;
-    const Int z = (octant & 4U) != 0 ? 1 : -1;
-    orders->xy += x * step.y - y * step.x;
-    orders->yz += y * step.z - z * step.y;
-    orders->zx += z * step.x - x * step.z;
-  }
-
-  // The axes on which the ray leaves a cell (bit a = axis a), all of them when it crosses several of its upper
-  // planes at once; `orders` are those of these planes.
+  // The axes on which the ray leaves a cell (bit a = axis a), all of them when it crosses several of its
+  // upper planes at once; `orders` are those of these planes.
   unsigned leave(const Orders& orders) const {
     const bool x_before_y = orders.xy - none_.x < 0;
     const bool y_before_x = -orders.xy - none_.y < 0;
@@ -208,57 +307,9 @@ class Crossings {
   }
 
  private:
-  // A pair of axes, and the octants of each of its four quadrants.
-  struct Pair {
-    uint32_t neither;  // below the middle on both axes
-    uint32_t both;
-    uint32_t first;  // above the middle on the first axis only
-    uint32_t second;
-
-    // From the octants above the middle on the two axes.
-    Pair(uint32_t above_a, uint32_t above_b, unsigned flip) {
-      const uint32_t a = mirrored_octants(above_a, flip);
-      const uint32_t b = mirrored_octants(above_b, flip);
-      neither = ~(a | b);
-      both = a & b;
-      first = a & ~b;
-      second = b & ~a;
-    }
-
-    // Seen along the third axis the ray is a line over four squares, which has passed between the outer
-    // corners. It meets a square when it passes between two opposite corners of it, and the orders there are
-    // that of the middle plus or minus twice a step.
-    //
-    // An axis along which the ray does not move: its planes up to the origin were crossed before all others,
-    // those ahead never are. `none` decides the tie of a plane just at the origin for that; all other orders
-    // are multiples of the other direction component already.
-    //
-    // Of numbers below 1.5 * 2^31 only the signs are wanted, so the lowest bit is dropped to make them fit:
-    // steps are multiples of 128, and halves rounded down compare with them as the whole does.
-    uint32_t path(Int order, Int step_a, Int step_b, Int none_a, Int none_b) const {
-      const Int before = (order - none_a) >> 1;
-      const Int after = (-order - none_b) >> 1;
-      return (neither & sign((before - step_b) & (after - step_a))) |
-             (both & sign((before - step_a) & (after - step_b))) | (first & sign(before)) |
-             (second & sign(after));
-    }
-    // All bits when negative, else none.
-    static uint32_t sign(Int value) { return static_cast<uint32_t>(value >> (8 * sizeof(Int) - 1)); }
-  };
-
-  // A quarter of the side of a node of `level`, in 1/256 voxel, times the direction: half of what an order
-  // changes by when a plane moves from a node's middle to its side.
-  Vec3<Int> quarter(int level) const {
-    const int shift = level + 6;
-    return {d_.x << shift, d_.y << shift, d_.z << shift};
-  }
-
   const MirroredRay& ray_;
   Vec3<Int> d_;     // direction
   Vec3<Int> none_;  // 1 where it is 0
-  Pair xy_;
-  Pair yz_;
-  Pair zx_;
 };
 
 }  // namespace thimble

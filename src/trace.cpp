@@ -1,6 +1,6 @@
-// The traversal: from each node to those of its children that the ray passes through, in the order in which it
-// does. One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two small
-// adaptors below.
+// The traversal: from each node to those of its children that the ray passes through, in the order in which
+// it does. One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two
+// small adaptors below.
 #include "thimble/trace.h"
 
 #include "bits.h"
@@ -101,9 +101,9 @@ void report(const MirroredRay& ray, int32_t side, const Crossings<Int>& crossing
 }
 
 // A node on the way down. Octants are mirrored ones.
-template <class Int>
+template <class Path>
 struct Step {
-  typename Crossings<Int>::Orders orders;
+  typename Path::State state;
   NodeRef node;
   uint8_t octant;  // the child that the loop is in
   uint8_t rest;    // children still to visit, as bits
@@ -112,7 +112,7 @@ struct Step {
 // The children along the ray's path, in order, are the set bits of (mask & path) from the lowest up: in the
 // mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
 // through empty octants: it takes the next bit, or goes up to the next level that has one left.
-template <class Nodes, class Int>
+template <class Nodes, class Int, class Unsigned>
 Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request) {
   Hit hit;
   const Crossings<Int> crossings(ray);
@@ -124,26 +124,31 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
 
   const int world_level = nodes.level();
   const int32_t side = int32_t{1} << world_level;
-  const int32_t middle = side / 2;
-  Step<Int> stack[kMaxLevel + 1];
+  using Path = NodePath<Int, Unsigned>;
+  const Path path(ray, world_level);
+  Step<Path> stack[kMaxLevel + 1];
   uint32_t pending = 0;  // bit k: stack[k].rest is not 0
-  typename Crossings<Int>::Orders orders = crossings.orders({middle, middle, middle});
+  typename Path::State state = path.start();
   uint32_t index = nodes.root();
   int level = world_level;
-  // While the node holds the ray's origin, its path is that of the part ahead.
+  // While the node holds the ray's origin, only the octants ahead of it are on the ray.
   bool inside = ray.within(side);
 
-  const auto path_of_node = [&]() {
-    uint32_t path = mirrored_octants(crossings.path(orders, level), ray.flip);
-    if (inside) {
-      path &= octants_from(ray.origin_octant(level));
+  // Octants along the ray, as bits in mirrored numbering, of those in `among`.
+  const auto octants_of = [&](uint32_t among) {
+    uint32_t octants = path.octants(state) & among;
+    if (octants != 0) {
+      octants = mirrored_octants(octants, ray.flip);
+      if (inside) {
+        octants &= octants_from(ray.origin_octant(level));
+      }
     }
-    return path;
+    return octants;
   };
   const auto enter_child = [&](unsigned octant) {
     inside = inside && octant == ray.origin_octant(level);
     stack[level].octant = static_cast<uint8_t>(octant);
-    crossings.descend(octant, level, &orders);
+    path.descend(octant, &state);
     --level;
   };
   const auto report_block = [&]() {
@@ -165,11 +170,11 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
       return hit;
     }
     ++hit.visits;
-    uint8_t mask;
-    if (!nodes.load(index, &mask)) {
+    NodeRef node;
+    if (!nodes.load(index, &node.mask)) {
       return hit;
     }
-    if (mask == 0) {  // a solid block
+    if (node.mask == 0) {  // a solid block
       hit.kind = HitKind::kHit;
       if (request.any) {
         return hit;
@@ -177,27 +182,20 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
       hit.material = nodes.block_material(index);
       // A truly full block: the voxel entered is found by going down as if it had children.
       while (level > 0 && !nodes.merged(index)) {
-        enter_child(bits::lowest_bit(path_of_node()));
+        enter_child(bits::lowest_bit(octants_of(0xFFU)));
       }
       report_block();
       return hit;
     }
 
-    NodeRef node{0, mask};
-    uint32_t rest = crossings.path(orders, level) & mask;
-    if (rest != 0) {
-      rest = mirrored_octants(rest, ray.flip);
-      if (inside) {
-        rest &= octants_from(ray.origin_octant(level));
-      }
-    }
-    if (rest == 0) {
+    uint32_t rest = octants_of(node.mask);
+    if (rest == 0) {  // up to the next level that has a child left
       if (pending == 0) {
         return hit;
       }
       level = static_cast<int>(bits::lowest_bit(pending));
       inside = false;  // what holds the origin comes first
-      orders = stack[level].orders;
+      state = stack[level].state;
       node = stack[level].node;
       rest = stack[level].rest;
     } else if (level == 1) {  // a voxel
@@ -206,14 +204,13 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
         return hit;
       }
       const unsigned octant = bits::lowest_bit(rest);
-      hit.material = nodes.voxel_material(index, mask, octant ^ ray.flip);
-      stack[level].octant = static_cast<uint8_t>(octant);
-      level = 0;
+      hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
+      enter_child(octant);
       report_block();
       return hit;
     } else {
       node.link = nodes.link(index);
-      stack[level].orders = orders;
+      stack[level].state = state;
       stack[level].node = node;
     }
     const unsigned octant = bits::lowest_bit(rest);
@@ -265,15 +262,15 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
   }
 }
 
-template <class Int>
+template <class Int, class Unsigned>
 Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<CompactNodes, Int>(CompactNodes{tree}, ray, request);
+  return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request);
 }
-template <class Int>
+template <class Int, class Unsigned>
 Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<PoolNodes, Int>(PoolNodes{tree}, ray, request);
+  return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request);
 }
-template <class Int>
+template <class Int, class Unsigned>
 Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
   return walk_grid<Int>(grid, ray, request);
 }
@@ -299,7 +296,8 @@ Status trace(const Target& target, const Ray& ray, const TraceOptions& options, 
   // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
   const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());
   const Request request{options.max_visits, any};
-  *hit = narrow ? walk<int32_t>(target, mirrored, request) : walk<int64_t>(target, mirrored, request);
+  *hit = narrow ? walk<int32_t, uint32_t>(target, mirrored, request)
+                : walk<int64_t, uint64_t>(target, mirrored, request);
   return Status::kOk;
 }
 
