@@ -88,14 +88,15 @@ constexpr uint32_t octants_from(unsigned octant) {
          ((octant & 4U) != 0 ? 0xF0U : 0xFFU);
 }
 
-// The way through a node of a ray that crosses it: which octants it passes through, and the same for them.
+// The way of a ray through the nodes that it crosses: which octants of them it passes through.
 //
 // Its state is one number for each pair of axes, the order of the upper plane of the first axis against the
-// lower plane of the second, in units that shrink with the node (times 2^k for nodes of 1/2^k of the world).
-// In these units moving a plane by half a node always changes an order by the same `half`s, so everything
-// that the state is compared with is made once a ray. The ray crosses the node, so the state lies between 0
-// and 2 * (half_a + half_b), and that is below 2^32 or 2^64 at every level when it is at the first.
-template <class Int, class Unsigned>
+// lower plane of the second, in units that shrink with the node (2^-k for nodes of 1/2^k of the world). In
+// these units moving a plane by half a node always changes an order by the same amount, so everything that
+// the state is compared with is made once a ray. The ray crosses the node, so the state lies between 0 and
+// twice the sum of the two amounts, at every level: below 2 * R * D < 2^32 for a ray that `accepts_32` takes,
+// below 2^42 for others. Its products wrap around, the state does not.
+template <class Unsigned>
 class NodePath {
  public:
   struct State {
@@ -104,26 +105,14 @@ class NodePath {
     Unsigned zx;
   };
 
-  NodePath(const MirroredRay& ray, int level)
-      : xy_(ray, 0, 1, level, 0xAAU, 0xCCU),
-        yz_(ray, 1, 2, level, 0xCCU, 0xF0U),
-        zx_(ray, 2, 0, level, 0xF0U, 0xAAU) {
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      const unsigned x = octant & 1U;
-      const unsigned y = octant >> 1 & 1U;
-      const unsigned z = octant >> 2;
-      descent_[octant] = {xy_.descent(x, y), yz_.descent(y, z), zx_.descent(z, x)};
-    }
-  }
+  NodePath(const MirroredRay& ray, int level) : xy_(ray, level), yz_(ray, level), zx_(ray, level) {}
 
   // At the world, which the ray crosses.
   State start() const { return {xy_.start, yz_.start, zx_.start}; }
   // From a node to its child `octant` (mirrored), which the ray crosses.
-  void descend(unsigned octant, State* state) const {
-    const State& change = descent_[octant];
-    state->xy = 2 * (state->xy - change.xy);
-    state->yz = 2 * (state->yz - change.yz);
-    state->zx = 2 * (state->zx - change.zx);
+  State child(const State& node, unsigned octant) const {
+    return {2 * (node.xy - xy_.change[octant & 3U]), 2 * (node.yz - yz_.change[octant & 6U]),
+            2 * (node.zx - zx_.change[octant & 5U])};
   }
   // The octants, as bits in the tree's numbering, in which the line spends a positive length.
   uint32_t octants(const State& state) const {
@@ -131,80 +120,90 @@ class NodePath {
   }
 
  private:
-  // Seen along the third axis the node is a square of four quadrants and the ray a line over them. As the
-  // state grows the line moves across the square, and every quadrant has its stretch of the state:
+  // Seen along the third axis the node is a square of four quadrants and the ray a line across. As the state
+  // grows the line moves over the square, and each quadrant is met for a stretch of it:
   //
   //   state       0    least    most       middle      middle+least   middle+most   2 * middle
   //   a only      #########################
-  //   neither           ##############################################               (half_a >= half_b)
+  //   neither           ##############################################
   //   both                      ####################################################
   //   b only                               #########################################
   //
-  // (with half_a < half_b, `neither` and `both` change places). At `middle` itself the line passes through
-  // the centre and only touches the other two.
+  // (`half_a` and `half_b` are what the state changes by when a plane of b or a moves by half a node, `least`
+  // and `most` the smaller and the greater of them; `neither` and `both` change places where half_b is the
+  // greater). Quadrants are named by the axes on which they lie above the middle. At `middle` the line goes
+  // through the centre and only touches the other two.
   //
   // An axis along which the ray does not move: its planes up to the origin were crossed before all others,
-  // those ahead never are. Only a plane at the origin needs care, which without it would be a tie: `none_a`
-  // and `none_b` shift the bounds by one, and all states are then multiples of the other component.
+  // those ahead never are. Only a plane just at the origin needs care, since it would count as a tie:
+  // `none_a` and `none_b` move the bounds by one, which no other state sees, as all are multiples of the half
+  // that is not 0.
+  template <int kA, int kB>
   struct Pair {
     Unsigned start;
-    Unsigned half_a;
-    Unsigned half_b;
+    Unsigned change[7];  // by the child's octant, of which only the bits of the two axes are set
     Unsigned bound[6];
-    uint8_t quadrants[8];  // by the number of bounds above the state
+    uint8_t quadrants[8];  // by how many bounds are above the state
 
-    Pair(const MirroredRay& ray, int a, int b, int level, unsigned above_a, unsigned above_b) {
-      const Unsigned d_a = static_cast<Unsigned>(ray.direction[a]);
-      const Unsigned d_b = static_cast<Unsigned>(ray.direction[b]);
-      half_a = d_a << (level + 7);
-      half_b = d_b << (level + 7);
-      start =
-          static_cast<Unsigned>(static_cast<Int>(ray.distance(a, int32_t{1} << level)) * ray.direction[b] -
-                                static_cast<Int>(ray.distance(b, 0)) * ray.direction[a]);
+    Pair(const MirroredRay& ray, int level) {
+      const Unsigned d_a = static_cast<Unsigned>(ray.direction[kA]);
+      const Unsigned d_b = static_cast<Unsigned>(ray.direction[kB]);
+      start = static_cast<Unsigned>(ray.distance(kA, int32_t{1} << level)) * d_b -
+              static_cast<Unsigned>(ray.distance(kB, 0)) * d_a;
+      const Unsigned half_a = d_a << (level + 7);
+      const Unsigned half_b = d_b << (level + 7);
+      const Unsigned middle = half_a + half_b;
+      change[0] = half_b;
+      change[1U << kA] = 0;
+      change[1U << kB] = middle;
+      change[1U << kA | 1U << kB] = half_a;
+
+      const bool a_most = half_a >= half_b;
+      const Unsigned least = a_most ? half_b : half_a;
+      const Unsigned most = a_most ? half_a : half_b;
       const Unsigned none_a = d_a == 0 ? 1 : 0;
       const Unsigned none_b = d_b == 0 ? 1 : 0;
-      const bool a_steep = half_a >= half_b;
-      const Unsigned least = a_steep ? half_b : half_a;
-      const Unsigned most = a_steep ? half_a : half_b;
-      const Unsigned middle = half_a + half_b;
       bound[0] = least + 1 - none_b;
       bound[1] = most + 1 - none_b;
       bound[2] = middle + none_a;
       bound[3] = middle + 1 - none_b;
       bound[4] = middle + least + none_a;
       bound[5] = middle + most + none_a;
-      const unsigned only_a = above_a & ~above_b;
-      const unsigned only_b = above_b & ~above_a;
-      const unsigned both = above_a & above_b;
-      const unsigned neither = ~(above_a | above_b) & 0xFFU;
-      const unsigned first = a_steep ? neither : both;
-      const unsigned second = a_steep ? both : neither;
-      // From no bound above the state to all six.
-      const uint32_t low =
-          only_b | (second | only_b) << 8 | (neither | both | only_b) << 16 | (neither | both) << 24;
-      const uint32_t high = (neither | both | only_a) | (first | only_a) << 8 | only_a << 16;
-      const bool along = d_a == 0 && d_b == 0;  // the ray is a point here, and the other pairs say where
-      bits::store32(quadrants, along ? 0xFFFFFFFFU : mirrored_octants(low, ray.flip));
-      bits::store32(quadrants + 4, along ? 0xFFFFFFFFU : mirrored_octants(high, ray.flip));
+
+      constexpr uint32_t kAbove[3] = {0xAAU, 0xCCU, 0xF0U};
+      constexpr uint32_t kOnlyA = kAbove[kA] & ~kAbove[kB];
+      constexpr uint32_t kOnlyB = kAbove[kB] & ~kAbove[kA];
+      constexpr uint32_t kBoth = kAbove[kA] & kAbove[kB];
+      constexpr uint32_t kNeither = 0xFFU & ~(kAbove[kA] | kAbove[kB]);
+      // Backwards: all bounds are above the smallest states.
+      constexpr uint32_t kUpTo3 =
+          kOnlyB | kOnlyB << 8 | (kNeither | kBoth | kOnlyB) << 16 | (kNeither | kBoth) << 24;
+      constexpr uint32_t kFrom4 = (kNeither | kBoth | kOnlyA) | kOnlyA << 8 | kOnlyA << 16;
+      uint32_t up_to_3 = kUpTo3 | (a_most ? kBoth : kNeither) << 8;
+      uint32_t from_4 = kFrom4 | (a_most ? kNeither : kBoth) << 8;
+      if (middle == 0) {  // the ray is a point here, and the other pairs say where
+        up_to_3 = 0xFFFFFFFFU;
+        from_4 = 0xFFFFFFFFU;
+      }
+      bits::store32(quadrants, mirrored_octants(up_to_3, ray.flip));
+      bits::store32(quadrants + 4, mirrored_octants(from_4, ray.flip));
     }
 
-    Unsigned descent(unsigned a, unsigned b) const { return (a != 0 ? 0 : half_b) + (b != 0 ? half_a : 0); }
     uint32_t octants(Unsigned state) const {
-      unsigned above = 0;
-      above += state < bound[0] ? 1U : 0U;
-      above += state < bound[1] ? 1U : 0U;
-      above += state < bound[2] ? 1U : 0U;
-      above += state < bound[3] ? 1U : 0U;
-      above += state < bound[4] ? 1U : 0U;
-      above += state < bound[5] ? 1U : 0U;
+      // Written out, since gcc -O2 would make a loop of it.
+      unsigned above = state < bound[0] ? 1 : 0;
+      above += state < bound[1] ? 1 : 0;
+      above += state < bound[2] ? 1 : 0;
+      above += state < bound[3] ? 1 : 0;
+      above += state < bound[4] ? 1 : 0;
+      above += state < bound[5] ? 1 : 0;
       return quadrants[above];
     }
   };
 
-  Pair xy_;
-  Pair yz_;
-  Pair zx_;
-  State descent_[8];
+  Pair<0, 1> xy_;
+  Pair<1, 2> yz_;
+  Pair<2, 0> zx_;
 };
 
 // `Int` is int64_t for all rays, int32_t for those that `accepts_32` takes: with R the largest distance to a

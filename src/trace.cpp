@@ -109,6 +109,37 @@ struct Step {
   uint8_t rest;    // children still to visit, as bits
 };
 
+// The lowest corner of the node of `level` on the way down from `world_level`.
+template <class Step>
+Vec3i corner_of(const Step (&stack)[kMaxLevel + 1], int level, int world_level) {
+  Vec3i corner;
+  for (int above = world_level; above > level; --above) {
+    const unsigned octant = stack[above].octant;
+    corner.x |= static_cast<int32_t>((octant & 1U) << (above - 1));
+    corner.y |= static_cast<int32_t>(((octant >> 1) & 1U) << (above - 1));
+    corner.z |= static_cast<int32_t>(((octant >> 2) & 1U) << (above - 1));
+  }
+  return corner;
+}
+
+// Goes down from a node of `level` that is solid through to the voxel that the ray enters it by. `inside`:
+// the ray starts in the node.
+template <class Path>
+void descend_to_voxel(const Path& path, const MirroredRay& ray, typename Path::State state, int level,
+                      bool inside, Step<Path> (&stack)[kMaxLevel + 1]) {
+  for (; level > 0; --level) {
+    uint32_t octants = mirrored_octants(path.octants(state), ray.flip);
+    const unsigned origin = ray.origin_octant(level);
+    if (inside) {
+      octants &= octants_from(origin);
+    }
+    const unsigned octant = bits::lowest_bit(octants);
+    inside = inside && octant == origin;
+    stack[level].octant = static_cast<uint8_t>(octant);
+    state = path.child(state, octant);
+  }
+}
+
 // The children along the ray's path, in order, are the set bits of (mask & path) from the lowest up: in the
 // mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
 // through empty octants: it takes the next bit, or goes up to the next level that has one left.
@@ -124,7 +155,7 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
 
   const int world_level = nodes.level();
   const int32_t side = int32_t{1} << world_level;
-  using Path = NodePath<Int, Unsigned>;
+  using Path = NodePath<Unsigned>;
   const Path path(ray, world_level);
   Step<Path> stack[kMaxLevel + 1];
   uint32_t pending = 0;  // bit k: stack[k].rest is not 0
@@ -134,63 +165,53 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
   // While the node holds the ray's origin, only the octants ahead of it are on the ray.
   bool inside = ray.within(side);
 
-  // Octants along the ray, as bits in mirrored numbering, of those in `among`.
-  const auto octants_of = [&](uint32_t among) {
-    uint32_t octants = path.octants(state) & among;
-    if (octants != 0) {
-      octants = mirrored_octants(octants, ray.flip);
-      if (inside) {
-        octants &= octants_from(ray.origin_octant(level));
-      }
-    }
-    return octants;
-  };
-  const auto enter_child = [&](unsigned octant) {
-    inside = inside && octant == ray.origin_octant(level);
-    stack[level].octant = static_cast<uint8_t>(octant);
-    path.descend(octant, &state);
-    --level;
-  };
-  const auto report_block = [&]() {
-    Vec3i corner;
-    for (int above = world_level; above > level; --above) {
-      const unsigned octant = stack[above].octant;
-      corner.x |= static_cast<int32_t>((octant & 1U) << (above - 1));
-      corner.y |= static_cast<int32_t>(((octant >> 1) & 1U) << (above - 1));
-      corner.z |= static_cast<int32_t>(((octant >> 2) & 1U) << (above - 1));
-    }
-    report(ray, side, crossings, corner, level, &hit);
-  };
-
   // Each turn arrives at the node `index` of `level`. The ray passes at most 3 * 2^k nodes of a level whose
   // nodes are 1/2^k of the world.
-  for (;;) {
-    if (hit.visits == request.max_visits) {
+  for (uint32_t visits = 0;;) {
+    if (visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
+      hit.visits = visits;
       return hit;
     }
-    ++hit.visits;
+    ++visits;
     NodeRef node;
     if (!nodes.load(index, &node.mask)) {
+      hit.visits = visits;
       return hit;
     }
-    if (node.mask == 0) {  // a solid block
+    const bool solid = node.mask == 0;
+    uint32_t rest = path.octants(state) & node.mask;
+    if (rest != 0) {
+      rest = mirrored_octants(rest, ray.flip);
+      if (inside) {
+        rest &= octants_from(ray.origin_octant(level));
+      }
+    }
+    if (solid || (level == 1 && rest != 0)) {
       hit.kind = HitKind::kHit;
+      hit.visits = visits;
       if (request.any) {
         return hit;
       }
-      hit.material = nodes.block_material(index);
-      // A truly full block: the voxel entered is found by going down as if it had children.
-      while (level > 0 && !nodes.merged(index)) {
-        enter_child(bits::lowest_bit(octants_of(0xFFU)));
+      if (!solid) {  // a voxel
+        const unsigned octant = bits::lowest_bit(rest);
+        hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
+        stack[level].octant = static_cast<uint8_t>(octant);
+        level = 0;
+      } else {
+        hit.material = nodes.block_material(index);
+        if (!nodes.merged(index)) {
+          descend_to_voxel(path, ray, state, level, inside, stack);
+          level = 0;
+        }
       }
-      report_block();
+      report(ray, side, crossings, corner_of(stack, level, world_level), level, &hit);
       return hit;
     }
 
-    uint32_t rest = octants_of(node.mask);
     if (rest == 0) {  // up to the next level that has a child left
       if (pending == 0) {
+        hit.visits = visits;
         return hit;
       }
       level = static_cast<int>(bits::lowest_bit(pending));
@@ -198,16 +219,6 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
       state = stack[level].state;
       node = stack[level].node;
       rest = stack[level].rest;
-    } else if (level == 1) {  // a voxel
-      hit.kind = HitKind::kHit;
-      if (request.any) {
-        return hit;
-      }
-      const unsigned octant = bits::lowest_bit(rest);
-      hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
-      enter_child(octant);
-      report_block();
-      return hit;
     } else {
       node.link = nodes.link(index);
       stack[level].state = state;
@@ -215,10 +226,13 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
     }
     const unsigned octant = bits::lowest_bit(rest);
     rest &= rest - 1;
+    stack[level].octant = static_cast<uint8_t>(octant);
     stack[level].rest = static_cast<uint8_t>(rest);
     pending = (pending & ~(uint32_t{1} << level)) | static_cast<uint32_t>(rest != 0) << level;
+    inside = inside && octant == ray.origin_octant(level);
     index = nodes.child(node, octant ^ ray.flip);
-    enter_child(octant);
+    state = path.child(state, octant);
+    --level;
   }
 }
 
