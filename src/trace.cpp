@@ -11,8 +11,8 @@ namespace {
 
 // A node as the loop needs it: which children there are, and where they are found.
 struct NodeRef {
-  uint32_t link = 0;  // compact: number of the first child; pool: index of the first child
-  uint8_t mask = 0;
+  uint32_t link;  // of the first child
+  uint8_t mask;
 };
 
 struct CompactNodes {
@@ -22,15 +22,15 @@ struct CompactNodes {
   bool empty() const { return tree.empty(); }
   uint32_t root() const { return 0; }
   // False for a node number outside the tree, which only a damaged tree leads to.
-  bool load(uint32_t index, uint8_t* mask) const {
+  bool load(uint32_t index, NodeRef* node) const {
     if (index >= tree.node_count()) {
       return false;
     }
-    *mask = tree.mask(index);
+    node->mask = tree.mask(index);
     return true;
   }
-  // Where the children are; counts bits, so it is asked only when one of them is wanted.
-  uint32_t link(uint32_t index) const { return tree.first_child(index); }
+  // Where the children are is counted from bits, so only when one of them is wanted.
+  void find_children(uint32_t index, NodeRef* node) const { node->link = tree.first_child(index); }
   uint32_t child(const NodeRef& node, unsigned octant) const {
     return node.link + bits::popcount8(node.mask & ((1U << octant) - 1));
   }
@@ -50,14 +50,16 @@ struct PoolNodes {
   int level() const { return tree.level(); }
   bool empty() const { return tree.empty(); }
   uint32_t root() const { return tree.root(); }
-  bool load(uint32_t index, uint8_t* mask) const {
+  bool load(uint32_t index, NodeRef* node) const {
     if (index == Octree::kNone) {
       return false;
     }
-    *mask = tree.node(index).mask;
+    const Octree::NodeView view = tree.node(index);
+    node->mask = view.mask;
+    node->link = view.first_child;
     return true;
   }
-  uint32_t link(uint32_t index) const { return tree.node(index).first_child; }
+  void find_children(uint32_t, NodeRef*) const {}
   // Children are a chain in the order of their octants.
   uint32_t child(const NodeRef& node, unsigned octant) const {
     uint32_t index = node.link;
@@ -175,7 +177,7 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
     }
     ++visits;
     NodeRef node;
-    if (!nodes.load(index, &node.mask)) {
+    if (!nodes.load(index, &node)) {
       hit.visits = visits;
       return hit;
     }
@@ -220,7 +222,7 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
       node = stack[level].node;
       rest = stack[level].rest;
     } else {
-      node.link = nodes.link(index);
+      nodes.find_children(index, &node);
       stack[level].state = state;
       stack[level].node = node;
     }

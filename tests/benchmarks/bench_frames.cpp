@@ -16,6 +16,7 @@
 // into 8-bit grey.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <ctime>
 #include <memory>
 #include <string>
@@ -25,6 +26,7 @@
 #include "commands/options.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
+#include "thimble/morton.h"
 
 namespace thimble::benchmarks {
 namespace {
@@ -58,10 +60,20 @@ Scene& scene(const std::string& name, tools::StructureKind structure, bool with_
     options.structure = structure;
     last.built = std::make_unique<tools::BuiltScene>(*source, options);
     if (with_textbook) {
+      // In Morton order, so that nodes that are near in space are near in memory.
+      std::vector<std::uint64_t> codes;
+      source->stream(
+          [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+            codes.push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                        static_cast<std::uint32_t>(z)));
+          },
+          {});
+      std::sort(codes.begin(), codes.end());
       last.textbook = std::make_unique<TextbookOctree>(source->level());
-      source->stream([&](std::int32_t x, std::int32_t y, std::int32_t z,
-                         std::uint8_t) { last.textbook->insert(x, y, z); },
-                     {});
+      for (const std::uint64_t code : codes) {
+        const Vec3i voxel = morton_voxel(code);
+        last.textbook->insert(voxel.x, voxel.y, voxel.z);
+      }
     }
     last.name = key;
   }
