@@ -111,8 +111,8 @@ class NodePath {
   State start() const { return {xy_.start, yz_.start, zx_.start}; }
   // From a node to its child `octant` (mirrored), which the ray crosses.
   State child(const State& node, unsigned octant) const {
-    return {2 * (node.xy - xy_.change[octant & 3U]), 2 * (node.yz - yz_.change[octant & 6U]),
-            2 * (node.zx - zx_.change[octant & 5U])};
+    return {2 * (node.xy - xy_.change[octant & 3U]), 2 * (node.yz - yz_.change[octant >> 1]),
+            2 * (node.zx - zx_.change[(octant >> 2 | octant << 1) & 3U])};
   }
   // The octants, as bits in the tree's numbering, in which the line spends a positive length.
   uint32_t octants(const State& state) const {
@@ -141,7 +141,7 @@ class NodePath {
   template <int kA, int kB>
   struct Pair {
     Unsigned start;
-    Unsigned change[7];  // by the child's octant, of which only the bits of the two axes are set
+    Unsigned change[4];  // by the child: bit 0 above the middle on the first axis, bit 1 on the second
     Unsigned bound[6];
     uint8_t quadrants[8];  // by how many bounds are above the state
 
@@ -154,9 +154,9 @@ class NodePath {
       const Unsigned half_b = d_b << (level + 7);
       const Unsigned middle = half_a + half_b;
       change[0] = half_b;
-      change[1U << kA] = 0;
-      change[1U << kB] = middle;
-      change[1U << kA | 1U << kB] = half_a;
+      change[1] = 0;
+      change[2] = middle;
+      change[3] = half_a;
 
       const bool a_most = half_a >= half_b;
       const Unsigned least = a_most ? half_b : half_a;

@@ -278,12 +278,13 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
   }
 }
 
+// Not inlined, so that a ray takes the stack of its own width only.
 template <class Int, class Unsigned>
-Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
+[[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
   return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request);
 }
 template <class Int, class Unsigned>
-Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
+[[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
   return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request);
 }
 template <class Int, class Unsigned>

@@ -1,6 +1,6 @@
 // Seconds a frame of 800 x 600 pixels: this core ray by ray, beside a textbook pointer octree.
 //
-//   make bench                                       everything, about three minutes
+//   make bench                                       everything, about two minutes
 //   make bench BENCH_ARGS=--benchmark_filter=points  what matches
 //   make bench BENCH_ARGS=--benchmark_format=json    for machines
 //
