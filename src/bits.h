@@ -35,6 +35,11 @@ constexpr int highest_bit(uint32_t word) {
   return 31 - __builtin_clz(word);
 }
 
+// Index of the lowest set bit of `word`, which is not 0.
+constexpr unsigned lowest_bit(uint32_t word) {
+  return static_cast<unsigned>(__builtin_ctz(word));
+}
+
 // Number of bits needed to write `value`: 0 for 0.
 constexpr int bit_length(uint32_t value) {
   return value == 0 ? 0 : highest_bit(value) + 1;

@@ -1,6 +1,6 @@
-// The traversal: down the octree to the child the ray is in, across to the next, up when it leaves the node.
-// One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two small
-// adaptors below.
+// The traversal: from each node to those of its children that the ray passes through, in the order in which
+// it does. One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two
+// small adaptors below.
 #include "thimble/trace.h"
 
 #include "bits.h"
@@ -11,9 +11,8 @@ namespace {
 
 // A node as the loop needs it: which children there are, and where they are found.
 struct NodeRef {
-  uint32_t link = 0;  // compact: number of the first child; pool: index of the first child. At level 1 the
-                      // node's own index
-  uint8_t mask = 0;
+  uint32_t link;  // of the first child
+  uint8_t mask;
 };
 
 struct CompactNodes {
@@ -23,26 +22,25 @@ struct CompactNodes {
   bool empty() const { return tree.empty(); }
   uint32_t root() const { return 0; }
   // False for a node number outside the tree, which only a damaged tree leads to.
-  bool load(uint32_t index, int level, NodeRef* node) const {
+  bool load(uint32_t index, NodeRef* node) const {
     if (index >= tree.node_count()) {
       return false;
     }
     node->mask = tree.mask(index);
-    // Counting bits is left out where nobody follows the link.
-    node->link = level > 1 && node->mask != 0 ? tree.first_child(index) : index;
     return true;
   }
+  // Where the children are is counted from bits, so only when one of them is wanted.
+  void find_children(uint32_t index, NodeRef* node) const { node->link = tree.first_child(index); }
   uint32_t child(const NodeRef& node, unsigned octant) const {
     return node.link + bits::popcount8(node.mask & ((1U << octant) - 1));
   }
   bool merged(uint32_t index) const { return tree.is_merged(index); }
   uint8_t block_material(uint32_t index) const { return tree.block_material(index); }
-  uint8_t voxel_material(const NodeRef& node, unsigned octant) const {
+  uint8_t voxel_material(uint32_t index, uint8_t mask, unsigned octant) const {
     if (!tree.many_materials()) {
       return tree.uniform_material();
     }
-    return tree.voxel_material(tree.first_child(node.link) +
-                               bits::popcount8(node.mask & ((1U << octant) - 1)));
+    return tree.voxel_material(child({tree.first_child(index), mask}, octant));
   }
 };
 
@@ -52,15 +50,16 @@ struct PoolNodes {
   int level() const { return tree.level(); }
   bool empty() const { return tree.empty(); }
   uint32_t root() const { return tree.root(); }
-  bool load(uint32_t index, int level, NodeRef* node) const {
+  bool load(uint32_t index, NodeRef* node) const {
     if (index == Octree::kNone) {
       return false;
     }
     const Octree::NodeView view = tree.node(index);
     node->mask = view.mask;
-    node->link = level > 1 ? view.first_child : index;
+    node->link = view.first_child;
     return true;
   }
+  void find_children(uint32_t, NodeRef*) const {}
   // Children are a chain in the order of their octants.
   uint32_t child(const NodeRef& node, unsigned octant) const {
     uint32_t index = node.link;
@@ -72,12 +71,12 @@ struct PoolNodes {
   }
   bool merged(uint32_t index) const { return tree.node(index).merged; }
   uint8_t block_material(uint32_t index) const { return tree.node(index).material; }
-  uint8_t voxel_material(const NodeRef& node, unsigned octant) const {
-    const Octree::NodeView view = tree.node(node.link);
+  uint8_t voxel_material(uint32_t index, uint8_t mask, unsigned octant) const {
+    const Octree::NodeView view = tree.node(index);
     if (!view.has_children) {
       return view.material;
     }
-    return tree.node(child({view.first_child, node.mask}, octant)).material;
+    return tree.node(child({view.first_child, mask}, octant)).material;
   }
 };
 
@@ -86,206 +85,211 @@ struct Request {
   bool any;  // only the kind is wanted
 };
 
-// Fills in what was hit: the block of `level` at `corner` (mirrored), entered at the present crossing.
-template <class Crossings>
-void report(const MirroredRay& ray, const Vec3i& extent, const Crossings& crossings, const Vec3i& corner,
+// Fills in what was hit: the block of `level` at `corner` (mirrored) in a world of `side`.
+template <class Int>
+void report(const MirroredRay& ray, int32_t side, const Crossings<Int>& crossings, const Vec3i& corner,
             int level, Hit* hit) {
-  int axis = crossings.entered(corner);
-  // A damaged tree can begin the ray within a block, so that no face of it was entered: `t` keeps its range.
-  if (axis >= 0 && (ray.direction[axis] == 0 || corner[axis] * Q8::kOne < ray.origin_q8[axis])) {
-    axis = -1;
-  }
+  const int axis = crossings.entered(corner);
   hit->axis = static_cast<int8_t>(axis);
   hit->block_level = static_cast<uint8_t>(level);
   for (int a = 0; a < 3; ++a) {
-    const int32_t side = int32_t{1} << level;
-    hit->voxel[a] = ((ray.flip >> a) & 1U) != 0 ? extent[a] - side - corner[a] : corner[a];
+    const int32_t block = int32_t{1} << level;
+    hit->voxel[a] = ((ray.flip >> a) & 1U) != 0 ? side - block - corner[a] : corner[a];
   }
   if (axis >= 0) {
-    hit->t_numerator = corner[axis] * Q8::kOne - ray.origin_q8[axis];
+    hit->t_numerator = ray.distance(axis, corner[axis]);
     hit->t_denominator = ray.direction[axis] * Q8::kOne;
-  } else {
-    hit->t_numerator = 0;
-    hit->t_denominator = 1;
   }
 }
 
-Vec3i child_corner(const Vec3i& corner, unsigned octant, int child_level) {
-  return {corner.x | static_cast<int32_t>((octant & 1U) << child_level),
-          corner.y | static_cast<int32_t>(((octant >> 1) & 1U) << child_level),
-          corner.z | static_cast<int32_t>(((octant >> 2) & 1U) << child_level)};
+// A node on the way down. Octants are mirrored ones.
+template <class Path>
+struct Step {
+  typename Path::State state;
+  NodeRef node;
+  uint8_t octant;  // the child that the loop is in
+  uint8_t rest;    // children still to visit, as bits
+};
+
+// The lowest corner of the node of `level` on the way down from `world_level`.
+template <class Step>
+Vec3i corner_of(const Step (&stack)[kMaxLevel + 1], int level, int world_level) {
+  Vec3i corner;
+  for (int above = world_level; above > level; --above) {
+    const unsigned octant = stack[above].octant;
+    corner.x |= static_cast<int32_t>((octant & 1U) << (above - 1));
+    corner.y |= static_cast<int32_t>(((octant >> 1) & 1U) << (above - 1));
+    corner.z |= static_cast<int32_t>(((octant >> 2) & 1U) << (above - 1));
+  }
+  return corner;
 }
 
-template <class Nodes, class Crossings>
+// Goes down from a node of `level` that is solid through to the voxel that the ray enters it by. `inside`:
+// the ray starts in the node.
+template <class Path>
+void descend_to_voxel(const Path& path, const MirroredRay& ray, typename Path::State state, int level,
+                      bool inside, Step<Path> (&stack)[kMaxLevel + 1]) {
+  for (; level > 0; --level) {
+    uint32_t octants = mirrored_octants(path.octants(state), ray.flip);
+    const unsigned origin = ray.origin_octant(level);
+    if (inside) {
+      octants &= octants_from(origin);
+    }
+    const unsigned octant = bits::lowest_bit(octants);
+    inside = inside && octant == origin;
+    stack[level].octant = static_cast<uint8_t>(octant);
+    state = path.child(state, octant);
+  }
+}
+
+// The children along the ray's path, in order, are the set bits of (mask & path) from the lowest up: in the
+// mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
+// through empty octants: it takes the next bit, or goes up to the next level that has one left.
+template <class Nodes, class Int, class Unsigned>
 Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request) {
   Hit hit;
-  Crossings crossings(ray);
-  if (nodes.empty() || !crossings.begin()) {
+  const Crossings<Int> crossings(ray);
+  Int num;
+  Int den;
+  if (nodes.empty() || !crossings.enter_box(&num, &den)) {
     return hit;
   }
 
   const int world_level = nodes.level();
   const int32_t side = int32_t{1} << world_level;
-  const Vec3i extent{side, side, side};
-  NodeRef stack[kMaxLevel + 1];
-  NodeRef node;
+  using Path = NodePath<Unsigned>;
+  const Path path(ray, world_level);
+  Step<Path> stack[kMaxLevel + 1];
+  uint32_t pending = 0;  // bit k: stack[k].rest is not 0
+  typename Path::State state = path.start();
   uint32_t index = nodes.root();
   int level = world_level;
-  Vec3i corner;
-  crossings.enter(corner, level);
+  // While the node holds the ray's origin, only the octants ahead of it are on the ray.
+  bool inside = ray.within(side);
 
-  // Each turn arrives at the node `index` of `level` at `corner`. The ray only moves forward, so there are at
-  // most 3 * 2^world_level crossings and world_level arrivals between two of them.
-  for (;;) {
-    if (hit.visits == request.max_visits) {
+  // Each turn arrives at the node `index` of `level`. The ray passes at most 3 * 2^k nodes of a level whose
+  // nodes are 1/2^k of the world.
+  for (uint32_t visits = 0;;) {
+    if (visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
+      hit.visits = visits;
       return hit;
     }
-    ++hit.visits;
-    if (!nodes.load(index, level, &node)) {
+    ++visits;
+    NodeRef node;
+    if (!nodes.load(index, &node)) {
+      hit.visits = visits;
       return hit;
     }
-    if (node.mask == 0) {  // a solid block
+    const bool solid = node.mask == 0;
+    uint32_t rest = path.octants(state) & node.mask;
+    if (rest != 0) {
+      rest = mirrored_octants(rest, ray.flip);
+      if (inside) {
+        rest &= octants_from(ray.origin_octant(level));
+      }
+    }
+    if (solid || (level == 1 && rest != 0)) {
       hit.kind = HitKind::kHit;
+      hit.visits = visits;
       if (request.any) {
         return hit;
       }
-      hit.material = nodes.block_material(index);
-      const bool merged = nodes.merged(index);
-      // A truly full block: the voxel entered is found by going down as if it had children.
-      while (!merged && level > 0) {
-        const unsigned octant = crossings.octant(corner, level);
-        --level;
-        corner = child_corner(corner, octant, level);
-        crossings.descend(octant, corner, level);
+      if (!solid) {  // a voxel
+        const unsigned octant = bits::lowest_bit(rest);
+        hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
+        stack[level].octant = static_cast<uint8_t>(octant);
+        level = 0;
+      } else {
+        hit.material = nodes.block_material(index);
+        if (!nodes.merged(index)) {
+          descend_to_voxel(path, ray, state, level, inside, stack);
+          level = 0;
+        }
       }
-      report(ray, extent, crossings, corner, level, &hit);
+      report(ray, side, crossings, corner_of(stack, level, world_level), level, &hit);
       return hit;
     }
 
-    unsigned octant = crossings.octant(corner, level);
-    while (((node.mask >> (octant ^ ray.flip)) & 1U) == 0) {
-      const unsigned crossed = crossings.leave(octant, corner, level);
-      if (crossed == 0) {
+    if (rest == 0) {  // up to the next level that has a child left
+      if (pending == 0) {
+        hit.visits = visits;
         return hit;
       }
-      if ((crossed & octant) == 0) {
-        octant |= crossed;  // a sibling
-        continue;
-      }
-      // Out of the node: up to the one that holds both the place left and the place entered.
-      const Vec3i from = child_corner(corner, octant, level - 1);
-      const int32_t step = int32_t{1} << (level - 1);
-      const Vec3i to{from.x + ((crossed & 1U) != 0 ? step : 0), from.y + ((crossed & 2U) != 0 ? step : 0),
-                     from.z + ((crossed & 4U) != 0 ? step : 0)};
-      level =
-          bits::highest_bit(static_cast<uint32_t>((from.x ^ to.x) | (from.y ^ to.y) | (from.z ^ to.z))) + 1;
-      if (level > world_level) {
-        return hit;
-      }
-      node = stack[level];
-      octant = (static_cast<uint32_t>(to.x) >> (level - 1) & 1U) |
-               (static_cast<uint32_t>(to.y) >> (level - 1) & 1U) << 1 |
-               (static_cast<uint32_t>(to.z) >> (level - 1) & 1U) << 2;
-      const int32_t keep = ~((int32_t{1} << level) - 1);
-      corner = {to.x & keep, to.y & keep, to.z & keep};
-      crossings.enter(corner, level);
+      level = static_cast<int>(bits::lowest_bit(pending));
+      inside = false;  // what holds the origin comes first
+      state = stack[level].state;
+      node = stack[level].node;
+      rest = stack[level].rest;
+    } else {
+      nodes.find_children(index, &node);
+      stack[level].state = state;
+      stack[level].node = node;
     }
-
-    if (level == 1) {  // a voxel
-      hit.kind = HitKind::kHit;
-      if (request.any) {
-        return hit;
-      }
-      hit.material = nodes.voxel_material(node, octant ^ ray.flip);
-      report(ray, extent, crossings, child_corner(corner, octant, 0), 0, &hit);
-      return hit;
-    }
-    stack[level] = node;
+    const unsigned octant = bits::lowest_bit(rest);
+    rest &= rest - 1;
+    stack[level].octant = static_cast<uint8_t>(octant);
+    stack[level].rest = static_cast<uint8_t>(rest);
+    pending = (pending & ~(uint32_t{1} << level)) | static_cast<uint32_t>(rest != 0) << level;
+    inside = inside && octant == ray.origin_octant(level);
     index = nodes.child(node, octant ^ ray.flip);
+    state = path.child(state, octant);
     --level;
-    corner = child_corner(corner, octant, level);
-    crossings.descend(octant, corner, level);
   }
 }
 
 // The dense grid has no empty space to skip: from voxel to voxel.
-template <class Crossings>
+template <class Int>
 Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
   Hit hit;
-  Crossings crossings(ray);
-  if (grid.voxel_count() == 0 || !crossings.begin()) {
+  const Crossings<Int> crossings(ray);
+  Int num;
+  Int den;
+  if (grid.voxel_count() == 0 || !crossings.enter_box(&num, &den)) {
     return hit;
   }
-  Vec3i corner;
-  int level = grid.level();
-  crossings.enter(corner, level);
-  while (level > 0) {
-    const unsigned octant = crossings.octant(corner, level);
-    --level;
-    corner = child_corner(corner, octant, level);
-    crossings.descend(octant, corner, level);
-  }
   const int32_t side = int32_t{1} << grid.level();
-  const Vec3i extent{side, side, side};
+  Vec3i corner = crossings.cell_at(num, den, grid.level());
+  auto orders = crossings.orders({corner.x + 1, corner.y + 1, corner.z + 1});
   for (;;) {
     if (hit.visits == request.max_visits) {
       hit.kind = HitKind::kStepLimit;
       return hit;
     }
     ++hit.visits;
-    const Vec3i voxel{(ray.flip & 1U) != 0 ? extent.x - 1 - corner.x : corner.x,
-                      (ray.flip & 2U) != 0 ? extent.y - 1 - corner.y : corner.y,
-                      (ray.flip & 4U) != 0 ? extent.z - 1 - corner.z : corner.z};
+    const Vec3i voxel{(ray.flip & 1U) != 0 ? side - 1 - corner.x : corner.x,
+                      (ray.flip & 2U) != 0 ? side - 1 - corner.y : corner.y,
+                      (ray.flip & 4U) != 0 ? side - 1 - corner.z : corner.z};
     if (grid.bit(voxel)) {
       hit.kind = HitKind::kHit;
       if (!request.any) {
-        report(ray, extent, crossings, corner, 0, &hit);
+        report(ray, side, crossings, corner, 0, &hit);
       }
       return hit;
     }
-    const unsigned crossed = crossings.leave(0, corner, 0);
-    if (crossed == 0) {
-      return hit;
-    }
+    const unsigned crossed = crossings.leave(orders);
     corner = {corner.x + static_cast<int32_t>(crossed & 1U),
               corner.y + static_cast<int32_t>((crossed >> 1) & 1U),
               corner.z + static_cast<int32_t>((crossed >> 2) & 1U)};
-    crossings.enter(corner, 0);
+    if (corner.x >= ray.box_max.x || corner.y >= ray.box_max.y || corner.z >= ray.box_max.z) {
+      return hit;
+    }
+    crossings.advance(crossed, &orders);
   }
 }
 
-struct Structure {
-  int level;
-  Vec3i extent;
-  VoxelBox bounds;
-};
-Structure describe(const CompactTree& tree) {
-  const int32_t side = int32_t{1} << tree.level();
-  return {tree.level(), {side, side, side}, tree.bounds()};
+// Not inlined, so that a ray takes the stack of its own width only.
+template <class Int, class Unsigned>
+[[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
+  return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request);
 }
-Structure describe(const Octree& tree) {
-  const int32_t side = int32_t{1} << tree.level();
-  return {tree.level(), {side, side, side}, tree.bounds()};
+template <class Int, class Unsigned>
+[[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
+  return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request);
 }
-// Reflected in the middle of the world, as the trees are, and not of the grid: its planes, those beyond the
-// grid too, are then the world's, which the ranges of both widths are made for.
-Structure describe(const DenseGrid& grid) {
-  const int32_t side = int32_t{1} << grid.level();
-  return {grid.level(), {side, side, side}, grid.bounds()};
-}
-
-template <class Crossings>
-Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<CompactNodes, Crossings>(CompactNodes{tree}, ray, request);
-}
-template <class Crossings>
-Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<PoolNodes, Crossings>(PoolNodes{tree}, ray, request);
-}
-template <class Crossings>
+template <class Int, class Unsigned>
 Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
-  return walk_grid<Crossings>(grid, ray, request);
+  return walk_grid<Int>(grid, ray, request);
 }
 
 // Chips with 32-bit registers take the narrow path whenever they may.
@@ -293,22 +297,24 @@ constexpr bool kPrefer32 = sizeof(void*) <= 4;
 
 template <class Target>
 Status trace(const Target& target, const Ray& ray, const TraceOptions& options, bool any, Hit* hit) {
-  const Structure structure = describe(target);
-  const Status status = check_ray(ray, structure.level);
+  const int level = target.level();
+  const Status status = check_ray(ray, level);
   if (status != Status::kOk) {
     return status;
   }
   bool narrow = options.width == Width::k32;
   if (narrow || (kPrefer32 && options.width == Width::kAuto)) {
-    const bool accepted = accepts_32(ray, structure.level);
+    const bool accepted = accepts_32(ray, level);
     if (narrow && !accepted) {
       return Status::kOutOfRange;
     }
     narrow = accepted;
   }
-  const MirroredRay mirrored(ray, structure.extent, structure.bounds);
+  // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
+  const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());
   const Request request{options.max_visits, any};
-  *hit = narrow ? walk<Crossings32>(target, mirrored, request) : walk<Crossings64>(target, mirrored, request);
+  *hit = narrow ? walk<int32_t, uint32_t>(target, mirrored, request)
+                : walk<int64_t, uint64_t>(target, mirrored, request);
   return Status::kOk;
 }
 

@@ -1,0 +1,237 @@
+// Seconds a frame of 800 x 600 pixels: this core ray by ray, beside a textbook pointer octree.
+//
+//   make bench                                       everything, about two minutes
+//   make bench BENCH_ARGS=--benchmark_filter=points  what matches
+//   make bench BENCH_ARGS=--benchmark_format=json    for machines
+//
+// In a `pair` row both draw every frame by turns, each with the same rays, so that the load of the machine
+// falls on both. `Time` and `CPU` are the core's frame alone (processor time); the counters are
+//
+//   textbook_ms    the textbook octree's frame
+//   faster         textbook_ms / the core's
+//   hits           pixels that hit, of the last frame; textbook_hits the same in double precision
+//   bytes          of the tree; textbook_bytes that of the other; smaller their ratio
+//
+// Every frame is seen from a slightly different place and includes the camera, the rays and depth shading
+// into 8-bit grey.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "benchmarks/textbook_octree.h"
+#include "commands/options.h"
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
+#include "thimble/morton.h"
+
+namespace thimble::benchmarks {
+namespace {
+
+constexpr std::int32_t kWidthPx = 800;
+constexpr std::int32_t kHeightPx = 600;
+constexpr int kFrames = 5;
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A scene in both structures. Only the last one is kept: rows of one scene stand next to each other.
+struct Scene {
+  std::string name;
+  std::unique_ptr<tools::BuiltScene> built;
+  std::unique_ptr<TextbookOctree> textbook;
+};
+
+Scene& scene(const std::string& name, tools::StructureKind structure, bool with_textbook) {
+  static Scene last;
+  const std::string key = name + "/" + std::to_string(static_cast<int>(structure));
+  if (last.name != key || (with_textbook && last.textbook == nullptr)) {
+    last = {};
+    tools::SceneArguments arguments;
+    arguments.scene = name;
+    const auto source = tools::open_scene(arguments);
+    tools::BuildOptions options;
+    options.structure = structure;
+    last.built = std::make_unique<tools::BuiltScene>(*source, options);
+    if (with_textbook) {
+      // In Morton order, so that nodes that are near in space are near in memory.
+      std::vector<std::uint64_t> codes;
+      source->stream(
+          [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+            codes.push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                        static_cast<std::uint32_t>(z)));
+          },
+          {});
+      std::sort(codes.begin(), codes.end());
+      last.textbook = std::make_unique<TextbookOctree>(source->level());
+      for (const std::uint64_t code : codes) {
+        const Vec3i voxel = morton_voxel(code);
+        last.textbook->insert(voxel.x, voxel.y, voxel.z);
+      }
+    }
+    last.name = key;
+  }
+  return last;
+}
+
+// From outside with the cube filling the picture, or along y; `frame` moves it a little.
+Camera camera_of(int level, bool orthographic, int direction_bits, int frame) {
+  const double side = 1 << level;
+  const double drift = 0.003 * side * (frame % kFrames + 1);
+  tools::ViewOptions view;
+  view.width_px = kWidthPx;
+  view.height_px = kHeightPx;
+  view.orthographic = orthographic;
+  view.direction_bits = direction_bits;
+  view.target = tools::Real3{side / 2 + drift / 3, side / 2, side / 2 + drift / 5};
+  if (orthographic) {
+    view.eye = tools::Real3{(*view.target)[0], -1, (*view.target)[2]};
+    view.span = side * kWidthPx / kHeightPx;
+  } else {
+    view.eye = tools::Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
+  }
+  return view.camera(level, {});
+}
+
+std::uint64_t draw_core(const tools::BuiltScene& built, const Camera& camera, Width width,
+                        std::vector<std::uint8_t>& pixels) {
+  Shading shading;
+  const DepthRange range = depth_range(camera, built.bounds());
+  shading.near_q8 = range.near_q8;
+  shading.far_q8 = range.far_q8;
+  Band band;
+  band.pixels = Bytes(pixels.data(), pixels.size());
+  band.format = PixelFormat::kGray8;
+  band.rows = kHeightPx;
+  RenderCounts counts;
+  TraceOptions options;
+  options.width = width;
+  if (built.render_band(camera, shading, band, &counts, options) != Status::kOk) {
+    throw tools::InputError("the rays of this view are not taken");
+  }
+  return counts.hits;
+}
+
+std::uint64_t draw_textbook(const Scene& scene, const Camera& camera, std::vector<std::uint8_t>& pixels) {
+  const DepthRange range = depth_range(camera, scene.built->bounds());
+  const double scale = 215.0 / (range.far_q8 - range.near_q8);
+  std::uint64_t hits = 0;
+  for (std::int32_t y = 0; y < kHeightPx; ++y) {
+    RowRays rays(camera, 0, y);
+    for (std::int32_t x = 0; x < kWidthPx; ++x, rays.next()) {
+      const Ray ray = rays.ray();
+      const auto t = scene.textbook->first_hit(
+          {ray.origin.x.raw / 256.0, ray.origin.y.raw / 256.0, ray.origin.z.raw / 256.0},
+          {static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
+           static_cast<double>(ray.direction.z)});
+      std::uint8_t gray = 0;
+      if (t) {
+        ++hits;
+        gray = static_cast<std::uint8_t>(
+            255.0 - std::clamp((*t * camera.depth_per_t_q8() - range.near_q8) * scale, 0.0, 215.0));
+      }
+      pixels[static_cast<std::size_t>(y) * kWidthPx + static_cast<std::size_t>(x)] = gray;
+    }
+  }
+  return hits;
+}
+
+void pair(benchmark::State& state, const std::string& name, bool orthographic) {
+  const Scene& both = scene(name, tools::StructureKind::kCompact, true);
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(kWidthPx) * kHeightPx);
+  double core_seconds = 0;
+  double textbook_seconds = 0;
+  std::uint64_t hits = 0;
+  std::uint64_t textbook_hits = 0;
+  int frame = 0;
+  for ([[maybe_unused]] const auto _ : state) {
+    const double start = processor_seconds();
+    hits =
+        draw_core(*both.built, camera_of(both.built->level(), orthographic, 0, frame), Width::kAuto, pixels);
+    const double middle = processor_seconds();
+    textbook_hits = draw_textbook(both, camera_of(both.built->level(), orthographic, 0, frame), pixels);
+    const double end = processor_seconds();
+    state.SetIterationTime(middle - start);
+    core_seconds += middle - start;
+    textbook_seconds += end - middle;
+    ++frame;
+  }
+  const auto bytes = static_cast<double>(both.built->tree_bytes());
+  const auto textbook_bytes = static_cast<double>(both.textbook->bytes());
+  state.counters["textbook_ms"] = textbook_seconds * 1e3 / frame;
+  state.counters["faster"] = textbook_seconds / core_seconds;
+  state.counters["hits"] = static_cast<double>(hits);
+  state.counters["textbook_hits"] = static_cast<double>(textbook_hits);
+  state.counters["bytes"] = bytes;
+  state.counters["textbook_bytes"] = textbook_bytes;
+  state.counters["smaller"] = textbook_bytes / bytes;
+}
+
+void core(benchmark::State& state, const std::string& name, tools::StructureKind structure, bool orthographic,
+          Width width) {
+  const Scene& only = scene(name, structure, false);
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(kWidthPx) * kHeightPx);
+  // The fewest bits that the view takes leave too many for 32-bit products in large worlds.
+  const int direction_bits = width == Width::k32 ? 10 : 0;
+  std::uint64_t hits = 0;
+  int frame = 0;
+  for ([[maybe_unused]] const auto _ : state) {
+    const double start = processor_seconds();
+    hits = draw_core(*only.built, camera_of(only.built->level(), orthographic, direction_bits, frame), width,
+                     pixels);
+    state.SetIterationTime(processor_seconds() - start);
+    ++frame;
+  }
+  state.counters["hits"] = static_cast<double>(hits);
+  state.counters["bytes"] = static_cast<double>(only.built->tree_bytes());
+}
+
+template <class Function>
+void add(const std::string& name, const Function& function) {
+  for (const bool orthographic : {false, true}) {
+    benchmark::RegisterBenchmark((name + (orthographic ? "/orthographic" : "/perspective")).c_str(),
+                                 [=](benchmark::State& state) { function(state, orthographic); })
+        ->UseManualTime()
+        ->Iterations(kFrames)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+const bool kRegistered = [] {
+  for (const char* kind : {"points", "cluster"}) {
+    for (const char* count : {"1000", "100000", "1000000", "10000000"}) {
+      const std::string name = std::string(kind) + ":" + count;
+      add("pair/" + name,
+          [=](benchmark::State& state, bool orthographic) { pair(state, name, orthographic); });
+    }
+  }
+  add("pair/spheres,depth=8",
+      [](benchmark::State& state, bool orthographic) { pair(state, "spheres,depth=8", orthographic); });
+  struct Row {
+    const char* label;
+    const char* scene;
+    tools::StructureKind structure;
+    Width width;
+  };
+  for (const Row& row : {
+           Row{"32 bits", "points:100000", tools::StructureKind::kCompact, Width::k32},
+           Row{"64 bits", "points:100000", tools::StructureKind::kCompact, Width::k64},
+           Row{"pool", "points:100000", tools::StructureKind::kPool, Width::kAuto},
+           Row{"dense grid", "points:1000,depth=7", tools::StructureKind::kDense, Width::kAuto},
+           Row{"compact tree", "points:1000,depth=7", tools::StructureKind::kCompact, Width::kAuto},
+       }) {
+    add(std::string(row.label) + "/" + row.scene, [=](benchmark::State& state, bool orthographic) {
+      core(state, row.scene, row.structure, orthographic, row.width);
+    });
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace thimble::benchmarks
