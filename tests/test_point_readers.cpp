@@ -414,5 +414,6 @@ TEST_CASE("data: every point cloud -> as many points as its header or its lines 
   const auto points = read_points(read_ply, contents_of(data / "cloud/b9_training.ply"));
   CHECK(points[0].x > 1e5);
   CHECK(points[0].y > 1e5);
-  CHECK(outcome_of(read_gadget, "00000000: 0001 0000 0000 0000 409c 0000  a hex dump, not a snapshot\n") == -1);
+  CHECK(outcome_of(read_gadget, "00000000: 0001 0000 0000 0000 409c 0000  a hex dump, not a snapshot\n") ==
+        -1);
 }

@@ -24,7 +24,7 @@ namespace thimble {
 enum class Width : uint8_t {
   kAuto,  ///< 32 bits where the target's registers have 32 and the ray allows it, else 64
   k32,    ///< 32-bit products only; rays for which `accepts_32` is false are refused
-  k64,    ///< all that `check_ray` accepts; largest intermediate 1.5 * 2^62
+  k64,    ///< all that `check_ray` accepts; largest intermediate below 2^44
 };
 
 struct TraceOptions {
