@@ -354,11 +354,28 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
       status = result.set(view, level);
       partial = true;
     }
-    advice = status == Status::kTooFine
-                 ? "the pixels are too fine for origins in 1/256 voxel; --span " +
-                       shortest(std::ceil(least * 100) / 100) + " or more always works for this --size"
-                 : "the picture's corners must lie within -4 to 5 world sizes; a smaller --span or another "
-                   "--eye helps";
+    // The core's bound starts from the eye and the span as it got them; what rounding them moved is added
+    // here.
+    const double pixel = static_cast<double>(view.span.raw) / Q14::kOne / width_px;
+    double moved_px = result.error_bound_px_q16() / 65536.0;
+    if (eye) {
+      const Real3 rounding = minus(
+          *eye, {static_cast<double>(eye_q8.x.raw) / Q8::kOne, static_cast<double>(eye_q8.y.raw) / Q8::kOne,
+                 static_cast<double>(eye_q8.z.raw) / Q8::kOne});
+      moved_px += std::hypot(dot(rounding, axes.right), dot(rounding, axes.up)) / pixel;
+    }
+    if (span) {
+      moved_px += std::abs(*span / width_px / pixel - 1) * std::hypot(width_px, height_px) / 2;
+    }
+    if (status == Status::kOk && direction_bits == 0 && moved_px > 0.125) {
+      status = Status::kTooFine;
+    }
+    advice =
+        status == Status::kTooFine
+            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about --span " +
+                  shortest(std::ceil(2 * least * 100) / 100) + ""
+            : "the picture's corners must lie within -4 to 5 world sizes; a smaller --span or another "
+              "--eye helps";
   } else {
     PerspectiveView view;
     view.eye = eye_q8;

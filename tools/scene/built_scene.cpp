@@ -181,8 +181,10 @@ void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progr
   const bool compact = options_.structure == StructureKind::kCompact;
   const Bytes rest = aligned(arena_.rest(), alignof(std::uint64_t));
   // Without coarsening the pool may take all and the compact tree what it leaves. A pool that coarsens fills
-  // what it gets, so a quarter is kept back for the compact tree.
-  const std::size_t pool_bytes = compact && coarsen ? rest.size / 4 * 3 : rest.size;
+  // what it gets, so something is kept back for the compact tree: a node of it takes about an eighth of the
+  // bytes, more where there are materials.
+  const std::size_t pool_bytes =
+      compact && coarsen ? (source.single_material() ? rest.size / 8 * 7 : rest.size / 4 * 3) : rest.size;
   if (octree_.init(rest.subspan(0, pool_bytes), source.level()) != Status::kOk) {
     throw Shortage{};
   }
