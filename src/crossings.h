@@ -105,10 +105,15 @@ class NodePath {
     Unsigned zx;
   };
 
+  // Not set up: only to be assigned to.
+  NodePath() = default;
+  // All rays of the same direction have the same path but for where it starts. The world is 2^level a side.
   NodePath(const MirroredRay& ray, int level) : xy_(ray, level), yz_(ray, level), zx_(ray, level) {}
 
   // At the world, which the ray crosses.
-  State start() const { return {xy_.start, yz_.start, zx_.start}; }
+  State start(const MirroredRay& ray, int level) const {
+    return {xy_.start(ray, level), yz_.start(ray, level), zx_.start(ray, level)};
+  }
   // From a node to its child `octant` (mirrored), which the ray crosses.
   State child(const State& node, unsigned octant) const {
     return {2 * (node.xy - xy_.change[octant & 3U]), 2 * (node.yz - yz_.change[octant >> 1]),
@@ -140,16 +145,14 @@ class NodePath {
   // that is not 0.
   template <int kA, int kB>
   struct Pair {
-    Unsigned start;
     Unsigned change[4];  // by the child: bit 0 above the middle on the first axis, bit 1 on the second
     Unsigned bound[6];
     uint8_t quadrants[8];  // by how many bounds are above the state
 
+    Pair() = default;
     Pair(const MirroredRay& ray, int level) {
       const Unsigned d_a = static_cast<Unsigned>(ray.direction[kA]);
       const Unsigned d_b = static_cast<Unsigned>(ray.direction[kB]);
-      start = static_cast<Unsigned>(ray.distance(kA, int32_t{1} << level)) * d_b -
-              static_cast<Unsigned>(ray.distance(kB, 0)) * d_a;
       const Unsigned half_a = d_a << (level + 7);
       const Unsigned half_b = d_b << (level + 7);
       const Unsigned middle = half_a + half_b;
@@ -189,6 +192,12 @@ class NodePath {
       bits::store32(quadrants + 4, mirrored_octants(from_4, ray.flip));
     }
 
+    Unsigned start(const MirroredRay& ray, int level) const {
+      const Unsigned d_a = static_cast<Unsigned>(ray.direction[kA]);
+      const Unsigned d_b = static_cast<Unsigned>(ray.direction[kB]);
+      return static_cast<Unsigned>(ray.distance(kA, int32_t{1} << level)) * d_b -
+             static_cast<Unsigned>(ray.distance(kB, 0)) * d_a;
+    }
     uint32_t octants(Unsigned state) const {
       // Written out, since gcc -O2 would make a loop of it.
       unsigned above = state < bound[0] ? 1 : 0;

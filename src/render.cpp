@@ -1,5 +1,7 @@
 #include "thimble/render.h"
 
+#include "path_cache.h"
+
 namespace thimble {
 namespace {
 
@@ -115,6 +117,7 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
 
   const Rgb8 background = shade(Hit{}, Ray{}, camera, shading);
   RenderCounts done;
+  PathCache cache;
   for (int32_t row = 0; row < band.rows; ++row) {
     const int32_t y = band.first_row + row;
     uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row);
@@ -132,7 +135,7 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
         }
         const Ray ray = rays.ray();
         Hit hit;
-        if (closest_hit(structure, ray, &hit, options) != Status::kOk) {
+        if (closest_hit(structure, ray, &hit, options, &cache) != Status::kOk) {
           return Status::kBadArgument;
         }
         store_pixel(line, x, y, band.format, shade(hit, ray, camera, shading));

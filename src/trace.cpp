@@ -5,6 +5,7 @@
 
 #include "bits.h"
 #include "crossings.h"
+#include "path_cache.h"
 
 namespace thimble {
 namespace {
@@ -146,7 +147,7 @@ void descend_to_voxel(const Path& path, const MirroredRay& ray, typename Path::S
 // mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
 // through empty octants: it takes the next bit, or goes up to the next level that has one left.
 template <class Nodes, class Int, class Unsigned>
-Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request) {
+Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request, PathCache* cache) {
   Hit hit;
   const Crossings<Int> crossings(ray);
   Int num;
@@ -158,10 +159,10 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
   const int world_level = nodes.level();
   const int32_t side = int32_t{1} << world_level;
   using Path = NodePath<Unsigned>;
-  const Path path(ray, world_level);
+  const Path& path = cache->path(ray, world_level, Unsigned{0});
   Step<Path> stack[kMaxLevel + 1];
   uint32_t pending = 0;  // bit k: stack[k].rest is not 0
-  typename Path::State state = path.start();
+  typename Path::State state = path.start(ray, world_level);
   uint32_t index = nodes.root();
   int level = world_level;
   // While the node holds the ray's origin, only the octants ahead of it are on the ray.
@@ -280,15 +281,17 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
 
 // Not inlined, so that a ray takes the stack of its own width only.
 template <class Int, class Unsigned>
-[[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request);
+[[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request,
+                           PathCache* cache) {
+  return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request, cache);
 }
 template <class Int, class Unsigned>
-[[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request) {
-  return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request);
+[[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request,
+                           PathCache* cache) {
+  return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request, cache);
 }
 template <class Int, class Unsigned>
-Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
+Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request, PathCache*) {
   return walk_grid<Int>(grid, ray, request);
 }
 
@@ -296,7 +299,8 @@ Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request) 
 constexpr bool kPrefer32 = sizeof(void*) <= 4;
 
 template <class Target>
-Status trace(const Target& target, const Ray& ray, const TraceOptions& options, bool any, Hit* hit) {
+Status trace(const Target& target, const Ray& ray, const TraceOptions& options, bool any, Hit* hit,
+             PathCache* cache) {
   const int level = target.level();
   const Status status = check_ray(ray, level);
   if (status != Status::kOk) {
@@ -313,8 +317,8 @@ Status trace(const Target& target, const Ray& ray, const TraceOptions& options, 
   // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
   const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());
   const Request request{options.max_visits, any};
-  *hit = narrow ? walk<int32_t, uint32_t>(target, mirrored, request)
-                : walk<int64_t, uint64_t>(target, mirrored, request);
+  *hit = narrow ? walk<int32_t, uint32_t>(target, mirrored, request, cache)
+                : walk<int64_t, uint64_t>(target, mirrored, request, cache);
   return Status::kOk;
 }
 
@@ -322,7 +326,8 @@ template <class Target>
 Status trace_kind(const Target& target, const Ray& ray, const TraceOptions& options, HitKind* kind,
                   uint32_t* visits) {
   Hit hit;
-  const Status status = trace(target, ray, options, true, &hit);
+  PathCache cache;
+  const Status status = trace(target, ray, options, true, &hit, &cache);
   if (status != Status::kOk) {
     return status;
   }
@@ -351,13 +356,28 @@ bool accepts_32(const Ray& ray, int level) {
 }
 
 Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options) {
-  return trace(tree, ray, options, false, hit);
+  PathCache cache;
+  return trace(tree, ray, options, false, hit, &cache);
+}
+Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
+                   PathCache* cache) {
+  return trace(tree, ray, options, false, hit, cache);
 }
 Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options) {
-  return trace(tree, ray, options, false, hit);
+  PathCache cache;
+  return trace(tree, ray, options, false, hit, &cache);
+}
+Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
+                   PathCache* cache) {
+  return trace(tree, ray, options, false, hit, cache);
 }
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options) {
-  return trace(grid, ray, options, false, hit);
+  PathCache cache;
+  return trace(grid, ray, options, false, hit, &cache);
+}
+Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options,
+                   PathCache* cache) {
+  return trace(grid, ray, options, false, hit, cache);
 }
 Status any_hit(const CompactTree& tree, const Ray& ray, HitKind* kind, uint32_t* visits,
                const TraceOptions& options) {
