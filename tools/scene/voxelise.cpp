@@ -85,6 +85,64 @@ void descend(const TriangleBoxTest& test, const Block& root, std::uint8_t materi
   }
 }
 
+/// Triangles voxelised not long ago, so that a file that repeats them costs no more than reading it. What is
+/// forgotten (one slot for all triangles of the same hash) is only voxelised again.
+class RecentTriangles {
+ public:
+  /// `triangles` of the mesh, which bound the memory as well.
+  explicit RecentTriangles(std::size_t triangles) {
+    std::size_t slots = 1;
+    while (slots < kMostSlots && slots < triangles) {
+      slots *= 2;
+    }
+    slots_.resize(slots);
+  }
+
+  /// Whether voxelising `triangle` would change nothing, and notes that it is voxelised. A voxel has the
+  /// material that came last, so a repeat is idle only when no other material came in between.
+  bool is_repeat(UnitTriangle triangle, std::uint8_t material) {
+    if (run_ == 0 || material != material_) {
+      material_ = material;
+      ++run_;
+    }
+    std::sort(triangle.begin(), triangle.end());
+    std::uint64_t hash = 0;
+    for (const UnitPoint& vertex : triangle) {
+      for (const std::int32_t coordinate : vertex) {
+        hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 29U;
+      }
+    }
+    Slot& slot = slots_[hash & (slots_.size() - 1)];
+    if (slot.run == run_ && slot.triangle == triangle) {
+      return true;
+    }
+    slot = {triangle, run_};
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kMostSlots = 65536;
+  struct Slot {
+    UnitTriangle triangle{};  ///< vertices in ascending order
+    std::uint64_t run = 0;    ///< which run of triangles of one material; 0 is an empty slot
+  };
+  std::vector<Slot> slots_;
+  std::uint64_t run_ = 0;
+  std::uint8_t material_ = 0;
+};
+
+/// About how many voxels a triangle may have: decides only how often progress is reported.
+std::uint64_t rough_cost(const UnitTriangle& triangle) {
+  std::array<std::uint64_t, 3> span{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+    span[axis] = static_cast<std::uint64_t>(high - low) / kUnitsPerVoxel + 1;
+  }
+  std::sort(span.begin(), span.end());
+  return span[1] * span[2];
+}
+
 }  // namespace
 
 TriangleBoxTest::TriangleBoxTest(const UnitTriangle& triangle) : origin_(triangle[0]), slabs_{} {
@@ -230,13 +288,22 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
               const Progress& progress) {
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const bool colored = colors != nullptr && !mesh.colors.empty();
+  RecentTriangles recent(mesh.triangles.size());
+  constexpr std::uint64_t kCostPerReport = 1 << 18;
+  std::uint64_t cost = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (progress && i % 4096 == 0) {
+    if (progress && (i % 4096 == 0 || cost >= kCostPerReport)) {
       progress(static_cast<double>(i) / static_cast<double>(mesh.triangles.size()));
+      cost = 0;
     }
     const auto& [a, b, c] = mesh.triangles[i];
+    const UnitTriangle triangle{units[a], units[b], units[c]};
     const std::uint8_t material = colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0};
-    voxelise_triangle({units[a], units[b], units[c]}, material, sink);
+    if (recent.is_repeat(triangle, material)) {
+      continue;
+    }
+    cost += rough_cost(triangle);
+    voxelise_triangle(triangle, material, sink);
   }
 }
 
