@@ -81,6 +81,13 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
   check_refused({"render", "spheres", "more", "-o", "-"}, 2, {"\"more\""});
   check_refused({"info", "spheres", "--depth"}, 2, {"--depth"});
   check_refused({"info", "spheres", "--depth", "3", "--depth", "4"}, 2, {"--depth", "more than once"});
+  for (const char* flag : {"--quiet", "--coarsen", "--as-voxels", "--z-up"}) {
+    for (const char* value : {"=3", "=x", "=1", "=0", "=false"}) {
+      check_refused({"info", "spheres", std::string(flag) + value}, 2,
+                    {std::string(flag) + " takes no value"});
+    }
+  }
+  check_refused({"table", "--quiet=1"}, 2, {"--quiet takes no value"});
   check_refused({"render", "spheres", "-o", "picture.bmp"}, 2, {"\"picture.bmp\"", ".ppm", ".png"});
   check_refused({"render", "spheres", "-o", ""}, 2, {"--output"});
   // What is not built yet is unknown, never ignored.
