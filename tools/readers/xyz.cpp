@@ -236,6 +236,7 @@ class XyzCloud final : public PointCloud {
                 });
   }
   bool has_color() const override { return layout_.color != ColorScale::kNone; }
+  const char* counts_in() const override { return "line"; }
 
  private:
   SharedBytes file_;
