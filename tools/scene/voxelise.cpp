@@ -15,6 +15,8 @@ constexpr std::array<std::array<std::size_t, 2>, 3> kPlane{{{1, 2}, {0, 2}, {0, 
 struct Block {
   UnitPoint voxel;
   int level;
+  /// Bit a: all that the block holds meets the slabs of the plane perpendicular to axis a.
+  std::uint8_t inside = 0;
 };
 
 std::array<double, 3> turned(const std::array<double, 3>& p, bool z_up) {
@@ -51,13 +53,29 @@ void emit_voxels(const TriangleBoxTest& test, const UnitPoint& first, const Unit
   }
 }
 
-bool meets_block(const TriangleBoxTest& test, const Block& block) {
+/// Whether the triangle meets `block`; asks nothing that is known for the block it is part of, and adds to
+/// `block.inside` what its parts need not ask.
+bool meets_block(const TriangleBoxTest& test, Block& block) {
   const std::int32_t half = kUnitsPerVoxel / 2 << block.level;
   UnitPoint center;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     center[axis] = block.voxel[axis] * kUnitsPerVoxel + half;
   }
-  return test.meets(center, half);
+  if (!test.meets_bounds(center, half) || !test.meets_surface(center, half)) {
+    return false;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if ((block.inside >> axis & 1) != 0) {
+      continue;
+    }
+    if (!test.meets_plane(axis, center, half)) {
+      return false;
+    }
+    if (block.level > 0 && test.inside_plane(axis, center, half)) {
+      block.inside = static_cast<std::uint8_t>(block.inside | 1U << axis);
+    }
+  }
+  return true;
 }
 
 /// Emits the voxels of a block that meets the triangle. The stack holds at most 7 siblings a level and the
@@ -74,7 +92,7 @@ void descend(const TriangleBoxTest& test, const Block& root, std::uint8_t materi
     }
     const int level = block.level - 1;
     for (int child = 7; child >= 0; --child) {
-      Block part{block.voxel, level};
+      Block part{block.voxel, level, block.inside};
       for (int axis = 0; axis < 3; ++axis) {
         part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << level;
       }
@@ -200,6 +218,20 @@ bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std
   return true;
 }
 
+bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
+  const auto [p, q] = kPlane[axis];
+  const std::int64_t x = center[p] - origin_[p];
+  const std::int64_t y = center[q] - origin_[q];
+  for (const Slab& slab : slabs_[axis]) {
+    const std::int64_t value = slab.u * x + slab.v * y;
+    const std::int64_t reach = slab.reach * half;
+    if (value - reach < slab.low || value + reach > slab.high) {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool TriangleBoxTest::meets_surface(const UnitPoint& center, std::int32_t half) const {
   std::int64_t distance = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -255,7 +287,7 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
   for (std::int32_t z = first[2]; z <= last[2]; ++z) {
     for (std::int32_t y = first[1]; y <= last[1]; ++y) {
       for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        const Block block{{x << level, y << level, z << level}, level};
+        Block block{{x << level, y << level, z << level}, level};
         if (meets_block(test, block)) {
           descend(test, block, material, sink);
         }

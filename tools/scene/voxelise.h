@@ -62,6 +62,8 @@ class TriangleBoxTest {
   bool meets_bounds(const UnitPoint& center, std::int32_t half) const;
   /// The edges' axes in the coordinate plane perpendicular to `axis`; `center[axis]` is not used.
   bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
+  /// Whether every cube within this one passes `meets_plane`: the cube lies inside the slabs of all edges.
+  bool inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
   /// The triangle's plane against the cube.
   bool meets_surface(const UnitPoint& center, std::int32_t half) const;
 
