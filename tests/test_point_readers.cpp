@@ -65,8 +65,7 @@ TEST_CASE("xyz: blanks, tabs, commas and semicolons -> the same points") {
        {"1 2.5 -3\n4 5 6e2\n", "1\t2.5\t-3\n4\t5\t6e2", "1,2.5,-3\r\n4,5,6e2\r\n", "1;2.5;-3\r4;5;6e2\r",
         " 1 , 2.5 ,\t-3 ,\n\n+4,+5, +6e+2 # six hundred\n", "1, 2.5, -3\n4, 5, 600\n",
         "1 ;2.5; -3;\n4;5;600\n", "  1.000,  2.500, -3.000\n  4.000,  5.000,600.000\n",
-        "\xEF\xBB\xBF"
-        "1 2.5 -3\n# a comment\n4 5 600"}) {
+        "\xEF\xBB\xBF+1 2.5 -3\n# a comment\n4 5 600"}) {
     INFO(std::string(text));
     const auto points = read_points(read_xyz, text);
     REQUIRE(points.size() == 2);
