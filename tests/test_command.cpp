@@ -81,6 +81,13 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
   check_refused({"render", "spheres", "more", "-o", "-"}, 2, {"\"more\""});
   check_refused({"info", "spheres", "--depth"}, 2, {"--depth"});
   check_refused({"info", "spheres", "--depth", "3", "--depth", "4"}, 2, {"--depth", "more than once"});
+  for (const char* flag : {"--quiet", "--coarsen", "--as-voxels", "--z-up"}) {
+    for (const char* value : {"=3", "=x", "=1", "=0", "=false"}) {
+      check_refused({"info", "spheres", std::string(flag) + value}, 2,
+                    {std::string(flag) + " takes no value"});
+    }
+  }
+  check_refused({"table", "--quiet=1"}, 2, {"--quiet takes no value"});
   check_refused({"render", "spheres", "-o", "picture.bmp"}, 2, {"\"picture.bmp\"", ".ppm", ".png"});
   check_refused({"render", "spheres", "-o", ""}, 2, {"--output"});
   // What is not built yet is unknown, never ignored.
@@ -140,9 +147,20 @@ TEST_CASE("command: scenes that cannot be read -> status 1, the file and the fau
   check_refused({"info", folder.write("what.bin", "something")}, 1, {"what.bin", ".vox"});
   check_refused({"info", folder.write("bad.xyz", "1 2 3\n4 five 6\n")}, 1, {"bad.xyz", "line 2"});
   check_refused({"info", "--as-voxels", folder.write("far.xyz", "1 2 3\n4 5 4096\n")}, 1,
-                {"far.xyz", "point 2", "4095"});
+                {"far.xyz", ": line 2: (4, 5, 4096)", "4095"});
   check_refused({"info", "--as-voxels", "--depth", "3", folder.write("deep.xyz", "1 2 3\n4 5 8\n")}, 1,
-                {"deep.xyz", "point 2", "0..7"});
+                {"deep.xyz", ": line 2:", "0..7"});
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n1 2 5000\n";
+  check_refused({"info", "--as-voxels", folder.write("far.ply", ply)}, 1, {"far.ply: line 8: (1, 2, 5000)"});
+  std::string binary = ply.substr(0, ply.find("1 2 5000"));
+  binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+  binary += std::string(11, '\0') + '\x47';  // 0, 0, 32768
+  check_refused({"info", "--as-voxels", folder.write("binary.ply", binary)}, 1,
+                {"binary.ply: point 1: (0, 0, 32768)"});
+  check_refused({"info", folder.write("cut.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1")}, 1,
+                {"cut.off: line 6: the file ends in face 0 of 1"});
   check_refused({"info", folder.path("two\nlines.xyz")}, 1, {"two\\x0alines.xyz"});
   check_refused({"info", ""}, 1, {"\"\""});
   check_refused({"info", "points:many"}, 1, {"points:many", "\"many\""});

@@ -153,7 +153,7 @@ TEST_CASE("place_points: outside the world -> an error that names the point") {
       p[axis] = bad;
       const std::string error = error_of([&] { placed(ListCloud({{0, 0, 0}, {7, 7, 7}, p}), 3); });
       CAPTURE(error);
-      CHECK(error.find("line or point 3:") == 0);
+      CHECK(error.find("point 3:") == 0);
       CHECK(error.find("0..7") != std::string::npos);
     }
   }
@@ -172,7 +172,7 @@ TEST_CASE("smallest_level: every border of a world -> the smallest that holds th
   CHECK(level_of({4095.999, 0, 0}) == 12);
   const ListCloud outside({{1, 1, 1}, {5, -1, 4096}, {-1, -1, -1}});
   const std::string error = error_of([&] { smallest_level(survey_points(outside)); });
-  CHECK(error == "line or point 2: (5, -1, 4096) is outside the world's voxels 0..4095 on an axis");
+  CHECK(error == "point 2: (5, -1, 4096) is outside the world's voxels 0..4095 on an axis");
   // Fitted, the same cloud is fine.
   CHECK(fitted(outside, 3).size() == 3);
 }

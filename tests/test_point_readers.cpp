@@ -61,10 +61,11 @@ bool is_at(const CloudPoint& point, double x, double y, double z) {
 }  // namespace
 
 TEST_CASE("xyz: blanks, tabs, commas and semicolons -> the same points") {
-  for (const char* text : {"1 2.5 -3\n4 5 6e2\n", "1\t2.5\t-3\n4\t5\t6e2", "1,2.5,-3\r\n4,5,6e2\r\n",
-                           "1;2.5;-3\r4;5;6e2\r", " 1 , 2.5 ;\t-3 ,\n\n+4 +5 +6e+2 # six hundred\n",
-                           "\xEF\xBB\xBF"
-                           "1 2.5 -3\n# a comment\n4 5 600"}) {
+  for (const char* text :
+       {"1 2.5 -3\n4 5 6e2\n", "1\t2.5\t-3\n4\t5\t6e2", "1,2.5,-3\r\n4,5,6e2\r\n", "1;2.5;-3\r4;5;6e2\r",
+        " 1 , 2.5 ,\t-3 ,\n\n+4,+5, +6e+2 # six hundred\n", "1, 2.5, -3\n4, 5, 600\n",
+        "1 ;2.5; -3;\n4;5;600\n", "  1.000,  2.500, -3.000\n  4.000,  5.000,600.000\n",
+        "\xEF\xBB\xBF+1 2.5 -3\n# a comment\n4 5 600"}) {
     INFO(std::string(text));
     const auto points = read_points(read_xyz, text);
     REQUIRE(points.size() == 2);
@@ -88,13 +89,46 @@ TEST_CASE("xyz: six columns -> colours only when all of them are bytes") {
   CHECK(colored[0].color == Rgb{255, 0, 7});
   CHECK(colored[1].color == Rgb{0, 128, 255});
   CHECK(cloud_has_color(read_xyz, "0 0 0 255 0 7\n"));
-  for (const char* text :
-       {"0 0 0 255 0 7\n1 1 1 0 128 256\n", "0 0 0 255 0 7\n1 1 1 0.5 1 2\n", "0 0 0 255 0 7\n1 1 1 -1 1 2\n",
-        "0 0 0 255 0 7\n1 1 1 1 2\n", "0 0 0 255 0 7\n1 1 1\n", "0 0 0 a b c\n", "0 0 0 1 2\n"}) {
+  for (const char* text : {"0 0 0 255 0 7\n1 1 1 0 128 256\n", "0 0 0 255 0 7\n1 1 1 0.5 1 2\n",
+                           "0 0 0 255 0 7\n1 1 1 -1 1 2\n", "0 0 0 a b c\n", "0 0 0 1 2\n"}) {
     INFO(std::string(text));
     CHECK_FALSE(cloud_has_color(read_xyz, text));
     CHECK(read_points(read_xyz, text)[0].color == Rgb{});
   }
+}
+
+TEST_CASE("xyz: decimal commas or mixed separators -> an error that names the line") {
+  for (const char* text :
+       {"x;y;z\n1,5;2;3\n", "x;y;z\n1,5;2,5;3,5\n", "x y z\n1,5 2,5 3,5\n", "x\ty\tz\n1,5\t2,5\t3,5\n",
+        "x y z\n1,2,3\n", "x,y,z\n1;2;3\n", "x, y, z\n1,5, 2,5, 3,5\n", "1 2 3\n1,5 2,5 3,5\n",
+        "1 2 3\n1,2,3\n", "1;2;3\n1,2;3\n", "1;2;3\n1;2,5;3\n", "1,2,3\n1;2;3\n", "1,2,3\n1,2;3\n",
+        "1,2,3\n4,5 6\n", "a title\n1,5 2,5 3,5\n", "a;b;c\n1;2,5;3\n"}) {
+    INFO(std::string(text));
+    CHECK(contains(error_of(read_xyz, text), "line 2: "));
+  }
+  for (const char* text : {"1,5 2,5 3,5\n", "1,5\t2,5\t3,5\n", "1,5;2;3\n", "1;2;3,5\n", "1,5, 2,5, 3,5\n",
+                           "-1,5, 2, 3\n", "1,2;3\n", "1,2 3\n"}) {
+    INFO(std::string(text));
+    CHECK(contains(error_of(read_xyz, text), "line 1: "));
+  }
+  CHECK(error_of(read_xyz, "x y z\n1,5 2,5 3,5\n") ==
+        "line 2: x is '1,5', which is not a number with a decimal point (the columns of this file are "
+        "separated "
+        "by blanks)");
+  CHECK(is_at(read_points(read_xyz, "// x, y, z\n1,2,3\n")[0], 1, 2, 3));
+  CHECK(is_at(read_points(read_xyz, "1,2,3, 40,50,60\n")[0], 1, 2, 3));
+  CHECK(is_at(read_points(read_xyz, "1,2, 3\n")[0], 1, 2, 3));
+  CHECK(is_at(read_points(read_xyz, "x,y,z,i\n100,  2,113,  0\n")[0], 100, 2, 113));
+}
+
+TEST_CASE("xyz: a line with another number of columns -> an error that names both lines") {
+  CHECK(error_of(read_xyz, "1 2 3 4\n\n1 2 3\n") == "line 3: 3 columns, but line 1 has 4");
+  CHECK(error_of(read_xyz, "x,y,z\n1,2,3\n1,2,3,4\n") == "line 3: 4 columns, but line 1 has 3");
+  CHECK(error_of(read_xyz, "x y z\n7 1 2 3\n") == "line 2: 4 columns, but line 1 has 3");
+  CHECK(contains(error_of(read_xyz, "0 0 0 255 0 7\n1 1 1 1 2\n"), "line 2: 5 columns"));
+  CHECK(read_points(read_xyz, "a title of five words\n1 2 3\n4 5 6\n").size() == 2);
+  CHECK(read_points(read_xyz, "x,y,z,name\n1,2,3,\n4,5,6,big dog\n").size() == 2);
+  CHECK(read_points(read_xyz, "x,y,z,\n1,2,3,\n4,5,6\n").size() == 2);
 }
 
 TEST_CASE("xyz: a header that names columns -> they are found wherever they are") {
@@ -156,7 +190,7 @@ TEST_CASE("xyz: numbers are read to the last bit, whatever their size") {
 }
 
 TEST_CASE("xyz: every truncated length -> points or a sentence") {
-  const std::string whole = "3\nx,y,z,r,g,b\n1,2.5,3e2,1,2,3\n-4,5,6,255,0,9 # end\n\n7;8;9;1;2;3\n";
+  const std::string whole = "3\nx,y,z,r,g,b\n1,2.5,3e2,1,2,3\n-4,5,6,255,0,9 # end\n\n7,8, 9 ,1,2,3\n";
   CHECK(read_points(read_xyz, whole).size() == 3);
   for (const std::size_t length : accepted_lengths(read_xyz, whole)) {
     CHECK(length > whole.size() - 3);  // Only the last number and the line's end can be cut unnoticed.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -513,6 +514,55 @@ TEST_CASE("voxelise: vertex colours -> palette index of their average") {
   });
   CHECK(voxels > 0);
   voxelise(mesh, 3, false, nullptr, [](int, int, int, std::uint8_t material) { CHECK(material == 0); });
+}
+
+TEST_CASE("voxelise: repeated triangles -> voxelised once, the last material as ever") {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {0, 1, 0}};
+  const auto count = [&] {
+    std::size_t calls = 0;
+    voxelise(mesh, 6, true, nullptr, [&](auto, auto, auto, auto) { ++calls; });
+    return calls;
+  };
+  mesh.triangles = {{0, 1, 2}, {3, 3, 3}, {1, 2, 3}};
+  const std::size_t once = count();
+  // In any order of the vertices, by equal vertices of another index, one after the other or not.
+  mesh.triangles = {{0, 1, 2}, {0, 1, 2}, {2, 0, 1}, {1, 0, 4}, {3, 3, 3}, {3, 3, 3}, {1, 2, 3}, {1, 0, 2}};
+  CHECK(count() == once);
+  mesh.triangles.assign(200'000, {0, 1, 2});
+  CHECK(count() < once);
+
+  // Two colours by turns on the same place: the last one wins, also when it had been there before.
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const Rgb red{255, 0, 0};
+  const Rgb blue{0, 0, 255};
+  mesh.colors = {red, red, red, blue, blue, blue};
+  for (const bool red_last : {true, false}) {
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {0, 1, 2}, {0, 2, 1}};
+    if (!red_last) {
+      mesh.triangles.push_back({3, 4, 5});
+    }
+    const PaletteMap colors(triangle_colors(mesh));
+    std::map<std::array<std::int32_t, 3>, std::uint8_t> last;
+    voxelise(mesh, 6, true, &colors, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t m) {
+      last[{x, y, z}] = m;
+    });
+    CHECK_FALSE(last.empty());
+    for (const auto& [voxel, material] : last) {
+      CHECK(material == colors.index(red_last ? red : blue));
+    }
+  }
+}
+
+TEST_CASE("voxelise: few large triangles -> progress is told between them") {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.1}};
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}, {0, 2, 3}};
+  std::vector<double> told;
+  voxelise(
+      mesh, 10, true, nullptr, [](auto, auto, auto, auto) {}, [&](double done) { told.push_back(done); });
+  CHECK(told.size() == 3);
+  CHECK(std::is_sorted(told.begin(), told.end()));
 }
 
 TEST_CASE("voxelise: a sink that throws -> the exception comes through") {

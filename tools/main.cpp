@@ -56,6 +56,10 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, in
   }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const std::string text = error.what();
+    const std::size_t flag_end = text.find(" was given a disallowed flag override");
+    if (flag_end != std::string::npos) {
+      return "--" + text.substr(0, flag_end) + " takes no value" + advice;
+    }
     const std::string name = text.substr(0, text.find(':'));
     const bool twice =
         text.find("received") != std::string::npos && text.find("At Most") != std::string::npos;

@@ -3,6 +3,7 @@
 ///
 /// Formats in use
 ///   Q8   (24.8)   positions of rays, 1/256 voxel, about +-8.3 million voxels
+///   Q14  (18.14)  lengths of a camera (camera.h), 1/16384 voxel, up to 131,072 voxels
 ///   Q16  (16.16)  angles in degrees, lengths in voxels, about +-32,768
 ///
 /// Overflow: `+`, `-` and unary `-` wrap modulo 2^32 (no undefined behaviour); the callers' stated limits

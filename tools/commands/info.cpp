@@ -87,7 +87,8 @@ void run(const SceneOptions& options) {
   row("structure bytes", grouped(built.tree_bytes()) + ratio.data());
   row("most bytes in use", grouped(built.high_water_bytes()));
   if (built.solid_added() != 0) {
-    row("solid added", grouped(built.solid_added()) + " voxels, by coarsening");
+    row("solid added",
+        grouped(built.solid_added()) + (built.solid_added() == 1 ? " voxel, by" : " voxels, by coarsening"));
   }
   if (built.structure() == StructureKind::kCompact) {
     uint32_t place = 0;

@@ -141,8 +141,10 @@ void SceneOptions::add_to(CLI::App& app) {
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox or --as-voxels "
       "file, 9 for other files, 10 for points and cluster, 6 for spheres and water)");
   app.add_flag("--as-voxels", arguments.as_voxels,
-               "point files: coordinates are voxel indices; nothing is scaled, turned or moved");
-  app.add_flag("--z-up", arguments.z_up, "meshes: z is up in the file (default: y is)");
+               "point files: coordinates are voxel indices; nothing is scaled, turned or moved")
+      ->disable_flag_override();
+  app.add_flag("--z-up", arguments.z_up, "meshes: z is up in the file (default: y is)")
+      ->disable_flag_override();
   add_text_option(
       app, "--memory", "BYTES",
       [this](const std::string& text) {
@@ -152,13 +154,14 @@ void SceneOptions::add_to(CLI::App& app) {
       "the budget, such as 65536, 64K or 2M: one block of memory for all that lies between reader and "
       "display (default: as much as it takes)");
   app.add_flag("--coarsen", coarsen,
-               "when --memory is short, merge blocks of voxels instead of failing; this only adds solid");
+               "when --memory is short, merge blocks of voxels instead of failing; this only adds solid")
+      ->disable_flag_override();
   add_choice_option(
       app, "--structure", {"dense", "pool", "compact"},
       [this](std::size_t index) { structure = static_cast<StructureKind>(index); },
       "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
       ->default_str("compact");
-  app.add_flag("--quiet", quiet, "no progress bar and no summary on standard error");
+  app.add_flag("--quiet", quiet, "no progress bar and no summary on standard error")->disable_flag_override();
   add_path_option(app, "--stats", "FILE.json", &stats_path, "write counts, bytes and times as JSON");
 }
 

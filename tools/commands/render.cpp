@@ -167,15 +167,14 @@ void run(const RenderCommand& command) {
     if (!note.empty()) {
       std::fprintf(stderr, "note: %s\n", note.c_str());
     }
-    std::fprintf(
-        stderr,
-        "%s voxels in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
-        grouped(stats.voxels).c_str(), grouped(stats.tree_bytes).c_str(), stats.depth,
-        grouped(stats.high_water_bytes).c_str(), seconds, grouped(stats.hits).c_str(),
-        grouped(stats.rays).c_str());
+    std::fprintf(stderr,
+                 "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
+                 grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
+                 grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
+                 seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
     if (stats.solid_added != 0) {
-      std::fprintf(stderr, "coarsened to fit: %s voxels of solid volume were added\n",
-                   grouped(stats.solid_added).c_str());
+      std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
+                   grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
     }
   }
 }

@@ -304,7 +304,7 @@ void add_table(CLI::App& app) {
       "an array, one object a row: points, projection, seconds, paper_seconds (null where the paper "
       "has none), hits, exact_mismatches, engine");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "seconds against points");
-  sub->add_flag("--quiet", command->quiet, "no progress bar");
+  sub->add_flag("--quiet", command->quiet, "no progress bar")->disable_flag_override();
   command->engine.add_to(*sub);
   sub->callback([command] { run(*command); });
 }

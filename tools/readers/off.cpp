@@ -99,8 +99,7 @@ class OffParser {
   double number(const char* what, std::uint64_t vertex) {
     const std::string_view word = words_.next();
     if (word.empty()) {
-      throw InputError("the file ends in vertex " + std::to_string(vertex) + " of " +
-                       std::to_string(vertex_count_));
+      fail("the file ends in vertex " + std::to_string(vertex) + " of " + std::to_string(vertex_count_));
     }
     double value = 0;
     if (parse_number(word, value) != NumberKind::kFinite) {
@@ -153,8 +152,7 @@ class OffParser {
     const std::string_view word = words_.next();
     std::int64_t value = 0;
     if (word.empty()) {
-      throw InputError("the file ends in face " + std::to_string(face) + " of " +
-                       std::to_string(face_count_));
+      fail("the file ends in face " + std::to_string(face) + " of " + std::to_string(face_count_));
     }
     if (!parse_integer(word, value)) {
       fail(quoted(word) + " in face " + std::to_string(face) + " is not a whole number");

@@ -612,6 +612,7 @@ class PlyCloud final : public PointCloud {
                   });
   }
   bool has_color() const override { return tools::has_color(vertices_); }
+  const char* counts_in() const override { return body_.line() != 0 ? "line" : "point"; }
 
  private:
   SharedBytes file_;

@@ -80,6 +80,8 @@ class PointCloud {
   using Visit = std::function<void(const CloudPoint&)>;
   virtual void for_each(const Visit& visit) const = 0;
   virtual bool has_color() const = 0;
+  /// What `CloudPoint::line` counts, for an error's sentence: "line" or "point".
+  virtual const char* counts_in() const { return "point"; }
 };
 
 /// Triangles with real coordinates: `.obj`, `.off`, `.ply` with faces. Polygons are already fanned.

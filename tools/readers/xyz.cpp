@@ -23,42 +23,98 @@ constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 constexpr bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
-constexpr bool is_comma(char c) {
-  return c == ',' || c == ';';
+/// What stands between the columns of a whole file. One for all lines: a reader that took any of them
+/// anywhere would cut decimal commas into columns.
+enum class Separator : char { kBlanks = ' ', kComma = ',', kSemicolon = ';' };
+
+/// The separator of the line that decides for the file.
+Separator separator_of(std::string_view line) {
+  line = without_comment(line);
+  if (line.find(';') != std::string_view::npos) {
+    return Separator::kSemicolon;
+  }
+  return line.find(',') != std::string_view::npos ? Separator::kComma : Separator::kBlanks;
+}
+
+constexpr const char* name_of(Separator separator) {
+  return separator == Separator::kBlanks ? "blanks"
+                                         : (separator == Separator::kComma ? "commas" : "semicolons");
 }
 
 /// Cuts a line into columns.
 class ColumnReader {
  public:
-  explicit ColumnReader(std::string_view line) : rest_(without_comment(line)) { skip_blanks(); }
+  ColumnReader(std::string_view line, Separator separator)
+      : rest_(without_comment(line)), separator_(separator) {
+    skip_blanks();
+  }
 
-  /// The next column; false at the end. It is empty where two separators meet.
+  /// The next column without blanks around it; false at the end. It is empty where two separators meet.
   bool next(std::string_view& column) {
     if (rest_.empty()) {
       return false;
     }
     std::size_t end = 0;
-    while (end < rest_.size() && !is_blank(rest_[end]) && !is_comma(rest_[end])) {
+    while (end < rest_.size() && !ends_column(rest_[end])) {
       ++end;
     }
     column = rest_.substr(0, end);
     rest_.remove_prefix(end);
-    skip_blanks();
-    if (!rest_.empty() && is_comma(rest_.front())) {
+    while (!column.empty() && is_blank(column.back())) {
+      column.remove_suffix(1);
+    }
+    if (separator_ != Separator::kBlanks && !rest_.empty()) {
       rest_.remove_prefix(1);
       skip_blanks();
+      ends_open_ = rest_.empty();
     }
+    skip_blanks();
     return true;
   }
 
+  /// After the last column: whether a separator followed it.
+  bool ends_open() const { return ends_open_; }
+
  private:
+  bool ends_column(char c) const {
+    return separator_ == Separator::kBlanks ? is_blank(c) : c == static_cast<char>(separator_);
+  }
   void skip_blanks() {
     while (!rest_.empty() && is_blank(rest_.front())) {
       rest_.remove_prefix(1);
     }
   }
   std::string_view rest_;
+  Separator separator_;
+  bool ends_open_ = false;
 };
+
+/// Whether a line cut at commas could be numbers with decimal commas and a comma and a blank between them, as
+/// in "1,5, 2,5, 3,5": at least three pieces, none with more than one comma between bare digits, one with.
+bool could_be_decimal_commas(std::string_view line) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  line = without_comment(line);
+  std::size_t pieces = 0;
+  bool found = false;
+  while (!line.empty()) {
+    std::size_t end = 0;
+    std::size_t commas = 0;
+    std::size_t points = 0;
+    while (end < line.size() && !is_blank(line[end])) {
+      const bool inside = end > 0 && end + 1 < line.size() && is_digit(line[end - 1]);
+      commas += line[end] == ',' && inside && is_digit(line[end + 1]) ? 1U : 0U;
+      points += line[end] == '.' ? 1U : 0U;
+      ++end;
+    }
+    if (commas > 1 || points > 0) {
+      return false;
+    }
+    pieces += end > 0 ? 1U : 0U;
+    found = found || commas == 1;
+    line.remove_prefix(end < line.size() ? end + 1 : end);
+  }
+  return found && pieces >= 3;
+}
 
 enum class ColorScale : std::uint8_t { kNone, kUnit, kByte, kWord };
 
@@ -66,6 +122,12 @@ enum class ColorScale : std::uint8_t { kNone, kUnit, kByte, kWord };
 struct Layout {
   std::array<std::size_t, kFields> columns{0, 1, 2, kNoColumn, kNoColumn, kNoColumn};
   ColorScale color = ColorScale::kNone;
+  Separator separator = Separator::kBlanks;
+  /// The line that all others must have as many columns as: a header that names x, y and z, or else the
+  /// first point.
+  std::uint64_t model_line = 0;
+  std::size_t model_columns = 0;
+  bool model_ends_open = false;
   std::size_t first_point_offset = 0;
   std::uint64_t first_point_line = 1;
 };
@@ -98,8 +160,25 @@ struct ColorSurvey {
   }
 };
 
-/// Reads the points of `text` and calls `visit(point, words)`; the words of columns that a line does not have
-/// are empty.
+/// A coordinate as a number. Where it is none because of another separator, the error says what was expected.
+double coordinate(std::string_view word, std::uint64_t line, const char* name, Separator separator) {
+  double value = 0;
+  if (parse_number(word, value) == NumberKind::kFinite) {
+    return value;
+  }
+  const std::string_view marks =
+      separator == Separator::kBlanks ? ",;" : (separator == Separator::kComma ? " \t;" : " \t,");
+  if (word.find_first_of(marks) != std::string_view::npos) {
+    fail_at_line(line, std::string(name) + " is " + quoted(word) +
+                           ", which is not a number with a decimal point (the columns of this file are "
+                           "separated by " +
+                           name_of(separator) + ")");
+  }
+  return finite_number(word, line, name);
+}
+
+/// Reads the points of `text` and calls `visit(point, words, line)`; the words of columns that a line does
+/// not have are empty.
 template <class VisitLine>
 void read_points(std::string_view text, const Layout& layout, ProgressMeter& meter, const VisitLine& visit) {
   LineReader lines(text.substr(layout.first_point_offset));
@@ -111,7 +190,7 @@ void read_points(std::string_view text, const Layout& layout, ProgressMeter& met
   CloudPoint point;
   while (lines.next(line)) {
     meter.at(layout.first_point_offset + lines.offset());
-    ColumnReader columns(line);
+    ColumnReader columns(line, layout.separator);
     std::string_view column;
     std::array<std::string_view, kFields> words{};
     std::size_t count = 0;
@@ -126,10 +205,10 @@ void read_points(std::string_view text, const Layout& layout, ProgressMeter& met
       continue;
     }
     point.line = layout.first_point_line + lines.line_number() - 1;
-    point.x = finite_number(words[0], point.line, kFieldNames[0]);
-    point.y = finite_number(words[1], point.line, kFieldNames[1]);
-    point.z = finite_number(words[2], point.line, kFieldNames[2]);
-    visit(point, words);
+    point.x = coordinate(words[0], point.line, kFieldNames[0], layout.separator);
+    point.y = coordinate(words[1], point.line, kFieldNames[1], layout.separator);
+    point.z = coordinate(words[2], point.line, kFieldNames[2], layout.separator);
+    visit(point, words, line);
   }
 }
 
@@ -148,7 +227,7 @@ class XyzCloud final : public PointCloud {
     const Progress no_progress;
     ProgressMeter meter(no_progress, 0);
     read_points(file_.text(), layout_, meter,
-                [&](CloudPoint& point, const std::array<std::string_view, kFields>& words) {
+                [&](CloudPoint& point, const std::array<std::string_view, kFields>& words, std::string_view) {
                   if (has_color()) {
                     point.color = {color_byte(words[3], layout_.color), color_byte(words[4], layout_.color),
                                    color_byte(words[5], layout_.color)};
@@ -157,6 +236,7 @@ class XyzCloud final : public PointCloud {
                 });
   }
   bool has_color() const override { return layout_.color != ColorScale::kNone; }
+  const char* counts_in() const override { return "line"; }
 
  private:
   SharedBytes file_;
@@ -166,6 +246,7 @@ class XyzCloud final : public PointCloud {
 std::string_view without_quotes(std::string_view name) {
   if (name.starts_with("//")) {
     name.remove_prefix(2);
+    name.remove_prefix(std::min(name.find_first_not_of(" \t"), name.size()));
   }
   if (name.size() >= 2 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front()) {
     name = name.substr(1, name.size() - 2);
@@ -173,32 +254,40 @@ std::string_view without_quotes(std::string_view name) {
   return name;
 }
 
-/// Finds the columns that a header names.
-void read_header(std::string_view line, Layout& layout) {
+/// Finds the columns that a header names; true when x, y and z are among them.
+bool read_header(std::string_view line, Layout& layout) {
   static constexpr std::array<std::pair<const char*, std::size_t>, 9> kNames{
       {{"x", 0}, {"y", 1}, {"z", 2}, {"r", 3}, {"g", 4}, {"b", 5}, {"red", 3}, {"green", 4}, {"blue", 5}}};
   std::array<std::size_t, kFields> found{};
   found.fill(kNoColumn);
-  ColumnReader columns(line);
+  // "// x y z": the slashes are no column.
+  const std::size_t slashes = line.find("//");
+  if (slashes != std::string_view::npos &&
+      std::all_of(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(slashes), is_blank)) {
+    line.remove_prefix(slashes + 2);
+  }
+  ColumnReader columns(line, separator_of(line));
   std::string_view column;
-  for (std::size_t i = 0; columns.next(column);) {
+  std::size_t i = 0;
+  for (; columns.next(column); ++i) {
     const std::string_view name = without_quotes(column);
-    if (i == 0 && name.empty() && column == "//") {
-      continue;  // "// x y z": the slashes are no column.
-    }
     for (const auto& [known, field] : kNames) {
       if (equals_ignoring_case(name, known) && found[field] == kNoColumn) {
         found[field] = i;
       }
     }
-    ++i;
   }
-  if (std::find(found.begin(), found.begin() + 3, kNoColumn) == found.begin() + 3) {
+  const bool names_position = std::find(found.begin(), found.begin() + 3, kNoColumn) == found.begin() + 3;
+  if (names_position) {
+    layout.separator = separator_of(line);
+    layout.model_columns = i;
+    layout.model_ends_open = columns.ends_open();
     std::copy(found.begin(), found.begin() + 3, layout.columns.begin());
   }
   if (std::find(found.begin() + 3, found.end(), kNoColumn) == found.end()) {
     std::copy(found.begin() + 3, found.end(), layout.columns.begin() + 3);
   }
+  return names_position;
 }
 
 /// What stands before the points.
@@ -215,7 +304,8 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
   LineReader lines(text.substr(begin));
   std::string_view line;
   while (lines.next(line)) {
-    ColumnReader columns(line);
+    const Separator separator = separator_of(line);
+    ColumnReader columns(line, separator);
     std::string_view first;
     std::string_view second;
     if (!columns.next(first)) {
@@ -223,8 +313,8 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
     }
     double value = 0;
     const bool is_single = !columns.next(second);
-    if (preamble.announced < 0 && is_single && parse_integer(first, preamble.announced) &&
-        preamble.announced >= 0) {
+    if (preamble.announced < 0 && !preamble.has_header && is_single &&
+        parse_integer(first, preamble.announced) && preamble.announced >= 0) {
       layout.first_point_offset = begin + lines.offset();
       layout.first_point_line = lines.line_number() + 1;
       continue;
@@ -234,16 +324,53 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
     if (parse_number(first, value) == NumberKind::kGarbage && !first.empty()) {
       const char c = without_quotes(first).empty() ? first.front() : without_quotes(first).front();
       const bool is_name = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '/';
-      if (is_name) {
+      // Of a second one, reading it as a point says what is wrong.
+      if (is_name && !preamble.has_header) {
         preamble.has_header = true;
-        read_header(line, layout);
         layout.first_point_offset = begin + lines.offset();
         layout.first_point_line = lines.line_number() + 1;
+        if (read_header(line, layout)) {
+          layout.model_line = lines.line_number();
+          break;
+        }
+        continue;  // a title; the first point settles the separator
       }
     }
+    layout.separator = separator;
     break;
   }
   return preamble;
+}
+
+/// Refuses a line that is cut otherwise than the model line: what it means would be a guess.
+void check_columns(std::string_view line, std::uint64_t number, Layout& layout) {
+  ColumnReader columns(line, layout.separator);
+  std::string_view column;
+  std::size_t count = 0;
+  while (columns.next(column)) {
+    ++count;
+  }
+  if (layout.model_line == 0) {
+    layout.model_line = number;
+    layout.model_columns = count;
+    layout.model_ends_open = columns.ends_open();
+  }
+  // A separator at the end may stand for an empty last column, or for nothing.
+  const bool fits = count == layout.model_columns ||
+                    (columns.ends_open() && count + 1 == layout.model_columns) ||
+                    (layout.model_ends_open && count == layout.model_columns + 1);
+  if (!fits) {
+    fail_at_line(number, std::to_string(count) + (count == 1 ? " column" : " columns") + ", but line " +
+                             std::to_string(layout.model_line) + " has " +
+                             std::to_string(layout.model_columns));
+  }
+  // A header that names the columns has settled it by their number.
+  const bool has_names = layout.model_line < layout.first_point_line;
+  if (!has_names && layout.separator == Separator::kComma && could_be_decimal_commas(line)) {
+    fail_at_line(number,
+                 "the commas may be decimal commas; write decimal points, or the same blanks after "
+                 "every comma");
+  }
 }
 
 }  // namespace
@@ -259,8 +386,10 @@ Source read_xyz(const SharedBytes& file, const Progress& progress) {
   ColorSurvey survey;
   std::uint64_t count = 0;
   read_points(file.text(), layout, meter,
-              [&](const CloudPoint& point, const std::array<std::string_view, kFields>& words) {
+              [&](const CloudPoint& point, const std::array<std::string_view, kFields>& words,
+                  std::string_view line) {
                 ++count;
+                check_columns(line, point.line, layout);
                 // Without a header, one line that does not look like a colour settles the matter.
                 for (std::size_t i = 3; i < kFields && (names_color || survey.all_bytes); ++i) {
                   survey.see(words[i], point.line);

@@ -1,17 +1,21 @@
 /// @file xyz.h
 /// `.xyz` and `.csv` point clouds: one point a line.
 ///
-/// Columns are separated by blanks, tabs, commas or semicolons (a comma or semicolon may have blanks around
-/// it; two of them in a row, an empty column, are an error). Blank lines are skipped, and so is everything
-/// from # to the end of a line. A byte order mark is skipped. Numbers have a decimal point, never a decimal
-/// comma.
+/// Columns are separated by blanks and tabs, by commas or by semicolons (with or without blanks around
+/// them): one of the three for the whole file, decided by the first line of points or by the header that
+/// names x, y and z. Two commas or semicolons in a row are an empty column; one at the end of a line is an
+/// empty column or nothing. All lines have the same number of columns. Blank lines are skipped, and so is
+/// everything from # to the end of a line. A byte order mark is skipped.
+///
+/// Numbers have a decimal point, never a decimal comma. A line that could be read either way, such as
+/// "1,5, 2,5, 3,5", is an error; "1,5,2,5,3,5" is six columns.
 ///
 /// In order, each optional:
 /// 1. A first line that is a single whole number announces the number of points (as in chemistry's files and
 ///    `.pts`); it must then be right, which finds files that were cut off.
 /// 2. A line whose first column is not a number is a header, once, before all points. Columns named x, y, z
 ///    (any case, quotes allowed, a leading // allowed) are the coordinates; without these three names they
-///    are the first three columns. Columns named r, g, b or red, green, blue are the colour.
+///    are the first three columns of what follows. Columns named r, g, b or red, green, blue are the colour.
 /// 3. Points. Columns that mean nothing are not read, whatever they hold.
 ///
 /// Colour without a header: columns 4 to 6, when in the whole file every line has them and all are whole
@@ -33,7 +37,8 @@ namespace thimble::tools {
 /// memory depends on the number of points. `CloudPoint::line` is the line in the file.
 /// @throws InputError  naming the line: a column that is missing, empty or no number, a coordinate that is
 /// not
-///   finite, a colour out of range; an announced number of points that is wrong; no points at all
+///   finite, a colour out of range, a number of columns that differs; an announced number of points that is
+///   wrong; no points at all
 Source read_xyz(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools

@@ -23,10 +23,10 @@ std::optional<std::array<std::int32_t, 3>> voxel_at(const CloudPoint& point, std
   return voxel;
 }
 
-[[noreturn]] void refuse(const CloudPoint& point, std::int32_t side) {
+[[noreturn]] void refuse(const char* counts_in, const CloudPoint& point, std::int32_t side) {
   char text[256];
   std::snprintf(text, sizeof text,
-                "line or point %llu: (%.10g, %.10g, %.10g) is outside the world's voxels 0..%d on an axis",
+                "%s %llu: (%.10g, %.10g, %.10g) is outside the world's voxels 0..%d on an axis", counts_in,
                 static_cast<unsigned long long>(point.line), point.x, point.y, point.z, side - 1);
   throw InputError(text);
 }
@@ -35,6 +35,7 @@ std::optional<std::array<std::int32_t, 3>> voxel_at(const CloudPoint& point, std
 
 PointSurvey survey_points(const PointCloud& cloud) {
   PointSurvey survey;
+  survey.counts_in = cloud.counts_in();
   const bool colored = cloud.has_color();
   cloud.for_each([&](const CloudPoint& point) {
     ++survey.points;
@@ -54,7 +55,7 @@ PointSurvey survey_points(const PointCloud& cloud) {
 
 int smallest_level(const PointSurvey& survey) {
   if (survey.unplaceable) {
-    refuse(*survey.unplaceable, 1 << kLargestLevel);
+    refuse(survey.counts_in, *survey.unplaceable, 1 << kLargestLevel);
   }
   const std::array<double, 3>& max = survey.bounds.max;
   int level = 1;
@@ -80,7 +81,7 @@ void place_points(const PointCloud& cloud, int level, const PaletteMap* colors, 
   cloud.for_each([&](const CloudPoint& point) {
     const auto voxel = voxel_at(point, side);
     if (!voxel) {
-      refuse(point, side);
+      refuse(cloud.counts_in(), point, side);
     }
     sink((*voxel)[0], (*voxel)[1], (*voxel)[2], used != nullptr ? used->index(point.color) : std::uint8_t{0});
   });

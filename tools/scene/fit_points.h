@@ -25,13 +25,14 @@ struct PointSurvey {
   ColorHistogram colors;  ///< empty when the cloud has no colours
   /// The first point that no world holds as it is: its floor is outside 0 .. 2^12 - 1 on some axis.
   std::optional<CloudPoint> unplaceable;
+  const char* counts_in = "point";  ///< of the cloud
 };
 
 /// Pass 1. InputError "no points" for an empty cloud.
 PointSurvey survey_points(const PointCloud& cloud);
 
 /// The smallest level, 1..12, whose world holds every point as it is. InputError that names the first point
-/// with a coordinate below 0 or at 4096 or above, by its line (number, in a binary file).
+/// with a coordinate below 0 or at 4096 or above, by its line (its number, where points have no lines).
 int smallest_level(const PointSurvey& survey);
 
 /// Pass 2: the cloud scaled to the world of 2^level voxels a side, level 1..12: the longest axis fills it,

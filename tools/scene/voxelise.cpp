@@ -15,6 +15,8 @@ constexpr std::array<std::array<std::size_t, 2>, 3> kPlane{{{1, 2}, {0, 2}, {0, 
 struct Block {
   UnitPoint voxel;
   int level;
+  /// Bit a: all that the block holds meets the slabs of the plane perpendicular to axis a.
+  std::uint8_t inside = 0;
 };
 
 std::array<double, 3> turned(const std::array<double, 3>& p, bool z_up) {
@@ -51,13 +53,29 @@ void emit_voxels(const TriangleBoxTest& test, const UnitPoint& first, const Unit
   }
 }
 
-bool meets_block(const TriangleBoxTest& test, const Block& block) {
+/// Whether the triangle meets `block`; asks nothing that is known for the block it is part of, and adds to
+/// `block.inside` what its parts need not ask.
+bool meets_block(const TriangleBoxTest& test, Block& block) {
   const std::int32_t half = kUnitsPerVoxel / 2 << block.level;
   UnitPoint center;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     center[axis] = block.voxel[axis] * kUnitsPerVoxel + half;
   }
-  return test.meets(center, half);
+  if (!test.meets_bounds(center, half) || !test.meets_surface(center, half)) {
+    return false;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if ((block.inside >> axis & 1) != 0) {
+      continue;
+    }
+    if (!test.meets_plane(axis, center, half)) {
+      return false;
+    }
+    if (block.level > 0 && test.inside_plane(axis, center, half)) {
+      block.inside = static_cast<std::uint8_t>(block.inside | 1U << axis);
+    }
+  }
+  return true;
 }
 
 /// Emits the voxels of a block that meets the triangle. The stack holds at most 7 siblings a level and the
@@ -74,7 +92,7 @@ void descend(const TriangleBoxTest& test, const Block& root, std::uint8_t materi
     }
     const int level = block.level - 1;
     for (int child = 7; child >= 0; --child) {
-      Block part{block.voxel, level};
+      Block part{block.voxel, level, block.inside};
       for (int axis = 0; axis < 3; ++axis) {
         part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << level;
       }
@@ -83,6 +101,64 @@ void descend(const TriangleBoxTest& test, const Block& root, std::uint8_t materi
       }
     }
   }
+}
+
+/// Triangles voxelised not long ago, so that a file that repeats them costs no more than reading it. What is
+/// forgotten (one slot for all triangles of the same hash) is only voxelised again.
+class RecentTriangles {
+ public:
+  /// `triangles` of the mesh, which bound the memory as well.
+  explicit RecentTriangles(std::size_t triangles) {
+    std::size_t slots = 1;
+    while (slots < kMostSlots && slots < triangles) {
+      slots *= 2;
+    }
+    slots_.resize(slots);
+  }
+
+  /// Whether voxelising `triangle` would change nothing, and notes that it is voxelised. A voxel has the
+  /// material that came last, so a repeat is idle only when no other material came in between.
+  bool is_repeat(UnitTriangle triangle, std::uint8_t material) {
+    if (run_ == 0 || material != material_) {
+      material_ = material;
+      ++run_;
+    }
+    std::sort(triangle.begin(), triangle.end());
+    std::uint64_t hash = 0;
+    for (const UnitPoint& vertex : triangle) {
+      for (const std::int32_t coordinate : vertex) {
+        hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 29U;
+      }
+    }
+    Slot& slot = slots_[hash & (slots_.size() - 1)];
+    if (slot.run == run_ && slot.triangle == triangle) {
+      return true;
+    }
+    slot = {triangle, run_};
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kMostSlots = 65536;
+  struct Slot {
+    UnitTriangle triangle{};  ///< vertices in ascending order
+    std::uint64_t run = 0;    ///< which run of triangles of one material; 0 is an empty slot
+  };
+  std::vector<Slot> slots_;
+  std::uint64_t run_ = 0;
+  std::uint8_t material_ = 0;
+};
+
+/// About how many voxels a triangle may have: decides only how often progress is reported.
+std::uint64_t rough_cost(const UnitTriangle& triangle) {
+  std::array<std::uint64_t, 3> span{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+    span[axis] = static_cast<std::uint64_t>(high - low) / kUnitsPerVoxel + 1;
+  }
+  std::sort(span.begin(), span.end());
+  return span[1] * span[2];
 }
 
 }  // namespace
@@ -136,6 +212,20 @@ bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std
     const std::int64_t value = slab.u * x + slab.v * y;
     const std::int64_t reach = slab.reach * half;
     if (value + reach < slab.low || value - reach > slab.high) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
+  const auto [p, q] = kPlane[axis];
+  const std::int64_t x = center[p] - origin_[p];
+  const std::int64_t y = center[q] - origin_[q];
+  for (const Slab& slab : slabs_[axis]) {
+    const std::int64_t value = slab.u * x + slab.v * y;
+    const std::int64_t reach = slab.reach * half;
+    if (value - reach < slab.low || value + reach > slab.high) {
       return false;
     }
   }
@@ -197,7 +287,7 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
   for (std::int32_t z = first[2]; z <= last[2]; ++z) {
     for (std::int32_t y = first[1]; y <= last[1]; ++y) {
       for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        const Block block{{x << level, y << level, z << level}, level};
+        Block block{{x << level, y << level, z << level}, level};
         if (meets_block(test, block)) {
           descend(test, block, material, sink);
         }
@@ -230,13 +320,22 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
               const Progress& progress) {
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const bool colored = colors != nullptr && !mesh.colors.empty();
+  RecentTriangles recent(mesh.triangles.size());
+  constexpr std::uint64_t kCostPerReport = 1 << 18;
+  std::uint64_t cost = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (progress && i % 4096 == 0) {
+    if (progress && (i % 4096 == 0 || cost >= kCostPerReport)) {
       progress(static_cast<double>(i) / static_cast<double>(mesh.triangles.size()));
+      cost = 0;
     }
     const auto& [a, b, c] = mesh.triangles[i];
+    const UnitTriangle triangle{units[a], units[b], units[c]};
     const std::uint8_t material = colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0};
-    voxelise_triangle({units[a], units[b], units[c]}, material, sink);
+    if (recent.is_repeat(triangle, material)) {
+      continue;
+    }
+    cost += rough_cost(triangle);
+    voxelise_triangle(triangle, material, sink);
   }
 }
 

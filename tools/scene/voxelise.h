@@ -62,6 +62,8 @@ class TriangleBoxTest {
   bool meets_bounds(const UnitPoint& center, std::int32_t half) const;
   /// The edges' axes in the coordinate plane perpendicular to `axis`; `center[axis]` is not used.
   bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
+  /// Whether every cube within this one passes `meets_plane`: the cube lies inside the slabs of all edges.
+  bool inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
   /// The triangle's plane against the cube.
   bool meets_surface(const UnitPoint& center, std::int32_t half) const;
 
@@ -99,8 +101,10 @@ Rgb triangle_color(const TriangleMesh& mesh, std::size_t index);
 ColorHistogram triangle_colors(const TriangleMesh& mesh);
 
 /// Streams the voxels of `mesh` in a world of 2^level voxels a side (level 1..12), triangle by triangle, z
-/// rows of y rows of x within small triangles. A voxel comes once for each triangle that it meets. `colors`
-/// may be null: then, as for a mesh without colours, everything is material 0. Memory: 12 bytes a vertex.
+/// rows of y rows of x within small triangles. A voxel comes once for each triangle that it meets, but a
+/// triangle that equals a recent one (the same quantised vertices in any order) may be left out where that
+/// changes no voxel's last material. `colors` may be null: then, as for a mesh without colours, everything is
+/// material 0. Memory: 12 bytes a vertex and 48 bytes a triangle, of these at most 3 MiB.
 /// `progress` may be empty. InputError "no triangles".
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
               const Progress& progress = {});
