@@ -7,8 +7,8 @@
 
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "commands/stats.h"
 #include "output/output_file.h"
-#include "output/stats.h"
 #include "output/units.h"
 
 namespace thimble::tools {

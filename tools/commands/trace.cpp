@@ -11,10 +11,10 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "commands/stats.h"
 #include "output/hit_csv.h"
 #include "output/output_file.h"
 #include "output/progress.h"
-#include "output/stats.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
 

@@ -80,9 +80,10 @@ std::string log_plot_text(const Plot& plot) {
   std::string svg =
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(kHeight) +
       "\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\n"
-      "svg { background: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: "
-      "#222222 }\n@media (prefers-color-scheme: dark) { svg { background: #15181c } text { fill: #e6e6e6 "
-      "} .grid { stroke: #3a3f45 } .axis { stroke: #e6e6e6 } }\n</style>\n";
+      ".ground { fill: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: "
+      "#222222 }\n@media (prefers-color-scheme: dark) { .ground { fill: #15181c } text { fill: #e6e6e6 "
+      "} .grid { stroke: #3a3f45 } .axis { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" "
+      "height=\"100%\" class=\"ground\"/>\n";
   svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
   for (int decade = x_range.low; decade <= x_range.high; ++decade) {
     const double x = x_at(std::pow(10, decade));

@@ -311,27 +311,11 @@ void BuiltScene::keep_compact(Bytes tree) {
 }
 
 int BuiltScene::level() const {
-  switch (options_.structure) {
-    case StructureKind::kDense:
-      return dense_.level();
-    case StructureKind::kPool:
-      return octree_.level();
-    case StructureKind::kCompact:
-      return compact_.level();
-  }
-  return kMinLevel;
+  return with_structure([](const auto& structure) { return structure.level(); });
 }
 
 VoxelBox BuiltScene::bounds() const {
-  switch (options_.structure) {
-    case StructureKind::kDense:
-      return dense_.bounds();
-    case StructureKind::kPool:
-      return octree_.bounds();
-    case StructureKind::kCompact:
-      return compact_.bounds();
-  }
-  return {};
+  return with_structure([](const auto& structure) { return structure.bounds(); });
 }
 
 std::uint64_t BuiltScene::voxels() const {
@@ -363,28 +347,15 @@ std::uint64_t BuiltScene::tree_bytes() const {
 }
 
 Status BuiltScene::closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const {
-  switch (options_.structure) {
-    case StructureKind::kDense:
-      return thimble::closest_hit(dense_, ray, hit, options);
-    case StructureKind::kPool:
-      return thimble::closest_hit(octree_, ray, hit, options);
-    case StructureKind::kCompact:
-      return thimble::closest_hit(compact_, ray, hit, options);
-  }
-  return Status::kBadArgument;
+  return with_structure(
+      [&](const auto& structure) { return thimble::closest_hit(structure, ray, hit, options); });
 }
 
 Status BuiltScene::render_band(const Camera& camera, const Shading& shading, const Band& band,
                                RenderCounts* counts, const TraceOptions& options) const {
-  switch (options_.structure) {
-    case StructureKind::kDense:
-      return thimble::render_band(dense_, camera, shading, band, counts, options);
-    case StructureKind::kPool:
-      return thimble::render_band(octree_, camera, shading, band, counts, options);
-    case StructureKind::kCompact:
-      return thimble::render_band(compact_, camera, shading, band, counts, options);
-  }
-  return Status::kBadArgument;
+  return with_structure([&](const auto& structure) {
+    return thimble::render_band(structure, camera, shading, band, counts, options);
+  });
 }
 
 }  // namespace thimble::tools

@@ -76,6 +76,19 @@ class BuiltScene {
   template <class Key>
   void build_keys(const SceneSource& source, const Progress& progress);
   void keep_compact(Bytes tree);
+  /// Calls `visit` with the structure that is traced.
+  template <class Visit>
+  auto with_structure(const Visit& visit) const {
+    switch (options_.structure) {
+      case StructureKind::kDense:
+        return visit(dense_);
+      case StructureKind::kPool:
+        return visit(octree_);
+      case StructureKind::kCompact:
+        break;
+    }
+    return visit(compact_);
+  }
 
   BuildOptions options_;
   HostMemory memory_;

@@ -1,4 +1,4 @@
-#include "output/stats.h"
+#include "commands/stats.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 /// @file stats.h
 /// The counts, bytes and times of one run, for people and for programs.
-#ifndef THIMBLE_TOOLS_OUTPUT_STATS_H
-#define THIMBLE_TOOLS_OUTPUT_STATS_H
+#ifndef THIMBLE_TOOLS_COMMANDS_STATS_H
+#define THIMBLE_TOOLS_COMMANDS_STATS_H
 
 #include <cstdint>
 #include <string>
