@@ -158,65 +158,16 @@ struct KeySource {
   }
 };
 
-// The mutable octree as a source: for each level a walk down to it in Morton order, which is that level's
-// breadth-first order.
-struct OctreeSource {
+// The nodes of either tree, as the walk below reads them.
+struct PoolNodes {
   const Octree& octree;
 
   int level() const { return octree.level(); }
-  uint64_t solid_added() const { return octree.solid_added(); }
-
-  template <class Sink>
-  void walk_level(int level, Sink* sink) const {
-    // stack[k]: the node of level k on the path, and the octants of its parent not yet visited from its own
-    // on.
-    struct Frame {
-      uint32_t next_child;
-      uint8_t octants;
-    } stack[kMaxLevel + 1];
-    uint32_t index = octree.root();
-    int at = octree.level();
-    Vec3i corner;
-    while (index != Octree::kNone) {
-      const Octree::NodeView node = octree.node(index);
-      if (at == level) {
-        show(node, corner, level, sink);
-      }
-      stack[at] = {Octree::kNone, 0};
-      if (at > level && node.mask != 0) {
-        stack[at] = {node.first_child, node.mask};
-      }
-      // The next node in order: the first child not yet visited of the lowest node on the path that has one.
-      while (at <= octree.level() && stack[at].octants == 0) {
-        ++at;
-      }
-      if (at > octree.level()) {
-        return;
-      }
-      Frame& frame = stack[at];
-      const unsigned octant = static_cast<unsigned>(__builtin_ctz(frame.octants));
-      frame.octants = static_cast<uint8_t>(frame.octants & (frame.octants - 1U));
-      index = frame.next_child;
-      frame.next_child = index == Octree::kNone ? Octree::kNone : octree.node(index).next;
-      --at;
-      const int32_t side = int32_t{1} << at;
-      for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
-      }
-    }
-  }
-
-  template <class Sink>
-  void show(const Octree::NodeView& node, const Vec3i& corner, int level, Sink* sink) const {
-    if (node.mask == 0) {
-      sink->solid(corner, level, node.material, node.merged);
-      return;
-    }
-    if (level > 1) {
-      sink->inner(node.mask);
-      return;
-    }
-    uint8_t materials[8] = {};
+  uint32_t root() const { return octree.root(); }
+  Octree::NodeView node(uint32_t index) const { return octree.node(index); }
+  uint32_t next(uint32_t index) const { return octree.node(index).next; }
+  // Of the voxels in a node of level 1.
+  void materials(uint32_t, const Octree::NodeView& node, uint8_t (&materials)[8]) const {
     uint32_t voxel = node.first_child;
     for (unsigned octant = 0; octant < 8; ++octant) {
       if (((node.mask >> octant) & 1U) == 0) {
@@ -229,7 +180,162 @@ struct OctreeSource {
         voxel = view.next;
       }
     }
-    sink->voxels(corner, node.mask, materials);
+  }
+};
+struct CompactNodes {
+  const CompactTree& tree;
+
+  int level() const { return tree.level(); }
+  uint32_t root() const { return tree.empty() ? Octree::kNone : 0; }
+  Octree::NodeView node(uint32_t index) const {
+    Octree::NodeView view;
+    if (index >= tree.node_count()) {
+      return view;
+    }  // a damaged tree; "solid" ends the walk there
+    view.mask = tree.mask(index);
+    view.merged = tree.is_merged(index);
+    if (view.mask == 0) {
+      view.material = tree.block_material(index);
+    }
+    view.first_child = tree.first_child(index);
+    return view;
+  }
+  uint32_t next(uint32_t index) const { return index + 1; }
+  void materials(uint32_t, const Octree::NodeView& node, uint8_t (&materials)[8]) const {
+    uint32_t number = node.first_child;
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      if (((node.mask >> octant) & 1U) != 0) {
+        materials[octant] = tree.voxel_material(number++);
+      }
+    }
+  }
+};
+
+// Shows `sink` the nodes of `level`, in Morton order, which is that level's breadth-first order. `origin` is
+// where the tree's lowest corner lies.
+template <class Nodes, class Sink>
+void walk_tree(const Nodes& nodes, const Vec3i& origin, int level, Sink* sink) {
+  // stack[k]: of the node of level k on the path, the children not yet visited.
+  struct Frame {
+    uint32_t next_child;
+    uint8_t octants;
+  } stack[kMaxLevel + 1];
+  uint32_t index = nodes.root();
+  int at = nodes.level();
+  Vec3i corner;
+  while (index != Octree::kNone) {
+    const Octree::NodeView node = nodes.node(index);
+    if (at == level) {
+      const Vec3i place{origin.x + corner.x, origin.y + corner.y, origin.z + corner.z};
+      if (node.mask == 0) {
+        sink->solid(place, level, node.material, node.merged);
+      } else if (level > 1) {
+        sink->inner(node.mask);
+      } else {
+        uint8_t materials[8] = {};
+        nodes.materials(index, node, materials);
+        sink->voxels(place, node.mask, materials);
+      }
+    }
+    stack[at] = {Octree::kNone, 0};
+    if (at > level && node.mask != 0) {
+      stack[at] = {node.first_child, node.mask};
+    }
+    // The next node in order: the first child not yet visited of the lowest node on the path that has one.
+    while (at <= nodes.level() && stack[at].octants == 0) {
+      ++at;
+    }
+    if (at > nodes.level()) {
+      return;
+    }
+    Frame& frame = stack[at];
+    const unsigned octant = static_cast<unsigned>(__builtin_ctz(frame.octants));
+    frame.octants = static_cast<uint8_t>(frame.octants & (frame.octants - 1U));
+    index = frame.next_child;
+    frame.next_child = index == Octree::kNone || frame.octants == 0 ? Octree::kNone : nodes.next(index);
+    --at;
+    const int32_t side = int32_t{1} << at;
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
+    }
+  }
+}
+
+struct OctreeSource {
+  const Octree& octree;
+
+  int level() const { return octree.level(); }
+  uint64_t solid_added() const { return octree.solid_added(); }
+  template <class Sink>
+  void walk_level(int level, Sink* sink) const {
+    walk_tree(PoolNodes{octree}, Vec3i{}, level, sink);
+  }
+};
+
+// The parts of a world, in Morton order, as a source. Nodes above the parts are made of ranges of them: a
+// node of level `part_level` + k of 8^k parts.
+struct PartsSource {
+  Span<const CompactTree> parts;
+  int part_level;
+  int world_level;
+
+  int level() const { return world_level; }
+  uint64_t solid_added() const {
+    uint64_t sum = 0;
+    for (const CompactTree& part : parts) {
+      sum += part.solid_added();
+    }
+    return sum;
+  }
+  bool empty(size_t first, size_t count) const {
+    for (size_t i = first; i < first + count; ++i) {
+      if (!parts[i].empty()) {
+        return false;
+      }
+    }
+    return true;
+  }
+  // Whether the range is one solid block: all parts solid through, of one material, all merged or all truly
+  // full.
+  bool uniform(size_t first, size_t count) const {
+    const CompactTree& one = parts[first];
+    for (size_t i = first; i < first + count; ++i) {
+      const CompactTree& part = parts[i];
+      if (part.empty() || part.mask(0) != 0 || part.is_merged(0) != one.is_merged(0) ||
+          part.block_material(0) != one.block_material(0)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  template <class Sink>
+  void walk_level(int level, Sink* sink) const {
+    const int above = level > part_level ? level - part_level : 0;
+    const size_t count = size_t{1} << (3 * above);
+    for (size_t first = 0; first < parts.size; first += count) {
+      const size_t parent = first & ~(8 * count - 1);
+      if (empty(first, count) || (8 * count <= parts.size && uniform(parent, 8 * count))) {
+        continue;
+      }
+      Vec3i origin = morton_voxel(first);
+      for (int axis = 0; axis < 3; ++axis) {
+        origin[axis] *= int32_t{1} << part_level;
+      }
+      if (above == 0) {
+        walk_tree(CompactNodes{parts[first]}, origin, level, sink);
+      } else if (uniform(first, count)) {
+        sink->solid(origin, level, parts[first].block_material(0), parts[first].is_merged(0));
+      } else {
+        unsigned mask = 0;
+        for (unsigned octant = 0; octant < 8; ++octant) {
+          if (!empty(first + octant * (count / 8), count / 8)) {
+            mask |= 1U << octant;
+          }
+        }
+        sink->inner(mask);
+      }
+    }
   }
 };
 
@@ -328,6 +434,26 @@ CompactShape compact_shape(const Octree& octree, int rank_shift) {
 
 Status compact_from_octree(const Octree& octree, Bytes out, size_t* written, int rank_shift) {
   return write(OctreeSource{octree}, out, written, rank_shift);
+}
+
+Status compact_from_parts(Span<const CompactTree> parts, Bytes out, size_t* written, int rank_shift) {
+  int split = 0;
+  while (split < kMaxLevel && (size_t{1} << (3 * split)) < parts.size) {
+    ++split;
+  }
+  if (parts.size == 0 || parts.size != size_t{1} << (3 * split)) {
+    return Status::kBadArgument;
+  }
+  const int part_level = parts[0].level();
+  for (const CompactTree& part : parts) {
+    if (part.level() != part_level || part.bytes() == nullptr) {
+      return Status::kBadArgument;
+    }
+  }
+  if (part_level + split > kMaxLevel) {
+    return Status::kOutOfRange;
+  }
+  return write(PartsSource{parts, part_level, part_level + split}, out, written, rank_shift);
 }
 
 Status compact_from_keys(Span<const uint32_t> keys, int level, uint8_t material, Bytes out, size_t* needed,

@@ -196,6 +196,34 @@ void Octree::free_nodes(uint32_t wanted) {
   path_low_ = level_;
 }
 
+namespace {
+constexpr uint32_t price_code(int step) {
+  constexpr int kLast = Octree::kPriceSteps - 1;
+  return static_cast<uint32_t>(step < 0 ? 0 : step > kLast ? kLast : step) * (kMantissa / 4);
+}
+}  // namespace
+
+uint32_t Octree::nodes_at(int step) {
+  if (used_ == 0) {
+    return 0;
+  }
+  Ratio next_ratio{0, 1};
+  const uint32_t freed = pass(Pass::kMeasure, threshold(price_code(step)), UINT32_MAX, next_ratio);
+  path_low_ = level_;
+  path_[level_] = root_;
+  return used_ - freed;
+}
+
+void Octree::coarsen_at(int step) {
+  if (used_ == 0) {
+    return;
+  }
+  Ratio next_ratio{0, 1};
+  pass(Pass::kMergeWithin, threshold(price_code(step)), UINT32_MAX, next_ratio);
+  path_low_ = level_;
+  path_[level_] = root_;
+}
+
 Status Octree::make_room(size_t nodes) {
   if (nodes <= nodes_free()) {
     return Status::kOk;

@@ -466,3 +466,140 @@ TEST_CASE("sort_keys, unique_keys: any size, key bits and pattern -> what std::s
   check_sort<std::uint32_t>(111);
   check_sort<std::uint64_t>(112);
 }
+
+namespace {
+
+// The compact bytes of a pool.
+std::vector<std::uint8_t> compacted(const Octree& pool) {
+  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
+  std::size_t size = 0;
+  REQUIRE(compact_from_octree(pool, {bytes.data(), bytes.size()}, &size) == Status::kOk);
+  REQUIRE(size == bytes.size());
+  return bytes;
+}
+
+struct Parts {
+  std::vector<std::vector<std::uint8_t>> bytes;
+  std::vector<CompactTree> trees;
+
+  void add(const Octree& pool) {
+    bytes.push_back(compacted(pool));
+    CompactTree tree;
+    REQUIRE(CompactTree::open({bytes.back().data(), bytes.back().size()}, &tree) == Status::kOk);
+    trees.push_back(tree);
+  }
+  Status join(std::vector<std::uint8_t>* out) const {
+    const Span<const CompactTree> span{trees.data(), trees.size()};
+    std::size_t size = 0;
+    const Status status = compact_from_parts(span, {}, &size);
+    if (status != Status::kOutOfMemory) {
+      return status;
+    }
+    out->assign(size, 0);
+    return compact_from_parts(span, {out->data(), out->size()}, &size);
+  }
+};
+
+// A world of 2^level with full, empty and mixed regions.
+void fill_world(Octree& pool, int level, unsigned materials, std::mt19937_64& random) {
+  const std::int32_t side = std::int32_t{1} << level;
+  for (int i = 0; i < 40; ++i) {
+    const int block_level = static_cast<int>(random() % static_cast<unsigned>(level));
+    const std::int32_t cells = side >> block_level;
+    const auto place = [&] {
+      return static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(cells)) << block_level;
+    };
+    const Vec3i corner{place(), place(), place()};
+    REQUIRE(pool.insert_block(corner, block_level, static_cast<std::uint8_t>(random() % materials)) ==
+            Status::kOk);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("compact tree: a world joined from its parts -> the bytes of the whole") {
+  const std::uint64_t seed = 11;
+  CAPTURE(seed);
+  std::mt19937_64 random(seed);
+  constexpr int kLevel = 5;
+  constexpr std::int32_t kSide = 1 << kLevel;
+  for (int round = 0; round < 12 * kScale; ++round) {
+    CAPTURE(round);
+    const unsigned materials = round % 3 == 0 ? 1 : 3;
+    OwnedPool whole(200000, kLevel);
+    if (round % 4 == 3) {  // the world itself, or an octant of it, is one block
+      REQUIRE(whole.pool.insert_block({0, 0, 0}, round % 8 == 3 ? kLevel : kLevel - 1, 2) == Status::kOk);
+    } else if (round % 4 != 2) {
+      fill_world(whole.pool, kLevel, materials, random);
+    }
+    for (int split = 0; split <= 3; ++split) {
+      CAPTURE(split);
+      const int part_level = kLevel - split;
+      Parts parts;
+      for (std::uint64_t part = 0; part < std::uint64_t{1} << (3 * split); ++part) {
+        OwnedPool piece(40000, part_level);
+        const Vec3i at = morton_voxel(part);
+        const std::int32_t side = kSide >> split;
+        for (std::int32_t i = 0; i < side * side * side; ++i) {
+          const Vec3i local{i % side, i / side % side, i / side / side};
+          const int material =
+              whole.pool.material({at.x * side + local.x, at.y * side + local.y, at.z * side + local.z});
+          if (material >= 0) {
+            REQUIRE(piece.pool.insert(local, static_cast<std::uint8_t>(material)) == Status::kOk);
+          }
+        }
+        parts.add(piece.pool);
+      }
+      std::vector<std::uint8_t> joined;
+      REQUIRE(parts.join(&joined) == Status::kOk);
+      CHECK(joined == compacted(whole.pool));
+    }
+  }
+}
+
+TEST_CASE("compact tree: parts that were coarsened -> merged blocks, volume and added volume come along") {
+  std::mt19937_64 random(5);
+  Parts parts;
+  std::uint64_t volume = 0;
+  std::uint64_t added = 0;
+  for (int part = 0; part < 8; ++part) {
+    OwnedPool piece(40000, 4);
+    for (int i = 0; i < 300; ++i) {
+      const auto place = [&] { return static_cast<std::int32_t>(random() % 16); };
+      REQUIRE(piece.pool.insert({place(), place(), place()}, 7) == Status::kOk);
+    }
+    REQUIRE(piece.pool.coarsen_to(20) == Status::kOk);
+    volume += piece.pool.voxels();
+    added += piece.pool.solid_added();
+    parts.add(piece.pool);
+  }
+  std::vector<std::uint8_t> joined;
+  REQUIRE(parts.join(&joined) == Status::kOk);
+  CHECK(CompactTree::validate({joined.data(), joined.size()}) == nullptr);
+  CompactTree tree;
+  REQUIRE(CompactTree::open({joined.data(), joined.size()}, &tree) == Status::kOk);
+  CHECK(tree.merged());
+  CHECK(tree.level() == 5);
+  CHECK(tree.voxel_count() == volume);
+  CHECK(tree.solid_added() == added);
+}
+
+TEST_CASE("compact tree: parts that do not fit together -> refused") {
+  OwnedPool small(100, 3);
+  OwnedPool large(100, 4);
+  Parts parts;
+  std::vector<std::uint8_t> joined;
+  CHECK(parts.join(&joined) == Status::kBadArgument);
+  for (int i = 0; i < 7; ++i) {
+    parts.add(small.pool);
+  }
+  CHECK(parts.join(&joined) == Status::kBadArgument);
+  parts.add(large.pool);
+  CHECK(parts.join(&joined) == Status::kBadArgument);
+  OwnedPool largest(100, kMaxLevel);
+  Parts beyond;
+  for (int i = 0; i < 8; ++i) {
+    beyond.add(largest.pool);
+  }
+  CHECK(beyond.join(&joined) == Status::kOutOfRange);
+}

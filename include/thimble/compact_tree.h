@@ -135,6 +135,15 @@ CompactShape compact_shape(const Octree& octree, int rank_shift = kDefaultRankSh
 Status compact_from_octree(const Octree& octree, Bytes out, size_t* written,
                            int rank_shift = kDefaultRankShift);
 
+/// Joins the parts of a larger world: `parts` are 8^n trees of one level (n at least 0), which fill a world
+/// of n levels more in Morton order (the first the octant at the lowest corner); an empty tree is an empty
+/// part. The result is what the whole world's octree would have given. Writes to the front of `out`, which
+/// must not overlap the parts; `written` (may be null) gets its size, also when the status is `kOutOfMemory`
+/// and `out` untouched. Level passes over the parts. `kBadArgument` for another number of parts or unequal
+/// levels, `kOutOfRange` beyond kMaxLevel.
+Status compact_from_parts(Span<const CompactTree> parts, Bytes out, size_t* written,
+                          int rank_shift = kDefaultRankShift);
+
 /// Writes voxels given by sorted, unique Morton keys (morton.h: `sort_unique`) as a compact tree to the front
 /// of `out`. 32-bit keys are bare Morton codes (levels to 10; all voxels get `material`); 64-bit keys hold
 /// the code in bits 8 up and the material in bits 0..7. About 2 * level passes over the keys, no memory

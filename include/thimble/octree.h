@@ -141,6 +141,16 @@ class Octree {
   /// Errors: `kOutOfMemory` for 0 nodes of a tree that is not empty; the tree is then as before.
   Status coarsen_to(size_t max_nodes);
 
+  /// Prices of a node: step s, 0 .. kPriceSteps - 1, is 2^(s / 4 - 27) voxels of added volume, quarters in
+  /// between linearly. For whoever has several trees (the parts of a world) to coarsen alike: blocks of the
+  /// same price go from all.
+  static constexpr int kPriceSteps = 252;
+  /// How many nodes the tree would have after `coarsen_at(step)`. Changes nothing. One pass.
+  uint32_t nodes_at(int step);
+  /// Merges every block that adds at most the price for each node it saves, given what was merged inside it.
+  /// One pass. Both take the nearest step for one out of range.
+  void coarsen_at(int step);
+
   // --- asking ------------------------------------------------------------------------------------------
 
   /// Whether `voxel` is solid; false outside the world.

@@ -128,8 +128,8 @@ CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::
 }
 
 CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                              std::int64_t low, std::int64_t high, std::function<void(std::int64_t)> take,
-                              const std::string& help) {
+                              std::int64_t low, std::int64_t high,
+                              const std::function<void(std::int64_t)>& take, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [=](const std::string& text) -> std::string {

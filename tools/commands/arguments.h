@@ -33,8 +33,8 @@ CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::
 
 /// An option that is a whole number of low .. high.
 CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                              std::int64_t low, std::int64_t high, std::function<void(std::int64_t)> take,
-                              const std::string& help);
+                              std::int64_t low, std::int64_t high,
+                              const std::function<void(std::int64_t)>& take, const std::string& help);
 
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
 CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,

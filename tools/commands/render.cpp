@@ -102,7 +102,9 @@ void run(const RenderCommand& command) {
   const auto source = command.scene.open();
   const BuiltScene built = command.scene.build(*source, band_bytes(format, width, band_rows(command, format)),
                                                band_bytes(format, width, 1));
-  const auto rows = static_cast<std::int32_t>(built.band().size / row_bytes(format, width));
+  // At least a byte a row: a picture is at least a pixel wide.
+  const std::size_t one_row = std::max<std::size_t>(1, row_bytes(format, width));
+  const auto rows = static_cast<std::int32_t>(built.band().size / one_row);
   std::string note;
   const Camera camera = command.view.camera(built.level(), built.bounds(), &note);
 

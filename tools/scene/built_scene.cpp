@@ -151,6 +151,14 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
       throw Shortage{};
     }
   }
+  if (coarsen && options_.structure == StructureKind::kCompact) {
+    try {
+      build_parts(source, progress);
+      return;
+    } catch (const Shortage&) {
+      // Too little for parts: one pool that coarsens as it fills.
+    }
+  }
   if (options_.structure == StructureKind::kDense) {
     build_dense(source, progress);
   } else if (options_.structure == StructureKind::kPool || coarsen || !source.is_point_set()) {
@@ -177,6 +185,123 @@ void BuiltScene::build_dense(const SceneSource& source, const Progress& progress
       progress);
 }
 
+void BuiltScene::insert(const SceneSource& source, const Vec3i& voxel, std::uint8_t material) {
+  // In a point set the greatest material wins, in whatever order and structure it is built.
+  if (source.is_point_set() && !source.single_material() && octree_.material(voxel) >= material) {
+    return;
+  }
+  const Status status = octree_.insert(voxel, material);
+  if (status == Status::kOutOfMemory) {
+    throw Shortage{};
+  }
+  if (status != Status::kOk) {
+    throw InputError("voxel " + std::to_string(voxel.x) + "," + std::to_string(voxel.y) + "," +
+                     std::to_string(voxel.z) + " lies outside the world");
+  }
+}
+
+// Fills the pool with part `part` (by its Morton number) of the world, `part_level` of its levels.
+void BuiltScene::fill_part(const SceneSource& source, Bytes pool, int part_level, std::size_t part,
+                           const Progress& progress) {
+  if (octree_.init(pool, part_level) != Status::kOk || octree_.capacity() == 0) {
+    throw Shortage{};
+  }
+  octree_.set_coarsen(true);
+  const std::int32_t inside = (std::int32_t{1} << part_level) - 1;
+  const auto number = [&](std::int32_t x) { return static_cast<std::uint32_t>(x >> part_level); };
+  source.stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        if (morton_code(number(x), number(y), number(z)) == part) {
+          insert(source, {x & inside, y & inside, z & inside}, material);
+        }
+      },
+      progress);
+}
+
+// The world in parts: each is built in the pool, coarsened and made compact at once; in the end the parts are
+// joined. So the pool's eight bytes a node are paid for one part at a time, and the tree may take near half
+// of the arena:
+//
+//   table of parts | compact parts            | pool, at the end the joined tree
+//                  | half of what is left     | the other half
+//
+// All parts are coarsened at one price of a node, the least at which they fit, so that of all blocks those go
+// first that add the least volume for what they save. The price is found from how many nodes each part has at
+// each price.
+void BuiltScene::build_parts(const SceneSource& source, const Progress& progress) {
+  // A stream for each part, twice: 64 parts only where a stream is short.
+  constexpr std::uint64_t kShortStream = 4'000'000;
+  constexpr std::size_t kRoomFor64 = std::size_t{256} << 10;
+  const bool short_stream = source.points() != 0 && source.points() <= kShortStream && !source.is_mesh();
+  const int split = short_stream && arena_.free_bytes() >= kRoomFor64 ? 2 : 1;
+  const int part_level = source.level() - split;
+  const std::size_t count = std::size_t{1} << (3 * split);
+  const std::size_t mark = arena_.used_bytes();
+  const Bytes table = arena_.take(count * sizeof(CompactTree), alignof(CompactTree));
+  const Bytes rest = aligned(arena_.rest(), alignof(std::uint64_t));
+  // Where headers would take more than an eighth of the parts' half, one pool for all does better.
+  if (part_level < kMinLevel || table.empty() || count * kCompactHeaderBytes > rest.size / 16) {
+    arena_.rewind(mark);
+    throw Shortage{};
+  }
+  CompactTree* parts = new (table.data) CompactTree[count];
+  const Bytes home = rest.subspan(0, rest.size / 16 * 8);
+  const Bytes pool = rest.subspan(home.size);
+
+  // Prices from 1/16 voxel a node, below which little is to be had, to 2^27, beyond which nothing is left.
+  constexpr int kOctave = 4;
+  constexpr int kFirstStep = (27 - 4) * kOctave;
+  constexpr int kEndStep = (27 + 27) * kOctave;
+  std::array<std::uint64_t, kEndStep> nodes{};
+  std::uint64_t all_nodes = 0;
+  for (std::size_t part = 0; part < count; ++part) {
+    fill_part(source, pool, part_level, part, progress);
+    all_nodes += octree_.nodes_used();
+    for (int step = kFirstStep; step < kEndStep; ++step) {
+      nodes[static_cast<std::size_t>(step)] += octree_.nodes_at(step);
+    }
+  }
+  // Bytes of so many nodes: mask, directory and merged bit, and for several materials what is usual.
+  const std::uint64_t sixteenths = source.single_material() ? 19 : 40;
+  const auto fits = [&](std::uint64_t number) {
+    return number * sixteenths / 16 + count * (kCompactHeaderBytes + 16) <= home.size;
+  };
+  int step = fits(all_nodes) ? -1 : kFirstStep;  // -1: as they are
+  while (step >= 0 && step + 1 < kEndStep && !fits(nodes[static_cast<std::size_t>(step)])) {
+    ++step;
+  }
+  // The estimate may be short for materials; the price then rises an octave at a time.
+  for (; step < kEndStep; step = step < 0 ? kFirstStep : step + kOctave) {
+    std::size_t used = 0;
+    std::size_t pool_used = 0;
+    std::size_t part = 0;
+    for (; part < count; ++part) {
+      fill_part(source, pool, part_level, part, progress);
+      if (step >= 0) {
+        octree_.coarsen_at(step);
+      }
+      pool_used = std::max(pool_used, octree_.high_water_bytes());
+      const Bytes target = aligned(home.subspan(used), alignof(std::uint64_t));
+      std::size_t size = 0;
+      if (compact_from_octree(octree_, target, &size) != Status::kOk ||
+          CompactTree::open(target.subspan(0, size), &parts[part]) != Status::kOk) {
+        break;
+      }
+      used = static_cast<std::size_t>(target.data - home.data) + size;
+    }
+    std::size_t size = 0;
+    if (part == count && compact_from_parts({parts, count}, pool, &size) == Status::kOk) {
+      arena_.note_scratch(static_cast<std::size_t>(pool.data - arena_.rest().data) +
+                          std::max(pool_used, size));
+      arena_.rewind(mark);
+      keep_compact(pool.subspan(0, size));
+      return;
+    }
+  }
+  arena_.rewind(mark);
+  throw Shortage{};
+}
+
 void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progress& progress) {
   const bool compact = options_.structure == StructureKind::kCompact;
   const Bytes rest = aligned(arena_.rest(), alignof(std::uint64_t));
@@ -189,21 +314,9 @@ void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progr
     throw Shortage{};
   }
   octree_.set_coarsen(coarsen);
-  const bool keep_greatest = source.is_point_set() && !source.single_material();
   source.stream(
       [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-        const Vec3i voxel{x, y, z};
-        if (keep_greatest && octree_.material(voxel) >= material) {
-          return;
-        }
-        const Status status = octree_.insert(voxel, material);
-        if (status == Status::kOutOfMemory) {
-          throw Shortage{};
-        }
-        if (status != Status::kOk) {
-          throw InputError("voxel " + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) +
-                           " lies outside the world");
-        }
+        insert(source, {x, y, z}, material);
       },
       progress);
 

@@ -73,6 +73,10 @@ class BuiltScene {
   void build(const SceneSource& source, std::uint64_t band_bytes, bool coarsen, const Progress& progress);
   void build_dense(const SceneSource& source, const Progress& progress);
   void build_pool(const SceneSource& source, bool coarsen, const Progress& progress);
+  void build_parts(const SceneSource& source, const Progress& progress);
+  void fill_part(const SceneSource& source, Bytes pool, int part_level, std::size_t part,
+                 const Progress& progress);
+  void insert(const SceneSource& source, const Vec3i& voxel, std::uint8_t material);
   template <class Key>
   void build_keys(const SceneSource& source, const Progress& progress);
   void keep_compact(Bytes tree);

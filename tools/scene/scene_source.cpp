@@ -171,6 +171,7 @@ class MeshScene final : public SceneSource {
     }
   }
   std::string kind() const override { return "triangle mesh, voxelised"; }
+  bool is_mesh() const override { return true; }
   std::uint64_t points() const override { return mesh_.positions.size(); }
   bool is_point_set() const override { return false; }
   bool single_material() const override { return colors_.colors() == 0; }

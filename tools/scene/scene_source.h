@@ -33,6 +33,8 @@ class SceneSource {
   virtual std::uint64_t points() const = 0;
   /// Whether it is made of single voxels strewn about, of which a list is smaller than a pool of nodes.
   virtual bool is_point_set() const = 0;
+  /// Whether every stream voxelises triangles again.
+  virtual bool is_mesh() const { return false; }
   /// Whether all voxels have material 0.
   virtual bool single_material() const = 0;
   /// One past the greatest index on each axis that can occur: what a dense grid must hold.
