@@ -245,7 +245,7 @@ void walk_tree(const Nodes& nodes, const Vec3i& origin, int level, Sink* sink) {
     while (at <= nodes.level() && stack[at].octants == 0) {
       ++at;
     }
-    if (at > nodes.level()) {
+    if (at == 0 || at > nodes.level()) {  // nothing is left (and level 0 never has children)
       return;
     }
     Frame& frame = stack[at];

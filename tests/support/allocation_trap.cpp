@@ -20,10 +20,14 @@ void count_call() {
 
 }  // namespace
 
-// The array and nothrow forms end in these.
-void* operator new(std::size_t size) {
+// The array forms end in these. The nothrow form has to be here as well: a sanitizer's own would not end in
+// this one, and its memory would then be freed by the wrong partner.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   count_call();
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) {
+  return std::malloc(size == 0 ? 1 : size);
+}
+void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) {
     return memory;
   }
   throw std::bad_alloc();
