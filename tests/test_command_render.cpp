@@ -570,6 +570,31 @@ TEST_CASE("render: --engine ray32 on rays that need more -> status 1, nothing wr
   CHECK(folder.names().empty());
 }
 
+TEST_CASE("render: --coarsen, and the compact tree would fit though the pool does not -> nothing is merged") {
+  const TemporaryFolder folder;
+  const auto draw = [&](const Words& budget) {
+    const CommandResult result =
+        run_command(Words{"render", "spheres", "--size", "80x60", "--shade", "color", "--quiet", "-o",
+                          folder.path("p.ppm"), "--stats", folder.path("s.json")} +
+                    budget);
+    REQUIRE_MESSAGE(result.status == 0, result.describe());
+    return json::parse(read_text(folder.path("s.json")));
+  };
+  const json full = draw({});
+  CHECK(full["budget_bytes"] == full["high_water_bytes"]);
+  const json tight = draw({"--memory", "32K", "--coarsen"});
+  CHECK(full["high_water_bytes"] > 32768);
+  CHECK(tight["high_water_bytes"] <= 32768);
+  CHECK(tight["solid_added"] == 0);
+  for (const char* key : {"voxels", "nodes", "tree_bytes", "frame_crc32", "hits"}) {
+    CAPTURE(key);
+    CHECK(tight[key] == full[key]);
+  }
+  const json tighter = draw({"--memory", "16K", "--coarsen"});
+  CHECK(tighter["solid_added"] > 0);
+  CHECK(tighter["solid_added"] < full["voxels"].get<std::uint64_t>() / 2);
+}
+
 TEST_CASE("render: every budget -> the exact need is named and is exact; high water never above the budget") {
   const TemporaryFolder folder;
   const World world = world_of(WorldKind::kSparse, {60, 50, 40}, 5);
@@ -658,10 +683,8 @@ TEST_CASE(
         const json stats = json::parse(read_text(folder.path("s.json")));
         CHECK(stats["high_water_bytes"] <= budget);
         CHECK(stats["budget_bytes"] == budget);
-        // What a merged block added and the scene filled later counts as added: never too little.
         const auto true_voxels = full.stats["voxels"].get<std::uint64_t>();
-        CHECK(stats["voxels"] >= true_voxels);
-        CHECK(stats["voxels"] <= true_voxels + stats["solid_added"].get<std::uint64_t>());
+        CHECK(stats["voxels"] == true_voxels + stats["solid_added"].get<std::uint64_t>());
         const std::vector<HitRow> rows = parse_hits(read_text(folder.path("h.csv")), true);
         REQUIRE(rows.size() == full.hits.size());
         int lost = 0;

@@ -52,7 +52,8 @@ class BuiltScene {
   /// Nodes of the structure that is traced; 0 for a dense grid.
   std::uint64_t nodes() const;
   std::uint64_t tree_bytes() const;
-  std::uint64_t budget_bytes() const { return arena_.capacity_bytes(); }
+  /// --memory, or what was used at most where none was given.
+  std::uint64_t budget_bytes() const { return options_.memory_bytes.value_or(high_water_bytes()); }
   std::uint64_t high_water_bytes() const { return arena_.high_water_bytes(); }
   /// The least budget that this scene can be built in without coarsening; at most `high_water_bytes()` of a
   /// build without one, less where points repeat.
