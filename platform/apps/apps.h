@@ -1,0 +1,23 @@
+/// @file apps.h
+/// The applications: each is one source, platform/apps/NAME.cpp, for every board and for the host simulator.
+///
+/// They return an exit status: 0 when all went well. In a firmware image the build picks one
+/// (`make firmware BOARD=... APP=NAME`) and the linker leaves the others out.
+#ifndef THIMBLE_PLATFORM_APPS_APPS_H
+#define THIMBLE_PLATFORM_APPS_APPS_H
+
+namespace thimble::apps {
+
+/// The baked scene turns; buttons move the camera. Keys over the UART: `p` sends the picture as P5, `b`
+/// builds a scene of spheres on the chip itself, `q` ends.
+int demo();
+/// The core's own test cases on the target; closes with `N passed, N failed`.
+int selftest();
+/// Instructions a frame and a ray, nodes visited, RAM and stack used.
+int bench();
+/// The paper's particle world.
+int particles();
+
+}  // namespace thimble::apps
+
+#endif

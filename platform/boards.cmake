@@ -1,0 +1,55 @@
+# The boards, from their board.cmake files: lists for the build and a table for the host's C++.
+
+# The names of all boards, in alphabetical order.
+function(thimble_list_boards names)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/platform/boards/*/board.cmake)
+  set(found)
+  foreach(file IN LISTS files)
+    get_filename_component(folder ${file} DIRECTORY)
+    get_filename_component(name ${folder} NAME)
+    list(APPEND found ${name})
+  endforeach()
+  list(SORT found)
+  set(${names} ${found} PARENT_SCOPE)
+endfunction()
+
+# Sets the BOARD_... variables of one board in the caller's scope, and refuses a file that leaves one out.
+macro(thimble_read_board name)
+  foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
+      FORMAT BUTTONS QEMU PROBE)
+    unset(BOARD_${fact})
+  endforeach()
+  include(${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
+  foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
+      FORMAT BUTTONS QEMU PROBE)
+    if(NOT DEFINED BOARD_${fact})
+      message(FATAL_ERROR "platform/boards/${name}/board.cmake does not set BOARD_${fact}")
+    endif()
+  endforeach()
+endmacro()
+
+# gray4 -> Gray4
+function(thimble_capitalise result word)
+  string(SUBSTRING ${word} 0 1 first)
+  string(SUBSTRING ${word} 1 -1 rest)
+  string(TOUPPER ${first} first)
+  set(${result} ${first}${rest} PARENT_SCOPE)
+endfunction()
+
+# Writes `file`: one line of C++ initialisers a board, in the order of the members of BoardFacts
+# (platform/boards/board_table.h).
+function(thimble_write_board_table file)
+  thimble_list_boards(names)
+  set(text "// Made from platform/boards/*/board.cmake.\n")
+  foreach(name IN LISTS names)
+    thimble_read_board(${name})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+      ${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
+    thimble_capitalise(format ${BOARD_FORMAT})
+    thimble_capitalise(screen ${BOARD_DISPLAY})
+    string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, ${BOARD_FLASH_BYTES}, "
+      "${BOARD_STACK_BYTES}, Screen::k${screen}, ${BOARD_WIDTH_PX}, ${BOARD_HEIGHT_PX}, "
+      "PixelFormat::k${format}, ${BOARD_BUTTONS}},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
+endfunction()

@@ -1,0 +1,38 @@
+/// @file board_table.h
+/// What every board is, for programs on the host: the one table, made from platform/boards/*/board.cmake.
+#ifndef THIMBLE_PLATFORM_BOARDS_BOARD_TABLE_H
+#define THIMBLE_PLATFORM_BOARDS_BOARD_TABLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/pixel.h"
+#include "thimble/span.h"
+
+namespace thimble::platform {
+
+/// How a display looks: white on black, dark on light, or pixels as they are.
+enum class Screen : uint8_t { kNone, kOled, kLcd, kPlain };
+
+struct BoardFacts {
+  const char* name;
+  const char* title;
+  const char* cpu;
+  uint32_t ram_bytes;
+  uint32_t flash_bytes;
+  uint32_t stack_bytes;  ///< part of the RAM that is kept for the stack
+  Screen screen;
+  int32_t width_px;
+  int32_t height_px;
+  PixelFormat format;
+  int32_t buttons;
+};
+
+/// All boards, by name in alphabetical order.
+Span<const BoardFacts> boards();
+/// The board of that name, or null.
+const BoardFacts* find_board(const char* name);
+
+}  // namespace thimble::platform
+
+#endif

@@ -1,0 +1,88 @@
+/// @file port.h
+/// The contract between an application and the place where it runs.
+///
+/// An application (platform/apps) is one source for every board and for the host simulator. It calls the
+/// functions below and the core, and nothing else. A port (platform/boards/NAME with platform/arch/ARCH; on a
+/// desktop platform/host; on Linux without a window system platform/linux) defines every one of them.
+///
+/// What the port has done before it calls the application: clocks and UART run, the display is on and black,
+/// .data and .bss are set up, the stack is painted (`kStackPaint`) and fenced as well as the chip can, and a
+/// fault ends with a message on the UART and exit status kFaultStatus.
+///
+/// What an application does: takes its memory from `arena()`, keeps nothing in static variables, draws bands
+/// and flushes them, looks at `running()` once a frame, and returns an exit status.
+///
+/// None of these functions is called from an interrupt, and none is reentrant.
+#ifndef THIMBLE_PLATFORM_PORT_H
+#define THIMBLE_PLATFORM_PORT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/pixel.h"
+#include "thimble/render.h"
+#include "thimble/span.h"
+
+namespace thimble::port {
+
+/// The picture that the application draws. A board without a display has the size and format that its
+/// pictures have on the UART.
+struct Display {
+  int32_t width_px;
+  int32_t height_px;
+  PixelFormat format;
+  bool connected;  ///< whether anybody sees what is flushed
+};
+
+/// What the board is, from its board.cmake.
+struct Facts {
+  const char* name;
+  uint32_t ram_bytes;
+  uint32_t flash_bytes;
+  uint32_t stack_bytes;  ///< part of the RAM that is kept for the stack
+  Display display;
+};
+const Facts& facts();
+
+/// All RAM that is not data, bss or stack, aligned to 8 bytes; what it holds at the start is not specified.
+Bytes arena();
+
+/// The baked scene in flash (`thimble bake`); empty where none was built in.
+ConstBytes scene();
+
+/// Sends rows to the display, in its format and width; `stride_bytes` 0. Every row of a frame is flushed
+/// once, in any order of bands. Without a display it does nothing. The bytes may be used again when it
+/// returns.
+void flush(const Band& band);
+
+/// What the hand holds down: buttons of the board, or keys.
+enum Button : uint32_t { kUp = 1, kDown = 2, kLeft = 4, kRight = 8, kSelect = 16 };
+/// The buttons that are down now, a bit each. 0 where there are none.
+uint32_t buttons();
+
+/// The next byte that came over the UART (a terminal's keys), or -1; does not wait.
+int read();
+/// Sends bytes over the UART; waits until they are taken.
+void write(ConstBytes bytes);
+
+/// Whether to draw another frame: false when the user closed the window, or the number of frames that was
+/// asked for has been drawn (`frames` = those drawn so far).
+bool running(uint32_t frames);
+
+/// Instructions executed so far, where the place can count them (an emulator with -icount, a counter of the
+/// core); modulo 2^32, 0 always where it cannot.
+uint32_t instructions();
+/// Microseconds since the start, modulo 2^32; 0 always where there is no clock.
+uint32_t microseconds();
+
+/// The stack is filled with this byte before the application runs, so that what it used can be seen.
+inline constexpr uint8_t kStackPaint = 0xA5;
+/// The most bytes of stack that were in use at any time so far, interrupts included.
+uint32_t stack_high_water();
+
+/// Exit status after a fault: a bad access, an overflowing stack, a write past the RAM.
+inline constexpr int kFaultStatus = 97;
+
+}  // namespace thimble::port
+
+#endif
