@@ -132,14 +132,14 @@ constexpr double kFill = 0.94;
 void SceneOptions::add_to(CLI::App& app) {
   app.add_option("scene", arguments.scene,
                  "a file (.vox .ply .obj .off .xyz .csv, a Gadget-1 snapshot, .gz of any) or a generator: "
-                 "points:N, cluster:N, spheres or water, each with ,seed=S,depth=L")
+                 "points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L")
       ->required()
       ->type_name("SCENE");
   add_whole_option(
       app, "--depth", "L", kMinLevel, kMaxLevel,
       [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox or --as-voxels "
-      "file, 9 for other files, 10 for points and cluster, 6 for spheres and water)");
+      "file, 9 for other files, 10 for points and cluster, 6 for the other generators)");
   app.add_flag("--as-voxels", arguments.as_voxels,
                "point files: coordinates are voxel indices; nothing is scaled, turned or moved")
       ->disable_flag_override();

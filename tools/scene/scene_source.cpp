@@ -52,6 +52,8 @@ class GeneratedScene final : public SceneSource {
         return "generator spheres";
       case GeneratorKind::kWater:
         return "generator water";
+      case GeneratorKind::kDemo:
+        return "generator demo";
     }
     return "generator";
   }
