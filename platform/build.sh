@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds firmware for a board into build/firmware/BOARD and says what each image takes of it.
 #   build.sh BOARD|all APP[;APP...] [SCENE]     SCENE: what `thimble bake` takes; without it there is no scene in the image
-# FRAMES=N in the environment: the application ends after N frames.
+# In the environment: FRAMES=N ends the application after N frames; THIMBLE_FIRMWARE is another place than build/firmware.
 set -eu
 cd "$(dirname "$0")/.."
 if [ "$1" = all ]; then
@@ -14,7 +14,7 @@ board=$1
 apps=$2
 scene=${3:-}
 . platform/board_facts.sh
-work=build/firmware/$board
+work=${THIMBLE_FIRMWARE:-build/firmware}/$board
 mkdir -p "$work"
 header=
 if [ -n "$scene" ]; then

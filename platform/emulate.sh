@@ -8,7 +8,7 @@ board=$1
 app=$2
 shift 2
 . platform/board_facts.sh
-image=build/firmware/$board/$app.elf
+image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app.elf
 if [ ! -f "$image" ]; then
   echo "thimble: $image is not there; make firmware BOARD=$board APP=$app builds it" >&2
   exit 1

@@ -33,7 +33,7 @@ configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/facts.h.in ${generated}/thimb
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/firmware.ld.in ${generated}/firmware.ld @ONLY)
 if(THIMBLE_SCENE_HEADER)
   set(THIMBLE_SCENE_INCLUDE "#include \"${THIMBLE_SCENE_HEADER}\"")
-  set(THIMBLE_SCENE_BYTES "{kScene, sizeof(kScene)}")
+  set(THIMBLE_SCENE_BYTES "{thimble_scene, sizeof(thimble_scene)}")
 else()
   set(THIMBLE_SCENE_INCLUDE "")
   set(THIMBLE_SCENE_BYTES "{}")

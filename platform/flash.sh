@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 board=$1
 app=$2
 . platform/board_facts.sh
-image=build/firmware/$board/$app
+image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app
 probe=$(fact PROBE)
 with=${probe#* }
 fail() {

@@ -5,7 +5,11 @@
 
 #include "apps/apps.h"
 #include "port.h"
+#include "thimble/arena.h"
+#include "thimble/baked_scene.h"
 #include "thimble/compact_tree.h"
+#include "thimble/octree.h"
+#include "thimble/trace.h"
 
 namespace thimble::apps {
 namespace {
@@ -44,6 +48,50 @@ bool write_flash() {
   return *word != kConstant[1];
 }
 
+// A small baked scene, made here, in bytes of `arena`; empty when one of the steps failed.
+Bytes bake_small_scene(Arena* arena) {
+  constexpr size_t kNodes = 32;
+  Octree octree;
+  CompactTree tree;
+  size_t tree_bytes = 0;
+  const VoxelBox box = {{1, 2, 3}, {5, 4, 6}};
+  if (octree.init(arena->take(Octree::octree_bytes(kNodes)), 3) != Status::kOk ||
+      octree.insert_box(box, 1) != Status::kOk || octree.insert({7, 7, 7}, 2) != Status::kOk ||
+      compact_from_octree(octree, arena->rest(), &tree_bytes) != Status::kOk) {
+    return {};
+  }
+  BakedParts parts;
+  parts.tree = arena->take(tree_bytes, 1);
+  const Bytes bytes = arena->take(baked_bytes(parts));
+  return bytes.empty() || bake(parts, bytes) != Status::kOk ? Bytes{} : bytes;
+}
+
+// Opens and traces a scene that is damaged in one byte, for every byte of it. Nothing may hang or fault; returns
+// whether each was seen to be damaged.
+bool open_damaged_scenes() {
+  Arena arena(port::arena());
+  const Bytes bytes = bake_small_scene(&arena);
+  BakedScene scene;
+  if (bytes.empty() || BakedScene::open(bytes, &scene) != Status::kOk || scene.validate() != Status::kOk) {
+    say("there is no sound scene to damage\n");
+    return false;
+  }
+  const Ray ray = {{Q8::from_raw(-300), Q8::from_raw(700), Q8::from_raw(1000)}, {1000, 3, -2}};
+  bool seen = true;
+  for (uint8_t& byte : bytes) {
+    const uint8_t sound = byte;
+    byte = static_cast<uint8_t>(~sound);
+    BakedScene damaged;
+    if (BakedScene::open(bytes, &damaged) == Status::kOk) {
+      Hit hit;
+      static_cast<void>(closest_hit(damaged.tree(), ray, &hit));
+      seen = seen && damaged.validate() == Status::kDamaged;
+    }
+    byte = sound;
+  }
+  return seen;
+}
+
 // All bits set is no instruction of Arm, Thumb or RISC-V.
 const uint32_t kNonsense[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
 
@@ -75,6 +123,12 @@ int run(int key) {
     case 'n':
       say("executing nonsense\n");
       execute_nonsense();
+      break;
+    case 'd':
+      if (open_damaged_scenes()) {
+        say("fault: the scene is damaged\n");
+        return port::kFaultStatus;
+      }
       break;
     default:
       return -1;

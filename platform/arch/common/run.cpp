@@ -30,6 +30,15 @@ void set_up_variables() {
   }
 }
 
+// What the paint says, for whoever chooses the size of the stack.
+void report_stack() {
+  say("stack: ");
+  say_decimal(port::stack_high_water());
+  say(" of ");
+  say_decimal(board::kFacts.stack_bytes);
+  say(" bytes used\n");
+}
+
 // Whether an address lies in the stack or so close below it that only an overflow explains it.
 bool is_stack_overflow(const Fault& fault) {
   const uint32_t bottom = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(thimble_stack_bottom));
@@ -62,5 +71,7 @@ void thimble_run() {
   thimble::board::start();
   thimble::raise_fence();
   thimble::board::start_clock();
-  thimble::finish(thimble_application());
+  const int status = thimble_application();
+  thimble::report_stack();
+  thimble::finish(status);
 }

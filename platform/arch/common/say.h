@@ -8,6 +8,7 @@
 namespace thimble {
 
 void say(const char* text);
+void say_decimal(uint32_t value);
 /// 0x and 8 digits.
 void say_hex(uint32_t value);
 
