@@ -145,14 +145,14 @@ constexpr double kFill = 0.94;
 void SceneOptions::add_scene(CLI::App& app, bool required) {
   app.add_option("scene", arguments.scene,
                  "a file (.vox .ply .obj .off .xyz .csv .oct, a Gadget-1 snapshot, .gz of any) or a "
-                 "generator: points:N, cluster:N, spheres or water, each with ,seed=S,depth=L")
+                 "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L")
       ->required(required)
       ->type_name("SCENE");
   add_whole_option(
       app, "--depth", "L", kMinLevel, kMaxLevel,
       [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox or --as-voxels "
-      "file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for spheres and water)");
+      "file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for the others)");
   app.add_flag("--as-voxels", arguments.as_voxels,
                "point files: coordinates are voxel indices; nothing is scaled, turned or moved")
       ->disable_flag_override();
@@ -327,18 +327,17 @@ void ViewOptions::use_display(const platform::BoardFacts* board) {
 
 Camera ViewOptions::camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note,
                            SceneCamera* chosen) const {
-  const BakedScene* baked = source.baked();
-  if (placed || baked == nullptr || !baked->has_camera()) {
+  if (placed || source.camera() == nullptr) {
     return camera(level, bounds, note, chosen);
   }
-  SceneCamera own = baked->camera();
+  SceneCamera own = *source.camera();
   if (direction_bits != 0) {
     own.direction_bits = static_cast<std::uint8_t>(direction_bits);
   }
   Camera result;
   const Status status = make_camera(own, width_px, height_px, level, &result);
   if (status != Status::kOk) {
-    throw InputError(std::string("the baked camera does not suit a picture of ") + std::to_string(width_px) +
+    throw InputError(std::string("the scene's own camera does not suit a picture of ") + std::to_string(width_px) +
                      "x" + std::to_string(height_px) + ": " + status_text(status) +
                      "; another --size, or a camera of your own (--eye, --target, --span), helps");
   }

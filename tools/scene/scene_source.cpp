@@ -40,7 +40,8 @@ void check_depth(int depth) {
 
 class GeneratedScene final : public SceneSource {
  public:
-  explicit GeneratedScene(const GeneratorSpec& spec) : spec_(spec), palette_(generator_palette(spec.kind)) {
+  explicit GeneratedScene(const GeneratorSpec& spec)
+      : spec_(spec), palette_(generator_palette(spec.kind)), camera_(generator_camera(spec)) {
     level_ = spec.depth;
   }
   std::string kind() const override {
@@ -53,6 +54,8 @@ class GeneratedScene final : public SceneSource {
         return "generator spheres";
       case GeneratorKind::kWater:
         return "generator water";
+      case GeneratorKind::kDemo:
+        return "generator demo";
     }
     return "generator";
   }
@@ -62,6 +65,7 @@ class GeneratedScene final : public SceneSource {
   }
   bool single_material() const override { return is_point_set(); }
   const Palette& palette() const override { return palette_; }
+  const SceneCamera* camera() const override { return camera_ ? &*camera_ : nullptr; }
   void stream(const VoxelSink& sink, const Progress& progress) const override {
     Meter meter(progress, is_point_set() ? spec_.count : std::uint64_t{1} << (3 * spec_.depth - 3));
     generate(spec_, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
@@ -73,6 +77,7 @@ class GeneratedScene final : public SceneSource {
  private:
   GeneratorSpec spec_;
   Palette palette_;
+  std::optional<SceneCamera> camera_;
 };
 
 class VoxelModelScene final : public SceneSource {
@@ -207,6 +212,9 @@ class BakedFileScene final : public SceneSource {
   bool is_point_set() const override { return false; }
   bool single_material() const override { return !tree().many_materials() && tree().uniform_material() == 0; }
   bool is_scalable() const override { return false; }
+  const SceneCamera* camera() const override {
+    return file_.scene.has_camera() ? &file_.scene.camera() : nullptr;
+  }
   const BakedScene* baked() const override { return &file_.scene; }
   std::array<std::int32_t, 3> extent() const override {
     const Vec3i& max = tree().bounds().max;
