@@ -11,6 +11,7 @@
 //
 // The second CRC is held to tests/portable/result_crc.h; so is the first where nothing was skipped.
 #include "apps/apps.h"
+#include "apps/text.h"
 #include "port.h"
 #include "portable/groups.h"
 #include "portable/result_crc.h"
@@ -24,76 +25,42 @@ using portable::Failure;
 using portable::Group;
 using portable::Runner;
 
-void say(const char* text) {
-  size_t length = 0;
-  while (text[length] != '\0') {
-    ++length;
+void put_count(int count) {
+  put_number(static_cast<uint32_t>(count));
+}
+
+void put_value(int64_t value) {
+  if (value < 0) {
+    put("-");
   }
-  port::write({reinterpret_cast<const uint8_t*>(text), length});
+  put_number(value < 0 ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value));
 }
 
-void say_hex(uint32_t value) {
-  char digits[9] = {};
-  for (int i = 7; i >= 0; --i) {
-    digits[i] = "0123456789ABCDEF"[value & 15U];
-    value >>= 4;
-  }
-  say(digits);
-}
-
-void say_number(uint32_t value) {
-  char digits[11] = {};
-  int first = 10;
-  do {
-    --first;
-    digits[first] = static_cast<char>('0' + value % 10);
-    value /= 10;
-  } while (value != 0);
-  say(digits + first);
-}
-void say_count(int value) {
-  say_number(static_cast<uint32_t>(value));
-}
-
-// In decimal where 32 bits hold it, which spares a board the 64-bit division.
-void say_value(int64_t value) {
-  if (value >= INT32_MIN && value <= INT32_MAX) {
-    if (value < 0) {
-      say("-");
-    }
-    say_number(static_cast<uint32_t>(value < 0 ? -value : value));
-    return;
-  }
-  say("0x");
-  say_hex(static_cast<uint32_t>(static_cast<uint64_t>(value) >> 32));
-  say_hex(static_cast<uint32_t>(value));
-}
-
-void say_name(const Group& group, const Case& one) {
-  say(group.name);
-  say(": ");
-  say(one.name);
+void put_name(const Group& group, const Case& one) {
+  put(group.name);
+  put(": ");
+  put(one.name);
   if (one.detail != nullptr) {
-    say(" (");
-    say(one.detail);
-    say(")");
+    put(" (");
+    put(one.detail);
+    put(")");
   }
 }
 
-void say_failure(const Group& group, const Case& one, const Failure& failure) {
-  say("FAILED ");
-  say_name(group, one);
-  say("\n  ");
-  say(failure.expression);
-  say(" is ");
-  say_value(failure.got);
-  say(", wanted ");
-  say_value(failure.wanted);
-  say(" (");
-  say(group.file);
-  say(" or what it calls, line ");
-  say_count(failure.line);
-  say(")\n");
+void put_failure(const Group& group, const Case& one, const Failure& failure) {
+  put("FAILED ");
+  put_name(group, one);
+  put("\n  ");
+  put(failure.expression);
+  put(" is ");
+  put_value(failure.got);
+  put(", wanted ");
+  put_value(failure.wanted);
+  put(" (");
+  put(group.file);
+  put(" or what it calls, line ");
+  put_count(failure.line);
+  put(")\n");
 }
 
 // Not inlined: its frame is all that lies between main and a case.
@@ -104,7 +71,7 @@ void say_failure(const Group& group, const Case& one, const Failure& failure) {
   }
   const Failure* failure = runner.run(one);
   if (failure != nullptr) {
-    say_failure(group, one, *failure);
+    put_failure(group, one, *failure);
   }
 }
 
@@ -113,26 +80,26 @@ void run_group(Runner& runner, const Group& group) {
   for (int i = 0; i < group.count; ++i) {
     run_case(runner, group, i);
   }
-  say(group.name);
-  say(": ");
-  say_count(runner.passed() + runner.failed() - before);
-  say(" of ");
-  say_count(group.count);
-  say(" cases run\n");
+  put(group.name);
+  put(": ");
+  put_count(runner.passed() + runner.failed() - before);
+  put(" of ");
+  put_count(group.count);
+  put(" cases run\n");
 }
 
-int say_skipped(const Runner& runner) {
+int put_skipped(const Runner& runner) {
   int skipped = 0;
   for (const Group* group : portable::kGroups) {
     for (int i = 0; i < group->count; ++i) {
       const Case one = group->at(i);
       if (!runner.fits(one)) {
         ++skipped;
-        say("skipped: ");
-        say_name(*group, one);
-        say(" needs ");
-        say_number(one.arena_bytes + portable::runner_bytes());
-        say(" bytes\n");
+        put("skipped: ");
+        put_name(*group, one);
+        put(" needs ");
+        put_number(one.arena_bytes + portable::runner_bytes());
+        put(" bytes\n");
       }
     }
   }
@@ -144,51 +111,52 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
   if (got == wanted) {
     return 0;
   }
-  say("FAILED result crc of ");
-  say(of_what);
-  say(" is ");
-  say_hex(got);
-  say(", wanted ");
-  say_hex(wanted);
-  say("\n");
+  put("FAILED result crc of ");
+  put(of_what);
+  put(" is ");
+  put_hex(got);
+  put(", wanted ");
+  put_hex(wanted);
+  put("\n");
   return 1;
 }
 
 }  // namespace
 
 int selftest() {
-  say("selftest on ");
-  say(port::facts().name);
-  say("\n");
+  put("selftest on ");
+  put(port::facts().name);
+  put("\n");
   Runner* runner = Runner::make(port::arena());
   if (runner == nullptr || runner->case_bytes() < portable::kCommonArenaBytes) {
-    say("this board lacks the memory that every board has for a case\n0 passed, 1 failed\n");
+    put("this board lacks the memory that every board has for a case\n0 passed, 1 failed\n");
     return 1;
   }
   for (const Group* group : portable::kGroups) {
     run_group(*runner, *group);
   }
-  const int skipped = say_skipped(*runner);
+  const int skipped = put_skipped(*runner);
   int failed = runner->failed();
-  failed += judge_crc("the cases that every board runs", runner->common_crc32(), portable::kCommonResultCrc32);
+  failed +=
+      judge_crc("the cases that every board runs", runner->common_crc32(), portable::kCommonResultCrc32);
   if (skipped == 0) {
     failed += judge_crc("all cases", runner->crc32(), portable::kResultCrc32);
   }
-  say("result crc ");
-  say_hex(runner->crc32());
-  say(" of ");
-  say_count(runner->passed() + runner->failed());
-  say(" cases run\nresult crc ");
-  say_hex(runner->common_crc32());
-  say(" of the ");
-  say_count(runner->common());
-  say(" cases that every board runs\n");
-  say_count(skipped);
-  say(" skipped\n");
-  say_count(runner->passed());
-  say(" passed, ");
-  say_count(failed);
-  say(" failed\n");
+  put("result crc ");
+  put_hex(runner->crc32());
+  put(" of ");
+  put_count(runner->passed() + runner->failed());
+  put(" cases run\nresult crc ");
+  put_hex(runner->common_crc32());
+  put(" of the ");
+  put_count(runner->common());
+  put(" cases that every board runs\n");
+  put_count(skipped);
+  put(" skipped\n");
+  put_count(runner->passed());
+  put(" passed, ");
+  put_count(failed);
+  put(" failed\n");
   return failed == 0 ? 0 : 1;
 }
 

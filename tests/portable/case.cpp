@@ -70,7 +70,8 @@ bool Check::equal(const VoxelBox& got, const VoxelBox& wanted, const char* expre
 }
 
 bool Check::equal(const Rgb8& got, const Rgb8& wanted, const char* expression, int line) {
-  return equal_32(got.r << 16 | got.g << 8 | got.b, wanted.r << 16 | wanted.g << 8 | wanted.b, expression, line);
+  return equal_32(got.r << 16 | got.g << 8 | got.b, wanted.r << 16 | wanted.g << 8 | wanted.b, expression,
+                  line);
 }
 
 bool Check::equal(ConstBytes got, ConstBytes wanted, const char* expression, int line) {

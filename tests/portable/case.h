@@ -58,11 +58,13 @@ class Check {
   Band band;
 
   /// Each of these returns whether the comparison held. Use them by the macros below.
-  bool that(bool holds, const char* expression, int line) { return equal_32(holds ? 1 : 0, 1, expression, line); }
+  bool that(bool holds, const char* expression, int line) {
+    return equal_32(holds ? 1 : 0, 1, expression, line);
+  }
   template <class Got, class Wanted>
   bool equal(const Got& got, const Wanted& wanted, const char* expression, int line) {
     const Got same = static_cast<Got>(wanted);
-    if constexpr (sizeof(Got) < 4 || (sizeof(Got) == 4 && static_cast<Got>(-1) < static_cast<Got>(0))) {
+    if constexpr (is_small<Got>()) {
       return equal_32(static_cast<int32_t>(got), static_cast<int32_t>(same), expression, line);
     } else {
       return equal_64(static_cast<int64_t>(got), static_cast<int64_t>(same), expression, line);
@@ -90,6 +92,16 @@ class Check {
   uint32_t crc32() const { return crc_; }
 
  private:
+  /// Whether every value of an enumeration or an integer type is an int32_t.
+  template <class T>
+  static constexpr bool is_small() {
+    if constexpr (__is_enum(T)) {
+      return true;
+    } else {
+      return sizeof(T) < 4 || (sizeof(T) == 4 && static_cast<T>(-1) < T{0});
+    }
+  }
+
   bool equal_32(int32_t got, int32_t wanted, const char* expression, int line);
   bool equal_64(int64_t got, int64_t wanted, const char* expression, int line);
 
@@ -100,17 +112,17 @@ class Check {
 /// These want a `Check& check` in scope. The last two leave the function when they fail.
 #define THIMBLE_CHECK(expression) static_cast<void>(check.that((expression), #expression, __LINE__))
 #define THIMBLE_EQUAL(got, wanted) static_cast<void>(check.equal((got), (wanted), #got, __LINE__))
-#define THIMBLE_REQUIRE(expression)                          \
-  do {                                                       \
-    if (!check.that((expression), #expression, __LINE__)) {  \
-      return;                                                \
-    }                                                        \
+#define THIMBLE_REQUIRE(expression)                         \
+  do {                                                      \
+    if (!check.that((expression), #expression, __LINE__)) { \
+      return;                                               \
+    }                                                       \
   } while (false)
-#define THIMBLE_REQUIRE_OK(status)                                    \
-  do {                                                                \
-    if (!check.equal((status), Status::kOk, #status, __LINE__)) {     \
-      return;                                                         \
-    }                                                                 \
+#define THIMBLE_REQUIRE_OK(status)                                \
+  do {                                                            \
+    if (!check.equal((status), Status::kOk, #status, __LINE__)) { \
+      return;                                                     \
+    }                                                             \
   } while (false)
 
 /// A case. `index` is for functions that serve a whole table.

@@ -61,7 +61,8 @@ void refuse(Check& check, const OrthographicView& view, int level, Status wanted
 
 void eye_beyond(Check& check, int axis) {
   PerspectiveView view = simple_perspective();
-  for (const int32_t beyond : {5 * 64 * 256 + 1, -4 * 64 * 256 - 1, INT32_MIN, INT32_MAX}) {
+  constexpr int32_t kBeyonds[] = {5 * 64 * 256 + 1, -4 * 64 * 256 - 1, INT32_MIN, INT32_MAX};
+  for (const int32_t beyond : kBeyonds) {
     view.eye[axis] = Q8::from_raw(beyond);
     refuse(check, view, 6, Status::kOutOfRange, __LINE__);
   }
@@ -352,7 +353,8 @@ constexpr Case kCases[] = {
     {"direction bits beyond 8 .. 20 -> out of range", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
-       for (const int bits : {-1, 1, 7, 21}) {
+       constexpr int kBits[] = {-1, 1, 7, 21};
+       for (const int bits : kBits) {
          view.direction_bits = bits;
          refuse(check, view, 6, Status::kOutOfRange, __LINE__);
        }

@@ -55,7 +55,8 @@ bool trace_is_safe(Check& check, const Ray& ray) {
     return true;
   }
   const int32_t side = int32_t{1} << tree.level();
-  // Between two lattice planes, of which it crosses at most 3 a voxel of the side, it goes down `level` nodes.
+  // Between two lattice planes, of which it crosses at most 3 a voxel of the side, it goes down `level`
+  // nodes.
   const uint32_t most = (3 * static_cast<uint32_t>(side) + 1) * static_cast<uint32_t>(tree.level());
   if (closest_hit(tree, ray, &check.hit) != Status::kOk || check.hit.visits > most) {
     return false;
@@ -130,6 +131,8 @@ void hidden_damage(Check& check, int kind) {
   Random random{static_cast<uint32_t>(95 + kind)};
   int opened = 0;
   for (int round = 0; round < 60; ++round) {
+    size_t written = 0;
+    THIMBLE_REQUIRE_OK(compact_from_octree(check.world.pool, bytes, &written, kMinRankShift));
     const size_t first = round % 4 == 0 ? 28 : kCompactHeaderBytes;
     for (int i = 0; i < 3; ++i) {
       const size_t at = first + static_cast<size_t>(random.below(static_cast<int32_t>(bytes.size - first)));
@@ -148,7 +151,7 @@ void hidden_damage(Check& check, int kind) {
       check.note(check.hit);
     }
   }
-  THIMBLE_CHECK(opened > 0);
+  THIMBLE_CHECK(opened > 30);
 }
 
 void too_small(Check& check, int kind) {
@@ -184,7 +187,8 @@ void from_keys(Check& check, int materials) {
     if (fresh) {
       THIMBLE_REQUIRE_OK(check.world.pool.insert(at, material));
     }
-    key = morton_code(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z)) << 8 |
+    key = morton_code(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z))
+              << 8 |
           static_cast<uint32_t>(check.world.pool.material(at));
   }
   sort_keys(keys, 20);
@@ -196,7 +200,8 @@ void from_keys(Check& check, int materials) {
   size_t needed = 0;
   THIMBLE_REQUIRE_OK(compact_from_keys(Span<const uint64_t>(keys.data, count), 4, again, &needed));
   THIMBLE_EQUAL(needed, tree.size_bytes());
-  THIMBLE_CHECK(check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), "bytes", __LINE__));
+  THIMBLE_CHECK(
+      check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), "bytes", __LINE__));
 }
 
 void any_address(Check& check, int kind) {
@@ -261,8 +266,8 @@ void joined(Check& check, int) {
     if (part == 2) {
       THIMBLE_REQUIRE_OK(check.world.pool.insert_block(corner, 2, 0));
     } else if (part != 5) {
-      THIMBLE_REQUIRE_OK(
-          check.world.pool.insert({corner.x + static_cast<int32_t>(part) % 4, corner.y + 1, corner.z + 3}, 0));
+      THIMBLE_REQUIRE_OK(check.world.pool.insert(
+          {corner.x + static_cast<int32_t>(part) % 4, corner.y + 1, corner.z + 3}, 0));
     }
   }
   THIMBLE_REQUIRE(make_compact(check));
@@ -356,12 +361,14 @@ constexpr Case kCases[] = {
     {"what the header says -> what the octree holds", kSmallBytes, header_of, kPlain, kKindNames[0]},
     {"what the header says -> what the octree holds", kSmallBytes, header_of, kMaterials, kKindNames[1]},
     {"what the header says -> what the octree holds", kSmallBytes, header_of, kMerged, kKindNames[2]},
-    {"what the header says -> what the octree holds", kSmallBytes, header_of, kMergedMaterials, kKindNames[3]},
+    {"what the header says -> what the octree holds", kSmallBytes, header_of, kMergedMaterials,
+     kKindNames[3]},
     {"every material is kept -> that of each voxel", 600,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 40, 2));
        for (int32_t i = 0; i < 24; ++i) {
-         THIMBLE_REQUIRE_OK(check.world.pool.insert({i % 4, i / 4 % 4, i / 16}, static_cast<uint8_t>(255 - i)));
+         THIMBLE_REQUIRE_OK(
+             check.world.pool.insert({i % 4, i / 4 % 4, i / 16}, static_cast<uint8_t>(255 - i)));
        }
        THIMBLE_REQUIRE(make_compact(check));
        const CompactTree& tree = check.world.compact;
@@ -384,8 +391,8 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(tree.block_material(2), 8);
        THIMBLE_CHECK(!tree.is_merged(1));
      }},
-    {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small, kPlain,
-     kKindNames[0]},
+    {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small,
+     kPlain, kKindNames[0]},
     {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small,
      kMergedMaterials, kKindNames[3]},
     {"rank shifts beyond the limits -> out of range", 128,
@@ -393,16 +400,19 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE(make_pool(check, 0, 3));
        const Bytes bytes = check.arena.take(64);
        size_t needed = 0;
-       for (const int shift : {kMinRankShift - 1, kMaxRankShift + 1, -1, 64}) {
+       constexpr int kShifts[] = {kMinRankShift - 1, kMaxRankShift + 1, -1, 64};
+       for (const int shift : kShifts) {
          THIMBLE_EQUAL(compact_from_octree(check.world.pool, bytes, &needed, shift), Status::kOutOfRange);
-         THIMBLE_EQUAL(compact_from_keys(Span<const uint64_t>(), 3, bytes, &needed, shift), Status::kOutOfRange);
+         THIMBLE_EQUAL(compact_from_keys(Span<const uint64_t>(), 3, bytes, &needed, shift),
+                       Status::kOutOfRange);
        }
      }},
     {"levels beyond the limits -> out of range", 128,
      [](Check& check, int) {
        const Bytes bytes = check.arena.take(64);
        size_t needed = 0;
-       for (const int level : {-1, 0, 13}) {
+       constexpr int kLevels[] = {-1, 0, 13};
+       for (const int level : kLevels) {
          THIMBLE_EQUAL(compact_from_keys(Span<const uint64_t>(), level, bytes, &needed), Status::kOutOfRange);
        }
        THIMBLE_EQUAL(compact_from_keys(Span<const uint32_t>(), 11, 0, bytes, &needed), Status::kOutOfRange);
@@ -423,7 +433,8 @@ constexpr Case kCases[] = {
        const Bytes again = check.arena.take(tree.size_bytes());
        size_t needed = 0;
        THIMBLE_REQUIRE_OK(compact_from_keys(Span<const uint32_t>(keys), 4, 6, again, &needed));
-       THIMBLE_CHECK(check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), "bytes", __LINE__));
+       THIMBLE_CHECK(
+           check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), "bytes", __LINE__));
      }},
     {"joined from eight parts -> the bytes of the whole", 3600, joined},
     {"parts: a number that is no power of eight -> bad argument", 256,
@@ -437,20 +448,23 @@ constexpr Case kCases[] = {
      }},
     {"every truncation -> refused, the tree handed in as it was", kSmallBytes, every_truncation, kPlain,
      kKindNames[0]},
-    {"every truncation -> refused, the tree handed in as it was", kSmallBytes, every_truncation, kMergedMaterials,
+    {"every truncation -> refused, the tree handed in as it was", kSmallBytes, every_truncation,
+     kMergedMaterials, kKindNames[3]},
+    {"every bit of the header flipped -> found out", kSmallBytes, every_header_bit, kMergedMaterials,
      kKindNames[3]},
-    {"every bit of the header flipped -> found out", kSmallBytes, every_header_bit, kMergedMaterials, kKindNames[3]},
     {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kPlain, kKindNames[0]},
     {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMaterials, kKindNames[1]},
     {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMerged, kKindNames[2]},
-    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMergedMaterials, kKindNames[3]},
-    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kPlain, kKindNames[0]},
+    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMergedMaterials,
+     kKindNames[3]},
+    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kPlain,
+     kKindNames[0]},
     {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kMaterials,
      kKindNames[1]},
     {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kMerged,
      kKindNames[2]},
-    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kMergedMaterials,
-     kKindNames[3]},
+    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage,
+     kMergedMaterials, kKindNames[3]},
     {"counts beyond 2^32 bytes and a size of 0 -> refused", kSmallBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_small(check, kMaterials));
@@ -469,7 +483,8 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        const Bytes bytes = check.arena.take(64);
        CompactTree tree;
-       for (const int fill : {0, 0xFF, 0x54}) {
+       constexpr int kFills[] = {0, 0xFF, 0x54};
+       for (const int fill : kFills) {
          for (uint8_t& byte : bytes) {
            byte = static_cast<uint8_t>(fill);
          }

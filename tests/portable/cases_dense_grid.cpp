@@ -73,8 +73,9 @@ constexpr Case kCases[] = {
     {"outside the grid -> out of range, and not solid", 16,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_grid(check, {5, 3, 7}));
-       for (const Vec3i& at : {Vec3i{5, 0, 0}, Vec3i{0, 3, 0}, Vec3i{0, 0, 7}, Vec3i{-1, 0, 0},
-                               Vec3i{0, INT32_MIN, 0}, Vec3i{0, 0, INT32_MAX}}) {
+       constexpr Vec3i kAts[] = {{5, 0, 0},  {0, 3, 0},         {0, 0, 7},
+                                 {-1, 0, 0}, {0, INT32_MIN, 0}, {0, 0, INT32_MAX}};
+       for (const Vec3i& at : kAts) {
          THIMBLE_EQUAL(check.world.grid.set(at), Status::kOutOfRange);
          THIMBLE_CHECK(!check.world.grid.test(at));
        }

@@ -52,12 +52,12 @@ uint32_t structure_bytes(SceneId id, Structure structure) {
 
 bool make_world(Check& check, SceneId id, Structure structure) {
   if (structure != Structure::kCompact) {
-    return check.equal(golden::build_scene(id, structure, &check.arena, &check.world), Status::kOk, "build_scene",
-                       __LINE__);
+    return check.equal(golden::build_scene(id, structure, &check.arena, &check.world), Status::kOk,
+                       "build_scene", __LINE__);
   }
   check.world.structure = Structure::kCompact;
-  return check.equal(CompactTree::open(golden_tree(id), &check.world.compact), Status::kOk, "the tree in flash",
-                     __LINE__);
+  return check.equal(CompactTree::open(golden_tree(id), &check.world.compact), Status::kOk,
+                     "the tree in flash", __LINE__);
 }
 
 bool shown(const Frame& frame, const Way& way) {
@@ -101,17 +101,18 @@ void run_tree(Check& check, int index) {
 // Which frame and way the n-th case is: those that a structure cannot show are left out, but for the 32-bit
 // ones, which must be refused.
 bool is_case(const Frame& frame, const Way& way) {
-  return shown(frame, way) ||
-         (way.width == Width::k32 && !frame.narrow && shown(frame, {way.structure, Width::kAuto, 1, nullptr}));
+  return shown(frame, way) || (way.width == Width::k32 && !frame.narrow &&
+                               shown(frame, {way.structure, Width::kAuto, 1, nullptr}));
 }
 
+// The number of the case at `position` of those that are, or -1 behind the last.
 int number_of(int position) {
   for (int number = 0; number < kFrameCount * kWayCount; ++number) {
     if (is_case(golden::frame(number / kWayCount), kWays[number % kWayCount]) && position-- == 0) {
       return number;
     }
   }
-  return 0;
+  return -1;
 }
 
 Case at(int index) {
@@ -131,6 +132,14 @@ Case at(int index) {
 }
 
 }  // namespace
+
+int count_golden_frame_cases() {
+  int count = 0;
+  while (number_of(count) >= 0) {
+    ++count;
+  }
+  return count;
+}
 
 const Group kGoldenGroup = {"golden", "cases_golden.cpp", golden::kSceneCount + kGoldenFrameCases, at};
 

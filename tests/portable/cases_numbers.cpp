@@ -274,9 +274,9 @@ constexpr Case kCases[] = {
     {"morton: ascending codes of a small cube -> octants in order", 0,
      [](Check& check, int) {
        for (uint32_t code = 0; code < 8; ++code) {
-         THIMBLE_EQUAL(morton_voxel(code), (Vec3i{static_cast<int32_t>(code & 1U),
-                                                  static_cast<int32_t>(code >> 1 & 1U),
-                                                  static_cast<int32_t>(code >> 2)}));
+         THIMBLE_EQUAL(morton_voxel(code),
+                       (Vec3i{static_cast<int32_t>(code & 1U), static_cast<int32_t>(code >> 1 & 1U),
+                              static_cast<int32_t>(code >> 2)}));
        }
      }},
     {"sort_keys: 300 random keys of 30 bits -> ascending, none lost", 1200,

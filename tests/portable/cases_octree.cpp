@@ -12,7 +12,8 @@ constexpr uint32_t pool_bytes(uint32_t nodes) {
 
 // The pool's bytes as they are, to see that nothing was written.
 uint32_t pool_crc(Check& check) {
-  return thimble::crc32(ConstBytes(check.arena.rest().data - check.arena.used_bytes(), check.arena.used_bytes()));
+  return thimble::crc32(
+      ConstBytes(check.arena.rest().data - check.arena.used_bytes(), check.arena.used_bytes()));
 }
 
 // The same voxels in the pool and in a bit grid: all of a small world compared.
@@ -48,8 +49,8 @@ void random_edits(Check& check, int level) {
       const Vec3i corner{at.x & ~1, at.y & ~1, at.z & ~1};
       THIMBLE_REQUIRE_OK(check.world.pool.insert_block(corner, 1, 2));
       for (int32_t octant = 0; octant < 8; ++octant) {
-        THIMBLE_REQUIRE_OK(
-            check.world.grid.set({corner.x + (octant & 1), corner.y + (octant >> 1 & 1), corner.z + (octant >> 2)}));
+        THIMBLE_REQUIRE_OK(check.world.grid.set(
+            {corner.x + (octant & 1), corner.y + (octant >> 1 & 1), corner.z + (octant >> 2)}));
       }
     }
     if (i % 20 == 0) {
@@ -193,7 +194,8 @@ void insert_box_of(Check& check, int index) {
 void outside(Check& check, int axis) {
   THIMBLE_REQUIRE(make_pool(check, 40, 3));
   Octree& pool = check.world.pool;
-  for (const int32_t beyond : {-1, 8, INT32_MIN, INT32_MAX}) {
+  constexpr int32_t kBeyonds[] = {-1, 8, INT32_MIN, INT32_MAX};
+  for (const int32_t beyond : kBeyonds) {
     Vec3i at{1, 1, 1};
     at[axis] = beyond;
     THIMBLE_EQUAL(pool.insert(at), Status::kOutOfRange);
@@ -320,8 +322,10 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.world.pool.nodes_used(), 1U);
      }},
     {"the same voxels in any order -> the same tree", pool_bytes(100) + 1024, any_order},
-    {"random edits -> what a bit grid holds, at every step", pool_bytes(73) + 64, random_edits, 2, "world of 4"},
-    {"random edits -> what a bit grid holds, at every step", pool_bytes(200) + 64, random_edits, 3, "world of 8"},
+    {"random edits -> what a bit grid holds, at every step", pool_bytes(73) + 64, random_edits, 2,
+     "world of 4"},
+    {"random edits -> what a bit grid holds, at every step", pool_bytes(200) + 64, random_edits, 3,
+     "world of 8"},
     {"a pool that is too small -> out of memory, not a byte changed", pool_bytes(12), full_pool},
     {"a pool of just enough nodes -> everything fits", pool_bytes(12),
      [](Check& check, int) {
@@ -476,8 +480,8 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(pool.material({4095, 0, 4094}), -1);
      }},
 
-    {"coarsen: to every size -> at most that many nodes, all kept solid, more solid the smaller", pool_bytes(120),
-     coarsen_to_every_size},
+    {"coarsen: to every size -> at most that many nodes, all kept solid, more solid the smaller",
+     pool_bytes(120), coarsen_to_every_size},
     {"coarsen: to no node -> out of memory, unchanged", 64,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 5, 3));
@@ -502,7 +506,8 @@ constexpr Case kCases[] = {
        Octree& pool = check.world.pool;
        // Seven eighths of a 4 x 4 x 4 block in blocks of 2, and a lonely voxel elsewhere.
        for (int32_t octant = 0; octant < 7; ++octant) {
-         THIMBLE_REQUIRE_OK(pool.insert_block({(octant & 1) * 2, (octant >> 1 & 1) * 2, (octant >> 2) * 2}, 1, 1));
+         THIMBLE_REQUIRE_OK(
+             pool.insert_block({(octant & 1) * 2, (octant >> 1 & 1) * 2, (octant >> 2) * 2}, 1, 1));
        }
        THIMBLE_REQUIRE_OK(pool.insert({7, 7, 7}, 2));
        THIMBLE_EQUAL(pool.nodes_used(), 11U);
@@ -594,10 +599,10 @@ constexpr Case kCases[] = {
      }},
     {"streaming into a full pool -> every voxel solid, the same tree everywhere", pool_bytes(7), streaming, 7,
      "7 nodes"},
-    {"streaming into a full pool -> every voxel solid, the same tree everywhere", pool_bytes(40), streaming, 40,
-     "40 nodes"},
-    {"streaming into a full pool -> every voxel solid, the same tree everywhere", pool_bytes(500), streaming, 500,
-     "500 nodes"},
+    {"streaming into a full pool -> every voxel solid, the same tree everywhere", pool_bytes(40), streaming,
+     40, "40 nodes"},
+    {"streaming into a full pool -> every voxel solid, the same tree everywhere", pool_bytes(500), streaming,
+     500, "500 nodes"},
     {"coarsen_at: a higher price -> never more nodes, as many as nodes_at foretold", pool_bytes(120),
      [](Check& check, int) {
        uint32_t before = UINT32_MAX;

@@ -15,7 +15,8 @@ constexpr uint32_t kRowBytes = 40;
 constexpr uint32_t kPictureBytes = 352;
 
 // A few boxes in a world of 16, and a camera in front of it.
-constexpr RayScene::Box kBoxes[] = {{{2, 2, 0}, {14, 14, 2}}, {{4, 4, 2}, {8, 8, 6}}, {{10, 9, 2}, {11, 10, 9}}};
+constexpr RayScene::Box kBoxes[] = {
+    {{2, 2, 0}, {14, 14, 2}}, {{4, 4, 2}, {8, 8, 6}}, {{10, 9, 2}, {11, 10, 9}}};
 constexpr RayScene kScene = {4, 3, 260, kBoxes};
 constexpr uint32_t kSceneBytes = scene_bytes(4, 260);
 
@@ -24,9 +25,11 @@ bool set_up(Check& check, bool perspective = true, int level = 4, int bits = 0) 
   const Vec3i forward = look_at(eye, point_q8(2048, 2048, 900));
   Status status = Status::kOk;
   if (perspective) {
-    status = check.camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(45), kWidth, kHeight, bits}, level);
+    status =
+        check.camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(28), kWidth, kHeight, bits}, level);
   } else {
-    status = check.camera.set(OrthographicView{eye, forward, {}, Q14::saturate(20), kWidth, kHeight, bits}, level);
+    status =
+        check.camera.set(OrthographicView{eye, forward, {}, Q14::saturate(17), kWidth, kHeight, bits}, level);
   }
   const DepthRange range = depth_range(check.camera, {{0, 0, 0}, {16, 16, 16}});
   check.shading.near_q8 = range.near_q8;
@@ -41,12 +44,15 @@ bool make_scene(Check& check) {
 
 Status draw(Check& check, int structure) {
   if (structure == 0) {
-    return render_band(check.world.grid, check.camera, check.shading, check.band, &check.counts, check.options);
+    return render_band(check.world.grid, check.camera, check.shading, check.band, &check.counts,
+                       check.options);
   }
   if (structure == 1) {
-    return render_band(check.world.pool, check.camera, check.shading, check.band, &check.counts, check.options);
+    return render_band(check.world.pool, check.camera, check.shading, check.band, &check.counts,
+                       check.options);
   }
-  return render_band(check.world.compact, check.camera, check.shading, check.band, &check.counts, check.options);
+  return render_band(check.world.compact, check.camera, check.shading, check.band, &check.counts,
+                     check.options);
 }
 void set_band(Check& check, Bytes pixels, PixelFormat format, int32_t first_row, int32_t rows) {
   check.band = Band{};
@@ -111,7 +117,8 @@ void any_band_height(Check& check, int number) {
   const Bytes pixels = check.arena.take(kPictureBytes);
   const uint32_t whole = picture_crc(check, 2, pixels, format, kHeight);
   THIMBLE_CHECK(whole != 0);
-  for (const int32_t step : {1, 2, 4, 5, 8}) {
+  constexpr int32_t kSteps[] = {1, 2, 4, 5, 8};
+  for (const int32_t step : kSteps) {
     THIMBLE_EQUAL(picture_crc(check, 2, pixels, format, step), whole);
   }
 }
@@ -204,7 +211,8 @@ constexpr Case kCases[] = {
          THIMBLE_REQUIRE(set_up(check, projection == 0));
          const uint32_t wanted = picture_crc(check, 2, pixels, PixelFormat::kGray8, kHeight);
          check.note(wanted);
-         for (const Width width : {Width::k32, Width::k64, Width::kAuto}) {
+         constexpr Width kWidths[] = {Width::k32, Width::k64, Width::kAuto};
+         for (const Width width : kWidths) {
            check.options.width = width;
            for (int structure = 0; structure < 3; ++structure) {
              THIMBLE_EQUAL(picture_crc(check, structure, pixels, PixelFormat::kGray8, 4), wanted);
@@ -219,8 +227,8 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_scene(check));
        const Bytes pixels = check.arena.take(kPictureBytes);
-       constexpr int32_t kRows[][2] = {{-1, 1},        {0, -1},        {0, kHeight + 1},     {kHeight, 1},
-                                       {INT32_MAX, 1}, {INT32_MIN, 1}, {1, INT32_MAX},       {kHeight - 1, 2}};
+       constexpr int32_t kRows[][2] = {{-1, 1},        {0, -1},        {0, kHeight + 1}, {kHeight, 1},
+                                       {INT32_MAX, 1}, {INT32_MIN, 1}, {1, INT32_MAX},   {kHeight - 1, 2}};
        for (const int32_t(&range)[2] : kRows) {
          set_band(check, pixels, PixelFormat::kGray8, range[0], range[1]);
          refuse(check, Status::kBadArgument, __LINE__);

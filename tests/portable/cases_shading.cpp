@@ -46,7 +46,8 @@ void depth_scale(Check& check, int index) {
     before = color.r;
     check.note(color.r);
   }
-  THIMBLE_EQUAL(color_of(check, hit_at(range.far_q8 + range.far_q8 / 1000 + 9), {255, 0, 0}).r, kFarBrightness);
+  THIMBLE_EQUAL(color_of(check, hit_at(range.far_q8 + range.far_q8 / 1000 + 9), {255, 0, 0}).r,
+                kFarBrightness);
 }
 
 void light_along(Check& check, int face) {
@@ -76,8 +77,10 @@ constexpr Case kCases[] = {
     {"depth: planes at the ends of the numbers -> a colour in range", 0,
      [](Check& check, int) {
        THIMBLE_REQUIRE(camera_along_x(check));
-       for (const int32_t near_q8 : {INT32_MIN, -1, INT32_MAX}) {
-         for (const int32_t far_q8 : {INT32_MIN, 0, INT32_MAX}) {
+       constexpr int32_t kNearQ8s[] = {INT32_MIN, -1, INT32_MAX};
+       for (const int32_t near_q8 : kNearQ8s) {
+         constexpr int32_t kFarQ8s[] = {INT32_MIN, 0, INT32_MAX};
+         for (const int32_t far_q8 : kFarQ8s) {
            check.shading.near_q8 = near_q8;
            check.shading.far_q8 = far_q8;
            const int gray = color_of(check, hit_at(1 << 20), {255, 0, 0}).r;
@@ -89,7 +92,8 @@ constexpr Case kCases[] = {
     {"planar depth: t of a parallel camera -> its distance", 0,
      [](Check& check, int) {
        THIMBLE_REQUIRE(camera_along_x(check));
-       for (const int32_t depth : {0, 1, 255, 256, 70000, 1 << 22}) {
+       constexpr int32_t kDepths[] = {0, 1, 255, 256, 70000, 1 << 22};
+       for (const int32_t depth : kDepths) {
          const int32_t got = planar_depth_q8(hit_at(depth), check.camera);
          THIMBLE_CHECK(got <= depth && depth - got <= depth / 2048 + 1);
          check.note(got);
@@ -203,7 +207,8 @@ constexpr Case kCases[] = {
     {"a miss or a stopped ray -> the background", 0,
      [](Check& check, int) {
        check.shading.background = {9, 8, 7};
-       for (const ShadeMode mode : {ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor}) {
+       constexpr ShadeMode kModes[] = {ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor};
+       for (const ShadeMode mode : kModes) {
          check.shading.mode = mode;
          check.hit = Hit{};
          THIMBLE_EQUAL(color_of(check, check.hit, {1, 0, 0}), (Rgb8{9, 8, 7}));

@@ -31,11 +31,11 @@ inline constexpr int8_t kMiss = -2;
 struct RayCase {
   const char* name;
   const RayScene* scene;
-  int16_t unit_q8;     ///< the origin is given in this many 1/256 voxel
-  int8_t axis;         ///< of the face entered, -1 for a start inside, or kMiss
+  int16_t unit_q8;  ///< the origin is given in this many 1/256 voxel
+  int8_t axis;      ///< of the face entered, -1 for a start inside, or kMiss
   int32_t origin[3];
   int32_t direction[3];
-  int16_t voxel[3];    ///< what is hit
+  int16_t voxel[3];  ///< what is hit
   /// t of the hit as a fraction.
   int32_t numerator;
   int32_t denominator;  ///< any multiple, above 0
