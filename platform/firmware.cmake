@@ -63,6 +63,9 @@ add_library(thimble_board OBJECT ${board_sources})
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/apps/*.cpp
   ${PROJECT_SOURCE_DIR}/tests/portable/*.cpp ${PROJECT_SOURCE_DIR}/tests/golden/scenes.cpp)
 add_library(thimble_apps STATIC ${sources})
+# They take objects from an arena, whose bytes are aligned as they asked.
+add_library(thimble_app_warnings INTERFACE)
+target_compile_options(thimble_app_warnings INTERFACE -Wno-cast-align)
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})
   target_compile_options(${part} PRIVATE -Os)
@@ -71,6 +74,7 @@ endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
 target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+target_link_libraries(thimble_apps PRIVATE thimble_app_warnings)
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPERTIES
   COMPILE_OPTIONS -fno-tree-loop-distribute-patterns)
 
