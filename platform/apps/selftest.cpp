@@ -47,20 +47,27 @@ void put_name(const Group& group, const Case& one) {
   }
 }
 
+void put_what(const portable::What& what) {
+#ifdef THIMBLE_TERSE_CASES
+  put("line ");
+  put_number(what.line);
+#else
+  put(what.text);
+#endif
+}
+
 void put_failure(const Group& group, const Case& one, const Failure& failure) {
   put("FAILED ");
   put_name(group, one);
   put("\n  ");
-  put(failure.expression);
+  put_what(failure.what);
   put(" is ");
   put_value(failure.got);
   put(", wanted ");
   put_value(failure.wanted);
   put(" (");
   put(group.file);
-  put(" or what it calls, line ");
-  put_count(failure.line);
-  put(")\n");
+  put(" or what it calls)\n");
 }
 
 // Not inlined: its frame is all that lies between main and a case.
