@@ -55,7 +55,7 @@ bench: deps-bench ## Build and run the benchmarks
 # BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes.
 BOARD ?= lm3s6965evb
 APP ?= demo
-SCENE ?= spheres
+SCENE ?= demo
 export FRAMES
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi

@@ -21,6 +21,8 @@ if [ -n "$scene" ]; then
   header=$PWD/$work/scene.h
   build/release/thimble bake "$scene" --board "$board" -o "$header" --quiet
 fi
+# A compiler cache would hand out objects without their call graphs.
+export CCACHE_DISABLE=1
 cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH)/toolchain.cmake" -DTHIMBLE_BOARD="$board" \
   -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
   --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null

@@ -10,11 +10,11 @@
 #include "apps/apps.h"
 #include "apps/demo_view.h"
 #include "apps/place.h"
+#include "apps/shown_scene.h"
 #include "apps/spheres.h"
 #include "apps/text.h"
 #include "port.h"
 #include "thimble/arena.h"
-#include "thimble/baked_scene.h"
 #include "thimble/crc32.h"
 #include "thimble/octree.h"
 #include "thimble/render.h"
@@ -35,7 +35,7 @@ constexpr size_t kMostPoolBytes = size_t{256} << 10;
 
 struct Demo : Placed {
   Arena arena{port::arena()};
-  BakedScene scene;
+  ShownScene shown;
   Orbit orbit;
   Steering steering;
   Camera camera;
@@ -86,40 +86,11 @@ int refuse(Arena* arena, const char* why) {
   return 1;
 }
 
-void tell_boot(const Demo& demo) {
-  const port::Facts& facts = port::facts();
-  put("thimble demo on ");
-  put(facts.name);
-  put(": RAM ");
-  put_number(facts.ram_bytes);
-  put(" flash ");
-  put_number(facts.flash_bytes);
-  put(" stack ");
-  put_number(facts.stack_bytes);
-  put(" arena ");
-  put_number(demo.arena.capacity_bytes());
-  put(" bytes\nscene ");
-  const ConstBytes name = demo.scene.section(SectionKind::kName);
-  port::write(name.subspan(0, 64));
-  put(name.empty() ? "without a name" : "");
-  put(": depth ");
-  put_number(static_cast<uint32_t>(demo.scene.tree().level()));
-  put(" voxels ");
-  put_number(demo.scene.tree().voxel_count());
-  put(" tree ");
-  put_number(demo.scene.tree().size_bytes());
-  put(" scene ");
-  put_number(demo.scene.bytes().size);
-  put(" bytes crc ");
-  put_hex(demo.scene.crc32());
-  put("\n");
-}
-
 Status draw(const Demo& demo, const Band& band) {
   if (demo.builds) {
     return render_band(demo.pool, demo.camera, demo.shading, band);
   }
-  return render_band(demo.scene.tree(), demo.camera, demo.shading, band);
+  return draw_scene(demo.shown, demo.camera, demo.shading, band);
 }
 
 /// Draws and flushes a frame; `crc` gets that of its bytes.
@@ -185,8 +156,8 @@ void send_picture(const Demo& demo) {
 void show_baked(Demo* demo) {
   demo->builds = false;
   demo->frame = 0;
-  demo->orbit = orbit_of(demo->scene);
-  demo->shading = demo_shading(demo->scene.palette());
+  demo->orbit = orbit_of(demo->shown.scene);
+  demo->shading = demo_shading(demo->shown.scene.palette());
 }
 
 void begin_build(Demo* demo) {
@@ -266,7 +237,7 @@ Status place_camera(Demo* demo) {
     return view_at(demo->orbit, demo->pool, demo->frame, demo->steering, screen.width_px, screen.height_px,
                    &demo->camera);
   }
-  return view_at(demo->orbit, demo->scene.tree(), demo->frame, demo->steering, screen.width_px,
+  return view_at(demo->orbit, demo->shown.scene.tree(), demo->frame, demo->steering, screen.width_px,
                  screen.height_px, &demo->camera);
 }
 
@@ -296,16 +267,11 @@ int demo() {
     return refuse(&whole, "the arena is too small");
   }
   demo->arena = whole;
-  if (port::scene().empty()) {
-    return refuse(&demo->arena, "no scene was built in");
+  if (const char* wrong = open_scene(&demo->shown)) {
+    return refuse(&demo->arena, wrong);
   }
-  if (BakedScene::open(port::scene(), &demo->scene) != Status::kOk) {
-    return refuse(&demo->arena, "the scene is no baked scene, or damaged");
-  }
-  if (demo->scene.validate() != Status::kOk) {
-    return refuse(&demo->arena, "the scene is damaged");
-  }
-  tell_boot(*demo);
+  open_map(&demo->shown, &demo->arena);
+  tell_board_and_scene("demo", demo->shown);
   const port::Display& screen = display();
   demo->tells_crc = !screen.connected;
   // At most half of what is left: the other half is for the pool.
@@ -327,7 +293,7 @@ int demo() {
     Status status = place_camera(demo);
     if (status != Status::kOk && !demo->builds) {
       // A camera that this display cannot have: round what is solid then.
-      demo->orbit = orbit_of(demo->scene.tree().bounds());
+      demo->orbit = orbit_of(demo->shown.scene.tree().bounds());
       status = place_camera(demo);
     }
     uint32_t crc = 0;

@@ -66,8 +66,8 @@ Bytes bake_small_scene(Arena* arena) {
   return bytes.empty() || bake(parts, bytes) != Status::kOk ? Bytes{} : bytes;
 }
 
-// Opens and traces a scene that is damaged in one byte, for every byte of it. Nothing may hang or fault; returns
-// whether each was seen to be damaged.
+// Opens and traces a scene that is damaged in one byte, for every byte of it. Nothing may hang or fault;
+// returns whether each was seen to be damaged.
 bool open_damaged_scenes() {
   Arena arena(port::arena());
   const Bytes bytes = bake_small_scene(&arena);

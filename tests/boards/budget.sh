@@ -17,13 +17,13 @@ complain() {
   failed=1
 }
 
-# Heap, floating point, 64-bit division: by the names of those who do it.
+# Heap, floating point on Arm and by its common names, 64-bit division: by the names of those who do it.
 symbols=$work/$app.symbols
 "${prefix}nm" "$work/$app.elf" | awk '{ print $NF }' >"$symbols"
-forbidden='_*(malloc|calloc|realloc|free|sbrk)|_Z(n[wa]|d[la]).*'                   # heap
-forbidden="$forbidden|__aeabi_[dfil](add|sub|rsub|mul|div|cmp.*|2.*)|__aeabi_(ui|ul)2.*" # floating point, Arm
+forbidden='_*(malloc|calloc|realloc|free|sbrk)(_r)?|_Z(n[wa]|d[la]).*'
+forbidden="$forbidden|__aeabi_c?[df](add|sub|rsub|mul|div|cmp.*|2.*)|__aeabi_u?[il]2[df]"
 forbidden="$forbidden|__(add|sub|mul|div|neg|eq|ne|lt|le|gt|ge|unord)[sdt]f[23]|__(float|fix|extend|trunc)[a-z]*[sdt][if].*"
-forbidden="$forbidden|__aeabi_u?ldivmod|__u?(div|mod|divmod)[dt]i[34]"              # 64-bit division
+forbidden="$forbidden|__aeabi_u?ldivmod|__u?(div|mod|divmod)[dt]i[34]"
 found=$(grep -Ex "$forbidden" "$symbols" | tr '\n' ' ' || true)
 [ -z "$found" ] || complain "the image holds $found"
 

@@ -97,6 +97,29 @@ class Graph {
     return file.eof();
   }
 
+  // A constructor or destructor of a whole object is often another name of the one for a part, which is the
+  // only one that has a node: C1 of C2, D1 of D2.
+  void join_constructors() {
+    std::set<std::string> called;
+    for (const auto& [id, function] : functions_) {
+      called.insert(function.callees.begin(), function.callees.end());
+    }
+    for (const char* names : {"C1EC2E", "D1ED2E"}) {
+      const std::string whole(names, 3);
+      const std::string part(names + 3, 3);
+      for (const std::string& id : called) {
+        const std::size_t at = id.find(whole);
+        if (at == std::string::npos || functions_[id].defined) {
+          continue;
+        }
+        const auto found = functions_.find(std::string(id).replace(at, whole.size(), part));
+        if (found != functions_.end() && found->second.defined) {
+          functions_[id] = found->second;
+        }
+      }
+    }
+  }
+
   // Prints every fault; the number of them.
   int judge(const std::string& target, const std::vector<Limit>& limits) {
     std::set<std::string> called;
@@ -159,6 +182,11 @@ class Graph {
     for (const auto& [id, function] : functions_) {
       if (worst_.contains(id) && function.dynamic) {
         complain(function, "has a frame whose size is not known when compiling");
+      }
+      // The compiler's helpers begin with two underscores and have kHelperBytes.
+      if (worst_.contains(id) && !function.defined && id != kIndirectCall && !id.starts_with("__")) {
+        std::fprintf(stderr, "stack: %s is called, and has no call graph\n", id.c_str());
+        ++faults_;
       }
     }
     if (functions_[interrupt].defined && kept.contains(interrupt)) {
@@ -284,6 +312,7 @@ bool read_graphs(char** first, char** last, Graph& graph) {
       return false;
     }
   }
+  graph.join_constructors();
   if (graph.empty()) {
     std::fprintf(stderr, "stack: no function in any call graph\n");
     return false;
