@@ -150,7 +150,7 @@ class Check {
 
 /// A case. `index` is for functions that serve a whole table.
 struct Case {
-  const char* name;      ///< a statement: what: condition -> result
+  const char* name;      ///< a statement: what: condition -> result; null where flash is too short for names
   uint32_t arena_bytes;  ///< what `Check::arena` must hold
   void (*run)(Check& check, int index);
   int index = 0;
@@ -165,12 +165,45 @@ struct Group {
   Case (*at)(int index);
 };
 
+#ifdef THIMBLE_TERSE_CASES
+/// A table of cases without their names: as `kCases` itself is then used for nothing else, the linker never
+/// sees it.
+struct TerseCase {
+  void (*run)(Check& check, int index);
+  uint16_t arena_bytes;
+  int16_t index;
+};
+template <size_t kCount>
+struct TerseTable {
+  TerseCase cases[kCount];
+};
+template <const auto& kCases>
+constexpr auto terse() {
+  TerseTable<sizeof kCases / sizeof kCases[0]> table{};
+  TerseCase* to = table.cases;
+  for (const Case& one : kCases) {
+    *to++ = {one.run, static_cast<uint16_t>(one.arena_bytes), static_cast<int16_t>(one.index)};
+  }
+  return table;
+}
+template <const auto& kCases>
+inline constexpr auto kTerse = terse<kCases>();
+/// A group of a plain array of cases.
+template <const auto& kCases>
+constexpr Group group_of(const char* name, const char* file) {
+  return {name, file, static_cast<int>(sizeof kCases / sizeof kCases[0]), [](int index) -> Case {
+            const TerseCase& one = kTerse<kCases>.cases[index];
+            return {nullptr, one.arena_bytes, one.run, one.index};
+          }};
+}
+#else
 /// A group of a plain array of cases.
 template <const auto& kCases>
 constexpr Group group_of(const char* name, const char* file) {
   return {name, file, static_cast<int>(sizeof kCases / sizeof kCases[0]),
           [](int index) -> Case { return kCases[index]; }};
 }
+#endif
 
 /// Marsaglia's 32-bit xorshift (Journal of Statistical Software 8(14), 2003).
 struct Random {
