@@ -39,7 +39,7 @@ emulate() {
 
 # The applications that there are; faults is judged by itself below.
 apps=
-for app in selftest golden demo bench particles; do
+for app in ${THIMBLE_TEST_APPS:-selftest golden demo bench particles}; do
   [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
 done
 list=faults
