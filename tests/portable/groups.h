@@ -27,10 +27,13 @@ extern const Group kShadingGroup;      ///< colours
 extern const Group kRenderGroup;       ///< bands
 extern const Group kGoldenGroup;       ///< golden frames
 
-inline constexpr const Group* kGroups[] = {
-    &kNumberGroup,    &kPixelGroup,  &kRayGroup,     &kTraceGroup,  &kOctreeGroup, &kCompactTreeGroup,
-    &kDenseGridGroup, &kCameraGroup, &kShadingGroup, &kRenderGroup, &kGoldenGroup,
+/// The core's own cases (the application `selftest`): every board runs all of them.
+inline constexpr const Group* kCoreGroups[] = {
+    &kNumberGroup,      &kPixelGroup,     &kRayGroup,    &kTraceGroup,   &kOctreeGroup,
+    &kCompactTreeGroup, &kDenseGridGroup, &kCameraGroup, &kShadingGroup, &kRenderGroup,
 };
+/// The golden frames (the application `golden`).
+inline constexpr const Group* kGoldenGroups[] = {&kGoldenGroup};
 
 }  // namespace thimble::portable
 
