@@ -226,7 +226,7 @@ TEST_CASE("brick frames: any scene, camera, shading, format and band -> the byte
       REQUIRE(drawn.bytes == wanted.bytes);
       REQUIRE(drawn.counts.hits == wanted.counts.hits);
       REQUIRE(drawn.counts.rays == wanted.counts.rays);
-      fast += draws_fast(map, camera) ? 1 : 0;
+      fast += draws_fast(map, camera) ? 1U : 0U;
       hits += drawn.counts.hits;
       const std::size_t gap = static_cast<std::size_t>(any(own, 0, 5));
       const int rows = any(own, 1, 11);

@@ -23,6 +23,8 @@
 namespace thimble::apps {
 namespace {
 
+// The larger functions are not inlined: what one keeps on the stack is gone when the next one draws.
+
 constexpr int32_t kBandRows = 8;
 /// Rays of a frame that are traced one by one: every eighth pixel of every eighth row.
 constexpr int32_t kRayStep = 8;
@@ -38,6 +40,7 @@ struct Bench : Placed {
   bool counts_instructions = false;
   uint32_t costs[kGoldenFrames] = {};
   uint32_t crcs[kGoldenFrames] = {};  ///< of the first engine
+  RenderCounts counts;
 };
 
 enum class Engine : uint8_t { kTree, kBrickMap };
@@ -74,7 +77,8 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
 
 /// One frame from its camera to its last flush. With `crc` that of its bytes is computed too, and with
 /// `counts` the rays are counted; the cost is of a frame without either.
-Status draw_frame(Bench* bench, Engine engine, uint32_t frame, uint32_t* crc, RenderCounts* counts) {
+[[gnu::noinline]] Status draw_frame(Bench* bench, Engine engine, uint32_t frame, uint32_t* crc,
+                                    RenderCounts* counts) {
   const port::Display& screen = port::facts().display;
   Status status = view_at(bench->orbit, bench->shown.scene.tree(), frame, {}, screen.width_px,
                           screen.height_px, &bench->camera);
@@ -105,10 +109,11 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
 
 /// Measures an engine and tells its lines. `exact`: whether its pictures were those of the first engine, or
 /// it is the first. `*median` gets a frame's cost.
-Status measure(Bench* bench, Engine engine, bool* exact, uint32_t* median) {
+[[gnu::noinline]] Status measure(Bench* bench, Engine engine, bool* exact, uint32_t* median) {
   const port::Display& screen = port::facts().display;
   const char* const name = name_of(engine);
-  RenderCounts counts;
+  RenderCounts& counts = bench->counts;
+  counts = {};
   for (uint32_t i = 0; i < kGoldenFrames; ++i) {
     const uint32_t frame = i * kGoldenStep;
     const uint32_t start = now(*bench);
@@ -146,14 +151,15 @@ Status measure(Bench* bench, Engine engine, bool* exact, uint32_t* median) {
   tell(name, "node_visits", static_cast<uint32_t>(counts.node_visits) / kGoldenFrames);
   put(name);
   put(".coverage_percent,");
-  put_thousandths(hits / kGoldenFrames * 1000 / (pixels / 100), 2);
+  // In thousandths of a percent; up to 2^20 pixels a picture.
+  put_thousandths(hits / kGoldenFrames * 4000 / ((pixels + 24) / 25), 2);
   put("\n");
   return Status::kOk;
 }
 
 /// Traces the set of rays with one arithmetic width; false where that width does not take them.
-bool trace_set(const Bench& bench, Width width, uint32_t* rays, uint32_t* cost, uint32_t* visits,
-               uint32_t* sum) {
+[[gnu::noinline]] bool trace_set(const Bench& bench, Width width, uint32_t* rays, uint32_t* cost,
+                                 uint32_t* visits, uint32_t* sum) {
   const port::Display& screen = port::facts().display;
   TraceOptions options;
   options.width = width;
@@ -184,7 +190,7 @@ bool trace_set(const Bench& bench, Width width, uint32_t* rays, uint32_t* cost, 
 }
 
 /// Both widths on the rays of the first frame. Whether they agree.
-bool measure_rays(Bench* bench) {
+[[gnu::noinline]] bool measure_rays(Bench* bench) {
   const port::Display& screen = port::facts().display;
   if (view_at(bench->orbit, bench->shown.scene.tree(), 0, {}, screen.width_px, screen.height_px,
               &bench->camera) != Status::kOk) {

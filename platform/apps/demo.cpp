@@ -22,6 +22,8 @@
 namespace thimble::apps {
 namespace {
 
+// The larger functions are not inlined: what one keeps on the stack is gone when the next one draws.
+
 /// Rows in a band, where the arena holds as many.
 constexpr int32_t kBandRows = 8;
 /// Bytes over the UART that are looked at in one frame.
@@ -78,7 +80,7 @@ void show_cross(Arena* arena) {
   }
 }
 
-int refuse(Arena* arena, const char* why) {
+[[gnu::noinline]] int refuse(Arena* arena, const char* why) {
   put("error: ");
   put(why);
   put("\n");
@@ -94,7 +96,7 @@ Status draw(const Demo& demo, const Band& band) {
 }
 
 /// Draws and flushes a frame; `crc` gets that of its bytes.
-Status draw_frame(const Demo& demo, uint32_t* crc) {
+[[gnu::noinline]] Status draw_frame(const Demo& demo, uint32_t* crc) {
   const port::Display& screen = display();
   *crc = 0;
   for (int32_t y = 0; y < screen.height_px; y += demo.band_rows) {
@@ -126,7 +128,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 }
 
 /// The frame that was drawn last, once more and over the UART. Pictures in colour are sent in their greys.
-void send_picture(const Demo& demo) {
+[[gnu::noinline]] void send_picture(const Demo& demo) {
   const port::Display& screen = display();
   const bool is_color = bits_per_pixel(screen.format) > 8;
   const PixelFormat format = is_color ? PixelFormat::kGray8 : screen.format;
@@ -153,14 +155,14 @@ void send_picture(const Demo& demo) {
   put("\n");
 }
 
-void show_baked(Demo* demo) {
+[[gnu::noinline]] void show_baked(Demo* demo) {
   demo->builds = false;
   demo->frame = 0;
   demo->orbit = orbit_of(demo->shown.scene);
   demo->shading = demo_shading(demo->shown.scene.palette());
 }
 
-void begin_build(Demo* demo) {
+[[gnu::noinline]] void begin_build(Demo* demo) {
   const Bytes bytes = demo->arena.rest().subspan(0, kMostPoolBytes);
   // A world that spheres cannot fill before they fill the pool.
   const int level = bytes.size > (size_t{64} << 10) ? 7 : 6;
@@ -180,7 +182,7 @@ void begin_build(Demo* demo) {
 }
 
 /// Some voxels more. When the pool is full the tree coarsens from then on, for a few spheres more.
-void build_more(Demo* demo) {
+[[gnu::noinline]] void build_more(Demo* demo) {
   for (uint32_t i = 0; i < kPlacesAFrame && !demo->spheres.is_done(); ++i) {
     Voxel voxel;
     if (!demo->spheres.next(&voxel)) {
@@ -202,7 +204,7 @@ void build_more(Demo* demo) {
 }
 
 /// Whether to go on.
-bool obey(Demo* demo) {
+[[gnu::noinline]] bool obey(Demo* demo) {
   steer(port::buttons(), &demo->steering);
   for (int i = 0; i < kKeysAFrame; ++i) {
     switch (port::read()) {
@@ -231,7 +233,7 @@ bool obey(Demo* demo) {
   return true;
 }
 
-Status place_camera(Demo* demo) {
+[[gnu::noinline]] Status place_camera(Demo* demo) {
   const port::Display& screen = display();
   if (demo->builds) {
     return view_at(demo->orbit, demo->pool, demo->frame, demo->steering, screen.width_px, screen.height_px,

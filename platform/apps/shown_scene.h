@@ -24,7 +24,7 @@ struct ShownScene {
 };
 
 /// Opens and validates port::scene(). Null when it is sound, else an English phrase that says what is wrong.
-inline const char* open_scene(ShownScene* shown) {
+[[gnu::noinline]] inline const char* open_scene(ShownScene* shown) {
   if (port::scene().empty()) {
     return "no scene was built in";
   }
@@ -39,7 +39,7 @@ inline const char* open_scene(ShownScene* shown) {
 
 /// Takes the brick map that was baked in, or makes one in the arena when that leaves half of it. A scene
 /// without one is drawn from its tree, with the same pixels.
-inline void open_map(ShownScene* shown, Arena* arena) {
+[[gnu::noinline]] inline void open_map(ShownScene* shown, Arena* arena) {
   const CompactTree& tree = shown->scene.tree();
   const ConstBytes baked = shown->scene.section(SectionKind::kBrickMap);
   if (!baked.empty()) {
@@ -63,7 +63,7 @@ inline Status draw_scene(const ShownScene& shown, const Camera& camera, const Sh
 }
 
 /// Two lines: the board with its memory, the scene with its sizes.
-inline void tell_board_and_scene(const char* application, const ShownScene& shown) {
+[[gnu::noinline]] inline void tell_board_and_scene(const char* application, const ShownScene& shown) {
   const port::Facts& facts = port::facts();
   const BakedScene& scene = shown.scene;
   put("thimble ");
