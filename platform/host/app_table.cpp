@@ -1,8 +1,5 @@
 #include "host/app_table.h"
 
-#include <array>
-#include <cstddef>
-
 #include "apps/apps.h"
 
 namespace thimble::host {
@@ -11,18 +8,18 @@ namespace {
 // One line each. A source tree may come without some of them.
 constexpr Application kApplications[] = {
 #if __has_include("apps/demo.cpp")
-    {"demo", apps::demo, true},
+    {"demo", apps::demo, true, true},
 #endif
 #if __has_include("apps/selftest.cpp")
-    {"selftest", apps::selftest, false},
+    {"selftest", apps::selftest, false, false},
 #endif
 #if __has_include("apps/bench.cpp")
-    {"bench", apps::bench, true},
+    {"bench", apps::bench, true, false},
 #endif
 #if __has_include("apps/particles.cpp")
-    {"particles", apps::particles, false},
+    {"particles", apps::particles, false, true},
 #endif
-    {nullptr, nullptr, false},
+    {nullptr, nullptr, false, false},  // so that the array is never empty
 };
 
 }  // namespace

@@ -11,6 +11,7 @@ struct Application {
   const char* name;
   int (*run)();
   bool wants_scene;  ///< whether it draws the scene in flash
+  bool is_to_watch;  ///< whether it is made to be watched, rather than for what it writes over the UART
 };
 
 /// All of them; may be empty.

@@ -302,8 +302,8 @@ const std::string& Simulation::fault() const {
 void Simulation::set_buttons(std::uint32_t buttons) {
   state_->buttons = buttons;
 }
-void Simulation::type(std::uint8_t byte) {
-  static_cast<void>(state_->input.put(byte));
+bool Simulation::type(std::uint8_t byte) {
+  return state_->input.put(byte);
 }
 
 double Simulation::frame_seconds() const {

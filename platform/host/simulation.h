@@ -91,8 +91,8 @@ class Simulation {
 
   // At any time:
   void set_buttons(std::uint32_t buttons);
-  /// A byte over the UART; lost when the application has left 4,096 of them unread.
-  void type(std::uint8_t byte);
+  /// A byte over the UART; false, and nothing done, while the application has left 4,096 of them unread.
+  bool type(std::uint8_t byte);
   /// What came over the UART since the last call.
   std::string take_output();
 

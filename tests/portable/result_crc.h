@@ -7,9 +7,11 @@
 
 namespace thimble::portable {
 
-/// Of all cases, and of those that every board runs.
-inline constexpr uint32_t kResultCrc32 = 0xAA048EF7;
-inline constexpr uint32_t kCommonResultCrc32 = 0x87269F0A;
+/// Of the core's own cases, all of which every board runs.
+inline constexpr uint32_t kCoreCrc32 = 0x1564DDD9;
+/// Of all golden frames, and of those that every board draws.
+inline constexpr uint32_t kGoldenCrc32 = 0xA273B105;
+inline constexpr uint32_t kCommonGoldenCrc32 = 0xEDA184F8;
 
 }  // namespace thimble::portable
 
