@@ -10,20 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/apps.h"
+#include "apps/app_table.h"
 #include "linux/console.h"
 #include "linux/session.h"
 
 namespace {
 
 using namespace thimble;
-
-struct Application {
-  const char* name;
-  int (*run)();
-};
-constexpr Application kApplications[] = {
-    {"demo", apps::demo}, {"bench", apps::bench}, {"selftest", apps::selftest}};
 
 struct Options {
   std::string scene;
@@ -42,10 +35,27 @@ int complain(const std::string& sentence) {
   return 1;
 }
 
+const apps::Application* find_application(const std::string& name) {
+  for (const apps::Application& application : apps::applications()) {
+    if (name == application.name) {
+      return &application;
+    }
+  }
+  return nullptr;
+}
+
+std::string application_names() {
+  std::string names;
+  for (const apps::Application& application : apps::applications()) {
+    names += (names.empty() ? "" : ", ") + std::string(application.name);
+  }
+  return names;
+}
+
 void describe(CLI::App* program, Options* options) {
   program->description("Runs an application of Thimble on a Linux framebuffer: arrows move, q ends.");
   program->add_option("SCENE", options->scene, "a baked scene (thimble bake SCENE -o F.oct)");
-  program->add_option("--app", options->app, "demo, bench or selftest")->capture_default_str();
+  program->add_option("--app", options->app, application_names())->capture_default_str();
   program->add_option("--device", options->device, "the framebuffer")->capture_default_str();
   program->add_option("--input", options->input, "folder of the input devices")->capture_default_str();
   CLI::Option* stand_in =
@@ -69,15 +79,6 @@ void describe(CLI::App* program, Options* options) {
       ->capture_default_str();
 }
 
-const Application* find_application(const std::string& name) {
-  for (const Application& application : kApplications) {
-    if (name == application.name) {
-      return &application;
-    }
-  }
-  return nullptr;
-}
-
 // Empty, or a sentence.
 std::string read_file(const std::string& path, std::vector<uint8_t>* bytes) {
   std::ifstream file(path, std::ios::binary);
@@ -89,9 +90,9 @@ std::string read_file(const std::string& path, std::vector<uint8_t>* bytes) {
 }
 
 int run(const Options& options) {
-  const Application* application = find_application(options.app);
+  const apps::Application* application = find_application(options.app);
   if (application == nullptr) {
-    return complain("there is no application " + options.app + "; there are demo, bench and selftest");
+    return complain("there is no application " + options.app + "; there are " + application_names());
   }
   std::vector<uint8_t> scene;
   if (!options.scene.empty()) {

@@ -9,7 +9,7 @@
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "commands/sim_session.h"
-#include "host/app_table.h"
+#include "apps/app_table.h"
 #include "output/image.h"
 #include "output/output_file.h"
 #include "output/progress.h"
@@ -290,7 +290,7 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command)
 }  // namespace
 
 void add_sim(CLI::App& app) {
-  const Span<const host::Application> applications = host::applications();
+  const Span<const apps::Application> applications = apps::applications();
   if (applications.empty()) {
     return;
   }
@@ -303,12 +303,12 @@ void add_sim(CLI::App& app) {
   add_board(*sub, &command->session.board,
             std::string("whose limits and display count (default: ") + kDefaultBoard + ")");
   std::vector<std::string> names;
-  for (const host::Application& application : applications) {
+  for (const apps::Application& application : applications) {
     names.emplace_back(application.name);
   }
   add_choice_option(
       *sub, "--app", names,
-      [command](std::size_t index) { command->session.application = &host::applications()[index]; },
+      [command](std::size_t index) { command->session.application = &apps::applications()[index]; },
       "the application")
       ->default_str(names.front());
   sub->add_flag("--coarsen", command->scene.coarsen,

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "boards/board_table.h"
-#include "host/app_table.h"
+#include "apps/app_table.h"
 #include "host/key_script.h"
 #include "host/look.h"
 #include "host/packed_picture.h"
@@ -20,7 +20,7 @@ namespace thimble::tools {
 
 struct SessionOptions {
   const platform::BoardFacts* board = nullptr;
-  const host::Application* application = nullptr;
+  const apps::Application* application = nullptr;
   ConstBytes scene;  ///< in flash
   host::ScreenKind display = host::ScreenKind::kAuto;
   std::optional<host::Theme> theme;  ///< nothing: the board's own

@@ -1,11 +1,11 @@
 /// @file app_table.h
-/// The applications that the simulator can run, by name.
-#ifndef THIMBLE_PLATFORM_HOST_APP_TABLE_H
-#define THIMBLE_PLATFORM_HOST_APP_TABLE_H
+/// The applications that a host can run, by name.
+#ifndef THIMBLE_PLATFORM_APPS_APP_TABLE_H
+#define THIMBLE_PLATFORM_APPS_APP_TABLE_H
 
 #include "thimble/span.h"
 
-namespace thimble::host {
+namespace thimble::apps {
 
 struct Application {
   const char* name;
@@ -17,6 +17,6 @@ struct Application {
 /// All of them; may be empty.
 Span<const Application> applications();
 
-}  // namespace thimble::host
+}  // namespace thimble::apps
 
 #endif
