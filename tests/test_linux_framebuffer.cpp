@@ -165,3 +165,67 @@ TEST_CASE(
   CHECK(none.open_device("/dev/null").find("is not a framebuffer") != std::string::npos);
   CHECK(none.open_stand_in("/dev/full", layout) != "");
 }
+
+TEST_CASE(
+    "thimble-fb: the demonstration on 16, 24 and 32 bits with odd strides -> the simulator's picture, pixel "
+    "by pixel") {
+  const tests::TemporaryFolder folder;
+  const std::string scene = folder.path("demo.oct");
+  const std::string shot = folder.path("shot.ppm");
+  REQUIRE(tests::run_command({"bake", "demo", "-o", scene, "--quiet"}).status == 0);
+  const tests::CommandResult simulated = tests::run_command(
+      {"sim", scene, "--board", "raspi0", "--display", "none", "--frames", "2", "--shot", shot, "--quiet"});
+  REQUIRE_MESSAGE(simulated.status == 0, simulated.describe());
+  const std::string expected = tests::read_text(shot);
+  const size_t header = expected.size() - size_t{640} * 480 * 3;
+  for (const Kind& kind : kKinds) {
+    CAPTURE(kind.bits);
+    const size_t pixel_bytes = static_cast<size_t>(kind.bits / 8);
+    const size_t stride = 643 * pixel_bytes + kind.slack_bytes;  // 3 columns left over: one left, two right
+    const std::string screen = folder.path("screen.raw");
+    std::filesystem::remove(screen);
+    tests::CommandLimits limits;
+    limits.program = THIMBLE_FB_PATH;
+    const std::string layout = "643,482," + std::to_string(kind.bits) + "," + std::to_string(stride);
+    const tests::CommandResult drawn = tests::run_command(
+        {scene, "--stand-in", screen, "--layout", layout, "--size", "640,480", "--frames", "2"}, limits);
+    REQUIRE_MESSAGE(drawn.status == 0, drawn.describe());
+    const std::string bytes = tests::read_text(screen);
+    REQUIRE(bytes.size() == stride * 482);
+    size_t wrong = 0;
+    for (size_t y = 0; y < 480; ++y) {
+      for (size_t x = 0; x < 640; ++x) {
+        const uint8_t* found =
+            reinterpret_cast<const uint8_t*>(bytes.data()) + (y + 1) * stride + (x + 1) * pixel_bytes;
+        const uint8_t* color = reinterpret_cast<const uint8_t*>(expected.data()) + header + (y * 640 + x) * 3;
+        if (kind.bits == 16) {
+          const int value = nearest(color[0], 5) << 11 | nearest(color[1], 6) << 5 | nearest(color[2], 5);
+          wrong += (found[0] | found[1] << 8) != value;
+        } else {
+          wrong += found[0] != color[2] || found[1] != color[1] || found[2] != color[0];
+        }
+      }
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("thimble-fb: wrong use, unusable screens, a damaged scene -> status 2 or 1, and why") {
+  const tests::TemporaryFolder folder;
+  tests::CommandLimits limits;
+  limits.program = THIMBLE_FB_PATH;
+  CHECK(tests::run_command({"--stand-in", folder.path("x")}, limits).status == 2);
+  CHECK(tests::run_command({"--stand-in", folder.path("x"), "--layout", "9,9,8,9"}, limits).status == 1);
+  CHECK(tests::run_command({"--device", "/nonexistent"}, limits).status == 1);
+  CHECK(tests::run_command({"--app", "nothing", "--stand-in", folder.path("x"), "--layout", "9,9,32,36"},
+                           limits)
+            .status == 1);
+  const tests::CommandResult too_large =
+      tests::run_command({"--stand-in", folder.path("x"), "--layout", "9,9,32,36", "--size", "10,9"}, limits);
+  CHECK(too_large.status == 1);
+  CHECK(too_large.err.find("10 x 9") != std::string::npos);
+  const std::string damaged = folder.write("damaged.oct", "not a scene");
+  const tests::CommandResult refused = tests::run_command(
+      {damaged, "--stand-in", folder.path("x"), "--layout", "99,99,32,396", "--frames", "1"}, limits);
+  CHECK(refused.status == 1);
+}
