@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps all run test bench format tidy clean \
-  firmware emulate flash test-boards deps-boards deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
+  firmware emulate flash test-boards test-framebuffer deps-boards deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -68,6 +68,14 @@ test-boards: ## Run the tests of the firmware on every board under QEMU; says fi
 	@sh tests/boards/deps.sh
 	@$(MAKE) --no-print-directory all
 	@sh tests/boards/run.sh
+
+test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says first what it downloads
+	@.ci/deps build tools framebuffer
+	@$(MAKE) --no-print-directory all
+	@$(CONFIGURE) -B build/static -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF -DCMAKE_EXE_LINKER_FLAGS=-static >/dev/null
+	@cmake --build build/static --target thimble_framebuffer -- --quiet
+	@mkdir -p build/framebuffer && build/release/thimble bake demo -o build/framebuffer/demo.oct --quiet
+	@sh tests/linux/framebuffer.sh . build/framebuffer build/static/thimble-fb build/framebuffer/demo.oct
 
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i

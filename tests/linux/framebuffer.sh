@@ -56,7 +56,7 @@ rm -f "$work/serial.log" "$work/first.ppm" "$work/moved.ppm"
   echo "sendkey q"
   await "keyboard speaks" 2 || echo quit
   sleep 2
-} | timeout 120 qemu-system-x86_64 -m 256 -vga std -display none -no-reboot -kernel "$work/vmlinuz" \
+} | timeout 120 qemu-system-x86_64 -cpu max -m 256 -vga std -display none -no-reboot -kernel "$work/vmlinuz" \
   -initrd "$work/initrd.gz" -append "quiet vga=0x312 vt.global_cursor_default=1" -serial "file:$work/serial.log" -monitor stdio \
   >"$work/monitor.log" 2>&1 || fail "the emulated machine did not switch itself off"
 
