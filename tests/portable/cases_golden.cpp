@@ -27,7 +27,7 @@ constexpr Way kWays[] = {
     {Structure::kPool, Width::k32, 2, "octree, 32 bits"},
     {Structure::kPool, Width::k64, 3, "octree, 64 bits"},
     {Structure::kDense, Width::k64, 1, "dense grid, 64 bits"},
-    {Structure::kDense, Width::k32, 4, "dense grid, 32 bits"},
+    {Structure::kDense, Width::k32, 2, "dense grid, 32 bits"},
 };
 constexpr int kWayCount = sizeof kWays / sizeof kWays[0];
 constexpr int kFrameCount = sizeof golden::kGoldenTable / sizeof golden::kGoldenTable[0];

@@ -63,7 +63,7 @@ void random_edits(Check& check, int level) {
 
 // A world filled voxel by voxel, in Morton order or in an order that jumps about.
 void fill_voxel_by_voxel(Check& check, int stride) {
-  THIMBLE_REQUIRE(make_pool(check, 600, 3));
+  THIMBLE_REQUIRE(make_pool(check, 73, 3));  // a node for each 2 x 2 x 2 at the most
   Octree& pool = check.world.pool;
   for (int32_t i = 0; i < 512; ++i) {
     const int32_t place = i * stride % 512;
@@ -306,8 +306,8 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(pool.insert({1, 0, 0}, 5));
        THIMBLE_EQUAL(pool.nodes_used(), 3U);
      }},
-    {"a full world voxel by voxel -> one node", pool_bytes(600), fill_voxel_by_voxel, 1, "in order"},
-    {"a full world voxel by voxel -> one node", pool_bytes(600), fill_voxel_by_voxel, 37, "in leaps"},
+    {"a full world voxel by voxel -> one node", pool_bytes(73), fill_voxel_by_voxel, 1, "in order"},
+    {"a full world voxel by voxel -> one node", pool_bytes(73), fill_voxel_by_voxel, 37, "in leaps"},
     {"a full world of two materials -> no one block", pool_bytes(100),
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 100, 3));
