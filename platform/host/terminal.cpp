@@ -182,6 +182,7 @@ void Terminal::compose() {
   canvas_.fill(0, 0, canvas_.width_px, canvas_.height_px, look_.ground);
   placement_ =
       place(picture_width_px_, picture_height_px_, canvas_.width_px, canvas_.height_px, fixed_scale_);
+  placement_.y_px &= ~1;  // pixels of two lines begin with a cell
   if (!rgb_.empty()) {
     draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
   }
@@ -290,6 +291,9 @@ std::optional<Event> Terminal::next_event(int timeout_ms) {
   const Clock::time_point end = Clock::now() + Milliseconds(timeout_ms);
   while (events_.empty() && !lost_) {
     look_after_signals();
+    if (!events_.empty()) {
+      break;
+    }
     Clock::time_point until = end;
     for (const auto& [key, release] : held_) {
       until = std::min(until, release);
