@@ -178,9 +178,7 @@ Window::Window(const ScreenOptions& options)
 }
 
 Window::~Window() {
-  if (lost_) {
-    return;  // what is left of the connection goes with the process
-  }
+  // On a connection that is lost these only give back what the library keeps here.
   XFreeGC(display_, context_);
   if (!closed_) {
     XDestroyWindow(display_, window_);
