@@ -201,7 +201,7 @@ TEST_CASE(
   });
   REQUIRE(pty.wait_for("\u2580"));
   CHECK(pty.wait_for("RAM 1,"));
-  CHECK(pty.wait_for("not the chip's; the board keeps 4,096"));
+  CHECK(pty.wait_for("not the chip's; board: 4,096"));
   CHECK(pty.wait_for("UART: "));
   pty.type("\x1b[D");
   pty.type("\x1b");
