@@ -15,6 +15,7 @@ void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_info(CLI::App& app);
+void add_boards(CLI::App& app);
 void add_sim(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
@@ -23,6 +24,7 @@ inline void add_all_commands(CLI::App& app) {
   add_table(app);
   add_bake(app);
   add_info(app);
+  add_boards(app);
   add_sim(app);
 }
 
