@@ -81,6 +81,7 @@ format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i
 tidy: deps-test ## Lint the core, the tools and the ports with clang-tidy
 	@sh tests/checks/tidy.sh . build/tidy src tools platform tests/reference
+	@sh tests/boards/tidy.sh build/tidy-boards
 
 clean: ## Remove everything that was built
 	@rm -rf build out

@@ -24,7 +24,7 @@ void say(const char* text) {
 
 // Deeper and deeper. The compiler must believe that it ends and that every frame is needed.
 [[gnu::noinline]] uint32_t overflow_stack(volatile const uint8_t* limit, uint32_t depth) {
-  volatile uint8_t frame[64];
+  volatile uint8_t frame[64] = {};
   frame[depth % sizeof(frame)] = static_cast<uint8_t>(depth);
   if (*limit == 0) {
     return depth;
@@ -52,7 +52,6 @@ bool write_flash() {
 Bytes bake_small_scene(Arena* arena) {
   constexpr size_t kNodes = 32;
   Octree octree;
-  CompactTree tree;
   size_t tree_bytes = 0;
   const VoxelBox box = {{1, 2, 3}, {5, 4, 6}};
   if (octree.init(arena->take(Octree::octree_bytes(kNodes)), 3) != Status::kOk ||
@@ -101,7 +100,27 @@ void execute_nonsense() {
 #else
   const uintptr_t thumb_bit = 0;
 #endif
-  reinterpret_cast<void (*)()>(reinterpret_cast<uintptr_t>(kNonsense) + thumb_bit)();
+  const uintptr_t address = reinterpret_cast<uintptr_t>(kNonsense) + thumb_bit;
+  __builtin_bit_cast(void (*)(), address)();
+}
+
+// Says which buttons are down whenever that changes, until `q`: for bringing up a board.
+int tell_buttons() {
+  static constexpr const char* kNames[] = {" up", " down", " left", " right", " select"};
+  say("buttons\n");
+  uint32_t told = 0;
+  while (port::read() != 'q') {
+    const uint32_t down = port::buttons();
+    if (down != told) {
+      say("down:");
+      for (uint32_t i = 0; i < 5; ++i) {
+        say((down >> i & 1U) != 0 ? kNames[i] : "");
+      }
+      say("\n");
+      told = down;
+    }
+  }
+  return 0;
 }
 
 int run(int key) {
@@ -130,6 +149,8 @@ int run(int key) {
         return port::kFaultStatus;
       }
       break;
+    case 'b':
+      return tell_buttons();
     default:
       return -1;
   }
@@ -140,7 +161,7 @@ int run(int key) {
 }  // namespace
 
 int faults() {
-  say("faults: s stack, r RAM, f flash, n nonsense, d damaged scene\n");
+  say("faults: s stack, r RAM, f flash, n nonsense, d damaged scene; b buttons\n");
   for (;;) {
     const int status = run(port::read());
     if (status >= 0) {

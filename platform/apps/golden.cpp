@@ -1,4 +1,4 @@
-// The golden frames on the target, from compact trees in flash and, where the RAM holds them, from octrees
+// Baked scenes, and the golden frames from compact trees in flash and, where the RAM holds them, from octrees
 // and dense grids that are built here.
 #include "apps/apps.h"
 #include "apps/cases.h"

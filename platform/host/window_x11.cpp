@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdlib>
 #include <cstring>
@@ -87,6 +88,13 @@ std::uint32_t in_mask(std::uint8_t value, unsigned long mask) {
   return scaled << low;
 }
 
+// A request that fails is no reason to end the program, as Xlib would; the next one may do.
+std::atomic<int> failed_requests{0};
+int on_error(::Display* /*display*/, XErrorEvent* /*error*/) {
+  ++failed_requests;
+  return 0;
+}
+
 class Window final : public Screen {
  public:
   explicit Window(const ScreenOptions& options);
@@ -124,7 +132,8 @@ class Window final : public Screen {
   Colormap colors_ = 0;
   GC context_ = nullptr;
   Atom close_atom_ = 0;
-  bool lost_ = false;  // the server is gone
+  bool lost_ = false;    // the server is gone
+  bool closed_ = false;  // somebody else destroyed the window
 
   Look look_;
   std::int32_t fixed_scale_ = 0;
@@ -169,11 +178,11 @@ Window::Window(const ScreenOptions& options)
 }
 
 Window::~Window() {
-  if (lost_) {
-    return;  // what is left of the connection goes with the process
-  }
+  // On a connection that is lost these only give back what the library keeps here.
   XFreeGC(display_, context_);
-  XDestroyWindow(display_, window_);
+  if (!closed_) {
+    XDestroyWindow(display_, window_);
+  }
   XFreeColormap(display_, colors_);
   XCloseDisplay(display_);
 }
@@ -202,12 +211,14 @@ void Window::open(const ScreenOptions& options) {
   const std::int32_t fitting = std::min(kFirstWidthPx / std::max(options.width_px, 1),
                                         kFirstHeightPx / std::max(options.height_px, 1));
   const std::int32_t scale = fixed_scale_ > 0 ? fixed_scale_ : std::clamp(fitting, 1, 16);
-  const std::int32_t border = look_.has_gaps ? 2 * scale : 0;
+  const std::int32_t border = gap_px(look_, scale) != 0 ? 2 * scale : 0;
   const std::int32_t width = std::max(options.width_px * scale + border, kLeastWidthPx);
   canvas_.width_px = width;  // panel_px() asks
   std::int32_t height = std::max(options.height_px * scale + border, 64) + panel_px();
   height = std::min(height, 32767);
 
+  XSetErrorHandler(on_error);
+  failed_requests = 0;
   const ::Window root = RootWindow(display_, screen_number_);
   colors_ = XCreateColormap(display_, root, visual_.visual, AllocNone);
   XSetWindowAttributes attributes{};
@@ -228,16 +239,22 @@ void Window::open(const ScreenOptions& options) {
   XClassHint hint{name, name};
   XSetClassHint(display_, window_, &hint);
   XkbSetDetectableAutoRepeat(display_, True, nullptr);  // a held key is pressed again, not let go in between
+  // Without these two the library ends the program when the server goes.
+  XSetIOErrorHandler([](Display*) { return 0; });
   XSetIOErrorExitHandler(
       display_, [](Display*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   set_title(options.title);
   XMapWindow(display_, window_);
   resize(width, height);
-  XFlush(display_);
+  XSync(display_, False);
+  if (failed_requests != 0) {
+    throw ScreenError("the display does not make a window of " + std::to_string(width) + " x " +
+                      std::to_string(height) + " pixels");
+  }
 }
 
 void Window::set_title(std::string_view text) {
-  if (lost_) {
+  if (lost_ || closed_) {
     return;
   }
   const std::string title(text);
@@ -278,7 +295,7 @@ void Window::compose() {
 
 void Window::send() {
   needs_sending_ = false;
-  if (lost_ || canvas_.width_px == 0 || canvas_.height_px == 0) {
+  if (lost_ || closed_ || canvas_.width_px == 0 || canvas_.height_px == 0) {
     return;
   }
   const auto width = static_cast<unsigned>(canvas_.width_px);
@@ -419,6 +436,9 @@ void Window::take(XEvent& event) {
         events_.push_back({.kind = EventKind::kResize});
       }
       return;
+    case DestroyNotify:
+      closed_ = true;
+      return;
     case ClientMessage:
       if (static_cast<Atom>(event.xclient.data.l[0]) == close_atom_) {
         events_.push_back({.kind = EventKind::kClose});
@@ -439,7 +459,7 @@ std::optional<Event> Window::next_event(int timeout_ms) {
     if (needs_sending_) {
       send();
     }
-    if (lost_) {
+    if (lost_ || (closed_ && events_.empty())) {
       return Event{.kind = EventKind::kClose};
     }
     if (events_.empty() && round == 0 && timeout_ms > 0) {

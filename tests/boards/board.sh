@@ -57,17 +57,21 @@ fi
 for app in $apps; do
   log=$work/$app.log
   emulate "$app" "" "$log"
+  said=
   if [ "$status" != 0 ]; then
-    tail -n 5 "$log"
+    tail -n 5 "$log" >&2
     fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
-  elif { [ "$app" = selftest ] || [ "$app" = golden ]; } &&
-    ! grep -Eq '^[1-9][0-9]* passed, 0 failed' "$log"; then
-    fail "$app" "did not say how many passed"
-  else
-    say "$app" "$(grep -E 'passed, 0 failed|instructions a frame' "$log" | head -n 1)"
+  elif [ "$app" = selftest ] || [ "$app" = golden ]; then
+    said=$(grep -E '^[1-9][0-9]* passed, 0 failed' "$log" | head -n 1)
+    [ -n "$said" ] || fail "$app" "did not say how many passed"
+    said="$said, $(sed -n 's/^\([0-9]* skipped\).*/\1/p' "$log" | head -n 1); "
+  elif [ "$app" = bench ]; then
+    said="$(sed -n 's/^\([a-z_]*\)\.instructions_median,\([0-9]*\).*/\2 instructions a frame (\1)/p' "$log" | tr '\n' ';')"
+    said="${said%;}; "
   fi
   sh "$here/budget.sh" "$board" "$app" "$log" >"$work/$app.budget" 2>&1 || failed=1
-  sed "s/^/$(printf '%-18s %-10s ' "$board" "$app")/" "$work/$app.budget" >>"$results"
+  grep FAILED "$work/$app.budget" | sed "s/^/$(printf '%-18s %-10s ' "$board" "$app")/" >>"$results" || true
+  say "$app" "$said$(tail -n 1 "$work/$app.budget")"
 done
 
 # Each fault: told where the board can tell it, and nowhere a hang.
@@ -82,7 +86,7 @@ for fault in stack ram flash nonsense scene; do
       if [ "$status" = 97 ] && grep -q '^fault: ' "$log"; then
         caught="$caught $fault"
       else
-        tail -n 5 "$log"
+        tail -n 5 "$log" >&2
         fail faults "$fault: exit status $status, wanted 97 and a message"
       fi
       ;;
@@ -95,6 +99,27 @@ for fault in stack ram flash nonsense scene; do
   esac
 done
 say faults "caught:$caught$([ -n "$missed" ] && echo "; cannot be caught here:$missed")"
+
+# A scene damaged in one byte, in the image: a sentence and status 1.
+awk '/^ *[0-9]+,/ && ++line == 40 { sub(/[0-9]+/, ($1 + 1) % 256) } { print }' "$work/scene.h" >"$work/damaged.h"
+if cmp -s "$work/scene.h" "$work/damaged.h"; then
+  fail demo "the scene could not be damaged"
+elif ! FRAMES=4 sh platform/build.sh "$board" demo "$work/damaged.h" >"$work/build.log" 2>&1; then
+  fail demo "does not build with a damaged scene"
+else
+  emulate demo "" "$work/damaged.log"
+  if [ "$status" = 1 ] && grep -q '^error: ' "$work/damaged.log"; then
+    say demo "refuses a damaged scene"
+  else
+    fail demo "with a damaged scene: exit status $status, wanted 1 and a message"
+  fi
+fi
+
+# What the display shows, and buttons.
+if [ "$(fact DISPLAY)" != none ]; then
+  sh "$here/display.sh" "$board" >"$work/display.results" 2>&1 || failed=1
+  sed "s/^/$(printf '%-18s %-10s ' "$board" display)/" "$work/display.results" >>"$results"
+fi
 
 cat "$results"
 exit $failed

@@ -15,6 +15,7 @@ work=$THIMBLE_FIRMWARE
 budgets=tests/budgets/firmware.csv
 mkdir -p "$work"
 g++ -std=c++20 -O1 -o "$work/stack_bound" tests/checks/stack_bound.cpp
+g++ -std=c++20 -O1 -o "$work/qemu_screen" tests/boards/qemu_screen.cpp
 
 all=$(cd platform/boards && for folder in */; do echo "${folder%/}"; done)
 boards=${*:-$all}

@@ -21,7 +21,7 @@ for board; do
     sed -n "s/^result crc \([0-9a-f]*\) of the \([0-9]*\) cases that every board runs.*/${app}_\2 \1 $board/p" \
       "$work/$board/$app.log" 2>/dev/null || true
   done
-done | judge "result of the test cases" || failed=1
+done | judge "results of test cases" || failed=1
 # Frames of one size and format, whichever way they were drawn.
 for board; do
   . platform/board_facts.sh

@@ -116,7 +116,9 @@ int print_crc() {
   if (!print_crcs("kCoreCrc32", nullptr, portable::kCoreGroups)) {
     return 1;
   }
-  printf("/// Of all golden frames, and of those that every board draws.\n");
+  printf(
+      "/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board "
+      "runs.\n");
   if (!print_crcs("kGoldenCrc32", "kCommonGoldenCrc32", portable::kGoldenGroups)) {
     return 1;
   }

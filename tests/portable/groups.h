@@ -7,7 +7,7 @@
 
 namespace thimble::portable {
 
-/// What every board has for a case: 8 KiB less the stack (up to 2,900 bytes), the `Check` and what the runner keeps. The
+/// What every board has for a case: 8 KiB less the stack (up to 2,900 bytes) and what the runner keeps. The
 /// cases that need no more are run everywhere, and their CRC is one number everywhere.
 inline constexpr uint32_t kCommonArenaBytes = 4608;
 
@@ -25,6 +25,7 @@ extern const Group kDenseGridGroup;    ///< one bit a voxel
 extern const Group kCameraGroup;       ///< cameras and their rays
 extern const Group kShadingGroup;      ///< colours
 extern const Group kRenderGroup;       ///< bands
+extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
 extern const Group kGoldenGroup;       ///< golden frames
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
@@ -32,8 +33,8 @@ inline constexpr const Group* kCoreGroups[] = {
     &kNumberGroup,      &kPixelGroup,     &kRayGroup,    &kTraceGroup,   &kOctreeGroup,
     &kCompactTreeGroup, &kDenseGridGroup, &kCameraGroup, &kShadingGroup, &kRenderGroup,
 };
-/// The golden frames (the application `golden`).
-inline constexpr const Group* kGoldenGroups[] = {&kGoldenGroup};
+/// What lies in flash (the application `golden`): baked scenes and the golden frames.
+inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup};
 
 }  // namespace thimble::portable
 

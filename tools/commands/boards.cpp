@@ -13,6 +13,7 @@
 #include "output/output_file.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "readers/oct.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
 
@@ -53,8 +54,13 @@ const char* screen_name(platform::Screen screen) {
   return "unknown";
 }
 
-std::uint64_t bytes_when_baked(const BoardsCommand& command, const SceneSource& source,
-                               const Progress& progress) {
+// Bytes of the scene when it is baked; and fewer than it takes a depth deeper.
+struct BakedSize {
+  std::uint64_t bytes = 0;
+  std::uint64_t least_of_next = 0;
+};
+
+BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& source, const Progress& progress) {
   BakingOptions options;
   options.name = scene_name(command.scene.arguments.scene);
   options.camera = [&](int level, const VoxelBox& bounds) {
@@ -62,7 +68,13 @@ std::uint64_t bytes_when_baked(const BoardsCommand& command, const SceneSource& 
     ViewOptions{}.camera(source, level, bounds, nullptr, &chosen);
     return chosen;
   };
-  return bake_scene(source, options, progress).bytes.size();
+  const Baked baked = bake_scene(source, options, progress);
+  // A depth deeper every voxel beside a block becomes a node below the nodes that are there. Few of those
+  // are filled to solid blocks then; an eighth is left for them.
+  const CompactTree& tree = baked.scene.tree();
+  std::uint64_t voxels = 0;
+  for_each_block(tree, [&](const Vec3i&, int level, std::uint8_t) { voxels += level == 0 ? 1U : 0U; });
+  return {baked.bytes.size(), (tree.node_count() + voxels) / 8 * 7};
 }
 
 SceneSizes measure(const BoardsCommand& command) {
@@ -71,7 +83,8 @@ SceneSizes measure(const BoardsCommand& command) {
   ProgressBar bar("measuring", command.scene.quiet);
   const auto progress = [&](double done) { bar.update(done); };
   sizes.depth = source->level();
-  sizes.baked_bytes = bytes_when_baked(command, *source, progress);
+  const BakedSize size = size_when_baked(command, *source, progress);
+  sizes.baked_bytes = size.bytes;
   BuildOptions pool;
   pool.structure = StructureKind::kPool;
   const BuiltScene built(*source, pool, progress);
@@ -97,15 +110,20 @@ SceneSizes measure(const BoardsCommand& command) {
   const auto try_depth = [&](int depth) {
     arguments.depth = depth;
     const auto other = open_scene(arguments);
-    return sizes.bytes_of_depth[depth] = bytes_when_baked(command, *other, progress);
+    const BakedSize result = size_when_baked(command, *other, progress);
+    sizes.bytes_of_depth[depth] = result.bytes;
+    return result;
   };
-  std::uint64_t bytes = sizes.baked_bytes;
-  for (int depth = sizes.depth - 1; depth >= kMinLevel && bytes > least; --depth) {
-    bytes = try_depth(depth);
+  BakedSize last = size;
+  for (int depth = sizes.depth - 1; depth >= kMinLevel && last.bytes > least; --depth) {
+    last = try_depth(depth);
   }
-  bytes = sizes.baked_bytes;
-  for (int depth = sizes.depth + 1; depth <= sizes.most_depth && bytes <= most; ++depth) {
-    bytes = try_depth(depth);
+  last = size;
+  for (int depth = sizes.depth + 1; depth <= sizes.most_depth && last.bytes <= most; ++depth) {
+    if (last.least_of_next > most) {
+      break;  // the deeper one takes more than every board has, and long to make
+    }
+    last = try_depth(depth);
   }
   return sizes;
 }

@@ -83,28 +83,16 @@ class Assembly {
 // A pool that can be set back to where it was.
 class Coarsener {
  public:
-  Coarsener(const SceneSource& source, const Progress& progress) : memory_(HostMemory::largest()) {
-    if (octree_.init(memory_.bytes(), source.level()) != Status::kOk) {
+  explicit Coarsener(const CompactTree& tree) : memory_(HostMemory::largest()) {
+    if (octree_.init(memory_.bytes(), tree.level()) != Status::kOk) {
       throw InputError("internal error: no pool to coarsen in");
     }
-    const auto insert = [&](const Vec3i& at, int level, std::uint8_t material) {
-      // As BuiltScene does: in a point set the greatest material wins.
-      if (source.is_point_set() && !source.single_material() && octree_.material(at) >= material) {
-        return;
-      }
+    // In Morton order, so that the passes over the pool go through memory from front to back.
+    for_each_block(tree, [&](const Vec3i& at, int level, std::uint8_t material) {
       if (octree_.insert_block(at, level, material) != Status::kOk) {
         throw InputError("the scene does not fit into this machine's memory");
       }
-    };
-    if (const BakedScene* baked = source.baked()) {
-      for_each_block(baked->tree(), insert);
-    } else {
-      source.stream(
-          [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-            insert({x, y, z}, 0, material);
-          },
-          progress);
-    }
+    });
     save();
   }
 
@@ -121,8 +109,11 @@ class Coarsener {
     octree_ = kept_;
     std::memcpy(memory_.bytes().data, kept_bytes_.data(), kept_bytes_.size());
   }
-  bool coarsen_to(std::uint64_t nodes) {
-    return octree_.coarsen_to(static_cast<std::size_t>(nodes)) == Status::kOk;
+  void coarsen_at(int step) { octree_.coarsen_at(step); }
+  void coarsen_to(std::uint64_t nodes) {
+    if (octree_.coarsen_to(static_cast<std::size_t>(nodes)) != Status::kOk) {
+      throw InputError("internal error: the tree does not coarsen");
+    }
   }
   /// The pool as a compact tree; 0 bytes where it is too large for one.
   std::size_t tree_bytes() const { return compact_bytes(compact_shape(octree_)); }
@@ -144,48 +135,64 @@ class Coarsener {
   std::uint64_t most_bytes_ = 0;
 };
 
-// The largest tree of at most `limit` bytes that merging gives, or the smallest of all. Coarsening is nested:
-// what a larger pool merges, a smaller one merges too, so each trial starts from the last that was too large.
-std::vector<std::uint8_t> coarsened_tree(const SceneSource& source, std::uint64_t limit,
+// A tree of at most `limit` bytes that merging gives, less than 1/1024 of the limit or one merge below it;
+// the smallest of all where none is small enough. Coarsening is nested: what a larger pool merges, a smaller
+// one merges too, so each trial starts from the last that was too large.
+std::vector<std::uint8_t> coarsened_tree(const CompactTree& exact, std::uint64_t limit,
                                          std::uint64_t* work_bytes, const Progress& progress) {
-  Coarsener pool(source, progress);
-  std::uint64_t low = 1;                            // tried, or the least there is
-  std::uint64_t high = pool.octree().nodes_used();  // too large
-  std::vector<std::uint8_t> best;
-  const auto attempt = [&](std::uint64_t nodes) {
-    if (!pool.coarsen_to(nodes)) {
-      throw InputError("internal error: the tree does not coarsen");
+  Coarsener pool(exact);
+  std::uint64_t high = pool.octree().nodes_used();  // so many nodes are too many
+  std::size_t best_bytes = 0;
+  // Whether the pool's tree fits. If so it goes back to the last that did not, else on from here.
+  int trials = 0;
+  const auto fits = [&] {
+    if (progress) {
+      progress(1 - 1.0 / (1 + ++trials));
     }
     const std::size_t size = pool.tree_bytes();
-    if (size != 0 && size <= limit) {
-      best = pool.tree();
-      return true;
+    if (size == 0 || size > limit) {
+      high = pool.octree().nodes_used();
+      pool.save();
+      return false;
     }
-    return false;
+    best_bytes = size;
+    return true;
   };
-  // The first guess by proportion: most of the search then works on a tree near the right size.
-  const std::size_t full = pool.tree_bytes();
-  std::uint64_t guess =
-      full == 0 ? high / 2
-                : static_cast<std::uint64_t>(static_cast<double>(high) * static_cast<double>(limit) /
-                                             static_cast<double>(full));
-  while (low + 1 < high) {
-    guess = std::clamp(guess, low + 1, high - 1);
-    if (attempt(guess)) {
-      low = guess;
+  // First prices, a pass over the nodes each: the trees are then near the right size for the second search,
+  // which needs many.
+  int cheap = -1;
+  int dear = Octree::kPriceSteps;
+  std::uint64_t low = 0;  // so many nodes fit, or none do
+  while (cheap + 1 < dear) {
+    const int step = cheap + (dear - cheap) / 2;
+    pool.coarsen_at(step);
+    if (fits()) {
+      dear = step;
+      low = pool.octree().nodes_used();
       pool.restore();
     } else {
-      high = std::min<std::uint64_t>(guess, std::max<std::uint64_t>(pool.octree().nodes_used(), low + 1));
-      pool.save();
+      cheap = step;
     }
-    guess = low + (high - low) / 2;
   }
-  if (best.empty()) {
-    attempt(1);
-    best = pool.tree();
+  bool by_price = true;
+  while (low + 1 < high && (best_bytes == 0 || best_bytes < limit - limit / 1024)) {
+    // Of so many nodes at most; a merge may save many at once.
+    const std::uint64_t most = low + (high - low) / 2;
+    pool.coarsen_to(most);
+    if (fits()) {
+      low = most;
+      by_price = false;
+      pool.restore();
+    }
+  }
+  // The best once more, which takes longer to write than to make.
+  if (best_bytes != 0 && by_price) {
+    pool.coarsen_at(dear);
+  } else {
+    pool.coarsen_to(std::max<std::uint64_t>(1, low));
   }
   *work_bytes = pool.most_bytes();
-  return best;
+  return pool.tree();
 }
 
 }  // namespace
@@ -194,29 +201,28 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
   const auto start = std::chrono::steady_clock::now();
   Baked result;
   const std::uint64_t limit = options.limit_bytes.value_or(UINT32_MAX);
-  // What stands around the tree takes the same room whatever the tree, or less: merging can only leave
-  // materials unused.
-  std::uint64_t around = 0;
-  {
-    const BuiltScene built(source, {}, progress);
-    const Assembly assembly(source, options, built.compact());
-    around = assembly.bytes() - built.compact().size_bytes();
-    result.work_bytes = built.high_water_bytes();
-    result.fits = assembly.bytes() <= limit;
-    if (result.fits || !options.coarsen) {
-      assembly.write(&result);
-    }
-  }
-  if (!result.fits && options.coarsen) {
+  const BuiltScene built(source, {}, progress);
+  const CompactTree& exact = built.compact();
+  const Assembly whole(source, options, exact);
+  result.work_bytes = built.high_water_bytes();
+  result.fits = whole.bytes() <= limit;
+  if (result.fits || !options.coarsen) {
+    whole.write(&result);
+  } else {
+    // What stands around the tree takes the same room whatever the tree, or less: merging can only leave
+    // materials unused.
+    const std::uint64_t around = whole.bytes() - exact.size_bytes();
+    std::uint64_t pool_bytes = 0;
     const std::vector<std::uint8_t> bytes =
-        coarsened_tree(source, limit > around ? limit - around : 0, &result.work_bytes, progress);
+        coarsened_tree(exact, limit > around ? limit - around : 0, &pool_bytes, progress);
+    result.work_bytes += pool_bytes;
     CompactTree tree;
     if (CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
       throw InputError("internal error: the coarsened tree does not open");
     }
-    const Assembly assembly(source, options, tree);
-    result.fits = assembly.bytes() <= limit;
-    assembly.write(&result);
+    const Assembly coarse(source, options, tree);
+    result.fits = coarse.bytes() <= limit;
+    coarse.write(&result);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

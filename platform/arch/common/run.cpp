@@ -73,5 +73,10 @@ void thimble_run() {
   thimble::board::start_clock();
   const int status = thimble_application();
   thimble::report_stack();
+  if constexpr (thimble::board::kHolds) {
+    thimble::say("holding\n");
+    while (thimble::board::get() != 'q') {
+    }
+  }
   thimble::finish(status);
 }
