@@ -31,11 +31,16 @@ constexpr int32_t kAsk = -2;  // closest_hit knows
 constexpr uint32_t kLeft = uint32_t{1} << 9 | uint32_t{1} << 19 | uint32_t{1} << 29;
 constexpr uint32_t kWaiting = uint32_t{1} << 31;
 
-// The directory and the bricks as halfwords: they lie at even addresses.
+// The directory and the bricks as halfwords and words: they lie at multiples of 4.
 using Half [[gnu::may_alias]] = uint16_t;
 
 uint32_t half_at(const uint8_t* bytes, int32_t offset) {
   return *reinterpret_cast<const Half*>(bytes + offset);
+}
+
+using Word [[gnu::may_alias]] = uint32_t;
+uint32_t word_at(const uint8_t* bytes, int32_t offset) {
+  return *reinterpret_cast<const Word*>(bytes + offset);
 }
 
 // Colours that were looked up: of faces of voxels, and of faces of a material.
@@ -61,7 +66,9 @@ struct Frame {
   const Shading& shading;
   PixelFormat format;
   uint32_t background;
-  Vec3i side;  // of the box, in bricks
+  Vec3i side;    // of the box, in bricks
+  Vec3i stride;  // of the directory, in bytes
+  Vec3i eye;     // from the box's lowest corner, in 1/256 voxel
   // From a tile's first pixel to the least and greatest of the affine function in whole tiles.
   Camera::Vec3Q32 tile_low;
   Camera::Vec3Q32 tile_high;
@@ -440,153 +447,170 @@ void set_start(Course& course, int32_t slab) {
   course.left = course.base_left + (static_cast<uint32_t>(slab >> 2) << 10 * course.c);
 }
 
-// Slopes of the beam in 1/1024, so positions in 1/2^18 voxel.
+// Slopes of a beam in 1/1024, so positions in 1/2^18 voxel.
 constexpr int kSlopeBits = 10;
 constexpr int kCellShift = kSlopeBits + 8;
+constexpr int kBrickShift = kCellShift + 2;
+// Bricks that a beam may be wide; one that is wider ends there, which is early but right.
+constexpr int32_t kBeamBricks = 4;
 
-// The way of all rays of a fan between two planes of c: on axes a and b from `low` to `high` at the first.
-struct Beam {
-  int32_t low[2];
-  int32_t high[2];
-  int32_t low_slope[2];
-  int32_t high_slope[2];
+// Where all rays of a fan are on one axis within a slab of voxels, in the box's own coordinates: from low to
+// high.
+struct Shadow {
+  int32_t low;
+  int32_t high;
+  int32_t low_step;  // to the next slab
+  int32_t high_step;
+  int32_t low_more;  // what a further slab adds to the shadow at its lower end, at most 0
+  int32_t high_more;
+
+  void advance(int32_t voxels) {
+    low += voxels * low_step;
+    high += voxels * high_step;
+  }
 };
 
-// Rows of a brick's halfword from bits: bit y becomes 1 << 4 y.
+// Bits low .. high of the cells of a beam's bricks; either may lie beyond them.
+uint32_t bits_between(int32_t low, int32_t high) {
+  const int32_t from = low < 0 ? 0 : low;
+  const int32_t to = high < 4 * kBeamBricks ? high : 4 * kBeamBricks - 1;
+  return to < from ? 0U : (2U << to) - (1U << from);
+}
+
+// Four bits as rows or as halfwords: bit y becomes bit 4 y, bit z all of halfword z.
 constexpr uint16_t kRows[16] = {0x0000, 0x0001, 0x0010, 0x0011, 0x0100, 0x0101, 0x0110, 0x0111,
                                 0x1000, 0x1001, 0x1010, 0x1011, 0x1100, 0x1101, 0x1110, 0x1111};
-
-// Cells from .. to of an axis as bits of brick `number`, in the tree's order.
-uint32_t cells_in(int32_t from, int32_t to, int32_t number, uint32_t flip) {
-  int32_t low = from - 4 * number;
-  int32_t high = to - 4 * number;
-  low = low < 0 ? 0 : low;
-  high = high > 3 ? 3 : high;
-  if (flip != 0) {
-    const int32_t one = low;
-    low = 3 - high;
-    high = 3 - one;
-  }
-  return (0xFU << low) & (0xFU >> (3 - high));
-}
+constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
 
 // The first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs
 // when there is none. Coarse: the first of a slab of bricks. `course` is the fan's.
-int32_t first_slab(const Course& course, const Fan& fan, int32_t slab, bool coarse) {
-  const Vec3i& side = course.frame->side;
-  const int c = course.c;
-  const int a = c == 0 ? 1 : 0;
-  const int b = c == 2 ? 1 : 2;
-  const int32_t slabs = 4 * side[c];
-  const int32_t origin_c = course.origin[c];
-  const int32_t nearest = origin_c < 0 ? 0 : origin_c >> 8;
+template <int kC, bool kCoarse>
+[[gnu::noinline]] int32_t first_slab(const Course& course, const Fan& fan, int32_t slab) {
+  constexpr int kA = kC == 0 ? 1 : 0;
+  constexpr int kB = kC == 2 ? 1 : 2;
+  const Frame& frame = *course.frame;
+  const int32_t slabs = 4 * frame.side[kC];
+  const int32_t origin = course.origin[kC];
+  const int32_t nearest = origin < 0 ? 0 : origin >> 8;
   slab = slab < nearest ? nearest : slab;
   if (slab >= slabs) {
     return slabs;
   }
-  const bool flipped = (course.mirrored >> c & 1U) != 0;
-  const int32_t c_low = flipped ? -fan.high[c] : fan.low[c];
-  const int32_t c_high = flipped ? -fan.low[c] : fan.high[c];
-  Beam beam;
+  const bool flipped = (course.mirrored >> kC & 1U) != 0;
+  const int32_t c_low = flipped ? -fan.high[kC] : fan.low[kC];
+  const int32_t c_high = flipped ? -fan.low[kC] : fan.high[kC];
   // The first slab may begin behind the origin: then the bounds start from whichever is wider.
-  const int32_t from_slab = slab * Q8::kOne - origin_c;
-  const int32_t near_q8 = from_slab < 0 ? 0 : from_slab;
-  for (int i = 0; i < 2; ++i) {
-    const int axis = i == 0 ? a : b;
-    const bool mirrored = (course.mirrored >> axis & 1U) != 0;
-    const int32_t low = (mirrored ? -fan.high[axis] : fan.low[axis]) * (1 << kSlopeBits);
-    const int32_t high = (mirrored ? -fan.low[axis] : fan.high[axis]) * (1 << kSlopeBits);
-    beam.low_slope[i] = low / (low < 0 ? c_low : c_high) - 1;
-    beam.high_slope[i] = high / (high < 0 ? c_high : c_low) + 1;
-    if (beam.low_slope[i] < -(2 << kSlopeBits) || beam.high_slope[i] > 2 << kSlopeBits) {
-      return slab;
-    }
-    const int32_t origin = (course.origin[axis] - kOutsideQ8) * (1 << kSlopeBits);
-    beam.low[i] = origin + (beam.low_slope[i] < 0 ? near_q8 : from_slab) * beam.low_slope[i] - 1;
-    beam.high[i] = origin + (beam.high_slope[i] < 0 ? from_slab : near_q8) * beam.high_slope[i] + 1;
-    // From here on slopes are per slab of voxels.
-    beam.low_slope[i] *= Q8::kOne;
-    beam.high_slope[i] *= Q8::kOne;
+  const int32_t plane = slab * Q8::kOne - origin;
+  const int32_t ahead = plane < 0 ? 0 : plane;
+  bool steep = false;
+  const auto shadow_of = [&](int axis) {
+    const int32_t low = fan.low[axis] * (1 << kSlopeBits);
+    const int32_t high = fan.high[axis] * (1 << kSlopeBits);
+    const int32_t low_slope = low / (low < 0 ? c_low : c_high) - 1;
+    const int32_t high_slope = high / (high < 0 ? c_high : c_low) + 1;
+    steep |= low_slope < -(2 << kSlopeBits) || high_slope > 2 << kSlopeBits;
+    const int32_t from = frame.eye[axis] * (1 << kSlopeBits);
+    const int32_t low_step = low_slope * Q8::kOne;
+    const int32_t high_step = high_slope * Q8::kOne;
+    const int32_t low_more = low_step < 0 ? low_step : 0;
+    const int32_t high_more = high_step > 0 ? high_step : 0;
+    return Shadow{from + (low_slope < 0 ? ahead : plane) * low_slope - 1 + low_more,
+                  from + (high_slope < 0 ? plane : ahead) * high_slope + 1 + high_more,
+                  low_step,
+                  high_step,
+                  low_more,
+                  high_more};
+  };
+  if (fan.high[kA] > 2 * c_low || fan.low[kA] < -2 * c_low || fan.high[kB] > 2 * c_low ||
+      fan.low[kB] < -2 * c_low) {
+    return slab;
   }
-  const int32_t origin_of_bricks = course.base + kOutsideCells / 4 * (course.stride[a] + course.stride[b]);
+  Shadow a = shadow_of(kA);
+  Shadow b = shadow_of(kB);
+  if (steep) {
+    return slab;
+  }
+  const int32_t last_a = frame.side[kA] - 1;
+  const int32_t last_b = frame.side[kB] - 1;
+  const int32_t stride_a = frame.stride[kA];
+  const int32_t stride_b = frame.stride[kB];
+  const uint8_t* directory = course.directory;
   while (slab < slabs) {
     // What of the slab of bricks is left, and the bricks that the rays may pass through there.
     const int32_t voxels = 4 - (slab & 3);
-    int32_t from[2];
-    int32_t to[2];
-    for (int i = 0; i < 2; ++i) {
-      const int32_t low = beam.low[i] + (beam.low_slope[i] < 0 ? voxels * beam.low_slope[i] : 0);
-      const int32_t high = beam.high[i] + (beam.high_slope[i] > 0 ? voxels * beam.high_slope[i] : 0);
-      const int32_t last = side[i == 0 ? a : b] - 1;
-      from[i] = low < 0 ? 0 : low >> (kCellShift + 2);
-      to[i] = high >> (kCellShift + 2) < last ? high >> (kCellShift + 2) : last;
-    }
-    const int32_t row = origin_of_bricks + course.stride[c] * (slab >> 2);
-    bool any = false;
-    for (int32_t j = from[1]; j <= to[1] && !any; ++j) {
-      for (int32_t i = from[0]; i <= to[0]; ++i) {
-        any |= half_at(course.directory, row + i * course.stride[a] + j * course.stride[b]) != 0;
-      }
-    }
-    if (any && coarse) {
+    int32_t from_a = (a.low + (voxels - 1) * a.low_more) >> kBrickShift;
+    int32_t to_a = (a.high + (voxels - 1) * a.high_more) >> kBrickShift;
+    int32_t from_b = (b.low + (voxels - 1) * b.low_more) >> kBrickShift;
+    int32_t to_b = (b.high + (voxels - 1) * b.high_more) >> kBrickShift;
+    from_a = from_a < 0 ? 0 : from_a;
+    from_b = from_b < 0 ? 0 : from_b;
+    to_a = to_a > last_a ? last_a : to_a;
+    to_b = to_b > last_b ? last_b : to_b;
+    if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
       return slab;
     }
-    if (!any) {
-      for (int i = 0; i < 2; ++i) {
-        beam.low[i] += voxels * beam.low_slope[i];
-        beam.high[i] += voxels * beam.high_slope[i];
+    // Those that are not empty.
+    struct {
+      const uint8_t* bits;
+      int32_t a;  // where its cells begin, from those of from_a on
+      int32_t b;
+    } bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
+    int32_t count = 0;
+    const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
+    int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
+    for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
+      int32_t cell = row;
+      for (int32_t i = from_a; i <= to_a; ++i, cell += stride_a) {
+        const uint32_t number = half_at(directory, cell);
+        if (number != 0) {
+          if (kCoarse) {
+            return slab;
+          }
+          bricks[count++] = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
+        }
       }
+    }
+    if (kCoarse || count == 0) {
+      a.advance(voxels);
+      b.advance(voxels);
       slab += voxels;
       continue;
     }
     // Voxel by voxel.
-    for (int32_t v = 0; v < voxels; ++v, ++slab) {
-      int32_t first[2];
-      int32_t last[2];
-      for (int i = 0; i < 2; ++i) {
-        const int32_t next_low = beam.low[i] + beam.low_slope[i];
-        const int32_t next_high = beam.high[i] + beam.high_slope[i];
-        const int32_t low = beam.low_slope[i] < 0 ? next_low : beam.low[i];
-        const int32_t high = beam.high_slope[i] > 0 ? next_high : beam.high[i];
-        const int32_t most = 4 * side[i == 0 ? a : b] - 1;
-        first[i] = low < 0 ? 0 : low >> kCellShift;
-        last[i] = high >> kCellShift < most ? high >> kCellShift : most;
-        beam.low[i] = next_low;
-        beam.high[i] = next_high;
-      }
-      if (first[0] > last[0] || first[1] > last[1]) {
-        continue;
-      }
-      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[c];
-      for (int32_t j = first[1] >> 2; j <= last[1] >> 2; ++j) {
-        const uint32_t b_bits = cells_in(first[1], last[1], j, course.flip[b]);
-        for (int32_t i = first[0] >> 2; i <= last[0] >> 2; ++i) {
-          const uint32_t number =
-              half_at(course.directory, row + i * course.stride[a] + j * course.stride[b]);
-          if (number == 0) {
-            continue;
-          }
-          const uint8_t* brick = course.bricks + 8 * number;
-          const uint32_t a_bits = cells_in(first[0], last[0], i, course.flip[a]);
-          uint32_t found = 0;
-          if (c == 2) {
-            found = half_at(brick, static_cast<int32_t>(2 * own)) & (a_bits * kRows[b_bits]);
-          } else {
-            for (uint32_t z = 0; z < 4; ++z) {
-              if ((b_bits >> z & 1U) != 0) {
-                found |= half_at(brick, static_cast<int32_t>(2 * z));
-              }
-            }
-            found &= c == 1 ? a_bits << 4 * own : static_cast<uint32_t>(kRows[a_bits]) << own;
-          }
-          if (found != 0) {
-            return slab;
-          }
+    const int32_t base_a = 4 * from_a;
+    const int32_t base_b = 4 * from_b;
+    for (const int32_t end = slab + voxels; slab < end; ++slab) {
+      const uint32_t cells_a = bits_between((a.low >> kCellShift) - base_a, (a.high >> kCellShift) - base_a);
+      const uint32_t cells_b = bits_between((b.low >> kCellShift) - base_b, (b.high >> kCellShift) - base_b);
+      a.advance(1);
+      b.advance(1);
+      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
+      for (int32_t k = 0; k < count; ++k) {
+        const uint32_t in_a = cells_a >> bricks[k].a & 15U;
+        const uint32_t in_b = cells_b >> bricks[k].b & 15U;
+        uint32_t found = 0;
+        if (kC == 2) {
+          found = half_at(bricks[k].bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b]);
+        } else {
+          found = (word_at(bricks[k].bits, 0) & kHalves[in_b & 3U]) |
+                  (word_at(bricks[k].bits, 4) & kHalves[in_b >> 2]);
+          found =
+              (found | found >> 16) & (kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own);
+        }
+        if (found != 0) {
+          return slab;
         }
       }
     }
   }
   return slabs;
+}
+
+template <bool kCoarse>
+int32_t first_slab_along(const Course& course, const Fan& fan, int32_t slab) {
+  return course.c == 0   ? first_slab<0, kCoarse>(course, fan, slab)
+         : course.c == 1 ? first_slab<1, kCoarse>(course, fan, slab)
+                         : first_slab<2, kCoarse>(course, fan, slab);
 }
 
 int32_t ask(const Frame& frame, int32_t x, int32_t y, RenderCounts* counts) {
@@ -671,7 +695,7 @@ class Painter {
     int32_t slab = 0;
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab(course_, fan, 0, true);
+      slab = first_slab_along<true>(course_, fan, 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(tile);
         return;
@@ -706,7 +730,7 @@ class Painter {
     const bool usable = fan.usable();
     if (usable) {
       use(fan.mirrored, fan.c);
-      slab = first_slab(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0, false);
+      slab = first_slab_along<false>(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(quad);
         return;
@@ -868,11 +892,13 @@ Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& c
   for (uint32_t& ink : inks.material) {
     ink = Inks::kNone;
   }
-  Frame frame{tree, map, camera, shading, band.format, 0, {}, {}, {}, {}, {}};
+  Frame frame{tree, map, camera, shading, band.format, 0, {}, {}, {}, {}, {}, {}, {}};
   frame.background = ink_of(band.format, shade(Hit{}, Ray{}, camera, shading));
   for (int axis = 0; axis < 3; ++axis) {
     frame.side[axis] = map.box().max[axis] - map.box().min[axis];
+    frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
+  frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
   spans_of(camera.affine(), kBrickTilePx, &frame.tile_low, &frame.tile_high);
   spans_of(camera.affine(), kQuadPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
