@@ -27,9 +27,12 @@ constexpr int32_t kMissed = -1;
 constexpr int32_t kAsk = -2;  // closest_hit knows
 
 // Bricks counted in one word, ten bits an axis: each 512 - (bricks from here to the far side). Bit 9 of one
-// is set when the ray has left the box; bit 31 while it has not come into it.
+// is set when the ray has left the box; bit 31 while it may not have come into it; bit 30 while it is in the
+// slab of voxels that it starts in.
 constexpr uint32_t kLeft = uint32_t{1} << 9 | uint32_t{1} << 19 | uint32_t{1} << 29;
 constexpr uint32_t kWaiting = uint32_t{1} << 31;
+constexpr uint32_t kInside = uint32_t{1} << 30;
+constexpr uint32_t kSpecial = kLeft | kWaiting | kInside;
 
 // The directory and the bricks as halfwords and words: they lie at multiples of 4.
 using Half [[gnu::may_alias]] = uint16_t;
@@ -96,12 +99,12 @@ struct Course {
   unsigned mirrored;   // bit a: axis a is
   bool exact_ties;     // faces entered through an edge are the voxel's
   // Where the rays start.
-  bool inside;      // at their origins
-  uint32_t plane;   // distance from the origin, 1/256 voxel
-  uint32_t behind;  // from there back to the plane of c before it, when the origin lies between two planes
-  uint32_t first;   // the voxel on c, in place
-  int32_t start;    // of the directory, without a and b
-  uint32_t left;    // counts of bricks, without a and b
+  uint32_t waiting;  // kWaiting where they may start outside of the box
+  uint32_t plane;    // distance from the origin, 1/256 voxel
+  uint32_t behind;   // from there back to the plane of c before it, when the origin lies between two planes
+  uint32_t first;    // the voxel on c, in place
+  int32_t start;     // of the directory, without a and b
+  uint32_t left;     // counts of bricks, without a and b
   // The affine function, mirrored.
   Camera::Vec3Q32 step_x;
   Camera::Vec3Q32 step_y;
@@ -201,13 +204,12 @@ template <int kC>
   if ((cell_a | cell_b) >= 1024) [[unlikely]] {
     return static_cast<int32_t>(at_a | at_b) < 0 ? kAsk : kMissed;
   }
-  uint32_t rest_a = at_a - (cell_a + 1) * den - course.behind * d_a;
-  uint32_t rest_b = at_b - (cell_b + 1) * den - course.behind * d_b;
+  uint32_t rest_a = at_a - (cell_a + 1) * den;
+  uint32_t rest_b = at_b - (cell_b + 1) * den;
   const uint32_t go_a = d_a << 8;
   const uint32_t go_b = d_b << 8;
 
   uint32_t left = course.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
-  left |= ((cell_a - kOutsideCells) | (cell_b - kOutsideCells)) & kWaiting;
   int32_t cell = course.start + static_cast<int32_t>(cell_a >> 2) * course.stride[kA] +
                  static_cast<int32_t>(cell_b >> 2) * course.stride[kB];
   Place place{0, 0};
@@ -234,26 +236,28 @@ template <int kC>
     return false;
   };
 
-  if (course.inside && (left & (kLeft | kWaiting)) == 0) [[unlikely]] {
-    brick = course.bricks + 8 * half_at(course.directory, cell);
-    if (solid()) {
-      return kAsk;
-    }
-  }
-
 enter:  // a brick, by a plane of `axis`
-  if ((left & (kLeft | kWaiting)) != 0) [[unlikely]] {
+  if ((left & kSpecial) != 0) [[unlikely]] {
     if ((left & kLeft) != 0) {
       return kMissed;
     }
+    if ((left & kInside) != 0) {
+      rest_a -= course.behind * d_a;
+      rest_b -= course.behind * d_b;
+    }
     // 512 - bricks is the near side: below it the ray waits.
     const Vec3i& side = course.frame->side;
-    if ((left >> 10 * kA & 0x3FFU) < 512U - static_cast<uint32_t>(side[kA]) ||
-        (left >> 10 * kB & 0x3FFU) < 512U - static_cast<uint32_t>(side[kB])) {
-      brick = course.bricks;
-      goto entered;
+    brick = course.bricks;
+    if ((left & kWaiting) == 0 || ((left >> 10 * kA & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kA]) &&
+                                   (left >> 10 * kB & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kB]))) {
+      left &= ~kWaiting;
+      brick += 8 * half_at(course.directory, cell);
     }
-    left &= ~kWaiting;
+    if ((left & kInside) != 0 && solid()) {
+      return kAsk;
+    }
+    left &= ~kInside;
+    goto entered;
   }
   brick = course.bricks + 8 * half_at(course.directory, cell);
 entered:
@@ -284,8 +288,8 @@ between:
   goto hit;
 cross_a:
   if (!negative(rest_b)) {
-    const uint32_t time_a = rest_a * d_b;
-    const uint32_t time_b = rest_b * d_a;
+    const uint32_t time_a = rest_a * (go_b >> 8);
+    const uint32_t time_b = rest_b * (go_a >> 8);
     if (time_a < time_b) {
       goto cross_b;
     }
@@ -345,8 +349,8 @@ tie:                                 // planes crossed together: no time is spen
 hit:
   // Entered by a plane of c, and perhaps by others at the same t: the lowest axis counts.
   if (axis == kC && (rest_a == 0U - den || rest_b == 0U - den)) [[unlikely]] {
-    const bool a = rest_a == 0U - den && d_a != 0;
-    const bool b = rest_b == 0U - den && d_b != 0;
+    const bool a = rest_a == 0U - den && go_a != 0;
+    const bool b = rest_b == 0U - den && go_b != 0;
     if ((a || b) && !course.exact_ties) {
       return kAsk;
     }
@@ -439,12 +443,12 @@ void set_course(Course& course, unsigned mirrored, int c) {
 // Rays start in the slab of voxels `slab` along c.
 void set_start(Course& course, int32_t slab) {
   const int32_t distance = slab * Q8::kOne - course.origin[course.c];
-  course.inside = distance <= 0;
   course.plane = distance > 0 ? static_cast<uint32_t>(distance) : 0;
   course.behind = distance > 0 ? 0 : static_cast<uint32_t>(-distance);
   course.first = ((static_cast<uint32_t>(slab) & 3U) ^ course.flip[course.c]) << kPlaceShift[course.c];
   course.start = course.base + course.stride[course.c] * (slab >> 2);
-  course.left = course.base_left + (static_cast<uint32_t>(slab >> 2) << 10 * course.c);
+  course.left = (course.base_left + (static_cast<uint32_t>(slab >> 2) << 10 * course.c)) | course.waiting |
+                (distance <= 0 ? kInside : 0);
 }
 
 // Slopes of a beam in 1/1024, so positions in 1/2^18 voxel.
@@ -485,9 +489,10 @@ constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
 // The first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs
 // when there is none. Coarse: the first of a slab of bricks. `course` is the fan's.
 template <int kC, bool kCoarse>
-[[gnu::noinline]] int32_t first_slab(const Course& course, const Fan& fan, int32_t slab) {
+[[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
   constexpr int kA = kC == 0 ? 1 : 0;
   constexpr int kB = kC == 2 ? 1 : 2;
+  course.waiting = kWaiting;
   const Frame& frame = *course.frame;
   const int32_t slabs = 4 * frame.side[kC];
   const int32_t origin = course.origin[kC];
@@ -579,11 +584,9 @@ template <int kC, bool kCoarse>
     // Voxel by voxel.
     const int32_t base_a = 4 * from_a;
     const int32_t base_b = 4 * from_b;
-    for (const int32_t end = slab + voxels; slab < end; ++slab) {
+    for (const int32_t end = slab + voxels; slab < end; ++slab, a.advance(1), b.advance(1)) {
       const uint32_t cells_a = bits_between((a.low >> kCellShift) - base_a, (a.high >> kCellShift) - base_a);
       const uint32_t cells_b = bits_between((b.low >> kCellShift) - base_b, (b.high >> kCellShift) - base_b);
-      a.advance(1);
-      b.advance(1);
       const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
       for (int32_t k = 0; k < count; ++k) {
         const uint32_t in_a = cells_a >> bricks[k].a & 15U;
@@ -598,6 +601,11 @@ template <int kC, bool kCoarse>
               (found | found >> 16) & (kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own);
         }
         if (found != 0) {
+          // Both ends within the box: no ray waits outside.
+          course.waiting =
+              a.low < 0 || b.low < 0 || a.high >> kBrickShift > last_a || b.high >> kBrickShift > last_b
+                  ? kWaiting
+                  : 0;
           return slab;
         }
       }
@@ -607,7 +615,7 @@ template <int kC, bool kCoarse>
 }
 
 template <bool kCoarse>
-int32_t first_slab_along(const Course& course, const Fan& fan, int32_t slab) {
+int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
   return course.c == 0   ? first_slab<0, kCoarse>(course, fan, slab)
          : course.c == 1 ? first_slab<1, kCoarse>(course, fan, slab)
                          : first_slab<2, kCoarse>(course, fan, slab);
