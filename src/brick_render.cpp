@@ -157,36 +157,44 @@ void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t
   }
 }
 
-struct Found {
-  uint32_t brick;  // number
-  uint32_t bit;
-  uint32_t axis;
-  uint32_t t_numerator;
-  uint32_t direction;  // on that axis
-};
-
-// The colour of a face that is not among those seen lately.
-[[gnu::noinline]] int32_t look_up(const Course& course, const Found& found) {
-  const Frame& frame = *course.frame;
+// The hit of a face of `material`, with what `shade` looks at; its ray is `ray`.
+Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   Hit hit;
   hit.kind = HitKind::kHit;
-  hit.axis = static_cast<int8_t>(found.axis);
-  hit.material = frame.map.material(frame.tree, found.brick, found.bit);
+  hit.axis = static_cast<int8_t>(axis);
+  hit.material = material;
+  ray->direction[axis] = (course.mirrored >> axis & 1U) == 0 ? 1 : -1;
+  return hit;
+}
+
+[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, int32_t distance, uint32_t direction) {
+  const Frame& frame = *course.frame;
   Ray ray;
-  ray.direction[static_cast<int>(found.axis)] = (course.mirrored >> found.axis & 1U) == 0 ? 1 : -1;
-  if (frame.shading.mode == ShadeMode::kDepth) {
-    hit.t_numerator = static_cast<int32_t>(found.t_numerator);
-    hit.t_denominator = static_cast<int32_t>(found.direction) * Q8::kOne;
-    return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
-  }
-  const uint32_t face = course.face[found.axis];
-  uint32_t& kept = course.inks->material[face * Inks::kMaterials + hit.material % Inks::kMaterials];
-  if (kept >> 24 != hit.material || kept == Inks::kNone) {
-    kept = ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)) |
-           static_cast<uint32_t>(hit.material) << 24;
+  Hit hit = face_hit(course, axis, 0, &ray);
+  hit.t_numerator = distance;
+  hit.t_denominator = static_cast<int32_t>(direction) * Q8::kOne;
+  return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
+}
+
+[[gnu::noinline]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
+  const Frame& frame = *course.frame;
+  Ray ray;
+  const Hit hit = face_hit(course, axis, material, &ray);
+  return ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)) | static_cast<uint32_t>(material)
+                                                                                  << 24;
+}
+
+// The colour of a face that is not among those seen lately.
+[[gnu::noinline]] int32_t look_up(const Course& course, uint32_t number, uint32_t bit, int axis) {
+  const Frame& frame = *course.frame;
+  const uint8_t material = frame.map.material(frame.tree, number, bit);
+  const uint32_t face = course.face[axis];
+  uint32_t& kept = course.inks->material[face * Inks::kMaterials + material % Inks::kMaterials];
+  if (kept >> 24 != material || kept == Inks::kNone) {
+    kept = material_ink(course, axis, material);
   }
   const uint32_t ink = kept & 0xFFFFFFU;
-  const uint32_t key = (found.brick << 6 | found.bit) << 3 | face;
+  const uint32_t key = (number << 6 | bit) << 3 | face;
   course.inks->face[Inks::slot(key)] = {key, ink};
   return static_cast<int32_t>(ink);
 }
@@ -271,11 +279,11 @@ slab:  // from plane to plane of c
   rest_a += go_a;
   rest_b += go_b;
 between:
-  if (!negative(rest_a)) {
+  if (!negative(rest_a & rest_b)) {
+    if (negative(rest_a)) {
+      goto cross_b;
+    }
     goto cross_a;
-  }
-  if (!negative(rest_b)) {
-    goto cross_b;
   }
   if (step.template operator()<kC>()) {
     axis = kC;
@@ -362,21 +370,20 @@ hit:
   }
   const uint32_t bit = place.shift + place.row * 8;
   const uint32_t face = course.face[axis];
-  const uint32_t offset = static_cast<uint32_t>(brick - course.bricks);
-  const uint32_t key = (offset << 3 | bit) << 3 | face;
+  const uint32_t number = half_at(course.directory, cell);
+  const uint32_t key = (number << 6 | bit) << 3 | face;
   const Inks::Seen& seen = course.inks->face[Inks::slot(key)];
   if (seen.key == key) {
     return static_cast<int32_t>(seen.ink);
   }
-  Found found{offset >> 3, bit, static_cast<uint32_t>(axis), 0, axis == kA ? d_a : axis == kB ? d_b : d_c};
-  if (course.frame->shading.mode == ShadeMode::kDepth) {
-    const uint32_t bricks =
-        (left >> 10 * axis & 0x3FFU) - (512U - static_cast<uint32_t>(course.frame->side[axis]));
-    const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
-    const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
-    found.t_numerator = (4 * bricks + (voxel ^ course.flip[axis])) * Q8::kOne - static_cast<uint32_t>(origin);
+  if (course.frame->shading.mode != ShadeMode::kDepth) {
+    return look_up(course, number, bit, axis);
   }
-  return look_up(course, found);
+  const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
+  const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
+  const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
+  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ course.flip[axis])) * Q8::kOne - origin;
+  return depth_ink(course, axis, distance, axis == kA ? d_a : axis == kB ? d_b : d_c);
 }
 
 // The directions of a tile: for each axis the least and the greatest; what rays of them have in common.
@@ -795,16 +802,8 @@ class Painter {
   uint8_t* line_of(int32_t y) const { return first_line_ + stride_ * static_cast<size_t>(y - first_row_); }
 
   void store(int32_t x, int32_t y, int32_t* inks, int32_t pixels) {
-    for (int32_t i = 0; i < pixels; ++i) {
-      if (inks[i] < 0) [[unlikely]] {
-        if (inks[i] == kAsk) {
-          inks[i] = ask(frame_, x + i, y, counts_);
-        }
-        if (inks[i] < 0) {
-          inks[i] = static_cast<int32_t>(frame_.background);
-          ++misses_;
-        }
-      }
+    if (pixels != kQuadPx || (inks[0] | inks[1] | inks[2] | inks[3]) < 0) [[unlikely]] {
+      answer(x, y, inks, pixels);
     }
     uint8_t* line = line_of(y);
     if (frame_.format == PixelFormat::kGray4 && pixels == kQuadPx) {
@@ -815,6 +814,19 @@ class Painter {
     }
     for (int32_t i = 0; i < pixels; ++i) {
       store_ink(line, x + i, y, frame_.format, static_cast<uint32_t>(inks[i]));
+    }
+  }
+
+  // Makes colours of what are none yet.
+  [[gnu::noinline]] void answer(int32_t x, int32_t y, int32_t* inks, int32_t pixels) {
+    for (int32_t i = 0; i < pixels; ++i) {
+      if (inks[i] == kAsk) {
+        inks[i] = ask(frame_, x + i, y, counts_);
+      }
+      if (inks[i] < 0) {
+        inks[i] = static_cast<int32_t>(frame_.background);
+        ++misses_;
+      }
     }
   }
 
