@@ -296,8 +296,8 @@ between:
   goto hit;
 cross_a:
   if (!negative(rest_b)) {
-    const uint32_t time_a = rest_a * (go_b >> 8);
-    const uint32_t time_b = rest_b * (go_a >> 8);
+    const uint32_t time_a = rest_a * d_b;
+    const uint32_t time_b = rest_b * d_a;
     if (time_a < time_b) {
       goto cross_b;
     }
@@ -357,8 +357,8 @@ tie:                                 // planes crossed together: no time is spen
 hit:
   // Entered by a plane of c, and perhaps by others at the same t: the lowest axis counts.
   if (axis == kC && (rest_a == 0U - den || rest_b == 0U - den)) [[unlikely]] {
-    const bool a = rest_a == 0U - den && go_a != 0;
-    const bool b = rest_b == 0U - den && go_b != 0;
+    const bool a = rest_a == 0U - den && d_a != 0;
+    const bool b = rest_b == 0U - den && d_b != 0;
     if ((a || b) && !course.exact_ties) {
       return kAsk;
     }
@@ -663,24 +663,39 @@ struct Tile {
   int32_t y1;
 };
 
-constexpr int32_t kQuadPx = 4;
+// Quads: the least tiles.
+constexpr int32_t kQuadAcrossPx = 4;
+constexpr int32_t kQuadDownPx = 4;
+constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;
 
-// Rows of a quad with rays of one course: the mirrored affine function is positive all over it, so rounding
-// is adding a half.
+// A quad with rays of one course: the mirrored affine function `from` (and a half) is positive all over it,
+// so rounding is cutting off. Returns a negative number when any ink is none.
 template <int kC>
-void trace_row(const Course& course, const Camera::Vec3Q32& from, int32_t pixels, int32_t* inks) {
+[[gnu::noinline]] int32_t trace_quad(const Course& course, const Camera::Vec3Q32& from, int32_t across,
+                                     int32_t down, int32_t* inks) {
   constexpr int kA = kC == 0 ? 1 : 0;
   constexpr int kB = kC == 2 ? 1 : 2;
-  uint64_t a = static_cast<uint64_t>(from[kA]);
-  uint64_t b = static_cast<uint64_t>(from[kB]);
-  uint64_t c = static_cast<uint64_t>(from[kC]);
-  for (int32_t i = 0; i < pixels; ++i) {
-    inks[i] = trace_one<kC>(course, static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b >> 32),
-                            static_cast<uint32_t>(c >> 32));
-    a += static_cast<uint64_t>(course.step_x[kA]);
-    b += static_cast<uint64_t>(course.step_x[kB]);
-    c += static_cast<uint64_t>(course.step_x[kC]);
+  Vec3<uint64_t> row{static_cast<uint64_t>(from.x), static_cast<uint64_t>(from.y),
+                     static_cast<uint64_t>(from.z)};
+  int32_t all = 0;
+  for (; down > 0; --down) {
+    uint64_t a = row[kA];
+    uint64_t b = row[kB];
+    uint64_t c = row[kC];
+    for (const int32_t* end = inks + across; inks != end; ++inks) {
+      const int32_t ink = trace_one<kC>(course, static_cast<uint32_t>(a >> 32),
+                                        static_cast<uint32_t>(b >> 32), static_cast<uint32_t>(c >> 32));
+      *inks = ink;
+      all |= ink;
+      a += static_cast<uint64_t>(course.step_x[kA]);
+      b += static_cast<uint64_t>(course.step_x[kB]);
+      c += static_cast<uint64_t>(course.step_x[kC]);
+    }
+    row.x += static_cast<uint64_t>(course.step_y.x);
+    row.y += static_cast<uint64_t>(course.step_y.y);
+    row.z += static_cast<uint64_t>(course.step_y.z);
   }
+  return all;
 }
 
 class Painter {
@@ -717,18 +732,18 @@ class Painter {
       }
     }
     Camera::Vec3Q32 row = value;
-    for (int32_t y = tile.y0; y < tile.y1; y += kQuadPx) {
+    for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
       Camera::Vec3Q32 at = row;
-      for (int32_t x = tile.x0; x < tile.x1; x += kQuadPx) {
-        const Tile quad{x, x + kQuadPx < tile.x1 ? x + kQuadPx : tile.x1, y,
-                        y + kQuadPx < tile.y1 ? y + kQuadPx : tile.y1};
+      for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
+        const Tile quad{x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
+                        y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1};
         draw_quad(quad, at, fan, slab);
         for (int axis = 0; axis < 3; ++axis) {
-          at[axis] += kQuadPx * affine.step_x[axis];
+          at[axis] += kQuadAcrossPx * affine.step_x[axis];
         }
       }
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += kQuadPx * affine.step_y[axis];
+        row[axis] += kQuadDownPx * affine.step_y[axis];
       }
     }
   }
@@ -752,80 +767,88 @@ class Painter {
       }
       set_start(course_, slab);
     }
-    int32_t inks[kQuadPx];
-    const int32_t pixels = quad.x1 - quad.x0;
+    int32_t inks[kQuadPixels];
+    const int32_t across = quad.x1 - quad.x0;
+    const int32_t down = quad.y1 - quad.y0;
     if (!usable || fan.mixed != 0) {
-      Camera::Vec3Q32 row = value;
-      for (int32_t y = quad.y0; y < quad.y1; ++y) {
-        Camera::Vec3Q32 at = row;
-        for (int32_t i = 0; i < pixels; ++i) {
-          inks[i] = kAsk;
-          if (usable) {
-            const Vec3i d{Camera::round(at.x), Camera::round(at.y), Camera::round(at.z)};
-            const unsigned signs = signs_of(d);
-            if (signs != course_.mirrored) {
-              set_course(course_, signs, fan.c);
-              set_start(course_, slab);
-            }
-            inks[i] = trace_along(course_, d);
-          }
-          for (int axis = 0; axis < 3; ++axis) {
-            at[axis] += frame_.camera.affine().step_x[axis];
-          }
-        }
-        store(quad.x0, y, inks, pixels);
-        for (int axis = 0; axis < 3; ++axis) {
-          row[axis] += frame_.camera.affine().step_y[axis];
-        }
-      }
-      return;
-    }
-    Camera::Vec3Q32 row;
-    for (int axis = 0; axis < 3; ++axis) {
-      row[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
-    }
-    for (int32_t y = quad.y0; y < quad.y1; ++y) {
-      if (fan.c == 0) {
-        trace_row<0>(course_, row, pixels, inks);
-      } else if (fan.c == 1) {
-        trace_row<1>(course_, row, pixels, inks);
-      } else {
-        trace_row<2>(course_, row, pixels, inks);
-      }
-      store(quad.x0, y, inks, pixels);
+      trace_mixed(value, usable ? fan.c : -1, slab, across, down, inks);
+      answer(quad, inks);
+    } else {
+      Camera::Vec3Q32 from;
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += course_.step_y[axis];
+        from[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
+      }
+      const int32_t all = fan.c == 0   ? trace_quad<0>(course_, from, across, down, inks)
+                          : fan.c == 1 ? trace_quad<1>(course_, from, across, down, inks)
+                                       : trace_quad<2>(course_, from, across, down, inks);
+      if (all < 0) {
+        answer(quad, inks);
+      }
+    }
+    store(quad, inks);
+  }
+
+  // A quad whose rays do not all go the same way, each with a course of its own; axis -1: none is known.
+  [[gnu::noinline]] void trace_mixed(const Camera::Vec3Q32& value, int c, int32_t slab, int32_t across,
+                                     int32_t down, int32_t* inks) {
+    const Camera::Affine& affine = frame_.camera.affine();
+    Camera::Vec3Q32 row = value;
+    for (; down > 0; --down) {
+      Camera::Vec3Q32 at = row;
+      for (int32_t i = 0; i < across; ++i) {
+        *inks = kAsk;
+        if (c >= 0) {
+          const Vec3i d{Camera::round(at.x), Camera::round(at.y), Camera::round(at.z)};
+          const unsigned signs = signs_of(d);
+          if (signs != course_.mirrored) {
+            set_course(course_, signs, c);
+            set_start(course_, slab);
+          }
+          *inks = trace_along(course_, d);
+        }
+        ++inks;
+        for (int axis = 0; axis < 3; ++axis) {
+          at[axis] += affine.step_x[axis];
+        }
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        row[axis] += affine.step_y[axis];
       }
     }
   }
 
   uint8_t* line_of(int32_t y) const { return first_line_ + stride_ * static_cast<size_t>(y - first_row_); }
 
-  void store(int32_t x, int32_t y, int32_t* inks, int32_t pixels) {
-    if (pixels != kQuadPx || (inks[0] | inks[1] | inks[2] | inks[3]) < 0) [[unlikely]] {
-      answer(x, y, inks, pixels);
-    }
-    uint8_t* line = line_of(y);
-    if (frame_.format == PixelFormat::kGray4 && pixels == kQuadPx) {
-      line += x >> 1;
-      line[0] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);
-      line[1] = static_cast<uint8_t>(inks[2] << 4 | inks[3]);
+  void store(const Tile& quad, const int32_t* inks) {
+    const int32_t across = quad.x1 - quad.x0;
+    uint8_t* line = line_of(quad.y0);
+    if (frame_.format == PixelFormat::kGray4 && across == kQuadAcrossPx) {
+      line += quad.x0 >> 1;
+      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+        for (int32_t i = 0; i < kQuadAcrossPx / 2; ++i, inks += 2) {
+          line[i] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);
+        }
+      }
       return;
     }
-    for (int32_t i = 0; i < pixels; ++i) {
-      store_ink(line, x + i, y, frame_.format, static_cast<uint32_t>(inks[i]));
+    for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+      for (int32_t x = quad.x0; x < quad.x1; ++x) {
+        store_ink(line, x, y, frame_.format, static_cast<uint32_t>(*inks++));
+      }
     }
   }
 
   // Makes colours of what are none yet.
-  [[gnu::noinline]] void answer(int32_t x, int32_t y, int32_t* inks, int32_t pixels) {
-    for (int32_t i = 0; i < pixels; ++i) {
-      if (inks[i] == kAsk) {
-        inks[i] = ask(frame_, x + i, y, counts_);
-      }
-      if (inks[i] < 0) {
-        inks[i] = static_cast<int32_t>(frame_.background);
-        ++misses_;
+  [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
+    for (int32_t y = quad.y0; y < quad.y1; ++y) {
+      for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
+        if (*inks == kAsk) {
+          *inks = ask(frame_, x, y, counts_);
+        }
+        if (*inks < 0) {
+          *inks = static_cast<int32_t>(frame_.background);
+          ++misses_;
+        }
       }
     }
   }
@@ -853,10 +876,11 @@ class Painter {
 };
 
 // What the affine function adds over `pixels` columns and rows at least and at most.
-void spans_of(const Camera::Affine& affine, int32_t pixels, Camera::Vec3Q32* low, Camera::Vec3Q32* high) {
+void spans_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Camera::Vec3Q32* low,
+              Camera::Vec3Q32* high) {
   for (int axis = 0; axis < 3; ++axis) {
-    const int64_t across = affine.step_x[axis] * (pixels - 1);
-    const int64_t down = affine.step_y[axis] * (pixels - 1);
+    const int64_t across = affine.step_x[axis] * (across_px - 1);
+    const int64_t down = affine.step_y[axis] * (down_px - 1);
     (*low)[axis] = (across < 0 ? across : 0) + (down < 0 ? down : 0);
     (*high)[axis] = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
   }
@@ -919,15 +943,16 @@ Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& c
     frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  spans_of(camera.affine(), kBrickTilePx, &frame.tile_low, &frame.tile_high);
-  spans_of(camera.affine(), kQuadPx, &frame.quad_low, &frame.quad_high);
+  spans_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  spans_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Painter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
   const int32_t end = band.first_row + band.rows;
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;
     const int32_t y1 = tile_end < end ? tile_end : end;
-    for (int32_t row = y; row < y1; ++row) {
+    // Pixels of less than a byte are put into what is there.
+    for (int32_t row = y; row < y1 && bits_per_pixel(band.format) < 8; ++row) {
       uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row - band.first_row);
       for (size_t i = 0; i < line_bytes; ++i) {
         line[i] = 0;
