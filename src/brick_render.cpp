@@ -110,16 +110,8 @@ struct Course {
   Camera::Vec3Q32 step_y;
 };
 
-// Where a voxel lies in a brick: x and y as a shift of halfword z, z in bytes.
-struct Place {
-  uint32_t shift;
-  uint32_t row;
-};
+// How far the voxel's place on an axis is shifted, see trace_one.
 constexpr int kPlaceShift[3] = {0, 2, 1};
-template <int kAxis>
-uint32_t& part(Place& place) {
-  return kAxis == 2 ? place.row : place.shift;
-}
 template <int kAxis>
 constexpr uint32_t kField = 3U << kPlaceShift[kAxis];
 
@@ -220,27 +212,34 @@ template <int kC>
   uint32_t left = course.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
   int32_t cell = course.start + static_cast<int32_t>(cell_a >> 2) * course.stride[kA] +
                  static_cast<int32_t>(cell_b >> 2) * course.stride[kB];
-  Place place{0, 0};
-  part<kA>(place) |= ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
-  part<kB>(place) |= ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
-  part<kC>(place) |= course.first;
+  const uint32_t in_a = ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
+  const uint32_t in_b = ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
+  // Where the voxel lies in its brick: x and y as a shift of halfword z, z in bytes.
+  uint32_t shift = in_a | (kB == 2 ? course.first : in_b);
+  uint32_t row = kB == 2 ? in_b : course.first;
   const uint8_t* brick = nullptr;
   int axis = kC;
 
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
-  const auto solid = [&]() {
-    return (half_at(brick, static_cast<int32_t>(place.row)) >> place.shift & 1U) != 0;
-  };
+  const auto solid = [&]() { return (half_at(brick, static_cast<int32_t>(row)) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
   const auto step = [&]<int kAxis>() {
-    uint32_t& own = part<kAxis>(place);
-    if ((own & kField<kAxis>) == course.last[kAxis]) {
-      own ^= kField<kAxis>;
+    const uint32_t own = (kAxis == 2 ? row : shift) & kField<kAxis>;
+    if (own == course.last[kAxis]) {
+      if (kAxis == 2) {
+        row ^= kField<kAxis>;
+      } else {
+        shift ^= kField<kAxis>;
+      }
       left += uint32_t{1} << 10 * kAxis;
       cell += course.stride[kAxis];
       return true;
     }
-    own += static_cast<uint32_t>(course.step[kAxis]);
+    if (kAxis == 2) {
+      row += static_cast<uint32_t>(course.step[kAxis]);
+    } else {
+      shift += static_cast<uint32_t>(course.step[kAxis]);
+    }
     return false;
   };
 
@@ -368,7 +367,7 @@ hit:
       axis = kB;
     }
   }
-  const uint32_t bit = place.shift + place.row * 8;
+  const uint32_t bit = shift + row * 8;
   const uint32_t face = course.face[axis];
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
