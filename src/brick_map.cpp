@@ -17,11 +17,16 @@ constexpr uint32_t kChecksumStart = 16;
 constexpr uint32_t kTreeChecksumOffset = 16;
 constexpr uint32_t kBoxSizeOffset = 20;
 constexpr uint32_t kBricksOffset = 24;
-constexpr uint32_t kFirstNodeOffset = 28;
+constexpr uint32_t kMixedOffset = 28;
 
-// A source below this is a node of level 2, counted from the first of that level; from it on the low byte is
-// the material of all that is seen of the brick.
+// While a map is made, where a brick comes from: below this a node of level 2, counted from the first of that
+// level; from it on the low byte is the material of all that is seen of the brick.
 constexpr uint32_t kUniform = 0xFF00;
+
+// A mixed brick's origin: number of its first node of level 1 and, in the highest byte, its child mask; then
+// the materials of voxels and of solid blocks before those of the brick.
+constexpr uint32_t kOriginBytes = 12;
+constexpr uint32_t kChildBits = 24;
 
 struct Header {
   int level;
@@ -29,13 +34,17 @@ struct Header {
   Vec3i size;
   uint32_t cells;
   uint32_t bricks;
+  uint32_t mixed;
 };
 
-size_t sources_at(uint32_t cells, uint32_t bricks) {
-  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 3) & ~size_t{3}) + 8 * size_t{bricks};
-}
 size_t bricks_at(uint32_t cells) {
-  return sources_at(cells, 0);
+  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 3) & ~size_t{3});
+}
+size_t origins_at(uint32_t cells, uint32_t bricks) {
+  return bricks_at(cells) + 8 * size_t{bricks};
+}
+size_t materials_at(uint32_t cells, uint32_t bricks, uint32_t mixed) {
+  return origins_at(cells, bricks) + kOriginBytes * size_t{mixed};
 }
 
 const char* read_header(ConstBytes bytes, Header* header) {
@@ -59,7 +68,9 @@ const char* read_header(ConstBytes bytes, Header* header) {
   }
   header->bricks = bits::load16(base + kBricksOffset);
   const uint32_t size = bits::load32(base + kSizeOffset);
-  if (header->bricks == 0 || size != brick_map_bytes(header->cells, header->bricks)) {
+  header->mixed = bits::load16(base + kMixedOffset);
+  if (header->bricks == 0 || header->mixed >= header->bricks ||
+      size != brick_map_bytes(header->cells, header->bricks, header->mixed)) {
     return "size does not match the counts";
   }
   return size > bytes.size ? "truncated" : nullptr;
@@ -137,7 +148,7 @@ class Builder {
   }
 
   Status run(size_t* written) {
-    if (out_.size < brick_map_bytes(cells_, 1)) {
+    if (out_.size < brick_map_bytes(cells_, 1, 0) + 2) {
       return Status::kOutOfMemory;
     }
     for (size_t at = 0; at < bricks_at(cells_); ++at) {
@@ -152,6 +163,7 @@ class Builder {
       return status;
     }
     share_uniform();
+    mixed_first();
     return finish(written);
   }
 
@@ -166,7 +178,7 @@ class Builder {
     if (bricks_ == kMaxBricks) {
       return Status::kOutOfRange;
     }
-    if (out_.size < brick_map_bytes(cells_, bricks_ + 1)) {
+    if (out_.size < brick_map_bytes(cells_, bricks_ + 1, 0) + 2 * (size_t{bricks_} + 1)) {
       return Status::kOutOfMemory;
     }
     *number = bricks_++;
@@ -330,6 +342,19 @@ class Builder {
     }
   }
 
+  void rename(uint32_t from, uint32_t to) {
+    for (uint32_t index = 0; index < cells_; ++index) {
+      if (bits::load16(cell(index)) == from) {
+        bits::store16(cell(index), to);
+      }
+    }
+    for (uint16_t& solid : solid_) {
+      if (solid == from) {
+        solid = static_cast<uint16_t>(to);
+      }
+    }
+  }
+
   // Cell `index` takes the shared solid brick; the last brick moves into the place of `number`.
   void share(uint32_t index, uint32_t number, uint8_t material) {
     if (solid_[material] == 0) {
@@ -338,41 +363,67 @@ class Builder {
     }
     bits::store16(cell(index), solid_[material]);
     const uint32_t last = --bricks_;
-    if (number == last) {
-      return;
-    }
-    for (int at = 0; at < 8; ++at) {
-      brick(number)[at] = brick(last)[at];
-    }
-    bits::store16(source(number), bits::load16(source(last)));
-    for (uint16_t& solid : solid_) {
-      if (solid == last) {
-        solid = static_cast<uint16_t>(number);
-      }
-    }
-    for (uint32_t other = 0; other < cells_; ++other) {
-      if (bits::load16(cell(other)) == last) {
-        bits::store16(cell(other), number);
-      }
+    if (number != last) {
+      bits::store64(brick(number), bits::load64(brick(last)));
+      bits::store16(source(number), bits::load16(source(last)));
+      rename(last, number);
     }
   }
 
+  bool is_mixed(uint32_t number) const { return bits::load16(source(number)) < kUniform; }
+
+  // Bricks that need the tree get the numbers from 1 on.
+  void mixed_first() {
+    uint32_t low = 1;
+    uint32_t high = bricks_ - 1;
+    for (;;) {
+      while (low <= high && is_mixed(low)) {
+        ++low;
+      }
+      while (high >= low && !is_mixed(high)) {
+        --high;
+      }
+      if (low > high) {
+        break;
+      }
+      const uint64_t brick_bits = bits::load64(brick(low));
+      const uint32_t where = bits::load16(source(low));
+      bits::store64(brick(low), bits::load64(brick(high)));
+      bits::store16(source(low), bits::load16(source(high)));
+      bits::store64(brick(high), brick_bits);
+      bits::store16(source(high), where);
+      // No cell has this number, so that the two do not mix.
+      rename(low, kMaxBricks);
+      rename(high, low);
+      rename(kMaxBricks, high);
+    }
+    mixed_ = low - 1;
+  }
+
   Status finish(size_t* written) {
-    const size_t size = brick_map_bytes(cells_, bricks_);
-    // The sources move behind the bricks, turned around; through the bytes between, from both ends inwards,
-    // so that none is overwritten before it was read.
-    uint8_t* front = out_.data + sources_at(cells_, bricks_);
-    uint8_t* back = source(bricks_ - 1);
-    for (uint32_t low = 0, high = bricks_ - 1; low < high; ++low, --high) {
-      const uint32_t one = bits::load16(back + 2 * size_t{low});
-      bits::store16(back + 2 * size_t{low}, bits::load16(back + 2 * size_t{high}));
-      bits::store16(back + 2 * size_t{high}, one);
+    const size_t size = brick_map_bytes(cells_, bricks_, mixed_);
+    if (out_.size < size + 2 * size_t{bricks_}) {
+      return Status::kOutOfMemory;
     }
-    for (size_t at = 0; at < 2 * size_t{bricks_}; ++at) {
-      front[at] = back[at];
+    for (uint32_t number = 1; number <= mixed_; ++number) {
+      uint8_t* origin = out_.data + origins_at(cells_, bricks_) + kOriginBytes * (size_t{number} - 1);
+      const uint32_t node = first_node_ + bits::load16(source(number));
+      const unsigned mask = tree_.mask(node);
+      const uint32_t child = tree_.first_child(node);
+      if (child >= uint32_t{1} << kChildBits) {
+        return Status::kOutOfRange;
+      }
+      bits::store32(origin, child | static_cast<uint32_t>(mask) << kChildBits);
+      const bool known = child < tree_.node_count();
+      bits::store32(origin + 4, known ? tree_.first_child(child) - tree_.node_count() : 0);
+      bits::store32(origin + 8, known ? tree_.blocks_before(child) : 0);
     }
-    for (size_t at = sources_at(cells_, bricks_) + 2 * size_t{bricks_}; at < size; ++at) {
-      out_[at] = 0;
+    uint8_t* material = out_.data + materials_at(cells_, bricks_, mixed_);
+    for (uint32_t number = mixed_ + 1; number < bricks_; ++number) {
+      *material++ = source(number)[0];
+    }
+    while (material < out_.data + size) {
+      *material++ = 0;
     }
     uint8_t* base = out_.data;
     bits::store32(base, kMagic);
@@ -384,7 +435,7 @@ class Builder {
     bits::store32(base + kSizeOffset, static_cast<uint32_t>(size));
     bits::store32(base + kTreeChecksumOffset, bits::load32(tree_.bytes() + compact_header::kChecksumOffset));
     bits::store32(base + kBricksOffset, bricks_);
-    bits::store32(base + kFirstNodeOffset, first_node_);
+    bits::store32(base + kMixedOffset, mixed_);
     bits::store32(base + kChecksumOffset,
                   crc32({base + kChecksumStart, size - kChecksumStart}, crc32({base, kChecksumOffset})));
     *written = size;
@@ -397,6 +448,7 @@ class Builder {
   Vec3i size_;
   uint32_t cells_ = 0;
   uint32_t bricks_ = 0;
+  uint32_t mixed_ = 0;
   uint32_t first_node_ = 0;
   uint16_t solid_[256];
 };
@@ -419,7 +471,8 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
     }
   }
   result.bricks_ = bytes.data + bricks_at(header.cells);
-  result.sources_ = bytes.data + sources_at(header.cells, header.bricks);
+  result.origins_ = bytes.data + origins_at(header.cells, header.bricks);
+  result.materials_ = bytes.data + materials_at(header.cells, header.bricks, header.mixed);
   result.box_.min = header.min;
   for (int axis = 0; axis < 3; ++axis) {
     result.box_.max[axis] = header.min[axis] + header.size[axis];
@@ -427,7 +480,7 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
   result.size_bytes_ = bits::load32(bytes.data + kSizeOffset);
   result.cells_ = header.cells;
   result.brick_count_ = header.bricks;
-  result.first_node_ = bits::load32(bytes.data + kFirstNodeOffset);
+  result.mixed_count_ = header.mixed;
   result.tree_checksum_ = bits::load32(bytes.data + kTreeChecksumOffset);
   result.level_ = static_cast<uint8_t>(header.level);
   *map = result;
@@ -467,14 +520,33 @@ bool BrickMap::belongs_to(const CompactTree& tree) const {
          bits::load32(tree.bytes() + compact_header::kChecksumOffset) == tree_checksum_;
 }
 
-uint32_t BrickMap::node_of(uint32_t number) const {
-  const uint32_t where = bits::load16(sources_ + 2 * size_t{number});
-  return where < kUniform ? first_node_ + where : UINT32_MAX;
-}
-
-uint8_t BrickMap::material(const CompactTree& tree, uint32_t number, unsigned bit) const {
-  const uint32_t where = bits::load16(sources_ + 2 * size_t{number});
-  return where < kUniform ? material_in_node(tree, first_node_ + where, bit) : static_cast<uint8_t>(where);
+uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const {
+  const uint8_t* origin = origins_ + kOriginBytes * (number - 1);
+  const uint32_t children = bits::load32(origin);
+  const unsigned octant = (bit >> 1 & 1U) | (bit >> 2 & 2U) | (bit >> 3 & 4U);
+  const unsigned voxel = (bit & 1U) | (bit >> 1 & 2U) | (bit >> 2 & 4U);
+  // The masks of the brick's nodes of level 1 up to the one in question stand side by side.
+  const uint32_t before = bits::popcount8(children >> kChildBits & ((1U << octant) - 1));
+  const uint32_t first = children & ((uint32_t{1} << kChildBits) - 1);
+  if (first + before >= tree.node_count()) {
+    return 0;
+  }
+  const uint8_t* masks = tree.masks() + first;
+  const unsigned own = masks[before];
+  if (own == 0) {
+    uint32_t block = bits::load32(origin + 8);
+    for (uint32_t child = 0; child < before; ++child) {
+      block += masks[child] == 0 ? 1U : 0U;
+    }
+    return tree.material_of_block(block);
+  }
+  uint32_t count = bits::load32(origin + 4) + bits::popcount8(own & ((1U << voxel) - 1));
+  if (before >= 4) {
+    count += bits::popcount32(bits::load32(masks));
+    masks += 4;
+  }
+  count += bits::popcount32(bits::load32(masks) & ((uint32_t{1} << 8 * (before & 3U)) - 1));
+  return tree.voxel_material(tree.node_count() + count);
 }
 
 }  // namespace thimble

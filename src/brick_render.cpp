@@ -27,11 +27,14 @@ constexpr int32_t kMissed = -1;
 constexpr int32_t kAsk = -2;  // closest_hit knows
 
 // Bricks counted in one word, ten bits an axis: each 512 - (bricks from here to the far side). Bit 9 of one
-// is set when the ray has left the box; bit 31 while it has not come into it.
+// is set when the ray has left the box; bit 31 while it may not have come into it; bit 30 while it is in the
+// slab of voxels that it starts in.
 constexpr uint32_t kLeft = uint32_t{1} << 9 | uint32_t{1} << 19 | uint32_t{1} << 29;
 constexpr uint32_t kWaiting = uint32_t{1} << 31;
+constexpr uint32_t kInside = uint32_t{1} << 30;
+constexpr uint32_t kSpecial = kLeft | kWaiting | kInside;
 
-// The directory and the bricks as halfwords: they lie at even addresses.
+// The directory and the bricks as halfwords and words: they lie at multiples of 4.
 using Half [[gnu::may_alias]] = uint16_t;
 
 uint32_t half_at(const uint8_t* bytes, int32_t offset) {
@@ -39,10 +42,15 @@ uint32_t half_at(const uint8_t* bytes, int32_t offset) {
   return *static_cast<const Half*>(static_cast<const void*>(bytes + offset));
 }
 
+using Word [[gnu::may_alias]] = uint32_t;
+uint32_t word_at(const uint8_t* bytes, int32_t offset) {
+  return *reinterpret_cast<const Word*>(bytes + offset);
+}
+
 // Colours that were looked up: of faces of voxels, and of faces of a material.
 struct Inks {
-  static constexpr uint32_t kFaces = 64;
-  static constexpr uint32_t kMaterials = 8;
+  static constexpr uint32_t kFaces = 32;
+  static constexpr uint32_t kMaterials = 16;
   static constexpr uint32_t kNone = UINT32_MAX;
   struct Seen {
     uint32_t key;
@@ -62,7 +70,9 @@ struct Frame {
   const Shading& shading;
   PixelFormat format;
   uint32_t background;
-  Vec3i side;  // of the box, in bricks
+  Vec3i side;    // of the box, in bricks
+  Vec3i stride;  // of the directory, in bytes
+  Vec3i eye;     // from the box's lowest corner, in 1/256 voxel
   // From a tile's first pixel to the least and greatest of the affine function in whole tiles.
   Camera::Vec3Q32 tile_low;
   Camera::Vec3Q32 tile_high;
@@ -90,27 +100,19 @@ struct Course {
   unsigned mirrored;   // bit a: axis a is
   bool exact_ties;     // faces entered through an edge are the voxel's
   // Where the rays start.
-  bool inside;      // at their origins
-  uint32_t plane;   // distance from the origin, 1/256 voxel
-  uint32_t behind;  // from there back to the plane of c before it, when the origin lies between two planes
-  uint32_t first;   // the voxel on c, in place
-  int32_t start;    // of the directory, without a and b
-  uint32_t left;    // counts of bricks, without a and b
+  uint32_t waiting;  // kWaiting where they may start outside of the box
+  uint32_t plane;    // distance from the origin, 1/256 voxel
+  uint32_t behind;   // from there back to the plane of c before it, when the origin lies between two planes
+  uint32_t first;    // the voxel on c, in place
+  int32_t start;     // of the directory, without a and b
+  uint32_t left;     // counts of bricks, without a and b
   // The affine function, mirrored.
   Camera::Vec3Q32 step_x;
   Camera::Vec3Q32 step_y;
 };
 
-// Where a voxel lies in a brick: x and y as a shift of halfword z, z in bytes.
-struct Place {
-  uint32_t shift;
-  uint32_t row;
-};
+// How far the voxel's place on an axis is shifted, see trace_one.
 constexpr int kPlaceShift[3] = {0, 2, 1};
-template <int kAxis>
-uint32_t& part(Place& place) {
-  return kAxis == 2 ? place.row : place.shift;
-}
 template <int kAxis>
 constexpr uint32_t kField = 3U << kPlaceShift[kAxis];
 
@@ -148,36 +150,44 @@ void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t
   }
 }
 
-struct Found {
-  uint32_t brick;  // number
-  uint32_t bit;
-  uint32_t axis;
-  uint32_t t_numerator;
-  uint32_t direction;  // on that axis
-};
-
-// The colour of a face that is not among those seen lately.
-[[gnu::noinline]] int32_t look_up(const Course& course, const Found& found) {
-  const Frame& frame = *course.frame;
+// The hit of a face of `material`, with what `shade` looks at; its ray is `ray`.
+Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   Hit hit;
   hit.kind = HitKind::kHit;
-  hit.axis = static_cast<int8_t>(found.axis);
-  hit.material = frame.map.material(frame.tree, found.brick, found.bit);
+  hit.axis = static_cast<int8_t>(axis);
+  hit.material = material;
+  ray->direction[axis] = (course.mirrored >> axis & 1U) == 0 ? 1 : -1;
+  return hit;
+}
+
+[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, int32_t distance, uint32_t direction) {
+  const Frame& frame = *course.frame;
   Ray ray;
-  ray.direction[static_cast<int>(found.axis)] = (course.mirrored >> found.axis & 1U) == 0 ? 1 : -1;
-  if (frame.shading.mode == ShadeMode::kDepth) {
-    hit.t_numerator = static_cast<int32_t>(found.t_numerator);
-    hit.t_denominator = static_cast<int32_t>(found.direction) * Q8::kOne;
-    return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
-  }
-  const uint32_t face = course.face[found.axis];
-  uint32_t& kept = course.inks->material[face * Inks::kMaterials + hit.material % Inks::kMaterials];
-  if (kept >> 24 != hit.material || kept == Inks::kNone) {
-    kept = ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)) |
-           static_cast<uint32_t>(hit.material) << 24;
+  Hit hit = face_hit(course, axis, 0, &ray);
+  hit.t_numerator = distance;
+  hit.t_denominator = static_cast<int32_t>(direction) * Q8::kOne;
+  return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
+}
+
+[[gnu::noinline]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
+  const Frame& frame = *course.frame;
+  Ray ray;
+  const Hit hit = face_hit(course, axis, material, &ray);
+  return ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)) | static_cast<uint32_t>(material)
+                                                                                  << 24;
+}
+
+// The colour of a face that is not among those seen lately.
+[[gnu::noinline]] int32_t look_up(const Course& course, uint32_t number, uint32_t bit, int axis) {
+  const Frame& frame = *course.frame;
+  const uint8_t material = frame.map.material(frame.tree, number, bit);
+  const uint32_t face = course.face[axis];
+  uint32_t& kept = course.inks->material[face * Inks::kMaterials + material % Inks::kMaterials];
+  if (kept >> 24 != material || kept == Inks::kNone) {
+    kept = material_ink(course, axis, material);
   }
   const uint32_t ink = kept & 0xFFFFFFU;
-  const uint32_t key = (found.brick << 6 | found.bit) << 3 | face;
+  const uint32_t key = (number << 6 | bit) << 3 | face;
   course.inks->face[Inks::slot(key)] = {key, ink};
   return static_cast<int32_t>(ink);
 }
@@ -195,59 +205,67 @@ template <int kC>
   if ((cell_a | cell_b) >= 1024) [[unlikely]] {
     return static_cast<int32_t>(at_a | at_b) < 0 ? kAsk : kMissed;
   }
-  uint32_t rest_a = at_a - (cell_a + 1) * den - course.behind * d_a;
-  uint32_t rest_b = at_b - (cell_b + 1) * den - course.behind * d_b;
+  uint32_t rest_a = at_a - (cell_a + 1) * den;
+  uint32_t rest_b = at_b - (cell_b + 1) * den;
   const uint32_t go_a = d_a << 8;
   const uint32_t go_b = d_b << 8;
 
   uint32_t left = course.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
-  left |= ((cell_a - kOutsideCells) | (cell_b - kOutsideCells)) & kWaiting;
   int32_t cell = course.start + static_cast<int32_t>(cell_a >> 2) * course.stride[kA] +
                  static_cast<int32_t>(cell_b >> 2) * course.stride[kB];
-  Place place{0, 0};
-  part<kA>(place) |= ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
-  part<kB>(place) |= ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
-  part<kC>(place) |= course.first;
+  const uint32_t in_a = ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
+  const uint32_t in_b = ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
+  // Where the voxel lies in its brick: x and y as a shift of halfword z, z in bytes.
+  uint32_t shift = in_a | (kB == 2 ? course.first : in_b);
+  uint32_t row = kB == 2 ? in_b : course.first;
   const uint8_t* brick = nullptr;
   int axis = kC;
 
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
-  const auto solid = [&]() {
-    return (half_at(brick, static_cast<int32_t>(place.row)) >> place.shift & 1U) != 0;
-  };
+  const auto solid = [&]() { return (half_at(brick, static_cast<int32_t>(row)) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
   const auto step = [&]<int kAxis>() {
-    uint32_t& own = part<kAxis>(place);
-    if ((own & kField<kAxis>) == course.last[kAxis]) {
-      own ^= kField<kAxis>;
+    const uint32_t own = (kAxis == 2 ? row : shift) & kField<kAxis>;
+    if (own == course.last[kAxis]) {
+      if (kAxis == 2) {
+        row ^= kField<kAxis>;
+      } else {
+        shift ^= kField<kAxis>;
+      }
       left += uint32_t{1} << 10 * kAxis;
       cell += course.stride[kAxis];
       return true;
     }
-    own += static_cast<uint32_t>(course.step[kAxis]);
+    if (kAxis == 2) {
+      row += static_cast<uint32_t>(course.step[kAxis]);
+    } else {
+      shift += static_cast<uint32_t>(course.step[kAxis]);
+    }
     return false;
   };
 
-  if (course.inside && (left & (kLeft | kWaiting)) == 0) [[unlikely]] {
-    brick = course.bricks + 8 * half_at(course.directory, cell);
-    if (solid()) {
-      return kAsk;
-    }
-  }
-
 enter:  // a brick, by a plane of `axis`
-  if ((left & (kLeft | kWaiting)) != 0) [[unlikely]] {
+  if ((left & kSpecial) != 0) [[unlikely]] {
     if ((left & kLeft) != 0) {
       return kMissed;
     }
+    if ((left & kInside) != 0) {
+      rest_a -= course.behind * d_a;
+      rest_b -= course.behind * d_b;
+    }
     // 512 - bricks is the near side: below it the ray waits.
     const Vec3i& side = course.frame->side;
-    if ((left >> 10 * kA & 0x3FFU) < 512U - static_cast<uint32_t>(side[kA]) ||
-        (left >> 10 * kB & 0x3FFU) < 512U - static_cast<uint32_t>(side[kB])) {
-      brick = course.bricks;
-      goto entered;
+    brick = course.bricks;
+    if ((left & kWaiting) == 0 || ((left >> 10 * kA & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kA]) &&
+                                   (left >> 10 * kB & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kB]))) {
+      left &= ~kWaiting;
+      brick += 8 * half_at(course.directory, cell);
     }
-    left &= ~kWaiting;
+    if ((left & kInside) != 0 && solid()) {
+      return kAsk;
+    }
+    left &= ~kInside;
+    goto entered;
   }
   brick = course.bricks + 8 * half_at(course.directory, cell);
 entered:
@@ -261,11 +279,11 @@ slab:  // from plane to plane of c
   rest_a += go_a;
   rest_b += go_b;
 between:
-  if (!negative(rest_a)) {
+  if (!negative(rest_a & rest_b)) {
+    if (negative(rest_a)) {
+      goto cross_b;
+    }
     goto cross_a;
-  }
-  if (!negative(rest_b)) {
-    goto cross_b;
   }
   if (step.template operator()<kC>()) {
     axis = kC;
@@ -350,23 +368,22 @@ hit:
       axis = kB;
     }
   }
-  const uint32_t bit = place.shift + place.row * 8;
+  const uint32_t bit = shift + row * 8;
   const uint32_t face = course.face[axis];
-  const uint32_t offset = static_cast<uint32_t>(brick - course.bricks);
-  const uint32_t key = (offset << 3 | bit) << 3 | face;
+  const uint32_t number = half_at(course.directory, cell);
+  const uint32_t key = (number << 6 | bit) << 3 | face;
   const Inks::Seen& seen = course.inks->face[Inks::slot(key)];
   if (seen.key == key) {
     return static_cast<int32_t>(seen.ink);
   }
-  Found found{offset >> 3, bit, static_cast<uint32_t>(axis), 0, axis == kA ? d_a : axis == kB ? d_b : d_c};
-  if (course.frame->shading.mode == ShadeMode::kDepth) {
-    const uint32_t bricks =
-        (left >> 10 * axis & 0x3FFU) - (512U - static_cast<uint32_t>(course.frame->side[axis]));
-    const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
-    const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
-    found.t_numerator = (4 * bricks + (voxel ^ course.flip[axis])) * Q8::kOne - static_cast<uint32_t>(origin);
+  if (course.frame->shading.mode != ShadeMode::kDepth) {
+    return look_up(course, number, bit, axis);
   }
-  return look_up(course, found);
+  const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
+  const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
+  const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
+  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ course.flip[axis])) * Q8::kOne - origin;
+  return depth_ink(course, axis, distance, axis == kA ? d_a : axis == kB ? d_b : d_c);
 }
 
 // The directions of a tile: for each axis the least and the greatest; what rays of them have in common.
@@ -433,161 +450,182 @@ void set_course(Course& course, unsigned mirrored, int c) {
 // Rays start in the slab of voxels `slab` along c.
 void set_start(Course& course, int32_t slab) {
   const int32_t distance = slab * Q8::kOne - course.origin[course.c];
-  course.inside = distance <= 0;
   course.plane = distance > 0 ? static_cast<uint32_t>(distance) : 0;
   course.behind = distance > 0 ? 0 : static_cast<uint32_t>(-distance);
   course.first = ((static_cast<uint32_t>(slab) & 3U) ^ course.flip[course.c]) << kPlaceShift[course.c];
   course.start = course.base + course.stride[course.c] * (slab >> 2);
-  course.left = course.base_left + (static_cast<uint32_t>(slab >> 2) << 10 * course.c);
+  course.left = (course.base_left + (static_cast<uint32_t>(slab >> 2) << 10 * course.c)) | course.waiting |
+                (distance <= 0 ? kInside : 0);
 }
 
-// Slopes of the beam in 1/1024, so positions in 1/2^18 voxel.
+// Slopes of a beam in 1/1024, so positions in 1/2^18 voxel.
 constexpr int kSlopeBits = 10;
 constexpr int kCellShift = kSlopeBits + 8;
+constexpr int kBrickShift = kCellShift + 2;
+// Bricks that a beam may be wide; one that is wider ends there, which is early but right.
+constexpr int32_t kBeamBricks = 4;
 
-// The way of all rays of a fan between two planes of c: on axes a and b from `low` to `high` at the first.
-struct Beam {
-  int32_t low[2];
-  int32_t high[2];
-  int32_t low_slope[2];
-  int32_t high_slope[2];
+// Where all rays of a fan are on one axis within a slab of voxels, in the box's own coordinates: from low to
+// high.
+struct Shadow {
+  int32_t low;
+  int32_t high;
+  int32_t low_step;  // to the next slab
+  int32_t high_step;
+  int32_t low_more;  // what a further slab adds to the shadow at its lower end, at most 0
+  int32_t high_more;
+
+  void advance(int32_t voxels) {
+    low += voxels * low_step;
+    high += voxels * high_step;
+  }
 };
 
-// Rows of a brick's halfword from bits: bit y becomes 1 << 4 y.
+// Bits low .. high of the cells of a beam's bricks; either may lie beyond them.
+uint32_t bits_between(int32_t low, int32_t high) {
+  const int32_t from = low < 0 ? 0 : low;
+  const int32_t to = high < 4 * kBeamBricks ? high : 4 * kBeamBricks - 1;
+  return to < from ? 0U : (2U << to) - (1U << from);
+}
+
+// Four bits as rows or as halfwords: bit y becomes bit 4 y, bit z all of halfword z.
 constexpr uint16_t kRows[16] = {0x0000, 0x0001, 0x0010, 0x0011, 0x0100, 0x0101, 0x0110, 0x0111,
                                 0x1000, 0x1001, 0x1010, 0x1011, 0x1100, 0x1101, 0x1110, 0x1111};
-
-// Cells from .. to of an axis as bits of brick `number`, in the tree's order.
-uint32_t cells_in(int32_t from, int32_t to, int32_t number, uint32_t flip) {
-  int32_t low = from - 4 * number;
-  int32_t high = to - 4 * number;
-  low = low < 0 ? 0 : low;
-  high = high > 3 ? 3 : high;
-  if (flip != 0) {
-    const int32_t one = low;
-    low = 3 - high;
-    high = 3 - one;
-  }
-  return (0xFU << low) & (0xFU >> (3 - high));
-}
+constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
 
 // The first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs
 // when there is none. Coarse: the first of a slab of bricks. `course` is the fan's.
-int32_t first_slab(const Course& course, const Fan& fan, int32_t slab, bool coarse) {
-  const Vec3i& side = course.frame->side;
-  const int c = course.c;
-  const int a = c == 0 ? 1 : 0;
-  const int b = c == 2 ? 1 : 2;
-  const int32_t slabs = 4 * side[c];
-  const int32_t origin_c = course.origin[c];
-  const int32_t nearest = origin_c < 0 ? 0 : origin_c >> 8;
+template <int kC, bool kCoarse>
+[[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
+  constexpr int kA = kC == 0 ? 1 : 0;
+  constexpr int kB = kC == 2 ? 1 : 2;
+  course.waiting = kWaiting;
+  const Frame& frame = *course.frame;
+  const int32_t slabs = 4 * frame.side[kC];
+  const int32_t origin = course.origin[kC];
+  const int32_t nearest = origin < 0 ? 0 : origin >> 8;
   slab = slab < nearest ? nearest : slab;
   if (slab >= slabs) {
     return slabs;
   }
-  const bool flipped = (course.mirrored >> c & 1U) != 0;
-  const int32_t c_low = flipped ? -fan.high[c] : fan.low[c];
-  const int32_t c_high = flipped ? -fan.low[c] : fan.high[c];
-  Beam beam;
+  const bool flipped = (course.mirrored >> kC & 1U) != 0;
+  const int32_t c_low = flipped ? -fan.high[kC] : fan.low[kC];
+  const int32_t c_high = flipped ? -fan.low[kC] : fan.high[kC];
   // The first slab may begin behind the origin: then the bounds start from whichever is wider.
-  const int32_t from_slab = slab * Q8::kOne - origin_c;
-  const int32_t near_q8 = from_slab < 0 ? 0 : from_slab;
-  for (int i = 0; i < 2; ++i) {
-    const int axis = i == 0 ? a : b;
-    const bool mirrored = (course.mirrored >> axis & 1U) != 0;
-    const int32_t low = (mirrored ? -fan.high[axis] : fan.low[axis]) * (1 << kSlopeBits);
-    const int32_t high = (mirrored ? -fan.low[axis] : fan.high[axis]) * (1 << kSlopeBits);
-    beam.low_slope[i] = low / (low < 0 ? c_low : c_high) - 1;
-    beam.high_slope[i] = high / (high < 0 ? c_high : c_low) + 1;
-    if (beam.low_slope[i] < -(2 << kSlopeBits) || beam.high_slope[i] > 2 << kSlopeBits) {
-      return slab;
-    }
-    const int32_t origin = (course.origin[axis] - kOutsideQ8) * (1 << kSlopeBits);
-    beam.low[i] = origin + (beam.low_slope[i] < 0 ? near_q8 : from_slab) * beam.low_slope[i] - 1;
-    beam.high[i] = origin + (beam.high_slope[i] < 0 ? from_slab : near_q8) * beam.high_slope[i] + 1;
-    // From here on slopes are per slab of voxels.
-    beam.low_slope[i] *= Q8::kOne;
-    beam.high_slope[i] *= Q8::kOne;
+  const int32_t plane = slab * Q8::kOne - origin;
+  const int32_t ahead = plane < 0 ? 0 : plane;
+  bool steep = false;
+  const auto shadow_of = [&](int axis) {
+    const int32_t low = fan.low[axis] * (1 << kSlopeBits);
+    const int32_t high = fan.high[axis] * (1 << kSlopeBits);
+    const int32_t low_slope = low / (low < 0 ? c_low : c_high) - 1;
+    const int32_t high_slope = high / (high < 0 ? c_high : c_low) + 1;
+    steep |= low_slope < -(2 << kSlopeBits) || high_slope > 2 << kSlopeBits;
+    const int32_t from = frame.eye[axis] * (1 << kSlopeBits);
+    const int32_t low_step = low_slope * Q8::kOne;
+    const int32_t high_step = high_slope * Q8::kOne;
+    const int32_t low_more = low_step < 0 ? low_step : 0;
+    const int32_t high_more = high_step > 0 ? high_step : 0;
+    return Shadow{from + (low_slope < 0 ? ahead : plane) * low_slope - 1 + low_more,
+                  from + (high_slope < 0 ? plane : ahead) * high_slope + 1 + high_more,
+                  low_step,
+                  high_step,
+                  low_more,
+                  high_more};
+  };
+  if (fan.high[kA] > 2 * c_low || fan.low[kA] < -2 * c_low || fan.high[kB] > 2 * c_low ||
+      fan.low[kB] < -2 * c_low) {
+    return slab;
   }
-  const int32_t origin_of_bricks = course.base + kOutsideCells / 4 * (course.stride[a] + course.stride[b]);
+  Shadow a = shadow_of(kA);
+  Shadow b = shadow_of(kB);
+  if (steep) {
+    return slab;
+  }
+  const int32_t last_a = frame.side[kA] - 1;
+  const int32_t last_b = frame.side[kB] - 1;
+  const int32_t stride_a = frame.stride[kA];
+  const int32_t stride_b = frame.stride[kB];
+  const uint8_t* directory = course.directory;
   while (slab < slabs) {
     // What of the slab of bricks is left, and the bricks that the rays may pass through there.
     const int32_t voxels = 4 - (slab & 3);
-    int32_t from[2];
-    int32_t to[2];
-    for (int i = 0; i < 2; ++i) {
-      const int32_t low = beam.low[i] + (beam.low_slope[i] < 0 ? voxels * beam.low_slope[i] : 0);
-      const int32_t high = beam.high[i] + (beam.high_slope[i] > 0 ? voxels * beam.high_slope[i] : 0);
-      const int32_t last = side[i == 0 ? a : b] - 1;
-      from[i] = low < 0 ? 0 : low >> (kCellShift + 2);
-      to[i] = high >> (kCellShift + 2) < last ? high >> (kCellShift + 2) : last;
-    }
-    const int32_t row = origin_of_bricks + course.stride[c] * (slab >> 2);
-    bool any = false;
-    for (int32_t j = from[1]; j <= to[1] && !any; ++j) {
-      for (int32_t i = from[0]; i <= to[0]; ++i) {
-        any |= half_at(course.directory, row + i * course.stride[a] + j * course.stride[b]) != 0;
-      }
-    }
-    if (any && coarse) {
+    int32_t from_a = (a.low + (voxels - 1) * a.low_more) >> kBrickShift;
+    int32_t to_a = (a.high + (voxels - 1) * a.high_more) >> kBrickShift;
+    int32_t from_b = (b.low + (voxels - 1) * b.low_more) >> kBrickShift;
+    int32_t to_b = (b.high + (voxels - 1) * b.high_more) >> kBrickShift;
+    from_a = from_a < 0 ? 0 : from_a;
+    from_b = from_b < 0 ? 0 : from_b;
+    to_a = to_a > last_a ? last_a : to_a;
+    to_b = to_b > last_b ? last_b : to_b;
+    if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
       return slab;
     }
-    if (!any) {
-      for (int i = 0; i < 2; ++i) {
-        beam.low[i] += voxels * beam.low_slope[i];
-        beam.high[i] += voxels * beam.high_slope[i];
+    // Those that are not empty.
+    struct {
+      const uint8_t* bits;
+      int32_t a;  // where its cells begin, from those of from_a on
+      int32_t b;
+    } bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
+    int32_t count = 0;
+    const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
+    int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
+    for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
+      int32_t cell = row;
+      for (int32_t i = from_a; i <= to_a; ++i, cell += stride_a) {
+        const uint32_t number = half_at(directory, cell);
+        if (number != 0) {
+          if (kCoarse) {
+            return slab;
+          }
+          bricks[count++] = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
+        }
       }
+    }
+    if (kCoarse || count == 0) {
+      a.advance(voxels);
+      b.advance(voxels);
       slab += voxels;
       continue;
     }
     // Voxel by voxel.
-    for (int32_t v = 0; v < voxels; ++v, ++slab) {
-      int32_t first[2];
-      int32_t last[2];
-      for (int i = 0; i < 2; ++i) {
-        const int32_t next_low = beam.low[i] + beam.low_slope[i];
-        const int32_t next_high = beam.high[i] + beam.high_slope[i];
-        const int32_t low = beam.low_slope[i] < 0 ? next_low : beam.low[i];
-        const int32_t high = beam.high_slope[i] > 0 ? next_high : beam.high[i];
-        const int32_t most = 4 * side[i == 0 ? a : b] - 1;
-        first[i] = low < 0 ? 0 : low >> kCellShift;
-        last[i] = high >> kCellShift < most ? high >> kCellShift : most;
-        beam.low[i] = next_low;
-        beam.high[i] = next_high;
-      }
-      if (first[0] > last[0] || first[1] > last[1]) {
-        continue;
-      }
-      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[c];
-      for (int32_t j = first[1] >> 2; j <= last[1] >> 2; ++j) {
-        const uint32_t b_bits = cells_in(first[1], last[1], j, course.flip[b]);
-        for (int32_t i = first[0] >> 2; i <= last[0] >> 2; ++i) {
-          const uint32_t number =
-              half_at(course.directory, row + i * course.stride[a] + j * course.stride[b]);
-          if (number == 0) {
-            continue;
-          }
-          const uint8_t* brick = course.bricks + 8 * number;
-          const uint32_t a_bits = cells_in(first[0], last[0], i, course.flip[a]);
-          uint32_t found = 0;
-          if (c == 2) {
-            found = half_at(brick, static_cast<int32_t>(2 * own)) & (a_bits * kRows[b_bits]);
-          } else {
-            for (uint32_t z = 0; z < 4; ++z) {
-              if ((b_bits >> z & 1U) != 0) {
-                found |= half_at(brick, static_cast<int32_t>(2 * z));
-              }
-            }
-            found &= c == 1 ? a_bits << 4 * own : static_cast<uint32_t>(kRows[a_bits]) << own;
-          }
-          if (found != 0) {
-            return slab;
-          }
+    const int32_t base_a = 4 * from_a;
+    const int32_t base_b = 4 * from_b;
+    for (const int32_t end = slab + voxels; slab < end; ++slab, a.advance(1), b.advance(1)) {
+      const uint32_t cells_a = bits_between((a.low >> kCellShift) - base_a, (a.high >> kCellShift) - base_a);
+      const uint32_t cells_b = bits_between((b.low >> kCellShift) - base_b, (b.high >> kCellShift) - base_b);
+      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
+      for (int32_t k = 0; k < count; ++k) {
+        const uint32_t in_a = cells_a >> bricks[k].a & 15U;
+        const uint32_t in_b = cells_b >> bricks[k].b & 15U;
+        uint32_t found = 0;
+        if (kC == 2) {
+          found = half_at(bricks[k].bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b]);
+        } else {
+          found = (word_at(bricks[k].bits, 0) & kHalves[in_b & 3U]) |
+                  (word_at(bricks[k].bits, 4) & kHalves[in_b >> 2]);
+          found =
+              (found | found >> 16) & (kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own);
+        }
+        if (found != 0) {
+          // Both ends within the box: no ray waits outside.
+          course.waiting =
+              a.low < 0 || b.low < 0 || a.high >> kBrickShift > last_a || b.high >> kBrickShift > last_b
+                  ? kWaiting
+                  : 0;
+          return slab;
         }
       }
     }
   }
   return slabs;
+}
+
+template <bool kCoarse>
+int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
+  return course.c == 0   ? first_slab<0, kCoarse>(course, fan, slab)
+         : course.c == 1 ? first_slab<1, kCoarse>(course, fan, slab)
+                         : first_slab<2, kCoarse>(course, fan, slab);
 }
 
 int32_t ask(const Frame& frame, int32_t x, int32_t y, RenderCounts* counts) {
@@ -625,24 +663,39 @@ struct Tile {
   int32_t y1;
 };
 
-constexpr int32_t kQuadPx = 4;
+// Quads: the least tiles.
+constexpr int32_t kQuadAcrossPx = 4;
+constexpr int32_t kQuadDownPx = 4;
+constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;
 
-// Rows of a quad with rays of one course: the mirrored affine function is positive all over it, so rounding
-// is adding a half.
+// A quad with rays of one course: the mirrored affine function `from` (and a half) is positive all over it,
+// so rounding is cutting off. Returns a negative number when any ink is none.
 template <int kC>
-void trace_row(const Course& course, const Camera::Vec3Q32& from, int32_t pixels, int32_t* inks) {
+[[gnu::noinline]] int32_t trace_quad(const Course& course, const Camera::Vec3Q32& from, int32_t across,
+                                     int32_t down, int32_t* inks) {
   constexpr int kA = kC == 0 ? 1 : 0;
   constexpr int kB = kC == 2 ? 1 : 2;
-  uint64_t a = static_cast<uint64_t>(from[kA]);
-  uint64_t b = static_cast<uint64_t>(from[kB]);
-  uint64_t c = static_cast<uint64_t>(from[kC]);
-  for (int32_t i = 0; i < pixels; ++i) {
-    inks[i] = trace_one<kC>(course, static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b >> 32),
-                            static_cast<uint32_t>(c >> 32));
-    a += static_cast<uint64_t>(course.step_x[kA]);
-    b += static_cast<uint64_t>(course.step_x[kB]);
-    c += static_cast<uint64_t>(course.step_x[kC]);
+  Vec3<uint64_t> row{static_cast<uint64_t>(from.x), static_cast<uint64_t>(from.y),
+                     static_cast<uint64_t>(from.z)};
+  int32_t all = 0;
+  for (; down > 0; --down) {
+    uint64_t a = row[kA];
+    uint64_t b = row[kB];
+    uint64_t c = row[kC];
+    for (const int32_t* end = inks + across; inks != end; ++inks) {
+      const int32_t ink = trace_one<kC>(course, static_cast<uint32_t>(a >> 32),
+                                        static_cast<uint32_t>(b >> 32), static_cast<uint32_t>(c >> 32));
+      *inks = ink;
+      all |= ink;
+      a += static_cast<uint64_t>(course.step_x[kA]);
+      b += static_cast<uint64_t>(course.step_x[kB]);
+      c += static_cast<uint64_t>(course.step_x[kC]);
+    }
+    row.x += static_cast<uint64_t>(course.step_y.x);
+    row.y += static_cast<uint64_t>(course.step_y.y);
+    row.z += static_cast<uint64_t>(course.step_y.z);
   }
+  return all;
 }
 
 class Painter {
@@ -672,25 +725,25 @@ class Painter {
     int32_t slab = 0;
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab(course_, fan, 0, true);
+      slab = first_slab_along<true>(course_, fan, 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(tile);
         return;
       }
     }
     Camera::Vec3Q32 row = value;
-    for (int32_t y = tile.y0; y < tile.y1; y += kQuadPx) {
+    for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
       Camera::Vec3Q32 at = row;
-      for (int32_t x = tile.x0; x < tile.x1; x += kQuadPx) {
-        const Tile quad{x, x + kQuadPx < tile.x1 ? x + kQuadPx : tile.x1, y,
-                        y + kQuadPx < tile.y1 ? y + kQuadPx : tile.y1};
+      for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
+        const Tile quad{x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
+                        y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1};
         draw_quad(quad, at, fan, slab);
         for (int axis = 0; axis < 3; ++axis) {
-          at[axis] += kQuadPx * affine.step_x[axis];
+          at[axis] += kQuadAcrossPx * affine.step_x[axis];
         }
       }
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += kQuadPx * affine.step_y[axis];
+        row[axis] += kQuadDownPx * affine.step_y[axis];
       }
     }
   }
@@ -707,83 +760,96 @@ class Painter {
     const bool usable = fan.usable();
     if (usable) {
       use(fan.mirrored, fan.c);
-      slab = first_slab(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0, false);
+      slab = first_slab_along<false>(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(quad);
         return;
       }
       set_start(course_, slab);
     }
-    int32_t inks[kQuadPx];
-    const int32_t pixels = quad.x1 - quad.x0;
+    int32_t inks[kQuadPixels];
+    const int32_t across = quad.x1 - quad.x0;
+    const int32_t down = quad.y1 - quad.y0;
     if (!usable || fan.mixed != 0) {
-      Camera::Vec3Q32 row = value;
-      for (int32_t y = quad.y0; y < quad.y1; ++y) {
-        Camera::Vec3Q32 at = row;
-        for (int32_t i = 0; i < pixels; ++i) {
-          inks[i] = kAsk;
-          if (usable) {
-            const Vec3i d{Camera::round(at.x), Camera::round(at.y), Camera::round(at.z)};
-            const unsigned signs = signs_of(d);
-            if (signs != course_.mirrored) {
-              set_course(course_, signs, fan.c);
-              set_start(course_, slab);
-            }
-            inks[i] = trace_along(course_, d);
-          }
-          for (int axis = 0; axis < 3; ++axis) {
-            at[axis] += frame_.camera.affine().step_x[axis];
-          }
-        }
-        store(quad.x0, y, inks, pixels);
-        for (int axis = 0; axis < 3; ++axis) {
-          row[axis] += frame_.camera.affine().step_y[axis];
-        }
-      }
-      return;
-    }
-    Camera::Vec3Q32 row;
-    for (int axis = 0; axis < 3; ++axis) {
-      row[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
-    }
-    for (int32_t y = quad.y0; y < quad.y1; ++y) {
-      if (fan.c == 0) {
-        trace_row<0>(course_, row, pixels, inks);
-      } else if (fan.c == 1) {
-        trace_row<1>(course_, row, pixels, inks);
-      } else {
-        trace_row<2>(course_, row, pixels, inks);
-      }
-      store(quad.x0, y, inks, pixels);
+      trace_mixed(value, usable ? fan.c : -1, slab, across, down, inks);
+      answer(quad, inks);
+    } else {
+      Camera::Vec3Q32 from;
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += course_.step_y[axis];
+        from[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
+      }
+      const int32_t all = fan.c == 0   ? trace_quad<0>(course_, from, across, down, inks)
+                          : fan.c == 1 ? trace_quad<1>(course_, from, across, down, inks)
+                                       : trace_quad<2>(course_, from, across, down, inks);
+      if (all < 0) {
+        answer(quad, inks);
+      }
+    }
+    store(quad, inks);
+  }
+
+  // A quad whose rays do not all go the same way, each with a course of its own; axis -1: none is known.
+  [[gnu::noinline]] void trace_mixed(const Camera::Vec3Q32& value, int c, int32_t slab, int32_t across,
+                                     int32_t down, int32_t* inks) {
+    const Camera::Affine& affine = frame_.camera.affine();
+    Camera::Vec3Q32 row = value;
+    for (; down > 0; --down) {
+      Camera::Vec3Q32 at = row;
+      for (int32_t i = 0; i < across; ++i) {
+        *inks = kAsk;
+        if (c >= 0) {
+          const Vec3i d{Camera::round(at.x), Camera::round(at.y), Camera::round(at.z)};
+          const unsigned signs = signs_of(d);
+          if (signs != course_.mirrored) {
+            set_course(course_, signs, c);
+            set_start(course_, slab);
+          }
+          *inks = trace_along(course_, d);
+        }
+        ++inks;
+        for (int axis = 0; axis < 3; ++axis) {
+          at[axis] += affine.step_x[axis];
+        }
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        row[axis] += affine.step_y[axis];
       }
     }
   }
 
   uint8_t* line_of(int32_t y) const { return first_line_ + stride_ * static_cast<size_t>(y - first_row_); }
 
-  void store(int32_t x, int32_t y, int32_t* inks, int32_t pixels) {
-    for (int32_t i = 0; i < pixels; ++i) {
-      if (inks[i] < 0) [[unlikely]] {
-        if (inks[i] == kAsk) {
-          inks[i] = ask(frame_, x + i, y, counts_);
+  void store(const Tile& quad, const int32_t* inks) {
+    const int32_t across = quad.x1 - quad.x0;
+    uint8_t* line = line_of(quad.y0);
+    if (frame_.format == PixelFormat::kGray4 && across == kQuadAcrossPx) {
+      line += quad.x0 >> 1;
+      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+        for (int32_t i = 0; i < kQuadAcrossPx / 2; ++i, inks += 2) {
+          line[i] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);
         }
-        if (inks[i] < 0) {
-          inks[i] = static_cast<int32_t>(frame_.background);
+      }
+      return;
+    }
+    for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+      for (int32_t x = quad.x0; x < quad.x1; ++x) {
+        store_ink(line, x, y, frame_.format, static_cast<uint32_t>(*inks++));
+      }
+    }
+  }
+
+  // Makes colours of what are none yet.
+  [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
+    for (int32_t y = quad.y0; y < quad.y1; ++y) {
+      for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
+        if (*inks == kAsk) {
+          *inks = ask(frame_, x, y, counts_);
+        }
+        if (*inks < 0) {
+          *inks = static_cast<int32_t>(frame_.background);
           ++misses_;
         }
       }
-    }
-    uint8_t* line = line_of(y);
-    if (frame_.format == PixelFormat::kGray4 && pixels == kQuadPx) {
-      line += x >> 1;
-      line[0] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);
-      line[1] = static_cast<uint8_t>(inks[2] << 4 | inks[3]);
-      return;
-    }
-    for (int32_t i = 0; i < pixels; ++i) {
-      store_ink(line, x + i, y, frame_.format, static_cast<uint32_t>(inks[i]));
     }
   }
 
@@ -810,10 +876,11 @@ class Painter {
 };
 
 // What the affine function adds over `pixels` columns and rows at least and at most.
-void spans_of(const Camera::Affine& affine, int32_t pixels, Camera::Vec3Q32* low, Camera::Vec3Q32* high) {
+void spans_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Camera::Vec3Q32* low,
+              Camera::Vec3Q32* high) {
   for (int axis = 0; axis < 3; ++axis) {
-    const int64_t across = affine.step_x[axis] * (pixels - 1);
-    const int64_t down = affine.step_y[axis] * (pixels - 1);
+    const int64_t across = affine.step_x[axis] * (across_px - 1);
+    const int64_t down = affine.step_y[axis] * (down_px - 1);
     (*low)[axis] = (across < 0 ? across : 0) + (down < 0 ? down : 0);
     (*high)[axis] = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
   }
@@ -869,20 +936,23 @@ Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& c
   for (uint32_t& ink : inks.material) {
     ink = Inks::kNone;
   }
-  Frame frame{tree, map, camera, shading, band.format, 0, {}, {}, {}, {}, {}};
+  Frame frame{tree, map, camera, shading, band.format, 0, {}, {}, {}, {}, {}, {}, {}};
   frame.background = ink_of(band.format, shade(Hit{}, Ray{}, camera, shading));
   for (int axis = 0; axis < 3; ++axis) {
     frame.side[axis] = map.box().max[axis] - map.box().min[axis];
+    frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
-  spans_of(camera.affine(), kBrickTilePx, &frame.tile_low, &frame.tile_high);
-  spans_of(camera.affine(), kQuadPx, &frame.quad_low, &frame.quad_high);
+  frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
+  spans_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  spans_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Painter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
   const int32_t end = band.first_row + band.rows;
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;
     const int32_t y1 = tile_end < end ? tile_end : end;
-    for (int32_t row = y; row < y1; ++row) {
+    // Pixels of less than a byte are put into what is there.
+    for (int32_t row = y; row < y1 && bits_per_pixel(band.format) < 8; ++row) {
       uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row - band.first_row);
       for (size_t i = 0; i < line_bytes; ++i) {
         line[i] = 0;

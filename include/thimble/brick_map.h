@@ -31,16 +31,18 @@ inline constexpr uint32_t kMaxBricks = 65535;
 inline constexpr size_t kBrickMapHeaderBytes = 32;
 
 /// Bytes of a map over a box of `cells` bricks (at most 64^3) that holds `bricks` different ones, the empty
-/// one included: two a cell and ten a brick.
-constexpr size_t brick_map_bytes(uint32_t cells, uint32_t bricks) {
+/// one included, of which `mixed` show more than one material.
+constexpr size_t brick_map_bytes(uint32_t cells, uint32_t bricks, uint32_t mixed) {
   return kBrickMapHeaderBytes + ((2 * size_t{cells} + 3) & ~size_t{3}) + 8 * size_t{bricks} +
-         ((2 * size_t{bricks} + 3) & ~size_t{3});
+         12 * size_t{mixed} + ((size_t{bricks} - 1 - mixed + 3) & ~size_t{3});
 }
 
-/// Bytes that any map of a world of 2^level fits in, whatever is in it. A world of 64 seldom needs a third.
+/// Bytes in which the map of any world of 2^level can be built, whatever is in it. A world of 64 with a model
+/// in it seldom needs a fifth.
 constexpr size_t most_brick_map_bytes(int level) {
   const uint32_t cells = uint32_t{1} << (3 * (level - 2));
-  return brick_map_bytes(cells, cells < kMaxBricks ? cells + 1 : kMaxBricks);
+  const uint32_t bricks = cells < kMaxBricks ? cells + 1 : kMaxBricks;
+  return brick_map_bytes(cells, bricks, bricks - 1) + 2 * size_t{bricks};
 }
 
 /// A view of a map's bytes, which outlive it. Copy it freely.
@@ -58,10 +60,11 @@ class BrickMap {
   static const char* validate(ConstBytes bytes);
 
   /// Makes the map of `tree` at the front of `out` (at a multiple of 4); `written` gets its size. While it is
-  /// being made it may need up to 10 bytes for each brick of 4^3 that is solid through and mixed in material,
-  /// more than at the end. Errors: `kOutOfRange` (level, more than kMaxBricks bricks or 65,280 nodes of level
-  /// 2), `kOutOfMemory`, `kBadArgument` (odd address). What `out` then holds is not a map. One pass over the
-  /// tree and some 2,000 instructions a brick on its surface; stack below 800 bytes.
+  /// being made it takes 2 bytes a brick more, and 8 for each that turns out to be solid through and of one
+  /// material. Errors: `kOutOfRange` (level, more than kMaxBricks - 1 bricks or 65,280 nodes of level 2, 2^24
+  /// nodes), `kOutOfMemory`, `kBadArgument` (odd address). What `out` then holds is not a map. One pass over
+  /// the tree, some 2,000 instructions a brick on its surface, and cells times bricks that are shared or
+  /// renumbered; stack below 900 bytes.
   static Status build(const CompactTree& tree, Bytes out, size_t* written);
 
   /// Whether it was made from that tree, by its checksum.
@@ -81,21 +84,26 @@ class BrickMap {
   const uint8_t* directory() const { return directory_; }
   /// 8 bytes a brick: bit x + 4 y + 16 z is a solid voxel.
   const uint8_t* bricks() const { return bricks_; }
-  /// The material of voxel `bit` of brick `number` (below brick_count()), which is solid and on the surface.
-  uint8_t material(const CompactTree& tree, uint32_t number, unsigned bit) const;
-  /// The node of level 2 that brick `number` was made of, or UINT32_MAX where all that is seen of it has one
-  /// material.
-  uint32_t node_of(uint32_t number) const;
+  /// Bricks 1 .. mixed_count() show more than one material.
+  uint32_t mixed_count() const { return mixed_count_; }
+  /// The material of voxel `bit` of brick `number` (1 .. brick_count() - 1), which is solid and on the
+  /// surface.
+  uint8_t material(const CompactTree& tree, uint32_t number, unsigned bit) const {
+    return number > mixed_count_ ? materials_[number - mixed_count_ - 1] : mixed_material(tree, number, bit);
+  }
 
  private:
+  uint8_t mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const;
+
   const uint8_t* directory_ = nullptr;
   const uint8_t* bricks_ = nullptr;
-  const uint8_t* sources_ = nullptr;
+  const uint8_t* origins_ = nullptr;
+  const uint8_t* materials_ = nullptr;
   VoxelBox box_;
   size_t size_bytes_ = 0;
   uint32_t cells_ = 0;
   uint32_t brick_count_ = 0;
-  uint32_t first_node_ = 0;
+  uint32_t mixed_count_ = 0;
   uint32_t tree_checksum_ = 0;
   uint8_t level_ = 0;
 };
