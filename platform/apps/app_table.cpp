@@ -5,20 +5,16 @@
 namespace thimble::apps {
 namespace {
 
-// One line each. A source tree may come without some of them.
+// One line each.
 constexpr Application kApplications[] = {
-#if __has_include("apps/demo.cpp")
     {"demo", demo, true, true},
-#endif
-#if __has_include("apps/selftest.cpp")
     {"selftest", selftest, false, false},
-#endif
-#if __has_include("apps/bench.cpp")
+    {"golden", golden, false, false},
     {"bench", bench, true, false},
-#endif
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},
 #endif
+    {"faults", faults, false, false},
     {nullptr, nullptr, false, false},  // so that the array is never empty
 };
 
