@@ -120,6 +120,29 @@ inline constexpr SmallDiscs kSmallDiscs;
 /// A word of the field in the caller's bytes, whatever type they were declared with.
 typedef uint32_t __attribute__((may_alias)) Word;
 
+/// Rows of a disc that are worked on together: four where the compiler has registers of four words to put
+/// them into, else one.
+#if defined(__SSE2__) || defined(__ARM_NEON)
+inline constexpr int32_t kRowsAtOnce = 4;
+#else
+inline constexpr int32_t kRowsAtOnce = 1;
+#endif
+
+constexpr bool any_of(const uint32_t (&words)[kRowsAtOnce]) {
+  uint32_t all = 0;
+  for (uint32_t word : words) {
+    all |= word;
+  }
+  return all != 0;
+}
+
+/// Whether the squares around two discs of the same diameter share a cell.
+constexpr bool same_size_discs_meet(int32_t diameter, const Vec2i& a, const Vec2i& b) {
+  const uint32_t reach = static_cast<uint32_t>(diameter) - 1;
+  return static_cast<uint32_t>(a.x) - static_cast<uint32_t>(b.x) + reach <= 2 * reach &&
+         static_cast<uint32_t>(a.y) - static_cast<uint32_t>(b.y) + reach <= 2 * reach;
+}
+
 }  // namespace field_detail
 
 /// The disc of `diameter`; below 1 it has no cells, above `kMaxDisc` it is that of kMaxDisc.
@@ -242,8 +265,8 @@ class BitField {
   /// The same with the order of each row turned around: least y, then greatest x.
   bool first_from_right(const CellBox& box, Vec2i* at) const;
 
-  // --- Discs, clipped at the edges. `corner` may be anything from -2^20 to 2^20. Cost: one or two words a
-  // row for diameters up to 32, the words of each row beyond.
+  // --- Discs, clipped at the edges; `corner` may be anything. Cost: the words of each row, which are one or
+  // two for diameters up to 32.
 
   void set(const DiscStamp& disc, Vec2i corner);
   void clear(const DiscStamp& disc, Vec2i corner);
@@ -267,8 +290,8 @@ class BitField {
   /// Whether a cell under the disc is set that is not under the same disc at `own` (its corner; anywhere):
   /// may a disc that lies at `own` move to `corner`?
   bool any_besides_inside(const DiscStamp& disc, Vec2i corner, Vec2i own) const;
-  /// Which cells those are: out[y] bit x for cell corner + (x, y), for y < diameter; the rest of `out` is
-  /// cleared. Returns whether there are any. With own == corner nothing is left: pass `kNowhere` to see all.
+  /// Which cells those are: out[y] bit x for cell corner + (x, y); rows beyond the diameter are cleared.
+  /// Returns whether there are any. With `own == kNowhere` it is all set cells under the disc.
   bool overlap_inside(const DiscStamp& disc, Vec2i corner, Vec2i own, uint32_t (&out)[kMaxSmallDisc]) const;
   /// An `own` that covers nothing.
   static constexpr Vec2i kNowhere{-(int32_t{1} << 20), -(int32_t{1} << 20)};
@@ -276,29 +299,157 @@ class BitField {
   // --- Rays
 
   /// The set cell that the ray enters first. Errors as `check_field_ray`, `hit` untouched then. At most
-  /// `max_visits` words are looked at. Cost: a word a row crossed and a word more each 32 cells along a row;
-  /// a multiplication loop of 24 turns to set up; 32-bit arithmetic only.
+  /// `max_visits` words are looked at. Cost: a word for each row crossed and one more for each 32 cells along
+  /// a row, with 32-bit additions only; to set up, a loop of 24 turns and one 64-bit product.
   Status first_hit(const FieldRay& ray, FieldHit* hit, uint32_t max_visits = UINT32_MAX) const;
 
   /// The direction in which the surface faces at `hit` of `ray` (kind kHit), estimated from the cells within
-  /// kNormalRadius of the one hit: a vector of integers, not normalised, each component within +-4096.
+  /// kNormalRadius of the one hit: a vector of integers of at most 10 bits and a sign, not normalised.
   ///
-  /// The empty cells that hang together (by edges) with the one that the ray came from are the outside; the
-  /// rest, whatever it is, counts as solid, so that a line of one cell has two sides. The vector is the sum
-  /// of the outside cells' offsets from the cell hit. It is symmetric under quarter turns and mirrors, so
-  /// walls along the axes and diagonals give exactly their normal. Where that sum is zero, and for axis -1,
-  /// it is the direction against the ray.
+  /// The empty cells that hang together (by edges, within the radius) with the one that the ray came from are
+  /// the outside; the rest, whatever it is, counts as solid, so that a line of one cell has two sides. The
+  /// vector is the sum of the outside cells' offsets from the cell hit. It turns and mirrors with the
+  /// picture, so walls along the axes and diagonals give exactly their normal. Where the sum is zero it is
+  /// that of the edge or corner entered; for axis -1, where there is no outside, the direction against the
+  /// ray. Cost: 30 words, and a few hundred operations on them.
   Vec2i normal(const FieldRay& ray, const FieldHit& hit) const;
   static constexpr int32_t kNormalRadius = 7;
 
  private:
-  const field_detail::Word* column_of(int32_t x, int32_t y) const { return words_ + (x >> 5) * height_ + y; }
-  field_detail::Word* column_of(int32_t x, int32_t y) { return words_ + (x >> 5) * height_ + y; }
+  // Where the words of a small disc lie.
+  struct Rows {
+    field_detail::Word* left;  // left[count], in the column of the disc's left edge
+    int32_t count;             // a multiple of kRowsAtOnce
+    int32_t above;             // rows before the disc's first
+    int32_t shift;             // of the disc's left edge in its word
+    bool two_words;            // it reaches into the next column
+  };
+  Rows rows_of(const DiscStamp& disc, Vec2i corner) const;
 
   field_detail::Word* words_ = nullptr;
   int32_t width_ = 0;
   int32_t height_ = 0;
 };
+
+// The fast functions work on kRowsAtOnce rows at a time, so they touch up to three rows more than the disc
+// has, with masks that are empty there; where the field ends below the disc these are rows above it instead.
+
+inline BitField::Rows BitField::rows_of(const DiscStamp& disc, Vec2i corner) const {
+  constexpr int32_t kRound = field_detail::kRowsAtOnce - 1;
+  Rows rows;
+  rows.count = (disc.diameter + kRound) & ~kRound;
+  const int32_t lowest_top = height_ - rows.count;
+  const int32_t top = corner.y < lowest_top ? corner.y : lowest_top;
+  rows.above = corner.y - top;
+  rows.left = words_ + (corner.x >> 5) * height_ + top;
+  rows.shift = corner.x & 31;
+  rows.two_words = rows.shift + disc.diameter > 32;
+  return rows;
+}
+
+inline bool BitField::any_inside(const DiscStamp& disc, Vec2i corner) const {
+  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  if (height_ < kMaxSmallDisc) {
+    return any(disc, corner);
+  }
+  const Rows rows = rows_of(disc, corner);
+  const uint32_t* masks = disc.rows - rows.above;
+  uint32_t found[kStep] = {};
+  for (int32_t row = 0; row < rows.count; row += kStep) {
+    for (int32_t i = 0; i < kStep; ++i) {
+      found[i] |= (rows.left[row + i] >> rows.shift) & masks[row + i];
+    }
+  }
+  if (rows.two_words) {
+    const field_detail::Word* right = rows.left + height_;
+    for (int32_t row = 0; row < rows.count; row += kStep) {
+      for (int32_t i = 0; i < kStep; ++i) {
+        found[i] |= (right[row + i] << (32 - rows.shift)) & masks[row + i];
+      }
+    }
+  }
+  return field_detail::any_of(found);
+}
+
+inline bool BitField::any_besides_inside(const DiscStamp& disc, Vec2i corner, Vec2i own) const {
+  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  if (!field_detail::same_size_discs_meet(disc.diameter, corner, own)) {
+    return any_inside(disc, corner);
+  }
+  if (height_ < kMaxSmallDisc) {
+    uint32_t rows[kMaxSmallDisc];
+    return overlap_inside(disc, corner, own, rows);
+  }
+  const Rows rows = rows_of(disc, corner);
+  const uint32_t* masks = disc.rows - rows.above;
+  // The own disc's rows as they lie beside those of the new place.
+  const uint32_t* own_masks = masks + (corner.y - own.y);
+  const int32_t to_left = own.x < corner.x ? corner.x - own.x : 0;
+  const int32_t to_right = own.x > corner.x ? own.x - corner.x : 0;
+  uint32_t found[kStep] = {};
+  for (int32_t row = 0; row < rows.count; row += kStep) {
+    for (int32_t i = 0; i < kStep; ++i) {
+      const uint32_t mask = masks[row + i] & ~((own_masks[row + i] >> to_left) << to_right);
+      found[i] |= (rows.left[row + i] >> rows.shift) & mask;
+    }
+  }
+  if (rows.two_words) {
+    const field_detail::Word* right = rows.left + height_;
+    for (int32_t row = 0; row < rows.count; row += kStep) {
+      for (int32_t i = 0; i < kStep; ++i) {
+        const uint32_t mask = masks[row + i] & ~((own_masks[row + i] >> to_left) << to_right);
+        found[i] |= (right[row + i] << (32 - rows.shift)) & mask;
+      }
+    }
+  }
+  return field_detail::any_of(found);
+}
+
+inline void BitField::set_inside(const DiscStamp& disc, Vec2i corner) {
+  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  if (height_ < kMaxSmallDisc) {
+    set(disc, corner);
+    return;
+  }
+  const Rows rows = rows_of(disc, corner);
+  const uint32_t* masks = disc.rows - rows.above;
+  for (int32_t row = 0; row < rows.count; row += kStep) {
+    for (int32_t i = 0; i < kStep; ++i) {
+      rows.left[row + i] |= masks[row + i] << rows.shift;
+    }
+  }
+  if (rows.two_words) {
+    field_detail::Word* right = rows.left + height_;
+    for (int32_t row = 0; row < rows.count; row += kStep) {
+      for (int32_t i = 0; i < kStep; ++i) {
+        right[row + i] |= masks[row + i] >> (32 - rows.shift);
+      }
+    }
+  }
+}
+
+inline void BitField::clear_inside(const DiscStamp& disc, Vec2i corner) {
+  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  if (height_ < kMaxSmallDisc) {
+    clear(disc, corner);
+    return;
+  }
+  const Rows rows = rows_of(disc, corner);
+  const uint32_t* masks = disc.rows - rows.above;
+  for (int32_t row = 0; row < rows.count; row += kStep) {
+    for (int32_t i = 0; i < kStep; ++i) {
+      rows.left[row + i] &= ~(masks[row + i] << rows.shift);
+    }
+  }
+  if (rows.two_words) {
+    field_detail::Word* right = rows.left + height_;
+    for (int32_t row = 0; row < rows.count; row += kStep) {
+      for (int32_t i = 0; i < kStep; ++i) {
+        right[row + i] &= ~(masks[row + i] >> (32 - rows.shift));
+      }
+    }
+  }
+}
 
 }  // namespace thimble
 
