@@ -15,6 +15,8 @@ inline constexpr uint8_t kSupports = 4;  // a sleeper may count on it
 
 // Steps that a ball keeps to its place before it may sleep.
 inline constexpr uint8_t kStillSteps = 40;
+// Steps that two must have kept to their places for their contact to be a lasting one, without bounces.
+inline constexpr uint8_t kLastingSteps = 4;
 // A ball that slides on something loses 1 / 2^this of its speed in a step.
 inline constexpr int kFrictionShift = 5;
 

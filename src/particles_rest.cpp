@@ -87,10 +87,10 @@ void ParticleWorld::hold(uint32_t id) {
 
 void ParticleWorld::wake(uint32_t id) {
   Ball& ball = balls_[id];
-  ball.still = 0;
   if ((ball.flags & kAsleep) == 0) {
     return;
   }
+  ball.still = 0;
   ball.flags = static_cast<uint8_t>(ball.flags & ~kAsleep);
   const Vec2i corner = corner_of(ball);
   ball.anchor_x = static_cast<int16_t>(corner.x);
