@@ -324,7 +324,13 @@ class BitField {
   /// vector is the sum of the outside cells' offsets from the cell hit. It turns and mirrors with the
   /// picture, so walls along the axes and diagonals give exactly their normal. Where the sum is zero it is
   /// that of the edge or corner entered; for axis -1, where there is no outside, the direction against the
-  /// ray. Cost: 30 words, and a few hundred operations on them.
+  /// ray.
+  ///
+  /// Measured, RMS degrees off: slanted walls 1.1, slanted lines of one cell 1.4 (at most 5); single discs of
+  /// diameter 2: 26, 3: 14, 4: 16, 6: 7, 8: 6, 10: 5, 12: 4.4, most of it because a hit is told to a cell
+  /// only (two discs that meet know their centres, and should use them).
+  ///
+  /// Cost: 30 words, and a few hundred operations on them.
   Vec2i normal(const FieldRay& ray, const FieldHit& hit) const;
   static constexpr int32_t kNormalRadius = 7;
 
