@@ -1,0 +1,134 @@
+// What the parts of the particle world share. Internal to src/.
+#ifndef THIMBLE_SRC_PARTICLES_PARTS_H
+#define THIMBLE_SRC_PARTICLES_PARTS_H
+
+#include "bits.h"
+#include "thimble/particles.h"
+
+namespace thimble {
+
+// Ball::flags
+inline constexpr uint8_t kAsleep = 1;  // not in the set of those awake, velocity 0
+inline constexpr uint8_t kGrounded =
+    2;  // under gravity, in its last step it came to lie on something that lies
+inline constexpr uint8_t kSupports = 4;  // a sleeper may count on it
+
+// Steps that a ball keeps to its place before it may sleep.
+inline constexpr uint8_t kStillSteps = 40;
+// A ball that slides on something loses 1 / 2^this of its speed in a step.
+inline constexpr int kFrictionShift = 5;
+
+// Cells of the index, [x0, x1] x [y0, y1], inclusive.
+struct ParticleWorld::CellRange {
+  int32_t x0, y0, x1, y1;
+};
+
+// Where and how the way of a ball ended early.
+struct ParticleWorld::Blocked {
+  static constexpr uint32_t kX = 1;       // the step along x meets something
+  static constexpr uint32_t kY = 2;       // the step along y
+  static constexpr uint32_t kCorner = 4;  // only the step along both
+  uint32_t axes = 0;                      // 0: it did not end early
+  Vec2i sign;                             // of the displacement
+  Vec2i corner;                           // of the disc where it stands now
+  uint32_t left_q16 = 0;                  // the part of the displacement that was not made
+};
+
+// What a disc would cover: balls in order of number, and walls.
+struct ParticleWorld::Contacts {
+  static constexpr int32_t kMost = 32;  // a disc of 16 cells meets no more balls in one step
+  uint32_t ids[kMost];
+  uint8_t axes[kMost];
+  int32_t count = 0;
+  bool wall = false;
+  uint32_t wall_axes = 0;
+  Vec2i wall_offset;  // of all cells of walls from the middle of the disc, in half cells, summed
+
+  void add(uint32_t id, uint32_t axis_bits) {
+    int32_t at = count;
+    while (at > 0 && ids[at - 1] > id) {
+      --at;
+    }
+    if (at > 0 && ids[at - 1] == id) {
+      axes[at - 1] = static_cast<uint8_t>(axes[at - 1] | axis_bits);
+      return;
+    }
+    if (count == kMost) {
+      return;
+    }
+    for (int32_t i = count; i > at; --i) {
+      ids[i] = ids[i - 1];
+      axes[i] = axes[i - 1];
+    }
+    ids[at] = id;
+    axes[at] = static_cast<uint8_t>(axis_bits);
+    ++count;
+  }
+};
+
+inline ParticleWorld::CellRange ParticleWorld::cells_around(const CellBox& box, int32_t reach) const {
+  const auto clamp = [](int32_t value, int32_t limit) {
+    return value < 0 ? 0 : value < limit ? value : limit - 1;
+  };
+  return {clamp((box.min.x - reach) >> cell_shift_, cells_across_),
+          clamp((box.min.y - reach) >> cell_shift_, cells_down_),
+          clamp((box.max.x - 1 + reach) >> cell_shift_, cells_across_),
+          clamp((box.max.y - 1 + reach) >> cell_shift_, cells_down_)};
+}
+
+inline void ParticleWorld::set_awake_bit(uint32_t id) {
+  awake_[id >> 5] |= uint32_t{1} << (id & 31);
+  awake_middle_[id >> 10] |= uint32_t{1} << (id >> 5 & 31);
+  awake_top_[id >> 15] |= uint32_t{1} << (id >> 10 & 31);
+}
+
+inline void ParticleWorld::clear_awake_bit(uint32_t id) {
+  awake_[id >> 5] &= ~(uint32_t{1} << (id & 31));
+  if (awake_[id >> 5] == 0) {
+    awake_middle_[id >> 10] &= ~(uint32_t{1} << (id >> 5 & 31));
+    if (awake_middle_[id >> 10] == 0) {
+      awake_top_[id >> 15] &= ~(uint32_t{1} << (id >> 10 & 31));
+    }
+  }
+}
+
+// The first ball awake of number `from` or more, or kNoBall.
+inline uint32_t ParticleWorld::next_awake(uint32_t from) const {
+  if (from >= id_limit_) {
+    return kNoBall;
+  }
+  uint32_t word = awake_[from >> 5] >> (from & 31);
+  if (word != 0) {
+    return from + bits::lowest_bit(word);
+  }
+  const uint32_t leaf = (from >> 5) + 1;
+  if (leaf >= (id_limit_ + 31) >> 5) {
+    return kNoBall;
+  }
+  word = awake_middle_[leaf >> 5] >> (leaf & 31);
+  uint32_t found = leaf;
+  if (word != 0) {
+    found += bits::lowest_bit(word);
+  } else {
+    uint32_t middle = (leaf >> 5) + 1;
+    uint32_t top = middle >> 5;
+    if (top >= top_words_) {
+      return kNoBall;
+    }
+    word = awake_top_[top] >> (middle & 31);
+    while (word == 0) {
+      if (++top >= top_words_) {
+        return kNoBall;
+      }
+      middle = top << 5;
+      word = awake_top_[top];
+    }
+    middle += bits::lowest_bit(word);
+    found = (middle << 5) + bits::lowest_bit(awake_middle_[middle]);
+  }
+  return (found << 5) + bits::lowest_bit(awake_[found]);
+}
+
+}  // namespace thimble
+
+#endif
