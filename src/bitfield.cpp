@@ -512,10 +512,10 @@ Vec2i BitField::normal(const FieldRay& ray, const FieldHit& hit) const {
     uint32_t change = 0;
     for (int32_t i = 0; i < 2 * kSide; ++i) {
       const int32_t row = i < kSide ? i : 2 * kSide - 1 - i;
-      const uint32_t free = empty[row];
-      uint32_t reached = (outside[row] | outside[row + 1] | outside[row + 2]) & free;
-      uint32_t right = free;
-      uint32_t left = free;
+      const uint32_t room = empty[row];
+      uint32_t reached = (outside[row] | outside[row + 1] | outside[row + 2]) & room;
+      uint32_t right = room;
+      uint32_t left = room;
       for (int32_t shift = 1; shift < kSide; shift *= 2) {
         reached |= ((reached << shift) & right) | ((reached >> shift) & left);
         right &= right << shift;

@@ -37,12 +37,14 @@ struct Picture {
   int height;
   std::vector<char> cells;
 
-  Picture(int w, int h) : width(w), height(h), cells(static_cast<std::size_t>(w * h), 0) {}
+  Picture(int w, int h)
+      : width(w), height(h), cells(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 0) {}
 
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
-  char& cell(int x, int y) { return cells[static_cast<std::size_t>(y * width + x)]; }
-  bool test(int x, int y) const {
-    return contains(x, y) && cells[static_cast<std::size_t>(y * width + x)] != 0;
+  char& cell(int x, int y) { return cells[index(x, y)]; }
+  bool test(int x, int y) const { return contains(x, y) && cells[index(x, y)] != 0; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
   void put(int x, int y, bool value) {
     if (contains(x, y)) {
@@ -899,8 +901,9 @@ TEST_CASE("normal: discs of 2 to 12 cells and slanted walls and lines -> within 
         }
       }
     }
-    MESSAGE((thin ? "one-cell lines" : "walls")
-            << ": RMS " << errors.rms() << ", greatest " << errors.greatest << " degrees");
+    const std::string what = (thin ? "one-cell lines" : "walls") + std::string(": RMS ") +
+                             std::to_string(errors.rms()) + ", greatest " + std::to_string(errors.greatest);
+    MESSAGE("degrees off for " << what);
     CHECK(errors.rms() < 2);
     CHECK(errors.greatest < 6);
   }

@@ -120,21 +120,34 @@ inline constexpr SmallDiscs kSmallDiscs;
 /// A word of the field in the caller's bytes, whatever type they were declared with.
 typedef uint32_t __attribute__((may_alias)) Word;
 
-/// Rows of a disc that are worked on together: four where the compiler has registers of four words to put
-/// them into, else one.
+/// Rows of a disc that are worked on together: four where there are registers of four words to put them into
+/// (the compiler's own vectors, no header), else one.
 #if defined(__SSE2__) || defined(__ARM_NEON)
 inline constexpr int32_t kRowsAtOnce = 4;
+typedef uint32_t __attribute__((vector_size(16), aligned(4), may_alias)) UnalignedBlock;
+typedef uint32_t __attribute__((vector_size(16))) Block;
+inline Block load(const Word* rows) {
+  return *reinterpret_cast<const UnalignedBlock*>(rows);
+}
+inline void store(Word* rows, Block block) {
+  *reinterpret_cast<UnalignedBlock*>(rows) = block;
+}
+inline bool any_of(Block block) {
+  return ((block[0] | block[1]) | (block[2] | block[3])) != 0;
+}
 #else
 inline constexpr int32_t kRowsAtOnce = 1;
-#endif
-
-constexpr bool any_of(const uint32_t (&words)[kRowsAtOnce]) {
-  uint32_t all = 0;
-  for (uint32_t word : words) {
-    all |= word;
-  }
-  return all != 0;
+using Block = uint32_t;
+inline Block load(const Word* rows) {
+  return *rows;
 }
+inline void store(Word* rows, Block block) {
+  *rows = block;
+}
+inline bool any_of(Block block) {
+  return block != 0;
+}
+#endif
 
 /// Whether the squares around two discs of the same diameter share a cell.
 constexpr bool same_size_discs_meet(int32_t diameter, const Vec2i& a, const Vec2i& b) {
@@ -311,69 +324,89 @@ class BitField {
   /// vector is the sum of the outside cells' offsets from the cell hit. It turns and mirrors with the
   /// picture, so walls along the axes and diagonals give exactly their normal. Where the sum is zero it is
   /// that of the edge or corner entered; for axis -1, where there is no outside, the direction against the
-  /// ray. Cost: 30 words, and a few hundred operations on them.
+  /// ray.
+  ///
+  /// Measured, RMS degrees off: slanted walls 1.1, slanted lines of one cell 1.4 (at most 5); single discs of
+  /// diameter 2: 26, 3: 14, 4: 16, 6: 7, 8: 6, 10: 5, 12: 4.4, most of it because a hit is told to a cell
+  /// only (two discs that meet know their centres, and should use them).
+  ///
+  /// Cost: 30 words, and a few hundred operations on them.
   Vec2i normal(const FieldRay& ray, const FieldHit& hit) const;
   static constexpr int32_t kNormalRadius = 7;
 
  private:
   // Where the words of a small disc lie.
   struct Rows {
-    field_detail::Word* left;  // left[count], in the column of the disc's left edge
-    int32_t count;             // a multiple of kRowsAtOnce
-    int32_t above;             // rows before the disc's first
+    field_detail::Word* left;  // the first row, in the column of the disc's left edge
+    const uint32_t* masks;     // for the same row
     int32_t shift;             // of the disc's left edge in its word
     bool two_words;            // it reaches into the next column
   };
-  Rows rows_of(const DiscStamp& disc, Vec2i corner) const;
+  __attribute__((always_inline)) Rows rows_of(const DiscStamp& disc, Vec2i corner) const;
+  // Calls `visit(row)` for the first row of every block. Not inlined, it costs as much as what it does.
+  template <class Visit>
+  __attribute__((always_inline)) static void for_each_block(int32_t diameter, Visit visit);
 
   field_detail::Word* words_ = nullptr;
   int32_t width_ = 0;
   int32_t height_ = 0;
 };
 
-// The fast functions work on kRowsAtOnce rows at a time, so they touch up to three rows more than the disc
-// has, with masks that are empty there; where the field ends below the disc these are rows above it instead.
+// The fast functions. What costs time on a desktop is not the words but the branches, which discs of many
+// sizes take at random: so there all discs of up to 12 rows are taken as 12 rows and the greater ones as 16,
+// four rows to a register, with masks that are empty beyond the disc. Where the field ends below the disc
+// these rows lie above it instead. Elsewhere a row is a turn of a loop.
 
 inline BitField::Rows BitField::rows_of(const DiscStamp& disc, Vec2i corner) const {
-  constexpr int32_t kRound = field_detail::kRowsAtOnce - 1;
   Rows rows;
-  rows.count = (disc.diameter + kRound) & ~kRound;
-  const int32_t lowest_top = height_ - rows.count;
-  const int32_t top = corner.y < lowest_top ? corner.y : lowest_top;
-  rows.above = corner.y - top;
+  int32_t top = corner.y;
+  if constexpr (field_detail::kRowsAtOnce > 1) {
+    const int32_t lowest_top = height_ - (disc.diameter > 12 ? kMaxSmallDisc : 12);
+    top = top < lowest_top ? top : lowest_top;
+  }
   rows.left = words_ + (corner.x >> 5) * height_ + top;
+  rows.masks = disc.rows - (corner.y - top);
   rows.shift = corner.x & 31;
   rows.two_words = rows.shift + disc.diameter > 32;
   return rows;
 }
 
+template <class Visit>
+inline void BitField::for_each_block(int32_t diameter, Visit visit) {
+  if constexpr (field_detail::kRowsAtOnce > 1) {
+    visit(0);
+    visit(4);
+    visit(8);
+    if (diameter > 12) {
+      visit(12);
+    }
+  } else {
+    for (int32_t row = 0; row < diameter; ++row) {
+      visit(row);
+    }
+  }
+}
+
 inline bool BitField::any_inside(const DiscStamp& disc, Vec2i corner) const {
-  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  using namespace field_detail;
   if (height_ < kMaxSmallDisc) {
     return any(disc, corner);
   }
   const Rows rows = rows_of(disc, corner);
-  const uint32_t* masks = disc.rows - rows.above;
-  uint32_t found[kStep] = {};
-  for (int32_t row = 0; row < rows.count; row += kStep) {
-    for (int32_t i = 0; i < kStep; ++i) {
-      found[i] |= (rows.left[row + i] >> rows.shift) & masks[row + i];
-    }
-  }
+  Block found = {};
+  for_each_block(disc.diameter,
+                 [&](int32_t row) { found |= load(rows.left + row) >> rows.shift & load(rows.masks + row); });
   if (rows.two_words) {
-    const field_detail::Word* right = rows.left + height_;
-    for (int32_t row = 0; row < rows.count; row += kStep) {
-      for (int32_t i = 0; i < kStep; ++i) {
-        found[i] |= (right[row + i] << (32 - rows.shift)) & masks[row + i];
-      }
-    }
+    for_each_block(disc.diameter, [&](int32_t row) {
+      found |= load(rows.left + height_ + row) << (32 - rows.shift) & load(rows.masks + row);
+    });
   }
-  return field_detail::any_of(found);
+  return any_of(found);
 }
 
 inline bool BitField::any_besides_inside(const DiscStamp& disc, Vec2i corner, Vec2i own) const {
-  constexpr int32_t kStep = field_detail::kRowsAtOnce;
-  if (!field_detail::same_size_discs_meet(disc.diameter, corner, own)) {
+  using namespace field_detail;
+  if (!same_size_discs_meet(disc.diameter, corner, own)) {
     return any_inside(disc, corner);
   }
   if (height_ < kMaxSmallDisc) {
@@ -381,73 +414,57 @@ inline bool BitField::any_besides_inside(const DiscStamp& disc, Vec2i corner, Ve
     return overlap_inside(disc, corner, own, rows);
   }
   const Rows rows = rows_of(disc, corner);
-  const uint32_t* masks = disc.rows - rows.above;
   // The own disc's rows as they lie beside those of the new place.
-  const uint32_t* own_masks = masks + (corner.y - own.y);
+  const uint32_t* own_masks = rows.masks + (corner.y - own.y);
   const int32_t to_left = own.x < corner.x ? corner.x - own.x : 0;
   const int32_t to_right = own.x > corner.x ? own.x - corner.x : 0;
-  uint32_t found[kStep] = {};
-  for (int32_t row = 0; row < rows.count; row += kStep) {
-    for (int32_t i = 0; i < kStep; ++i) {
-      const uint32_t mask = masks[row + i] & ~((own_masks[row + i] >> to_left) << to_right);
-      found[i] |= (rows.left[row + i] >> rows.shift) & mask;
-    }
-  }
+  Block found = {};
+  for_each_block(disc.diameter, [&](int32_t row) {
+    found |= load(rows.left + row) >> rows.shift & load(rows.masks + row) &
+             ~(load(own_masks + row) >> to_left << to_right);
+  });
   if (rows.two_words) {
-    const field_detail::Word* right = rows.left + height_;
-    for (int32_t row = 0; row < rows.count; row += kStep) {
-      for (int32_t i = 0; i < kStep; ++i) {
-        const uint32_t mask = masks[row + i] & ~((own_masks[row + i] >> to_left) << to_right);
-        found[i] |= (right[row + i] << (32 - rows.shift)) & mask;
-      }
-    }
+    for_each_block(disc.diameter, [&](int32_t row) {
+      found |= load(rows.left + height_ + row) << (32 - rows.shift) & load(rows.masks + row) &
+               ~(load(own_masks + row) >> to_left << to_right);
+    });
   }
-  return field_detail::any_of(found);
+  return any_of(found);
 }
 
 inline void BitField::set_inside(const DiscStamp& disc, Vec2i corner) {
-  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  using namespace field_detail;
   if (height_ < kMaxSmallDisc) {
     set(disc, corner);
     return;
   }
   const Rows rows = rows_of(disc, corner);
-  const uint32_t* masks = disc.rows - rows.above;
-  for (int32_t row = 0; row < rows.count; row += kStep) {
-    for (int32_t i = 0; i < kStep; ++i) {
-      rows.left[row + i] |= masks[row + i] << rows.shift;
-    }
-  }
+  for_each_block(disc.diameter, [&](int32_t row) {
+    store(rows.left + row, load(rows.left + row) | load(rows.masks + row) << rows.shift);
+  });
   if (rows.two_words) {
-    field_detail::Word* right = rows.left + height_;
-    for (int32_t row = 0; row < rows.count; row += kStep) {
-      for (int32_t i = 0; i < kStep; ++i) {
-        right[row + i] |= masks[row + i] >> (32 - rows.shift);
-      }
-    }
+    Word* right = rows.left + height_;
+    for_each_block(disc.diameter, [&](int32_t row) {
+      store(right + row, load(right + row) | load(rows.masks + row) >> (32 - rows.shift));
+    });
   }
 }
 
 inline void BitField::clear_inside(const DiscStamp& disc, Vec2i corner) {
-  constexpr int32_t kStep = field_detail::kRowsAtOnce;
+  using namespace field_detail;
   if (height_ < kMaxSmallDisc) {
     clear(disc, corner);
     return;
   }
   const Rows rows = rows_of(disc, corner);
-  const uint32_t* masks = disc.rows - rows.above;
-  for (int32_t row = 0; row < rows.count; row += kStep) {
-    for (int32_t i = 0; i < kStep; ++i) {
-      rows.left[row + i] &= ~(masks[row + i] << rows.shift);
-    }
-  }
+  for_each_block(disc.diameter, [&](int32_t row) {
+    store(rows.left + row, load(rows.left + row) & ~(load(rows.masks + row) << rows.shift));
+  });
   if (rows.two_words) {
-    field_detail::Word* right = rows.left + height_;
-    for (int32_t row = 0; row < rows.count; row += kStep) {
-      for (int32_t i = 0; i < kStep; ++i) {
-        right[row + i] &= ~(masks[row + i] >> (32 - rows.shift));
-      }
-    }
+    Word* right = rows.left + height_;
+    for_each_block(disc.diameter, [&](int32_t row) {
+      store(right + row, load(right + row) & ~(load(rows.masks + row) >> (32 - rows.shift)));
+    });
   }
 }
 
