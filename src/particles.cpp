@@ -56,6 +56,7 @@ Status ParticleWorld::init(Bytes bytes, const ParticleConfig& config, ParticleWo
   ParticleWorld made;
   const size_t field_bytes = bitfield_bytes(config.width, config.height);
   uint8_t* const field = take(field_bytes);
+  take(particle_detail::kSlackBytes - 4);
   const Status status = BitField::init({field, field_bytes}, config.width, config.height, &made.field_);
   if (status != Status::kOk) {
     return status;

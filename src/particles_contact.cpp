@@ -92,14 +92,10 @@ constexpr bool sum_is_positive(int64_t a, uint32_t mass_a, int64_t b, uint32_t m
 
 }  // namespace
 
-// The balls and walls under `disc` at `place`, added to `contacts` with `axis_bits`; the disc's own cells at
-// `own` do not count.
-void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place, Vec2i own,
-                                uint32_t axis_bits, Contacts* contacts) const {
-  uint32_t rows[kMaxSmallDisc];
-  if (!field_.overlap_inside(disc, place, own, rows)) {
-    return;
-  }
+// The balls and walls that cells under `disc` at `place` belong to, added to `contacts` with `axis_bits`.
+// rows[disc.diameter] are those cells, some of them set; they are used up.
+void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place,
+                                uint32_t (&rows)[kMaxSmallDisc], uint32_t axis_bits, Contacts* contacts) const {
   uint32_t columns = 0;
   int32_t first = disc.diameter;
   int32_t last = 0;
@@ -154,17 +150,17 @@ void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i plac
   }
 }
 
-// The direction away from the drawn walls around a ball that does not stand in the field just now. Where the
+// The direction away from the drawn walls around a ball, whose own cells are those at `own`. Where the
 // cells in the way lie evenly about an axis that axis is the answer, so that level walls are exact; else the
 // walls within two cells of the disc are weighed as well, which is a good deal less rough.
-Vec2i ParticleWorld::wall_normal(const Ball& ball, Vec2i offset) const {
+Vec2i ParticleWorld::wall_normal(uint32_t self, Vec2i offset, Vec2i own) const {
   if (offset.x == 0 || offset.y == 0) {
     return {-offset.x, -offset.y};
   }
   constexpr int32_t kReach = 2;
   constexpr int32_t kMostRows = kMaxSmallDisc + 2 * kReach;
-  const DiscStamp disc = disc_stamp(ball.diameter);
-  const Vec2i corner = corner_of(ball);
+  const DiscStamp disc = disc_stamp(balls_[self].diameter);
+  const Vec2i corner = corner_of(balls_[self]);
   const int32_t size = disc.diameter + 2 * kReach;
   const Vec2i from{corner.x - kReach, corner.y - kReach};
   uint32_t rows[kMostRows];
@@ -190,23 +186,25 @@ Vec2i ParticleWorld::wall_normal(const Ball& ball, Vec2i offset) const {
     }
     rows[row] = cells & mask;
   }
-  const CellBox box{from, {from.x + size, from.y + size}};
-  const CellRange range = cells_around(box, config_.most_diameter / 2);
+  const auto leave_out = [&](const DiscStamp& other, Vec2i at) {
+    const int32_t right = at.x - from.x;
+    if (right <= -32 || right >= 32) {
+      return;
+    }
+    for (int32_t row = 0; row < size; ++row) {
+      const int32_t other_row = from.y + row - at.y;
+      if (other_row >= 0 && other_row < other.diameter) {
+        rows[row] &= ~(right < 0 ? other.rows[other_row] >> -right : other.rows[other_row] << right);
+      }
+    }
+  };
+  leave_out(disc, own);
+  const CellRange range = cells_around({from, {from.x + size, from.y + size}}, config_.most_diameter / 2);
   for (int32_t y = range.y0; y <= range.y1; ++y) {
     for (int32_t x = range.x0; x <= range.x1; ++x) {
       for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        const Vec2i other = corner_of(balls_[id]);
-        const DiscStamp other_disc = disc_stamp(balls_[id].diameter);
-        const int32_t right = other.x - from.x;
-        if (right <= -32 || right >= 32) {
-          continue;
-        }
-        for (int32_t row = 0; row < size; ++row) {
-          const int32_t other_row = from.y + row - other.y;
-          if (other_row >= 0 && other_row < other_disc.diameter) {
-            rows[row] &=
-                ~(right < 0 ? other_disc.rows[other_row] >> -right : other_disc.rows[other_row] << right);
-          }
+        if (id != self) {
+          leave_out(disc_stamp(balls_[id].diameter), corner_of(balls_[id]));
         }
       }
     }
@@ -221,16 +219,19 @@ Vec2i ParticleWorld::wall_normal(const Ball& ball, Vec2i offset) const {
   return sum == Vec2i{} ? Vec2i{-offset.x, -offset.y} : sum;
 }
 
-// The ball stands clear of the field and its way is `blocked`: everything in the way is met, first the sides
-// of the box, then walls, then balls in order of number.
-void ParticleWorld::collide(uint32_t id, const Blocked& blocked) {
+// The way of ball `id` is `blocked`: everything in the way is met, first the sides of the box, then walls, then
+// balls in order of number. `window` holds the places in the way; the ball's cells in the field are at `own`.
+void ParticleWorld::collide(uint32_t id, const Blocked& blocked, const Window& window, Vec2i own) {
   Ball& ball = balls_[id];
   const DiscStamp disc = disc_stamp(ball.diameter);
   const Vec2i away{-blocked.sign.x, -blocked.sign.y};
   Contacts contacts;
-  if ((blocked.axes & Blocked::kCorner) != 0) {
+  uint32_t rows[kMaxSmallDisc];
+  if (blocked.axes == Blocked::kCorner) {
     const Vec2i place{blocked.corner.x + blocked.sign.x, blocked.corner.y + blocked.sign.y};
-    contacts_at(id, disc, place, BitField::kNowhere, Blocked::kX | Blocked::kY, &contacts);
+    if (window.under(disc, place, rows)) {
+      contacts_at(id, disc, place, rows, Blocked::kX | Blocked::kY, &contacts);
+    }
   }
   for (int axis = 0; axis < 2; ++axis) {
     const uint32_t axis_bit = axis == 0 ? Blocked::kX : Blocked::kY;
@@ -243,12 +244,12 @@ void ParticleWorld::collide(uint32_t id, const Blocked& blocked) {
       Vec2i normal;
       normal[axis] = away[axis];
       bounce(ball, kNoBall, normal, away, axis_bit);
-    } else {
-      contacts_at(id, disc, place, BitField::kNowhere, axis_bit, &contacts);
+    } else if (window.under(disc, place, rows)) {
+      contacts_at(id, disc, place, rows, axis_bit, &contacts);
     }
   }
   if (contacts.wall) {
-    bounce(ball, kNoBall, wall_normal(ball, contacts.wall_offset), away, contacts.wall_axes);
+    bounce(ball, kNoBall, wall_normal(id, contacts.wall_offset, own), away, contacts.wall_axes);
   }
   for (int32_t i = 0; i < contacts.count; ++i) {
     const Ball& other = balls_[contacts.ids[i]];

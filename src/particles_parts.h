@@ -25,6 +25,40 @@ struct ParticleWorld::CellRange {
   int32_t x0, y0, x1, y1;
 };
 
+// A piece of the field around a ball, without the ball itself: row r, bit c is cell base + (c, r). What lies
+// outside the box is set.
+//
+// All loops over its rows have a fixed length, with masks that are empty where there is nothing to do: a ball
+// of any size takes the same way through the code, so that the processor need not guess, and compilers turn
+// them into a few wide instructions.
+struct ParticleWorld::Window {
+  static constexpr int32_t kSide = 32;             // at most so many columns and rows
+  static constexpr int32_t kBlock = 16;            // rows of a disc, and of a small window
+  uint32_t rows[kSide + kBlock];                   // the last are clear
+  Vec2i base;
+
+  // The cells under a disc at `place`, which lies in the window, as rows from its corner on; whether there are any.
+  bool under(const DiscStamp& disc, Vec2i place, uint32_t (&out)[kBlock]) const {
+    const uint32_t* const from = rows + (place.y - base.y);
+    const int32_t shift = place.x - base.x;
+    uint32_t any = 0;
+    for (int32_t row = 0; row < kBlock; ++row) {
+      out[row] = (from[row] >> shift) & disc.rows[row];
+      any |= out[row];
+    }
+    return any != 0;
+  }
+  bool is_free(const DiscStamp& disc, Vec2i place) const {
+    const uint32_t* const from = rows + (place.y - base.y);
+    const int32_t shift = place.x - base.x;
+    uint32_t any = 0;
+    for (int32_t row = 0; row < kBlock; ++row) {
+      any |= (from[row] >> shift) & disc.rows[row];
+    }
+    return any == 0;
+  }
+};
+
 // Where and how the way of a ball ended early.
 struct ParticleWorld::Blocked {
   static constexpr uint32_t kX = 1;       // the step along x meets something

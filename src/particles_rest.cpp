@@ -54,7 +54,10 @@ bool ParticleWorld::lies_still(uint32_t id) const {
       continue;
     }
     Contacts contacts;
-    contacts_at(id, disc, place, corner, 1, &contacts);
+    uint32_t rows[kMaxSmallDisc];
+    if (field_.overlap_inside(disc, place, corner, rows)) {
+      contacts_at(id, disc, place, rows, 1, &contacts);
+    }
     bool on_something = contacts.wall;
     for (int32_t i = 0; i < contacts.count && !on_something; ++i) {
       const Ball& other = balls_[contacts.ids[i]];
@@ -78,7 +81,10 @@ void ParticleWorld::hold(uint32_t id) {
       continue;
     }
     Contacts contacts;
-    contacts_at(id, disc, place, corner, 1, &contacts);
+    uint32_t rows[kMaxSmallDisc];
+    if (field_.overlap_inside(disc, place, corner, rows)) {
+      contacts_at(id, disc, place, rows, 1, &contacts);
+    }
     for (int32_t i = 0; i < contacts.count; ++i) {
       balls_[contacts.ids[i]].flags |= kSupports;
     }

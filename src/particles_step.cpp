@@ -26,47 +26,124 @@ constexpr int32_t most(int32_t a, int32_t b) {
   return a > b ? a : b;
 }
 
-// Any cell set in rows [y, y + count) of the column of words that begins at `column`, under `mask`; with
-// the cells of a disc left out, whose masks (moved by `shift` to the left) are own[row]. Rows are taken four
-// at a time, the last four again where the count is no multiple: looking twice changes nothing.
-inline uint32_t rows_besides(const Word* column, const uint32_t* own, int32_t count, int32_t right,
-                             int32_t left, int32_t shift) {
-  uint32_t found[4] = {};
-  if (count < 4) {
-    for (int32_t row = 0; row < count; ++row) {
-      found[0] |= ((column[row] >> right) << left) & ~(own[row] << shift);
-    }
-    return found[0];
+// kLines + 16 - n: n full words, then empty ones.
+constexpr uint32_t kLines[32] = {
+    UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX,
+    UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+constexpr int32_t kBlock = 16;
+
+// out[row] = rows[row] moved to the right of the picture by `shift` cells.
+inline void load_disc(const uint32_t* rows, int32_t shift, uint32_t (&out)[kBlock]) {
+  for (int32_t row = 0; row < kBlock; ++row) {
+    out[row] = rows[row] << shift;
   }
-  for (int32_t row = 0;;) {
-    for (int32_t i = 0; i < 4; ++i) {
-      found[i] |= ((column[row + i] >> right) << left) & ~(own[row + i] << shift);
-    }
-    if (row == count - 4) {
-      break;
-    }
-    row = least(row + 4, count - 4);
+}
+
+// The words of `column` lose the cells of `from` and gain those of `to`.
+inline void replace(Word* column, const uint32_t (&from)[kBlock], const uint32_t (&to)[kBlock]) {
+  for (int32_t row = 0; row < kBlock; ++row) {
+    column[row] = (column[row] & ~from[row]) | to[row];
   }
-  return found[0] | found[1] | found[2] | found[3];
 }
 
 }  // namespace
 
-// Whether the box around a disc at `from` and at `to`, at most kShortWay apart and both in the field, is free
-// of all but the disc at `from`.
-bool ParticleWorld::box_is_free(const DiscStamp& disc, Vec2i from, Vec2i to) const {
+// Moves a disc in the field from `from` to `to`, at most kShortWay apart and both inside, when the box around
+// both is free of everything else. A box of more than 16 rows counts as not free.
+inline bool ParticleWorld::move_if_free(const DiscStamp& disc, Vec2i from, Vec2i to) {
   const int32_t x = least(from.x, to.x);
   const int32_t y = least(from.y, to.y);
   const int32_t width = disc.diameter + most(from.x, to.x) - x;
   const int32_t height = disc.diameter + most(from.y, to.y) - y;
-  const int32_t right = x & 31;
-  const Word* column = words_ + (x >> 5) * config_.height + y;
-  const uint32_t* own = disc.rows + (y - from.y);
-  uint32_t found = rows_besides(column, own, height, right, 0, from.x - x);
-  if (right + width > 32) {
-    found |= rows_besides(column + config_.height, own, height, 0, 32 - right, from.x - x);
+  if (height > kBlock) {
+    return false;
   }
-  return (found & ((uint32_t{1} << width) - 1)) == 0;
+  const int32_t shift = x & 31;
+  Word* const column = words_ + (x >> 5) * config_.height + y;
+  uint32_t own[kBlock];
+  uint32_t next[kBlock];
+  load_disc(disc.rows + (y - from.y), from.x - x, own);
+  load_disc(disc.rows + (y - to.y), to.x - x, next);
+  const uint32_t* const lines = kLines + kBlock - height;
+  uint32_t found = 0;
+  if (shift + width <= 32) {
+    for (int32_t row = 0; row < kBlock; ++row) {
+      found |= (column[row] >> shift) & ~own[row] & lines[row];
+    }
+    if ((found & ((uint32_t{1} << width) - 1)) != 0) {
+      return false;
+    }
+    for (int32_t row = 0; row < kBlock; ++row) {
+      own[row] <<= shift;
+      next[row] <<= shift;
+    }
+    replace(column, own, next);
+    return true;
+  }
+  Word* const beyond = column + config_.height;
+  const int32_t back = 32 - shift;
+  for (int32_t row = 0; row < kBlock; ++row) {
+    found |= ((column[row] >> shift) | (beyond[row] << back)) & ~own[row] & lines[row];
+  }
+  if ((found & ((uint32_t{1} << width) - 1)) != 0) {
+    return false;
+  }
+  uint32_t own_beyond[kBlock];
+  uint32_t next_beyond[kBlock];
+  for (int32_t row = 0; row < kBlock; ++row) {
+    own_beyond[row] = own[row] >> back;
+    next_beyond[row] = next[row] >> back;
+    own[row] <<= shift;
+    next[row] <<= shift;
+  }
+  replace(column, own, next);
+  replace(beyond, own_beyond, next_beyond);
+  return true;
+}
+
+// The cells of `box`, at most Window::kSide on a side, without those of `disc` at `own`.
+void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const {
+  window->base = box.min;
+  const int32_t height = box.max.y - box.min.y;
+  const int32_t rows = height <= kBlock ? kBlock : Window::kSide;
+  uint32_t* const out = window->rows;
+  if (box.min.x >= 0 && box.min.y >= 0 && box.max.x <= config_.width && box.max.y <= config_.height) {
+    const int32_t shift = box.min.x & 31;
+    const Word* const column = words_ + (box.min.x >> 5) * config_.height + box.min.y;
+    // Where the box does not reach beyond the column it does not matter what is taken for the next.
+    const bool two = shift + (box.max.x - box.min.x) > 32;
+    const Word* const beyond = two ? column + config_.height : column;
+    for (int32_t row = 0; row < rows; ++row) {
+      out[row] = (column[row] >> shift) | ((beyond[row] << 1) << (31 - shift));
+    }
+  } else {
+    for (int32_t row = 0; row < rows; ++row) {
+      const int32_t y = box.min.y + row;
+      out[row] = UINT32_MAX;
+      if (y >= 0 && y < config_.height) {
+        out[row] = field_.window(box.min.x, y);
+        const int32_t before = -box.min.x;
+        const int32_t after = config_.width - box.min.x;
+        if (before > 0) {
+          out[row] |= before >= 32 ? UINT32_MAX : (uint32_t{1} << before) - 1;
+        }
+        if (after < 32) {
+          out[row] |= after <= 0 ? UINT32_MAX : UINT32_MAX << after;
+        }
+      }
+    }
+  }
+  for (int32_t row = rows; row < Window::kSide + kBlock; ++row) {
+    out[row] = 0;
+  }
+  const int32_t right = own.x - box.min.x;
+  const int32_t down = own.y - box.min.y;
+  if (right <= -Window::kSide || right >= Window::kSide) {
+    return;
+  }
+  for (int32_t row = most(0, -down); row < disc.diameter && down + row < rows; ++row) {
+    out[down + row] &= ~(right < 0 ? disc.rows[row] >> -right : disc.rows[row] << right);
+  }
 }
 
 // Displacement of a substep for a velocity, to the nearest unit, halves away from zero.
@@ -120,15 +197,16 @@ void ParticleWorld::advance(uint32_t id) {
     const uint32_t dx = static_cast<uint32_t>(to.x - from.x + kShortWay);
     const uint32_t dy = static_cast<uint32_t>(to.y - from.y + kShortWay);
     ++counters_.mask_tests;
-    if (dx <= 2 * kShortWay && dy <= 2 * kShortWay && field_.holds(disc, to) && box_is_free(disc, from, to)) {
-      field_.clear_inside(disc, from);
-      field_.set_inside(disc, to);
+    if (dx <= 2 * kShortWay && dy <= 2 * kShortWay && field_.holds(disc, to) && move_if_free(disc, from, to)) {
       ball.x += way.x;
       ball.y += way.y;
     } else {
-      field_.clear_inside(disc, from);
-      trace(id, way);
-      field_.set_inside(disc, corner_of(ball));
+      trace(id, way, from);
+      const Vec2i corner = corner_of(ball);
+      if (corner != from) {
+        field_.clear_inside(disc, from);
+        field_.set_inside(disc, corner);
+      }
     }
   }
   const uint32_t new_cell = cell_of(ball.x, ball.y);
@@ -141,15 +219,16 @@ void ParticleWorld::advance(uint32_t id) {
   }
 }
 
-// The way of a ball that does not stand in the field just now, with its bounces.
-void ParticleWorld::trace(uint32_t id, Vec2i way) {
+// The way of a ball whose cells in the field stay at `own` meanwhile, with its bounces.
+void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
   Ball& ball = balls_[id];
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
-    const Blocked blocked = walk(&ball, way);
+    Window window;
+    const Blocked blocked = walk(&ball, way, own, &window);
     if (blocked.axes == 0) {
       return;
     }
-    collide(id, blocked);
+    collide(id, blocked, window, own);
     const auto rest_of = [&blocked, this](int32_t velocity) {
       const int32_t whole = displacement(velocity);
       const uint64_t part = (uint64_t{magnitude(whole)} * blocked.left_q16) >> 16;
@@ -173,7 +252,7 @@ void ParticleWorld::trace(uint32_t id, Vec2i way) {
 
 // Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
 // between cells are crossed in their exact order along the line; both at once where it goes through a corner.
-ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way) {
+ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, Window* window) {
   const DiscStamp disc = disc_stamp(ball->diameter);
   Blocked blocked;
   Vec2i corner = corner_of(*ball);
@@ -215,31 +294,35 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way) {
   int32_t careful = 0;  // crossings to be looked at one by one
   const auto free_at = [&](Vec2i place) {
     ++counters_.mask_tests;
-    return is_free(disc, place);
+    return window->is_free(disc, place);
   };
   while (done[0] < crossings[0] || done[1] < crossings[1]) {
     if (careful == 0) {
+      // The next stretch of the way, at one look; when something is there, it is gone again cell by cell.
       careful = kStride;
-      if (crossings[0] - done[0] + crossings[1] - done[1] > 4) {
-        const int32_t done_before[2] = {done[0], done[1]};
-        const Vec2i corner_before = corner;
-        const int64_t order_before = order;
-        for (int32_t i = 0; i < kStride && (done[0] < crossings[0] || done[1] < crossings[1]); ++i) {
-          take(next_axes());
-        }
-        ++counters_.mask_tests;
-        const CellBox box{{least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
-                          {most(corner.x, corner_before.x) + disc.diameter,
-                           most(corner.y, corner_before.y) + disc.diameter}};
-        if (field_.holds(disc, corner) && !field_.any(box)) {
-          careful = 0;
-          continue;
-        }
-        done[0] = done_before[0];
-        done[1] = done_before[1];
-        corner = corner_before;
-        order = order_before;
+      const int32_t done_before[2] = {done[0], done[1]};
+      const Vec2i corner_before = corner;
+      const int64_t order_before = order;
+      for (int32_t i = 0; i < kStride && (done[0] < crossings[0] || done[1] < crossings[1]); ++i) {
+        take(next_axes());
       }
+      ++counters_.mask_tests;
+      const CellBox box{{least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
+                        {most(corner.x, corner_before.x) + disc.diameter,
+                         most(corner.y, corner_before.y) + disc.diameter}};
+      load_window(box, disc, own, window);
+      uint32_t found = 0;
+      for (int32_t row = 0; row < box.max.y - box.min.y; ++row) {
+        found |= window->rows[row];
+      }
+      if ((found << (32 - (box.max.x - box.min.x))) == 0) {
+        careful = 0;
+        continue;
+      }
+      done[0] = done_before[0];
+      done[1] = done_before[1];
+      corner = corner_before;
+      order = order_before;
     }
     --careful;
     const uint32_t axes = next_axes();

@@ -83,6 +83,8 @@ struct Ball {
 };
 static_assert(sizeof(Ball) == 32);
 
+/// 128 for rows that are read beyond the last of the field, 4 for bytes that do not begin at a multiple of 4.
+inline constexpr size_t kSlackBytes = 132;
 /// log2 of the side of a cell of the index: the least power of two that holds the largest ball, at least 8.
 constexpr int32_t cell_shift(int32_t most_diameter) {
   return most_diameter <= 8 ? 3 : 4;
@@ -112,7 +114,7 @@ constexpr size_t particles_bytes(int32_t width, int32_t height, uint32_t capacit
   }
   return bitfield_bytes(width, height) + size_t{capacity} * sizeof(particle_detail::Ball) +
          4 * particle_detail::cell_count(width, height, most_diameter) +
-         4 * particle_detail::awake_words(capacity) + 4;  // 4: for bytes that do not begin at a multiple of 4
+         4 * particle_detail::awake_words(capacity) + particle_detail::kSlackBytes;
 }
 constexpr size_t particles_bytes(const ParticleConfig& config) {
   return particles_bytes(config.width, config.height, config.capacity, config.most_diameter);
@@ -263,6 +265,7 @@ class ParticleWorld {
   using Ball = particle_detail::Ball;
   struct Blocked;
   struct Contacts;
+  struct Window;
 
   // particles.cpp: places and lists.
   Vec2i corner_of(const Ball& ball) const {
@@ -287,16 +290,17 @@ class ParticleWorld {
 
   // particles_step.cpp: the way of one ball.
   void advance(uint32_t id);
-  void trace(uint32_t id, Vec2i way);
-  Blocked walk(Ball* ball, Vec2i way);
-  bool box_is_free(const DiscStamp& disc, Vec2i from, Vec2i to) const;
+  void trace(uint32_t id, Vec2i way, Vec2i own);
+  Blocked walk(Ball* ball, Vec2i way, Vec2i own, Window* window);
+  bool move_if_free(const DiscStamp& disc, Vec2i from, Vec2i to);
+  void load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const;
   int32_t displacement(int32_t velocity) const;
 
   // particles_contact.cpp: what is met, and what it does.
-  void contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place, Vec2i own, uint32_t axis_bits,
-                   Contacts* contacts) const;
-  void collide(uint32_t id, const Blocked& blocked);
-  Vec2i wall_normal(const Ball& ball, Vec2i offset) const;
+  void contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place, uint32_t (&rows)[kMaxSmallDisc],
+                   uint32_t axis_bits, Contacts* contacts) const;
+  void collide(uint32_t id, const Blocked& blocked, const Window& window, Vec2i own);
+  Vec2i wall_normal(uint32_t id, Vec2i offset, Vec2i own) const;
   void bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i away, uint32_t axes);
   void push(Ball& ball, Ball* other, Vec2i normal, int64_t along, uint32_t restitution_q16);
 
