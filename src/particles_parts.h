@@ -53,14 +53,17 @@ inline Rows load_rows(const uint32_t* rows) {
 inline void store_rows(uint32_t* rows, Rows value) {
   *reinterpret_cast<RowsInMemory*>(rows) = value;
 }
-// Does `visit(row)` for the first `count` rows of at most kBlock: for each of them, or for all in fours.
+// Does `visit(row)` for the first `count` rows of at most kBlock: for each of them, or for twelve or all in
+// fours.
 template <class Visit>
 inline void for_rows([[maybe_unused]] int32_t count, Visit visit) {
   if constexpr (kLanes == 4) {
     visit(0);
     visit(4);
     visit(8);
-    visit(12);
+    if (count > 12) {
+      visit(12);
+    }
   } else {
     for (int32_t row = 0; row < count; ++row) {
       visit(row);
