@@ -15,7 +15,7 @@ inline constexpr uint8_t kSupports = 4;  // a sleeper may count on it
 
 // A ball that keeps within so many cells of its place for so many steps may sleep.
 inline constexpr int32_t kStillReach = 1;
-inline constexpr uint8_t kStillSteps = 40;
+inline constexpr uint8_t kStillSteps = 24;
 inline constexpr int32_t kConfinedReach = 4;
 inline constexpr uint8_t kConfinedSteps = 200;
 // Steps that two must have kept to their places for their contact to be a lasting one, without bounces.
