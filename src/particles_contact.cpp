@@ -95,7 +95,8 @@ constexpr bool sum_is_positive(int64_t a, uint32_t mass_a, int64_t b, uint32_t m
 // The balls and walls that cells under `disc` at `place` belong to, added to `contacts` with `axis_bits`.
 // rows[disc.diameter] are those cells, some of them set; they are used up.
 void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place,
-                                uint32_t (&rows)[kMaxSmallDisc], uint32_t axis_bits, Contacts* contacts) const {
+                                uint32_t (&rows)[kMaxSmallDisc], uint32_t axis_bits,
+                                Contacts* contacts) const {
   uint32_t columns = 0;
   int32_t first = disc.diameter;
   int32_t last = 0;
@@ -119,7 +120,7 @@ void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i plac
             corner.y + size <= box.min.y) {
           continue;
         }
-        const uint32_t* masks = disc_stamp(size).rows + (place.y - corner.y);
+        const uint32_t* masks = small_disc(size).rows + (place.y - corner.y);
         const int32_t left = corner.x < place.x ? place.x - corner.x : 0;
         const int32_t right = corner.x > place.x ? corner.x - place.x : 0;
         uint32_t met = 0;
@@ -159,7 +160,7 @@ Vec2i ParticleWorld::wall_normal(uint32_t self, Vec2i offset, Vec2i own) const {
   }
   constexpr int32_t kReach = 2;
   constexpr int32_t kMostRows = kMaxSmallDisc + 2 * kReach;
-  const DiscStamp disc = disc_stamp(balls_[self].diameter);
+  const DiscStamp disc = small_disc(balls_[self].diameter);
   const Vec2i corner = corner_of(balls_[self]);
   const int32_t size = disc.diameter + 2 * kReach;
   const Vec2i from{corner.x - kReach, corner.y - kReach};
@@ -204,7 +205,7 @@ Vec2i ParticleWorld::wall_normal(uint32_t self, Vec2i offset, Vec2i own) const {
     for (int32_t x = range.x0; x <= range.x1; ++x) {
       for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
         if (id != self) {
-          leave_out(disc_stamp(balls_[id].diameter), corner_of(balls_[id]));
+          leave_out(small_disc(balls_[id].diameter), corner_of(balls_[id]));
         }
       }
     }
@@ -219,11 +220,12 @@ Vec2i ParticleWorld::wall_normal(uint32_t self, Vec2i offset, Vec2i own) const {
   return sum == Vec2i{} ? Vec2i{-offset.x, -offset.y} : sum;
 }
 
-// The way of ball `id` is `blocked`: everything in the way is met, first the sides of the box, then walls, then
-// balls in order of number. `window` holds the places in the way; the ball's cells in the field are at `own`.
+// The way of ball `id` is `blocked`: everything in the way is met, first the sides of the box, then walls,
+// then balls in order of number. `window` holds the places in the way; the ball's cells in the field are at
+// `own`.
 void ParticleWorld::collide(uint32_t id, const Blocked& blocked, const Window& window, Vec2i own) {
   Ball& ball = balls_[id];
-  const DiscStamp disc = disc_stamp(ball.diameter);
+  const DiscStamp disc = small_disc(ball.diameter);
   const Vec2i away{-blocked.sign.x, -blocked.sign.y};
   Contacts contacts;
   uint32_t rows[kMaxSmallDisc];
@@ -285,8 +287,8 @@ void ParticleWorld::bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i aw
     ++counters_.wall_hits;
   }
   const bool slow = pulled_ && -along <= int64_t{rest_speed_} * length_of(n);
-  const bool gentle = slow || (pulled_ && ball.still >= kLastingSteps &&
-                               (other == nullptr || other->still >= kLastingSteps));
+  const bool gentle =
+      slow || (pulled_ && ball.still >= kLastingSteps && (other == nullptr || other->still >= kLastingSteps));
   if (gentle && other != nullptr && (other->flags & (kAsleep | kGrounded)) != 0) {
     other = nullptr;  // what lies on the ground is ground
   }

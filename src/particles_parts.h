@@ -25,37 +25,68 @@ struct ParticleWorld::CellRange {
   int32_t x0, y0, x1, y1;
 };
 
+// Rows of the field or of a disc that are worked on together: four where the compiler has registers of four
+// words (then a ball of any size takes the same way through the code, sixteen rows with masks that are empty
+// where there is nothing to do, so that the processor need not guess), else one by one, as many as needed.
+#if defined(__SSE2__) || defined(__ARM_NEON)
+typedef uint32_t Rows __attribute__((vector_size(16)));
+typedef uint32_t RowsInMemory __attribute__((vector_size(16), aligned(4), may_alias));
+inline uint32_t any_of(Rows rows) {
+  return rows[0] | rows[1] | rows[2] | rows[3];
+}
+#else
+typedef uint32_t Rows;
+typedef uint32_t RowsInMemory __attribute__((may_alias));
+inline uint32_t any_of(Rows rows) {
+  return rows;
+}
+#endif
+inline constexpr int32_t kLanes = sizeof(Rows) / 4;
+inline constexpr int32_t kBlock = kMaxSmallDisc;  // rows of a disc, and of a small window
+
+inline Rows load_rows(const uint32_t* rows) {
+  return *reinterpret_cast<const RowsInMemory*>(rows);
+}
+inline void store_rows(uint32_t* rows, Rows value) {
+  *reinterpret_cast<RowsInMemory*>(rows) = value;
+}
+// How far loops over `count` rows of at most kBlock go.
+constexpr int32_t rows_to_do(int32_t count) {
+  return kLanes == 1 ? count : kBlock;
+}
+
+inline DiscStamp small_disc(int32_t diameter) {
+  return {diameter, field_detail::kSmallDiscs.rows + field_detail::SmallDiscs::first(diameter)};
+}
+
 // A piece of the field around a ball, without the ball itself: row r, bit c is cell base + (c, r). What lies
 // outside the box is set.
-//
-// All loops over its rows have a fixed length, with masks that are empty where there is nothing to do: a ball
-// of any size takes the same way through the code, so that the processor need not guess, and compilers turn
-// them into a few wide instructions.
 struct ParticleWorld::Window {
-  static constexpr int32_t kSide = 32;             // at most so many columns and rows
-  static constexpr int32_t kBlock = 16;            // rows of a disc, and of a small window
-  uint32_t rows[kSide + kBlock];                   // the last are clear
+  static constexpr int32_t kSide = 32;  // at most so many columns and rows
+  uint32_t rows[kSide + kBlock];        // as many as were loaded, and kBlock that mean nothing
   Vec2i base;
 
-  // The cells under a disc at `place`, which lies in the window, as rows from its corner on; whether there are any.
+  // The cells under a disc at `place`, which lies in the window, as rows from its corner on; whether there
+  // are any.
   bool under(const DiscStamp& disc, Vec2i place, uint32_t (&out)[kBlock]) const {
     const uint32_t* const from = rows + (place.y - base.y);
     const int32_t shift = place.x - base.x;
-    uint32_t any = 0;
-    for (int32_t row = 0; row < kBlock; ++row) {
-      out[row] = (from[row] >> shift) & disc.rows[row];
-      any |= out[row];
+    Rows any{};
+    for (int32_t row = 0; row < rows_to_do(disc.diameter); row += kLanes) {
+      const Rows found = (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
+      store_rows(out + row, found);
+      any |= found;
     }
-    return any != 0;
+    return any_of(any) != 0;
   }
   bool is_free(const DiscStamp& disc, Vec2i place) const {
     const uint32_t* const from = rows + (place.y - base.y);
     const int32_t shift = place.x - base.x;
-    uint32_t any = 0;
-    for (int32_t row = 0; row < kBlock; ++row) {
-      any |= (from[row] >> shift) & disc.rows[row];
+    Rows any{};
+    for (int32_t row = 0; row < rows_to_do(disc.diameter); row += kLanes) {
+      any |= (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
     }
-    return any == 0;
+    return any_of(any) == 0;
   }
 };
 

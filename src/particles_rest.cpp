@@ -22,7 +22,7 @@ Vec2i along_gravity(Vec2i corner, Vec2i gravity, int axis) {
 }  // namespace
 
 bool ParticleWorld::held(const Ball& ball) const {
-  const DiscStamp disc = disc_stamp(ball.diameter);
+  const DiscStamp disc = small_disc(ball.diameter);
   const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
     if (config_.gravity_q16[axis] != 0) {
@@ -43,7 +43,7 @@ bool ParticleWorld::is_held(uint32_t id) const {
 // asleep from the ground up.
 bool ParticleWorld::lies_still(uint32_t id) const {
   const Ball& ball = balls_[id];
-  const DiscStamp disc = disc_stamp(ball.diameter);
+  const DiscStamp disc = small_disc(ball.diameter);
   const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
     if (config_.gravity_q16[axis] == 0) {
@@ -73,7 +73,7 @@ bool ParticleWorld::lies_still(uint32_t id) const {
 // Marks the balls that hold sleeper `id`.
 void ParticleWorld::hold(uint32_t id) {
   const Ball& ball = balls_[id];
-  const DiscStamp disc = disc_stamp(ball.diameter);
+  const DiscStamp disc = small_disc(ball.diameter);
   const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
     const Vec2i place = along_gravity(corner, config_.gravity_q16, axis);
@@ -183,7 +183,7 @@ void ParticleWorld::stamp_balls(const CellBox& box) {
   for (int32_t y = range.y0; y <= range.y1; ++y) {
     for (int32_t x = range.x0; x <= range.x1; ++x) {
       for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        field_.set_inside(disc_stamp(balls_[id].diameter), corner_of(balls_[id]));
+        field_.set_inside(small_disc(balls_[id].diameter), corner_of(balls_[id]));
       }
     }
   }

@@ -27,97 +27,29 @@ constexpr int32_t most(int32_t a, int32_t b) {
 }
 
 // kLines + 16 - n: n full words, then empty ones.
-constexpr uint32_t kLines[32] = {
-    UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX,
-    UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
-constexpr int32_t kBlock = 16;
-
-// out[row] = rows[row] moved to the right of the picture by `shift` cells.
-inline void load_disc(const uint32_t* rows, int32_t shift, uint32_t (&out)[kBlock]) {
-  for (int32_t row = 0; row < kBlock; ++row) {
-    out[row] = rows[row] << shift;
-  }
-}
-
-// The words of `column` lose the cells of `from` and gain those of `to`.
-inline void replace(Word* column, const uint32_t (&from)[kBlock], const uint32_t (&to)[kBlock]) {
-  for (int32_t row = 0; row < kBlock; ++row) {
-    column[row] = (column[row] & ~from[row]) | to[row];
-  }
-}
+constexpr uint32_t kLines[32] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX,
+                                 UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX,
+                                 UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
 
 }  // namespace
-
-// Moves a disc in the field from `from` to `to`, at most kShortWay apart and both inside, when the box around
-// both is free of everything else. A box of more than 16 rows counts as not free.
-inline bool ParticleWorld::move_if_free(const DiscStamp& disc, Vec2i from, Vec2i to) {
-  const int32_t x = least(from.x, to.x);
-  const int32_t y = least(from.y, to.y);
-  const int32_t width = disc.diameter + most(from.x, to.x) - x;
-  const int32_t height = disc.diameter + most(from.y, to.y) - y;
-  if (height > kBlock) {
-    return false;
-  }
-  const int32_t shift = x & 31;
-  Word* const column = words_ + (x >> 5) * config_.height + y;
-  uint32_t own[kBlock];
-  uint32_t next[kBlock];
-  load_disc(disc.rows + (y - from.y), from.x - x, own);
-  load_disc(disc.rows + (y - to.y), to.x - x, next);
-  const uint32_t* const lines = kLines + kBlock - height;
-  uint32_t found = 0;
-  if (shift + width <= 32) {
-    for (int32_t row = 0; row < kBlock; ++row) {
-      found |= (column[row] >> shift) & ~own[row] & lines[row];
-    }
-    if ((found & ((uint32_t{1} << width) - 1)) != 0) {
-      return false;
-    }
-    for (int32_t row = 0; row < kBlock; ++row) {
-      own[row] <<= shift;
-      next[row] <<= shift;
-    }
-    replace(column, own, next);
-    return true;
-  }
-  Word* const beyond = column + config_.height;
-  const int32_t back = 32 - shift;
-  for (int32_t row = 0; row < kBlock; ++row) {
-    found |= ((column[row] >> shift) | (beyond[row] << back)) & ~own[row] & lines[row];
-  }
-  if ((found & ((uint32_t{1} << width) - 1)) != 0) {
-    return false;
-  }
-  uint32_t own_beyond[kBlock];
-  uint32_t next_beyond[kBlock];
-  for (int32_t row = 0; row < kBlock; ++row) {
-    own_beyond[row] = own[row] >> back;
-    next_beyond[row] = next[row] >> back;
-    own[row] <<= shift;
-    next[row] <<= shift;
-  }
-  replace(column, own, next);
-  replace(beyond, own_beyond, next_beyond);
-  return true;
-}
 
 // The cells of `box`, at most Window::kSide on a side, without those of `disc` at `own`.
 void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const {
   window->base = box.min;
   const int32_t height = box.max.y - box.min.y;
-  const int32_t rows = height <= kBlock ? kBlock : Window::kSide;
   uint32_t* const out = window->rows;
   if (box.min.x >= 0 && box.min.y >= 0 && box.max.x <= config_.width && box.max.y <= config_.height) {
     const int32_t shift = box.min.x & 31;
     const Word* const column = words_ + (box.min.x >> 5) * config_.height + box.min.y;
     // Where the box does not reach beyond the column it does not matter what is taken for the next.
-    const bool two = shift + (box.max.x - box.min.x) > 32;
-    const Word* const beyond = two ? column + config_.height : column;
-    for (int32_t row = 0; row < rows; ++row) {
-      out[row] = (column[row] >> shift) | ((beyond[row] << 1) << (31 - shift));
+    const bool wide = shift + (box.max.x - box.min.x) > 32;
+    const Word* const beyond = wide ? column + config_.height : column;
+    for (int32_t row = 0; row < height; row += kLanes) {
+      store_rows(out + row,
+                 (load_rows(column + row) >> shift) | ((load_rows(beyond + row) << 1) << (31 - shift)));
     }
   } else {
-    for (int32_t row = 0; row < rows; ++row) {
+    for (int32_t row = 0; row < height; ++row) {
       const int32_t y = box.min.y + row;
       out[row] = UINT32_MAX;
       if (y >= 0 && y < config_.height) {
@@ -133,25 +65,24 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
       }
     }
   }
-  for (int32_t row = rows; row < Window::kSide + kBlock; ++row) {
-    out[row] = 0;
-  }
   const int32_t right = own.x - box.min.x;
   const int32_t down = own.y - box.min.y;
   if (right <= -Window::kSide || right >= Window::kSide) {
     return;
   }
-  for (int32_t row = most(0, -down); row < disc.diameter && down + row < rows; ++row) {
+  const int32_t last = least(disc.diameter, height - down);
+  for (int32_t row = most(0, -down); row < last; ++row) {
     out[down + row] &= ~(right < 0 ? disc.rows[row] >> -right : disc.rows[row] << right);
   }
 }
 
 // Displacement of a substep for a velocity, to the nearest unit, halves away from zero.
 inline int32_t ParticleWorld::displacement(int32_t velocity) const {
-  const int32_t shift = config_.substeps_log2;
-  const uint32_t half = (static_cast<uint32_t>(unit_) << shift) >> 1;
-  const uint32_t size = ((magnitude(velocity) + half) >> shift) & ~(static_cast<uint32_t>(unit_) - 1);
-  return velocity < 0 ? -static_cast<int32_t>(size) : static_cast<int32_t>(size);
+  const uint32_t sign = static_cast<uint32_t>(velocity >> 31);
+  const uint32_t size =
+      (((static_cast<uint32_t>(velocity) ^ sign) - sign + round_) >> config_.substeps_log2) &
+      (0U - static_cast<uint32_t>(unit_));
+  return static_cast<int32_t>((size ^ sign) - sign);
 }
 
 void ParticleWorld::step() {
@@ -160,20 +91,31 @@ void ParticleWorld::step() {
     apply_pointer();
   }
   const int32_t substeps = int32_t{1} << config_.substeps_log2;
-  for (int32_t substep = 0; substep < substeps; ++substep) {
-    for (uint32_t id = next_awake(0); id != kNoBall; id = next_awake(id + 1)) {
-      advance(id);
+  for (int32_t substep = 1; substep <= substeps; ++substep) {
+    if (pulled_) {
+      advance_all<true>(substep == substeps);
+    } else {
+      advance_all<false>(substep == substeps);
     }
-  }
-  for (uint32_t id = next_awake(0); id != kNoBall; id = next_awake(id + 1)) {
-    rest(id);
   }
   ++steps_;
 }
 
-void ParticleWorld::advance(uint32_t id) {
+template <bool kPulled>
+void ParticleWorld::advance_all(bool last) {
+  for (uint32_t id = next_awake(0); id != kNoBall; id = next_awake(id + 1)) {
+    advance<kPulled>(id);
+    const Ball& ball = balls_[id];
+    if (last && (kPulled || (ball.vx | ball.vy | ball.still) == 0)) {
+      rest(id);
+    }
+  }
+}
+
+template <bool kPulled>
+inline void ParticleWorld::advance(uint32_t id) {
   Ball& ball = balls_[id];
-  if (pulled_) {
+  if (kPulled) {
     ball.flags = static_cast<uint8_t>(ball.flags & ~kGrounded);
     if (id != dragged_) {
       ball.vx = least(most(ball.vx + gravity_part_.x, -kMaxSpeedQ16), kMaxSpeedQ16);
@@ -185,23 +127,75 @@ void ParticleWorld::advance(uint32_t id) {
     return;
   }
   ++counters_.moves;
-  const Vec2i from = corner_of(ball);
-  const uint32_t cell = cell_of(ball.x, ball.y);
+  const Vec2i start{ball.x, ball.y};
+  const Vec2i end{start.x + way.x, start.y + way.y};
   const int32_t diameter = ball.diameter;
-  const Vec2i to{disc_corner(ball.x + way.x, diameter), disc_corner(ball.y + way.y, diameter)};
+  const Vec2i from{disc_corner(start.x, diameter), disc_corner(start.y, diameter)};
+  const Vec2i to{disc_corner(end.x, diameter), disc_corner(end.y, diameter)};
   if (from == to) {
-    ball.x += way.x;
-    ball.y += way.y;
+    ball.x = end.x;
+    ball.y = end.y;
   } else {
-    const DiscStamp disc = disc_stamp(diameter);
-    const uint32_t dx = static_cast<uint32_t>(to.x - from.x + kShortWay);
-    const uint32_t dy = static_cast<uint32_t>(to.y - from.y + kShortWay);
+    const DiscStamp disc = small_disc(diameter);
+    const CellBox box{{least(from.x, to.x), least(from.y, to.y)},
+                      {most(from.x, to.x) + diameter, most(from.y, to.y) + diameter}};
+    const int32_t width = box.max.x - box.min.x;
+    const int32_t height = box.max.y - box.min.y;
+    Window window;
     ++counters_.mask_tests;
-    if (dx <= 2 * kShortWay && dy <= 2 * kShortWay && field_.holds(disc, to) && move_if_free(disc, from, to)) {
-      ball.x += way.x;
-      ball.y += way.y;
-    } else {
-      trace(id, way, from);
+    const bool loaded = width <= kBlock + kShortWay && height <= kBlock && (box.min.x | box.min.y) >= 0 &&
+                        box.max.x <= config_.width && box.max.y <= config_.height;
+    bool made = false;
+    if (loaded) {
+      // The box around the way: where it holds nothing but the ball, the ball is simply put elsewhere.
+      window.base = box.min;
+      const int32_t shift = box.min.x & 31;
+      const int32_t back = 32 - shift;
+      Word* const column = words_ + (box.min.x >> 5) * config_.height + box.min.y;
+      const bool wide = shift + width > 32;
+      const uint32_t* const own = disc.rows + (box.min.y - from.y);
+      const int32_t own_shift = from.x - box.min.x;
+      const uint32_t* const lines = kLines + kBlock - height;
+      const int32_t rows = rows_to_do(height);
+      Rows found{};
+      if (!wide) {
+        for (int32_t row = 0; row < rows; row += kLanes) {
+          const Rows cells = (load_rows(column + row) >> shift) & ~(load_rows(own + row) << own_shift);
+          store_rows(window.rows + row, cells);
+          found |= cells & load_rows(lines + row);
+        }
+      } else {
+        for (int32_t row = 0; row < rows; row += kLanes) {
+          const Rows cells =
+              ((load_rows(column + row) >> shift) | (load_rows(column + config_.height + row) << back)) &
+              ~(load_rows(own + row) << own_shift);
+          store_rows(window.rows + row, cells);
+          found |= cells & load_rows(lines + row);
+        }
+      }
+      if ((any_of(found) & ((uint32_t{1} << width) - 1)) == 0) {
+        const uint32_t* const next = disc.rows + (box.min.y - to.y);
+        const int32_t next_shift = to.x - box.min.x;
+        for (int32_t row = 0; row < rows; row += kLanes) {
+          const Rows clear = load_rows(own + row) << (own_shift + shift);
+          const Rows set = load_rows(next + row) << (next_shift + shift);
+          store_rows(column + row, (load_rows(column + row) & ~clear) | set);
+        }
+        if (wide) {
+          for (int32_t row = 0; row < rows; row += kLanes) {
+            const Rows clear = (load_rows(own + row) << own_shift) >> back;
+            const Rows set = (load_rows(next + row) << next_shift) >> back;
+            Word* const word = column + config_.height + row;
+            store_rows(word, (load_rows(word) & ~clear) | set);
+          }
+        }
+        ball.x = end.x;
+        ball.y = end.y;
+        made = true;
+      }
+    }
+    if (!made) {
+      trace(id, way, from, loaded, &window);
       const Vec2i corner = corner_of(ball);
       if (corner != from) {
         field_.clear_inside(disc, from);
@@ -209,26 +203,27 @@ void ParticleWorld::advance(uint32_t id) {
       }
     }
   }
-  const uint32_t new_cell = cell_of(ball.x, ball.y);
-  if (new_cell != cell) {
-    relink(id, cell, new_cell);
+  // Both cells as one difference: the coordinates of a cell are what stands above its side.
+  const int32_t in_cell = 16 + cell_shift_;
+  if ((((ball.x ^ start.x) | (ball.y ^ start.y)) >> in_cell) != 0) {
+    relink(id, cell_of(start.x, start.y), cell_of(ball.x, ball.y));
   }
-  if ((ball.flags & kSupports) != 0 && corner_of(ball) != from) {
+  if (kPulled && (ball.flags & kSupports) != 0 && corner_of(ball) != from) {
     ball.flags = static_cast<uint8_t>(ball.flags & ~kSupports);
     support_left({from, {from.x + diameter, from.y + diameter}});
   }
 }
 
-// The way of a ball whose cells in the field stay at `own` meanwhile, with its bounces.
-void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
+// The way of a ball whose cells in the field stay at `own` meanwhile, with its bounces. With `loaded`, the
+// window holds the box around all of the way and something is in that.
+void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool loaded, Window* window) {
   Ball& ball = balls_[id];
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
-    Window window;
-    const Blocked blocked = walk(&ball, way, own, &window);
+    const Blocked blocked = walk(&ball, way, own, loaded && bounce == 0, window);
     if (blocked.axes == 0) {
       return;
     }
-    collide(id, blocked, window, own);
+    collide(id, blocked, *window, own);
     const auto rest_of = [&blocked, this](int32_t velocity) {
       const int32_t whole = displacement(velocity);
       const uint64_t part = (uint64_t{magnitude(whole)} * blocked.left_q16) >> 16;
@@ -252,8 +247,8 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
 
 // Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
 // between cells are crossed in their exact order along the line; both at once where it goes through a corner.
-ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, Window* window) {
-  const DiscStamp disc = disc_stamp(ball->diameter);
+ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool loaded, Window* window) {
+  const DiscStamp disc = small_disc(ball->diameter);
   Blocked blocked;
   Vec2i corner = corner_of(*ball);
   const Vec2i sign{sign_of(way.x), sign_of(way.y)};
@@ -291,7 +286,7 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, Win
       corner.y += sign.y;
     }
   };
-  int32_t careful = 0;  // crossings to be looked at one by one
+  int32_t careful = loaded ? INT32_MAX : 0;  // crossings to be looked at one by one
   const auto free_at = [&](Vec2i place) {
     ++counters_.mask_tests;
     return window->is_free(disc, place);
@@ -307,9 +302,9 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, Win
         take(next_axes());
       }
       ++counters_.mask_tests;
-      const CellBox box{{least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
-                        {most(corner.x, corner_before.x) + disc.diameter,
-                         most(corner.y, corner_before.y) + disc.diameter}};
+      const CellBox box{
+          {least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
+          {most(corner.x, corner_before.x) + disc.diameter, most(corner.y, corner_before.y) + disc.diameter}};
       load_window(box, disc, own, window);
       uint32_t found = 0;
       for (int32_t row = 0; row < box.max.y - box.min.y; ++row) {

@@ -289,10 +289,12 @@ class ParticleWorld {
   void brush(Vec2i from, Vec2i to, int32_t diameter, bool solid);
 
   // particles_step.cpp: the way of one ball.
+  template <bool kPulled>
+  void advance_all(bool last);
+  template <bool kPulled>
   void advance(uint32_t id);
-  void trace(uint32_t id, Vec2i way, Vec2i own);
-  Blocked walk(Ball* ball, Vec2i way, Vec2i own, Window* window);
-  bool move_if_free(const DiscStamp& disc, Vec2i from, Vec2i to);
+  void trace(uint32_t id, Vec2i way, Vec2i own, bool loaded, Window* window);
+  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool loaded, Window* window);
   void load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const;
   int32_t displacement(int32_t velocity) const;
 
@@ -340,6 +342,7 @@ class ParticleWorld {
   int32_t rest_speed_ = 0;  // Q16; impacts below it do not bounce
   Vec2i gravity_part_;      // gravity a substep
   int32_t unit_ = 2;        // 2^-16 cells in a unit of position
+  uint32_t round_ = 1;      // half a unit of position, as a velocity
   PointerMode pointer_mode_ = PointerMode::kNone;
   Vec2i pointer_;
   Vec2i pointer_before_;
