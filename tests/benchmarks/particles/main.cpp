@@ -1,6 +1,6 @@
 // The particle world beside a uniform grid and Box2D 2.4: cost, agreement, quality, accuracy, as tables.
 //
-//   thimble_particle_table                     all tables, about three minutes
+//   thimble_particle_table                     all tables, about two minutes
 //   thimble_particle_table speed quality       some of: instructions speed scaling quality accuracy
 //   thimble_particle_table --csv DIR ...       each table also as DIR/NAME.csv
 //
@@ -93,21 +93,24 @@ class Table {
 
 // --- Instructions
 
-// Runs `steps` steps of a scene and prints nothing: what valgrind counts.
-int run_alone(const std::string& engine, const std::string& scene, int balls, int steps) {
-  const auto world = make_engine(engine, make_scene(scene, balls));
-  for (int i = 0; i < steps; ++i) {
-    world->step();
+// Runs `steps` steps of so many random scenes and prints nothing: what valgrind counts.
+int run_alone(const std::string& engine, const std::string& scene, int balls, int steps,
+              std::uint32_t scenes) {
+  for (std::uint32_t seed = 1; seed <= scenes; ++seed) {
+    const auto world = make_engine(engine, make_scene(scene, balls, seed));
+    for (int i = 0; i < steps; ++i) {
+      world->step();
+    }
   }
   return 0;
 }
 
 // Instructions of such a run, or -1 where valgrind is not to be had.
 double instructions_of(const std::string& self, const std::string& engine, const std::string& scene,
-                       int balls, int steps) {
+                       int balls, int steps, int scenes) {
   const std::string command = "valgrind --tool=cachegrind --cache-sim=no --cachegrind-out-file=/dev/null '" +
                               self + "' --alone '" + engine + "' " + scene + " " + std::to_string(balls) +
-                              " " + std::to_string(steps) + " 2>&1";
+                              " " + std::to_string(steps) + " " + std::to_string(scenes) + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) {
     return -1;
@@ -125,33 +128,76 @@ double instructions_of(const std::string& self, const std::string& engine, const
   return pclose(pipe) == 0 ? result : -1;
 }
 
+// The line y = first + second * x that is nearest to the points.
+std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
+  double sum_x = 0;
+  double sum_y = 0;
+  double sum_xx = 0;
+  double sum_xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum_x += x[i];
+    sum_y += y[i];
+    sum_xx += x[i] * x[i];
+    sum_xy += x[i] * y[i];
+  }
+  const double n = static_cast<double>(x.size());
+  const double slope = (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+  return {(sum_y - slope * sum_x) / n, slope};
+}
+
 void instructions(const std::string& self, const std::string& csv) {
-  Table table("instructions", "Instructions a moving ball and step, at the paper's density",
-              {"scene", "balls", "bit field", "against 693", "uniform grid"});
+  // The same stretch of time for all, in many small scenes or one large one.
+  constexpr int kFrom = 10;
+  constexpr int kTo = 50;
+  Table table(
+      "instructions",
+      "Instructions a moving ball and step, at the paper's density, steps 11 to 50. Smaller boxes have more "
+      "walls",
+      {"scene", "balls", "scenes", "bit field", "against 693", "collisions a ball and step", "against fit",
+       "uniform grid"});
   for (const std::string scene : {"gas", "falling"}) {
     double at_693 = 0;
-    std::vector<std::array<double, 3>> rows;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<double> counts;
+    std::vector<double> rates;
     for (const int balls : {10, 100, 693, 10000, 100000}) {
-      // From the same steps on: while all move, and over the same stretch of the fall's beginning.
-      const int from = 20;
-      const int to = scene == "falling" ? 60 : from + std::max(20, 1000000 / balls);
-      std::array<double, 3> row{static_cast<double>(balls), 0, 0};
-      int column = 1;
+      const int scenes = std::max(1, 20000 / balls);
+      const double moves = double{kTo - kFrom} * balls * scenes;
+      std::vector<std::string> row{scene, std::to_string(balls), std::to_string(scenes), "", "", "", "", ""};
       for (const std::string engine : {"bit field", "uniform grid"}) {
-        const double more = instructions_of(self, engine, scene, balls, to);
-        const double fewer = instructions_of(self, engine, scene, balls, from);
+        const double more = instructions_of(self, engine, scene, balls, kTo, scenes);
+        const double fewer = instructions_of(self, engine, scene, balls, kFrom, scenes);
         if (more < 0 || fewer < 0) {
           std::cout << "left out: valgrind is not installed\n";
           return;
         }
-        row.at(static_cast<std::size_t>(column++)) = (more - fewer) / (to - from) / balls;
+        row.at(engine == "bit field" ? 3 : 7) = number((more - fewer) / moves);
+        if (engine == "bit field") {
+          counts.push_back((more - fewer) / moves);
+          at_693 = balls == 693 ? counts.back() : at_693;
+        }
       }
-      at_693 = balls == 693 ? row[1] : at_693;
+      double collisions = 0;
+      for (int seed = 1; seed <= scenes; ++seed) {
+        const auto world =
+            make_engine("bit field", make_scene(scene, balls, static_cast<std::uint32_t>(seed)));
+        for (int i = 0; i < kTo; ++i) {
+          collisions -= i == kFrom ? static_cast<double>(world->collisions()) : 0;
+          world->step();
+        }
+        collisions += static_cast<double>(world->collisions());
+      }
+      row[5] = number(collisions / moves);
+      rates.push_back(collisions / moves);
       rows.push_back(row);
     }
-    for (const auto& row : rows) {
-      table.add({scene, number(row[0], 6), number(row[1]), number(row[1] / at_693), number(row[2])});
+    const auto [move, collision] = line_through(rates, counts);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i][4] = number(counts[i] / at_693);
+      rows[i][6] = number(counts[i] / (move + collision * rates[i]));
+      table.add(rows[i]);
     }
+    table.add({scene, "fit", "", number(move) + " + " + number(collision) + " a collision", "", "", "", ""});
   }
   table.print(csv);
 }
@@ -417,9 +463,9 @@ void accuracy(const std::string& csv) {
 }
 
 int main_of(const std::vector<std::string>& arguments) {
-  if (arguments.size() == 6 && arguments[1] == "--alone") {
-    return run_alone(arguments[2], arguments[3], std::atoi(arguments[4].c_str()),
-                     std::atoi(arguments[5].c_str()));
+  if (arguments.size() == 7 && arguments[1] == "--alone") {
+    return run_alone(arguments[2], arguments[3], std::stoi(arguments[4]), std::stoi(arguments[5]),
+                     static_cast<std::uint32_t>(std::stoi(arguments[6])));
   }
   std::string csv;
   std::vector<std::string> wanted;
