@@ -154,7 +154,7 @@ Status ParticleWorld::spawn(int32_t x_q16, int32_t y_q16, int32_t vx_q16, int32_
       !within(y_q16, (kMaxFieldSide + 1) << 16)) {
     return Status::kOutOfRange;
   }
-  const DiscStamp disc = disc_stamp(diameter);
+  const DiscStamp disc = small_disc(diameter);
   const Vec2i corner{disc_corner(x_q16, diameter), disc_corner(y_q16, diameter)};
   if (!field_.holds(disc, corner)) {
     return Status::kOutOfRange;
@@ -211,7 +211,7 @@ Status ParticleWorld::spawn_random(int32_t max_speed_q16, uint32_t* id) {
   };
   const int32_t vx = speed();
   const int32_t vy = speed();
-  const DiscStamp disc = disc_stamp(diameter);
+  const DiscStamp disc = small_disc(diameter);
   Vec2i corner;
   bool found = false;
   for (int attempt = 0; attempt < kRandomPlaces && !found; ++attempt) {
@@ -243,7 +243,7 @@ Status ParticleWorld::remove(uint32_t id) {
   Ball& ball = balls_[id];
   const Vec2i corner = corner_of(ball);
   const int32_t diameter = ball.diameter;
-  field_.clear_inside(disc_stamp(diameter), corner);
+  field_.clear_inside(small_disc(diameter), corner);
   unlink(id, cell_of(ball.x, ball.y));
   if ((ball.flags & kAsleep) != 0) {
     --asleep_;
@@ -291,7 +291,7 @@ uint32_t ParticleWorld::ball_at(Vec2i at) const {
         const int32_t column = at.x - corner.x;
         const int32_t diameter = balls_[id].diameter;
         if (row >= 0 && row < diameter && column >= 0 && column < diameter &&
-            (disc_stamp(diameter).rows[row] >> column & 1U) != 0) {
+            (small_disc(diameter).rows[row] >> column & 1U) != 0) {
           return id;
         }
       }
