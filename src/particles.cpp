@@ -17,7 +17,7 @@ constexpr int32_t cut(int32_t value, int32_t limit) {
   return value < -limit ? -limit : value > limit ? limit : value;
 }
 
-// floor, ceiling-free: half of the octagon's 8/7 above the true length and no more than 3% below it.
+// Between 0.97 and 1.03 times the length.
 constexpr int32_t length_of(Vec2i v) {
   const int32_t x = v.x < 0 ? -v.x : v.x;
   const int32_t y = v.y < 0 ? -v.y : v.y;
@@ -142,10 +142,6 @@ uint32_t ParticleWorld::random_below(uint32_t limit) {
 }
 
 // --- Balls
-
-bool ParticleWorld::is_free(const DiscStamp& disc, Vec2i corner) const {
-  return field_.holds(disc, corner) && !field_.any_inside(disc, corner);
-}
 
 Status ParticleWorld::spawn(int32_t x_q16, int32_t y_q16, int32_t vx_q16, int32_t vy_q16, int32_t diameter,
                             uint32_t* id) {

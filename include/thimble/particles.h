@@ -289,7 +289,6 @@ class ParticleWorld {
   uint32_t next_awake(uint32_t from) const;
   uint32_t random();
   uint32_t random_below(uint32_t limit);
-  bool is_free(const DiscStamp& disc, Vec2i corner) const;
   void brush(Vec2i from, Vec2i to, int32_t diameter, bool solid);
 
   // particles_step.cpp: the way of one ball.
