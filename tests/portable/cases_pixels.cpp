@@ -102,6 +102,15 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(row_bytes(PixelFormat::kRgb565, 61), 122U);
        THIMBLE_EQUAL(row_bytes(PixelFormat::kRgb888, 16384), 49152U);
      }},
+    {"row_bytes: every format and width up to 99 -> bits rounded up to whole bytes", 0,
+     [](Check& check, int) {
+       for (const PixelFormat format : kFormats) {
+         for (int width = 0; width < 100; ++width) {
+           const int bits = width * bits_per_pixel(format);
+           THIMBLE_EQUAL(row_bytes(format, width), static_cast<uint32_t>(bits / 8 + (bits % 8 != 0 ? 1 : 0)));
+         }
+       }
+     }},
     {"gray_of: white, black and primaries -> Rec. 601 luma in 8 bits", 0,
      [](Check& check, int) {
        THIMBLE_EQUAL(gray_of(kWhite), 255);

@@ -163,6 +163,20 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(face_of(hit_on(-1), {-2, 2, 2}).axis, 0);
        THIMBLE_EQUAL(face_of(hit_on(-1), {1, 2, -2}).axis, 1);
      }},
+    {"face_of: starts inside, any mix of components -> the largest of them by its definition", 0,
+     [](Check& check, int) {
+       for (int32_t i = 0; i < 125; ++i) {
+         const int32_t parts[3] = {i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2};
+         int wanted = 0;
+         for (int axis = 1; axis < 3; ++axis) {
+           wanted = parts[axis] * parts[axis] > parts[wanted] * parts[wanted] ? axis : wanted;
+         }
+         const Vec3i direction{parts[0] * 500000, parts[1] * 500000, parts[2] * 500000};
+         const Face face = face_of(hit_on(-1), direction);
+         THIMBLE_EQUAL(face.axis, wanted);
+         THIMBLE_EQUAL(face.negative, parts[wanted] > 0);
+       }
+     }},
     {"normal: each face -> its direction, -1 .. 1 as 0 .. 255", 0,
      [](Check& check, int) {
        check.shading.mode = ShadeMode::kNormal;

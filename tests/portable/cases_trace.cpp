@@ -313,6 +313,32 @@ void turned(Check& check, int order) {
   }
 }
 
+// A voxel in each corner of the largest world, seen along its edges from as far as a ray may start.
+void along_edges(Check& check, int axis) {
+  constexpr int32_t kLast = (1 << kMaxLevel) - 1;
+  THIMBLE_REQUIRE(make_pool(check, 89, kMaxLevel));
+  for (int32_t corner = 0; corner < 8; ++corner) {
+    THIMBLE_REQUIRE_OK(
+        check.world.pool.insert({(corner & 1) * kLast, (corner >> 1 & 1) * kLast, (corner >> 2) * kLast}));
+  }
+  THIMBLE_REQUIRE(make_compact(check));
+  for (int32_t corner = 0; corner < 8; ++corner) {
+    const Vec3i voxel{(corner & 1) * kLast, (corner >> 1 & 1) * kLast, (corner >> 2) * kLast};
+    const bool upper = voxel[axis] != 0;
+    Vec3i from{256 * voxel.x, 256 * voxel.y, 256 * voxel.z};
+    from[axis] = (upper ? 5 : -4) * 256 * (kLast + 1);
+    Vec3i direction;
+    direction[axis] = upper ? -1 : 1;
+    for (int structure = 1; structure < 3; ++structure) {
+      THIMBLE_REQUIRE_OK(closest(check, structure, ray_q8(from, direction), check.options));
+      THIMBLE_EQUAL(check.hit.voxel, voxel);
+      THIMBLE_EQUAL(check.hit.axis, axis);
+      THIMBLE_EQUAL(check.hit.t_numerator, 4 * 256 * (kLast + 1));
+      THIMBLE_EQUAL(check.hit.t_denominator, 256);
+    }
+  }
+}
+
 // Two voxels far apart, coarsened to one node: the whole world is one merged block.
 void merged_world(Check& check, int) {
   THIMBLE_REQUIRE(make_pool(check, 16, 3));
@@ -516,6 +542,9 @@ constexpr Case kCases[] = {
          THIMBLE_EQUAL(check.hit.block_level, 0);
        }
      }},
+    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 0, "x"},
+    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 1, "y"},
+    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 2, "z"},
     {"a world merged to one block -> its lowest corner, its level, t at its face", 512, merged_world},
     {"a merged block of 2 -> its lowest corner, its level, t at its face", 1024, merged_block},
     {"start inside a merged block -> t 0, its lowest corner", 512,
