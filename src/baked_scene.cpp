@@ -300,7 +300,8 @@ Status BakedScene::open(ConstBytes bytes, BakedScene* scene) {
   return read(bytes, scene, nullptr) == nullptr ? Status::kOk : Status::kDamaged;
 }
 
-const char* BakedScene::validate(ConstBytes bytes, uint32_t* place) {
+// Kept apart from `validate`, so that the scene is off the stack when the tree is looked at.
+[[gnu::noinline]] const char* BakedScene::check_around(ConstBytes bytes, ConstBytes* tree, uint32_t* place) {
   BakedScene scene;
   if (const char* text = read(bytes, &scene, place)) {
     return text;
@@ -310,7 +311,14 @@ const char* BakedScene::validate(ConstBytes bytes, uint32_t* place) {
       scene.crc32_) {
     return fault(place, kChecksumOffset, "checksum does not match");
   }
-  return CompactTree::validate({scene.tree_.bytes(), scene.tree_.size_bytes()}, place);
+  *tree = {scene.tree_.bytes(), scene.tree_.size_bytes()};
+  return nullptr;
+}
+
+const char* BakedScene::validate(ConstBytes bytes, uint32_t* place) {
+  ConstBytes tree;
+  const char* text = check_around(bytes, &tree, place);
+  return text != nullptr ? text : CompactTree::validate(tree, place);
 }
 
 ConstBytes BakedScene::section(SectionKind kind) const {

@@ -94,6 +94,7 @@ class BakedScene {
 
  private:
   static const char* read(ConstBytes bytes, BakedScene* scene, uint32_t* place);
+  static const char* check_around(ConstBytes bytes, ConstBytes* tree, uint32_t* place);
 
   ConstBytes bytes_;
   CompactTree tree_;
