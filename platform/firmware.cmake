@@ -89,7 +89,12 @@ foreach(app IN LISTS THIMBLE_APP)
   set_target_properties(${app} PROPERTIES SUFFIX .elf LINK_DEPENDS ${generated}/firmware.ld)
   target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
   target_include_directories(${app} PRIVATE ${THIMBLE_PLATFORM_DIR})
+  set(stack ${BOARD_STACK_BYTES})
+  if(DEFINED BOARD_STACK_BYTES_${app})
+    set(stack ${BOARD_STACK_BYTES_${app}})
+  endif()
   target_link_options(${app} PRIVATE ${THIMBLE_ARCH_FLAGS} -nostdlib -T ${generated}/firmware.ld
+    -Wl,--defsym=thimble_stack_bytes=${stack}
     -Wl,--gc-sections,--no-warn-rwx-segments,-Map=${app}.map)
   target_link_libraries(${app} PRIVATE thimble_firmware_flags thimble_warnings thimble_board thimble_apps thimble
     thimble_port gcc)

@@ -114,6 +114,7 @@ class Graph {
         }
         const auto found = functions_.find(std::string(id).replace(at, whole.size(), part));
         if (found != functions_.end() && found->second.defined) {
+          joined_.insert(found->first);
           functions_[id] = found->second;
         }
       }
@@ -169,8 +170,8 @@ class Graph {
     }
     Function& indirect = functions_[kIndirectCall];
     for (const auto& [id, function] : functions_) {
-      if (function.defined && kept.contains(symbol_of(id)) && !called.contains(id) && id != root &&
-          id != interrupt) {
+      if (function.defined && kept.contains(symbol_of(id)) && !called.contains(id) && !joined_.contains(id) &&
+          id != root && id != interrupt) {
         indirect.callees.insert(id);
       }
     }
@@ -276,6 +277,7 @@ class Graph {
   std::map<std::string, std::uint64_t> worst_;
   std::map<std::string, std::string> deepest_;
   std::set<std::string> active_;
+  std::set<std::string> joined_;  // called, by another name
   int faults_ = 0;
 };
 

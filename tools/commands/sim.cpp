@@ -202,6 +202,8 @@ int run_and_write(SimCommand* command, std::string* sentence) {
 void run(const SimCommand& given) {
   SimCommand command = given;
   SessionOptions& session = command.session;
+  const platform::BoardFacts board = platform::board_for(*session.board, session.application->name);
+  session.board = &board;
   if (!session.application->wants_scene && !command.scene.arguments.scene.empty()) {
     throw CLI::ValidationError("SCENE", in_quotes(command.scene.arguments.scene) +
                                             " is not for the application " + session.application->name +

@@ -8,6 +8,7 @@
 extern "C" {
 extern uint8_t thimble_stack_bottom[];  ///< also the start of the RAM
 extern uint8_t thimble_stack_top[];
+extern uint8_t thimble_stack_bytes[];  ///< its address is the size of the stack
 extern uint32_t thimble_data_start[];  ///< initialised variables in RAM, whole words
 extern uint32_t thimble_data_end[];
 extern const uint32_t thimble_data_image[];  ///< and what they start with, in flash

@@ -35,7 +35,7 @@ void report_stack() {
   say("stack: ");
   say_decimal(port::stack_high_water());
   say(" of ");
-  say_decimal(board::kFacts.stack_bytes);
+  say_decimal(port::facts().stack_bytes);
   say(" bytes used\n");
 }
 
