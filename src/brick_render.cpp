@@ -724,7 +724,7 @@ class Painter {
     int32_t slab = 0;
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab_along<true>(course_, fan, 0);
+      slab = first_slab_along<false>(course_, fan, 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(tile);
         return;
