@@ -48,7 +48,7 @@ uint32_t word_at(const uint8_t* bytes, int32_t offset) {
 
 // Colours that were looked up: of faces of voxels, and of faces of a material.
 struct Inks {
-  static constexpr uint32_t kFaces = 32;
+  static constexpr uint32_t kFaces = 64;
   static constexpr uint32_t kMaterials = 16;
   static constexpr uint32_t kNone = UINT32_MAX;
   struct Seen {
