@@ -214,20 +214,20 @@ template <int kC>
                  static_cast<int32_t>(cell_b >> 2) * course.stride[kB];
   const uint32_t in_a = ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
   const uint32_t in_b = ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
-  // Where the voxel lies in its brick: x and y as a shift of halfword z, z in bytes.
+  // Where the voxel lies: x and y as a shift of a halfword; z in the address of the halfword, bricks being at
+  // multiples of 8.
   uint32_t shift = in_a | (kB == 2 ? course.first : in_b);
-  uint32_t row = kB == 2 ? in_b : course.first;
-  const uint8_t* brick = nullptr;
+  size_t at = kB == 2 ? in_b : course.first;
   int axis = kC;
 
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
-  const auto solid = [&]() { return (half_at(brick, static_cast<int32_t>(row)) >> shift & 1U) != 0; };
+  const auto solid = [&]() { return (*reinterpret_cast<const Half*>(at) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
   const auto step = [&]<int kAxis>() {
-    const uint32_t own = (kAxis == 2 ? row : shift) & kField<kAxis>;
+    const uint32_t own = (kAxis == 2 ? static_cast<uint32_t>(at) : shift) & kField<kAxis>;
     if (own == course.last[kAxis]) {
       if (kAxis == 2) {
-        row ^= kField<kAxis>;
+        at ^= kField<kAxis>;
       } else {
         shift ^= kField<kAxis>;
       }
@@ -236,7 +236,7 @@ template <int kC>
       return true;
     }
     if (kAxis == 2) {
-      row += static_cast<uint32_t>(course.step[kAxis]);
+      at += static_cast<size_t>(static_cast<ptrdiff_t>(course.step[kAxis]));
     } else {
       shift += static_cast<uint32_t>(course.step[kAxis]);
     }
@@ -254,19 +254,20 @@ enter:  // a brick, by a plane of `axis`
     }
     // 512 - bricks is the near side: below it the ray waits.
     const Vec3i& side = course.frame->side;
-    brick = course.bricks;
+    uint32_t number = 0;
     if ((left & kWaiting) == 0 || ((left >> 10 * kA & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kA]) &&
                                    (left >> 10 * kB & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kB]))) {
       left &= ~kWaiting;
-      brick += 8 * half_at(course.directory, cell);
+      number = half_at(course.directory, cell);
     }
+    at = reinterpret_cast<size_t>(course.bricks + 8 * number) + (at & 6U);
     if ((left & kInside) != 0 && solid()) {
       return kAsk;
     }
     left &= ~kInside;
     goto entered;
   }
-  brick = course.bricks + 8 * half_at(course.directory, cell);
+  at = reinterpret_cast<size_t>(course.bricks + 8 * half_at(course.directory, cell)) + (at & 6U);
 entered:
   if (solid()) {
     goto hit;
@@ -367,7 +368,7 @@ hit:
       axis = kB;
     }
   }
-  const uint32_t bit = shift + row * 8;
+  const uint32_t bit = shift + static_cast<uint32_t>(at & 6U) * 8;
   const uint32_t face = course.face[axis];
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
