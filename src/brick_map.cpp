@@ -471,6 +471,9 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
     }
   }
   result.bricks_ = bytes.data + bricks_at(header.cells);
+  if (bits::load64(result.bricks_) != 0) {
+    return Status::kDamaged;  // number 0 is met in space only, and has no origin
+  }
   result.origins_ = bytes.data + origins_at(header.cells, header.bricks);
   result.materials_ = bytes.data + materials_at(header.cells, header.bricks, header.mixed);
   result.box_.min = header.min;
