@@ -38,7 +38,7 @@ struct Header {
 };
 
 size_t bricks_at(uint32_t cells) {
-  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 3) & ~size_t{3});
+  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 7) & ~size_t{7});
 }
 size_t origins_at(uint32_t cells, uint32_t bricks) {
   return bricks_at(cells) + 8 * size_t{bricks};
@@ -77,7 +77,7 @@ const char* read_header(ConstBytes bytes, Header* header) {
 }
 
 bool aligned(const uint8_t* data) {
-  return (reinterpret_cast<size_t>(data) & 3U) == 0;
+  return (reinterpret_cast<size_t>(data) & 7U) == 0;
 }
 
 // Bits of a brick whose octants (as bits) `octant` and voxels of it `mask` are solid.
@@ -471,6 +471,9 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
     }
   }
   result.bricks_ = bytes.data + bricks_at(header.cells);
+  if (bits::load64(result.bricks_) != 0) {
+    return Status::kDamaged;  // number 0 is met in space only, and has no origin
+  }
   result.origins_ = bytes.data + origins_at(header.cells, header.bricks);
   result.materials_ = bytes.data + materials_at(header.cells, header.bricks, header.mixed);
   result.box_.min = header.min;

@@ -49,7 +49,7 @@ uint32_t word_at(const uint8_t* bytes, int32_t offset) {
 
 // Colours that were looked up: of faces of voxels, and of faces of a material.
 struct Inks {
-  static constexpr uint32_t kFaces = 32;
+  static constexpr uint32_t kFaces = 64;
   static constexpr uint32_t kMaterials = 16;
   static constexpr uint32_t kNone = UINT32_MAX;
   struct Seen {
@@ -58,6 +58,7 @@ struct Inks {
   };
   Seen face[kFaces];
   uint32_t material[6 * kMaterials];  // material << 24 | ink
+  uint32_t near_cell[2];              // where the last ray started, on a and b
 
   static uint32_t slot(uint32_t key) { return (key ^ key >> 6) % kFaces; }
 };
@@ -150,6 +151,40 @@ void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t
   }
 }
 
+#if defined(__arm__) && !defined(__ARM_FEATURE_IDIV)
+constexpr bool kDivides = false;
+#else
+constexpr bool kDivides = true;
+#endif
+
+// dividend / divisor. A core without a divider goes from the last quotient, from which that of a neighbouring
+// ray is a step or two away; there both are below 2^31.
+uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t* last) {
+  if (kDivides) {
+    return dividend / divisor;
+  }
+  uint32_t result = *last;
+  int32_t rest = static_cast<int32_t>(dividend - result * divisor);
+  for (int step = 0;; ++step) {
+    if (step == 6) {
+      result = dividend / divisor;
+      break;
+    }
+    if (rest < 0) {
+      rest += static_cast<int32_t>(divisor);
+      --result;
+    } else if (rest >= static_cast<int32_t>(divisor)) {
+      rest -= static_cast<int32_t>(divisor);
+      ++result;
+    } else {
+      break;
+    }
+  }
+  // Kept small, so that the next product stays below 2^31.
+  *last = result & 1023U;
+  return result;
+}
+
 // The hit of a face of `material`, with what `shade` looks at; its ray is `ray`.
 Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   Hit hit;
@@ -200,8 +235,11 @@ template <int kC>
   const uint32_t den = d_c << 8;
   const uint32_t at_a = static_cast<uint32_t>(course.origin[kA]) * d_c + course.plane * d_a;
   const uint32_t at_b = static_cast<uint32_t>(course.origin[kB]) * d_c + course.plane * d_b;
-  const uint32_t cell_a = at_a / den;
-  const uint32_t cell_b = at_b / den;
+  if (!kDivides && static_cast<int32_t>(at_a | at_b) < 0) [[unlikely]] {
+    return kAsk;
+  }
+  const uint32_t cell_a = quotient(at_a, den, &course.inks->near_cell[0]);
+  const uint32_t cell_b = quotient(at_b, den, &course.inks->near_cell[1]);
   if ((cell_a | cell_b) >= 1024) [[unlikely]] {
     return static_cast<int32_t>(at_a | at_b) < 0 ? kAsk : kMissed;
   }
@@ -215,20 +253,20 @@ template <int kC>
                  static_cast<int32_t>(cell_b >> 2) * course.stride[kB];
   const uint32_t in_a = ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
   const uint32_t in_b = ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
-  // Where the voxel lies in its brick: x and y as a shift of halfword z, z in bytes.
+  // Where the voxel lies: x and y as a shift of a halfword; z in the address of the halfword, bricks being at
+  // multiples of 8.
   uint32_t shift = in_a | (kB == 2 ? course.first : in_b);
-  uint32_t row = kB == 2 ? in_b : course.first;
-  const uint8_t* brick = nullptr;
+  size_t at = kB == 2 ? in_b : course.first;
   int axis = kC;
 
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
-  const auto solid = [&]() { return (half_at(brick, static_cast<int32_t>(row)) >> shift & 1U) != 0; };
+  const auto solid = [&]() { return (*reinterpret_cast<const Half*>(at) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
   const auto step = [&]<int kAxis>() {
-    const uint32_t own = (kAxis == 2 ? row : shift) & kField<kAxis>;
+    const uint32_t own = (kAxis == 2 ? static_cast<uint32_t>(at) : shift) & kField<kAxis>;
     if (own == course.last[kAxis]) {
       if (kAxis == 2) {
-        row ^= kField<kAxis>;
+        at ^= kField<kAxis>;
       } else {
         shift ^= kField<kAxis>;
       }
@@ -237,7 +275,7 @@ template <int kC>
       return true;
     }
     if (kAxis == 2) {
-      row += static_cast<uint32_t>(course.step[kAxis]);
+      at += static_cast<size_t>(static_cast<ptrdiff_t>(course.step[kAxis]));
     } else {
       shift += static_cast<uint32_t>(course.step[kAxis]);
     }
@@ -255,19 +293,20 @@ enter:  // a brick, by a plane of `axis`
     }
     // 512 - bricks is the near side: below it the ray waits.
     const Vec3i& side = course.frame->side;
-    brick = course.bricks;
+    uint32_t number = 0;
     if ((left & kWaiting) == 0 || ((left >> 10 * kA & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kA]) &&
                                    (left >> 10 * kB & 0x3FFU) >= 512U - static_cast<uint32_t>(side[kB]))) {
       left &= ~kWaiting;
-      brick += 8 * half_at(course.directory, cell);
+      number = half_at(course.directory, cell);
     }
+    at = reinterpret_cast<size_t>(course.bricks + 8 * number) + (at & 6U);
     if ((left & kInside) != 0 && solid()) {
       return kAsk;
     }
     left &= ~kInside;
     goto entered;
   }
-  brick = course.bricks + 8 * half_at(course.directory, cell);
+  at = reinterpret_cast<size_t>(course.bricks + 8 * half_at(course.directory, cell)) + (at & 6U);
 entered:
   if (solid()) {
     goto hit;
@@ -368,7 +407,7 @@ hit:
       axis = kB;
     }
   }
-  const uint32_t bit = shift + row * 8;
+  const uint32_t bit = shift + static_cast<uint32_t>(at & 6U) * 8;
   const uint32_t face = course.face[axis];
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
@@ -631,7 +670,7 @@ int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
 int32_t ask(const Frame& frame, int32_t x, int32_t y, RenderCounts* counts) {
   const Ray ray = frame.camera.ray(x, y);
   Hit hit;
-  if (closest_hit(frame.tree, ray, &hit) != Status::kOk) {
+  if (closest_hit_32(frame.tree, ray, &hit) != Status::kOk) {
     return kMissed;
   }
   counts->node_visits += hit.visits;
@@ -725,7 +764,7 @@ class Painter {
     int32_t slab = 0;
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab_along<true>(course_, fan, 0);
+      slab = first_slab_along<false>(course_, fan, 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(tile);
         return;
@@ -893,12 +932,12 @@ bool draws_fast(const BrickMap& map, const Camera& camera) {
       camera.direction_bits() > kMaxBrickDirectionBits) {
     return false;
   }
-  // The products of distances, measured from up to kOutsideCells beyond the box, and directions; two are
+  // The products of distances, measured from up to kOutsideCells beyond the world, and directions; two are
   // added.
   uint32_t distances = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const int32_t from_low = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
-    const int32_t from_high = map.box().max[axis] * (4 * Q8::kOne) - camera.eye()[axis].raw;
+    const int32_t from_low = camera.eye()[axis].raw;
+    const int32_t from_high = (Q8::kOne << map.level()) - from_low;
     distances |= static_cast<uint32_t>((from_low < 0 ? -from_low : from_low) + kOutsideQ8);
     distances |= static_cast<uint32_t>((from_high < 0 ? -from_high : from_high) + kOutsideQ8);
   }
@@ -910,8 +949,17 @@ Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& c
   if (!map.belongs_to(tree)) {
     return Status::kDamaged;
   }
+  return draws_fast(map, camera) ? render_band_32(tree, map, camera, shading, band, counts)
+                                 : render_band(tree, camera, shading, band, counts);
+}
+
+Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
+                      const Shading& shading, const Band& band, RenderCounts* counts) {
+  if (!map.belongs_to(tree)) {
+    return Status::kDamaged;
+  }
   if (!draws_fast(map, camera)) {
-    return render_band(tree, camera, shading, band, counts);
+    return Status::kBadArgument;
   }
   const int32_t width = camera.width_px();
   if (band.first_row < 0 || band.rows < 0 || band.rows > camera.height_px() - band.first_row) {
@@ -933,6 +981,8 @@ Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& c
   for (Inks::Seen& seen : inks.face) {
     seen.key = Inks::kNone;
   }
+  inks.near_cell[0] = 0;
+  inks.near_cell[1] = 0;
   for (uint32_t& ink : inks.material) {
     ink = Inks::kNone;
   }

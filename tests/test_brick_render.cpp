@@ -246,4 +246,172 @@ TEST_CASE("brick frames: any scene, camera, shading, format and band -> the byte
   CHECK(hits > static_cast<std::uint64_t>(kScenes) * 100);
 }
 
+TEST_CASE(
+    "brick frames: cameras that do not take 32 bits -> the general call draws, the narrow one refuses") {
+  std::mt19937_64 random(7);
+  const HeapBytes tree_bytes = random_tree(random, 6, 5);
+  const CompactTree tree = open_or_throw(tree_bytes);
+  const HeapBytes map_bytes = map_of(tree);
+  const BrickMap map = open_map(map_bytes);
+  Camera camera;
+  const Vec3Q8 eye{Q8::from_raw(-9000), Q8::from_raw(-8000), Q8::from_raw(14000)};
+  const Vec3Q8 middle{Q8::from_raw(8192), Q8::from_raw(8192), Q8::from_raw(8192)};
+  REQUIRE(camera.set(PerspectiveView{eye, look_at(eye, middle), {}, Q16::saturate(50), 60, 40, 18}, 6) ==
+          Status::kOk);
+  CHECK_FALSE(draws_fast(map, camera));
+  const Shading shading;
+  std::vector<std::uint8_t> pixels(60 * 40);
+  std::vector<std::uint8_t> wanted(60 * 40);
+  Band band;
+  band.format = PixelFormat::kGray8;
+  band.rows = 40;
+  band.pixels = {pixels.data(), pixels.size()};
+  CHECK(render_band_32(tree, map, camera, shading, band) == Status::kBadArgument);
+  CHECK(render_band_32(tree, camera, shading, band) == Status::kBadArgument);
+  CHECK(render_band(tree, map, camera, shading, band) == Status::kOk);
+  band.pixels = {wanted.data(), wanted.size()};
+  REQUIRE(render_band(tree, camera, shading, band) == Status::kOk);
+  CHECK(pixels == wanted);
+
+  REQUIRE(camera.set(PerspectiveView{eye, look_at(eye, middle), {}, Q16::saturate(50), 60, 40, 0}, 6) ==
+          Status::kOk);
+  REQUIRE(draws_fast(map, camera));
+  REQUIRE(render_band(tree, camera, shading, band) == Status::kOk);
+  band.pixels = {pixels.data(), pixels.size()};
+  RenderCounts counts;
+  REQUIRE(render_band_32(tree, camera, shading, band, &counts) == Status::kOk);
+  CHECK(pixels == wanted);
+  CHECK(counts.rays == 60 * 40);
+}
+
+TEST_CASE("brick frames: arguments that contradict the picture -> a status, and not a byte is written") {
+  std::mt19937_64 random(11);
+  const HeapBytes tree_bytes = random_tree(random, 5, 3);
+  const HeapBytes other_bytes = random_tree(random, 5, 3);
+  const CompactTree tree = open_or_throw(tree_bytes);
+  const HeapBytes map_bytes = map_of(tree);
+  const BrickMap map = open_map(map_bytes);
+  Camera camera;
+  const Vec3Q8 eye{Q8::from_raw(-3000), Q8::from_raw(-2000), Q8::from_raw(9000)};
+  REQUIRE(camera.set(PerspectiveView{eye, {3, 3, -2}, {}, Q16::saturate(60), 21, 16, 0}, 5) == Status::kOk);
+  REQUIRE(draws_fast(map, camera));
+  const Shading shading;
+  std::vector<std::uint8_t> pixels(11 * 16, 0x5A);
+  const std::vector<std::uint8_t> before = pixels;
+  Band band;
+  band.format = PixelFormat::kGray4;
+  band.rows = 16;
+  band.pixels = {pixels.data(), pixels.size() - 1};
+  CHECK(render_band(tree, map, camera, shading, band) == Status::kOutOfMemory);
+  band.pixels.size = pixels.size();
+  band.stride_bytes = 10;
+  CHECK(render_band(tree, map, camera, shading, band) == Status::kBadArgument);
+  band.stride_bytes = 12;
+  CHECK(render_band(tree, map, camera, shading, band) == Status::kOutOfMemory);
+  band.stride_bytes = 0;
+  band.first_row = 1;
+  CHECK(render_band(tree, map, camera, shading, band) == Status::kBadArgument);
+  band.first_row = 0;
+  CHECK(render_band(open_or_throw(other_bytes), map, camera, shading, band) == Status::kDamaged);
+  CHECK(render_band(tree, BrickMap(), camera, shading, band) == Status::kDamaged);
+  CHECK(render_band(tree, map, Camera(), shading, band) == Status::kBadArgument);
+  CHECK(pixels == before);
+  CHECK(render_band(tree, map, camera, shading, band) == Status::kOk);
+  CHECK(pixels != before);
+}
+
+TEST_CASE(
+    "brick map: too few bytes, wrong levels, odd addresses -> a status, and the least that works is known") {
+  std::mt19937_64 random(5);
+  for (int scene = 0; scene < 12; ++scene) {
+    const HeapBytes tree_bytes = random_tree(random, 5, 4);
+    const CompactTree tree = open_or_throw(tree_bytes);
+    const HeapBytes map_bytes = map_of(tree);
+    const std::size_t size = map_bytes.view().size;
+    BrickMap map = open_map(map_bytes);
+    CHECK(size == map.size_bytes());
+    CHECK(size == brick_map_bytes(static_cast<std::uint32_t>((map.box().max.x - map.box().min.x) *
+                                                             (map.box().max.y - map.box().min.y) *
+                                                             (map.box().max.z - map.box().min.z)),
+                                  map.brick_count(), map.mixed_count()));
+    std::size_t written = 0;
+    // Exactly as many bytes on the heap: the sanitizer sees the first beyond.
+    for (std::size_t less = 0; less <= size; less += 1 + less / 2) {
+      const HeapBytes room(size - less);
+      CHECK(BrickMap::build(tree, room.span(), &written) == Status::kOutOfMemory);
+      BrickMap none;
+      if (less != 0) {
+        CHECK(BrickMap::open({map_bytes.view().data, size - less}, &none) == Status::kDamaged);
+      }
+    }
+    bool built = false;
+    for (std::size_t more = 0; !built && more < 100000; more += 64) {
+      const HeapBytes room(size + more);
+      built = BrickMap::build(tree, room.span(), &written) == Status::kOk;
+      if (built) {
+        CHECK(written == size);
+        CHECK(std::equal(map_bytes.view().begin(), map_bytes.view().end(), room.view().data));
+      }
+    }
+    CHECK(built);
+    const HeapBytes shifted(size, 4);
+    CHECK(BrickMap::open(shifted.view(), &map) == Status::kBadArgument);
+    CHECK(BrickMap::build(tree, shifted.span(), &written) == Status::kBadArgument);
+  }
+  const HeapBytes small = random_tree(random, 1, 2);
+  const HeapBytes room(most_brick_map_bytes(2));
+  std::size_t written = 0;
+  CHECK(BrickMap::build(open_or_throw(small), room.span(), &written) == Status::kOutOfRange);
+  CHECK(BrickMap::build(CompactTree(), room.span(), &written) == Status::kOutOfRange);
+}
+
+TEST_CASE(
+    "brick map: damaged bytes of map and tree -> validate says so; drawing ends and stays in its bytes") {
+  std::mt19937_64 random(20260202);
+  const auto palette = random_palette(random);
+  int opened = 0;
+  for (int damage = 0; damage < kDamages; ++damage) {
+    const std::uint64_t seed = random();
+    CAPTURE(seed);
+    std::mt19937_64 own(seed);
+    const int level = any(own, 2, 5);
+    const HeapBytes tree_bytes = random_tree(own, level, 5);
+    const HeapBytes map_bytes = map_of(open_or_throw(tree_bytes));
+    const bool in_tree = one_in(own, 3);
+    const Bytes target = in_tree ? tree_bytes.span() : map_bytes.span();
+    const std::size_t first = in_tree ? 16 : 0;
+    const int flips = any(own, 1, 6);
+    for (int i = 0; i < flips; ++i) {
+      const std::size_t at = first + static_cast<std::size_t>(own() % (target.size - first));
+      target[at] = static_cast<std::uint8_t>(target[at] ^ (1 + own() % 255));
+    }
+    BrickMap map;
+    CompactTree tree;
+    if (CompactTree::open(tree_bytes.view(), &tree) != Status::kOk ||
+        BrickMap::open(map_bytes.view(), &map) != Status::kOk) {
+      continue;
+    }
+    ++opened;
+    if (!in_tree) {
+      // Flips may cancel out, but hardly ever do.
+      const char* fault = BrickMap::validate(map_bytes.view());
+      CHECK((fault != nullptr || map.belongs_to(tree)));
+    }
+    std::size_t written = 0;
+    const HeapBytes room(most_brick_map_bytes(level));
+    static_cast<void>(BrickMap::build(tree, room.span(), &written));
+    const Camera camera = random_camera(own, level);
+    const Shading shading = random_shading(own, camera, tree, {palette.data(), palette.size()});
+    std::vector<std::uint8_t> pixels(row_bytes(PixelFormat::kGray4, camera.width_px()) *
+                                     static_cast<std::size_t>(camera.height_px()));
+    Band band;
+    band.format = PixelFormat::kGray4;
+    band.rows = camera.height_px();
+    band.pixels = {pixels.data(), pixels.size()};
+    const Status status = render_band(tree, map, camera, shading, band);
+    CHECK((status == Status::kOk || status == Status::kDamaged || status == Status::kBadArgument));
+  }
+  CHECK(opened > kDamages / 4);
+}
+
 }  // namespace

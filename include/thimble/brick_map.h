@@ -33,7 +33,7 @@ inline constexpr size_t kBrickMapHeaderBytes = 32;
 /// Bytes of a map over a box of `cells` bricks (at most 64^3) that holds `bricks` different ones, the empty
 /// one included, of which `mixed` show more than one material.
 constexpr size_t brick_map_bytes(uint32_t cells, uint32_t bricks, uint32_t mixed) {
-  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 3) & ~size_t{3}) + 8 * size_t{bricks} +
+  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 7) & ~size_t{7}) + 8 * size_t{bricks} +
          12 * size_t{mixed} + ((size_t{bricks} - 1 - mixed + 3) & ~size_t{3});
 }
 
@@ -50,7 +50,7 @@ class BrickMap {
  public:
   BrickMap() = default;
 
-  /// Looks at `bytes` (at least the map; more may follow), which start at a multiple of 4. Reads the header
+  /// Looks at `bytes` (at least the map; more may follow), which start at a multiple of 8. Reads the header
   /// and the directory, about ten instructions a cell: from then on nothing outside the bytes is read,
   /// whatever the rest of them holds (law 4). `kDamaged` for bytes that are no map, `kBadArgument` for an
   /// odd address; `map` is then as it was.
@@ -59,7 +59,7 @@ class BrickMap {
   /// Reads every byte once. Returns nullptr for a sound map, otherwise a short English phrase.
   static const char* validate(ConstBytes bytes);
 
-  /// Makes the map of `tree` at the front of `out` (at a multiple of 4); `written` gets its size. While it is
+  /// Makes the map of `tree` at the front of `out` (at a multiple of 8); `written` gets its size. While it is
   /// being made it takes 2 bytes a brick more, and 8 for each that turns out to be solid through and of one
   /// material. Errors: `kOutOfRange` (level, more than kMaxBricks - 1 bricks or 65,280 nodes of level 2, 2^24
   /// nodes), `kOutOfMemory`, `kBadArgument` (odd address). What `out` then holds is not a map. One pass over

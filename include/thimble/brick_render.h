@@ -37,6 +37,11 @@ bool draws_fast(const BrickMap& map, const Camera& camera);
 Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& camera, const Shading& shading,
                    const Band& band, RenderCounts* counts = nullptr);
 
+/// The same for cameras that `draws_fast`; kBadArgument for others. A firmware that calls this one only has
+/// nothing of the 64-bit tracer in its flash and on its stack.
+Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
+                      const Shading& shading, const Band& band, RenderCounts* counts = nullptr);
+
 }  // namespace thimble
 
 #endif
