@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <memory>
 
+#include "apps/app_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "commands/sim_session.h"
-#include "apps/app_table.h"
 #include "output/image.h"
 #include "output/output_file.h"
 #include "output/progress.h"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "boards/board_table.h"
 #include "apps/app_table.h"
+#include "boards/board_table.h"
 #include "host/key_script.h"
 #include "host/look.h"
 #include "host/packed_picture.h"
