@@ -109,7 +109,7 @@ int tell_buttons() {
   static constexpr const char* kNames[] = {" up", " down", " left", " right", " select"};
   say("buttons\n");
   uint32_t told = 0;
-  while (port::read() != 'q') {
+  while (port::running(0) && port::read() != 'q') {
     const uint32_t down = port::buttons();
     if (down != told) {
       say("down:");
@@ -162,12 +162,13 @@ int run(int key) {
 
 int faults() {
   say("faults: s stack, r RAM, f flash, n nonsense, d damaged scene; b buttons\n");
-  for (;;) {
+  while (port::running(0)) {
     const int status = run(port::read());
     if (status >= 0) {
       return status;
     }
   }
+  return 0;
 }
 
 }  // namespace thimble::apps
