@@ -45,8 +45,12 @@ const char* fault(uint32_t* place, uint32_t where, const char* text) {
   return text;
 }
 
-constexpr uint64_t aligned(uint64_t bytes) {
-  return (bytes + kAlign - 1) & ~uint64_t{kAlign - 1};
+constexpr uint64_t aligned(uint64_t bytes, uint32_t to = kAlign) {
+  return (bytes + to - 1) & ~uint64_t{to - 1};
+}
+// A brick map is read in 64-bit words.
+constexpr uint32_t alignment_of(SectionKind kind) {
+  return kind == SectionKind::kBrickMap ? 8 : kAlign;
 }
 
 Vec3i load_vector(const uint8_t* from) {
@@ -339,8 +343,11 @@ size_t baked_bytes(const BakedParts& parts) {
   }
   uint64_t bytes = kBakedHeaderBytes;
   for (const SectionKind kind : kKinds) {
+    bytes += section_bytes(parts, kind) == 0 ? 0 : kBakedEntryBytes;
+  }
+  for (const SectionKind kind : kKinds) {
     const size_t length = section_bytes(parts, kind);
-    bytes += length == 0 ? 0 : kBakedEntryBytes + aligned(length);
+    bytes = length == 0 ? bytes : aligned(bytes, alignment_of(kind)) + aligned(length);
   }
   return bytes <= UINT32_MAX && bytes < SIZE_MAX ? static_cast<size_t>(bytes) : SIZE_MAX;
 }
@@ -370,6 +377,10 @@ Status bake(const BakedParts& parts, Bytes to) {
     const size_t length = section_bytes(parts, kind);
     if (length == 0) {
       continue;
+    }
+    const size_t start = static_cast<size_t>(aligned(offset, alignment_of(kind)));
+    for (; offset < start; ++offset) {
+      base[offset] = 0;
     }
     bits::store32(entry + kEntryKind, static_cast<uint32_t>(kind));
     bits::store32(entry + kEntryOffset, static_cast<uint32_t>(offset));

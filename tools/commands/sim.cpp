@@ -48,6 +48,7 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     BakingOptions options;
     options.limit_bytes = limit;
     options.coarsen = command.scene.coarsen;
+    options.brick_map = true;
     options.name = scene_name(command.scene.arguments.scene);
     options.camera = [&](int level, const VoxelBox& bounds) {
       SceneCamera chosen;

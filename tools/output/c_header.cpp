@@ -89,9 +89,9 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   text +=
       "\n/* Aligned, so that a chip that wants whole words reads them at once. Constant, so that it stays in "
       "flash. */\n"
-      "#if defined(__cplusplus)\nalignas(4)\n"
+      "#if defined(__cplusplus)\nalignas(8)\n"
       "#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L\n_Alignas(4)\n"
-      "#elif defined(__GNUC__)\n__attribute__((aligned(4)))\n#endif\n"
+      "#elif defined(__GNUC__)\n__attribute__((aligned(8)))\n#endif\n"
       "static const uint8_t " +
       name + "[" + prefix + "BYTES] = {\n";
   std::string line;

@@ -10,6 +10,7 @@
 #include "scene/built_scene.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
+#include "thimble/brick_map.h"
 #include "thimble/octree.h"
 
 namespace thimble::tools {
@@ -61,6 +62,23 @@ class Assembly {
 
   std::size_t bytes() const { return baked_bytes(parts_); }
 
+  /// Adds a brick map of the tree, unless the world has none or all of it would then exceed `limit`.
+  void add_brick_map(const CompactTree& tree, std::uint64_t limit) {
+    if (tree.empty() || tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel) {
+      return;
+    }
+    map_.resize(most_brick_map_bytes(tree.level()) / sizeof(std::uint64_t) + 1);
+    std::size_t written = 0;
+    const Bytes room{reinterpret_cast<std::uint8_t*>(map_.data()), map_.size() * sizeof(std::uint64_t)};
+    if (BrickMap::build(tree, room, &written) != Status::kOk) {
+      return;  // more bricks than a map has numbers for
+    }
+    parts_.brick_map = {room.data, written};
+    if (bytes() > limit) {
+      parts_.brick_map = {};
+    }
+  }
+
   void write(Baked* result) const {
     const std::size_t size = bytes();
     if (size == SIZE_MAX) {
@@ -77,6 +95,7 @@ class Assembly {
   std::vector<Rgb8> palette_;
   std::string name_;
   SceneCamera camera_;
+  std::vector<std::uint64_t> map_;  // for its alignment
   BakedParts parts_;
 };
 
@@ -203,10 +222,13 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
   const std::uint64_t limit = options.limit_bytes.value_or(UINT32_MAX);
   const BuiltScene built(source, {}, progress);
   const CompactTree& exact = built.compact();
-  const Assembly whole(source, options, exact);
+  Assembly whole(source, options, exact);
   result.work_bytes = built.high_water_bytes();
   result.fits = whole.bytes() <= limit;
   if (result.fits || !options.coarsen) {
+    if (options.brick_map) {
+      whole.add_brick_map(exact, limit);
+    }
     whole.write(&result);
   } else {
     // What stands around the tree takes the same room whatever the tree, or less: merging can only leave
@@ -220,8 +242,11 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
     if (CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
       throw InputError("internal error: the coarsened tree does not open");
     }
-    const Assembly coarse(source, options, tree);
+    Assembly coarse(source, options, tree);
     result.fits = coarse.bytes() <= limit;
+    if (options.brick_map) {
+      coarse.add_brick_map(tree, limit);
+    }
     coarse.write(&result);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
