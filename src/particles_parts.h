@@ -1,0 +1,201 @@
+// What the parts of the particle world share. Internal to src/.
+#ifndef THIMBLE_SRC_PARTICLES_PARTS_H
+#define THIMBLE_SRC_PARTICLES_PARTS_H
+
+#include "bits.h"
+#include "thimble/particles.h"
+
+namespace thimble {
+
+// Ball::flags
+inline constexpr uint8_t kAsleep = 1;  // not in the set of those awake, velocity 0
+inline constexpr uint8_t kGrounded =
+    2;  // under gravity, in its last step it came to lie on something that lies
+inline constexpr uint8_t kSupports = 4;  // a sleeper may count on it
+
+// Steps that a ball keeps to its place before it may sleep.
+inline constexpr uint8_t kStillSteps = 40;
+// Steps that two must have kept to their places for their contact to be a lasting one, without bounces.
+inline constexpr uint8_t kLastingSteps = 4;
+// A ball that slides on something loses 1 / 2^this of its speed in a step.
+inline constexpr int kFrictionShift = 5;
+
+// Cells of the index, [x0, x1] x [y0, y1], inclusive.
+struct ParticleWorld::CellRange {
+  int32_t x0, y0, x1, y1;
+};
+
+// Rows of the field or of a disc that are worked on together: four where the compiler has registers of four
+// words (then a ball of any size takes the same way through the code, sixteen rows with masks that are empty
+// where there is nothing to do, so that the processor need not guess), else one by one, as many as needed.
+#if defined(__SSE2__) || defined(__ARM_NEON)
+typedef uint32_t Rows __attribute__((vector_size(16)));
+typedef uint32_t RowsInMemory __attribute__((vector_size(16), aligned(4), may_alias));
+inline uint32_t any_of(Rows rows) {
+  return rows[0] | rows[1] | rows[2] | rows[3];
+}
+#else
+typedef uint32_t Rows;
+typedef uint32_t RowsInMemory __attribute__((may_alias));
+inline uint32_t any_of(Rows rows) {
+  return rows;
+}
+#endif
+inline constexpr int32_t kLanes = sizeof(Rows) / 4;
+inline constexpr int32_t kBlock = kMaxSmallDisc;  // rows of a disc, and of a small window
+
+inline Rows load_rows(const uint32_t* rows) {
+  return *reinterpret_cast<const RowsInMemory*>(rows);
+}
+inline void store_rows(uint32_t* rows, Rows value) {
+  *reinterpret_cast<RowsInMemory*>(rows) = value;
+}
+// How far loops over `count` rows of at most kBlock go.
+constexpr int32_t rows_to_do(int32_t count) {
+  return kLanes == 1 ? count : kBlock;
+}
+
+inline DiscStamp small_disc(int32_t diameter) {
+  return {diameter, field_detail::kSmallDiscs.rows + field_detail::SmallDiscs::first(diameter)};
+}
+
+// A piece of the field around a ball, without the ball itself: row r, bit c is cell base + (c, r). What lies
+// outside the box is set.
+struct ParticleWorld::Window {
+  static constexpr int32_t kSide = 32;  // at most so many columns and rows
+  uint32_t rows[kSide + kBlock];        // as many as were loaded, and kBlock that mean nothing
+  Vec2i base;
+
+  // The cells under a disc at `place`, which lies in the window, as rows from its corner on; whether there
+  // are any.
+  bool under(const DiscStamp& disc, Vec2i place, uint32_t (&out)[kBlock]) const {
+    const uint32_t* const from = rows + (place.y - base.y);
+    const int32_t shift = place.x - base.x;
+    Rows any{};
+    for (int32_t row = 0; row < rows_to_do(disc.diameter); row += kLanes) {
+      const Rows found = (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
+      store_rows(out + row, found);
+      any |= found;
+    }
+    return any_of(any) != 0;
+  }
+  bool is_free(const DiscStamp& disc, Vec2i place) const {
+    const uint32_t* const from = rows + (place.y - base.y);
+    const int32_t shift = place.x - base.x;
+    Rows any{};
+    for (int32_t row = 0; row < rows_to_do(disc.diameter); row += kLanes) {
+      any |= (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
+    }
+    return any_of(any) == 0;
+  }
+};
+
+// Where and how the way of a ball ended early.
+struct ParticleWorld::Blocked {
+  static constexpr uint32_t kX = 1;       // the step along x meets something
+  static constexpr uint32_t kY = 2;       // the step along y
+  static constexpr uint32_t kCorner = 4;  // only the step along both
+  uint32_t axes = 0;                      // 0: it did not end early
+  Vec2i sign;                             // of the displacement
+  Vec2i corner;                           // of the disc where it stands now
+  uint32_t left_q16 = 0;                  // the part of the displacement that was not made
+};
+
+// What a disc would cover: balls in order of number, and walls.
+struct ParticleWorld::Contacts {
+  static constexpr int32_t kMost = 32;  // a disc of 16 cells meets no more balls in one step
+  uint32_t ids[kMost];
+  uint8_t axes[kMost];
+  int32_t count = 0;
+  bool wall = false;
+  uint32_t wall_axes = 0;
+  Vec2i wall_offset;  // of all cells of walls from the middle of the disc, in half cells, summed
+
+  void add(uint32_t id, uint32_t axis_bits) {
+    int32_t at = count;
+    while (at > 0 && ids[at - 1] > id) {
+      --at;
+    }
+    if (at > 0 && ids[at - 1] == id) {
+      axes[at - 1] = static_cast<uint8_t>(axes[at - 1] | axis_bits);
+      return;
+    }
+    if (count == kMost) {
+      return;
+    }
+    for (int32_t i = count; i > at; --i) {
+      ids[i] = ids[i - 1];
+      axes[i] = axes[i - 1];
+    }
+    ids[at] = id;
+    axes[at] = static_cast<uint8_t>(axis_bits);
+    ++count;
+  }
+};
+
+inline ParticleWorld::CellRange ParticleWorld::cells_around(const CellBox& box, int32_t reach) const {
+  const auto clamp = [](int32_t value, int32_t limit) {
+    return value < 0 ? 0 : value < limit ? value : limit - 1;
+  };
+  return {clamp((box.min.x - reach) >> cell_shift_, cells_across_),
+          clamp((box.min.y - reach) >> cell_shift_, cells_down_),
+          clamp((box.max.x - 1 + reach) >> cell_shift_, cells_across_),
+          clamp((box.max.y - 1 + reach) >> cell_shift_, cells_down_)};
+}
+
+inline void ParticleWorld::set_awake_bit(uint32_t id) {
+  awake_[id >> 5] |= uint32_t{1} << (id & 31);
+  awake_middle_[id >> 10] |= uint32_t{1} << (id >> 5 & 31);
+  awake_top_[id >> 15] |= uint32_t{1} << (id >> 10 & 31);
+}
+
+inline void ParticleWorld::clear_awake_bit(uint32_t id) {
+  awake_[id >> 5] &= ~(uint32_t{1} << (id & 31));
+  if (awake_[id >> 5] == 0) {
+    awake_middle_[id >> 10] &= ~(uint32_t{1} << (id >> 5 & 31));
+    if (awake_middle_[id >> 10] == 0) {
+      awake_top_[id >> 15] &= ~(uint32_t{1} << (id >> 10 & 31));
+    }
+  }
+}
+
+// The first ball awake of number `from` or more, or kNoBall.
+inline uint32_t ParticleWorld::next_awake(uint32_t from) const {
+  if (from >= id_limit_) {
+    return kNoBall;
+  }
+  uint32_t word = awake_[from >> 5] >> (from & 31);
+  if (word != 0) {
+    return from + bits::lowest_bit(word);
+  }
+  const uint32_t leaf = (from >> 5) + 1;
+  if (leaf >= (id_limit_ + 31) >> 5) {
+    return kNoBall;
+  }
+  word = awake_middle_[leaf >> 5] >> (leaf & 31);
+  uint32_t found = leaf;
+  if (word != 0) {
+    found += bits::lowest_bit(word);
+  } else {
+    uint32_t middle = (leaf >> 5) + 1;
+    uint32_t top = middle >> 5;
+    if (top >= top_words_) {
+      return kNoBall;
+    }
+    word = awake_top_[top] >> (middle & 31);
+    while (word == 0) {
+      if (++top >= top_words_) {
+        return kNoBall;
+      }
+      middle = top << 5;
+      word = awake_top_[top];
+    }
+    middle += bits::lowest_bit(word);
+    found = (middle << 5) + bits::lowest_bit(awake_middle_[middle]);
+  }
+  return (found << 5) + bits::lowest_bit(awake_[found]);
+}
+
+}  // namespace thimble
+
+#endif
