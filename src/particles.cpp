@@ -180,8 +180,6 @@ Status ParticleWorld::spawn(int32_t x_q16, int32_t y_q16, int32_t vx_q16, int32_
   ball.vx = vx_q16;
   ball.vy = vy_q16;
   ball.diameter = static_cast<uint8_t>(diameter);
-  ball.anchor_x = static_cast<int16_t>(corner.x);
-  ball.anchor_y = static_cast<int16_t>(corner.y);
   field_.set_inside(disc, corner);
   link(number);
   set_awake_bit(number);
@@ -259,7 +257,7 @@ Status ParticleWorld::remove(uint32_t id) {
   if (id == dragged_) {
     dragged_ = kNoBall;
   }
-  support_left({corner, {corner.x + diameter, corner.y + diameter}});
+  support_left({corner, {corner.x + diameter, corner.y + diameter}}, true);
   return Status::kOk;
 }
 
@@ -322,7 +320,7 @@ void ParticleWorld::draw_box(const CellBox& box) {
 void ParticleWorld::erase_box(const CellBox& box) {
   field_.clear(box);
   stamp_balls(box);
-  support_left(box);
+  support_left(box, true);
 }
 
 void ParticleWorld::draw_wall(Vec2i from, Vec2i to, int32_t diameter) {
@@ -369,7 +367,7 @@ void ParticleWorld::brush(Vec2i from, Vec2i to, int32_t diameter, bool solid) {
     const Vec2i least{(a.x < b.x ? a.x : b.x) - half, (a.y < b.y ? a.y : b.y) - half};
     const CellBox touched{least, {least.x + run.x + disc.diameter, least.y + run.y + disc.diameter}};
     stamp_balls(touched);
-    support_left(touched);
+    support_left(touched, true);
   }
 }
 

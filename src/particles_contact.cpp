@@ -20,6 +20,8 @@ namespace {
 
 constexpr int kNormalBits = 12;
 constexpr int kFactorBits = 24;
+// The rest_speed_ of a gravity of half a cell a step a step.
+constexpr int32_t kStrongRestSpeed = 5 * 65536 / 4;
 
 constexpr uint32_t magnitude(int32_t value) {
   return value < 0 ? 0U - static_cast<uint32_t>(value) : static_cast<uint32_t>(value);
@@ -302,9 +304,16 @@ void ParticleWorld::bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i aw
         ((axes & Blocked::kY) != 0 && int64_t{away.y} * g.y < 0)) {
       ball.flags |= kGrounded;
     }
-    // What slides is slowed.
-    ball.vx = ball.vx < 0 ? ball.vx + (-ball.vx >> kFrictionShift) : ball.vx - (ball.vx >> kFrictionShift);
-    ball.vy = ball.vy < 0 ? ball.vy + (-ball.vy >> kFrictionShift) : ball.vy - (ball.vy >> kFrictionShift);
+    // What slides is slowed; where a step of gravity is worth more than half a cell, to half a cell a step,
+    // so that it comes to lie in a hollow instead of being thrown from side to side of it.
+    const int32_t limit = rest_speed_ > kStrongRestSpeed ? 32768 : kMaxSpeedQ16;
+    int32_t* const speeds[2] = {&ball.vx, &ball.vy};
+    for (int32_t* speed : speeds) {
+      const int32_t size = *speed < 0 ? -*speed : *speed;
+      const int32_t slowed = size - (size >> kFrictionShift);
+      const int32_t kept = slowed < limit ? slowed : limit;
+      *speed = *speed < 0 ? -kept : kept;
+    }
   }
 }
 

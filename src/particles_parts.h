@@ -13,8 +13,11 @@ inline constexpr uint8_t kGrounded =
     2;  // under gravity, in its last step it came to lie on something that lies
 inline constexpr uint8_t kSupports = 4;  // a sleeper may count on it
 
-// Steps that a ball keeps to its place before it may sleep.
+// A ball that keeps within so many cells of its place for so many steps may sleep.
+inline constexpr int32_t kStillReach = 1;
 inline constexpr uint8_t kStillSteps = 40;
+inline constexpr int32_t kConfinedReach = 4;
+inline constexpr uint8_t kConfinedSteps = 200;
 // Steps that two must have kept to their places for their contact to be a lasting one, without bounces.
 inline constexpr uint8_t kLastingSteps = 4;
 // A ball that slides on something loses 1 / 2^this of its speed in a step.

@@ -21,53 +21,61 @@ Vec2i along_gravity(Vec2i corner, Vec2i gravity, int axis) {
 
 }  // namespace
 
+// Whether gravity pulls no less along `axis` than along the other.
+bool ParticleWorld::pulls_most(int axis) const {
+  const int32_t here = config_.gravity_q16[axis];
+  const int32_t there = config_.gravity_q16[1 - axis];
+  return here != 0 && (here < 0 ? -here : here) >= (there < 0 ? -there : there);
+}
+
 bool ParticleWorld::held(const Ball& ball) const {
   const DiscStamp disc = small_disc(ball.diameter);
   const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
-    if (config_.gravity_q16[axis] != 0) {
+    if (pulls_most(axis)) {
       const Vec2i place = along_gravity(corner, config_.gravity_q16, axis);
-      if (field_.holds(disc, place) && !field_.any_besides_inside(disc, place, corner)) {
-        return false;
+      if (!field_.holds(disc, place) || field_.any_besides_inside(disc, place, corner)) {
+        return true;
       }
     }
   }
-  return true;
+  return !pulled_;
 }
 
 bool ParticleWorld::is_held(uint32_t id) const {
   return id < id_limit_ && balls_[id].diameter != 0 && held(balls_[id]);
 }
 
-// Whether ball `id` is held on each axis of gravity by something that lies still itself: so a heap falls
-// asleep from the ground up.
+// Whether ball `id` is held by something that lies still itself: so a heap falls asleep from the ground up.
 bool ParticleWorld::lies_still(uint32_t id) const {
   const Ball& ball = balls_[id];
   const DiscStamp disc = small_disc(ball.diameter);
   const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
-    if (config_.gravity_q16[axis] == 0) {
+    if (!pulls_most(axis)) {
       continue;
     }
     const Vec2i place = along_gravity(corner, config_.gravity_q16, axis);
     if (!field_.holds(disc, place)) {
-      continue;
+      return true;
     }
     Contacts contacts;
     uint32_t rows[kMaxSmallDisc];
-    if (field_.overlap_inside(disc, place, corner, rows)) {
-      contacts_at(id, disc, place, rows, 1, &contacts);
+    if (!field_.overlap_inside(disc, place, corner, rows)) {
+      continue;
     }
-    bool on_something = contacts.wall;
-    for (int32_t i = 0; i < contacts.count && !on_something; ++i) {
+    contacts_at(id, disc, place, rows, 1, &contacts);
+    if (contacts.wall) {
+      return true;
+    }
+    for (int32_t i = 0; i < contacts.count; ++i) {
       const Ball& other = balls_[contacts.ids[i]];
-      on_something = (other.flags & kAsleep) != 0 || other.still >= kStillSteps;
-    }
-    if (!on_something) {
-      return false;
+      if ((other.flags & kAsleep) != 0 || other.still >= kStillSteps || other.confined >= kConfinedSteps) {
+        return true;
+      }
     }
   }
-  return true;
+  return !pulled_;
 }
 
 // Marks the balls that hold sleeper `id`.
@@ -97,10 +105,9 @@ void ParticleWorld::wake(uint32_t id) {
     return;
   }
   ball.still = 0;
+  ball.confined = 0;
+  ball.near_x = ball.near_y = ball.far_x = ball.far_y = 0;
   ball.flags = static_cast<uint8_t>(ball.flags & ~kAsleep);
-  const Vec2i corner = corner_of(ball);
-  ball.anchor_x = static_cast<int16_t>(corner.x);
-  ball.anchor_y = static_cast<int16_t>(corner.y);
   set_awake_bit(id);
   --asleep_;
   ++counters_.woken;
@@ -117,31 +124,31 @@ void ParticleWorld::wake_all() {
   }
 }
 
-// After a step: counts how long ball `id` has kept to its place, and puts it to sleep when that is long.
-// Without gravity, only what stands perfectly still may sleep, since everything else goes on for ever.
+// After a step: counts how long ball `id` has kept to its place, and puts it to sleep when that is long. What
+// is thrown to and fro in a hollow of a few cells may sleep as well, after longer. Without gravity, only what
+// stands perfectly still may, since everything else goes on for ever.
 void ParticleWorld::rest(uint32_t id) {
   Ball& ball = balls_[id];
+  const auto beyond = [](int32_t x, int32_t y, int32_t reach) {
+    return x > reach || x < -reach || y > reach || y < -reach;
+  };
   if (!pulled_) {
-    if ((ball.vx | ball.vy) != 0) {
-      ball.still = 0;
-      return;
-    }
+    ball.still = (ball.vx | ball.vy) != 0 ? 0 : static_cast<uint8_t>(ball.still + 1);
   } else {
-    const Vec2i corner = corner_of(ball);
-    const uint32_t dx = static_cast<uint32_t>(corner.x - ball.anchor_x + 1);
-    const uint32_t dy = static_cast<uint32_t>(corner.y - ball.anchor_y + 1);
-    if (dx > 2 || dy > 2) {
-      ball.anchor_x = static_cast<int16_t>(corner.x);
-      ball.anchor_y = static_cast<int16_t>(corner.y);
+    if (beyond(ball.near_x, ball.near_y, kStillReach)) {
+      ball.near_x = ball.near_y = 0;
       ball.still = 0;
-      return;
+    } else if (ball.still < kStillSteps) {
+      ++ball.still;
+    }
+    if (beyond(ball.far_x, ball.far_y, kConfinedReach)) {
+      ball.far_x = ball.far_y = 0;
+      ball.confined = 0;
+    } else if (ball.confined < kConfinedSteps) {
+      ++ball.confined;
     }
   }
-  if (ball.still < kStillSteps) {
-    ++ball.still;
-    return;
-  }
-  if (id == dragged_ || !lies_still(id)) {
+  if ((ball.still < kStillSteps && ball.confined < kConfinedSteps) || id == dragged_ || !lies_still(id)) {
     return;
   }
   ball.vx = 0;
@@ -152,11 +159,14 @@ void ParticleWorld::rest(uint32_t id) {
   hold(id);
 }
 
-// Something left cells of `box`: the sleepers beside it are looked at again.
-void ParticleWorld::support_left(const CellBox& box) {
+// Something left cells of `box`: the sleepers beside it are looked at again. Where gravity pulls aslant, what
+// held a sleeper on the other axis may be gone, so it wakes to find out; but not for what only stirs in its
+// hollow (not `for_good`).
+void ParticleWorld::support_left(const CellBox& box, bool for_good) {
   if (!pulled_ || asleep_ == 0 || cells_across_ == 0 || cells_down_ == 0) {
     return;
   }
+  const bool aslant = for_good && config_.gravity_q16.x != 0 && config_.gravity_q16.y != 0;
   const CellRange range = cells_around(box, config_.most_diameter / 2 + 2);
   for (int32_t y = range.y0; y <= range.y1; ++y) {
     for (int32_t x = range.x0; x <= range.x1; ++x) {
@@ -167,7 +177,7 @@ void ParticleWorld::support_left(const CellBox& box) {
             corner.x + ball.diameter < box.min.x || corner.y + ball.diameter < box.min.y) {
           continue;
         }
-        if (held(ball)) {
+        if (!aslant && held(ball)) {
           hold(id);
         } else {
           wake(id);

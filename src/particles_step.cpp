@@ -106,7 +106,7 @@ void ParticleWorld::advance_all(bool last) {
   for (uint32_t id = next_awake(0); id != kNoBall; id = next_awake(id + 1)) {
     advance<kPulled>(id);
     const Ball& ball = balls_[id];
-    if (last && (kPulled || (ball.vx | ball.vy | ball.still) == 0)) {
+    if (last && (kPulled || (ball.vx | ball.vy) == 0 || ball.still != 0)) {
       rest(id);
     }
   }
@@ -208,9 +208,21 @@ inline void ParticleWorld::advance(uint32_t id) {
   if ((((ball.x ^ start.x) | (ball.y ^ start.y)) >> in_cell) != 0) {
     relink(id, cell_of(start.x, start.y), cell_of(ball.x, ball.y));
   }
-  if (kPulled && (ball.flags & kSupports) != 0 && corner_of(ball) != from) {
-    ball.flags = static_cast<uint8_t>(ball.flags & ~kSupports);
-    support_left({from, {from.x + diameter, from.y + diameter}});
+  if (kPulled) {
+    const Vec2i corner = corner_of(ball);
+    if (corner != from) {
+      const auto add = [](int8_t* sum, int32_t cells) {
+        *sum = static_cast<int8_t>(least(most(*sum + cells, -100), 100));
+      };
+      add(&ball.near_x, corner.x - from.x);
+      add(&ball.near_y, corner.y - from.y);
+      add(&ball.far_x, corner.x - from.x);
+      add(&ball.far_y, corner.y - from.y);
+      if ((ball.flags & kSupports) != 0) {
+        ball.flags = static_cast<uint8_t>(ball.flags & ~kSupports);
+        support_left({from, {from.x + diameter, from.y + diameter}}, ball.confined < kStillSteps);
+      }
+    }
   }
 }
 

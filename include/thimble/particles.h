@@ -18,9 +18,11 @@
 /// another
 ///   or with a wall;
 /// * every disc lies inside the box;
-/// * a ball asleep under gravity is held: for each axis along which gravity pulls, its disc moved by one cell
-///   that way meets the box, a wall or another ball (`is_held` is that predicate, exactly). What holds it
-///   lies strictly further along that axis, so support always ends at a wall or at the box.
+/// * a ball asleep under gravity is held: its disc moved by one cell along the axis on which gravity pulls
+/// most
+///   (either, where it pulls the same on both) meets the box, a wall or another ball; `is_held` is that
+///   predicate, exactly. What holds it has its centre further along that axis, so support ends at a wall or
+///   at the box.
 ///
 /// Everything is integers, so the same calls give the same state (`state_crc32`) on every machine. A world
 /// that is mirrored or turned by quarters, with the same balls by the same numbers, stays the exact image of
@@ -75,11 +77,12 @@ struct Ball {
   int32_t x, y;    // centre, Q16 cells: corner + diameter / 2 + an odd number of half units (never on a tie)
   int32_t vx, vy;  // Q16 cells a step
   uint32_t next, previous;  // in the list of its cell; `next` is the list of free numbers for a removed ball
-  int16_t anchor_x, anchor_y;  // the corner it has kept to, give or take a cell, for `still` steps
-  uint8_t diameter;            // 0: removed
+  int8_t near_x, near_y;    // cells it has gone since `still` began
+  int8_t far_x, far_y;      // and since `confined` did
+  uint8_t diameter;         // 0: removed
   uint8_t flags;
-  uint8_t still;
-  uint8_t spare;
+  uint8_t still;     // steps within a cell of its place, under gravity; else steps at speed 0
+  uint8_t confined;  // steps within a few cells
 };
 static_assert(sizeof(Ball) == 32);
 
@@ -200,8 +203,8 @@ class ParticleWorld {
   bool particle(uint32_t id, Particle* particle) const;
   /// The ball that covers cell `at`, or kNoBall. Constant time.
   uint32_t ball_at(Vec2i at) const;
-  /// Whether ball `id`, moved by one cell along gravity, would meet something, on each axis along which
-  /// gravity pulls. True of every sleeper under gravity.
+  /// Whether the disc of ball `id`, moved by one cell along gravity (on the axis on which it pulls most; on
+  /// either, where it pulls the same on both), would meet something. True of every sleeper under gravity.
   bool is_held(uint32_t id) const;
 
   /// Gives a ball a new velocity and wakes it. `kOutOfRange` for no such ball or beyond +-kMaxSpeedQ16.
@@ -310,9 +313,10 @@ class ParticleWorld {
   void wake(uint32_t id);
   void rest(uint32_t id);
   bool lies_still(uint32_t id) const;
+  bool pulls_most(int axis) const;
   bool held(const Ball& ball) const;
   void hold(uint32_t id);
-  void support_left(const CellBox& box);
+  void support_left(const CellBox& box, bool for_good);
   void stamp_balls(const CellBox& box);
 
   // particles_pointer.cpp
