@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps all run test bench format tidy clean \
-  deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
+  firmware emulate flash test-boards deps-boards deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -18,6 +18,8 @@ deps-test:
 	@.ci/deps build tools test boards
 deps-bench:
 	@.ci/deps build tools bench
+deps-boards:
+	@.ci/deps build tools boards
 deps-format:
 	@.ci/deps format
 
@@ -49,6 +51,23 @@ bench: deps-bench ## Build and run the benchmarks
 	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@cmake --build build/release -- --quiet
 	@build/release/thimble_benchmarks $(BENCH_ARGS)
+
+# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes.
+BOARD ?= lm3s6965evb
+APP ?= demo
+SCENE ?= demo
+export FRAMES
+firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
+	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
+	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"
+emulate: firmware ## Run that image under QEMU: the UART on this terminal, the exit status passed on
+	@sh platform/emulate.sh "$(BOARD)" "$(APP)" $(QEMU_ARGS)
+flash: firmware ## Write that image to a real board
+	@sh platform/flash.sh "$(BOARD)" "$(APP)"
+test-boards: ## Run the tests of the firmware on every board under QEMU; says first what it installs
+	@sh tests/boards/deps.sh
+	@$(MAKE) --no-print-directory all
+	@sh tests/boards/run.sh
 
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i

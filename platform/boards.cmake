@@ -16,12 +16,12 @@ endfunction()
 # Sets the BOARD_... variables of one board in the caller's scope, and refuses a file that leaves one out.
 macro(thimble_read_board name)
   foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
-      FORMAT BUTTONS QEMU PROBE)
+      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT CATCHES)
     unset(BOARD_${fact})
   endforeach()
   include(${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
   foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
-      FORMAT BUTTONS QEMU PROBE)
+      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT CATCHES)
     if(NOT DEFINED BOARD_${fact})
       message(FATAL_ERROR "platform/boards/${name}/board.cmake does not set BOARD_${fact}")
     endif()

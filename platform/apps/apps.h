@@ -17,6 +17,8 @@ int selftest();
 int bench();
 /// The paper's particle world.
 int particles();
+/// Overflows the stack, writes past the RAM and the like when a key asks for it; only on a board.
+int faults();
 
 }  // namespace thimble::apps
 

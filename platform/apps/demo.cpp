@@ -10,17 +10,19 @@
 #include "apps/apps.h"
 #include "apps/demo_view.h"
 #include "apps/place.h"
+#include "apps/shown_scene.h"
 #include "apps/spheres.h"
 #include "apps/text.h"
 #include "port.h"
 #include "thimble/arena.h"
-#include "thimble/baked_scene.h"
 #include "thimble/crc32.h"
 #include "thimble/octree.h"
 #include "thimble/render.h"
 
 namespace thimble::apps {
 namespace {
+
+// The larger functions are not inlined: what one keeps on the stack is gone when the next one draws.
 
 /// Rows in a band, where the arena holds as many.
 constexpr int32_t kBandRows = 8;
@@ -35,7 +37,7 @@ constexpr size_t kMostPoolBytes = size_t{256} << 10;
 
 struct Demo : Placed {
   Arena arena{port::arena()};
-  BakedScene scene;
+  ShownScene shown;
   Orbit orbit;
   Steering steering;
   Camera camera;
@@ -78,7 +80,7 @@ void show_cross(Arena* arena) {
   }
 }
 
-int refuse(Arena* arena, const char* why) {
+[[gnu::noinline]] int refuse(Arena* arena, const char* why) {
   put("error: ");
   put(why);
   put("\n");
@@ -86,44 +88,15 @@ int refuse(Arena* arena, const char* why) {
   return 1;
 }
 
-void tell_boot(const Demo& demo) {
-  const port::Facts& facts = port::facts();
-  put("thimble demo on ");
-  put(facts.name);
-  put(": RAM ");
-  put_number(facts.ram_bytes);
-  put(" flash ");
-  put_number(facts.flash_bytes);
-  put(" stack ");
-  put_number(facts.stack_bytes);
-  put(" arena ");
-  put_number(demo.arena.capacity_bytes());
-  put(" bytes\nscene ");
-  const ConstBytes name = demo.scene.section(SectionKind::kName);
-  port::write(name.subspan(0, 64));
-  put(name.empty() ? "without a name" : "");
-  put(": depth ");
-  put_number(static_cast<uint32_t>(demo.scene.tree().level()));
-  put(" voxels ");
-  put_number(demo.scene.tree().voxel_count());
-  put(" tree ");
-  put_number(demo.scene.tree().size_bytes());
-  put(" scene ");
-  put_number(demo.scene.bytes().size);
-  put(" bytes crc ");
-  put_hex(demo.scene.crc32());
-  put("\n");
-}
-
 Status draw(const Demo& demo, const Band& band) {
   if (demo.builds) {
     return render_band(demo.pool, demo.camera, demo.shading, band);
   }
-  return render_band(demo.scene.tree(), demo.camera, demo.shading, band);
+  return draw_scene(demo.shown, demo.camera, demo.shading, band);
 }
 
 /// Draws and flushes a frame; `crc` gets that of its bytes.
-Status draw_frame(const Demo& demo, uint32_t* crc) {
+[[gnu::noinline]] Status draw_frame(const Demo& demo, uint32_t* crc) {
   const port::Display& screen = display();
   *crc = 0;
   for (int32_t y = 0; y < screen.height_px; y += demo.band_rows) {
@@ -155,7 +128,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 }
 
 /// The frame that was drawn last, once more and over the UART. Pictures in colour are sent in their greys.
-void send_picture(const Demo& demo) {
+[[gnu::noinline]] void send_picture(const Demo& demo) {
   const port::Display& screen = display();
   const bool is_color = bits_per_pixel(screen.format) > 8;
   const PixelFormat format = is_color ? PixelFormat::kGray8 : screen.format;
@@ -182,14 +155,14 @@ void send_picture(const Demo& demo) {
   put("\n");
 }
 
-void show_baked(Demo* demo) {
+[[gnu::noinline]] void show_baked(Demo* demo) {
   demo->builds = false;
   demo->frame = 0;
-  demo->orbit = orbit_of(demo->scene);
-  demo->shading = demo_shading(demo->scene.palette());
+  demo->orbit = orbit_of(demo->shown.scene);
+  demo->shading = demo_shading(demo->shown.scene.palette());
 }
 
-void begin_build(Demo* demo) {
+[[gnu::noinline]] void begin_build(Demo* demo) {
   const Bytes bytes = demo->arena.rest().subspan(0, kMostPoolBytes);
   // A world that spheres cannot fill before they fill the pool.
   const int level = bytes.size > (size_t{64} << 10) ? 7 : 6;
@@ -209,7 +182,7 @@ void begin_build(Demo* demo) {
 }
 
 /// Some voxels more. When the pool is full the tree coarsens from then on, for a few spheres more.
-void build_more(Demo* demo) {
+[[gnu::noinline]] void build_more(Demo* demo) {
   for (uint32_t i = 0; i < kPlacesAFrame && !demo->spheres.is_done(); ++i) {
     Voxel voxel;
     if (!demo->spheres.next(&voxel)) {
@@ -231,7 +204,7 @@ void build_more(Demo* demo) {
 }
 
 /// Whether to go on.
-bool obey(Demo* demo) {
+[[gnu::noinline]] bool obey(Demo* demo) {
   steer(port::buttons(), &demo->steering);
   for (int i = 0; i < kKeysAFrame; ++i) {
     switch (port::read()) {
@@ -260,13 +233,13 @@ bool obey(Demo* demo) {
   return true;
 }
 
-Status place_camera(Demo* demo) {
+[[gnu::noinline]] Status place_camera(Demo* demo) {
   const port::Display& screen = display();
   if (demo->builds) {
     return view_at(demo->orbit, demo->pool, demo->frame, demo->steering, screen.width_px, screen.height_px,
                    &demo->camera);
   }
-  return view_at(demo->orbit, demo->scene.tree(), demo->frame, demo->steering, screen.width_px,
+  return view_at(demo->orbit, demo->shown.scene.tree(), demo->frame, demo->steering, screen.width_px,
                  screen.height_px, &demo->camera);
 }
 
@@ -296,16 +269,11 @@ int demo() {
     return refuse(&whole, "the arena is too small");
   }
   demo->arena = whole;
-  if (port::scene().empty()) {
-    return refuse(&demo->arena, "no scene was built in");
+  if (const char* wrong = open_scene(&demo->shown)) {
+    return refuse(&demo->arena, wrong);
   }
-  if (BakedScene::open(port::scene(), &demo->scene) != Status::kOk) {
-    return refuse(&demo->arena, "the scene is no baked scene, or damaged");
-  }
-  if (demo->scene.validate() != Status::kOk) {
-    return refuse(&demo->arena, "the scene is damaged");
-  }
-  tell_boot(*demo);
+  open_map(&demo->shown, &demo->arena);
+  tell_board_and_scene("demo", demo->shown);
   const port::Display& screen = display();
   demo->tells_crc = !screen.connected;
   // At most half of what is left: the other half is for the pool.
@@ -327,7 +295,7 @@ int demo() {
     Status status = place_camera(demo);
     if (status != Status::kOk && !demo->builds) {
       // A camera that this display cannot have: round what is solid then.
-      demo->orbit = orbit_of(demo->scene.tree().bounds());
+      demo->orbit = orbit_of(demo->shown.scene.tree().bounds());
       status = place_camera(demo);
     }
     uint32_t crc = 0;

@@ -226,8 +226,8 @@ inline Shading demo_shading(Span<const Rgb8> palette) {
   Shading shading;
   shading.mode = ShadeMode::kColor;
   shading.palette = palette;
-  shading.background = {38, 46, 78};
-  const uint16_t face_light[6] = {172, 124, 212, 96, 64, 256};
+  shading.background = {146, 186, 222};
+  const uint16_t face_light[6] = {182, 148, 218, 126, 72, 256};
   for (int face = 0; face < 6; ++face) {
     shading.face_light[face] = face_light[face];
   }

@@ -337,8 +337,8 @@ Camera ViewOptions::camera(const SceneSource& source, int level, const VoxelBox&
   Camera result;
   const Status status = make_camera(own, width_px, height_px, level, &result);
   if (status != Status::kOk) {
-    throw InputError(std::string("the scene's own camera does not suit a picture of ") + std::to_string(width_px) +
-                     "x" + std::to_string(height_px) + ": " + status_text(status) +
+    throw InputError(std::string("the scene's own camera does not suit a picture of ") +
+                     std::to_string(width_px) + "x" + std::to_string(height_px) + ": " + status_text(status) +
                      "; another --size, or a camera of your own (--eye, --target, --span), helps");
   }
   if (chosen != nullptr) {

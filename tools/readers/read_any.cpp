@@ -33,8 +33,8 @@ constexpr std::array<ReaderRow, 7> kRows{{
     {".obj", "Wavefront mesh", read_obj, nullptr},
     {".off", "OFF mesh", read_off, looks_like_off},
     {".xyz .csv", "points, one a line", read_xyz, nullptr},
-    {".oct", "baked scene", read_oct, looks_like_oct},
     {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget},
+    {".oct", "baked scene", read_oct, looks_like_oct},
 }};
 
 bool has_ending(std::string_view path, std::string_view ending) {

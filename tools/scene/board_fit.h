@@ -35,7 +35,7 @@ inline std::uint64_t drawing_ram_bytes(const platform::BoardFacts& board) {
 }
 
 /// "gray4", as board.cmake has it.
-inline const char* name_of(PixelFormat format) {
+inline const char* format_name(PixelFormat format) {
   switch (format) {
     case PixelFormat::kMono1:
       return "mono1";

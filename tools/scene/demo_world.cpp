@@ -96,8 +96,8 @@ constexpr std::int32_t kTerraceTop = 16 * kUnit;
 constexpr std::int32_t kSnowLine = 34 * kUnit;
 
 /// Height of the ground by the distance from the castle: lake, shore, terraces, mountains.
-constexpr std::array<ProfilePoint, 8> kValley{
-    {{16, 3}, {19, 7}, {23, 10}, {27, 14}, {29, 20}, {32, 32}, {38, 40}, {45, 44}}};
+constexpr std::array<ProfilePoint, 7> kValley{
+    {{16, 3}, {19, 7}, {27, 12}, {28, 18}, {32, 32}, {38, 40}, {45, 44}}};
 constexpr std::array<ProfilePoint, 4> kCrag{{{8, 14}, {10, 10}, {12, 7}, {14, 2}}};
 
 /// The middle of the square of `units` units a side that holds a place.
@@ -147,7 +147,7 @@ Tone ground_tone(std::int32_t height, std::int32_t z) {
     }
     return z / (4 * kUnit) % 2 == 0 ? kRock : kCliff;
   }
-  if (z < height - kUnit) {
+  if (z < height - 2 * kUnit) {
     return kRock;
   }
   return height <= kLakeTop + kUnit ? kSand : height / (2 * kUnit) % 2 == 0 ? kGrass : kMeadow;
@@ -481,11 +481,11 @@ Palette demo_world_palette() {
   palette[kSand] = colored({214, 190, 138});
   palette[kGrass] = colored({104, 150, 62});
   palette[kMeadow] = colored({136, 176, 76});
-  palette[kRock] = colored({150, 140, 132});
-  palette[kCliff] = colored({172, 156, 136});
+  palette[kRock] = colored({128, 122, 118});
+  palette[kCliff] = colored({150, 138, 124});
   palette[kSnow] = colored({244, 246, 250});
   palette[kWall] = colored({236, 222, 192});
-  palette[kRoof] = colored({208, 92, 56});
+  palette[kRoof] = colored({192, 68, 46});
   palette[kLeaves] = colored({44, 102, 54});
   palette[kWood] = colored({74, 52, 40});
   palette[kRoad] = colored({186, 160, 120});
@@ -495,9 +495,9 @@ Palette demo_world_palette() {
 SceneCamera demo_world_camera(int depth) {
   SceneCamera camera;
   const auto place = [depth](std::int32_t units) { return Q8::from_raw(units * kUnit << depth >> 6); };
-  camera.target = {place(32), place(32), place(15)};
-  camera.eye = {place(59), place(32), place(34)};
-  camera.fov_degrees = Q16::saturate(48);
+  camera.target = {place(32), place(32), place(16)};
+  camera.eye = {place(58), place(34), place(36)};
+  camera.fov_degrees = Q16::saturate(52);
   return camera;
 }
 

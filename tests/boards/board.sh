@@ -1,0 +1,99 @@
+#!/bin/sh
+# Builds and judges one board (run.sh): board.sh BOARD. Results are printed as lines at the end, all at once.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$here/../.."
+board=$1
+work=$THIMBLE_FIRMWARE/$board
+results=$THIMBLE_FIRMWARE/$board.results
+measured=$THIMBLE_FIRMWARE/$board.measured
+. platform/board_facts.sh
+limit_s=${THIMBLE_EMULATOR_LIMIT_S:-240}
+failed=0
+mkdir -p "$work"
+: >"$results"
+: >"$measured"
+# say APP RESULT...
+say() {
+  app_said=$1
+  shift
+  printf '%-18s %-10s %s\n' "$board" "$app_said" "$*" >>"$results"
+}
+# fail APP SENTENCE
+fail() {
+  say "$1" "FAILED: $2"
+  failed=1
+}
+# emulate APP KEYS LOG: runs it, sending KEYS again and again, since a UART that is not on yet loses them. Sets `status`.
+emulate() {
+  status=0
+  if [ -n "$2" ]; then
+    for i in $(seq 100); do
+      printf '%s' "$2" 2>/dev/null || break
+      sleep 0.1
+    done | timeout "$limit_s" sh platform/emulate.sh "$board" "$1" >"$3" 2>"$3.noise" || status=$?
+  else
+    timeout "$limit_s" sh platform/emulate.sh "$board" "$1" </dev/null >"$3" 2>"$3.noise" || status=$?
+  fi
+}
+
+# The applications that there are; faults is judged by itself below.
+apps=
+for app in selftest demo bench particles; do
+  [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
+done
+list=faults
+for app in $apps; do
+  list="$list;$app"
+done
+scene=$(sh "$here/scene.sh" "$board")
+if ! FRAMES=4 sh platform/build.sh "$board" "$list" "$scene" >"$work/build.log" 2>&1; then
+  cat "$work/build.log"
+  fail all "does not build"
+  cat "$results"
+  exit 1
+fi
+
+for app in $apps; do
+  log=$work/$app.log
+  emulate "$app" "" "$log"
+  if [ "$status" != 0 ]; then
+    tail -n 5 "$log"
+    fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
+  elif [ "$app" = selftest ] && ! grep -Eq '^[1-9][0-9]* passed, 0 failed' "$log"; then
+    fail "$app" "did not say how many passed"
+  else
+    say "$app" "$(grep -E 'passed, 0 failed|instructions a frame' "$log" | head -n 1)"
+  fi
+  sh "$here/budget.sh" "$board" "$app" "$log" >"$work/$app.budget" 2>&1 || failed=1
+  sed "s/^/$(printf '%-18s %-10s ' "$board" "$app")/" "$work/$app.budget" >>"$results"
+done
+
+# Each fault: told where the board can tell it, and nowhere a hang.
+caught=
+missed=
+for fault in stack ram flash nonsense scene; do
+  case $fault in stack) key=s ;; ram) key=r ;; flash) key=f ;; nonsense) key=n ;; scene) key=d ;; esac
+  log=$work/fault_$fault.log
+  emulate faults $key "$log"
+  case " $(fact CATCHES) " in
+    *" $fault "*)
+      if [ "$status" = 97 ] && grep -q '^fault: ' "$log"; then
+        caught="$caught $fault"
+      else
+        tail -n 5 "$log"
+        fail faults "$fault: exit status $status, wanted 97 and a message"
+      fi
+      ;;
+    *)
+      missed="$missed $fault"
+      if [ "$status" != 1 ] || ! grep -q '^nobody noticed' "$log"; then
+        fail faults "$fault is not among BOARD_CATCHES, and yet: exit status $status"
+      fi
+      ;;
+  esac
+done
+say faults "caught:$caught$([ -n "$missed" ] && echo "; cannot be caught here:$missed")"
+
+cat "$results"
+exit $failed
