@@ -12,9 +12,9 @@ namespace thimble::apps {
 /// Walls and whatever else is set and belongs to no ball.
 inline constexpr Rgb8 kWallColor{120, 126, 138};
 
-/// `color` of a ball at rest: half as bright.
+/// `color` of a ball at rest: two thirds as bright.
 constexpr Rgb8 resting(Rgb8 color) {
-  const auto part = [](uint8_t value) { return static_cast<uint8_t>((value * 35U) >> 6); };
+  const auto part = [](uint8_t value) { return static_cast<uint8_t>((value * 41U) >> 6); };
   return {part(color.r), part(color.g), part(color.b)};
 }
 

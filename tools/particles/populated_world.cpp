@@ -29,6 +29,22 @@ ParticleConfig config_of(const WorldOptions& options) {
   return config;
 }
 
+// The cells within kSearchCells, the nearest first; those of one distance in reading order.
+std::vector<Vec2i> places_around() {
+  const auto square = [](const Vec2i& place) { return place.x * place.x + place.y * place.y; };
+  std::vector<Vec2i> places;
+  for (std::int32_t y = -kSearchCells; y <= kSearchCells; ++y) {
+    for (std::int32_t x = -kSearchCells; x <= kSearchCells; ++x) {
+      if (square({x, y}) <= kSearchCells * kSearchCells) {
+        places.push_back({x, y});
+      }
+    }
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const Vec2i& one, const Vec2i& other) { return square(one) < square(other); });
+  return places;
+}
+
 std::int32_t to_q16(double cells) {
   return static_cast<std::int32_t>(std::lround(cells * kOne));
 }
@@ -93,6 +109,7 @@ void PopulatedWorld::place_bodies() {
       fastest = std::max({fastest, std::abs(bodies[i].vx), std::abs(bodies[i].vy)});
     }
   }
+  const std::vector<Vec2i> places = places_around();
   const double speed_scale = fastest > 0 ? options_.speed / fastest : 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Body& body = bodies[i];
@@ -107,17 +124,13 @@ void PopulatedWorld::place_bodies() {
     const std::int32_t y = to_q16(row_of(body));
     const std::int32_t vx = to_q16(body.vx * speed_scale);
     const std::int32_t vy = to_q16(-body.vy * speed_scale);
-    // Rings of growing distance; the first is the place itself.
-    bool is_placed = false;
-    for (std::int32_t ring = 0; ring <= kSearchCells && !is_placed; ++ring) {
-      for (std::int32_t dy = -ring; dy <= ring && !is_placed; ++dy) {
-        const bool is_edge = dy == -ring || dy == ring;
-        for (std::int32_t dx = -ring; dx <= ring && !is_placed; dx += is_edge || ring == 0 ? 1 : 2 * ring) {
-          is_placed = world_.spawn(x + dx * 65536, y + dy * 65536, vx, vy, diameter, nullptr) == Status::kOk;
-        }
-      }
-      placing_.moved += is_placed && ring > 0 ? 1 : 0;
-    }
+    const auto* const free_place =
+        std::find_if(places.data(), places.data() + places.size(), [&](const Vec2i& place) {
+          return world_.spawn(x + place.x * 65536, y + place.y * 65536, vx, vy, diameter, nullptr) ==
+                 Status::kOk;
+        });
+    const bool is_placed = free_place != places.data() + places.size();
+    placing_.moved += is_placed && free_place != places.data() ? 1U : 0U;
     if (!is_placed) {
       ++placing_.crowded;
       continue;
