@@ -15,7 +15,7 @@ deps: ## Install what building, testing and measuring need (apt-get; as root or 
 deps-build:
 	@.ci/deps build tools
 deps-test:
-	@.ci/deps build tools test boards
+	@.ci/deps build tools test
 deps-bench:
 	@.ci/deps build tools bench
 deps-boards:

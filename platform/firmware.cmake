@@ -66,6 +66,10 @@ add_library(thimble_apps STATIC ${sources})
 # They take objects from an arena, whose bytes are aligned as they asked.
 add_library(thimble_app_warnings INTERFACE)
 target_compile_options(thimble_app_warnings INTERFACE -Wno-cast-align)
+# Cases without names and expressions where these would fill the flash: a failure then gives its file and line.
+if(BOARD_FLASH_BYTES LESS_EQUAL 131072)
+  target_compile_definitions(thimble_apps PRIVATE THIMBLE_TERSE_CASES)
+endif()
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})
   target_compile_options(${part} PRIVATE -Os)

@@ -103,7 +103,7 @@ void bind_functions(Simulation::State* state) {
 }
 
 // Paints the stack below this function's caller, where the application's frames will be.
-[[gnu::noinline, gnu::no_sanitize("address")]] void paint_stack(Simulation::State* state) {
+__attribute__((noinline, no_sanitize("address"))) void paint_stack(Simulation::State* state) {
   constexpr std::ptrdiff_t kOwnFrame = 192;
   auto* const top = static_cast<std::uint8_t*>(__builtin_frame_address(0));
   state->stack_top = top;
@@ -170,7 +170,8 @@ std::string fault_text(const Simulation::State& state) {
 
 }  // namespace
 
-[[gnu::no_sanitize("address")]] std::uint32_t used_stack(const std::uint8_t* begin, const std::uint8_t* end) {
+__attribute__((no_sanitize("address"))) std::uint32_t used_stack(const std::uint8_t* begin,
+                                                                 const std::uint8_t* end) {
   const std::uint8_t* byte = begin;
   while (byte < end && *byte == port::kStackPaint) {
     ++byte;

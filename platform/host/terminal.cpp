@@ -44,6 +44,24 @@ bool has_true_color() {
   return color == "truecolor" || color == "24bit" || environment("TERM").ends_with("-direct");
 }
 
+// The look in this terminal. Of 256 colours few are alike but for their brightness, except among the greys;
+// so a look of one hue becomes one of grey.
+Look look_for(const Look& look, bool true_color) {
+  if (look.keeps_color || true_color) {
+    return look;
+  }
+  const auto gray = [](Rgb8 color) {
+    const std::uint8_t level = gray_of(color);
+    return Rgb8{level, level, level};
+  };
+  Look grays = look;
+  grays.unlit = gray(look.unlit);
+  grays.lit = gray(look.lit);
+  grays.gap = gray(look.gap);
+  grays.ground = gray(look.ground);
+  return grays;
+}
+
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -132,7 +150,7 @@ Terminal::Terminal(const ScreenOptions& options)
     : descriptor_(open_descriptor()),
       mode_(descriptor_.get()),
       cells_(has_true_color()),
-      look_(options.look),
+      look_(look_for(options.look, has_true_color())),
       fixed_scale_(options.scale),
       status_lines_(options.status_lines),
       picture_width_px_(options.width_px),
@@ -182,6 +200,7 @@ void Terminal::compose() {
   canvas_.fill(0, 0, canvas_.width_px, canvas_.height_px, look_.ground);
   placement_ =
       place(picture_width_px_, picture_height_px_, canvas_.width_px, canvas_.height_px, fixed_scale_);
+  placement_.y_px &= ~1;  // pixels of two lines begin with a cell
   if (!rgb_.empty()) {
     draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
   }
@@ -290,6 +309,9 @@ std::optional<Event> Terminal::next_event(int timeout_ms) {
   const Clock::time_point end = Clock::now() + Milliseconds(timeout_ms);
   while (events_.empty() && !lost_) {
     look_after_signals();
+    if (!events_.empty()) {
+      break;
+    }
     Clock::time_point until = end;
     for (const auto& [key, release] : held_) {
       until = std::min(until, release);

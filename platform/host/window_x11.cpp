@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdlib>
 #include <cstring>
@@ -87,6 +88,13 @@ std::uint32_t in_mask(std::uint8_t value, unsigned long mask) {
   return scaled << low;
 }
 
+// A request that fails is no reason to end the program, as Xlib would; the next one may do.
+std::atomic<int> failed_requests{0};
+int on_error(::Display* /*display*/, XErrorEvent* /*error*/) {
+  ++failed_requests;
+  return 0;
+}
+
 class Window final : public Screen {
  public:
   explicit Window(const ScreenOptions& options);
@@ -102,7 +110,10 @@ class Window final : public Screen {
   const char* name() const override { return "window"; }
 
  private:
-  std::int32_t text_scale() const { return canvas_.width_px >= 900 ? 2 : 1; }
+  std::int32_t text_scale() const {
+    return canvas_.width_px >= 2 * kGlyphWidthPx * status_columns_ + 2 * kMarginPx ? 2 : 1;
+  }
+  std::int32_t overlay_scale() const;
   std::int32_t panel_px() const {
     return status_lines_ == 0 ? 0 : status_lines_ * kGlyphHeightPx * text_scale() + 2 * kMarginPx;
   }
@@ -124,11 +135,13 @@ class Window final : public Screen {
   Colormap colors_ = 0;
   GC context_ = nullptr;
   Atom close_atom_ = 0;
-  bool lost_ = false;  // the server is gone
+  bool lost_ = false;    // the server is gone
+  bool closed_ = false;  // somebody else destroyed the window
 
   Look look_;
   std::int32_t fixed_scale_ = 0;
   std::int32_t status_lines_ = 0;
+  std::int32_t status_columns_ = 0;
   std::string status_;
   std::string overlay_;
 
@@ -150,6 +163,7 @@ Window::Window(const ScreenOptions& options)
     : look_(options.look),
       fixed_scale_(options.scale),
       status_lines_(options.status_lines),
+      status_columns_(options.status_columns),
       picture_width_px_(options.width_px),
       picture_height_px_(options.height_px) {
   display_ = XOpenDisplay(nullptr);
@@ -169,11 +183,11 @@ Window::Window(const ScreenOptions& options)
 }
 
 Window::~Window() {
-  if (lost_) {
-    return;  // what is left of the connection goes with the process
-  }
+  // On a connection that is lost these only give back what the library keeps here.
   XFreeGC(display_, context_);
-  XDestroyWindow(display_, window_);
+  if (!closed_) {
+    XDestroyWindow(display_, window_);
+  }
   XFreeColormap(display_, colors_);
   XCloseDisplay(display_);
 }
@@ -202,12 +216,14 @@ void Window::open(const ScreenOptions& options) {
   const std::int32_t fitting = std::min(kFirstWidthPx / std::max(options.width_px, 1),
                                         kFirstHeightPx / std::max(options.height_px, 1));
   const std::int32_t scale = fixed_scale_ > 0 ? fixed_scale_ : std::clamp(fitting, 1, 16);
-  const std::int32_t border = look_.has_gaps ? 2 * scale : 0;
+  const std::int32_t border = gap_px(look_, scale) != 0 ? 2 * scale : 0;
   const std::int32_t width = std::max(options.width_px * scale + border, kLeastWidthPx);
   canvas_.width_px = width;  // panel_px() asks
   std::int32_t height = std::max(options.height_px * scale + border, 64) + panel_px();
   height = std::min(height, 32767);
 
+  XSetErrorHandler(on_error);
+  failed_requests = 0;
   const ::Window root = RootWindow(display_, screen_number_);
   colors_ = XCreateColormap(display_, root, visual_.visual, AllocNone);
   XSetWindowAttributes attributes{};
@@ -228,16 +244,22 @@ void Window::open(const ScreenOptions& options) {
   XClassHint hint{name, name};
   XSetClassHint(display_, window_, &hint);
   XkbSetDetectableAutoRepeat(display_, True, nullptr);  // a held key is pressed again, not let go in between
+  // Without these two the library ends the program when the server goes.
+  XSetIOErrorHandler([](Display*) { return 0; });
   XSetIOErrorExitHandler(
       display_, [](Display*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   set_title(options.title);
   XMapWindow(display_, window_);
   resize(width, height);
-  XFlush(display_);
+  XSync(display_, False);
+  if (failed_requests != 0) {
+    throw ScreenError("the display does not make a window of " + std::to_string(width) + " x " +
+                      std::to_string(height) + " pixels");
+  }
 }
 
 void Window::set_title(std::string_view text) {
-  if (lost_) {
+  if (lost_ || closed_) {
     return;
   }
   const std::string title(text);
@@ -253,6 +275,14 @@ void Window::resize(std::int32_t width, std::int32_t height) {
   compose();
 }
 
+// Twice as large where there is room for it.
+std::int32_t Window::overlay_scale() const {
+  const TextSize size = text_size(overlay_);
+  const bool fits = 2 * (size.columns * kGlyphWidthPx + kMarginPx) <= canvas_.width_px &&
+                    2 * (size.lines * kGlyphHeightPx + kMarginPx) <= height_px();
+  return fits ? 2 : 1;
+}
+
 void Window::compose() {
   const std::int32_t room = height_px();
   canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
@@ -260,8 +290,8 @@ void Window::compose() {
   if (!rgb_.empty()) {
     draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
   }
-  const std::int32_t scale = text_scale();
   if (!overlay_.empty()) {
+    const std::int32_t scale = overlay_scale();
     const TextSize size = text_size(overlay_);
     const std::int32_t x = placement_.x_px + kMarginPx;
     const std::int32_t y = placement_.y_px + kMarginPx;
@@ -271,14 +301,14 @@ void Window::compose() {
   }
   if (status_lines_ > 0) {
     canvas_.fill(0, room, canvas_.width_px, panel_px(), kPanel);
-    draw_text(&canvas_, kMarginPx, room + kMarginPx, scale, kPanelText, status_);
+    draw_text(&canvas_, kMarginPx, room + kMarginPx, text_scale(), kPanelText, status_);
   }
   needs_sending_ = true;
 }
 
 void Window::send() {
   needs_sending_ = false;
-  if (lost_ || canvas_.width_px == 0 || canvas_.height_px == 0) {
+  if (lost_ || closed_ || canvas_.width_px == 0 || canvas_.height_px == 0) {
     return;
   }
   const auto width = static_cast<unsigned>(canvas_.width_px);
@@ -419,6 +449,9 @@ void Window::take(XEvent& event) {
         events_.push_back({.kind = EventKind::kResize});
       }
       return;
+    case DestroyNotify:
+      closed_ = true;
+      return;
     case ClientMessage:
       if (static_cast<Atom>(event.xclient.data.l[0]) == close_atom_) {
         events_.push_back({.kind = EventKind::kClose});
@@ -439,7 +472,7 @@ std::optional<Event> Window::next_event(int timeout_ms) {
     if (needs_sending_) {
       send();
     }
-    if (lost_) {
+    if (lost_ || (closed_ && events_.empty())) {
       return Event{.kind = EventKind::kClose};
     }
     if (events_.empty() && round == 0 && timeout_ms > 0) {

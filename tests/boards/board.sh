@@ -39,7 +39,7 @@ emulate() {
 
 # The applications that there are; faults is judged by itself below.
 apps=
-for app in selftest demo bench particles; do
+for app in ${THIMBLE_TEST_APPS:-selftest golden demo bench particles}; do
   [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
 done
 list=faults
@@ -60,7 +60,8 @@ for app in $apps; do
   if [ "$status" != 0 ]; then
     tail -n 5 "$log"
     fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
-  elif [ "$app" = selftest ] && ! grep -Eq '^[1-9][0-9]* passed, 0 failed' "$log"; then
+  elif { [ "$app" = selftest ] || [ "$app" = golden ]; } &&
+    ! grep -Eq '^[1-9][0-9]* passed, 0 failed' "$log"; then
     fail "$app" "did not say how many passed"
   else
     say "$app" "$(grep -E 'passed, 0 failed|instructions a frame' "$log" | head -n 1)"

@@ -24,6 +24,7 @@ done
 failed=0
 printf '%s\n' $boards | UPDATE=$update xargs -P 2 -n 1 sh "$here/board.sh" || failed=1
 
+sh "$here/example.sh" "$work/example" || failed=1
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1
 

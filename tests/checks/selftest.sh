@@ -100,6 +100,17 @@ add tools/tool.cpp '#include "secret.h"'
 catches layering 'never src'
 add platform/port.cpp '#include "../src/sum.h"'
 catches layering 'never src'
+add platform/port.cpp '#include "portable/case.h"'
+catches layering 'platform sees no test'
+mkdir -p "$tree/platform/apps" "$tree/tests/portable"
+add platform/apps/selftest.cpp '#include "portable/case.h"'
+add tests/portable/case.h '#include "thimble/sum.h"'
+passes layering
+add platform/apps/selftest.cpp '#include "support/heap.h"'
+catches layering 'platform sees no test'
+mkdir -p "$tree/tests/portable"
+add tests/portable/case.h '#include <vector>'
+catches layering 'the cases that run on boards'
 add tests/reference/judge.cpp '#include "thimble/sum.h"'
 catches layering 'shares no code'
 

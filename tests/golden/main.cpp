@@ -37,9 +37,9 @@ const char* name_of(Structure structure) {
   return structure == Structure::kDense ? "dense" : structure == Structure::kPool ? "pool" : "compact";
 }
 // Names tell cases apart, so no two are equal.
-bool names_differ() {
+bool names_differ(Span<const portable::Group* const> groups) {
   bool differ = true;
-  for (const portable::Group* group : portable::kGroups) {
+  for (const portable::Group* group : groups) {
     for (int i = 0; i < group->count; ++i) {
       const portable::Case one = group->at(i);
       for (int k = 0; k < i; ++k) {
@@ -77,30 +77,51 @@ bool lists_agree() {
 
 int run_all() {
   // Each of them says what is wrong.
-  const bool sound = lists_agree() && names_differ();
-  return apps::selftest() == 0 && sound ? 0 : 1;
+  const bool sound =
+      lists_agree() && names_differ(portable::kCoreGroups) && names_differ(portable::kGoldenGroups);
+  const int core = apps::selftest();
+  const int frames = apps::golden();
+  return sound && core == 0 && frames == 0 ? 0 : 1;
 }
 
-int print_crc() {
+bool print_crcs(const char* all, const char* common, Span<const portable::Group* const> groups) {
   portable::Runner* runner = portable::Runner::make(Bytes(arena_bytes));
-  for (const portable::Group* group : portable::kGroups) {
+  for (const portable::Group* group : groups) {
     for (int i = 0; i < group->count; ++i) {
       if (runner->run(group->at(i)) != nullptr) {
         fprintf(stderr, "%s: %s: failed, so there is no right CRC\n", group->name, group->at(i).name);
-        return 1;
+        return false;
       }
     }
   }
+  printf("inline constexpr uint32_t %s = 0x%08lX;\n", all, static_cast<unsigned long>(runner->crc32()));
+  if (common != nullptr) {
+    printf("inline constexpr uint32_t %s = 0x%08lX;\n", common,
+           static_cast<unsigned long>(runner->common_crc32()));
+  } else if (runner->crc32() != runner->common_crc32()) {
+    fprintf(stderr, "a case needs more than kCommonArenaBytes\n");
+    return false;
+  }
+  return true;
+}
+
+int print_crc() {
   printf("/// @file result_crc.h\n");
   printf(
       "/// What the portable cases compute, as CRC-32s (runner.h). Written by `thimble_golden_tests "
       "--crc`.\n");
   printf("#ifndef THIMBLE_TESTS_PORTABLE_RESULT_CRC_H\n#define THIMBLE_TESTS_PORTABLE_RESULT_CRC_H\n\n");
   printf("#include <stdint.h>\n\nnamespace thimble::portable {\n\n");
-  printf("/// Of all cases, and of those that every board runs.\n");
-  printf("inline constexpr uint32_t kResultCrc32 = 0x%08lX;\n", static_cast<unsigned long>(runner->crc32()));
-  printf("inline constexpr uint32_t kCommonResultCrc32 = 0x%08lX;\n",
-         static_cast<unsigned long>(runner->common_crc32()));
+  printf("/// Of the core's own cases, all of which every board runs.\n");
+  if (!print_crcs("kCoreCrc32", nullptr, portable::kCoreGroups)) {
+    return 1;
+  }
+  printf(
+      "/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board "
+      "runs.\n");
+  if (!print_crcs("kGoldenCrc32", "kCommonGoldenCrc32", portable::kGoldenGroups)) {
+    return 1;
+  }
   printf("\n}  // namespace thimble::portable\n\n#endif\n");
   return 0;
 }

@@ -41,43 +41,47 @@ void Check::note(const Ray& value) {
   }
 }
 
-bool Check::equal_64(int64_t got, int64_t wanted, const char* expression, int line) {
+bool Check::equal_64(int64_t got, int64_t wanted, What what) {
   note(got);
   if (got == wanted) {
     return true;
   }
-  if (failure_.expression == nullptr) {
-    failure_ = {expression, line, got, wanted};
+  if (!failed_) {
+    failed_ = true;
+    failure_ = {what, got, wanted};
   }
   return false;
 }
 
-bool Check::equal_32(int32_t got, int32_t wanted, const char* expression, int line) {
-  return equal_64(got, wanted, expression, line);
+bool Check::equal_32(int32_t got, int32_t wanted, What what) {
+  return equal_64(got, wanted, what);
 }
 
-bool Check::equal(const Vec3i& got, const Vec3i& wanted, const char* expression, int line) {
+bool Check::equal_u32(uint32_t got, uint32_t wanted, What what) {
+  return equal_64(got, wanted, what);
+}
+
+bool Check::equal(const Vec3i& got, const Vec3i& wanted, What what) {
   bool same = true;
   for (int axis = 0; axis < 3; ++axis) {
-    same = equal_32(got[axis], wanted[axis], expression, line) && same;
+    same = equal_32(got[axis], wanted[axis], what) && same;
   }
   return same;
 }
 
-bool Check::equal(const VoxelBox& got, const VoxelBox& wanted, const char* expression, int line) {
-  const bool low = equal(got.min, wanted.min, expression, line);
-  return equal(got.max, wanted.max, expression, line) && low;
+bool Check::equal(const VoxelBox& got, const VoxelBox& wanted, What what) {
+  const bool low = equal(got.min, wanted.min, what);
+  return equal(got.max, wanted.max, what) && low;
 }
 
-bool Check::equal(const Rgb8& got, const Rgb8& wanted, const char* expression, int line) {
-  return equal_32(got.r << 16 | got.g << 8 | got.b, wanted.r << 16 | wanted.g << 8 | wanted.b, expression,
-                  line);
+bool Check::equal(const Rgb8& got, const Rgb8& wanted, What what) {
+  return equal_32(got.r << 16 | got.g << 8 | got.b, wanted.r << 16 | wanted.g << 8 | wanted.b, what);
 }
 
-bool Check::equal(ConstBytes got, ConstBytes wanted, const char* expression, int line) {
-  bool same = equal_64(static_cast<int64_t>(got.size), static_cast<int64_t>(wanted.size), expression, line);
+bool Check::equal(ConstBytes got, ConstBytes wanted, What what) {
+  bool same = equal_64(static_cast<int64_t>(got.size), static_cast<int64_t>(wanted.size), what);
   for (size_t i = 0; same && i < got.size; ++i) {
-    same = equal_32(got[i], wanted[i], expression, line);
+    same = equal_32(got[i], wanted[i], what);
   }
   return same;
 }

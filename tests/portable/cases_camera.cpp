@@ -39,24 +39,24 @@ PerspectiveView slanting_perspective(int number) {
   return view;
 }
 
-void expect_ray(Check& check, const Ray& got, const Ray& wanted, int line) {
+void expect_ray(Check& check, const Ray& got, const Ray& wanted, What what) {
   for (int axis = 0; axis < 3; ++axis) {
-    check.equal(got.origin[axis], wanted.origin[axis], "origin of the ray", line);
-    check.equal(got.direction[axis], wanted.direction[axis], "direction of the ray", line);
+    check.equal(got.origin[axis], wanted.origin[axis], what);
+    check.equal(got.direction[axis], wanted.direction[axis], what);
   }
 }
 
 // A view that must be refused leaves the camera as it was.
-void refuse(Check& check, const PerspectiveView& view, int level, Status wanted, int line) {
+void refuse(Check& check, const PerspectiveView& view, int level, Status wanted, What what) {
   THIMBLE_REQUIRE_OK(check.camera.set(simple_perspective(), 6));
-  check.equal(check.camera.set(view, level), wanted, "status", line);
-  check.equal(check.camera.width_px(), 2, "width", line);
-  check.equal(check.camera.level(), 6, "level", line);
+  check.equal(check.camera.set(view, level), wanted, what);
+  check.equal(check.camera.width_px(), 2, what);
+  check.equal(check.camera.level(), 6, what);
 }
-void refuse(Check& check, const OrthographicView& view, int level, Status wanted, int line) {
+void refuse(Check& check, const OrthographicView& view, int level, Status wanted, What what) {
   THIMBLE_REQUIRE_OK(check.camera.set(simple_perspective(), 6));
-  check.equal(check.camera.set(view, level), wanted, "status", line);
-  check.that(check.camera.is_perspective(), "still the other camera", line);
+  check.equal(check.camera.set(view, level), wanted, what);
+  check.that(check.camera.is_perspective(), what);
 }
 
 void eye_beyond(Check& check, int axis) {
@@ -64,7 +64,7 @@ void eye_beyond(Check& check, int axis) {
   constexpr int32_t kBeyonds[] = {5 * 64 * 256 + 1, -4 * 64 * 256 - 1, INT32_MIN, INT32_MAX};
   for (const int32_t beyond : kBeyonds) {
     view.eye[axis] = Q8::from_raw(beyond);
-    refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+    refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
   }
   view.eye[axis] = Q8::from_raw(5 * 64 * 256);
   THIMBLE_EQUAL(check.camera.set(view, 6), Status::kOk);
@@ -87,7 +87,8 @@ void moved(Check& check, int number) {
     Ray wanted = before[i];
     wanted.origin.x = wanted.origin.x + Q8::from_raw(777);
     wanted.origin.z = wanted.origin.z - Q8::from_raw(1234);
-    expect_ray(check, check.camera.ray(i % 2 * 30, i / 2 * 22), wanted, __LINE__);
+    expect_ray(check, check.camera.ray(i % 2 * 30, i / 2 * 22), wanted,
+               THIMBLE_WHAT("that ray, status or row"));
   }
 }
 
@@ -107,7 +108,8 @@ void mirrored(Check& check, int axis) {
     Ray wanted = before[i];
     wanted.origin[axis] = Q8::from_raw((256 << 8) - wanted.origin[axis].raw);
     wanted.direction[axis] = -wanted.direction[axis];
-    expect_ray(check, check.camera.ray(30 - (3 + i * 7), 2 + i * 5), wanted, __LINE__);
+    expect_ray(check, check.camera.ray(30 - (3 + i * 7), 2 + i * 5), wanted,
+               THIMBLE_WHAT("that ray, status or row"));
   }
 }
 
@@ -129,7 +131,8 @@ void turned(Check& check, int number) {
   THIMBLE_REQUIRE_OK(check.camera.set(view, 8));
   for (int i = 0; i < 4; ++i) {
     const Ray wanted{turned_vector(before[i].origin), turned_vector(before[i].direction)};
-    expect_ray(check, check.camera.ray(3 + i * 7, 2 + i * 5), wanted, __LINE__);
+    expect_ray(check, check.camera.ray(3 + i * 7, 2 + i * 5), wanted,
+               THIMBLE_WHAT("that ray, status or row"));
   }
 }
 
@@ -149,7 +152,7 @@ void walked(Check& check, int number) {
     RowRays rays(check.camera, 2, py);
     for (int32_t px = 2; px < 31; ++px, rays.next()) {
       const Ray ray = check.camera.ray(px, py);
-      expect_ray(check, rays.ray(), ray, __LINE__);
+      expect_ray(check, rays.ray(), ray, THIMBLE_WHAT("that ray, status or row"));
       THIMBLE_EQUAL(check_ray(ray, 8), Status::kOk);
     }
   }
@@ -202,10 +205,14 @@ constexpr Case kCases[] = {
        // The plane at distance 1 shows -1 .. 1; pixel centres are at +-1/2: directions (1, -+1/2, +-1/2).
        THIMBLE_REQUIRE_OK(check.camera.set(simple_perspective(), 6));
        const Vec3Q8 eye = simple_perspective().eye;
-       expect_ray(check, check.camera.ray(0, 0), {eye, {255, 127, 127}}, __LINE__);
-       expect_ray(check, check.camera.ray(1, 0), {eye, {255, -127, 127}}, __LINE__);
-       expect_ray(check, check.camera.ray(0, 1), {eye, {255, 127, -127}}, __LINE__);
-       expect_ray(check, check.camera.ray(1, 1), {eye, {255, -127, -127}}, __LINE__);
+       expect_ray(check, check.camera.ray(0, 0), {eye, {255, 127, 127}},
+                  THIMBLE_WHAT("that ray, status or row"));
+       expect_ray(check, check.camera.ray(1, 0), {eye, {255, -127, 127}},
+                  THIMBLE_WHAT("that ray, status or row"));
+       expect_ray(check, check.camera.ray(0, 1), {eye, {255, 127, -127}},
+                  THIMBLE_WHAT("that ray, status or row"));
+       expect_ray(check, check.camera.ray(1, 1), {eye, {255, -127, -127}},
+                  THIMBLE_WHAT("that ray, status or row"));
        THIMBLE_EQUAL(check.camera.direction_bits(), 8);
        THIMBLE_CHECK(check.camera.is_perspective());
      }},
@@ -214,9 +221,9 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(check.camera.set(simple_orthographic(), 6));
        // Right is -y. Row 0 lies half a voxel above the eye, column 0 one and a half to the left.
        expect_ray(check, check.camera.ray(0, 0), ray_q8({8192, 33 * 256 + 128, 32 * 256 + 128}, {255, 0, 0}),
-                  __LINE__);
+                  THIMBLE_WHAT("that ray, status or row"));
        expect_ray(check, check.camera.ray(3, 1), ray_q8({8192, 30 * 256 + 128, 31 * 256 + 128}, {255, 0, 0}),
-                  __LINE__);
+                  THIMBLE_WHAT("that ray, status or row"));
        THIMBLE_EQUAL(check.camera.depth_per_t_q8(), 255 * 256);
        THIMBLE_CHECK(!check.camera.is_perspective());
      }},
@@ -226,7 +233,7 @@ constexpr Case kCases[] = {
        view.forward = {0, 0, -5};
        THIMBLE_REQUIRE_OK(check.camera.set(view, 6));
        expect_ray(check, check.camera.ray(0, 0), ray_q8({30 * 256 + 128, 32 * 256 + 128, 8192}, {0, 0, -255}),
-                  __LINE__);
+                  THIMBLE_WHAT("that ray, status or row"));
      }},
     {"forward along a diagonal -> equal components in the middle", 0,
      [](Check& check, int) {
@@ -322,33 +329,33 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.width_px = 0;
-       refuse(check, view, 6, Status::kBadArgument, __LINE__);
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
        view.width_px = 3;
        view.height_px = -1;
-       refuse(check, view, 6, Status::kBadArgument, __LINE__);
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"more pixels than the limit -> out of range", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.width_px = kMaxPicturePx + 1;
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
        view.width_px = 2;
        view.height_px = INT32_MAX;
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"levels 0 and 13 -> out of range", 0,
      [](Check& check, int) {
-       refuse(check, simple_perspective(), 0, Status::kOutOfRange, __LINE__);
-       refuse(check, simple_perspective(), 13, Status::kOutOfRange, __LINE__);
-       refuse(check, simple_orthographic(), 13, Status::kOutOfRange, __LINE__);
+       refuse(check, simple_perspective(), 0, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, simple_perspective(), 13, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, simple_orthographic(), 13, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"field of view beyond 1 .. 120 degrees -> out of range", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.fov_degrees = Q16::from_raw(kMinFov.raw - 1);
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
        view.fov_degrees = Q16::from_raw(kMaxFov.raw + 1);
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"direction bits beyond 8 .. 20 -> out of range", 0,
      [](Check& check, int) {
@@ -356,21 +363,21 @@ constexpr Case kCases[] = {
        constexpr int kBits[] = {-1, 1, 7, 21};
        for (const int bits : kBits) {
          view.direction_bits = bits;
-         refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+         refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
        }
      }},
     {"no forward -> bad argument", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.forward = {};
-       refuse(check, view, 6, Status::kBadArgument, __LINE__);
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"up parallel to forward -> bad argument", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.forward = {1000, 2000, -3000};
        view.up = {-1, -2, 3};
-       refuse(check, view, 6, Status::kBadArgument, __LINE__);
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"up a hair off forward -> a picture", 0,
      [](Check& check, int) {
@@ -384,10 +391,10 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.forward.y = INT32_MIN;
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
        view = simple_perspective();
        view.up.z = kMaxViewComponent + 1;
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"eye beyond -4 .. 5 worlds -> out of range, at the limits a camera", 0, eye_beyond, 0, "x"},
     {"eye beyond -4 .. 5 worlds -> out of range, at the limits a camera", 0, eye_beyond, 1, "y"},
@@ -396,9 +403,9 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        OrthographicView view = simple_orthographic();
        view.span = {};
-       refuse(check, view, 6, Status::kBadArgument, __LINE__);
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
        view.span = Q14::from_raw(-1);
-       refuse(check, view, 6, Status::kBadArgument, __LINE__);
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"parallel origins to the limits -> a camera; one unit beyond -> out of range", 0,
      [](Check& check, int) {
@@ -411,7 +418,7 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.camera.ray(0, 0).origin.x, Q8::saturate(-256));
        THIMBLE_EQUAL(check.camera.ray(9, 0).origin.x, Q8::saturate(320));
        view.eye.x = Q8::from_raw(view.eye.x.raw + 1);
-       refuse(check, view, 6, Status::kOutOfRange, __LINE__);
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"a picture too fine for 20 bits -> too fine; with bits as given -> a camera that says how coarse", 0,
      [](Check& check, int) {
@@ -420,7 +427,7 @@ constexpr Case kCases[] = {
        view.fov_degrees = Q16::saturate(1);
        view.width_px = 1;
        view.height_px = 8000;
-       refuse(check, view, 8, Status::kTooFine, __LINE__);
+       refuse(check, view, 8, Status::kTooFine, THIMBLE_WHAT("that ray, status or row"));
        view.direction_bits = 20;
        THIMBLE_REQUIRE_OK(check.camera.set(view, 8));
        THIMBLE_CHECK(check.camera.error_bound_px_q16() > 8192);
@@ -433,7 +440,7 @@ constexpr Case kCases[] = {
        view.width_px = 20;
        view.height_px = 1;
        view.span = Q14::from_raw(20 * 6 * 64);
-       refuse(check, view, 6, Status::kTooFine, __LINE__);
+       refuse(check, view, 6, Status::kTooFine, THIMBLE_WHAT("that ray, status or row"));
        view.span = least_orthographic_span(20, 6);
        THIMBLE_EQUAL(check.camera.set(view, 6), Status::kOk);
        THIMBLE_CHECK(check.camera.error_bound_px_q16() <= 8192);

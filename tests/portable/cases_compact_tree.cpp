@@ -24,13 +24,13 @@ bool make_small(Check& check, int kind, int rank_shift = kMinRankShift) {
   Random random{7};
   Status status = pool.insert_block({8, 8, 0}, 2, static_cast<uint8_t>(materials - 1));
   for (int i = 0; i < 40 && status == Status::kOk; ++i) {
-    status = pool.insert({random.below(16), random.below(16), random.below(16)},
-                         static_cast<uint8_t>(random.below(materials)));
+    const Vec3i at = random.vector(16);
+    status = pool.insert(at, static_cast<uint8_t>(random.below(materials)));
   }
   if (status == Status::kOk && (kind & 2) != 0) {
     status = pool.coarsen_to(pool.nodes_used() * 2 / 3);
   }
-  return check.equal(status, Status::kOk, "the small world", __LINE__) && make_compact(check, rank_shift);
+  return check.equal(status, Status::kOk, THIMBLE_WHAT("the small world")) && make_compact(check, rank_shift);
 }
 
 // The small tree's bytes, to be damaged.
@@ -144,9 +144,9 @@ void hidden_damage(Check& check, int kind) {
     }
     ++opened;
     for (int i = 0; i < 8; ++i) {
+      const Vec3i origin = random.vector(6144);
       const Ray ray =
-          ray_q8({random.below(8192) - 2048, random.below(8192) - 2048, random.below(8192) - 2048},
-                 {random.below(2001) - 1000, random.below(2001) - 1000, 1 + random.below(999)});
+          ray_q8(origin, {random.below(2001) - 1000, random.below(2001) - 1000, 1 + random.below(999)});
       THIMBLE_REQUIRE(trace_is_safe(check, ray));
       check.note(check.hit);
     }
@@ -177,11 +177,10 @@ void too_small(Check& check, int kind) {
 // The tree again from its voxels' sorted keys: the same bytes.
 void from_keys(Check& check, int materials) {
   THIMBLE_REQUIRE(make_pool(check, 200, 4));
-  const Bytes bytes = check.arena.take(40 * 8);
-  const Span<uint64_t> keys(reinterpret_cast<uint64_t*>(bytes.data), 40);
+  const Span<uint64_t> keys = check.take<uint64_t>(40);
   Random random{12};
   for (uint64_t& key : keys) {
-    const Vec3i at{random.below(16), random.below(16), random.below(16)};
+    const Vec3i at = random.vector(16);
     const uint8_t material = static_cast<uint8_t>(random.below(materials));
     const bool fresh = !check.world.pool.test(at);
     if (fresh) {
@@ -201,7 +200,7 @@ void from_keys(Check& check, int materials) {
   THIMBLE_REQUIRE_OK(compact_from_keys(Span<const uint64_t>(keys.data, count), 4, again, &needed));
   THIMBLE_EQUAL(needed, tree.size_bytes());
   THIMBLE_CHECK(
-      check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), "bytes", __LINE__));
+      check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), THIMBLE_WHAT("bytes")));
 }
 
 void any_address(Check& check, int kind) {
@@ -230,8 +229,8 @@ void rank_shift(Check& check, int shift) {
   THIMBLE_EQUAL(check.world.compact.rank_shift(), shift);
   Random random{4};
   for (int i = 0; i < 20; ++i) {
-    const Ray ray = ray_q8({random.below(8192) - 2048, random.below(8192) - 2048, -500},
-                           {random.below(501) - 250, random.below(501) - 250, 1 + random.below(250)});
+    const Vec3i origin{random.below(8192) - 2048, random.below(8192) - 2048, -500};
+    const Ray ray = ray_q8(origin, {random.below(501) - 250, random.below(501) - 250, 1 + random.below(250)});
     THIMBLE_REQUIRE_OK(closest(check, 1, ray, check.options));
     const Hit wanted = check.hit;
     THIMBLE_REQUIRE_OK(closest(check, 2, ray, check.options));
@@ -243,8 +242,8 @@ void rank_shift(Check& check, int shift) {
 // A world of 8 joined from eight of 4, each with one voxel, one full, one empty: the whole world's bytes.
 void joined(Check& check, int) {
   THIMBLE_REQUIRE(make_pool(check, 40, 3));
-  const Bytes trees = check.arena.take(8 * 128);
-  const Span<CompactTree> parts(reinterpret_cast<CompactTree*>(trees.data), 8);
+  const Span<CompactTree> parts = check.take<CompactTree>(8);
+  THIMBLE_REQUIRE(parts.size == 8);
   for (uint32_t part = 0; part < 8; ++part) {
     check.world.pool.clear();
     THIMBLE_REQUIRE_OK(check.world.pool.init(check.arena.take(3 * 8 + 3), 2));
@@ -273,7 +272,7 @@ void joined(Check& check, int) {
   THIMBLE_REQUIRE(make_compact(check));
   const CompactTree& tree = check.world.compact;
   THIMBLE_CHECK(check.equal(ConstBytes(out.subspan(0, written)), ConstBytes(tree.bytes(), tree.size_bytes()),
-                            "bytes of the whole", __LINE__));
+                            THIMBLE_WHAT("bytes of the whole")));
 }
 
 constexpr Case kCases[] = {
@@ -433,8 +432,8 @@ constexpr Case kCases[] = {
        const Bytes again = check.arena.take(tree.size_bytes());
        size_t needed = 0;
        THIMBLE_REQUIRE_OK(compact_from_keys(Span<const uint32_t>(keys), 4, 6, again, &needed));
-       THIMBLE_CHECK(
-           check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), "bytes", __LINE__));
+       THIMBLE_CHECK(check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()),
+                                 THIMBLE_WHAT("bytes")));
      }},
     {"joined from eight parts -> the bytes of the whole", 3600, joined},
     {"parts: a number that is no power of eight -> bad argument", 256,

@@ -27,7 +27,7 @@ constexpr Way kWays[] = {
     {Structure::kPool, Width::k32, 2, "octree, 32 bits"},
     {Structure::kPool, Width::k64, 3, "octree, 64 bits"},
     {Structure::kDense, Width::k64, 1, "dense grid, 64 bits"},
-    {Structure::kDense, Width::k32, 4, "dense grid, 32 bits"},
+    {Structure::kDense, Width::k32, 2, "dense grid, 32 bits"},
 };
 constexpr int kWayCount = sizeof kWays / sizeof kWays[0];
 constexpr int kFrameCount = sizeof golden::kGoldenTable / sizeof golden::kGoldenTable[0];
@@ -53,11 +53,11 @@ uint32_t structure_bytes(SceneId id, Structure structure) {
 bool make_world(Check& check, SceneId id, Structure structure) {
   if (structure != Structure::kCompact) {
     return check.equal(golden::build_scene(id, structure, &check.arena, &check.world), Status::kOk,
-                       "build_scene", __LINE__);
+                       THIMBLE_WHAT("build_scene"));
   }
   check.world.structure = Structure::kCompact;
   return check.equal(CompactTree::open(golden_tree(id), &check.world.compact), Status::kOk,
-                     "the tree in flash", __LINE__);
+                     THIMBLE_WHAT("the tree in flash"));
 }
 
 bool shown(const Frame& frame, const Way& way) {
@@ -94,7 +94,7 @@ void run_tree(Check& check, int index) {
   THIMBLE_REQUIRE(make_compact(check));
   const ConstBytes flash = golden_tree(id);
   THIMBLE_CHECK(check.equal(ConstBytes(check.world.compact.bytes(), check.world.compact.size_bytes()), flash,
-                            "bytes of the tree", __LINE__));
+                            THIMBLE_WHAT("bytes of the tree")));
   THIMBLE_CHECK(CompactTree::validate(flash) == nullptr);
 }
 

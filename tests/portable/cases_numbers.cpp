@@ -47,11 +47,6 @@ uint64_t plain_code(uint32_t x, uint32_t y, uint32_t z) {
 }
 
 template <class Key>
-Span<Key> keys_of(Check& check, size_t count) {
-  const Bytes bytes = check.arena.take(count * sizeof(Key));
-  return {reinterpret_cast<Key*>(bytes.data), bytes.size / sizeof(Key)};
-}
-template <class Key>
 bool ascending(Span<Key> keys) {
   for (size_t i = 1; i < keys.size; ++i) {
     if (keys[i - 1] > keys[i]) {
@@ -71,11 +66,12 @@ uint64_t sum_of(Span<Key> keys) {
 }
 template <class Key>
 void check_sort(Check& check, size_t count, int key_bits, bool descending) {
-  const Span<Key> keys = keys_of<Key>(check, count);
+  const Span<Key> keys = check.take<Key>(count);
   THIMBLE_REQUIRE(keys.size == count);
   Random random;
   for (size_t i = 0; i < count; ++i) {
-    const uint64_t value = descending ? count - i : uint64_t{random.next()} << 32 | random.next();
+    const uint64_t upper = random.next();
+    const uint64_t value = descending ? count - i : upper << 32 | random.next();
     keys[i] = static_cast<Key>(value & (~uint64_t{0} >> (64 - key_bits)));
   }
   const uint64_t sum = sum_of(keys);

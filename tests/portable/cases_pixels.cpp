@@ -15,13 +15,13 @@ constexpr Rgb8 gray(int value) {
 }
 
 // Stores one row of `colors` and compares its bytes.
-void expect_row(Check& check, PixelFormat format, Span<const Rgb8> colors, ConstBytes wanted, int line) {
+void expect_row(Check& check, PixelFormat format, Span<const Rgb8> colors, ConstBytes wanted, What what) {
   uint8_t row[16] = {};
   for (size_t x = 0; x < colors.size; ++x) {
     store_pixel(row, static_cast<int32_t>(x), 0, format, colors[x]);
   }
   const size_t size = row_bytes(format, static_cast<int32_t>(colors.size));
-  check.equal(ConstBytes(row, size), wanted, "bytes of the row", line);
+  check.equal(ConstBytes(row, size), wanted, what);
 }
 
 // Bayer's matrix of side 8 by its definition: four copies of the one half as large, times 4, plus 0, 3, 2, 1
@@ -120,10 +120,10 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        const Rgb8 one[] = {kWhite};
        const uint8_t first[] = {0x80};
-       expect_row(check, PixelFormat::kMono1, one, first, __LINE__);
+       expect_row(check, PixelFormat::kMono1, one, first, THIMBLE_WHAT("that ray, status or row"));
        const Rgb8 five[] = {kBlack, kWhite, kBlack, kBlack, kWhite};
        const uint8_t second[] = {0x48};
-       expect_row(check, PixelFormat::kMono1, five, second, __LINE__);
+       expect_row(check, PixelFormat::kMono1, five, second, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"mono1: eleven pixels -> two bytes, unused bits 0", 0,
      [](Check& check, int) {
@@ -132,16 +132,16 @@ constexpr Case kCases[] = {
          color = kWhite;
        }
        const uint8_t all[] = {0xFF, 0xE0};
-       expect_row(check, PixelFormat::kMono1, eleven, all, __LINE__);
+       expect_row(check, PixelFormat::kMono1, eleven, all, THIMBLE_WHAT("that ray, status or row"));
        eleven[8] = kBlack;
        const uint8_t gap[] = {0xFF, 0x60};
-       expect_row(check, PixelFormat::kMono1, eleven, gap, __LINE__);
+       expect_row(check, PixelFormat::kMono1, eleven, gap, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"gray4: left pixel -> high nibble, unused nibble 0", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {gray(17), gray(34), gray(170)};
        const uint8_t wanted[] = {0x12, 0xA0};
-       expect_row(check, PixelFormat::kGray4, colors, wanted, __LINE__);
+       expect_row(check, PixelFormat::kGray4, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"gray4: every grey -> the nearest of 16", 0,
      [](Check& check, int) {
@@ -158,25 +158,25 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        const Rgb8 colors[] = {gray(1), {255, 0, 0}, gray(254)};
        const uint8_t wanted[] = {1, 76, 254};
-       expect_row(check, PixelFormat::kGray8, colors, wanted, __LINE__);
+       expect_row(check, PixelFormat::kGray8, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"rgb888: channels in order", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {{1, 2, 3}, {250, 251, 252}};
        const uint8_t wanted[] = {1, 2, 3, 250, 251, 252};
-       expect_row(check, PixelFormat::kRgb888, colors, wanted, __LINE__);
+       expect_row(check, PixelFormat::kRgb888, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"rgb565: 5 red, 6 green, 5 blue bits -> little-endian, red highest", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
        const uint8_t wanted[] = {0x00, 0xF8, 0xE0, 0x07, 0x1F, 0x00};
-       expect_row(check, PixelFormat::kRgb565, colors, wanted, __LINE__);
+       expect_row(check, PixelFormat::kRgb565, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"rgb565: the lower bits -> cut off", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {{7, 3, 7}, {8, 4, 8}};
        const uint8_t wanted[] = {0x00, 0x00, 0x21, 0x08};
-       expect_row(check, PixelFormat::kRgb565, colors, wanted, __LINE__);
+       expect_row(check, PixelFormat::kRgb565, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"white rows of any width -> all their bits and no other", 0, white_rows, 0, "mono1"},
     {"white rows of any width -> all their bits and no other", 0, white_rows, 1, "gray4"},

@@ -36,7 +36,7 @@ bool set_up(Check& check, bool perspective = true, int level = 4, int bits = 0) 
   check.shading.far_q8 = range.far_q8;
   check.shading.background = {12, 34, 56};
   check.options = {};
-  return check.equal(status, Status::kOk, "camera of the picture", __LINE__);
+  return check.equal(status, Status::kOk, THIMBLE_WHAT("camera of the picture"));
 }
 bool make_scene(Check& check) {
   return build(check, kScene) && set_up(check);
@@ -88,7 +88,7 @@ void against_rays(Check& check, int number) {
     set_band(check, drawn, format, y, 1);
     THIMBLE_REQUIRE_OK(draw(check, structure));
     THIMBLE_CHECK(check.equal(ConstBytes(drawn.subspan(0, size)), ConstBytes(wanted.subspan(0, size)),
-                              "row of the band", __LINE__));
+                              THIMBLE_WHAT("row of the band")));
     THIMBLE_EQUAL(drawn[size], kGuard);
   }
   THIMBLE_EQUAL(check.counts.rays, kWidth * kHeight);
@@ -124,19 +124,19 @@ void any_band_height(Check& check, int number) {
 }
 
 // Draws what must be refused: a status, no byte, no count.
-void refuse(Check& check, Status wanted, int line) {
+void refuse(Check& check, Status wanted, What what) {
   for (int structure = 0; structure < 3; ++structure) {
     check.counts = {1, 2, 3, 4};
     for (uint8_t& byte : check.band.pixels) {
       byte = kGuard;
     }
-    check.equal(draw(check, structure), wanted, "status", line);
+    check.equal(draw(check, structure), wanted, what);
     bool untouched = true;
     for (const uint8_t byte : check.band.pixels) {
       untouched = untouched && byte == kGuard;
     }
-    check.that(untouched, "no byte written", line);
-    check.that(check.counts.rays == 1 && check.counts.node_visits == 3, "nothing counted", line);
+    check.that(untouched, what);
+    check.that(check.counts.rays == 1 && check.counts.node_visits == 3, what);
   }
 }
 
@@ -158,7 +158,7 @@ void stride_with_gaps(Check& check, int number) {
     set_band(check, row, format, 3 + y, 1);
     THIMBLE_REQUIRE_OK(draw(check, 2));
     const ConstBytes there = pixels.subspan(stride * static_cast<size_t>(y), line);
-    THIMBLE_CHECK(check.equal(there, ConstBytes(row.subspan(0, line)), "row in place", __LINE__));
+    THIMBLE_CHECK(check.equal(there, ConstBytes(row.subspan(0, line)), THIMBLE_WHAT("row in place")));
     for (size_t gap = 0; gap < 5; ++gap) {
       THIMBLE_EQUAL(pixels[stride * static_cast<size_t>(y) + line + gap], kGuard);
     }
@@ -231,7 +231,7 @@ constexpr Case kCases[] = {
                                        {INT32_MAX, 1}, {INT32_MIN, 1}, {1, INT32_MAX},   {kHeight - 1, 2}};
        for (const int32_t(&range)[2] : kRows) {
          set_band(check, pixels, PixelFormat::kGray8, range[0], range[1]);
-         refuse(check, Status::kBadArgument, __LINE__);
+         refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
        }
      }},
     {"a stride below a row -> bad argument, nothing drawn", kDrawBytes,
@@ -239,23 +239,23 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE(make_scene(check));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 2);
        check.band.stride_bytes = kWidth - 1;
-       refuse(check, Status::kBadArgument, __LINE__);
+       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"bytes too few by one -> out of memory, nothing drawn", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_scene(check));
        const Bytes pixels = check.arena.take(kPictureBytes);
        set_band(check, pixels.subspan(0, kWidth * 4 - 1), PixelFormat::kGray8, 2, 4);
-       refuse(check, Status::kOutOfMemory, __LINE__);
+       refuse(check, Status::kOutOfMemory, THIMBLE_WHAT("that ray, status or row"));
        set_band(check, {}, PixelFormat::kGray8, 2, 1);
-       refuse(check, Status::kOutOfMemory, __LINE__);
+       refuse(check, Status::kOutOfMemory, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"a stride whose product wraps -> out of memory", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_scene(check));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 3);
        check.band.stride_bytes = SIZE_MAX / 2 + 1;
-       refuse(check, Status::kOutOfMemory, __LINE__);
+       refuse(check, Status::kOutOfMemory, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"no rows -> ok, nothing counted", kDrawBytes,
      [](Check& check, int) {
@@ -268,14 +268,14 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kScene));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 1);
-       refuse(check, Status::kBadArgument, __LINE__);
+       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"a camera for another level -> bad argument, nothing drawn", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kScene));
        THIMBLE_REQUIRE(set_up(check, true, 5));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 1);
-       refuse(check, Status::kBadArgument, __LINE__);
+       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
      }},
     {"rays too long for 32 bits -> refused with k32, drawn with kAuto", kDrawBytes,
      [](Check& check, int) {
@@ -283,7 +283,7 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE(set_up(check, true, 4, 20));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 1);
        check.options.width = Width::k32;
-       refuse(check, Status::kBadArgument, __LINE__);
+       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
        check.options.width = Width::kAuto;
        THIMBLE_EQUAL(draw(check, 2), Status::kOk);
        check.note_bytes(check.band.pixels.subspan(0, kWidth));

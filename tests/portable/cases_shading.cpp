@@ -8,8 +8,8 @@ namespace {
 // A parallel camera along +x whose t is just depth: a hit with numerator n lies at depth n.
 bool camera_along_x(Check& check) {
   const OrthographicView view{{}, {1, 0, 0}, {}, Q14::saturate(8), 8, 8, 8};
-  return check.equal(check.camera.set(view, 5), Status::kOk, "camera along x", __LINE__) &&
-         check.equal(check.camera.depth_per_t_q8(), 255 * 256, "depth a unit of t", __LINE__);
+  return check.equal(check.camera.set(view, 5), Status::kOk, THIMBLE_WHAT("camera along x")) &&
+         check.equal(check.camera.depth_per_t_q8(), 255 * 256, THIMBLE_WHAT("depth a unit of t"));
 }
 Hit hit_at(int32_t depth_q8) {
   Hit hit;

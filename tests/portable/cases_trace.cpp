@@ -15,8 +15,7 @@ constexpr uint32_t cloud_bytes(int level) {
 
 // kVoxels voxels anywhere in all three structures, and their list.
 Span<Vec3i> make_cloud(Check& check, int level, uint32_t seed) {
-  const Bytes bytes = check.arena.take(kVoxels * sizeof(Vec3i));
-  const Span<Vec3i> voxels(reinterpret_cast<Vec3i*>(bytes.data), bytes.size / sizeof(Vec3i));
+  const Span<Vec3i> voxels = check.take<Vec3i>(kVoxels);
   const int32_t side = int32_t{1} << level;
   if (voxels.size != kVoxels || !make_grid(check, {side, side, side}) ||
       !make_pool(check, kVoxels * static_cast<uint32_t>(level), level)) {
@@ -124,7 +123,8 @@ Ray random_ray(Random& random, Family family, int level) {
           break;
         case kLong:
           origin[axis] = random.below(2 * side) - side / 2;
-          direction[axis] = (random.below(8191) - 4095) * 256 + random.below(256);
+          direction[axis] = (random.below(8191) - 4095) * 256;
+          direction[axis] += random.below(256);
           break;
         default:
           origin[axis] = random.below(2 * side) - side / 2;

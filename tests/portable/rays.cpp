@@ -306,10 +306,29 @@ constexpr RayCase kCases[] = {
 
 static_assert(sizeof kCases / sizeof kCases[0] == kRayCaseCount);
 
+#ifdef THIMBLE_TERSE_CASES
+// The same without the names; `kCases` is then not in the image.
+struct Table {
+  RayCase cases[kRayCaseCount];
+};
+constexpr Table terse() {
+  Table table{};
+  for (int i = 0; i < kRayCaseCount; ++i) {
+    table.cases[i] = kCases[i];
+    table.cases[i].name = nullptr;
+  }
+  return table;
+}
+constexpr Table kTerse = terse();
+constexpr Span<const RayCase> kShown = kTerse.cases;
+#else
+constexpr Span<const RayCase> kShown = kCases;
+#endif
+
 }  // namespace
 
 Span<const RayCase> ray_cases() {
-  return kCases;
+  return kShown;
 }
 
 }  // namespace thimble::portable

@@ -7,9 +7,11 @@
 
 namespace thimble::portable {
 
-/// Of all cases, and of those that every board runs.
-inline constexpr uint32_t kResultCrc32 = 0xAA048EF7;
-inline constexpr uint32_t kCommonResultCrc32 = 0x87269F0A;
+/// Of the core's own cases, all of which every board runs.
+inline constexpr uint32_t kCoreCrc32 = 0x1564DDD9;
+/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board runs.
+inline constexpr uint32_t kGoldenCrc32 = 0xAEA857A0;
+inline constexpr uint32_t kCommonGoldenCrc32 = 0xC6BD20F8;
 
 }  // namespace thimble::portable
 

@@ -4,8 +4,8 @@ namespace thimble::portable {
 
 bool make_pool(Check& check, uint32_t nodes, int level) {
   const Bytes bytes = check.arena.take(Octree::octree_bytes(nodes));
-  return check.equal(check.world.pool.init(bytes, level), Status::kOk, "pool.init", __LINE__) &&
-         check.equal(check.world.pool.capacity(), nodes, "nodes of the pool", __LINE__);
+  return check.equal(check.world.pool.init(bytes, level), Status::kOk, THIMBLE_WHAT("pool.init")) &&
+         check.equal(check.world.pool.capacity(), nodes, THIMBLE_WHAT("nodes of the pool"));
 }
 
 bool make_compact(Check& check, int rank_shift) {
@@ -13,14 +13,14 @@ bool make_compact(Check& check, int rank_shift) {
   const Bytes bytes = check.arena.take(size);
   size_t written = 0;
   return check.equal(compact_from_octree(check.world.pool, bytes, &written, rank_shift), Status::kOk,
-                     "compact_from_octree", __LINE__) &&
-         check.equal(written, size, "bytes of the compact tree", __LINE__) &&
-         check.equal(CompactTree::open(bytes, &check.world.compact), Status::kOk, "open", __LINE__);
+                     THIMBLE_WHAT("compact_from_octree")) &&
+         check.equal(written, size, THIMBLE_WHAT("bytes of the compact tree")) &&
+         check.equal(CompactTree::open(bytes, &check.world.compact), Status::kOk, THIMBLE_WHAT("open"));
 }
 
 bool make_grid(Check& check, const Vec3i& size) {
   const Bytes bytes = check.arena.take(dense_grid_bytes(size));
-  return check.equal(DenseGrid::init(bytes, size, &check.world.grid), Status::kOk, "grid.init", __LINE__);
+  return check.equal(DenseGrid::init(bytes, size, &check.world.grid), Status::kOk, THIMBLE_WHAT("grid.init"));
 }
 
 bool build(Check& check, const RayScene& scene) {
@@ -32,14 +32,14 @@ bool build(Check& check, const RayScene& scene) {
   for (int i = 0; i < scene.box_count; ++i) {
     const RayScene::Box& box = scene.boxes[i];
     const VoxelBox bounds{{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
-    if (!check.equal(check.world.pool.insert_box(bounds, 0), Status::kOk, "insert_box", __LINE__)) {
+    if (!check.equal(check.world.pool.insert_box(bounds, 0), Status::kOk, THIMBLE_WHAT("insert_box"))) {
       return false;
     }
     for (int32_t z = bounds.min.z; dense && z < bounds.max.z; ++z) {
       for (int32_t y = bounds.min.y; y < bounds.max.y; ++y) {
         for (int32_t x = bounds.min.x; x < bounds.max.x; ++x) {
           if (check.world.grid.set({x, y, z}) != Status::kOk) {
-            return check.that(false, "grid.set", __LINE__);
+            return check.that(false, THIMBLE_WHAT("grid.set"));
           }
         }
       }

@@ -15,9 +15,9 @@ void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_info(CLI::App& app);
+void add_boards(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
-void add_boards(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
   add_render(app);
@@ -25,9 +25,9 @@ inline void add_all_commands(CLI::App& app) {
   add_table(app);
   add_bake(app);
   add_info(app);
+  add_boards(app);
   add_sim(app);
   add_particles(app);
-  add_boards(app);
 }
 
 }  // namespace thimble::tools

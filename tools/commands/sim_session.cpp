@@ -340,7 +340,7 @@ std::string memory_text(const host::MemoryUse& use, const char* separator) {
   };
   return "RAM " + share(use.ram_bytes, use.ram_limit_bytes) + "  flash: scene " +
          share(use.flash_bytes, use.flash_limit_bytes) + separator + "stack " + grouped(use.stack_bytes) +
-         " bytes in this machine's frames, not the chip's; the board keeps " + grouped(use.stack_limit_bytes);
+         " bytes in this machine's frames, not the chip's; board: " + grouped(use.stack_limit_bytes);
 }
 
 SessionResult run_session(const SessionOptions& options) {

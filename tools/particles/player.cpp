@@ -312,12 +312,14 @@ std::string Player::figures_line(double eps) const {
          "  Total Colliders: " + std::to_string(world_->world().count()) + "  Eps: " + with_decimals(1, eps);
 }
 
-std::string Player::tool_line() const {
-  const ParticleWorld& world = world_->world();
+std::string Player::tool_text() const {
   const Tool tool = is_held() ? held_tool() : tool_;
   const std::string reach = tool == Tool::kSpawn ? "" : " within " + std::to_string(reach_[index_of(tool)]);
-  return "mouse: " + std::string(kToolNames[index_of(tool)]) + reach + (is_held() ? " (held)" : "") +
-         "   asleep " + grouped(world.asleep()) + "   step " + grouped(counts_.steps) +
+  return "mouse: " + std::string(kToolNames[index_of(tool)]) + reach + (is_held() ? " *" : "");
+}
+
+std::string Player::world_text() const {
+  return "asleep " + grouped(world_->world().asleep()) + "   step " + grouped(counts_.steps) +
          (is_paused_ ? "   PAUSED" : "");
 }
 

@@ -51,8 +51,9 @@ class Player {
   std::string figures(double eps) const;
   /// The same in one line.
   std::string figures_line(double eps) const;
-  /// What the mouse does now, in a line.
-  std::string tool_line() const;
+  /// What the mouse does, and how the world fares; up to 32 characters each.
+  std::string tool_text() const;
+  std::string world_text() const;
   static std::string help();
 
  private:

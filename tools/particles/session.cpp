@@ -15,6 +15,8 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr int kStatusLines = 3;
+constexpr int kStatusColumns = 64;
+constexpr std::size_t kToolColumns = 28;
 constexpr double kRateTime = 0.5;  // over which the steps a second are counted
 constexpr int kIdleMs = 50;
 constexpr std::uint64_t kTimedSteps = 64;
@@ -54,6 +56,7 @@ host::ScreenOptions screen_options(const ParticleWorld& world) {
   options.width_px = world.config().width;
   options.height_px = world.config().height;
   options.status_lines = kStatusLines;
+  options.status_columns = kStatusColumns;
   options.look.ground = {24, 26, 32};
   return options;
 }
@@ -146,8 +149,12 @@ void Session::show() {
   const std::string overlay = player_.shows_help()                   ? Player::help()
                               : is_window && player_.shows_figures() ? player_.figures(eps_)
                                                                      : "";
-  std::string status = !is_window && player_.shows_figures() ? player_.figures_line(eps_) + "\n" : "";
-  status += player_.tool_line() + "\n? help   1-6 tools   arrows gravity   space pause   r reset   q ends";
+  std::string status = player_.tool_text();
+  status.resize(std::max(status.size() + 3, kToolColumns), ' ');
+  status += player_.world_text() + "\n? help   1-6 tools   arrows gravity   space pause   q ends";
+  if (!is_window && player_.shows_figures()) {
+    status = player_.figures_line(eps_) + "\n" + status;
+  }
   const std::string text = overlay + "\f" + status;
   if (!needs_showing_ && text == shown_text_) {
     return;

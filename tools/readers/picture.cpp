@@ -10,8 +10,10 @@
 #pragma GCC diagnostic ignored "-Wsign-conversion"
 #pragma GCC diagnostic ignored "-Wcast-align"
 #pragma GCC diagnostic ignored "-Wunused-function"
+#ifndef __clang_analyzer__  // what it finds in the library is not ours to change
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
+#endif
 #define STBI_ONLY_PNG
 #define STBI_ONLY_PNM
 #define STBI_NO_STDIO
