@@ -19,6 +19,8 @@ namespace thimble {
 namespace {
 
 constexpr int kNormalBits = 12;
+constexpr int kAxisShift = kNormalBits - 1;
+constexpr int32_t kAxisNormal = int32_t{1} << kAxisShift;
 constexpr int kFactorBits = 24;
 // The rest_speed_ of a gravity of half a cell a step a step.
 constexpr int32_t kStrongRestSpeed = 5 * 65536 / 4;
@@ -63,10 +65,15 @@ constexpr int32_t held_within_limit(int64_t speed) {
                                  : static_cast<int32_t>(speed);
 }
 
-// The longer component with kNormalBits bits; components are cut towards zero.
+// The longer component with kNormalBits bits, the components cut towards zero; along an axis it is
+// kAxisNormal.
 constexpr Vec2i short_normal(Vec2i v) {
   const uint32_t x = magnitude(v.x);
   const uint32_t y = magnitude(v.y);
+  if (x == 0 || y == 0) {
+    const auto unit = [](int32_t part) { return part < 0 ? -kAxisNormal : part > 0 ? kAxisNormal : 0; };
+    return {unit(v.x), unit(v.y)};
+  }
   const int excess = bits::bit_length(x | y) - kNormalBits;
   const auto resized = [excess](uint32_t size) {
     return static_cast<int32_t>(excess > 0 ? size >> excess : size << -excess);
@@ -276,8 +283,8 @@ void ParticleWorld::bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i aw
     if (pulled_ && ball.still < 2) {
       return;
     }
-    n = {(axes & Blocked::kX) != 0 ? away.x << (kNormalBits - 1) : 0,
-         (axes & Blocked::kY) != 0 ? away.y << (kNormalBits - 1) : 0};
+    n = {(axes & Blocked::kX) != 0 ? away.x * kAxisNormal : 0,
+         (axes & Blocked::kY) != 0 ? away.y * kAxisNormal : 0};
     along = wx * n.x + wy * n.y;
     if (along >= 0) {
       return;
@@ -329,24 +336,33 @@ void ParticleWorld::push(Ball& ball, Ball* other, Vec2i normal, int64_t along, u
   const uint32_t nx = magnitude(normal.x);
   const uint32_t ny = magnitude(normal.y);
 
-  // factor * 2^kFactorBits = |along| * (1 + e) * lighter / (|n|^2 * (mA + mB)), below 2^45.
-  uint64_t approach = magnitude(along);  // below 2^44
-  int shift = 0;
-  if ((approach >> 36) != 0) {
-    shift = width_of(approach) - 36;
-    approach >>= shift;
+  uint64_t size[2];
+  if (other == nullptr && (nx == 0 || ny == 0)) {
+    // The sides of the box, level and upright walls: exact but for one rounding, which restitution 1 has not.
+    const uint64_t change = ((magnitude(along) >> kAxisShift) * (65536U + restitution_q16) + 32768) >> 16;
+    size[0] = nx != 0 ? change : 0;
+    size[1] = ny != 0 ? change : 0;
+  } else {
+    // factor * 2^kFactorBits = |along| * (1 + e) * lighter / (|n|^2 * (mA + mB)), below 2^45.
+    uint64_t approach = magnitude(along);  // below 2^44
+    int shift = 0;
+    if ((approach >> 36) != 0) {
+      shift = width_of(approach) - 36;
+      approach >>= shift;
+    }
+    const uint64_t numerator =
+        approach * (lighter * (65536U + restitution_q16));  // below 2^(36 + 8 + 17 + 1)
+    uint64_t denominator = uint64_t{nx * nx + ny * ny} * (other != nullptr ? heavier + lighter : 1);
+    const int spread = width_of(denominator) - 32;  // -9 .. 2
+    denominator = spread > 0 ? denominator >> spread : denominator << -spread;
+    const uint64_t inverse = reciprocal(static_cast<uint32_t>(denominator));
+    const uint64_t upper = (numerator >> 32) * inverse + (((numerator & UINT32_MAX) * inverse) >> 32);
+    const int drop = 63 + spread + 16 - kFactorBits - shift - 32;  // 6 .. 25
+    const uint64_t factor = (upper + (uint64_t{1} << (drop - 1))) >> drop;
+    constexpr uint64_t kHalf = uint64_t{1} << (kFactorBits - 1);
+    size[0] = (factor * nx + kHalf) >> kFactorBits;
+    size[1] = (factor * ny + kHalf) >> kFactorBits;
   }
-  const uint64_t numerator = approach * (lighter * (65536U + restitution_q16));  // below 2^(36 + 8 + 17 + 1)
-  uint64_t denominator = uint64_t{nx * nx + ny * ny} * (other != nullptr ? heavier + lighter : 1);
-  const int spread = width_of(denominator) - 32;
-  denominator = spread > 0 ? denominator >> spread : denominator << -spread;
-  const uint64_t inverse = reciprocal(static_cast<uint32_t>(denominator));
-  const uint64_t upper = (numerator >> 32) * inverse + (((numerator & UINT32_MAX) * inverse) >> 32);
-  const int drop = 63 + spread + 16 - kFactorBits - shift - 32;  // 6 .. 26
-  const uint64_t factor = (upper + (uint64_t{1} << (drop - 1))) >> drop;
-
-  constexpr uint64_t kHalf = uint64_t{1} << (kFactorBits - 1);
-  const uint64_t size[2] = {(factor * nx + kHalf) >> kFactorBits, (factor * ny + kHalf) >> kFactorBits};
   int64_t first[2];   // change of `ball`
   int64_t second[2];  // change of `other`
   for (int axis = 0; axis < 2; ++axis) {

@@ -15,7 +15,7 @@ inline constexpr uint8_t kSupports = 4;  // a sleeper may count on it
 
 // A ball that keeps within so many cells of its place for so many steps may sleep.
 inline constexpr int32_t kStillReach = 1;
-inline constexpr uint8_t kStillSteps = 40;
+inline constexpr uint8_t kStillSteps = 24;
 inline constexpr int32_t kConfinedReach = 4;
 inline constexpr uint8_t kConfinedSteps = 200;
 // Steps that two must have kept to their places for their contact to be a lasting one, without bounces.
@@ -53,9 +53,22 @@ inline Rows load_rows(const uint32_t* rows) {
 inline void store_rows(uint32_t* rows, Rows value) {
   *reinterpret_cast<RowsInMemory*>(rows) = value;
 }
-// How far loops over `count` rows of at most kBlock go.
-constexpr int32_t rows_to_do(int32_t count) {
-  return kLanes == 1 ? count : kBlock;
+// Does `visit(row)` for the first `count` rows of at most kBlock: for each of them, or for twelve or all in
+// fours.
+template <class Visit>
+inline void for_rows([[maybe_unused]] int32_t count, Visit visit) {
+  if constexpr (kLanes == 4) {
+    visit(0);
+    visit(4);
+    visit(8);
+    if (count > 12) {
+      visit(12);
+    }
+  } else {
+    for (int32_t row = 0; row < count; ++row) {
+      visit(row);
+    }
+  }
 }
 
 inline DiscStamp small_disc(int32_t diameter) {
@@ -75,20 +88,19 @@ struct ParticleWorld::Window {
     const uint32_t* const from = rows + (place.y - base.y);
     const int32_t shift = place.x - base.x;
     Rows any{};
-    for (int32_t row = 0; row < rows_to_do(disc.diameter); row += kLanes) {
+    for_rows(disc.diameter, [&](int32_t row) {
       const Rows found = (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
       store_rows(out + row, found);
       any |= found;
-    }
+    });
     return any_of(any) != 0;
   }
   bool is_free(const DiscStamp& disc, Vec2i place) const {
     const uint32_t* const from = rows + (place.y - base.y);
     const int32_t shift = place.x - base.x;
     Rows any{};
-    for (int32_t row = 0; row < rows_to_do(disc.diameter); row += kLanes) {
-      any |= (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
-    }
+    for_rows(disc.diameter,
+             [&](int32_t row) { any |= (load_rows(from + row) >> shift) & load_rows(disc.rows + row); });
     return any_of(any) == 0;
   }
 };

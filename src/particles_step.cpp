@@ -147,47 +147,61 @@ inline void ParticleWorld::advance(uint32_t id) {
                         box.max.x <= config_.width && box.max.y <= config_.height;
     bool made = false;
     if (loaded) {
-      // The box around the way: where it holds nothing but the ball, the ball is simply put elsewhere.
+      // What the disc could cover on any way from corner to corner: where that holds nothing but the ball,
+      // the ball is simply put elsewhere.
       window.base = box.min;
       const int32_t shift = box.min.x & 31;
       const int32_t back = 32 - shift;
       Word* const column = words_ + (box.min.x >> 5) * config_.height + box.min.y;
+      Word* const beyond = column + config_.height;
       const bool wide = shift + width > 32;
       const uint32_t* const own = disc.rows + (box.min.y - from.y);
+      const uint32_t* const next = disc.rows + (box.min.y - to.y);
       const int32_t own_shift = from.x - box.min.x;
-      const uint32_t* const lines = kLines + kBlock - height;
-      const int32_t rows = rows_to_do(height);
+      const int32_t next_shift = to.x - box.min.x;
       Rows found{};
-      if (!wide) {
-        for (int32_t row = 0; row < rows; row += kLanes) {
-          const Rows cells = (load_rows(column + row) >> shift) & ~(load_rows(own + row) << own_shift);
-          store_rows(window.rows + row, cells);
-          found |= cells & load_rows(lines + row);
-        }
-      } else {
-        for (int32_t row = 0; row < rows; row += kLanes) {
-          const Rows cells =
-              ((load_rows(column + row) >> shift) | (load_rows(column + config_.height + row) << back)) &
-              ~(load_rows(own + row) << own_shift);
-          store_rows(window.rows + row, cells);
-          found |= cells & load_rows(lines + row);
-        }
-      }
-      if ((any_of(found) & ((uint32_t{1} << width) - 1)) == 0) {
-        const uint32_t* const next = disc.rows + (box.min.y - to.y);
-        const int32_t next_shift = to.x - box.min.x;
-        for (int32_t row = 0; row < rows; row += kLanes) {
-          const Rows clear = load_rows(own + row) << (own_shift + shift);
-          const Rows set = load_rows(next + row) << (next_shift + shift);
-          store_rows(column + row, (load_rows(column + row) & ~clear) | set);
-        }
+      const auto look = [&](auto&& reach_of) {
         if (wide) {
-          for (int32_t row = 0; row < rows; row += kLanes) {
+          for_rows(height, [&](int32_t row) {
+            const Rows cells = ((load_rows(column + row) >> shift) | (load_rows(beyond + row) << back)) &
+                               ~(load_rows(own + row) << own_shift);
+            store_rows(window.rows + row, cells);
+            found |= cells & reach_of(row);
+          });
+        } else {
+          for_rows(height, [&](int32_t row) {
+            const Rows cells = (load_rows(column + row) >> shift) & ~(load_rows(own + row) << own_shift);
+            store_rows(window.rows + row, cells);
+            found |= cells & reach_of(row);
+          });
+        }
+      };
+      // Where it goes no further than its outermost rows are long, that is its first and last place, moved
+      // together by the way across: the box with the disc's own round corners.
+      const int32_t across = width - diameter;
+      const int32_t round = static_cast<int32_t>(bits::popcount32(disc.rows[0]));
+      if (across <= round && height - diameter <= round) {
+        look([&](int32_t row) {
+          const Rows either = load_rows(own + row) | load_rows(next + row);
+          return either | (either << across);
+        });
+      } else {
+        const uint32_t* const lines = kLines + kBlock - height;
+        const uint32_t columns = (uint32_t{1} << width) - 1;
+        look([&](int32_t row) { return load_rows(lines + row) & columns; });
+      }
+      if (any_of(found) == 0) {
+        for_rows(height, [&](int32_t row) {
+          const Rows clear = (load_rows(own + row) << own_shift) << shift;
+          const Rows set = (load_rows(next + row) << next_shift) << shift;
+          store_rows(column + row, (load_rows(column + row) & ~clear) | set);
+        });
+        if (wide) {
+          for_rows(height, [&](int32_t row) {
             const Rows clear = (load_rows(own + row) << own_shift) >> back;
             const Rows set = (load_rows(next + row) << next_shift) >> back;
-            Word* const word = column + config_.height + row;
-            store_rows(word, (load_rows(word) & ~clear) | set);
-          }
+            store_rows(beyond + row, (load_rows(beyond + row) & ~clear) | set);
+          });
         }
         ball.x = end.x;
         ball.y = end.y;
