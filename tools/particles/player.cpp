@@ -86,11 +86,9 @@ void Player::take(const InputEvent& event) {
     case InputKind::kEnd:
       has_ended_ = true;
       return;
-    case InputKind::kWheel: {
-      std::int32_t& reach = reach_[index_of(is_held() ? held_tool() : tool_)];
-      reach = std::clamp(reach + event.steps * std::max(1, reach / 8), 1, kMostReach);
+    case InputKind::kWheel:
+      change_reach(is_held() ? held_tool() : tool_, event.steps);
       return;
-    }
     case InputKind::kMove:
     case InputKind::kPress:
     case InputKind::kRelease:
@@ -127,7 +125,7 @@ void Player::press(const InputEvent& event) {
 
 void Player::tick() {
   ParticleWorld& world = world_->world();
-  if (!is_paused_ || makes_one_) {
+  if (!stands()) {
     const Tool tool = held_tool();
     world.set_pointer(is_held() ? mode_of(tool) : PointerMode::kNone, place_, reach_[index_of(tool)],
                       kStrengthQ16);
@@ -179,6 +177,15 @@ void Player::begin_again() {
   is_released_ = false;
 }
 
+// By an eighth each.
+void Player::change_reach(Tool tool, std::int32_t steps) {
+  std::int32_t& reach = reach_[index_of(tool)];
+  for (; steps != 0; steps += steps < 0 ? 1 : -1) {
+    const std::int32_t part = std::max(1, reach / 8);
+    reach = std::clamp(steps < 0 ? reach - part : reach + part, 1, kMostReach);
+  }
+}
+
 void Player::take_key(const std::string& key) {
   ParticleWorld& world = world_->world();
   const auto strength = [&] { return std::max(std::abs(strong_gravity_.x), std::abs(strong_gravity_.y)); };
@@ -217,7 +224,6 @@ void Player::take_key(const std::string& key) {
   if (key.size() != 1) {
     return;
   }
-  std::int32_t& reach = reach_[index_of(tool_)];
   switch (key[0]) {
     case '1':
     case '2':
@@ -228,10 +234,10 @@ void Player::take_key(const std::string& key) {
       tool_ = static_cast<Tool>(key[0] - '1');
       break;
     case '[':
-      reach = std::max(reach - std::max(1, reach / 8), 1);
+      change_reach(tool_, -1);
       break;
     case ']':
-      reach = std::min(reach + std::max(1, reach / 8), kMostReach);
+      change_reach(tool_, 1);
       break;
     case 'n':
       set_sizes(settings_.least_diameter - 1, settings_.most_diameter);

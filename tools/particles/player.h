@@ -39,13 +39,14 @@ class Player {
 
   std::uint64_t ticks() const { return ticks_; }
   const PlayedCounts& counts() const { return counts_; }
-  bool is_paused() const { return is_paused_; }
+  /// Whether ticks pass without steps until the next event.
+  bool stands() const { return is_paused_ && !makes_one_; }
   bool has_ended() const { return has_ended_; }
   bool shows_help() const { return shows_help_; }
   bool shows_figures() const { return shows_figures_; }
   std::int32_t rate() const { return rate_; }
   /// Whether the next tick may change what is seen.
-  bool is_moving() const { return (!is_paused_ || makes_one_) && (world_->world().awake() > 0 || is_held()); }
+  bool is_moving() const { return !stands() && (world_->world().awake() > 0 || is_held()); }
 
   /// The five figures of the paper's Figure 1, a line each; `eps` is the rate of steps.
   std::string figures(double eps) const;
@@ -60,6 +61,7 @@ class Player {
   bool is_held() const { return held_button_ != 0; }
   Tool held_tool() const;
   void take_key(const std::string& key);
+  void change_reach(Tool tool, std::int32_t steps);
   void press(const InputEvent& event);
   void set_count(std::int64_t count);
   void set_gravity(Vec2i gravity_q16);

@@ -85,7 +85,7 @@ bool Session::has_ended() const {
     return true;
   }
   // A world that stands for ever, unseen.
-  return !watched() && player_.is_paused() && next_event_ == options_.script.size();
+  return !watched() && player_.stands() && next_event_ == options_.script.size();
 }
 
 void Session::take(const InputEvent& event) {
@@ -152,7 +152,9 @@ void Session::show() {
   std::string status = player_.tool_text();
   status.resize(std::max(status.size() + 3, kToolColumns), ' ');
   status += player_.world_text() + "\n? help   1-6 tools   arrows gravity   space pause   q ends";
-  if (!is_window && player_.shows_figures()) {
+  if (is_window) {
+    status += "\n. one step   r reset   n m b c e g less, capitals more";
+  } else if (player_.shows_figures()) {
     status = player_.figures_line(eps_) + "\n" + status;
   }
   const std::string text = overlay + "\f" + status;
