@@ -119,9 +119,10 @@ TEST_CASE(
     CHECK(events.find(part) != std::string::npos);
   }
   words = world;
+  words.insert(words.begin(), "particles");
   words.insert(words.end(),
-               {"particles", "--view", "none", "--input", record, "--stats", folder.path("again.json"),
-                "--field", folder.path("again.pbm"), "--state", folder.path("again.csv"), "--quiet"});
+               {"--view", "none", "--input", record, "--stats", folder.path("again.json"), "--field",
+                folder.path("again.pbm"), "--state", folder.path("again.csv"), "--quiet"});
   const CommandResult again = run_command(words);
   CAPTURE(again.describe());
   REQUIRE(again.status == 0);
