@@ -17,7 +17,7 @@ constexpr int32_t cut(int32_t value, int32_t limit) {
   return value < -limit ? -limit : value > limit ? limit : value;
 }
 
-// floor, ceiling-free: half of the octagon's 8/7 above the true length and no more than 3% below it.
+// Between 0.97 and 1.03 times the length.
 constexpr int32_t length_of(Vec2i v) {
   const int32_t x = v.x < 0 ? -v.x : v.x;
   const int32_t y = v.y < 0 ? -v.y : v.y;
@@ -143,10 +143,6 @@ uint32_t ParticleWorld::random_below(uint32_t limit) {
 
 // --- Balls
 
-bool ParticleWorld::is_free(const DiscStamp& disc, Vec2i corner) const {
-  return field_.holds(disc, corner) && !field_.any_inside(disc, corner);
-}
-
 Status ParticleWorld::spawn(int32_t x_q16, int32_t y_q16, int32_t vx_q16, int32_t vy_q16, int32_t diameter,
                             uint32_t* id) {
   if (diameter < 1 || diameter > config_.most_diameter || !within(vx_q16, kMaxSpeedQ16) ||
@@ -154,7 +150,7 @@ Status ParticleWorld::spawn(int32_t x_q16, int32_t y_q16, int32_t vx_q16, int32_
       !within(y_q16, (kMaxFieldSide + 1) << 16)) {
     return Status::kOutOfRange;
   }
-  const DiscStamp disc = disc_stamp(diameter);
+  const DiscStamp disc = small_disc(diameter);
   const Vec2i corner{disc_corner(x_q16, diameter), disc_corner(y_q16, diameter)};
   if (!field_.holds(disc, corner)) {
     return Status::kOutOfRange;
@@ -211,7 +207,7 @@ Status ParticleWorld::spawn_random(int32_t max_speed_q16, uint32_t* id) {
   };
   const int32_t vx = speed();
   const int32_t vy = speed();
-  const DiscStamp disc = disc_stamp(diameter);
+  const DiscStamp disc = small_disc(diameter);
   Vec2i corner;
   bool found = false;
   for (int attempt = 0; attempt < kRandomPlaces && !found; ++attempt) {
@@ -243,7 +239,7 @@ Status ParticleWorld::remove(uint32_t id) {
   Ball& ball = balls_[id];
   const Vec2i corner = corner_of(ball);
   const int32_t diameter = ball.diameter;
-  field_.clear_inside(disc_stamp(diameter), corner);
+  field_.clear_inside(small_disc(diameter), corner);
   unlink(id, cell_of(ball.x, ball.y));
   if ((ball.flags & kAsleep) != 0) {
     --asleep_;
@@ -291,7 +287,7 @@ uint32_t ParticleWorld::ball_at(Vec2i at) const {
         const int32_t column = at.x - corner.x;
         const int32_t diameter = balls_[id].diameter;
         if (row >= 0 && row < diameter && column >= 0 && column < diameter &&
-            (disc_stamp(diameter).rows[row] >> column & 1U) != 0) {
+            (small_disc(diameter).rows[row] >> column & 1U) != 0) {
           return id;
         }
       }

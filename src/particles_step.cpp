@@ -13,6 +13,10 @@ constexpr int32_t kStride = 16;
 // Displacements of up to this many cells on each axis take the short way.
 constexpr int32_t kShortWay = 8;
 
+// In fields larger than this, what a ball is about to look at is unlikely to be in the nearest cache.
+constexpr size_t kFarFieldBytes = 256 * 1024;
+constexpr uint32_t kLookAhead = 8;
+
 constexpr int32_t sign_of(int32_t value) {
   return value < 0 ? -1 : 1;
 }
@@ -103,7 +107,15 @@ void ParticleWorld::step() {
 
 template <bool kPulled>
 void ParticleWorld::advance_all(bool last) {
+  const bool large = field_.used_bytes() > kFarFieldBytes;
   for (uint32_t id = next_awake(0); id != kNoBall; id = next_awake(id + 1)) {
+    if (large && id + kLookAhead < id_limit_) {
+      // Balls lie in memory by number, but their cells anywhere: those of one soon to come are asked for now.
+      const Ball& ahead = balls_[id + kLookAhead];
+      const Word* const cells = words_ + (ahead.x >> 21) * config_.height + (ahead.y >> 16);
+      __builtin_prefetch(cells - ahead.diameter / 2);
+      __builtin_prefetch(cells + ahead.diameter / 2);
+    }
     advance<kPulled>(id);
     const Ball& ball = balls_[id];
     if (last && (kPulled || (ball.vx | ball.vy) == 0 || ball.still != 0)) {

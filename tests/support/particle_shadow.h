@@ -169,8 +169,8 @@ class ShadowedWorld {
             }
             Vec2i at{ball.corner.x + column, ball.corner.y + row};
             at[axis] += pull[axis] > 0 ? 1 : -1;
-            held = at.x < 0 || at.y < 0 || at.x >= config.width || at.y >= config.height || walls_[index(at)] != 0 ||
-                   (owners[index(at)] != kNoBall && owners[index(at)] != id);
+            held = at.x < 0 || at.y < 0 || at.x >= config.width || at.y >= config.height ||
+                   walls_[index(at)] != 0 || (owners[index(at)] != kNoBall && owners[index(at)] != id);
           }
         }
       }
