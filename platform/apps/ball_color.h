@@ -27,6 +27,14 @@ constexpr Rgb8 ball_color(int32_t diameter, bool asleep) {
   return asleep ? resting(color) : color;
 }
 
+/// The same for displays of greys, where neighbours are told apart by their numbers: 255, 221 or 187, at rest
+/// half of it.
+constexpr Rgb8 ball_gray(uint32_t id, bool asleep) {
+  const uint8_t bright = static_cast<uint8_t>(255 - 34 * (id % 3));
+  const uint8_t gray = asleep ? static_cast<uint8_t>(bright / 2) : bright;
+  return {gray, gray, gray};
+}
+
 }  // namespace thimble::apps
 
 #endif

@@ -53,6 +53,7 @@ const port::Display& display() {
     byte = 0;
   }
   const size_t stride = row_bytes(band.format, width);
+  const bool is_gray = bits_per_pixel(band.format) <= 8;
   const int32_t end = band.first_row + band.rows;
   uint32_t balls_left = world.count();
   for (uint32_t id = 0; balls_left > 0; ++id) {
@@ -61,6 +62,7 @@ const port::Display& display() {
       continue;
     }
     --balls_left;
+    const Rgb8 color = is_gray ? ball_gray(id, ball.asleep) : ball_color(ball.diameter, ball.asleep);
     const uint32_t* const rows = disc_stamp(ball.diameter).rows;
     for (int32_t row = 0; row < ball.diameter; ++row) {
       const int32_t y = ball.corner.y + row;
@@ -70,7 +72,7 @@ const port::Display& display() {
       uint8_t* const pixels = band.pixels.data + stride * static_cast<size_t>(y - band.first_row);
       for (int32_t column = 0; column < ball.diameter; ++column) {
         if ((rows[row] >> column & 1U) != 0) {
-          store_pixel(pixels, ball.corner.x + column, y, band.format, ball_color(ball.diameter, ball.asleep));
+          store_pixel(pixels, ball.corner.x + column, y, band.format, color);
         }
       }
     }
