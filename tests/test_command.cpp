@@ -48,6 +48,9 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
        {"--rays", "--output", "--engine", "--direction-bits", "ox,oy,oz,dx,dy,dz",
         "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz"}},
       {"info", {}},
+      {"sim",
+       {"--board", "--app", "--coarsen", "--display", "--theme", "--scale", "--fps", "--frames", "--shot",
+        "--check", "--record", "--keys", "--quiet", "SCENE", "--depth", "--as-voxels", "BUTTON", "TEXT"}},
       {"bake", {"SCENE",     "--depth", "--as-voxels",      "--z-up",       "--output", "--memory", "--board",
                 "--coarsen", "--name",  "--size",           "--projection", "--eye",    "--target", "--up",
                 "--fov",     "--span",  "--direction-bits", "--quiet",      "--stats",  ".oct",     ".h"}},
@@ -102,7 +105,7 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
     check_refused({"render", "spheres", "-o", "picture.ppm", option, "1"}, 2,
                   {std::string("\"") + option + "\""});
   }
-  for (const char* subcommand : {"memory", "accuracy", "effects", "particles", "sim"}) {
+  for (const char* subcommand : {"memory", "accuracy", "effects", "particles"}) {
     check_refused({subcommand}, 2, {std::string("\"") + subcommand + "\""});
   }
 }

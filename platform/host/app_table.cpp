@@ -5,20 +5,16 @@
 namespace thimble::host {
 namespace {
 
-// One line each. A source tree may come without some of them.
+// One line each. The ones that a source tree may come without ask whether they are there.
 constexpr Application kApplications[] = {
-#if __has_include("apps/demo.cpp")
     {"demo", apps::demo, true, true},
-#endif
-#if __has_include("apps/selftest.cpp")
     {"selftest", apps::selftest, false, false},
-#endif
-#if __has_include("apps/bench.cpp")
+    {"golden", apps::golden, false, false},
     {"bench", apps::bench, true, false},
-#endif
 #if __has_include("apps/particles.cpp")
     {"particles", apps::particles, false, true},
 #endif
+    {"faults", apps::faults, false, false},
     {nullptr, nullptr, false, false},  // so that the array is never empty
 };
 

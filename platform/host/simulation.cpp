@@ -165,7 +165,7 @@ std::string fault_text(const Simulation::State& state) {
   }
   std::array<char, 32> address{};
   std::snprintf(address.data(), address.size(), "0x%llx", static_cast<unsigned long long>(state.address));
-  return std::string("it ") + did + " at the address " + address.data() + ", where there is nothing";
+  return std::string("it ") + did + " at the address " + address.data() + ", which is not its own";
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ void report(const SimCommand& command, const SessionResult& result) {
     return;
   }
   std::array<char, 64> time{};
-  if (result.pictures != 0) {
+  if (result.mean_frame_seconds != 0) {
     std::snprintf(time.data(), time.size(), ", %.2f ms each on this machine",
                   1000 * result.mean_frame_seconds);
   }

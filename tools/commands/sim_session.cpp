@@ -289,6 +289,7 @@ SessionResult Session::run() {
   const auto frame_time = std::chrono::nanoseconds(1'000'000'000 / options_.frames_a_second);
   Clock::time_point due = Clock::now();
   host::Moment moment = host::Moment::kNothing;
+  take_script();  // frame 0 may come without a question
   while (moment != host::Moment::kEnded && !time_is_up()) {
     moment = simulation_.wait(kEventsMs);
     pass_output();
@@ -322,7 +323,8 @@ SessionResult Session::run() {
     result.status = port::kFaultStatus;
     result.fault = "it did not end within two seconds of being told to";
   }
-  result.mean_frame_seconds = frames_ == 0 ? 0 : seconds_ / frames_;
+  // Frames that came between two questions cannot be told apart.
+  result.mean_frame_seconds = frames_ == 0 || frames_ != pictures_ ? 0 : seconds_ / frames_;
   const bool was_hidden = uart_in_pane_;
   screen_.reset();
   if (was_hidden) {
