@@ -107,7 +107,6 @@ void Player::take(const InputEvent& event) {
 
 void Player::press(const InputEvent& event) {
   held_button_ = event.button;
-  is_new_press_ = true;
   is_released_ = false;
   ParticleWorld& world = world_->world();
   world.set_pointer(PointerMode::kNone, place_);
@@ -137,10 +136,9 @@ void Player::tick() {
     counts_.ball_hits += step.ball_hits;
     counts_.wall_hits += step.wall_hits;
     counts_.woken += step.woken;
-    is_new_press_ = false;
   }
-  // A click between two steps still works in one; in a world that stands it is gone.
-  if (is_released_ && (!is_new_press_ || is_paused_)) {
+  // Only now, so that a click between two steps works in one; in a world that stands it is gone.
+  if (is_released_) {
     held_button_ = 0;
     is_released_ = false;
     world.set_pointer(PointerMode::kNone, place_);

@@ -74,7 +74,6 @@ class Player {
   std::array<std::int32_t, 6> reach_;
   Vec2i place_;
   std::uint8_t held_button_ = 0;
-  bool is_new_press_ = false;
   bool is_released_ = false;
   Vec2i strong_gravity_;  // what 0 turns on again
   bool is_paused_ = false;
