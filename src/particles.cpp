@@ -48,34 +48,36 @@ Status ParticleWorld::init(Bytes bytes, const ParticleConfig& config, ParticleWo
     return Status::kOutOfMemory;
   }
   uint8_t* at = bytes.data + ((0U - reinterpret_cast<uintptr_t>(bytes.data)) & 3U);
-  const auto take = [&at](size_t size) {
+  // Every size is a multiple of 4, and so is every address.
+  const auto take = [&at](size_t size) -> void* {
     uint8_t* const taken = at;
     at += size;
     return taken;
   };
   ParticleWorld made;
   const size_t field_bytes = bitfield_bytes(config.width, config.height);
-  uint8_t* const field = take(field_bytes);
+  void* const field = take(field_bytes);
   take(particle_detail::kSlackBytes - 4);
-  const Status status = BitField::init({field, field_bytes}, config.width, config.height, &made.field_);
+  const Status status =
+      BitField::init({static_cast<uint8_t*>(field), field_bytes}, config.width, config.height, &made.field_);
   if (status != Status::kOk) {
     return status;
   }
   made.config_ = config;
   made.largest_spawned_ = config.most_diameter;
-  made.words_ = reinterpret_cast<field_detail::Word*>(field);
-  made.balls_ = reinterpret_cast<Ball*>(take(size_t{config.capacity} * sizeof(Ball)));
+  made.words_ = static_cast<field_detail::Word*>(field);
+  made.balls_ = static_cast<Ball*>(take(size_t{config.capacity} * sizeof(Ball)));
   made.cell_shift_ = particle_detail::cell_shift(config.most_diameter);
   const int32_t round = (int32_t{1} << made.cell_shift_) - 1;
   made.cells_across_ = (config.width + round) >> made.cell_shift_;
   made.cells_down_ = (config.height + round) >> made.cell_shift_;
   const size_t cells = particle_detail::cell_count(config.width, config.height, config.most_diameter);
-  made.cells_ = reinterpret_cast<uint32_t*>(take(4 * cells));
+  made.cells_ = static_cast<uint32_t*>(take(4 * cells));
   for (size_t cell = 0; cell < cells; ++cell) {
     made.cells_[cell] = kNoBall;
   }
   const size_t awake_words = particle_detail::awake_words(config.capacity);
-  made.awake_ = reinterpret_cast<uint32_t*>(take(4 * awake_words));
+  made.awake_ = static_cast<uint32_t*>(take(4 * awake_words));
   for (size_t word = 0; word < awake_words; ++word) {
     made.awake_[word] = 0;
   }

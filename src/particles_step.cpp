@@ -10,8 +10,8 @@ using field_detail::Word;
 constexpr int kMostBounces = 4;
 // Crossings of cell boundaries that are looked at together, by one look at the box around them.
 constexpr int32_t kStride = 16;
-// Displacements of up to this many cells on each axis take the short way.
-constexpr int32_t kShortWay = 8;
+// A ball takes the short way when the box around both places is at most this wide, and kBlock high.
+constexpr int32_t kShortWidth = 24;
 
 // In fields larger than this, what a ball is about to look at is unlikely to be in the nearest cache.
 constexpr size_t kFarFieldBytes = 256 * 1024;
@@ -37,46 +37,48 @@ constexpr uint32_t kLines[32] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX,
 
 }  // namespace
 
-// The cells of `box`, at most Window::kSide on a side, without those of `disc` at `own`.
+// The cells of `box`, at most Window::kSide on a side, without those of `disc` at `own`. The box shares cells
+// with the field.
 void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const {
   window->base = box.min;
+  window->end = box.max;
   const int32_t height = box.max.y - box.min.y;
   uint32_t* const out = window->rows;
-  if (box.min.x >= 0 && box.min.y >= 0 && box.max.x <= config_.width && box.max.y <= config_.height) {
-    const int32_t shift = box.min.x & 31;
-    const Word* const column = words_ + (box.min.x >> 5) * config_.height + box.min.y;
-    // Where the box does not reach beyond the column it does not matter what is taken for the next.
-    const bool wide = shift + (box.max.x - box.min.x) > 32;
-    const Word* const beyond = wide ? column + config_.height : column;
-    for (int32_t row = 0; row < height; row += kLanes) {
-      store_rows(out + row,
-                 (load_rows(column + row) >> shift) | ((load_rows(beyond + row) << 1) << (31 - shift)));
-    }
-  } else {
-    for (int32_t row = 0; row < height; ++row) {
-      const int32_t y = box.min.y + row;
-      out[row] = UINT32_MAX;
-      if (y >= 0 && y < config_.height) {
-        out[row] = field_.window(box.min.x, y);
-        const int32_t before = -box.min.x;
-        const int32_t after = config_.width - box.min.x;
-        if (before > 0) {
-          out[row] |= before >= 32 ? UINT32_MAX : (uint32_t{1} << before) - 1;
-        }
-        if (after < 32) {
-          out[row] |= after <= 0 ? UINT32_MAX : UINT32_MAX << after;
-        }
-      }
-    }
+  // Two words a row, of which one may lie beyond a side: it counts for nothing then, and what is outside is
+  // set.
+  const int32_t column = box.min.x >> 5;
+  const int32_t shift = box.min.x & 31;
+  const int32_t after = config_.width - box.min.x;
+  const bool has_next = shift + box.max.x - box.min.x > 32 && column + 1 < field_.columns();
+  const uint32_t first_mask = column < 0 ? 0 : UINT32_MAX;
+  const uint32_t next_mask = has_next ? UINT32_MAX : 0;
+  const uint32_t outside =
+      (box.min.x < 0 ? (uint32_t{1} << -box.min.x) - 1 : 0) | (after < 32 ? UINT32_MAX << after : 0);
+  const int32_t top = most(-box.min.y, 0);
+  const int32_t bottom = least(config_.height - box.min.y, height);
+  const Word* const first = words_ + most(column, 0) * config_.height + box.min.y;
+  const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.min.y : first;
+  for (int32_t row = top; row < bottom; row += kLanes) {
+    store_rows(out + row, ((load_rows(first + row) & first_mask) >> shift) |
+                              (((load_rows(next + row) & next_mask) << 1) << (31 - shift)) | outside);
+  }
+  for (int32_t row = 0; row < top; ++row) {
+    out[row] = UINT32_MAX;
+  }
+  for (int32_t row = bottom; row < height; ++row) {
+    out[row] = UINT32_MAX;
   }
   const int32_t right = own.x - box.min.x;
   const int32_t down = own.y - box.min.y;
-  if (right <= -Window::kSide || right >= Window::kSide) {
-    return;
-  }
-  const int32_t last = least(disc.diameter, height - down);
-  for (int32_t row = most(0, -down); row < last; ++row) {
-    out[down + row] &= ~(right < 0 ? disc.rows[row] >> -right : disc.rows[row] << right);
+  if (right >= 0 && down >= 0 && right < Window::kSide && down < Window::kSide) {
+    for_rows(disc.diameter, [&](int32_t row) {
+      store_rows(out + down + row, load_rows(out + down + row) & ~(load_rows(disc.rows + row) << right));
+    });
+  } else if (right > -Window::kSide && right < Window::kSide) {
+    const int32_t last = least(disc.diameter, height - down);
+    for (int32_t row = most(0, -down); row < last; ++row) {
+      out[down + row] &= ~(right < 0 ? disc.rows[row] >> -right : disc.rows[row] << right);
+    }
   }
 }
 
@@ -124,8 +126,132 @@ void ParticleWorld::advance_all(bool last) {
   }
 }
 
+namespace {
+
+// A disc of the field that goes from one place to another, both in a box of at most 31 x kBlock cells that
+// lies in the field. Rows and shifts are those of the box.
+struct Shift {
+  Word* column;          // the box's first row, in the column of words of its left edge
+  Word* beyond;          // and in the one after that, for `wide`
+  const uint32_t* own;   // the disc's rows where it is, from the box's first row on
+  const uint32_t* next;  // and where it goes
+  int32_t own_right;     // how far right in the box it is
+  int32_t next_right;    // and where it goes
+  int32_t right;         // of the box in its column
+  int32_t height;        // of the box
+  bool wide;             // the box reaches into the column after
+
+  // `low` is the lesser of both corners on each axis, `way` from one to the other.
+  Shift(Word* words, int32_t field_height, const DiscStamp& disc, Vec2i from, Vec2i low, Vec2i way) {
+    column = words + (low.x >> 5) * field_height + low.y;
+    beyond = column + field_height;
+    own = disc.rows + (low.y - from.y);
+    next = own - way.y;
+    own_right = from.x - low.x;
+    next_right = own_right + way.x;
+    right = low.x & 31;
+    height = disc.diameter + (from.y - low.y) * 2 + way.y;
+    wide = right + own_right + next_right + disc.diameter > 32;  // one of the two is 0
+  }
+  // The cells that differ.
+  Rows changed(int32_t row) const {
+    return (load_rows(own + row) << own_right) ^ (load_rows(next + row) << next_right);
+  }
+};
+
+// The cells that a disc may cover on any way from its place to the next, in the rows of a Shift, without its
+// own. Where it goes no further than its outermost rows are long, that is its first and last place, moved
+// together by the way across: the box with the disc's own round corners.
+struct RoundSweep {
+  int32_t across;
+  Rows operator()(const Shift& shift, int32_t row) const {
+    const Rows own = load_rows(shift.own + row);
+    const Rows either = own | load_rows(shift.next + row);
+    return (either | (either << across)) & ~(own << shift.own_right);
+  }
+};
+// Else it is all of the box.
+struct BoxSweep {
+  const uint32_t* lines;
+  uint32_t columns;
+  Rows operator()(const Shift& shift, int32_t row) const {
+    return load_rows(lines + row) & columns & ~(load_rows(shift.own + row) << shift.own_right);
+  }
+};
+
+// Does `visit(0)`, `visit(1)` and so on for each four of 12 or 16 rows: a loop that the compiler cannot leave
+// one.
+template <int32_t kMostRows, class Visit>
+__attribute__((always_inline)) inline void for_blocks(Visit visit) {
+  visit(0);
+  visit(1);
+  visit(2);
+  if constexpr (kMostRows > 12) {
+    visit(3);
+  }
+}
+
+// Puts the disc elsewhere when nothing is in its sweep; says whether it did. kWide as shift.wide; kMostRows
+// no less than shift.height.
+template <bool kWide, int32_t kMostRows, class Sweep>
+__attribute__((always_inline)) inline bool put_where_free(const Shift& shift, const Sweep& sweep) {
+  const int32_t back = 32 - shift.right;
+  Rows found{};
+  if constexpr (kLanes > 1) {
+    // The new rows wait in registers for what is found.
+    Rows low[4];
+    Rows high[4];
+    for_blocks<kMostRows>([&](int32_t i) __attribute__((always_inline)) {
+      const int32_t row = i * kLanes;
+      const Rows swept = sweep(shift, row);
+      const Rows changed = shift.changed(row);
+      const Rows cells = load_rows(shift.column + row);
+      found |= cells & (swept << shift.right);
+      low[i] = cells ^ (changed << shift.right);
+      if constexpr (kWide) {
+        const Rows cells_beyond = load_rows(shift.beyond + row);
+        found |= cells_beyond & (swept >> back);
+        high[i] = cells_beyond ^ (changed >> back);
+      }
+    });
+    if (any_of(found)) {
+      return false;
+    }
+    for_blocks<kMostRows>([&](int32_t i) __attribute__((always_inline)) {
+      store_rows(shift.column + i * kLanes, low[i]);
+    });
+    if constexpr (kWide) {
+      // After those, some of which may be the same words, where the field is less high than these rows.
+      for_blocks<kMostRows>([&](int32_t i) __attribute__((always_inline)) {
+        store_rows(shift.beyond + i * kLanes, high[i]);
+      });
+    }
+    return true;
+  }
+  for (int32_t row = 0; row < shift.height; ++row) {
+    const Rows swept = sweep(shift, row);
+    found |= load_rows(shift.column + row) & (swept << shift.right);
+    if constexpr (kWide) {
+      found |= load_rows(shift.beyond + row) & (swept >> back);
+    }
+  }
+  if (any_of(found)) {
+    return false;
+  }
+  for (int32_t row = 0; row < shift.height; ++row) {
+    const Rows changed = shift.changed(row);
+    store_rows(shift.column + row, load_rows(shift.column + row) ^ (changed << shift.right));
+    if constexpr (kWide) {
+      store_rows(shift.beyond + row, load_rows(shift.beyond + row) ^ (changed >> back));
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 template <bool kPulled>
-inline void ParticleWorld::advance(uint32_t id) {
+__attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   Ball& ball = balls_[id];
   if (kPulled) {
     ball.flags = static_cast<uint8_t>(ball.flags & ~kGrounded);
@@ -140,110 +266,60 @@ inline void ParticleWorld::advance(uint32_t id) {
   }
   ++counters_.moves;
   const Vec2i start{ball.x, ball.y};
-  const Vec2i end{start.x + way.x, start.y + way.y};
+  Vec2i end{start.x + way.x, start.y + way.y};
   const int32_t diameter = ball.diameter;
   const Vec2i from{disc_corner(start.x, diameter), disc_corner(start.y, diameter)};
-  const Vec2i to{disc_corner(end.x, diameter), disc_corner(end.y, diameter)};
-  if (from == to) {
-    ball.x = end.x;
-    ball.y = end.y;
-  } else {
+  Vec2i gone{disc_corner(end.x, diameter) - from.x, disc_corner(end.y, diameter) - from.y};
+  if ((gone.x | gone.y) != 0) {
+    const Vec2i back{gone.x & (gone.x >> 31), gone.y & (gone.y >> 31)};
+    const Vec2i low{from.x + back.x, from.y + back.y};
+    const int32_t across = gone.x - 2 * back.x;
+    const int32_t down = gone.y - 2 * back.y;
+    const int32_t width = across + diameter;
+    const int32_t height = down + diameter;
     const DiscStamp disc = small_disc(diameter);
-    const CellBox box{{least(from.x, to.x), least(from.y, to.y)},
-                      {most(from.x, to.x) + diameter, most(from.y, to.y) + diameter}};
-    const int32_t width = box.max.x - box.min.x;
-    const int32_t height = box.max.y - box.min.y;
-    Window window;
-    ++counters_.mask_tests;
-    const bool loaded = width <= kBlock + kShortWay && height <= kBlock && (box.min.x | box.min.y) >= 0 &&
-                        box.max.x <= config_.width && box.max.y <= config_.height;
     bool made = false;
-    if (loaded) {
-      // What the disc could cover on any way from corner to corner: where that holds nothing but the ball,
-      // the ball is simply put elsewhere.
-      window.base = box.min;
-      const int32_t shift = box.min.x & 31;
-      const int32_t back = 32 - shift;
-      Word* const column = words_ + (box.min.x >> 5) * config_.height + box.min.y;
-      Word* const beyond = column + config_.height;
-      const bool wide = shift + width > 32;
-      const uint32_t* const own = disc.rows + (box.min.y - from.y);
-      const uint32_t* const next = disc.rows + (box.min.y - to.y);
-      const int32_t own_shift = from.x - box.min.x;
-      const int32_t next_shift = to.x - box.min.x;
-      Rows found{};
-      const auto look = [&](auto&& reach_of) {
-        if (wide) {
-          for_rows(height, [&](int32_t row) {
-            const Rows cells = ((load_rows(column + row) >> shift) | (load_rows(beyond + row) << back)) &
-                               ~(load_rows(own + row) << own_shift);
-            store_rows(window.rows + row, cells);
-            found |= cells & reach_of(row);
-          });
-        } else {
-          for_rows(height, [&](int32_t row) {
-            const Rows cells = (load_rows(column + row) >> shift) & ~(load_rows(own + row) << own_shift);
-            store_rows(window.rows + row, cells);
-            found |= cells & reach_of(row);
-          });
-        }
-      };
-      // Where it goes no further than its outermost rows are long, that is its first and last place, moved
-      // together by the way across: the box with the disc's own round corners.
-      const int32_t across = width - diameter;
+    if ((low.x | low.y | (config_.width - width - low.x) | (config_.height - height - low.y) |
+         (kShortWidth - width) | (kBlock - height)) >= 0) {
+      ++counters_.mask_tests;
+      const Shift shift(words_, config_.height, disc, from, low, gone);
       const int32_t round = static_cast<int32_t>(bits::popcount32(disc.rows[0]));
-      if (across <= round && height - diameter <= round) {
-        look([&](int32_t row) {
-          const Rows either = load_rows(own + row) | load_rows(next + row);
-          return either | (either << across);
-        });
-      } else {
-        const uint32_t* const lines = kLines + kBlock - height;
-        const uint32_t columns = (uint32_t{1} << width) - 1;
-        look([&](int32_t row) { return load_rows(lines + row) & columns; });
-      }
-      if (any_of(found) == 0) {
-        for_rows(height, [&](int32_t row) {
-          const Rows clear = (load_rows(own + row) << own_shift) << shift;
-          const Rows set = (load_rows(next + row) << next_shift) << shift;
-          store_rows(column + row, (load_rows(column + row) & ~clear) | set);
-        });
-        if (wide) {
-          for_rows(height, [&](int32_t row) {
-            const Rows clear = (load_rows(own + row) << own_shift) >> back;
-            const Rows set = (load_rows(next + row) << next_shift) >> back;
-            store_rows(beyond + row, (load_rows(beyond + row) & ~clear) | set);
-          });
+      if (across <= round && down <= round) {
+        const RoundSweep sweep{across};
+        if (kLanes > 1 && height <= 12) {
+          made =
+              shift.wide ? put_where_free<true, 12>(shift, sweep) : put_where_free<false, 12>(shift, sweep);
+        } else {
+          made =
+              shift.wide ? put_where_free<true, 16>(shift, sweep) : put_where_free<false, 16>(shift, sweep);
         }
-        ball.x = end.x;
-        ball.y = end.y;
-        made = true;
+      } else {
+        const BoxSweep sweep{kLines + kBlock - height, (uint32_t{1} << width) - 1};
+        made = shift.wide ? put_where_free<true, 16>(shift, sweep) : put_where_free<false, 16>(shift, sweep);
       }
     }
     if (!made) {
-      trace(id, way, from, loaded, &window);
-      const Vec2i corner = corner_of(ball);
-      if (corner != from) {
-        field_.clear_inside(disc, from);
-        field_.set_inside(disc, corner);
-      }
+      trace(id, way, from);
+      end = {ball.x, ball.y};
+      gone = {disc_corner(end.x, diameter) - from.x, disc_corner(end.y, diameter) - from.y};
     }
   }
+  ball.x = end.x;
+  ball.y = end.y;
   // Both cells as one difference: the coordinates of a cell are what stands above its side.
   const int32_t in_cell = 16 + cell_shift_;
-  if ((((ball.x ^ start.x) | (ball.y ^ start.y)) >> in_cell) != 0) {
-    relink(id, cell_of(start.x, start.y), cell_of(ball.x, ball.y));
+  if ((((end.x ^ start.x) | (end.y ^ start.y)) >> in_cell) != 0) {
+    relink(id, cell_of(start.x, start.y), cell_of(end.x, end.y));
   }
   if (kPulled) {
-    const Vec2i corner = corner_of(ball);
-    if (corner != from) {
+    if ((gone.x | gone.y) != 0) {
       const auto add = [](int8_t* sum, int32_t cells) {
         *sum = static_cast<int8_t>(least(most(*sum + cells, -100), 100));
       };
-      add(&ball.near_x, corner.x - from.x);
-      add(&ball.near_y, corner.y - from.y);
-      add(&ball.far_x, corner.x - from.x);
-      add(&ball.far_y, corner.y - from.y);
+      add(&ball.near_x, gone.x);
+      add(&ball.near_y, gone.y);
+      add(&ball.far_x, gone.x);
+      add(&ball.far_y, gone.y);
       if ((ball.flags & kSupports) != 0) {
         ball.flags = static_cast<uint8_t>(ball.flags & ~kSupports);
         support_left({from, {from.x + diameter, from.y + diameter}}, ball.confined < kStillSteps);
@@ -252,16 +328,17 @@ inline void ParticleWorld::advance(uint32_t id) {
   }
 }
 
-// The way of a ball whose cells in the field stay at `own` meanwhile, with its bounces. With `loaded`, the
-// window holds the box around all of the way and something is in that.
-void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool loaded, Window* window) {
+// The way of a ball with its bounces, where something may be in it. The ball's cells in the field stay at
+// `own`, its corner, until the end.
+void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
   Ball& ball = balls_[id];
+  Window window;
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
-    const Blocked blocked = walk(&ball, way, own, loaded && bounce == 0, window);
+    const Blocked blocked = walk(&ball, way, own, bounce == 0, &window);
     if (blocked.axes == 0) {
-      return;
+      break;
     }
-    collide(id, blocked, *window, own);
+    collide(id, blocked, window, own);
     const auto rest_of = [&blocked, this](int32_t velocity) {
       const int32_t whole = displacement(velocity);
       const uint64_t part = (uint64_t{magnitude(whole)} * blocked.left_q16) >> 16;
@@ -278,101 +355,141 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool loaded, Window
       way.y = 0;
     }
     if ((way.x | way.y) == 0) {
-      return;
+      break;
     }
+  }
+  const Vec2i corner = corner_of(ball);
+  if (corner == own) {
+    return;
+  }
+  const DiscStamp disc = small_disc(ball.diameter);
+  const Vec2i low{least(corner.x, own.x), least(corner.y, own.y)};
+  if (most(corner.x, own.x) - low.x + disc.diameter > kShortWidth ||
+      most(corner.y, own.y) - low.y + disc.diameter > kBlock) {
+    field_.clear_inside(disc, own);
+    field_.set_inside(disc, corner);
+    return;
+  }
+  const Shift shift(words_, config_.height, disc, own, low, {corner.x - own.x, corner.y - own.y});
+  for_rows(shift.height, [&](int32_t row) {
+    store_rows(shift.column + row, load_rows(shift.column + row) ^ (shift.changed(row) << shift.right));
+  });
+  if (shift.wide) {
+    for_rows(shift.height, [&](int32_t row) {
+      store_rows(shift.beyond + row,
+                 load_rows(shift.beyond + row) ^ (shift.changed(row) >> (32 - shift.right)));
+    });
   }
 }
 
 // Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
 // between cells are crossed in their exact order along the line; both at once where it goes through a corner.
-ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool loaded, Window* window) {
+// `first`: the window is not loaded yet.
+ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk,
+                                           Window* window) {
   const DiscStamp disc = small_disc(ball->diameter);
   Blocked blocked;
   Vec2i corner = corner_of(*ball);
+  const Vec2i start{ball->x, ball->y};
+  ball->x += way.x;
+  ball->y += way.y;
+  const Vec2i goal = corner_of(*ball);
+  // Boundaries still to be crossed. As a centre never lies on one, they are as many as the corner goes cells.
+  Vec2i left{static_cast<int32_t>(magnitude(goal.x - corner.x)),
+             static_cast<int32_t>(magnitude(goal.y - corner.y))};
+  if ((left.x | left.y) == 0) {
+    return blocked;
+  }
+  const Vec2i crossings = left;
   const Vec2i sign{sign_of(way.x), sign_of(way.y)};
-  const int32_t length[2] = {static_cast<int32_t>(magnitude(way.x)), static_cast<int32_t>(magnitude(way.y))};
-  const int32_t start[2] = {ball->x, ball->y};
-  // Distance to the first boundary, odd, and crossings on the way.
-  const int32_t half = ball->diameter * 32768;
-  const int32_t first[2] = {32768 - sign.x * (ball->x - corner.x * 65536 - half),
-                            32768 - sign.y * (ball->y - corner.y * 65536 - half)};
-  const int32_t crossings[2] = {(length[0] - first[0] + 65536) >> 16, (length[1] - first[1] + 65536) >> 16};
-  int32_t done[2] = {0, 0};
+  const Vec2i length{static_cast<int32_t>(magnitude(way.x)), static_cast<int32_t>(magnitude(way.y))};
+  // Distance to the first boundary, odd.
+  const int32_t half = disc.diameter * 32768;
+  const Vec2i first{32768 - sign.x * (start.x - corner.x * 65536 - half),
+                    32768 - sign.y * (start.y - corner.y * 65536 - half)};
   // Positive: the next boundary across y comes first.
-  int64_t order = int64_t{first[0]} * length[1] - int64_t{first[1]} * length[0];
-  const int64_t order_x = int64_t{length[1]} << 16;
-  const int64_t order_y = int64_t{length[0]} << 16;
+  int64_t order = int64_t{first.x} * length.y - int64_t{first.y} * length.x;
+  const int64_t order_x = int64_t{length.y} << 16;
+  const int64_t order_y = int64_t{length.x} << 16;
   // Which boundary comes next, as bits of Blocked.
   const auto next_axes = [&]() -> uint32_t {
-    if (done[0] == crossings[0]) {
+    if (left.x == 0) {
       return Blocked::kY;
     }
-    if (done[1] == crossings[1]) {
+    if (left.y == 0) {
       return Blocked::kX;
     }
     return order < 0 ? Blocked::kX : order > 0 ? Blocked::kY : Blocked::kX | Blocked::kY;
   };
   const auto take = [&](uint32_t axes) {
     if ((axes & Blocked::kX) != 0) {
-      ++done[0];
+      --left.x;
       order += order_x;
       corner.x += sign.x;
     }
     if ((axes & Blocked::kY) != 0) {
-      ++done[1];
+      --left.y;
       order -= order_y;
       corner.y += sign.y;
     }
   };
-  int32_t careful = loaded ? INT32_MAX : 0;  // crossings to be looked at one by one
   const auto free_at = [&](Vec2i place) {
     ++counters_.mask_tests;
     return window->is_free(disc, place);
   };
-  while (done[0] < crossings[0] || done[1] < crossings[1]) {
+  int32_t careful = 0;  // crossings to be looked at one by one
+  uint32_t axes = 0;
+  for (;;) {
     if (careful == 0) {
       // The next stretch of the way, at one look; when something is there, it is gone again cell by cell.
       careful = kStride;
-      const int32_t done_before[2] = {done[0], done[1]};
+      const Vec2i left_before = left;
       const Vec2i corner_before = corner;
       const int64_t order_before = order;
-      for (int32_t i = 0; i < kStride && (done[0] < crossings[0] || done[1] < crossings[1]); ++i) {
-        take(next_axes());
+      if (left.x + left.y <= kStride) {
+        corner = goal;
+        left = {0, 0};
+      } else {
+        for (int32_t i = 0; i < kStride && (left.x | left.y) != 0; ++i) {
+          take(next_axes());
+        }
       }
-      ++counters_.mask_tests;
       const CellBox box{
           {least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
           {most(corner.x, corner_before.x) + disc.diameter, most(corner.y, corner_before.y) + disc.diameter}};
-      load_window(box, disc, own, window);
-      uint32_t found = 0;
-      for (int32_t row = 0; row < box.max.y - box.min.y; ++row) {
-        found |= window->rows[row];
+      const Vec2i size{box.max.x - box.min.x, box.max.y - box.min.y};
+      if (first_walk || !window->covers(box)) {
+        // With room to turn round.
+        const int32_t margin =
+            least(most(size.x, size.y) - disc.diameter + 1, (Window::kSide - most(size.x, size.y)) >> 1);
+        load_window({{box.min.x - margin, box.min.y - margin}, {box.max.x + margin, box.max.y + margin}},
+                    disc, own, window);
       }
-      if ((found << (32 - (box.max.x - box.min.x))) == 0) {
+      const int32_t stretch = left_before.x + left_before.y - left.x - left.y;
+      if (stretch > 2 && !window->any_in(box)) {
+        if ((left.x | left.y) == 0) {
+          return blocked;
+        }
         careful = 0;
         continue;
       }
-      done[0] = done_before[0];
-      done[1] = done_before[1];
+      left = left_before;
       corner = corner_before;
       order = order_before;
     }
     --careful;
-    const uint32_t axes = next_axes();
-    if (axes != (Blocked::kX | Blocked::kY)) {
-      const Vec2i place{corner.x + ((axes & Blocked::kX) != 0 ? sign.x : 0),
-                        corner.y + ((axes & Blocked::kY) != 0 ? sign.y : 0)};
-      if (free_at(place)) {
-        take(axes);
-        continue;
-      }
-      blocked.axes = axes;
+    axes = next_axes();
+    if (!free_at({corner.x + ((axes & Blocked::kX) != 0 ? sign.x : 0),
+                  corner.y + ((axes & Blocked::kY) != 0 ? sign.y : 0)})) {
       break;
     }
-    if (free_at({corner.x + sign.x, corner.y + sign.y})) {
-      take(axes);
-      continue;
+    take(axes);
+    if ((left.x | left.y) == 0) {
+      return blocked;
     }
+  }
+  blocked.axes = axes;
+  if (axes == (Blocked::kX | Blocked::kY)) {
     const bool free_x = free_at({corner.x + sign.x, corner.y});
     const bool free_y = free_at({corner.x, corner.y + sign.y});
     if (free_x && free_y) {
@@ -383,26 +500,18 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
     } else if (free_y) {
       take(Blocked::kY);
       blocked.axes = Blocked::kX;
-    } else {
-      blocked.axes = axes;
     }
-    break;
-  }
-  if (blocked.axes == 0) {
-    ball->x += way.x;
-    ball->y += way.y;
-    return blocked;
   }
   // How far it came: to the boundary that it could not cross.
   const int axis = (blocked.axes & (Blocked::kX | Blocked::kCorner)) != 0 ? 0 : 1;
-  const uint32_t reached = static_cast<uint32_t>(first[axis]) + (static_cast<uint32_t>(done[axis]) << 16);
+  const uint32_t reached =
+      static_cast<uint32_t>(first[axis]) + (static_cast<uint32_t>(crossings[axis] - left[axis]) << 16);
   const int excess = most(bits::bit_length(static_cast<uint32_t>(length[axis])) - 16, 0);
   const uint32_t came_q16 = ((reached >> excess) << 16) / (static_cast<uint32_t>(length[axis]) >> excess);
   blocked.left_q16 = 65536U - came_q16;
   blocked.sign = sign;
   blocked.corner = corner;
-  int32_t* const position[2] = {&ball->x, &ball->y};
-  for (int a = 0; a < 2; ++a) {
+  const auto place = [&](int a) {
     // On the way, but within the cell in which the disc stands, and short of a boundary.
     const int32_t middle = corner[a] * 65536 + half;
     const uint32_t part =
@@ -410,8 +519,10 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
         ~(static_cast<uint32_t>(unit_) - 1);
     const int32_t reach = 32768 - (unit_ >> 1);
     const int32_t offset = start[a] + sign[a] * static_cast<int32_t>(part) - middle;
-    *position[a] = middle + least(most(offset, -reach), reach);
-  }
+    return middle + least(most(offset, -reach), reach);
+  };
+  ball->x = place(0);
+  ball->y = place(1);
   return blocked;
 }
 

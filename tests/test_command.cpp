@@ -51,6 +51,11 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
       {"sim",
        {"--board", "--app", "--coarsen", "--display", "--theme", "--scale", "--fps", "--frames", "--shot",
         "--check", "--record", "--keys", "--quiet", "SCENE", "--depth", "--as-voxels", "BUTTON", "TEXT"}},
+      {"particles",
+       {"--size",   "--count",  "--min-size", "--max-size",      "--bounciness", "--gravity",     "--speed",
+        "--seed",   "--bodies", "--substeps", "--subpixel-bits", "--steps",      "--view",        "--eps",
+        "--fps",    "--input",  "TICK",       "--record-input",  "--state",      "--field",       "--output",
+        "--record", "--stats",  "--quiet",    "--figures",       "asleep",       "steps a second"}},
       {"bake", {"SCENE",     "--depth", "--as-voxels",      "--z-up",       "--output", "--memory", "--board",
                 "--coarsen", "--name",  "--size",           "--projection", "--eye",    "--target", "--up",
                 "--fov",     "--span",  "--direction-bits", "--quiet",      "--stats",  ".oct",     ".h"}},
@@ -105,7 +110,7 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
     check_refused({"render", "spheres", "-o", "picture.ppm", option, "1"}, 2,
                   {std::string("\"") + option + "\""});
   }
-  for (const char* subcommand : {"memory", "accuracy", "effects", "particles"}) {
+  for (const char* subcommand : {"memory", "accuracy", "effects"}) {
     check_refused({subcommand}, 2, {std::string("\"") + subcommand + "\""});
   }
 }

@@ -296,8 +296,8 @@ class ParticleWorld {
   void advance_all(bool last);
   template <bool kPulled>
   void advance(uint32_t id);
-  void trace(uint32_t id, Vec2i way, Vec2i own, bool loaded, Window* window);
-  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool loaded, Window* window);
+  void trace(uint32_t id, Vec2i way, Vec2i own);
+  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, Window* window);
   void load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const;
   int32_t displacement(int32_t velocity) const;
 

@@ -1,6 +1,7 @@
 #include "host/canvas.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/font.h"
 
@@ -35,7 +36,8 @@ void draw_magnified(Canvas* canvas, const Placement& placement, const Picture& p
   }
 }
 
-// Each screen pixel is the mean of the picture's pixels that it covers.
+// Each screen pixel has the mean of the light of the picture's pixels that it covers. A channel's value
+// stands for about its square in light, so that a bright dot on black stays bright.
 void draw_reduced(Canvas* canvas, const Placement& placement, const Picture& picture, const Look& look) {
   const auto edge = [](std::int32_t i, std::int32_t from, std::int32_t to) {
     return static_cast<std::int32_t>(static_cast<std::int64_t>(i) * from / to);
@@ -47,20 +49,20 @@ void draw_reduced(Canvas* canvas, const Placement& placement, const Picture& pic
     for (std::int32_t x = 0; x < placement.width_px; ++x) {
       const std::int32_t x0 = edge(x, picture.width_px, placement.width_px);
       const std::int32_t x1 = std::max(x0 + 1, edge(x + 1, picture.width_px, placement.width_px));
-      unsigned r = 0;
-      unsigned g = 0;
-      unsigned b = 0;
+      std::uint64_t r = 0;
+      std::uint64_t g = 0;
+      std::uint64_t b = 0;
       for (std::int32_t v = y0; v < y1; ++v) {
         for (std::int32_t u = x0; u < x1; ++u) {
           const Rgb8 pixel = pixel_of(picture, u, v);
-          r += pixel.r;
-          g += pixel.g;
-          b += pixel.b;
+          r += unsigned{pixel.r} * pixel.r;
+          g += unsigned{pixel.g} * pixel.g;
+          b += unsigned{pixel.b} * pixel.b;
         }
       }
       const auto count = static_cast<unsigned>((y1 - y0) * (x1 - x0));
-      const auto mean = [count](unsigned sum) {
-        return static_cast<std::uint8_t>((sum + count / 2) / count);
+      const auto mean = [count](std::uint64_t sum) {
+        return static_cast<std::uint8_t>(std::lround(std::sqrt(static_cast<double>(sum) / count)));
       };
       to[x] = looks(look, {mean(r), mean(g), mean(b)});
     }

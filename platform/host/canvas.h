@@ -46,7 +46,7 @@ Placement place(std::int32_t picture_width_px, std::int32_t picture_height_px, s
 std::int32_t to_picture(std::int32_t screen, std::int32_t first, std::int32_t screen_size,
                         std::int32_t picture_size);
 
-/// Draws the picture with its look. One that is made smaller is averaged over the pixels that become one.
+/// Draws the picture with its look. The light of pixels that become one is averaged.
 void draw_picture(Canvas* canvas, const Placement& placement, const Picture& picture, const Look& look);
 
 inline constexpr std::int32_t kGlyphWidthPx = 6;    ///< with the gap to the next

@@ -103,7 +103,8 @@ struct ScreenOptions {
   std::int32_t height_px = 0;
   Look look;               ///< how a pixel is drawn
   std::int32_t scale = 0;  ///< screen pixels a picture pixel; 0: as fits. A terminal goes by its cells.
-  std::int32_t status_lines = 0;  ///< lines of text to keep room for below the picture
+  std::int32_t status_lines = 0;     ///< lines of text to keep room for below the picture
+  std::int32_t status_columns = 80;  ///< of its longest line: a window's text is as large as that allows
 };
 
 class Screen {

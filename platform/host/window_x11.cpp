@@ -110,7 +110,10 @@ class Window final : public Screen {
   const char* name() const override { return "window"; }
 
  private:
-  std::int32_t text_scale() const { return canvas_.width_px >= 900 ? 2 : 1; }
+  std::int32_t text_scale() const {
+    return canvas_.width_px >= 2 * kGlyphWidthPx * status_columns_ + 2 * kMarginPx ? 2 : 1;
+  }
+  std::int32_t overlay_scale() const;
   std::int32_t panel_px() const {
     return status_lines_ == 0 ? 0 : status_lines_ * kGlyphHeightPx * text_scale() + 2 * kMarginPx;
   }
@@ -138,6 +141,7 @@ class Window final : public Screen {
   Look look_;
   std::int32_t fixed_scale_ = 0;
   std::int32_t status_lines_ = 0;
+  std::int32_t status_columns_ = 0;
   std::string status_;
   std::string overlay_;
 
@@ -159,6 +163,7 @@ Window::Window(const ScreenOptions& options)
     : look_(options.look),
       fixed_scale_(options.scale),
       status_lines_(options.status_lines),
+      status_columns_(options.status_columns),
       picture_width_px_(options.width_px),
       picture_height_px_(options.height_px) {
   display_ = XOpenDisplay(nullptr);
@@ -270,6 +275,14 @@ void Window::resize(std::int32_t width, std::int32_t height) {
   compose();
 }
 
+// Twice as large where there is room for it.
+std::int32_t Window::overlay_scale() const {
+  const TextSize size = text_size(overlay_);
+  const bool fits = 2 * (size.columns * kGlyphWidthPx + kMarginPx) <= canvas_.width_px &&
+                    2 * (size.lines * kGlyphHeightPx + kMarginPx) <= height_px();
+  return fits ? 2 : 1;
+}
+
 void Window::compose() {
   const std::int32_t room = height_px();
   canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
@@ -277,8 +290,8 @@ void Window::compose() {
   if (!rgb_.empty()) {
     draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
   }
-  const std::int32_t scale = text_scale();
   if (!overlay_.empty()) {
+    const std::int32_t scale = overlay_scale();
     const TextSize size = text_size(overlay_);
     const std::int32_t x = placement_.x_px + kMarginPx;
     const std::int32_t y = placement_.y_px + kMarginPx;
@@ -288,7 +301,7 @@ void Window::compose() {
   }
   if (status_lines_ > 0) {
     canvas_.fill(0, room, canvas_.width_px, panel_px(), kPanel);
-    draw_text(&canvas_, kMarginPx, room + kMarginPx, scale, kPanelText, status_);
+    draw_text(&canvas_, kMarginPx, room + kMarginPx, text_scale(), kPanelText, status_);
   }
   needs_sending_ = true;
 }
