@@ -111,6 +111,11 @@ struct Course {
   Camera::Vec3Q32 step_y;
 };
 
+// The layer of a voxel in its brick, from the address of its halfword: bricks lie at multiples of 8.
+uint32_t row_of(const uint8_t* at) {
+  return static_cast<uint32_t>(reinterpret_cast<size_t>(at)) & 6U;
+}
+
 // How far the voxel's place on an axis is shifted, see trace_one.
 constexpr int kPlaceShift[3] = {0, 2, 1};
 template <int kAxis>
@@ -255,17 +260,17 @@ template <int kC>
   // Where the voxel lies: x and y as a shift of a halfword; z in the address of the halfword, bricks being at
   // multiples of 8.
   uint32_t shift = in_a | (kB == 2 ? course.first : in_b);
-  size_t at = kB == 2 ? in_b : course.first;
+  const uint8_t* at = course.bricks + (kB == 2 ? in_b : course.first);
   int axis = kC;
 
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
-  const auto solid = [&]() { return (*reinterpret_cast<const Half*>(at) >> shift & 1U) != 0; };
+  const auto solid = [&]() { return (half_at(at, 0) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
   const auto step = [&]<int kAxis>() {
-    const uint32_t own = (kAxis == 2 ? static_cast<uint32_t>(at) : shift) & kField<kAxis>;
+    const uint32_t own = kAxis == 2 ? row_of(at) : shift & kField<kAxis>;
     if (own == course.last[kAxis]) {
       if (kAxis == 2) {
-        at ^= kField<kAxis>;
+        at += 6 - 2 * static_cast<int32_t>(own);
       } else {
         shift ^= kField<kAxis>;
       }
@@ -274,7 +279,7 @@ template <int kC>
       return true;
     }
     if (kAxis == 2) {
-      at += static_cast<size_t>(static_cast<ptrdiff_t>(course.step[kAxis]));
+      at += course.step[kAxis];
     } else {
       shift += static_cast<uint32_t>(course.step[kAxis]);
     }
@@ -298,14 +303,14 @@ enter:  // a brick, by a plane of `axis`
       left &= ~kWaiting;
       number = half_at(course.directory, cell);
     }
-    at = reinterpret_cast<size_t>(course.bricks + 8 * number) + (at & 6U);
+    at = course.bricks + 8 * number + row_of(at);
     if ((left & kInside) != 0 && solid()) {
       return kAsk;
     }
     left &= ~kInside;
     goto entered;
   }
-  at = reinterpret_cast<size_t>(course.bricks + 8 * half_at(course.directory, cell)) + (at & 6U);
+  at = course.bricks + 8 * half_at(course.directory, cell) + row_of(at);
 entered:
   if (solid()) {
     goto hit;
@@ -406,7 +411,7 @@ hit:
       axis = kB;
     }
   }
-  const uint32_t bit = shift + static_cast<uint32_t>(at & 6U) * 8;
+  const uint32_t bit = shift + row_of(at) * 8;
   const uint32_t face = course.face[axis];
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
