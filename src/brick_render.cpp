@@ -112,6 +112,11 @@ struct Course {
   Camera::Vec3Q32 step_y;
 };
 
+// The layer of a voxel in its brick, from the address of its halfword: bricks lie at multiples of 8.
+uint32_t row_of(const uint8_t* at) {
+  return static_cast<uint32_t>(reinterpret_cast<size_t>(at)) & 6U;
+}
+
 // How far the voxel's place on an axis is shifted, see trace_one.
 constexpr int kPlaceShift[3] = {0, 2, 1};
 template <int kAxis>
@@ -227,11 +232,12 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   return static_cast<int32_t>(ink);
 }
 
-// One ray of direction (d_a, d_b, d_c), mirrored.
-template <int kC>
+// One ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored.
+template <int kC, unsigned kMirrored>
 [[gnu::noinline]] int32_t trace_one(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
   constexpr int kA = kC == 0 ? 1 : 0;
   constexpr int kB = kC == 2 ? 1 : 2;
+  constexpr auto kFlip = [](int axis) { return (kMirrored >> axis & 1U) != 0 ? 3U : 0U; };
   const uint32_t den = d_c << 8;
   const uint32_t at_a = static_cast<uint32_t>(course.origin[kA]) * d_c + course.plane * d_a;
   const uint32_t at_b = static_cast<uint32_t>(course.origin[kB]) * d_c + course.plane * d_b;
@@ -251,22 +257,23 @@ template <int kC>
   uint32_t left = course.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
   int32_t cell = course.start + static_cast<int32_t>(cell_a >> 2) * course.stride[kA] +
                  static_cast<int32_t>(cell_b >> 2) * course.stride[kB];
-  const uint32_t in_a = ((cell_a & 3U) ^ course.flip[kA]) << kPlaceShift[kA];
-  const uint32_t in_b = ((cell_b & 3U) ^ course.flip[kB]) << kPlaceShift[kB];
+  const uint32_t in_a = ((cell_a & 3U) ^ kFlip(kA)) << kPlaceShift[kA];
+  const uint32_t in_b = ((cell_b & 3U) ^ kFlip(kB)) << kPlaceShift[kB];
   // Where the voxel lies: x and y as a shift of a halfword; z in the address of the halfword, bricks being at
   // multiples of 8.
   uint32_t shift = in_a | (kB == 2 ? course.first : in_b);
-  size_t at = kB == 2 ? in_b : course.first;
+  const uint8_t* at = course.bricks + (kB == 2 ? in_b : course.first);
   int axis = kC;
 
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
-  const auto solid = [&]() { return (*reinterpret_cast<const Half*>(at) >> shift & 1U) != 0; };
+  const auto solid = [&]() { return (half_at(at, 0) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
   const auto step = [&]<int kAxis>() {
-    const uint32_t own = (kAxis == 2 ? static_cast<uint32_t>(at) : shift) & kField<kAxis>;
-    if (own == course.last[kAxis]) {
+    constexpr int32_t kStep = ((kMirrored >> kAxis & 1U) != 0 ? -1 : 1) * (1 << kPlaceShift[kAxis]);
+    const uint32_t own = kAxis == 2 ? row_of(at) : shift & kField<kAxis>;
+    if (own == ((kMirrored >> kAxis & 1U) != 0 ? 0U : kField<kAxis>)) {
       if (kAxis == 2) {
-        at ^= kField<kAxis>;
+        at += 6 - 2 * static_cast<int32_t>(own);
       } else {
         shift ^= kField<kAxis>;
       }
@@ -275,9 +282,9 @@ template <int kC>
       return true;
     }
     if (kAxis == 2) {
-      at += static_cast<size_t>(static_cast<ptrdiff_t>(course.step[kAxis]));
+      at += kStep;
     } else {
-      shift += static_cast<uint32_t>(course.step[kAxis]);
+      shift += static_cast<uint32_t>(kStep);
     }
     return false;
   };
@@ -299,14 +306,14 @@ enter:  // a brick, by a plane of `axis`
       left &= ~kWaiting;
       number = half_at(course.directory, cell);
     }
-    at = reinterpret_cast<size_t>(course.bricks + 8 * number) + (at & 6U);
+    at = course.bricks + 8 * number + row_of(at);
     if ((left & kInside) != 0 && solid()) {
       return kAsk;
     }
     left &= ~kInside;
     goto entered;
   }
-  at = reinterpret_cast<size_t>(course.bricks + 8 * half_at(course.directory, cell)) + (at & 6U);
+  at = course.bricks + 8 * half_at(course.directory, cell) + row_of(at);
 entered:
   if (solid()) {
     goto hit;
@@ -407,7 +414,7 @@ hit:
       axis = kB;
     }
   }
-  const uint32_t bit = shift + static_cast<uint32_t>(at & 6U) * 8;
+  const uint32_t bit = shift + row_of(at) * 8;
   const uint32_t face = course.face[axis];
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
@@ -421,7 +428,7 @@ hit:
   const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
   const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
   const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
-  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ course.flip[axis])) * Q8::kOne - origin;
+  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ kFlip(axis))) * Q8::kOne - origin;
   return depth_ink(course, axis, distance, axis == kA ? d_a : axis == kB ? d_b : d_c);
 }
 
@@ -680,14 +687,36 @@ int32_t ask(const Frame& frame, int32_t x, int32_t y, RenderCounts* counts) {
   return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
 }
 
+template <int kC>
+int32_t trace_by_signs(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+  switch (course.mirrored) {
+    case 0:
+      return trace_one<kC, 0>(course, d_a, d_b, d_c);
+    case 1:
+      return trace_one<kC, 1>(course, d_a, d_b, d_c);
+    case 2:
+      return trace_one<kC, 2>(course, d_a, d_b, d_c);
+    case 3:
+      return trace_one<kC, 3>(course, d_a, d_b, d_c);
+    case 4:
+      return trace_one<kC, 4>(course, d_a, d_b, d_c);
+    case 5:
+      return trace_one<kC, 5>(course, d_a, d_b, d_c);
+    case 6:
+      return trace_one<kC, 6>(course, d_a, d_b, d_c);
+    default:
+      return trace_one<kC, 7>(course, d_a, d_b, d_c);
+  }
+}
+
 int32_t trace_along(const Course& course, const Vec3i& d) {
   const auto size = [](int32_t value) { return static_cast<uint32_t>(value < 0 ? -value : value); };
   const uint32_t x = size(d.x);
   const uint32_t y = size(d.y);
   const uint32_t z = size(d.z);
-  return course.c == 0   ? trace_one<0>(course, y, z, x)
-         : course.c == 1 ? trace_one<1>(course, x, z, y)
-                         : trace_one<2>(course, x, y, z);
+  return course.c == 0   ? trace_by_signs<0>(course, y, z, x)
+         : course.c == 1 ? trace_by_signs<1>(course, x, z, y)
+                         : trace_by_signs<2>(course, x, y, z);
 }
 
 unsigned signs_of(const Vec3i& d) {
@@ -709,7 +738,7 @@ constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;
 
 // A quad with rays of one course: the mirrored affine function `from` (and a half) is positive all over it,
 // so rounding is cutting off. Returns a negative number when any ink is none.
-template <int kC>
+template <int kC, unsigned kMirrored>
 [[gnu::noinline]] int32_t trace_quad(const Course& course, const Camera::Vec3Q32& from, int32_t across,
                                      int32_t down, int32_t* inks) {
   constexpr int kA = kC == 0 ? 1 : 0;
@@ -722,8 +751,9 @@ template <int kC>
     uint64_t b = row[kB];
     uint64_t c = row[kC];
     for (const int32_t* end = inks + across; inks != end; ++inks) {
-      const int32_t ink = trace_one<kC>(course, static_cast<uint32_t>(a >> 32),
-                                        static_cast<uint32_t>(b >> 32), static_cast<uint32_t>(c >> 32));
+      const int32_t ink =
+          trace_one<kC, kMirrored>(course, static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b >> 32),
+                                   static_cast<uint32_t>(c >> 32));
       *inks = ink;
       all |= ink;
       a += static_cast<uint64_t>(course.step_x[kA]);
@@ -735,6 +765,29 @@ template <int kC>
     row.z += static_cast<uint64_t>(course.step_y.z);
   }
   return all;
+}
+
+template <int kC>
+int32_t trace_quad_by_signs(const Course& course, const Camera::Vec3Q32& from, int32_t across, int32_t down,
+                            int32_t* inks) {
+  switch (course.mirrored) {
+    case 0:
+      return trace_quad<kC, 0>(course, from, across, down, inks);
+    case 1:
+      return trace_quad<kC, 1>(course, from, across, down, inks);
+    case 2:
+      return trace_quad<kC, 2>(course, from, across, down, inks);
+    case 3:
+      return trace_quad<kC, 3>(course, from, across, down, inks);
+    case 4:
+      return trace_quad<kC, 4>(course, from, across, down, inks);
+    case 5:
+      return trace_quad<kC, 5>(course, from, across, down, inks);
+    case 6:
+      return trace_quad<kC, 6>(course, from, across, down, inks);
+    default:
+      return trace_quad<kC, 7>(course, from, across, down, inks);
+  }
 }
 
 class Painter {
@@ -817,9 +870,9 @@ class Painter {
       for (int axis = 0; axis < 3; ++axis) {
         from[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
       }
-      const int32_t all = fan.c == 0   ? trace_quad<0>(course_, from, across, down, inks)
-                          : fan.c == 1 ? trace_quad<1>(course_, from, across, down, inks)
-                                       : trace_quad<2>(course_, from, across, down, inks);
+      const int32_t all = fan.c == 0   ? trace_quad_by_signs<0>(course_, from, across, down, inks)
+                          : fan.c == 1 ? trace_quad_by_signs<1>(course_, from, across, down, inks)
+                                       : trace_quad_by_signs<2>(course_, from, across, down, inks);
       if (all < 0) {
         answer(quad, inks);
       }
