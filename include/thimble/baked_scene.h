@@ -2,8 +2,9 @@
 /// A whole scene as bytes: compact tree, palette, camera, and tables that make tracing faster.
 ///
 /// `thimble bake` writes them, as a file (`.oct`) or as a C array for flash (`.h`); a program opens them
-/// where they lie. Nothing is copied or unpacked, no alignment is needed (a brick map wants the bytes to start at a multiple of 8), and the bytes are the same on every
-/// chip. src/FORMAT.md has the layout: a header with a version, a CRC-32 and a list of sections.
+/// where they lie. Nothing is copied or unpacked, no alignment is needed (a brick map wants the bytes to
+/// start at a multiple of 8), and the bytes are the same on every chip. src/FORMAT.md has the layout: a
+/// header with a version, a CRC-32 and a list of sections.
 ///
 /// What it does not do: hold a scene that is still being built (octree.h), or several trees.
 #ifndef THIMBLE_BAKED_SCENE_H

@@ -209,9 +209,10 @@ void add_bake(CLI::App& app) {
   sub->add_flag("--coarsen", command->scene.coarsen,
                 "when it does not fit, merge blocks of voxels until it just does; this only adds solid")
       ->disable_flag_override();
-  sub->add_flag("--brick-map", command->brick_map,
-                "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
-                "as long as all keeps the limit; --board always does")
+  sub->add_flag(
+         "--brick-map", command->brick_map,
+         "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
+         "as long as all keeps the limit; --board always does")
       ->disable_flag_override();
   add_text_option(
       *sub, "--name", "IDENT",

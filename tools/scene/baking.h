@@ -20,7 +20,7 @@ struct BakingOptions {
   /// Add a brick map (brick_map.h), which makes frames on a chip faster, where the world has one and it keeps
   /// the limit.
   bool brick_map = false;
-  std::string name;                          ///< cut off at kMaxNameBytes
+  std::string name;  ///< cut off at kMaxNameBytes
   /// Chooses the camera once the tree is known; without it the scene gets none.
   std::function<SceneCamera(int level, const VoxelBox& bounds)> camera;
 };
