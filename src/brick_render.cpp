@@ -74,10 +74,10 @@ struct Frame {
   Vec3i stride;  // of the directory, in bytes
   Vec3i eye;     // from the box's lowest corner, in 1/256 voxel
   // From a tile's first pixel to the least and greatest of the affine function in whole tiles.
-  Camera::Vec3Q32 tile_low;
-  Camera::Vec3Q32 tile_high;
-  Camera::Vec3Q32 quad_low;
-  Camera::Vec3Q32 quad_high;
+  Vec3i tile_low;
+  Vec3i tile_high;
+  Vec3i quad_low;
+  Vec3i quad_high;
 };
 
 // All that rays have in common whose directions have the same signs and the same fastest axis; where they
@@ -325,10 +325,23 @@ slab:  // from plane to plane of c
   rest_b += go_b;
 between:
   if (!negative(rest_a & rest_b)) {
-    if (negative(rest_a)) {
+    if (static_cast<int32_t>(rest_a) > 0) {
+      if (static_cast<int32_t>(rest_b) > 0) {
+        const uint32_t time_a = rest_a * d_b;
+        const uint32_t time_b = rest_b * d_a;
+        if (time_a < time_b) {
+          goto cross_b;
+        }
+        if (time_a == time_b) {
+          goto tie;
+        }
+      }
+      goto cross_a;
+    }
+    if (static_cast<int32_t>(rest_b) > 0) {
       goto cross_b;
     }
-    goto cross_a;
+    goto tie;
   }
   if (step.template operator()<kC>()) {
     axis = kC;
@@ -340,19 +353,6 @@ between:
   axis = kC;
   goto hit;
 cross_a:
-  if (!negative(rest_b)) {
-    const uint32_t time_a = rest_a * d_b;
-    const uint32_t time_b = rest_b * d_a;
-    if (time_a < time_b) {
-      goto cross_b;
-    }
-    if (time_a == time_b) {
-      goto tie;
-    }
-  }
-  if (rest_a == 0) {
-    goto tie;
-  }
   rest_a -= den;
   axis = kA;
   if (step.template operator()<kA>()) {
@@ -363,9 +363,6 @@ cross_a:
   }
   goto between;
 cross_b:
-  if (rest_b == 0) {
-    goto tie;
-  }
   rest_b -= den;
   axis = kB;
   if (step.template operator()<kB>()) {
@@ -414,7 +411,7 @@ hit:
     }
   }
   const uint32_t bit = shift + row_of(at) * 8;
-  const uint32_t face = course.face[axis];
+  const uint32_t face = static_cast<uint32_t>(2 * axis) + (kMirrored >> axis & 1U);
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
   const Inks::Seen& seen = course.inks->face[Inks::slot(key)];
@@ -439,12 +436,13 @@ struct Fan {
   unsigned mirrored = 0;  // bit a: axis a is, for most
   unsigned mixed = 0;     // bit a: not for all
 
-  // Directions round(value + low) .. round(value + high).
-  Fan(const Camera::Vec3Q32& value, const Camera::Vec3Q32& least, const Camera::Vec3Q32& greatest) {
+  // Directions from value + least to value + greatest (`margins_of`).
+  Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
     int32_t most = -1;
     for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = Camera::round(value[axis] + least[axis]);
-      high[axis] = Camera::round(value[axis] + greatest[axis]);
+      const int32_t at = static_cast<int32_t>(value[axis] >> 16);
+      low[axis] = (at + least[axis]) >> 16;
+      high[axis] = (at + greatest[axis]) >> 16;
       const int32_t sum = low[axis] + high[axis];
       if (sum < 0) {
         mirrored |= 1U << axis;
@@ -966,14 +964,17 @@ class Painter {
   Course course_;
 };
 
-// What the affine function adds over `pixels` columns and rows at least and at most.
-void spans_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Camera::Vec3Q32* low,
-              Camera::Vec3Q32* high) {
+// What rounded directions of a tile lie between, in 16.16 from its first pixel's affine function in 16.16:
+// cut off after adding these, and one unit of 2^-16 either way for what was cut off before.
+void margins_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Vec3i* low, Vec3i* high) {
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t across = affine.step_x[axis] * (across_px - 1);
     const int64_t down = affine.step_y[axis] * (down_px - 1);
-    (*low)[axis] = (across < 0 ? across : 0) + (down < 0 ? down : 0);
-    (*high)[axis] = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+    const int64_t least = (across < 0 ? across : 0) + (down < 0 ? down : 0);
+    const int64_t greatest = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+    // Halves go away from zero: half a unit below may be rounded down.
+    (*low)[axis] = static_cast<int32_t>(least >> 16) + 0x8000 - 1;
+    (*high)[axis] = static_cast<int32_t>(greatest >> 16) + 0x8000 + 2;
   }
 }
 
@@ -1045,8 +1046,8 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  spans_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
-  spans_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
+  margins_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  margins_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Painter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
   const int32_t end = band.first_row + band.rows;
