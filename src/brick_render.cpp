@@ -536,6 +536,13 @@ constexpr uint16_t kRows[16] = {0x0000, 0x0001, 0x0010, 0x0011, 0x0100, 0x0101, 
                                 0x1000, 0x1001, 0x1010, 0x1011, 0x1100, 0x1101, 0x1110, 0x1111};
 constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
 
+// A brick in the way of a beam, and where its cells begin from those of the beam's first brick on.
+struct NearBrick {
+  const uint8_t* bits;
+  int32_t a;
+  int32_t b;
+};
+
 // The first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs
 // when there is none. Coarse: the first of a slab of bricks. `course` is the fan's.
 template <int kC, bool kCoarse>
@@ -557,13 +564,11 @@ template <int kC, bool kCoarse>
   // The first slab may begin behind the origin: then the bounds start from whichever is wider.
   const int32_t plane = slab * Q8::kOne - origin;
   const int32_t ahead = plane < 0 ? 0 : plane;
-  bool steep = false;
   const auto shadow_of = [&](int axis) {
     const int32_t low = fan.low[axis] * (1 << kSlopeBits);
     const int32_t high = fan.high[axis] * (1 << kSlopeBits);
     const int32_t low_slope = low / (low < 0 ? c_low : c_high) - 1;
     const int32_t high_slope = high / (high < 0 ? c_high : c_low) + 1;
-    steep |= low_slope < -(2 << kSlopeBits) || high_slope > 2 << kSlopeBits;
     const int32_t from = frame.eye[axis] * (1 << kSlopeBits);
     const int32_t low_step = low_slope * Q8::kOne;
     const int32_t high_step = high_slope * Q8::kOne;
@@ -582,9 +587,6 @@ template <int kC, bool kCoarse>
   }
   Shadow a = shadow_of(kA);
   Shadow b = shadow_of(kB);
-  if (steep) {
-    return slab;
-  }
   const int32_t last_a = frame.side[kA] - 1;
   const int32_t last_b = frame.side[kB] - 1;
   const int32_t stride_a = frame.stride[kA];
@@ -605,12 +607,8 @@ template <int kC, bool kCoarse>
       return slab;
     }
     // Those that are not empty.
-    struct {
-      const uint8_t* bits;
-      int32_t a;  // where its cells begin, from those of from_a on
-      int32_t b;
-    } bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
-    int32_t count = 0;
+    NearBrick bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
+    NearBrick* bricks_end = bricks;
     const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
     int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
     for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
@@ -621,11 +619,11 @@ template <int kC, bool kCoarse>
           if (kCoarse) {
             return slab;
           }
-          bricks[count++] = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
+          *bricks_end++ = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
         }
       }
     }
-    if (kCoarse || count == 0) {
+    if (kCoarse || bricks_end == bricks) {
       a.advance(voxels);
       b.advance(voxels);
       slab += voxels;
@@ -638,15 +636,15 @@ template <int kC, bool kCoarse>
       const uint32_t cells_a = bits_between((a.low >> kCellShift) - base_a, (a.high >> kCellShift) - base_a);
       const uint32_t cells_b = bits_between((b.low >> kCellShift) - base_b, (b.high >> kCellShift) - base_b);
       const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
-      for (int32_t k = 0; k < count; ++k) {
-        const uint32_t in_a = cells_a >> bricks[k].a & 15U;
-        const uint32_t in_b = cells_b >> bricks[k].b & 15U;
+      for (const NearBrick* near = bricks; near != bricks_end; ++near) {
+        const uint32_t in_a = cells_a >> near->a & 15U;
+        const uint32_t in_b = cells_b >> near->b & 15U;
         uint32_t found = 0;
         if (kC == 2) {
-          found = half_at(bricks[k].bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b]);
+          found = half_at(near->bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b]);
         } else {
-          found = (word_at(bricks[k].bits, 0) & kHalves[in_b & 3U]) |
-                  (word_at(bricks[k].bits, 4) & kHalves[in_b >> 2]);
+          found =
+              (word_at(near->bits, 0) & kHalves[in_b & 3U]) | (word_at(near->bits, 4) & kHalves[in_b >> 2]);
           found =
               (found | found >> 16) & (kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own);
         }
