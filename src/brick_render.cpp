@@ -89,10 +89,12 @@ struct Course {
   int32_t origin[3];
   const uint8_t* directory;
   const uint8_t* bricks;
-  int32_t stride[3];  // of the directory in bytes
-  uint32_t last[3];   // the voxel of a brick before the next brick, in place
-  int32_t step[3];    // to the next voxel, in place
-  uint32_t flip[3];   // 3 where mirrored
+  int32_t stride[3];      // of the directory in bytes
+  int32_t next_brick[3];  // the same, so that the compiler does not keep it in hand from the first use to the
+                          // last
+  uint32_t last[3];       // the voxel of a brick before the next brick, in place
+  int32_t step[3];        // to the next voxel, in place
+  uint32_t flip[3];       // 3 where mirrored
   uint32_t face[3];
   int32_t base;        // of the directory, in bytes, for slab 0
   uint32_t base_left;  // counts of bricks, for slab 0
@@ -161,12 +163,9 @@ constexpr bool kDivides = false;
 constexpr bool kDivides = true;
 #endif
 
-// dividend / divisor. A core without a divider goes from the last quotient, from which that of a neighbouring
-// ray is a step or two away; there both are below 2^31.
+// dividend / divisor, both below 2^31, for a core without a divider: from the last quotient, from which that
+// of a neighbouring ray is a step or two away.
 uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t* last) {
-  if (kDivides) {
-    return dividend / divisor;
-  }
   uint32_t result = *last;
   int32_t rest = static_cast<int32_t>(dividend - result * divisor);
   for (int step = 0;; ++step) {
@@ -199,7 +198,13 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   return hit;
 }
 
-[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, int32_t distance, uint32_t direction) {
+// The colour at a distance: of voxel `bit` of the brick that `left` counts, entered on `axis`.
+[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, uint32_t left, uint32_t bit,
+                                    uint32_t direction) {
+  const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
+  const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
+  const int32_t origin = course.origin[axis] - (axis == course.c ? 0 : kOutsideQ8);
+  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ course.flip[axis])) * Q8::kOne - origin;
   const Frame& frame = *course.frame;
   Ray ray;
   Hit hit = face_hit(course, axis, 0, &ray);
@@ -243,8 +248,8 @@ template <int kC, unsigned kMirrored>
   if (!kDivides && static_cast<int32_t>(at_a | at_b) < 0) [[unlikely]] {
     return kAsk;
   }
-  const uint32_t cell_a = quotient(at_a, den, &course.inks->near_cell[0]);
-  const uint32_t cell_b = quotient(at_b, den, &course.inks->near_cell[1]);
+  const uint32_t cell_a = kDivides ? at_a / den : quotient(at_a, den, &course.inks->near_cell[0]);
+  const uint32_t cell_b = kDivides ? at_b / den : quotient(at_b, den, &course.inks->near_cell[1]);
   if ((cell_a | cell_b) >= 1024) [[unlikely]] {
     return static_cast<int32_t>(at_a | at_b) < 0 ? kAsk : kMissed;
   }
@@ -277,7 +282,7 @@ template <int kC, unsigned kMirrored>
         shift ^= kField<kAxis>;
       }
       left += uint32_t{1} << 10 * kAxis;
-      cell += course.stride[kAxis];
+      cell += course.next_brick[kAxis];
       return true;
     }
     if (kAxis == 2) {
@@ -421,11 +426,7 @@ hit:
   if (course.frame->shading.mode != ShadeMode::kDepth) {
     return look_up(course, number, bit, axis);
   }
-  const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
-  const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
-  const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
-  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ kFlip(axis))) * Q8::kOne - origin;
-  return depth_ink(course, axis, distance, axis == kA ? d_a : axis == kB ? d_b : d_c);
+  return depth_ink(course, axis, left, bit, axis == kA ? d_a : axis == kB ? d_b : d_c);
 }
 
 // The directions of a tile: for each axis the least and the greatest; what rays of them have in common.
@@ -477,6 +478,7 @@ void set_course(Course& course, unsigned mirrored, int c) {
     const int32_t near_q8 = (flipped ? box.max[axis] : box.min[axis]) * (4 * Q8::kOne);
     course.origin[axis] = (flipped ? near_q8 - origin : origin - near_q8) + (axis == c ? 0 : kOutsideQ8);
     course.stride[axis] = flipped ? -stride : stride;
+    course.next_brick[axis] = course.stride[axis];
     const int32_t from = axis == c ? 0 : -kOutsideCells / 4;
     course.base += (flipped ? (side - 1) * stride : 0) + course.stride[axis] * from;
     course.base_left += static_cast<uint32_t>(512 - side + from) << 10 * axis;
