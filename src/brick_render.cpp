@@ -75,10 +75,10 @@ struct Frame {
   Vec3i stride;  // of the directory, in bytes
   Vec3i eye;     // from the box's lowest corner, in 1/256 voxel
   // From a tile's first pixel to the least and greatest of the affine function in whole tiles.
-  Camera::Vec3Q32 tile_low;
-  Camera::Vec3Q32 tile_high;
-  Camera::Vec3Q32 quad_low;
-  Camera::Vec3Q32 quad_high;
+  Vec3i tile_low;
+  Vec3i tile_high;
+  Vec3i quad_low;
+  Vec3i quad_high;
 };
 
 // All that rays have in common whose directions have the same signs and the same fastest axis; where they
@@ -90,10 +90,12 @@ struct Course {
   int32_t origin[3];
   const uint8_t* directory;
   const uint8_t* bricks;
-  int32_t stride[3];  // of the directory in bytes
-  uint32_t last[3];   // the voxel of a brick before the next brick, in place
-  int32_t step[3];    // to the next voxel, in place
-  uint32_t flip[3];   // 3 where mirrored
+  int32_t stride[3];      // of the directory in bytes
+  int32_t next_brick[3];  // the same, so that the compiler does not keep it in hand from the first use to the
+                          // last
+  uint32_t last[3];       // the voxel of a brick before the next brick, in place
+  int32_t step[3];        // to the next voxel, in place
+  uint32_t flip[3];       // 3 where mirrored
   uint32_t face[3];
   int32_t base;        // of the directory, in bytes, for slab 0
   uint32_t base_left;  // counts of bricks, for slab 0
@@ -162,12 +164,9 @@ constexpr bool kDivides = false;
 constexpr bool kDivides = true;
 #endif
 
-// dividend / divisor. A core without a divider goes from the last quotient, from which that of a neighbouring
-// ray is a step or two away; there both are below 2^31.
+// dividend / divisor, both below 2^31, for a core without a divider: from the last quotient, from which that
+// of a neighbouring ray is a step or two away.
 uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t* last) {
-  if (kDivides) {
-    return dividend / divisor;
-  }
   uint32_t result = *last;
   int32_t rest = static_cast<int32_t>(dividend - result * divisor);
   for (int step = 0;; ++step) {
@@ -200,7 +199,13 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   return hit;
 }
 
-[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, int32_t distance, uint32_t direction) {
+// The colour at a distance: of voxel `bit` of the brick that `left` counts, entered on `axis`.
+[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, uint32_t left, uint32_t bit,
+                                    uint32_t direction) {
+  const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
+  const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
+  const int32_t origin = course.origin[axis] - (axis == course.c ? 0 : kOutsideQ8);
+  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ course.flip[axis])) * Q8::kOne - origin;
   const Frame& frame = *course.frame;
   Ray ray;
   Hit hit = face_hit(course, axis, 0, &ray);
@@ -244,8 +249,8 @@ template <int kC, unsigned kMirrored>
   if (!kDivides && static_cast<int32_t>(at_a | at_b) < 0) [[unlikely]] {
     return kAsk;
   }
-  const uint32_t cell_a = quotient(at_a, den, &course.inks->near_cell[0]);
-  const uint32_t cell_b = quotient(at_b, den, &course.inks->near_cell[1]);
+  const uint32_t cell_a = kDivides ? at_a / den : quotient(at_a, den, &course.inks->near_cell[0]);
+  const uint32_t cell_b = kDivides ? at_b / den : quotient(at_b, den, &course.inks->near_cell[1]);
   if ((cell_a | cell_b) >= 1024) [[unlikely]] {
     return static_cast<int32_t>(at_a | at_b) < 0 ? kAsk : kMissed;
   }
@@ -278,7 +283,7 @@ template <int kC, unsigned kMirrored>
         shift ^= kField<kAxis>;
       }
       left += uint32_t{1} << 10 * kAxis;
-      cell += course.stride[kAxis];
+      cell += course.next_brick[kAxis];
       return true;
     }
     if (kAxis == 2) {
@@ -326,10 +331,23 @@ slab:  // from plane to plane of c
   rest_b += go_b;
 between:
   if (!negative(rest_a & rest_b)) {
-    if (negative(rest_a)) {
+    if (static_cast<int32_t>(rest_a) > 0) {
+      if (static_cast<int32_t>(rest_b) > 0) {
+        const uint32_t time_a = rest_a * d_b;
+        const uint32_t time_b = rest_b * d_a;
+        if (time_a < time_b) {
+          goto cross_b;
+        }
+        if (time_a == time_b) {
+          goto tie;
+        }
+      }
+      goto cross_a;
+    }
+    if (static_cast<int32_t>(rest_b) > 0) {
       goto cross_b;
     }
-    goto cross_a;
+    goto tie;
   }
   if (step.template operator()<kC>()) {
     axis = kC;
@@ -341,19 +359,6 @@ between:
   axis = kC;
   goto hit;
 cross_a:
-  if (!negative(rest_b)) {
-    const uint32_t time_a = rest_a * d_b;
-    const uint32_t time_b = rest_b * d_a;
-    if (time_a < time_b) {
-      goto cross_b;
-    }
-    if (time_a == time_b) {
-      goto tie;
-    }
-  }
-  if (rest_a == 0) {
-    goto tie;
-  }
   rest_a -= den;
   axis = kA;
   if (step.template operator()<kA>()) {
@@ -364,9 +369,6 @@ cross_a:
   }
   goto between;
 cross_b:
-  if (rest_b == 0) {
-    goto tie;
-  }
   rest_b -= den;
   axis = kB;
   if (step.template operator()<kB>()) {
@@ -415,7 +417,7 @@ hit:
     }
   }
   const uint32_t bit = shift + row_of(at) * 8;
-  const uint32_t face = course.face[axis];
+  const uint32_t face = static_cast<uint32_t>(2 * axis) + (kMirrored >> axis & 1U);
   const uint32_t number = half_at(course.directory, cell);
   const uint32_t key = (number << 6 | bit) << 3 | face;
   const Inks::Seen& seen = course.inks->face[Inks::slot(key)];
@@ -425,11 +427,7 @@ hit:
   if (course.frame->shading.mode != ShadeMode::kDepth) {
     return look_up(course, number, bit, axis);
   }
-  const int32_t bricks = static_cast<int32_t>(left >> 10 * axis & 0x3FFU) - (512 - course.frame->side[axis]);
-  const uint32_t voxel = (axis == 0 ? bit : axis == 1 ? bit >> 2 : bit >> 4) & 3U;
-  const int32_t origin = course.origin[axis] - (axis == kC ? 0 : kOutsideQ8);
-  const int32_t distance = (4 * bricks + static_cast<int32_t>(voxel ^ kFlip(axis))) * Q8::kOne - origin;
-  return depth_ink(course, axis, distance, axis == kA ? d_a : axis == kB ? d_b : d_c);
+  return depth_ink(course, axis, left, bit, axis == kA ? d_a : axis == kB ? d_b : d_c);
 }
 
 // The directions of a tile: for each axis the least and the greatest; what rays of them have in common.
@@ -440,12 +438,13 @@ struct Fan {
   unsigned mirrored = 0;  // bit a: axis a is, for most
   unsigned mixed = 0;     // bit a: not for all
 
-  // Directions round(value + low) .. round(value + high).
-  Fan(const Camera::Vec3Q32& value, const Camera::Vec3Q32& least, const Camera::Vec3Q32& greatest) {
+  // Directions from value + least to value + greatest (`margins_of`).
+  Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
     int32_t most = -1;
     for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = Camera::round(value[axis] + least[axis]);
-      high[axis] = Camera::round(value[axis] + greatest[axis]);
+      const int32_t at = static_cast<int32_t>(value[axis] >> 16);
+      low[axis] = (at + least[axis]) >> 16;
+      high[axis] = (at + greatest[axis]) >> 16;
       const int32_t sum = low[axis] + high[axis];
       if (sum < 0) {
         mirrored |= 1U << axis;
@@ -480,6 +479,7 @@ void set_course(Course& course, unsigned mirrored, int c) {
     const int32_t near_q8 = (flipped ? box.max[axis] : box.min[axis]) * (4 * Q8::kOne);
     course.origin[axis] = (flipped ? near_q8 - origin : origin - near_q8) + (axis == c ? 0 : kOutsideQ8);
     course.stride[axis] = flipped ? -stride : stride;
+    course.next_brick[axis] = course.stride[axis];
     const int32_t from = axis == c ? 0 : -kOutsideCells / 4;
     course.base += (flipped ? (side - 1) * stride : 0) + course.stride[axis] * from;
     course.base_left += static_cast<uint32_t>(512 - side + from) << 10 * axis;
@@ -539,6 +539,13 @@ constexpr uint16_t kRows[16] = {0x0000, 0x0001, 0x0010, 0x0011, 0x0100, 0x0101, 
                                 0x1000, 0x1001, 0x1010, 0x1011, 0x1100, 0x1101, 0x1110, 0x1111};
 constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
 
+// A brick in the way of a beam, and where its cells begin from those of the beam's first brick on.
+struct NearBrick {
+  const uint8_t* bits;
+  int32_t a;
+  int32_t b;
+};
+
 // The first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs
 // when there is none. Coarse: the first of a slab of bricks. `course` is the fan's.
 template <int kC, bool kCoarse>
@@ -560,13 +567,11 @@ template <int kC, bool kCoarse>
   // The first slab may begin behind the origin: then the bounds start from whichever is wider.
   const int32_t plane = slab * Q8::kOne - origin;
   const int32_t ahead = plane < 0 ? 0 : plane;
-  bool steep = false;
   const auto shadow_of = [&](int axis) {
     const int32_t low = fan.low[axis] * (1 << kSlopeBits);
     const int32_t high = fan.high[axis] * (1 << kSlopeBits);
     const int32_t low_slope = low / (low < 0 ? c_low : c_high) - 1;
     const int32_t high_slope = high / (high < 0 ? c_high : c_low) + 1;
-    steep |= low_slope < -(2 << kSlopeBits) || high_slope > 2 << kSlopeBits;
     const int32_t from = frame.eye[axis] * (1 << kSlopeBits);
     const int32_t low_step = low_slope * Q8::kOne;
     const int32_t high_step = high_slope * Q8::kOne;
@@ -585,9 +590,6 @@ template <int kC, bool kCoarse>
   }
   Shadow a = shadow_of(kA);
   Shadow b = shadow_of(kB);
-  if (steep) {
-    return slab;
-  }
   const int32_t last_a = frame.side[kA] - 1;
   const int32_t last_b = frame.side[kB] - 1;
   const int32_t stride_a = frame.stride[kA];
@@ -608,12 +610,8 @@ template <int kC, bool kCoarse>
       return slab;
     }
     // Those that are not empty.
-    struct {
-      const uint8_t* bits;
-      int32_t a;  // where its cells begin, from those of from_a on
-      int32_t b;
-    } bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
-    int32_t count = 0;
+    NearBrick bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
+    NearBrick* bricks_end = bricks;
     const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
     int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
     for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
@@ -624,11 +622,11 @@ template <int kC, bool kCoarse>
           if (kCoarse) {
             return slab;
           }
-          bricks[count++] = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
+          *bricks_end++ = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
         }
       }
     }
-    if (kCoarse || count == 0) {
+    if (kCoarse || bricks_end == bricks) {
       a.advance(voxels);
       b.advance(voxels);
       slab += voxels;
@@ -641,15 +639,15 @@ template <int kC, bool kCoarse>
       const uint32_t cells_a = bits_between((a.low >> kCellShift) - base_a, (a.high >> kCellShift) - base_a);
       const uint32_t cells_b = bits_between((b.low >> kCellShift) - base_b, (b.high >> kCellShift) - base_b);
       const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
-      for (int32_t k = 0; k < count; ++k) {
-        const uint32_t in_a = cells_a >> bricks[k].a & 15U;
-        const uint32_t in_b = cells_b >> bricks[k].b & 15U;
+      for (const NearBrick* near = bricks; near != bricks_end; ++near) {
+        const uint32_t in_a = cells_a >> near->a & 15U;
+        const uint32_t in_b = cells_b >> near->b & 15U;
         uint32_t found = 0;
         if (kC == 2) {
-          found = half_at(bricks[k].bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b]);
+          found = half_at(near->bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b]);
         } else {
-          found = (word_at(bricks[k].bits, 0) & kHalves[in_b & 3U]) |
-                  (word_at(bricks[k].bits, 4) & kHalves[in_b >> 2]);
+          found =
+              (word_at(near->bits, 0) & kHalves[in_b & 3U]) | (word_at(near->bits, 4) & kHalves[in_b >> 2]);
           found =
               (found | found >> 16) & (kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own);
         }
@@ -967,14 +965,17 @@ class Painter {
   Course course_;
 };
 
-// What the affine function adds over `pixels` columns and rows at least and at most.
-void spans_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Camera::Vec3Q32* low,
-              Camera::Vec3Q32* high) {
+// What rounded directions of a tile lie between, in 16.16 from its first pixel's affine function in 16.16:
+// cut off after adding these, and one unit of 2^-16 either way for what was cut off before.
+void margins_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Vec3i* low, Vec3i* high) {
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t across = affine.step_x[axis] * (across_px - 1);
     const int64_t down = affine.step_y[axis] * (down_px - 1);
-    (*low)[axis] = (across < 0 ? across : 0) + (down < 0 ? down : 0);
-    (*high)[axis] = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+    const int64_t least = (across < 0 ? across : 0) + (down < 0 ? down : 0);
+    const int64_t greatest = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+    // Halves go away from zero: half a unit below may be rounded down.
+    (*low)[axis] = static_cast<int32_t>(least >> 16) + 0x8000 - 1;
+    (*high)[axis] = static_cast<int32_t>(greatest >> 16) + 0x8000 + 2;
   }
 }
 
@@ -1046,8 +1047,8 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  spans_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
-  spans_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
+  margins_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  margins_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Painter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
   const int32_t end = band.first_row + band.rows;
