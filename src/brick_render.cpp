@@ -44,7 +44,7 @@ uint32_t half_at(const uint8_t* bytes, int32_t offset) {
 
 using Word [[gnu::may_alias]] = uint32_t;
 uint32_t word_at(const uint8_t* bytes, int32_t offset) {
-  return *reinterpret_cast<const Word*>(bytes + offset);
+  return *static_cast<const Word*>(static_cast<const void*>(bytes + offset));
 }
 
 // Colours that were looked up: of faces of voxels, and of faces of a material.

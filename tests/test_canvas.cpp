@@ -39,12 +39,13 @@ TEST_CASE(
   CHECK(to_picture(8, 0, 8, 1) == 1);
 }
 
-TEST_CASE("canvas: a picture made smaller -> the mean of what each pixel covers") {
+TEST_CASE("canvas: a picture made smaller -> the mean of the light that each pixel covers") {
+  // A value stands for its square: sqrt((0 + 100^2 + 50^2 + 50^2) / 4) = 61.2, sqrt(255^2 / 4) = 127.5.
   const std::vector<std::uint8_t> rgb{0, 0, 0, 100, 0, 0, 50, 0, 0, 50, 0, 255};
   Canvas canvas;
   canvas.resize(1, 1);
   draw_picture(&canvas, place(2, 2, 1, 1, 0), {rgb.data(), 2, 2}, {});
-  CHECK(canvas.pixels[0] == Rgb8{50, 0, 64});
+  CHECK(canvas.pixels[0] == Rgb8{61, 0, 128});
 }
 
 TEST_CASE("canvas: text -> every printable character has dots of its own, within its cell") {

@@ -359,7 +359,17 @@ TEST_CASE("bake: --board -> its flash is the limit, its display the picture; RAM
   CHECK(flash == board->flash_bytes - 40 * 1024);
   const CommandResult result = check_ok(
       {"bake", "spheres", "-o", oct, "--board", "stm32vldiscovery", "--stats", folder.path("s.json")});
-  CHECK(result.err.find("stm32vldiscovery: flash 12,624 of the 90,112 bytes") != std::string::npos);
+  // The tree, and a brick map beside it.
+  const std::uint64_t baked_bytes = std::filesystem::file_size(oct);
+  CHECK(baked_bytes > 12624);
+  CHECK(baked_bytes < 12624 + 16384);
+  CHECK(result.err.find("stm32vldiscovery: flash " + tools::grouped(baked_bytes) + " of the 90,112 bytes") !=
+        std::string::npos);
+  CHECK(run_command({"info", oct}).out.find("brick map ") != std::string::npos);
+  check_ok({"bake", "spheres", "-o", oct, "--memory", "12700", "--board", "stm32vldiscovery", "--quiet"});
+  CHECK(std::filesystem::file_size(oct) == 12624);  // no room for a map: none
+  check_ok({"bake", "spheres", "-o", oct, "--brick-map", "--quiet"});
+  CHECK(std::filesystem::file_size(oct) == baked_bytes);
   const std::string ram = "RAM " + tools::grouped(208 + 512 + board->stack_bytes) + " of 8,192 bytes";
   CHECK(result.err.find(ram) != std::string::npos);  // renderer, band and stack
   CHECK(json_of(folder.path("s.json"))["board"] == "stm32vldiscovery");

@@ -34,7 +34,8 @@ struct Run {
 Run run_app(const char* board, std::uint32_t frames, const Hand& hand = {}) {
   Run run;
   host::SimulationOptions options;
-  options.board = platform::find_board(board);
+  const platform::BoardFacts facts = platform::board_for(*platform::find_board(board), "particles");
+  options.board = &facts;
   options.application = apps::particles;
   host::Simulation simulation(options);
   for (host::Moment moment = host::Moment::kNothing; moment != host::Moment::kEnded;) {
