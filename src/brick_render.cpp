@@ -526,11 +526,10 @@ struct Shadow {
   }
 };
 
-// Bits low .. high of the cells of a beam's bricks; either may lie beyond them.
+// Bits low .. high of the cells of a beam's bricks; high is below 4 * kBeamBricks, both may be negative.
 uint32_t bits_between(int32_t low, int32_t high) {
   const int32_t from = low < 0 ? 0 : low;
-  const int32_t to = high < 4 * kBeamBricks ? high : 4 * kBeamBricks - 1;
-  return to < from ? 0U : (2U << to) - (1U << from);
+  return high < from ? 0U : (2U << high) - (1U << from);
 }
 
 // Four bits as rows or as halfwords: bit y becomes bit 4 y, bit z all of halfword z.
@@ -603,11 +602,11 @@ template <int kC, bool kCoarse>
     int32_t to_b = (b.high + (voxels - 1) * b.high_more) >> kBrickShift;
     from_a = from_a < 0 ? 0 : from_a;
     from_b = from_b < 0 ? 0 : from_b;
-    to_a = to_a > last_a ? last_a : to_a;
-    to_b = to_b > last_b ? last_b : to_b;
     if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
       return slab;
     }
+    to_a = to_a > last_a ? last_a : to_a;
+    to_b = to_b > last_b ? last_b : to_b;
     // Those that are not empty.
     NearBrick bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
     NearBrick* bricks_end = bricks;
