@@ -15,6 +15,12 @@
 
 #include "bits.h"
 
+// Whatever the rest is compiled for, this file is for speed. (gcc has these on a function's or a file's wish;
+// the second saves one instruction in a hundred.)
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O2", "rename-registers")
+#endif
+
 namespace thimble {
 namespace {
 
@@ -727,6 +733,8 @@ struct Tile {
   int32_t y1;
 };
 
+// Tiles are kBrickTilePx high.
+constexpr int32_t kTileAcrossPx = 16;
 // Quads: the least tiles.
 constexpr int32_t kQuadAcrossPx = 4;
 constexpr int32_t kQuadDownPx = 4;
@@ -1045,7 +1053,7 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  margins_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  margins_of(camera.affine(), kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
   margins_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Painter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
@@ -1060,8 +1068,8 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
         line[i] = 0;
       }
     }
-    for (int32_t x = 0; x < width; x += kBrickTilePx) {
-      const int32_t x1 = x + kBrickTilePx < width ? x + kBrickTilePx : width;
+    for (int32_t x = 0; x < width; x += kTileAcrossPx) {
+      const int32_t x1 = x + kTileAcrossPx < width ? x + kTileAcrossPx : width;
       painter.draw_tile({x, x1, y, y1});
     }
     y = y1;

@@ -26,7 +26,7 @@ namespace thimble {
 
 inline constexpr int kMaxBrickDirectionBits = 12;
 /// Pixels of a tile's side: rays of one tile start where the first of them may meet something.
-inline constexpr int32_t kBrickTilePx = 16;
+inline constexpr int32_t kBrickTilePx = 8;
 
 /// Whether frames of that camera take the fast way.
 bool draws_fast(const BrickMap& map, const Camera& camera);
