@@ -15,6 +15,12 @@
 
 #include "bits.h"
 
+// Whatever the rest is compiled for, this file is for speed. (gcc has these on a function's or a file's wish;
+// the second saves one instruction in a hundred.)
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O2", "rename-registers")
+#endif
+
 namespace thimble {
 namespace {
 
@@ -527,11 +533,10 @@ struct Shadow {
   }
 };
 
-// Bits low .. high of the cells of a beam's bricks; either may lie beyond them.
+// Bits low .. high of the cells of a beam's bricks; high is below 4 * kBeamBricks, both may be negative.
 uint32_t bits_between(int32_t low, int32_t high) {
   const int32_t from = low < 0 ? 0 : low;
-  const int32_t to = high < 4 * kBeamBricks ? high : 4 * kBeamBricks - 1;
-  return to < from ? 0U : (2U << to) - (1U << from);
+  return high < from ? 0U : (2U << high) - (1U << from);
 }
 
 // Four bits as rows or as halfwords: bit y becomes bit 4 y, bit z all of halfword z.
@@ -604,11 +609,11 @@ template <int kC, bool kCoarse>
     int32_t to_b = (b.high + (voxels - 1) * b.high_more) >> kBrickShift;
     from_a = from_a < 0 ? 0 : from_a;
     from_b = from_b < 0 ? 0 : from_b;
-    to_a = to_a > last_a ? last_a : to_a;
-    to_b = to_b > last_b ? last_b : to_b;
     if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
       return slab;
     }
+    to_a = to_a > last_a ? last_a : to_a;
+    to_b = to_b > last_b ? last_b : to_b;
     // Those that are not empty.
     NearBrick bricks[kCoarse ? 1 : kBeamBricks * kBeamBricks];
     NearBrick* bricks_end = bricks;
@@ -729,6 +734,8 @@ struct Tile {
   int32_t y1;
 };
 
+// Tiles are kBrickTilePx high.
+constexpr int32_t kTileAcrossPx = 16;
 // Quads: the least tiles.
 constexpr int32_t kQuadAcrossPx = 4;
 constexpr int32_t kQuadDownPx = 4;
@@ -1047,7 +1054,7 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  margins_of(camera.affine(), kBrickTilePx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  margins_of(camera.affine(), kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
   margins_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Painter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
@@ -1062,8 +1069,8 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
         line[i] = 0;
       }
     }
-    for (int32_t x = 0; x < width; x += kBrickTilePx) {
-      const int32_t x1 = x + kBrickTilePx < width ? x + kBrickTilePx : width;
+    for (int32_t x = 0; x < width; x += kTileAcrossPx) {
+      const int32_t x1 = x + kTileAcrossPx < width ? x + kTileAcrossPx : width;
       painter.draw_tile({x, x1, y, y1});
     }
     y = y1;
