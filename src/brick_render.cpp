@@ -864,7 +864,7 @@ class Painter {
       }
       set_start(course_, slab);
     }
-    int32_t inks[kQuadPixels];
+    int32_t inks[kQuadPixels];  // NOLINT: those of the quad are all set, and no other is looked at
     const int32_t across = quad.x1 - quad.x0;
     const int32_t down = quad.y1 - quad.y0;
     if (!usable || fan.mixed != 0) {
@@ -951,9 +951,15 @@ class Painter {
   }
 
   void fill(const Tile& tile) {
+    const bool whole = frame_.format == PixelFormat::kGray4 && (tile.x1 - tile.x0) % kQuadAcrossPx == 0;
     for (int32_t y = tile.y0; y < tile.y1; ++y) {
-      for (int32_t x = tile.x0; x < tile.x1; ++x) {
-        store_ink(line_of(y), x, y, frame_.format, frame_.background);
+      uint8_t* line = line_of(y);
+      for (int32_t x = tile.x0; x < tile.x1; x += whole ? 2 : 1) {
+        if (whole) {
+          line[x >> 1] = static_cast<uint8_t>(frame_.background * 17);
+        } else {
+          store_ink(line, x, y, frame_.format, frame_.background);
+        }
       }
     }
     misses_ += static_cast<uint32_t>((tile.y1 - tile.y0) * (tile.x1 - tile.x0));
@@ -1062,8 +1068,10 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;
     const int32_t y1 = tile_end < end ? tile_end : end;
-    // Pixels of less than a byte are put into what is there.
-    for (int32_t row = y; row < y1 && bits_per_pixel(band.format) < 8; ++row) {
+    // Pixels of less than a byte are put into what is there, where no quad stores whole bytes.
+    const bool cleared = band.format == PixelFormat::kMono1 ||
+                         (band.format == PixelFormat::kGray4 && width % kQuadAcrossPx != 0);
+    for (int32_t row = y; row < y1 && cleared; ++row) {
       uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row - band.first_row);
       for (size_t i = 0; i < line_bytes; ++i) {
         line[i] = 0;
