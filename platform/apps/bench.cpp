@@ -6,10 +6,13 @@
 //   ENGINE.instructions_a_ray                 the median over the pixels
 //   ENGINE.node_visits                        tree nodes a frame, on average
 //   ENGINE.crc.N                              of frame N: equal for all engines that are exact
+//   brick_map.times_faster_than_dda           beside the textbook's tracer (dda_baseline.h), where the RAM
+//                                             holds its grid of bits; its pictures are nearly right
 //   ray32., ray64.                            closest_hit on a fixed set of rays, by arithmetic width
 //
 // Where the port does not count instructions, microseconds stand in their place (`unit`).
 #include "apps/apps.h"
+#include "apps/dda_baseline.h"
 #include "apps/demo_view.h"
 #include "apps/place.h"
 #include "apps/shown_scene.h"
@@ -37,16 +40,18 @@ struct Bench : Placed {
   Camera camera;
   Bytes band;
   int32_t band_rows = 0;
+  BitWorld grid;  ///< of the baseline; without bits where there is no room
+  uint8_t face_grays[6] = {};
   bool counts_instructions = false;
   uint32_t costs[kGoldenFrames] = {};
   uint32_t crcs[kGoldenFrames] = {};  ///< of the first engine
   RenderCounts counts;
 };
 
-enum class Engine : uint8_t { kTree, kBrickMap };
+enum class Engine : uint8_t { kTree, kBrickMap, kDda };
 
 const char* name_of(Engine engine) {
-  return engine == Engine::kTree ? "tree" : "brick_map";
+  return engine == Engine::kTree ? "tree" : engine == Engine::kBrickMap ? "brick_map" : "dda";
 }
 
 uint32_t now(const Bench& bench) {
@@ -71,6 +76,14 @@ void tell(const char* name, uint64_t value) {
 Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* counts) {
   if (engine == Engine::kTree) {
     return render_band(bench.shown.scene.tree(), bench.camera, bench.shading, band, counts);
+  }
+  if (engine == Engine::kDda) {
+    const uint32_t hits =
+        draw_dda(bench.grid, bench.camera, bench.face_grays, 0, band.first_row, band.rows, band.pixels.data);
+    if (counts != nullptr) {
+      counts->hits += hits;
+    }
+    return Status::kOk;
   }
   return render_band(bench.shown.scene.tree(), bench.shown.map, bench.camera, bench.shading, band, counts);
 }
@@ -129,7 +142,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
     if (engine == Engine::kTree) {
       bench->crcs[i] = crc;
     }
-    *exact = *exact && crc == bench->crcs[i];
+    *exact = *exact && (crc == bench->crcs[i] || engine == Engine::kDda);
     put(name);
     put(".crc.");
     put_number(frame);
@@ -216,6 +229,32 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
   return !(taken[0] && taken[1]) || sums[0] == sums[1];
 }
 
+/// The baseline's grid, where the arena holds it and the picture is one that it draws.
+[[gnu::noinline]] void make_grid(Bench* bench) {
+  const port::Display& screen = port::facts().display;
+  const CompactTree& tree = bench->shown.scene.tree();
+  if (screen.format != PixelFormat::kGray4 || !bench->shown.has_map || tree.level() > 6) {
+    return;
+  }
+  const Bytes bits = bench->arena.take(bit_world_bytes(tree.level()));
+  if (bits.empty() || !fill_bit_world(tree, bits, &bench->grid)) {
+    bench->grid = {};
+    return;
+  }
+  for (int face = 0; face < 6; ++face) {
+    bench->face_grays[face] = static_cast<uint8_t>(bench->shading.face_light[face] >> 4);
+  }
+}
+
+/// How often `cost` goes into `other`.
+void tell_ratio(const char* name, uint32_t other, uint32_t cost) {
+  if (cost >= 1000) {
+    put(name);
+    put_thousandths(other / (cost / 1000), 2);
+    put("\n");
+  }
+}
+
 int refuse(const char* why) {
   put("error: ");
   put(why);
@@ -268,10 +307,12 @@ int bench() {
   if (status == Status::kOk && bench->shown.has_map) {
     uint32_t cost = 0;
     status = measure(bench, Engine::kBrickMap, &exact, &cost);
-    if (status == Status::kOk && cost >= 1000) {
-      put("brick_map.times_faster_than_tree,");
-      put_thousandths(tree_cost / (cost / 1000), 2);
-      put("\n");
+    tell_ratio("brick_map.times_faster_than_tree,", tree_cost, cost);
+    make_grid(bench);
+    if (status == Status::kOk && bench->grid.bits != nullptr) {
+      uint32_t dda_cost = 0;
+      status = measure(bench, Engine::kDda, &exact, &dda_cost);
+      tell_ratio("brick_map.times_faster_than_dda,", dda_cost, cost);
     }
   }
   if (status != Status::kOk) {
@@ -279,7 +320,7 @@ int bench() {
   }
   exact = measure_rays(bench) && exact;
   tell("arena_bytes", port::arena().size);
-  tell("arena_used_bytes", bench->arena.used_bytes());
+  tell("arena_used_bytes", bench->arena.used_bytes());  // the baseline's grid included
   tell("arena_used_without_map_bytes", without_map);
   tell("stack_limit_bytes", port::facts().stack_bytes);
   tell("stack_high_water_bytes", port::stack_high_water());

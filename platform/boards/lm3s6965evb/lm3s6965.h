@@ -47,9 +47,9 @@ inline constexpr uintptr_t kSsiCr1 = 0x40008004;
 inline constexpr uint32_t kSsiCr1Enable = 1U << 1;
 inline constexpr uintptr_t kSsiDr = 0x40008008;  ///< data
 inline constexpr uintptr_t kSsiSr = 0x4000800C;  ///< status
-inline constexpr uint32_t kSsiSrSendNotFull = 1U << 1;
-inline constexpr uint32_t kSsiSrReceived = 1U << 2;
+inline constexpr uint32_t kSsiSrSendEmpty = 1U << 0;
 inline constexpr uint32_t kSsiSrBusy = 1U << 4;
+inline constexpr uint32_t kSsiQueue = 8;           ///< bytes in the queue of each direction
 inline constexpr uintptr_t kSsiCpsr = 0x40008010;  ///< clock divider, even
 
 /// oled.cpp: after the ports have their clocks.

@@ -28,17 +28,32 @@ constexpr uint8_t kLastColumn = 63;  // of two pixels
 constexpr uint32_t kDataPin = 1U << 7;    // C7
 constexpr uint32_t kSelectPin = 1U << 0;  // D0
 
-// Sends bytes, and throws away what the interface receives meanwhile: its queues are eight deep both ways.
+// Sends bytes, and throws away what the interface receives meanwhile. Its queues are eight deep both ways:
+// eight bytes go whenever the one is empty, and as many places of the other are read, filled or not (an
+// overrun there loses what nobody wants).
 void send(const uint8_t* bytes, size_t count) {
   const uint8_t* const end = bytes + count;
-  for (uint32_t patience = board::kPatience; bytes != end && patience != 0; --patience) {
+  uint32_t patience = board::kPatience;
+  while (bytes != end && patience != 0) {
+    --patience;
     const uint32_t status = register32(lm3s6965::kSsiSr);
-    if ((status & lm3s6965::kSsiSrSendNotFull) != 0) {
-      register32(lm3s6965::kSsiDr) = *bytes++;
+    if ((status & lm3s6965::kSsiSrSendEmpty) == 0) {
+      continue;
     }
-    if ((status & lm3s6965::kSsiSrReceived) != 0) {
+    if (end - bytes < static_cast<ptrdiff_t>(lm3s6965::kSsiQueue)) {
+      register32(lm3s6965::kSsiDr) = *bytes++;
+      static_cast<void>(static_cast<uint32_t>(register32(lm3s6965::kSsiDr)));
+      continue;
+    }
+#pragma GCC unroll 8
+    for (uint32_t i = 0; i < lm3s6965::kSsiQueue; ++i) {
+      register32(lm3s6965::kSsiDr) = bytes[i];
+    }
+#pragma GCC unroll 8
+    for (uint32_t i = 0; i < lm3s6965::kSsiQueue; ++i) {
       static_cast<void>(static_cast<uint32_t>(register32(lm3s6965::kSsiDr)));
     }
+    bytes += lm3s6965::kSsiQueue;
   }
 }
 
