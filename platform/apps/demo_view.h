@@ -206,9 +206,12 @@ Status view_at(const Orbit& orbit, const Tree& tree, uint32_t frame, const Steer
       --zoom;  // beyond what rays may start from: nearer
       continue;
     }
+    // A ray that starts inside knows after one way down the tree.
+    TraceOptions options;
+    options.max_visits = static_cast<uint32_t>(tree.level()) + 1;
     Hit hit;
     if (status != Status::kOk ||
-        closest_hit(tree, camera->ray(width_px / 2, height_px / 2), &hit) != Status::kOk ||
+        closest_hit(tree, camera->ray(width_px / 2, height_px / 2), &hit, options) != Status::kOk ||
         hit.kind != HitKind::kHit || hit.axis >= 0) {
       return status;
     }
