@@ -311,6 +311,7 @@ class ParticleWorld {
 
   // particles_rest.cpp: sleep.
   void wake(uint32_t id);
+  static bool has_settled(Ball& ball);
   void rest(uint32_t id);
   bool lies_still(uint32_t id) const;
   bool pulls_most(int axis) const;
@@ -346,7 +347,9 @@ class ParticleWorld {
   int32_t rest_speed_ = 0;  // Q16; impacts below it do not bounce
   Vec2i gravity_part_;      // gravity a substep
   int32_t unit_ = 2;        // 2^-16 cells in a unit of position
-  uint32_t round_ = 1;      // half a unit of position, as a velocity
+  // As velocities, half a unit of position and what cuts to whole ones.
+  int32_t round_ = 1;
+  int32_t grid_ = -2;
   PointerMode pointer_mode_ = PointerMode::kNone;
   Vec2i pointer_;
   Vec2i pointer_before_;
