@@ -9,6 +9,14 @@
 namespace thimble {
 namespace {
 
+uint32_t rows_set_of(const uint32_t (&rows)[kMaxSmallDisc], int32_t count) {
+  uint32_t set = 0;
+  for (int32_t row = 0; row < count; ++row) {
+    set |= (rows[row] != 0 ? 1U : 0U) << row;
+  }
+  return set;
+}
+
 constexpr int32_t sign_of(int32_t value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
@@ -64,7 +72,7 @@ bool ParticleWorld::lies_still(uint32_t id) const {
     if (!field_.overlap_inside(disc, place, corner, rows)) {
       continue;
     }
-    contacts_at(id, disc, place, rows, 1, &contacts);
+    contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, &contacts);
     if (contacts.wall) {
       return true;
     }
@@ -91,7 +99,7 @@ void ParticleWorld::hold(uint32_t id) {
     Contacts contacts;
     uint32_t rows[kMaxSmallDisc];
     if (field_.overlap_inside(disc, place, corner, rows)) {
-      contacts_at(id, disc, place, rows, 1, &contacts);
+      contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, &contacts);
     }
     for (int32_t i = 0; i < contacts.count; ++i) {
       balls_[contacts.ids[i]].flags |= kSupports;

@@ -312,9 +312,11 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
     const int32_t height = down + diameter;
     const DiscStamp disc = small_disc(diameter);
     bool made = false;
+    bool looked = false;
     if ((low.x | low.y | (config_.width - width - low.x) | (config_.height - height - low.y) |
          (kShortWidth - width) | (kBlock - height)) >= 0) {
       ++counters_.mask_tests;
+      looked = true;
       const Shift shift(words_, config_.height, disc, from, low, gone);
       const int32_t round = static_cast<int32_t>(bits::popcount32(disc.rows[0]));
       if (across <= round && down <= round) {
@@ -326,7 +328,7 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
       }
     }
     if (!made) {
-      trace(id, way, from);
+      trace(id, way, from, looked);
       end = {ball.x, ball.y};
       gone = {disc_corner(end.x, diameter) - from.x, disc_corner(end.y, diameter) - from.y};
     }
@@ -356,12 +358,12 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
 }
 
 // The way of a ball with its bounces, where something may be in it. The ball's cells in the field stay at
-// `own`, its corner, until the end.
-void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
+// `own`, its corner, until the end. `looked`: the short way was tried.
+void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
   Ball& ball = balls_[id];
   Window window;
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
-    const Blocked blocked = walk(&ball, way, own, bounce == 0, &window);
+    const Blocked blocked = walk(&ball, way, own, bounce == 0, looked && bounce == 0, &window);
     if (blocked.axes == 0) {
       break;
     }
@@ -402,8 +404,8 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
 
 // Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
 // between cells are crossed in their exact order along the line; both at once where it goes through a corner.
-// `first`: the window is not loaded yet.
-ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk,
+// `first_walk`: the window is not loaded yet. `looked`: something is known to be near the way.
+ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, bool looked,
                                            Window* window) {
   const DiscStamp disc = small_disc(ball->diameter);
   Blocked blocked;
@@ -484,7 +486,7 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
                     disc, own, window);
       }
       const int32_t stretch = left_before.x + left_before.y - left.x - left.y;
-      if (stretch > 2 && !window->any_in(box)) {
+      if (stretch > 2 && !looked && !window->any_in(box)) {
         if ((left.x | left.y) == 0) {
           return blocked;
         }

@@ -296,14 +296,14 @@ class ParticleWorld {
   void advance_all(bool last);
   template <bool kPulled>
   void advance(uint32_t id);
-  void trace(uint32_t id, Vec2i way, Vec2i own);
-  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, Window* window);
+  void trace(uint32_t id, Vec2i way, Vec2i own, bool looked);
+  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, bool looked, Window* window);
   void load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const;
   int32_t displacement(int32_t velocity) const;
 
   // particles_contact.cpp: what is met, and what it does.
   void contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place, uint32_t (&rows)[kMaxSmallDisc],
-                   uint32_t axis_bits, Contacts* contacts) const;
+                   uint32_t rows_set, uint32_t axis_bits, Contacts* contacts) const;
   void collide(uint32_t id, const Blocked& blocked, const Window& window, Vec2i own);
   Vec2i wall_normal(uint32_t id, Vec2i offset, Vec2i own) const;
   void bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i away, uint32_t axes);
