@@ -265,8 +265,16 @@ void ParticleWorld::collide(uint32_t id, const Blocked& blocked, const Window& w
     place[axis] += blocked.sign[axis];
     if (!field_.holds(disc, place)) {
       Vec2i normal;
-      normal[axis] = away[axis];
-      bounce(ball, kNoBall, normal, away, axis_bit);
+      normal[axis] = away[axis] * kAxisNormal;
+      if (pulled_) {
+        bounce(ball, kNoBall, normal, away, axis_bit);
+        continue;
+      }
+      const int64_t along = int64_t{axis == 0 ? ball.vx : ball.vy} * normal[axis];
+      if (along < 0) {
+        ++counters_.wall_hits;
+        push(ball, nullptr, normal, along, config_.restitution_q16);
+      }
       continue;
     }
     const uint32_t rows_set = window.under(disc, place, rows);

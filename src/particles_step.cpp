@@ -48,6 +48,7 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   // set.
   const int32_t column = box.min.x >> 5;
   const int32_t shift = box.min.x & 31;
+  const int32_t back = (32 - shift) & 31;
   const int32_t after = config_.width - box.min.x;
   const bool has_next = shift + box.max.x - box.min.x > 32 && column + 1 < field_.columns();
   const uint32_t first_mask = column < 0 ? 0 : UINT32_MAX;
@@ -60,7 +61,7 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.min.y : first;
   for (int32_t row = top; row < bottom; row += kLanes) {
     store_rows(out + row, ((load_rows(first + row) & first_mask) >> shift) |
-                              (((load_rows(next + row) & next_mask) << 1) << (31 - shift)) | outside);
+                              ((load_rows(next + row) & next_mask) << back) | outside);
   }
   for (int32_t row = 0; row < top; ++row) {
     out[row] = UINT32_MAX;
@@ -289,8 +290,14 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   if (kPulled) {
     ball.flags = static_cast<uint8_t>(ball.flags & ~kGrounded);
     if (id != dragged_) {
-      ball.vx = least(most(ball.vx + gravity_part_.x, -kMaxSpeedQ16), kMaxSpeedQ16);
-      ball.vy = least(most(ball.vy + gravity_part_.y, -kMaxSpeedQ16), kMaxSpeedQ16);
+      const auto faster = [](int32_t* speed, int32_t more) {
+        *speed += more;
+        if (*speed > kMaxSpeedQ16 || *speed < -kMaxSpeedQ16) {
+          *speed = *speed < 0 ? -kMaxSpeedQ16 : kMaxSpeedQ16;
+        }
+      };
+      faster(&ball.vx, gravity_part_.x);
+      faster(&ball.vy, gravity_part_.y);
     }
   }
   const Vec2i way{displacement(ball.vx), displacement(ball.vy)};
@@ -312,11 +319,9 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
     const int32_t height = down + diameter;
     const DiscStamp disc = small_disc(diameter);
     bool made = false;
-    bool looked = false;
     if ((low.x | low.y | (config_.width - width - low.x) | (config_.height - height - low.y) |
          (kShortWidth - width) | (kBlock - height)) >= 0) {
       ++counters_.mask_tests;
-      looked = true;
       const Shift shift(words_, config_.height, disc, from, low, gone);
       const int32_t round = static_cast<int32_t>(bits::popcount32(disc.rows[0]));
       if (across <= round && down <= round) {
@@ -328,7 +333,7 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
       }
     }
     if (!made) {
-      trace(id, way, from, looked);
+      trace(id, way, from, ((kShortWidth - width) | (kBlock - height)) >= 0);
       end = {ball.x, ball.y};
       gone = {disc_corner(end.x, diameter) - from.x, disc_corner(end.y, diameter) - from.y};
     }
@@ -342,13 +347,20 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   }
   if (kPulled) {
     if ((gone.x | gone.y) != 0) {
-      const auto add = [](int8_t* sum, int32_t cells) {
-        *sum = static_cast<int8_t>(least(most(*sum + cells, -100), 100));
-      };
-      add(&ball.near_x, gone.x);
-      add(&ball.near_y, gone.y);
-      add(&ball.far_x, gone.x);
-      add(&ball.far_y, gone.y);
+      const auto cut = [](int32_t cells) { return least(most(cells, -100), 100); };
+      if (config_.substeps_log2 == 0) {
+        // The sums begin within the reach of the last step: they cannot leave a byte.
+        const Vec2i cells{cut(gone.x), cut(gone.y)};
+        ball.near_x = static_cast<int8_t>(ball.near_x + cells.x);
+        ball.near_y = static_cast<int8_t>(ball.near_y + cells.y);
+        ball.far_x = static_cast<int8_t>(ball.far_x + cells.x);
+        ball.far_y = static_cast<int8_t>(ball.far_y + cells.y);
+      } else {
+        ball.near_x = static_cast<int8_t>(cut(ball.near_x + gone.x));
+        ball.near_y = static_cast<int8_t>(cut(ball.near_y + gone.y));
+        ball.far_x = static_cast<int8_t>(cut(ball.far_x + gone.x));
+        ball.far_y = static_cast<int8_t>(cut(ball.far_y + gone.y));
+      }
       if ((ball.flags & kSupports) != 0) {
         ball.flags = static_cast<uint8_t>(ball.flags & ~kSupports);
         support_left({from, {from.x + diameter, from.y + diameter}}, ball.confined < kStillSteps);
@@ -358,7 +370,8 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
 }
 
 // The way of a ball with its bounces, where something may be in it. The ball's cells in the field stay at
-// `own`, its corner, until the end. `looked`: the short way was tried.
+// `own`, its corner, until the end. `looked`: something is near the way, a side of
+// the box at least.
 void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
   Ball& ball = balls_[id];
   Window window;
