@@ -86,7 +86,8 @@ Status ParticleWorld::init(Bytes bytes, const ParticleConfig& config, ParticleWo
   made.awake_top_ = made.awake_middle_ + (leaves + 31) / 32;
   made.top_words_ = static_cast<uint32_t>(((leaves + 31) / 32 + 31) / 32);
   made.unit_ = int32_t{1} << (16 - config.subpixel_bits);
-  made.round_ = (static_cast<uint32_t>(made.unit_) << config.substeps_log2) >> 1;
+  made.round_ = (made.unit_ << config.substeps_log2) >> 1;
+  made.grid_ = -(made.unit_ << config.substeps_log2);
   made.random_ = config.seed * 2654435761U ^ 0x9E3779B9U;
   if (made.random_ == 0) {
     made.random_ = 1;

@@ -102,34 +102,45 @@ constexpr bool sum_is_positive(int64_t a, uint32_t mass_a, int64_t b, uint32_t m
 }  // namespace
 
 // The balls and walls that cells under `disc` at `place` belong to, added to `contacts` with `axis_bits`.
-// rows[disc.diameter] are those cells, some of them set; they are used up.
+// rows[disc.diameter] are those cells, in the rows whose bits `rows_set` has, one at least; they are used up.
 void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place,
-                                uint32_t (&rows)[kMaxSmallDisc], uint32_t axis_bits,
+                                uint32_t (&rows)[kMaxSmallDisc], uint32_t rows_set, uint32_t axis_bits,
                                 Contacts* contacts) const {
-  uint32_t columns = 0;
-  int32_t first = disc.diameter;
-  int32_t last = 0;
-  for (int32_t row = 0; row < disc.diameter; ++row) {
-    if (rows[row] != 0) {
-      columns |= rows[row];
-      first = row < first ? row : first;
-      last = row;
-    }
+  const int32_t first = static_cast<int32_t>(bits::lowest_bit(rows_set));
+  const int32_t last = bits::bit_length(rows_set) - 1;
+  uint32_t columns = rows[first];
+  for (int32_t row = first + 1; row <= last; ++row) {
+    columns |= rows[row];
   }
   const CellBox box{{place.x + static_cast<int32_t>(bits::lowest_bit(columns)), place.y + first},
                     {place.x + bits::bit_length(columns), place.y + last + 1}};
+  // A ball's square shares cells with the box when its centre, moved by half its diameter less half a cell,
+  // lies within that of the box's corner and the box's size and as much again: one comparison an axis.
+  const uint32_t corner_x = static_cast<uint32_t>(box.min.x) << 16;
+  const uint32_t corner_y = static_cast<uint32_t>(box.min.y) << 16;
+  const uint32_t size_x = static_cast<uint32_t>(box.max.x - box.min.x) << 16;
+  const uint32_t size_y = static_cast<uint32_t>(box.max.y - box.min.y) << 16;
   const CellRange range = cells_around(box, config_.most_diameter / 2);
-  for (int32_t y = range.y0; y <= range.y1; ++y) {
-    for (int32_t x = range.x0; x <= range.x1; ++x) {
-      for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
+  // From the side on which the cells lie of the disc: what they belong to is there, and the rest is not
+  // looked at then. The order makes no difference to what is found.
+  const bool upwards = box.min.y + box.max.y > 2 * place.y + disc.diameter;
+  const bool leftwards = box.min.x + box.max.x > 2 * place.x + disc.diameter;
+  const int32_t line_step = upwards ? -cells_across_ : cells_across_;
+  const int32_t cell_step = leftwards ? -1 : 1;
+  const uint32_t* line =
+      cells_ + (upwards ? range.y1 : range.y0) * cells_across_ + (leftwards ? range.x1 : range.x0);
+  for (int32_t y = range.y0; y <= range.y1; ++y, line += line_step) {
+    const uint32_t* cell = line;
+    for (int32_t x = range.x0; x <= range.x1; ++x, cell += cell_step) {
+      for (uint32_t id = *cell; id != kNoBall; id = balls_[id].next) {
         const Ball& other = balls_[id];
-        const Vec2i corner = corner_of(other);
-        const int32_t size = other.diameter;
-        if (id == self || corner.x >= box.max.x || corner.y >= box.max.y || corner.x + size <= box.min.x ||
-            corner.y + size <= box.min.y) {
+        const uint32_t half = (uint32_t{other.diameter} - 1) << 15;
+        if (static_cast<uint32_t>(other.x) + half - corner_x >= size_x + 2 * half ||
+            static_cast<uint32_t>(other.y) + half - corner_y >= size_y + 2 * half || id == self) {
           continue;
         }
-        const uint32_t* masks = small_disc(size).rows + (place.y - corner.y);
+        const Vec2i corner = corner_of(other);
+        const uint32_t* masks = small_disc(other.diameter).rows + (place.y - corner.y);
         const int32_t left = corner.x < place.x ? place.x - corner.x : 0;
         const int32_t right = corner.x > place.x ? corner.x - place.x : 0;
         uint32_t met = 0;
@@ -240,8 +251,9 @@ void ParticleWorld::collide(uint32_t id, const Blocked& blocked, const Window& w
   uint32_t rows[kMaxSmallDisc];
   if (blocked.axes == Blocked::kCorner) {
     const Vec2i place{blocked.corner.x + blocked.sign.x, blocked.corner.y + blocked.sign.y};
-    if (window.under(disc, place, rows)) {
-      contacts_at(id, disc, place, rows, Blocked::kX | Blocked::kY, &contacts);
+    const uint32_t rows_set = window.under(disc, place, rows);
+    if (rows_set != 0) {
+      contacts_at(id, disc, place, rows, rows_set, Blocked::kX | Blocked::kY, &contacts);
     }
   }
   for (int axis = 0; axis < 2; ++axis) {
@@ -253,10 +265,21 @@ void ParticleWorld::collide(uint32_t id, const Blocked& blocked, const Window& w
     place[axis] += blocked.sign[axis];
     if (!field_.holds(disc, place)) {
       Vec2i normal;
-      normal[axis] = away[axis];
-      bounce(ball, kNoBall, normal, away, axis_bit);
-    } else if (window.under(disc, place, rows)) {
-      contacts_at(id, disc, place, rows, axis_bit, &contacts);
+      normal[axis] = away[axis] * kAxisNormal;
+      if (pulled_) {
+        bounce(ball, kNoBall, normal, away, axis_bit);
+        continue;
+      }
+      const int64_t along = int64_t{axis == 0 ? ball.vx : ball.vy} * normal[axis];
+      if (along < 0) {
+        ++counters_.wall_hits;
+        push(ball, nullptr, normal, along, config_.restitution_q16);
+      }
+      continue;
+    }
+    const uint32_t rows_set = window.under(disc, place, rows);
+    if (rows_set != 0) {
+      contacts_at(id, disc, place, rows, rows_set, axis_bit, &contacts);
     }
   }
   if (contacts.wall) {

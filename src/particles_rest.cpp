@@ -9,6 +9,14 @@
 namespace thimble {
 namespace {
 
+uint32_t rows_set_of(const uint32_t (&rows)[kMaxSmallDisc], int32_t count) {
+  uint32_t set = 0;
+  for (int32_t row = 0; row < count; ++row) {
+    set |= (rows[row] != 0 ? 1U : 0U) << row;
+  }
+  return set;
+}
+
 constexpr int32_t sign_of(int32_t value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
@@ -64,7 +72,7 @@ bool ParticleWorld::lies_still(uint32_t id) const {
     if (!field_.overlap_inside(disc, place, corner, rows)) {
       continue;
     }
-    contacts_at(id, disc, place, rows, 1, &contacts);
+    contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, &contacts);
     if (contacts.wall) {
       return true;
     }
@@ -91,7 +99,7 @@ void ParticleWorld::hold(uint32_t id) {
     Contacts contacts;
     uint32_t rows[kMaxSmallDisc];
     if (field_.overlap_inside(disc, place, corner, rows)) {
-      contacts_at(id, disc, place, rows, 1, &contacts);
+      contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, &contacts);
     }
     for (int32_t i = 0; i < contacts.count; ++i) {
       balls_[contacts.ids[i]].flags |= kSupports;
@@ -124,31 +132,19 @@ void ParticleWorld::wake_all() {
   }
 }
 
-// After a step: counts how long ball `id` has kept to its place, and puts it to sleep when that is long. What
-// is thrown to and fro in a hollow of a few cells may sleep as well, after longer. Without gravity, only what
-// stands perfectly still may, since everything else goes on for ever.
+// After a step: puts ball `id` to sleep where it may. Under gravity the caller has counted how long it has
+// kept to its place, and found it long enough. What is thrown to and fro in a hollow of a few cells may sleep
+// as well, after longer. Without gravity, only what stands perfectly still may, since everything else goes on
+// for ever.
 void ParticleWorld::rest(uint32_t id) {
   Ball& ball = balls_[id];
-  const auto beyond = [](int32_t x, int32_t y, int32_t reach) {
-    return x > reach || x < -reach || y > reach || y < -reach;
-  };
   if (!pulled_) {
     ball.still = (ball.vx | ball.vy) != 0 ? 0 : static_cast<uint8_t>(ball.still + 1);
-  } else {
-    if (beyond(ball.near_x, ball.near_y, kStillReach)) {
-      ball.near_x = ball.near_y = 0;
-      ball.still = 0;
-    } else if (ball.still < kStillSteps) {
-      ++ball.still;
-    }
-    if (beyond(ball.far_x, ball.far_y, kConfinedReach)) {
-      ball.far_x = ball.far_y = 0;
-      ball.confined = 0;
-    } else if (ball.confined < kConfinedSteps) {
-      ++ball.confined;
+    if (ball.still < kStillSteps && ball.confined < kConfinedSteps) {
+      return;
     }
   }
-  if ((ball.still < kStillSteps && ball.confined < kConfinedSteps) || id == dragged_ || !lies_still(id)) {
+  if (id == dragged_ || !lies_still(id)) {
     return;
   }
   ball.vx = 0;

@@ -48,6 +48,7 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   // set.
   const int32_t column = box.min.x >> 5;
   const int32_t shift = box.min.x & 31;
+  const int32_t back = (32 - shift) & 31;
   const int32_t after = config_.width - box.min.x;
   const bool has_next = shift + box.max.x - box.min.x > 32 && column + 1 < field_.columns();
   const uint32_t first_mask = column < 0 ? 0 : UINT32_MAX;
@@ -60,7 +61,7 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.min.y : first;
   for (int32_t row = top; row < bottom; row += kLanes) {
     store_rows(out + row, ((load_rows(first + row) & first_mask) >> shift) |
-                              (((load_rows(next + row) & next_mask) << 1) << (31 - shift)) | outside);
+                              ((load_rows(next + row) & next_mask) << back) | outside);
   }
   for (int32_t row = 0; row < top; ++row) {
     out[row] = UINT32_MAX;
@@ -82,13 +83,10 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   }
 }
 
-// Displacement of a substep for a velocity, to the nearest unit, halves away from zero.
+// Displacement of a substep for a velocity, to the nearest unit, halves away from zero. (Below zero that is
+// upwards of what is a 2^-16 less than a half, so one is taken off before it is cut downwards.)
 inline int32_t ParticleWorld::displacement(int32_t velocity) const {
-  const uint32_t sign = static_cast<uint32_t>(velocity >> 31);
-  const uint32_t size =
-      (((static_cast<uint32_t>(velocity) ^ sign) - sign + round_) >> config_.substeps_log2) &
-      (0U - static_cast<uint32_t>(unit_));
-  return static_cast<int32_t>((size ^ sign) - sign);
+  return ((velocity + round_ + (velocity >> 31)) & grid_) >> config_.substeps_log2;
 }
 
 void ParticleWorld::step() {
@@ -107,10 +105,31 @@ void ParticleWorld::step() {
   ++steps_;
 }
 
+// After a step under gravity: counts how long a ball has kept to its place, and says whether that is long
+// enough to sleep. Most balls do neither; there are no branches, since for many it is as good as random.
+inline bool ParticleWorld::has_settled(Ball& ball) {
+  const auto within = [](int32_t x, int32_t y, int32_t reach) -> uint32_t {
+    return static_cast<uint32_t>(static_cast<uint32_t>(x + reach) <= static_cast<uint32_t>(2 * reach)) &
+           static_cast<uint32_t>(static_cast<uint32_t>(y + reach) <= static_cast<uint32_t>(2 * reach));
+  };
+  const auto count = [](uint8_t steps, uint32_t kept, uint8_t most_steps) {
+    return static_cast<uint8_t>((steps + (steps < most_steps ? 1U : 0U)) & (0U - kept));
+  };
+  const uint32_t near = within(ball.near_x, ball.near_y, kStillReach);
+  const uint32_t confined = within(ball.far_x, ball.far_y, kConfinedReach);
+  ball.near_x = static_cast<int8_t>(ball.near_x & -static_cast<int32_t>(near));
+  ball.near_y = static_cast<int8_t>(ball.near_y & -static_cast<int32_t>(near));
+  ball.far_x = static_cast<int8_t>(ball.far_x & -static_cast<int32_t>(confined));
+  ball.far_y = static_cast<int8_t>(ball.far_y & -static_cast<int32_t>(confined));
+  ball.still = count(ball.still, near, kStillSteps);
+  ball.confined = count(ball.confined, confined, kConfinedSteps);
+  return (ball.still >= kStillSteps) | (ball.confined >= kConfinedSteps);
+}
+
 template <bool kPulled>
 void ParticleWorld::advance_all(bool last) {
   const bool large = field_.used_bytes() > kFarFieldBytes;
-  for (uint32_t id = next_awake(0); id != kNoBall; id = next_awake(id + 1)) {
+  for (uint32_t id = next_awake(0); id != kNoBall;) {
     if (large && id + kLookAhead < id_limit_) {
       // Balls lie in memory by number, but their cells anywhere: those of one soon to come are asked for now.
       const Ball& ahead = balls_[id + kLookAhead];
@@ -119,9 +138,14 @@ void ParticleWorld::advance_all(bool last) {
       __builtin_prefetch(cells + ahead.diameter / 2);
     }
     advance<kPulled>(id);
-    const Ball& ball = balls_[id];
-    if (last && (kPulled || (ball.vx | ball.vy) == 0 || ball.still != 0)) {
+    Ball& ball = balls_[id];
+    if (last && (kPulled ? has_settled(ball) : (ball.vx | ball.vy) == 0 || ball.still != 0)) {
       rest(id);
+    }
+    // The next one, which is most often the next number. Bits are read again, for balls may have woken.
+    ++id;
+    if ((id & 31) == 0 || (awake_[id >> 5] >> (id & 31) & 1U) == 0) {
+      id = next_awake(id);
     }
   }
 }
@@ -156,6 +180,17 @@ struct Shift {
   // The cells that differ.
   Rows changed(int32_t row) const {
     return (load_rows(own + row) << own_right) ^ (load_rows(next + row) << next_right);
+  }
+  // Makes them differ.
+  void put() const {
+    for_rows(height, [this](int32_t row) {
+      store_rows(column + row, load_rows(column + row) ^ (changed(row) << right));
+    });
+    if (wide) {
+      for_rows(height, [this](int32_t row) {
+        store_rows(beyond + row, load_rows(beyond + row) ^ (changed(row) >> (32 - right)));
+      });
+    }
   }
 };
 
@@ -192,9 +227,9 @@ __attribute__((always_inline)) inline void for_blocks(Visit visit) {
 }
 
 // Puts the disc elsewhere when nothing is in its sweep; says whether it did. kWide as shift.wide; kMostRows
-// no less than shift.height.
+// is no less than shift.height.
 template <bool kWide, int32_t kMostRows, class Sweep>
-__attribute__((always_inline)) inline bool put_where_free(const Shift& shift, const Sweep& sweep) {
+__attribute__((always_inline)) inline bool put_if_free(const Shift& shift, const Sweep& sweep) {
   const int32_t back = 32 - shift.right;
   Rows found{};
   if constexpr (kLanes > 1) {
@@ -238,14 +273,13 @@ __attribute__((always_inline)) inline bool put_where_free(const Shift& shift, co
   if (any_of(found)) {
     return false;
   }
-  for (int32_t row = 0; row < shift.height; ++row) {
-    const Rows changed = shift.changed(row);
-    store_rows(shift.column + row, load_rows(shift.column + row) ^ (changed << shift.right));
-    if constexpr (kWide) {
-      store_rows(shift.beyond + row, load_rows(shift.beyond + row) ^ (changed >> back));
-    }
-  }
+  shift.put();
   return true;
+}
+template <int32_t kMostRows, class Sweep>
+__attribute__((always_inline)) inline bool put_where_free(const Shift& shift, const Sweep& sweep) {
+  return shift.wide ? put_if_free<true, kMostRows>(shift, sweep)
+                    : put_if_free<false, kMostRows>(shift, sweep);
 }
 
 }  // namespace
@@ -256,8 +290,14 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   if (kPulled) {
     ball.flags = static_cast<uint8_t>(ball.flags & ~kGrounded);
     if (id != dragged_) {
-      ball.vx = least(most(ball.vx + gravity_part_.x, -kMaxSpeedQ16), kMaxSpeedQ16);
-      ball.vy = least(most(ball.vy + gravity_part_.y, -kMaxSpeedQ16), kMaxSpeedQ16);
+      const auto faster = [](int32_t* speed, int32_t more) {
+        *speed += more;
+        if (*speed > kMaxSpeedQ16 || *speed < -kMaxSpeedQ16) {
+          *speed = *speed < 0 ? -kMaxSpeedQ16 : kMaxSpeedQ16;
+        }
+      };
+      faster(&ball.vx, gravity_part_.x);
+      faster(&ball.vy, gravity_part_.y);
     }
   }
   const Vec2i way{displacement(ball.vx), displacement(ball.vy)};
@@ -286,20 +326,14 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
       const int32_t round = static_cast<int32_t>(bits::popcount32(disc.rows[0]));
       if (across <= round && down <= round) {
         const RoundSweep sweep{across};
-        if (kLanes > 1 && height <= 12) {
-          made =
-              shift.wide ? put_where_free<true, 12>(shift, sweep) : put_where_free<false, 12>(shift, sweep);
-        } else {
-          made =
-              shift.wide ? put_where_free<true, 16>(shift, sweep) : put_where_free<false, 16>(shift, sweep);
-        }
+        made =
+            kLanes > 1 && height <= 12 ? put_where_free<12>(shift, sweep) : put_where_free<16>(shift, sweep);
       } else {
-        const BoxSweep sweep{kLines + kBlock - height, (uint32_t{1} << width) - 1};
-        made = shift.wide ? put_where_free<true, 16>(shift, sweep) : put_where_free<false, 16>(shift, sweep);
+        made = put_where_free<16>(shift, BoxSweep{kLines + kBlock - height, (uint32_t{1} << width) - 1});
       }
     }
     if (!made) {
-      trace(id, way, from);
+      trace(id, way, from, ((kShortWidth - width) | (kBlock - height)) >= 0);
       end = {ball.x, ball.y};
       gone = {disc_corner(end.x, diameter) - from.x, disc_corner(end.y, diameter) - from.y};
     }
@@ -313,13 +347,20 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   }
   if (kPulled) {
     if ((gone.x | gone.y) != 0) {
-      const auto add = [](int8_t* sum, int32_t cells) {
-        *sum = static_cast<int8_t>(least(most(*sum + cells, -100), 100));
-      };
-      add(&ball.near_x, gone.x);
-      add(&ball.near_y, gone.y);
-      add(&ball.far_x, gone.x);
-      add(&ball.far_y, gone.y);
+      const auto cut = [](int32_t cells) { return least(most(cells, -100), 100); };
+      if (config_.substeps_log2 == 0) {
+        // The sums begin within the reach of the last step: they cannot leave a byte.
+        const Vec2i cells{cut(gone.x), cut(gone.y)};
+        ball.near_x = static_cast<int8_t>(ball.near_x + cells.x);
+        ball.near_y = static_cast<int8_t>(ball.near_y + cells.y);
+        ball.far_x = static_cast<int8_t>(ball.far_x + cells.x);
+        ball.far_y = static_cast<int8_t>(ball.far_y + cells.y);
+      } else {
+        ball.near_x = static_cast<int8_t>(cut(ball.near_x + gone.x));
+        ball.near_y = static_cast<int8_t>(cut(ball.near_y + gone.y));
+        ball.far_x = static_cast<int8_t>(cut(ball.far_x + gone.x));
+        ball.far_y = static_cast<int8_t>(cut(ball.far_y + gone.y));
+      }
       if ((ball.flags & kSupports) != 0) {
         ball.flags = static_cast<uint8_t>(ball.flags & ~kSupports);
         support_left({from, {from.x + diameter, from.y + diameter}}, ball.confined < kStillSteps);
@@ -329,12 +370,13 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
 }
 
 // The way of a ball with its bounces, where something may be in it. The ball's cells in the field stay at
-// `own`, its corner, until the end.
-void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
+// `own`, its corner, until the end. `looked`: something is near the way, a side of
+// the box at least.
+void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
   Ball& ball = balls_[id];
   Window window;
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
-    const Blocked blocked = walk(&ball, way, own, bounce == 0, &window);
+    const Blocked blocked = walk(&ball, way, own, bounce == 0, looked && bounce == 0, &window);
     if (blocked.axes == 0) {
       break;
     }
@@ -370,22 +412,13 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own) {
     field_.set_inside(disc, corner);
     return;
   }
-  const Shift shift(words_, config_.height, disc, own, low, {corner.x - own.x, corner.y - own.y});
-  for_rows(shift.height, [&](int32_t row) {
-    store_rows(shift.column + row, load_rows(shift.column + row) ^ (shift.changed(row) << shift.right));
-  });
-  if (shift.wide) {
-    for_rows(shift.height, [&](int32_t row) {
-      store_rows(shift.beyond + row,
-                 load_rows(shift.beyond + row) ^ (shift.changed(row) >> (32 - shift.right)));
-    });
-  }
+  Shift(words_, config_.height, disc, own, low, {corner.x - own.x, corner.y - own.y}).put();
 }
 
 // Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
 // between cells are crossed in their exact order along the line; both at once where it goes through a corner.
-// `first`: the window is not loaded yet.
-ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk,
+// `first_walk`: the window is not loaded yet. `looked`: something is known to be near the way.
+ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, bool looked,
                                            Window* window) {
   const DiscStamp disc = small_disc(ball->diameter);
   Blocked blocked;
@@ -466,7 +499,7 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
                     disc, own, window);
       }
       const int32_t stretch = left_before.x + left_before.y - left.x - left.y;
-      if (stretch > 2 && !window->any_in(box)) {
+      if (stretch > 2 && !looked && !window->any_in(box)) {
         if ((left.x | left.y) == 0) {
           return blocked;
         }

@@ -296,14 +296,14 @@ class ParticleWorld {
   void advance_all(bool last);
   template <bool kPulled>
   void advance(uint32_t id);
-  void trace(uint32_t id, Vec2i way, Vec2i own);
-  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, Window* window);
+  void trace(uint32_t id, Vec2i way, Vec2i own, bool looked);
+  Blocked walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, bool looked, Window* window);
   void load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const;
   int32_t displacement(int32_t velocity) const;
 
   // particles_contact.cpp: what is met, and what it does.
   void contacts_at(uint32_t self, const DiscStamp& disc, Vec2i place, uint32_t (&rows)[kMaxSmallDisc],
-                   uint32_t axis_bits, Contacts* contacts) const;
+                   uint32_t rows_set, uint32_t axis_bits, Contacts* contacts) const;
   void collide(uint32_t id, const Blocked& blocked, const Window& window, Vec2i own);
   Vec2i wall_normal(uint32_t id, Vec2i offset, Vec2i own) const;
   void bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i away, uint32_t axes);
@@ -311,6 +311,7 @@ class ParticleWorld {
 
   // particles_rest.cpp: sleep.
   void wake(uint32_t id);
+  static bool has_settled(Ball& ball);
   void rest(uint32_t id);
   bool lies_still(uint32_t id) const;
   bool pulls_most(int axis) const;
@@ -346,7 +347,9 @@ class ParticleWorld {
   int32_t rest_speed_ = 0;  // Q16; impacts below it do not bounce
   Vec2i gravity_part_;      // gravity a substep
   int32_t unit_ = 2;        // 2^-16 cells in a unit of position
-  uint32_t round_ = 1;      // half a unit of position, as a velocity
+  // As velocities, half a unit of position and what cuts to whole ones.
+  int32_t round_ = 1;
+  int32_t grid_ = -2;
   PointerMode pointer_mode_ = PointerMode::kNone;
   Vec2i pointer_;
   Vec2i pointer_before_;
