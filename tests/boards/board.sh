@@ -68,6 +68,22 @@ for app in $apps; do
   elif [ "$app" = bench ]; then
     said="$(sed -n 's/^\([a-z_]*\)\.instructions_median,\([0-9]*\).*/\2 instructions a frame (\1)/p' "$log" | tr '\n' ';')"
     said="${said%;}; "
+    # What a frame may cost.
+    while IFS=, read -r row_board most least; do
+      [ "$row_board" = "$board" ] || continue
+      cost=$(sed -n 's/^brick_map\.instructions_median,//p' "$log")
+      times=$(sed -n 's/^brick_map\.times_faster_than_dda,//p' "$log")
+      [ "${cost:-999999999}" -le "$most" ] || fail bench "a frame takes ${cost:-no} instructions, at most $most"
+      if [ -n "$least" ] && ! awk "BEGIN { exit !(${times:-0} >= $least) }"; then
+        fail bench "${times:-not} times faster than the textbook's tracer, at least $least"
+      fi
+    done <tests/budgets/frames.csv
+  elif [ "$app" = particles ]; then
+    crc=$(sed -n 's/^steps 400 crc \([0-9a-f]*\)$/\1/p' "$log" | head -n 1)
+    if [ -z "$crc" ] || ! grep -qi "0x$crc" tests/golden/particles_table.h; then
+      fail particles "its state after 400 steps, ${crc:-none}, is not among the golden ones"
+    fi
+    said="state $crc after 400 steps; "
   fi
   sh "$here/budget.sh" "$board" "$app" "$log" >"$work/$app.budget" 2>&1 || failed=1
   grep FAILED "$work/$app.budget" | sed "s/^/$(printf '%-18s %-10s ' "$board" "$app")/" >>"$results" || true
