@@ -8,8 +8,8 @@
 
 namespace thimble::bits {
 
-// Set bits of one byte. Without an instruction for it: four copies of the byte, 9 bits apart, bring each of its
-// bits to the lowest place of a nibble of its own; the second product adds the nibbles up in the highest.
+// Set bits of one byte. Without an instruction for it: four copies of the byte, 9 bits apart, bring each of
+// its bits to the lowest place of a nibble of its own; the second product adds the nibbles up in the highest.
 constexpr unsigned popcount8(unsigned byte) {
 #if defined(__POPCNT__)
   return static_cast<unsigned>(__builtin_popcount(byte));
