@@ -864,7 +864,7 @@ class Painter {
       }
       set_start(course_, slab);
     }
-    int32_t inks[kQuadPixels];  // NOLINT: those of the quad are all set, and no other is looked at
+    int32_t inks[kQuadPixels];
     const int32_t across = quad.x1 - quad.x0;
     const int32_t down = quad.y1 - quad.y0;
     if (!usable || fan.mixed != 0) {
@@ -923,7 +923,7 @@ class Painter {
       line += quad.x0 >> 1;
       for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
         for (int32_t i = 0; i < kQuadAcrossPx / 2; ++i, inks += 2) {
-          line[i] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);
+          line[i] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);  // NOLINT: all of a quad are set
         }
       }
       return;
@@ -939,7 +939,7 @@ class Painter {
   [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
     for (int32_t y = quad.y0; y < quad.y1; ++y) {
       for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
-        if (*inks == kAsk) {
+        if (*inks == kAsk) {  // NOLINT: all of a quad are set
           *inks = ask(frame_, x, y, counts_);
         }
         if (*inks < 0) {

@@ -1,15 +1,19 @@
 /// @file brick_render.h
-/// The picture of render.h in a tenth of the instructions, for chips that draw frames: a compact tree with a
-/// brick map beside it.
+/// The picture of render.h in a thirteenth of the instructions, for chips that draw frames: a compact tree
+/// with a brick map beside it.
 ///
 /// The pixels are those of `render_band` for the tree, bit for bit, whatever camera, shading, format and
-/// band: what the fast way does not take (below) goes the other's way, pixel by pixel or as a whole. Nothing
-/// is kept between bands, so bands may be drawn in any order and side by side.
+/// band: what the fast way does not take goes the other's way, ray by ray or as a whole. Nothing is kept
+/// between bands, so bands may be drawn in any order and side by side.
 ///
-/// The fast way takes perspective cameras of at most kMaxBrickDirectionBits direction bits, for which the
-/// products of distances and directions fit in 32 bits (`draws_fast`): at level 6 pictures of up to some 400
-/// pixels a side seen from two world sizes away. Bands work best in multiples of kBrickTilePx rows that start
-/// at one.
+/// The fast way takes perspective cameras whose products of distances and directions fit in 32 bits
+/// (`draws_fast`): in a world of 64 pictures of up to some 300 pixels a side seen from within two world
+/// sizes. Cheapest are bands of many rows that start at a multiple of kBrickTilePx, in pictures whose width
+/// is a multiple of 16. kDepth costs a division a pixel.
+///
+/// Cost: some 360 instructions a pixel on a Cortex-M3, 650 on a Cortex-M0 (src/DESIGN.md, "Frames on a
+/// chip"). Stack: 3 KiB (tests/budgets/stack.csv), most of it colours and the state of a tile. Code: some 45
+/// KB.
 #ifndef THIMBLE_BRICK_RENDER_H
 #define THIMBLE_BRICK_RENDER_H
 
@@ -25,7 +29,7 @@
 namespace thimble {
 
 inline constexpr int kMaxBrickDirectionBits = 12;
-/// Pixels of a tile's side: rays of one tile start where the first of them may meet something.
+/// Rows of a tile: its rays start where the first of them may meet something.
 inline constexpr int32_t kBrickTilePx = 8;
 
 /// Whether frames of that camera take the fast way.

@@ -158,7 +158,9 @@ uint32_t draw_dda(const BitWorld& world, const Camera& camera, const uint8_t (&f
     rays.max[axis] = world.bounds.max[axis];
     rays.stride[axis] = int32_t{1} << (axis * world.level);
     const Camera::Affine& affine = camera.affine();
-    row_start[axis] = static_cast<int32_t>((affine.base[axis] + first_row * affine.step_y[axis]) >> shift);
+    // Half a unit, so that cutting off rounds.
+    row_start[axis] =
+        static_cast<int32_t>((affine.base[axis] + first_row * affine.step_y[axis]) >> shift) + 0x8000;
     across[axis] = static_cast<int32_t>(affine.step_x[axis] >> shift);
     down[axis] = static_cast<int32_t>(affine.step_y[axis] >> shift);
   }
