@@ -243,7 +243,7 @@ class ParticleWorld {
   // --- Time
 
   /// One step. Cost: nothing for sleepers. Each ball awake takes some 300 instructions with SSE2 and two
-  /// dozen words of the field, whatever else there is; where something is in its way, about 2,000 more. Long
+  /// dozen words of the field, whatever else there is; where something is in its way, about 1,500 more. Long
   /// ways add one look at a window of at most 32 x 32 cells for every 16 boundaries between cells that they
   /// cross. Stack: at most 1.4 KB. The order in which balls move is that of their numbers.
   void step();
