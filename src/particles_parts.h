@@ -53,21 +53,6 @@ inline bool any_of(Rows rows) {
 }
 #endif
 inline constexpr int32_t kLanes = sizeof(Rows) / 4;
-// Which of them are not empty, as bits.
-inline uint32_t lanes_set(Rows rows) {
-#if defined(__SSE2__)
-  typedef char Chars __attribute__((vector_size(16)));
-  // A bit a byte, of which every fourth is taken.
-  const uint32_t bytes =
-      static_cast<uint32_t>(__builtin_ia32_pmovmskb128(reinterpret_cast<Chars>(rows != 0))) & 0x1111U;
-  return (bytes | bytes >> 3 | bytes >> 6 | bytes >> 9) & 15U;
-#elif defined(__ARM_NEON)
-  return (rows[0] != 0 ? 1U : 0U) | (rows[1] != 0 ? 2U : 0U) | (rows[2] != 0 ? 4U : 0U) |
-         (rows[3] != 0 ? 8U : 0U);
-#else
-  return rows != 0 ? 1 : 0;
-#endif
-}
 inline constexpr int32_t kBlock = kMaxSmallDisc;  // rows of a disc, and of a small window
 
 inline Rows load_rows(const uint32_t* rows) {
@@ -76,6 +61,26 @@ inline Rows load_rows(const uint32_t* rows) {
 inline void store_rows(uint32_t* rows, Rows value) {
   *reinterpret_cast<RowsInMemory*>(rows) = value;
 }
+// Bits 0 .. 15 for the rows that are not empty: gathered a few rows at a time, then put together.
+#if defined(__SSE2__) || defined(__ARM_NEON)
+inline Rows rows_that_have(Rows rows, int32_t first_row) {
+  constexpr Rows kBits{1, 2, 4, 8};
+  return (rows != 0) & (kBits << first_row);
+}
+inline uint32_t together(Rows bits) {
+  typedef uint64_t Halves __attribute__((vector_size(16)));
+  const Halves halves = reinterpret_cast<Halves>(bits);
+  const uint64_t half = halves[0] | halves[1];
+  return static_cast<uint32_t>(half) | static_cast<uint32_t>(half >> 32);
+}
+#else
+inline Rows rows_that_have(Rows rows, int32_t first_row) {
+  return (rows != 0 ? 1U : 0U) << first_row;
+}
+inline uint32_t together(Rows bits) {
+  return bits;
+}
+#endif
 // Does `visit(row)` for the first `count` rows of at most kBlock: for each of them, or for twelve or all in
 // fours.
 template <class Visit>
@@ -132,13 +137,13 @@ struct ParticleWorld::Window {
   uint32_t under(const DiscStamp& disc, Vec2i place, uint32_t (&out)[kBlock]) const {
     const uint32_t* const from = rows + (place.y - base.y);
     const int32_t shift = place.x - base.x;
-    uint32_t rows_set = 0;
+    Rows set{};
     for_rows(disc.diameter, [&](int32_t row) {
       const Rows found = (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
       store_rows(out + row, found);
-      rows_set |= lanes_set(found) << row;
+      set |= rows_that_have(found, row);
     });
-    return rows_set;
+    return together(set);
   }
   bool is_free(const DiscStamp& disc, Vec2i place) const {
     const uint32_t* const from = rows + (place.y - base.y);

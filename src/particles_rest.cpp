@@ -12,7 +12,9 @@ namespace {
 uint32_t rows_set_of(const uint32_t (&rows)[kMaxSmallDisc], int32_t count) {
   uint32_t set = 0;
   for (int32_t row = 0; row < count; ++row) {
-    set |= (rows[row] != 0 ? 1U : 0U) << row;
+    if (rows[row] != 0) {
+      set |= uint32_t{1} << row;
+    }
   }
   return set;
 }
