@@ -129,9 +129,10 @@ void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i plac
   const int32_t cell_step = leftwards ? -1 : 1;
   const uint32_t* line =
       cells_ + (upwards ? range.y1 : range.y0) * cells_across_ + (leftwards ? range.x1 : range.x0);
-  for (int32_t y = range.y0; y <= range.y1; ++y, line += line_step) {
+  const int32_t across = range.x1 - range.x0;
+  for (int32_t lines = range.y1 - range.y0; lines >= 0; --lines, line += line_step) {
     const uint32_t* cell = line;
-    for (int32_t x = range.x0; x <= range.x1; ++x, cell += cell_step) {
+    for (int32_t cells = across; cells >= 0; --cells, cell += cell_step) {
       for (uint32_t id = *cell; id != kNoBall; id = balls_[id].next) {
         const Ball& other = balls_[id];
         const uint32_t half = (uint32_t{other.diameter} - 1) << 15;

@@ -71,7 +71,7 @@ void ParticleWorld::apply_pointer() {
     case PointerMode::kErase: {
       // Every ball that the stroke covers a cell of.
       const int32_t brush_diameter = 2 * pointer_radius_ - 1;
-      erase_wall(pointer_before_, pointer_, brush_diameter);
+      brush(pointer_before_, pointer_, brush_diameter, false);
       const CellRange range =
           cells_around({{pointer_.x, pointer_.y}, {pointer_.x + 1, pointer_.y + 1}}, pointer_radius_);
       for (int32_t y = range.y0; y <= range.y1; ++y) {
@@ -93,7 +93,7 @@ void ParticleWorld::apply_pointer() {
       break;
     }
     case PointerMode::kDraw:
-      draw_wall(pointer_before_, pointer_, 2 * pointer_radius_ - 1);
+      brush(pointer_before_, pointer_, 2 * pointer_radius_ - 1, true);
       break;
   }
   pointer_before_ = pointer_;
