@@ -29,7 +29,7 @@ start() {
 # wait_for TEXT: until the UART has said it.
 wait_for() {
   for i in $(seq 300); do
-    grep -q "$1" "$work/screen.log" && return 0
+    grep -qs "$1" "$work/screen.log" && return 0
     sleep 0.1
   done
   return 1
