@@ -168,6 +168,14 @@ constexpr DiscStamp disc_stamp(int32_t diameter) {
   return disc;
 }
 
+/// The rows of a disc of at most kMaxSmallDisc (a larger one gets those of that), as `DiscStamp::rows`; never
+/// null.
+constexpr const uint32_t* small_disc_rows(int32_t diameter) {
+  const int32_t least = diameter < 0 ? 0 : diameter;
+  return field_detail::kSmallDiscs.rows +
+         field_detail::SmallDiscs::first(least < kMaxSmallDisc ? least : kMaxSmallDisc);
+}
+
 /// The cells of a disc. Cost: O(diameter).
 uint32_t disc_cells(const DiscStamp& disc);
 

@@ -133,7 +133,7 @@ bool fill_bit_world(const CompactTree& tree, Bytes out, BitWorld* world) {
                       {1, 0, 0}};
         Hit hit;
         if (closest_hit(tree, ray, &hit) == Status::kOk && hit.kind == HitKind::kHit && hit.axis < 0) {
-          const size_t bit = static_cast<size_t>(x + (y << level) + (z << 2 * level));
+          const auto bit = static_cast<uint32_t>(x + (y << level) + (z << 2 * level));
           out[bit >> 3] = static_cast<uint8_t>(out[bit >> 3] | 1U << (bit & 7));
         }
       }

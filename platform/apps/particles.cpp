@@ -62,11 +62,8 @@ const port::Display& display() {
       continue;
     }
     --balls_left;
-    const uint32_t* const rows = disc_stamp(ball.diameter).rows;
-    if (rows == nullptr) {
-      continue;  // A disc above kMaxSmallDisc: no ball is that large.
-    }
     const Rgb8 color = is_gray ? ball_gray(id, ball.asleep) : ball_color(ball.diameter, ball.asleep);
+    const uint32_t* const rows = small_disc_rows(ball.diameter);
     for (int32_t row = 0; row < ball.diameter; ++row) {
       const int32_t y = ball.corner.y + row;
       if (y < band.first_row || y >= end) {

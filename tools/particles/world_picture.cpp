@@ -38,10 +38,10 @@ void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb)
       continue;
     }
     const Rgb8 color = populated.color_of(ball);
-    const DiscStamp disc = disc_stamp(ball.diameter);
+    const std::uint32_t* const rows = small_disc_rows(ball.diameter);
     for (std::int32_t row = 0; row < ball.diameter; ++row) {
       for (std::int32_t column = 0; column < ball.diameter; ++column) {
-        if ((disc.rows[row] >> column & 1U) != 0) {
+        if ((rows[row] >> column & 1U) != 0) {
           put(rgb,
               static_cast<std::size_t>(ball.corner.y + row) * width +
                   static_cast<std::size_t>(ball.corner.x + column),
