@@ -85,7 +85,8 @@ uint32_t eta_q12(uint32_t n1_q12, uint32_t n2_q12);
 ///   eta_q12^2 * (a^2 + b^2) >= 2^24 * (a^2 + b^2 + c^2)
 ///
 /// in exact integers; also for c = 0, which goes nowhere. Otherwise the component along the axis keeps its
-/// sign and is not 0. kOneQ12 gives `unit` itself in every case but c = 0. One 32-bit root, 64-bit products.
+/// sign and is not 0. kOneQ12 is no surface: true, and `unit` itself, always. One 32-bit root, 64-bit
+/// products.
 bool refract(const Vec3i& unit, int axis, uint32_t eta_q12, Vec3i* out);
 /// The same at a bent normal of either sign, which has a length within 16 of 16384. With D = unit . normal,
 /// N = normal . normal, L = unit . unit it is false for D = 0 and for

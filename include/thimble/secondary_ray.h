@@ -89,12 +89,13 @@ struct MediumExit {
 
 /// Follows `ray`, from `from` on, as long as it is in voxels that are solid with `material`, to the first one
 /// that is not and in which it spends a positive length. Where it is in none of `material` at `from`, that is
-/// the voxel it is in there (whose t may then lie before `from`). A ray that is not in the world at `from`
-/// has left it: t is that of `from`, the voxel the one it is in, axis -1.
+/// the voxel it is in there (whose t may then lie before `from`). For a ray that is not in the world at
+/// `from` only `left_world` means something (`hit.axis` is -1 and t = 0).
 ///
-/// Blocks that are solid through are crossed whole, so a visit is a node of the tree (or a cell of it that is
-/// empty), at most 3 * 2^level + 3 of them in the cells of each level. With the whole of `ray` as it is (the
-/// direction not bent, the origin not moved) this is how a ray goes on through a medium that bends nothing.
+/// Crossings at the same t are taken together. Blocks that are solid through are crossed whole, so visits are
+/// nodes of the tree, below 3 * 2^level of them. Given the ray that hit the medium and that hit's point, this
+/// follows the same ray on, with nothing rounded: so a medium that bends nothing is seen through without a
+/// trace (`closest_hit_from` then goes on from the exit's point).
 ///
 /// `kOk`; or as `closest_hit`, with `exit` untouched.
 Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
