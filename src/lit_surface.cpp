@@ -1,0 +1,114 @@
+// What a ray meets, and what a face gets without any effect.
+#include "lit_arithmetic.h"
+#include "thimble/lit_pixel.h"
+
+namespace thimble::lit {
+namespace {
+
+// Light from everywhere is not quite the same from everywhere: with these shares for the faces -x, +x, -y,
+// +y, -z, +z (256 = 1) an edge is seen in the shadow too.
+constexpr uint16_t kAmbientShare[6] = {222, 222, 200, 200, 160, 256};
+
+}  // namespace
+
+void count_ray(Frame& frame, LitRayKind kind) {
+  frame.counts.rays[static_cast<int>(kind)] += 1;
+}
+
+void count_result(Frame& frame, LitRayKind kind, HitKind result, uint32_t visits) {
+  frame.counts.node_visits[static_cast<int>(kind)] += visits;
+  frame.counts.hits[static_cast<int>(kind)] += result == HitKind::kHit ? 1U : 0U;
+  frame.counts.step_limited += result == HitKind::kStepLimit ? 1U : 0U;
+}
+
+Surface surface_of(const Frame& frame, uint8_t material) {
+  if (material < frame.scene.surfaces.size) {
+    return frame.scene.surfaces[material];
+  }
+  Surface surface;
+  surface.albedo = material < frame.shading.palette.size ? frame.shading.palette[material]
+                                                          : frame.shading.default_color;
+  return surface;
+}
+
+void find_solid(Frame& frame, LitRayKind kind, const Ray& ray, Hit* hit) {
+  if (closest_hit(frame.tree, ray, hit, {frame.options.max_visits, Width::kAuto}) != Status::kOk) {
+    *hit = Hit{};
+    return;
+  }
+  count_result(frame, kind, hit->kind, hit->visits);
+}
+
+void meet_solid(Frame& frame, const PendingRay& now, Meeting* meeting) {
+  find_solid(frame, now.kind, now.ray, &meeting->hit);
+  meeting->found = meeting->hit.kind == HitKind::kHit;
+  meeting->opaque = meeting->found;
+}
+
+Spot spot_of(const Frame& frame, const Ray& ray, const Meeting& meeting) {
+  Spot spot;
+  spot.at = start_on_face(ray, meeting.hit);
+  spot.face = face_of(meeting.hit, ray.direction);
+  spot.inside = meeting.hit.axis < 0;
+  spot.arriving = ray.direction;
+  spot.surface = surface_of(frame, meeting.hit.material);
+  return spot;
+}
+
+void plain_light(const Frame& frame, const Spot& spot, Color* light) {
+  const uint32_t face = frame.shading.face_light[2 * spot.face.axis + (spot.face.negative ? 0 : 1)];
+  for (uint32_t& channel : light->c) {
+    channel = face * (kFullLight / 256);
+  }
+}
+
+void ambient_light(const Frame& frame, const Spot& spot, Color* light) {
+  const uint32_t share = kAmbientShare[2 * spot.face.axis + (spot.face.negative ? 0 : 1)];
+  for (int i = 0; i < 3; ++i) {
+    light->c[i] = (frame.scene.ambient_q8[i] * share * (kFullLight / 256)) >> 8;  // 16 bits by 8 by 4
+  }
+}
+
+Color lit_color(const Spot& spot, const Color& light) {
+  Color color;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t strength = light.c[i] < UINT16_MAX ? light.c[i] : UINT16_MAX;
+    const uint32_t channel =
+        (channel_of(spot.surface.albedo, i) * strength + kFullLight / kLevel / 2) / (kFullLight / kLevel);
+    color.c[i] = channel < kMaxChannel ? channel : kMaxChannel;
+  }
+  return color;
+}
+
+void add(const Color& color, const Weight& weight, Color* sum) {
+  for (int i = 0; i < 3; ++i) {
+    sum->c[i] += (color.c[i] * weight.c[i] + kFullWeight / 2) / kFullWeight;  // 2^16 by 2^15
+  }
+}
+
+Color background(const Frame& frame) {
+  return color_of(frame.shading.background);
+}
+
+void add_emission(const Spot& spot, Color* color) {
+  if (spot.surface.kind != SurfaceKind::kEmit) {
+    return;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t channel =
+        color->c[i] + channel_of(spot.surface.albedo, i) * uint32_t{spot.surface.emission_q8} / (256 / kLevel);
+    color->c[i] = channel < kMaxChannel ? channel : kMaxChannel;
+  }
+}
+
+bool spares_light(const Frame& frame, const LightRay& light, const Hit& hit) {
+  if (!light.is_point) {
+    return false;
+  }
+  if (!is_before(point_of(hit), light.place)) {
+    return true;
+  }
+  return (frame.effects & kEmission) != 0 && surface_of(frame, hit.material).kind == SurfaceKind::kEmit;
+}
+
+}  // namespace thimble::lit
