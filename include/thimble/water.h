@@ -147,8 +147,12 @@ class Water {
   int32_t next_flux(int32_t here, int32_t there, int32_t flux);
   void edges_of_row(int32_t y, int32_t first, int32_t end);
   RowSpan heights_of_row(int32_t y, int32_t first, int32_t end);
-  int32_t push(const Bowl& bowl, int32_t x, int32_t y) const;
-  Region region(const Bowl& bowl) const;
+  static Bowl bowl_at(int32_t x_q8, int32_t y_q8, int32_t radius_q8);
+  static int32_t push(const Bowl& bowl, uint32_t squared);
+  static int32_t push_at(const Bowl& bowl, int32_t x, int32_t y);
+  int32_t loss(const Bowl& bowl, int32_t x, int32_t y) const;
+  Region region(const Bowl& bowl, int32_t radius_q8) const;
+  bool bears(const Bowl& bowl, const Region& region) const;
   void wake(const Region& region);
   void lay_to_rest();
 
@@ -168,6 +172,7 @@ class Water {
   uint32_t damping_q12_ = 0;
   uint32_t steps_done_ = 0;
   uint64_t columns_updated_ = 0;
+  bool has_blocked_ = false;
   bool still_ = true;
   bool moving_ = false;   // the step has taken something, or could have
   bool quiet_ = false;    // the step before had not

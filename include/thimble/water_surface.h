@@ -97,6 +97,12 @@ bool water_holds(const WaterSurface& surface, const Vec3Q8& point, const Vec3i& 
 /// water: (0, 0, 2^14). It bends the light only: what is hit is the column.
 Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y);
 
+/// Normal for light at a hit, out of the water, of length 2^14 .. 2^16: of the surface, also at the upright
+/// face between two columns that hold water (it is part of a slope); of the face itself at the border, at
+/// blocked columns and at the floor, and wherever the surface's normal would be seen from behind. `direction`
+/// is the ray's, `x` and `y` the point's, world coordinates.
+Vec3i water_hit_normal(const WaterSurface& surface, const WaterHit& hit, const Vec3i& direction, Q8 x, Q8 y);
+
 }  // namespace thimble
 
 #endif
