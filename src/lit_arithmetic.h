@@ -46,10 +46,9 @@ constexpr bool is_seen(const Weight& weight) {
 /// The length of the ray from `from` to the meeting, in 1/256 voxel.
 inline uint32_t stretch_q8(const Ray& ray, const Leg& leg, const Meeting& meeting) {
   const int32_t end = distance_q8(ray.direction, meeting.hit.t_numerator, meeting.hit.t_denominator);
-  const int32_t begin =
-      leg.from.t_numerator == 0
-          ? 0
-          : distance_q8(ray.direction, leg.from.t_numerator, leg.from.t_denominator);
+  const int32_t begin = leg.from.t_numerator == 0
+                            ? 0
+                            : distance_q8(ray.direction, leg.from.t_numerator, leg.from.t_denominator);
   return end > begin ? static_cast<uint32_t>(end - begin) : 0;
 }
 

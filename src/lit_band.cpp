@@ -6,8 +6,8 @@
 namespace thimble::lit {
 namespace {
 
-// The step, of `levels` above 0, for a channel of 0 .. kWhite: the next one up where the rest is more than the
-// pixel's place in the dither.
+// The step, of `levels` above 0, for a channel of 0 .. kWhite: the next one up where the rest is more than
+// the pixel's place in the dither.
 uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, int32_t x, int32_t y) {
   const uint32_t place = options.dither ? 2 * bayer_rank(x, y) + 1 : 64;  // of 128
   return (channel * levels + (128 - place) * kWhite / 128) / kWhite;
@@ -18,8 +18,7 @@ uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, i
 Status draw_plain(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
                   LitCounts* counts, const LitOptions& options) {
   RenderCounts plain;
-  const Status status =
-      render_band(tree, camera, shading, band, &plain, {options.max_visits, Width::kAuto});
+  const Status status = render_band(tree, camera, shading, band, &plain, {options.max_visits, Width::kAuto});
   if (counts != nullptr) {
     constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
     counts->rays[kPrimary] += plain.rays;
@@ -60,8 +59,7 @@ void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32
     case PixelFormat::kMono1:
     case PixelFormat::kGray4: {
       const uint32_t levels = band.format == PixelFormat::kMono1 ? 1 : 15;
-      const uint8_t value =
-          static_cast<uint8_t>(step_of(gray, levels, frame.options, x, y) * (255 / levels));
+      const uint8_t value = static_cast<uint8_t>(step_of(gray, levels, frame.options, x, y) * (255 / levels));
       stored = {value, value, value};
       break;
     }

@@ -20,7 +20,8 @@ void meet(Frame& frame, LitRayKind kind, const Ray& ray, const Leg& leg, Meeting
     if (leave_medium(frame.tree, ray, leg.medium.material, &exit, leg.from, options) != Status::kOk) {
       return;
     }
-    count_result(frame, kind, exit.hit.kind == HitKind::kHit && !exit.into_solid ? HitKind::kMiss : exit.hit.kind,
+    count_result(frame, kind,
+                 exit.hit.kind == HitKind::kHit && !exit.into_solid ? HitKind::kMiss : exit.hit.kind,
                  exit.hit.visits);
     meeting->hit = exit.hit;
     if (exit.hit.kind != HitKind::kHit || (exit.left_world && exit.hit.axis < 0)) {
@@ -68,7 +69,8 @@ bool light_arrives_through(Frame& frame, LightRay* light) {
   for (int legs = 0; legs < kMaxLegs; ++legs) {
     Meeting meeting;
     meet(frame, LitRayKind::kShadow, light->ray, leg, &meeting);
-    const bool past_light = light->is_point && meeting.found && is_before(light->place, point_of(meeting.hit));
+    const bool past_light =
+        light->is_point && meeting.found && is_before(light->place, point_of(meeting.hit));
     if (past_light) {
       meeting.hit.t_numerator = light->place.t_numerator;
       meeting.hit.t_denominator = light->place.t_denominator;
@@ -104,7 +106,9 @@ void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
                       surface_of(frame, meeting.beyond.material).kind == SurfaceKind::kMedia);
   leg->medium = meeting.beyond;
   leg->from = point_of(meeting.hit);
-  const LitRayKind kind = media ? LitRayKind::kMedia : meeting.at_water ? LitRayKind::kWater : LitRayKind::kGlass;
+  const LitRayKind kind = media              ? LitRayKind::kMedia
+                          : meeting.at_water ? LitRayKind::kWater
+                                             : LitRayKind::kGlass;
   count_ray(frame, kind);
   if ((frame.effects & kWater) != 0) {
     // The water is asked from the beginning of a ray only: a new one, from the face on.

@@ -27,8 +27,7 @@ void fade_in_fog(const Frame& frame, const Ray& ray, const Leg& leg, const Meeti
   if (leg.medium.kind != Medium::kAir) {
     return;
   }
-  const uint32_t length =
-      meeting.found ? stretch_q8(ray, leg, meeting) : way_out_q8(frame, ray.direction);
+  const uint32_t length = meeting.found ? stretch_q8(ray, leg, meeting) : way_out_q8(frame, ray.direction);
   const uint32_t density = frame.scene.fog.density_q16;
   constexpr uint32_t kMostDensity = 1U << 24;
   const uint32_t halvings = halvings_q16(density < kMostDensity ? density : kMostDensity, length);

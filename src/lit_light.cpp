@@ -23,8 +23,7 @@ bool light_ray(const Light& light, const Spot& spot, LightRay* ray) {
   uint32_t share_q16 = UINT16_MAX;
   ray->is_point = light.is_point;
   if (light.is_point) {
-    const Vec3Q8 place{Q8::from_raw(light.place.x), Q8::from_raw(light.place.y),
-                       Q8::from_raw(light.place.z)};
+    const Vec3Q8 place{Q8::from_raw(light.place.x), Q8::from_raw(light.place.y), Q8::from_raw(light.place.z)};
     if (!ray_towards(spot.at, place, kLightBits, &ray->ray, &ray->place)) {
       return false;
     }

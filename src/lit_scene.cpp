@@ -6,8 +6,8 @@ namespace thimble {
 namespace {
 
 constexpr const char* kNames[kEffectCount] = {
-    "direct-light", "shadows", "ambient-occlusion", "emission", "mirror",    "glass",
-    "media",        "water",   "fog",               "sky",      "depth-cue",
+    "direct-light", "shadows", "ambient-occlusion", "emission", "mirror", "glass", "media", "water",
+    "fog",          "sky",     "depth-cue",
 };
 
 }  // namespace

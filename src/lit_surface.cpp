@@ -26,8 +26,8 @@ Surface surface_of(const Frame& frame, uint8_t material) {
     return frame.scene.surfaces[material];
   }
   Surface surface;
-  surface.albedo = material < frame.shading.palette.size ? frame.shading.palette[material]
-                                                          : frame.shading.default_color;
+  surface.albedo =
+      material < frame.shading.palette.size ? frame.shading.palette[material] : frame.shading.default_color;
   return surface;
 }
 
@@ -95,8 +95,8 @@ void add_emission(const Spot& spot, Color* color) {
     return;
   }
   for (int i = 0; i < 3; ++i) {
-    const uint32_t channel =
-        color->c[i] + channel_of(spot.surface.albedo, i) * uint32_t{spot.surface.emission_q8} / (256 / kLevel);
+    const uint32_t channel = color->c[i] + channel_of(spot.surface.albedo, i) *
+                                               uint32_t{spot.surface.emission_q8} / (256 / kLevel);
     color->c[i] = channel < kMaxChannel ? channel : kMaxChannel;
   }
 }

@@ -15,8 +15,7 @@ void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::
   const WaterSurface& water = frame.scene.water;
   const Vec3i low{(water.corner.x + hit.column_x) * Q8::kOne, (water.corner.y + hit.column_y) * Q8::kOne,
                   water.corner.z * Q8::kOne};
-  const Vec3i high{low.x + Q8::kOne, low.y + Q8::kOne,
-                   low.z + water.height_q8(hit.column_x, hit.column_y)};
+  const Vec3i high{low.x + Q8::kOne, low.y + Q8::kOne, low.z + water.height_q8(hit.column_x, hit.column_y)};
   *meeting = Meeting{};
   meeting->found = true;
   meeting->at_water = true;
@@ -50,8 +49,7 @@ void meet_water(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* me
   const bool found = inside ? water_leave(water, now.ray, &hit) : water_enter(water, now.ray, &hit);
   frame.counts.node_visits[static_cast<int>(LitRayKind::kWater)] += hit.visits;
   // What is solid goes before water: on a common face too.
-  if (found && hit.axis >= 0 &&
-      (!meeting->found || is_before(point_of_water(hit), point_of(meeting->hit)))) {
+  if (found && hit.axis >= 0 && (!meeting->found || is_before(point_of_water(hit), point_of(meeting->hit)))) {
     meet_face(frame, now.ray, hit, inside ? Medium::kAir : Medium::kWaterBody, meeting);
   }
 }
@@ -70,8 +68,7 @@ void filter_by_water(Frame& frame, LightRay* light) {
   const uint32_t length =
       static_cast<uint32_t>(distance_q8(light->ray.direction, end.t_numerator, end.t_denominator));
   for (int i = 0; i < 3; ++i) {
-    light->brightness[i] =
-        weighed_32(light->brightness[i], left_q16(frame.scene.water_material, i, length));
+    light->brightness[i] = weighed_32(light->brightness[i], left_q16(frame.scene.water_material, i, length));
   }
 }
 
