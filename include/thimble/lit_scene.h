@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "thimble/fixed.h"
+#include "thimble/packed.h"
 #include "thimble/pixel.h"
 #include "thimble/span.h"
 #include "thimble/vec.h"
@@ -49,21 +50,23 @@ enum class SurfaceKind : uint8_t {
   kMedia,  ///< a cloud: takes light away by distance, bends none
 };
 
-/// What a material does with light. 12 bytes.
+/// What a material does with light. 12 bytes at any address, the same on every machine: a table of them in
+/// flash is used where it lies (baked_lighting.h).
 struct Surface {
   Rgb8 albedo{230, 230, 230};
   SurfaceKind kind = SurfaceKind::kDiffuse;
   uint8_t roughness = 0;  ///< kMetal: 0 a mirror .. 255
   uint8_t mirror = 255;   ///< kMetal: share mirrored, 255 all of it
   /// kGlass: index of refraction, 4096 = 1: kMinIndexQ12 .. kMaxIndexQ12.
-  uint16_t index_q12 = 5325;
+  PackedU16 index_q12 = 5325;
   /// kGlass and kMedia: optical density. Light in a channel halves `density_q8 / 256 * (1 - albedo / 255)`
   /// times a voxel (kMedia: `density_q8 / 256` times, and takes on the albedo).
-  uint16_t density_q8 = 64;
+  PackedU16 density_q8 = 64;
   /// kEmit: brightness added, 256 = the albedo itself.
-  uint16_t emission_q8 = 256;
+  PackedU16 emission_q8 = 256;
   friend constexpr bool operator==(const Surface&, const Surface&) = default;
 };
+static_assert(sizeof(Surface) == 12 && alignof(Surface) == 1);
 inline constexpr uint16_t kMinIndexQ12 = 4096;      ///< 1: vacuum
 inline constexpr uint16_t kMaxIndexQ12 = 4 * 4096;  ///< 4: beyond everything clear that exists
 inline constexpr uint16_t kWaterIndexQ12 = 5460;    ///< 1.333
@@ -72,18 +75,19 @@ inline constexpr size_t kMaxLights = 100;
 inline constexpr uint8_t kMaxBounces = 8;
 inline constexpr uint8_t kDefaultBounces = 4;
 
-/// A distant light (the sun) or a point in the world.
+/// A distant light (the sun) or a point in the world. 21 bytes at any address, as `Surface`.
 struct Light {
   bool is_point = false;
   /// Distant: towards the light, any length up to 2^14 a component, not all 0. Point: its place in 1/256
   /// voxel, within the limits of a ray's origin.
-  Vec3i place{-5, -9, 16};
+  PackedVec3i place{-5, -9, 16};
   /// Brightness of the three channels, 256 = 1: what a white surface that faces the light gets.
-  uint16_t color_q8[3] = {256, 256, 256};
+  PackedU16 color_q8[3] = {256, 256, 256};
   /// Point: the distance in voxels at which a quarter is left (brightness = color / (1 + d / reach)^2).
-  uint16_t reach = 32;
+  PackedU16 reach = 32;
   friend constexpr bool operator==(const Light&, const Light&) = default;
 };
+static_assert(sizeof(Light) == 21 && alignof(Light) == 1);
 
 /// Where rays that leave the world end: `zenith` above, `horizon` at eye level, `ground` below.
 struct Sky {
