@@ -249,11 +249,23 @@ class Judge {
   void check_narrow(const Ray& ray, int material, const RayPoint& from, const MediumExit& wide,
                     const std::string& place) {
     MediumExit exit;
+    const Status status = leave_medium_32(tree_, ray, static_cast<std::uint8_t>(material), &exit, from);
     TraceOptions options;
     options.width = Width::k32;
-    const Status status = leave_medium(tree_, ray, static_cast<std::uint8_t>(material), &exit, from, options);
+    MediumExit same;
+    if (leave_medium(tree_, ray, static_cast<std::uint8_t>(material), &same, from, options) != status) {
+      tally_.fail("32 bits in two ways: " + place);
+    }
     if (status == Status::kOutOfRange && !accepts_32(ray, cells_.level())) {
       return;
+    }
+    Hit narrow;
+    Hit hit;
+    REQUIRE(closest_hit_from_32(tree_, ray, from, &narrow) == Status::kOk);
+    REQUIRE(closest_hit_from(tree_, ray, from, &hit) == Status::kOk);
+    if (narrow.kind != hit.kind || narrow.voxel != hit.voxel || narrow.axis != hit.axis ||
+        narrow.t_numerator != hit.t_numerator || narrow.visits != hit.visits) {
+      tally_.fail("32 bits, closest: " + place);
     }
     ++tally_.narrow;
     if (status != Status::kOk || exit.left_world != wide.left_world || exit.into_solid != wide.into_solid ||
