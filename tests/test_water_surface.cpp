@@ -17,6 +17,8 @@
 namespace thimble::tools {
 namespace {
 
+__extension__ typedef __int128 Wide;
+
 #if defined(__SANITIZE_ADDRESS__)
 constexpr std::int64_t kRays = 60000;
 #elif !defined(__OPTIMIZE__)
@@ -32,8 +34,8 @@ std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
 
 // Exact; denominators are positive.
 struct Fraction {
-  __int128 top = 0;
-  __int128 bottom = 1;
+  Wide top = 0;
+  Wide bottom = 1;
   friend bool operator<(const Fraction& a, const Fraction& b) { return a.top * b.bottom < b.top * a.bottom; }
   friend bool operator==(const Fraction& a, const Fraction& b) {
     return a.top * b.bottom == b.top * a.bottom;
@@ -532,6 +534,7 @@ TEST_CASE(
     }
   }
   Columns island = slope;
+  island.q16[0] = -1;
   island.q16[2 * 6 + 3] = -1;
   for (const Columns& columns : {slope, island}) {
     for (std::int32_t y = 0; y < 5 * 256; y += 37) {
