@@ -142,8 +142,7 @@ struct Walk {
       }
       end = {place[2], speed[2]};
     } else if (ends) {
-      // One unit below, so that the ray still is in the water on both sides of a plane it crosses there.
-      end = {lowest - 1 - place[2], speed[2]};
+      end = {lowest - place[2], speed[2]};
     } else if (place[2] >= lowest) {
       return;
     }

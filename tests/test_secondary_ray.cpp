@@ -1,0 +1,443 @@
+// Rays that go on from a hit, held to the exact reference: where they start, how they leave a medium, what
+// they hit from a point on.
+//
+// THIMBLE_RAYS sets the number of rays, THIMBLE_SEED the seed of all of them.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "reference/reference.h"
+#include "reference/secondary.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/morton.h"
+#include "thimble/optics.h"
+#include "thimble/secondary_ray.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text != nullptr && *text != '\0' ? std::atoll(text) : otherwise;
+}
+
+std::int64_t default_rays() {
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+  return 60000;
+#else
+  return 1000000;
+#endif
+}
+
+constexpr int kAir = -1;
+
+// A cube of voxels with a material or air each, and its compact tree.
+class Cells {
+ public:
+  explicit Cells(int level)
+      : level_(level), side_(1 << level), cells_(std::size_t{1} << (3 * level), std::int16_t{kAir}) {}
+
+  int level() const { return level_; }
+  int side() const { return side_; }
+  bool contains(const reference::Voxel& v) const {
+    return v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] < side_ && v[1] < side_ && v[2] < side_;
+  }
+  int at(const reference::Voxel& v) const { return contains(v) ? cells_[index(v)] : kAir; }
+  void set(const reference::Voxel& v, int material) {
+    cells_[index(v)] = static_cast<std::int16_t>(material);
+  }
+  void fill(const reference::Voxel& low, const reference::Voxel& high, int material) {
+    for (int z = std::max(low[2], 0); z < std::min(high[2], side_); ++z) {
+      for (int y = std::max(low[1], 0); y < std::min(high[1], side_); ++y) {
+        for (int x = std::max(low[0], 0); x < std::min(high[0], side_); ++x) {
+          set({x, y, z}, material);
+        }
+      }
+    }
+  }
+
+  HeapBytes tree(int rank_shift = kDefaultRankShift) const {
+    std::vector<std::uint64_t> keys;
+    for (int z = 0; z < side_; ++z) {
+      for (int y = 0; y < side_; ++y) {
+        for (int x = 0; x < side_; ++x) {
+          const int material = at({x, y, z});
+          if (material != kAir) {
+            keys.push_back(
+                std::uint64_t{morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                          static_cast<std::uint32_t>(z))}
+                    << 8 |
+                static_cast<std::uint64_t>(material));
+          }
+        }
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    const Span<const std::uint64_t> sorted{keys.data(), keys.size()};
+    std::size_t needed = 0;
+    static_cast<void>(compact_from_keys(sorted, level_, Bytes{}, &needed, rank_shift));
+    HeapBytes bytes(needed);
+    if (compact_from_keys(sorted, level_, bytes.span(), &needed, rank_shift) != Status::kOk) {
+      throw std::logic_error("secondary ray tests: a tree that is not made");
+    }
+    return bytes;
+  }
+
+ private:
+  std::size_t index(const reference::Voxel& v) const {
+    return static_cast<std::size_t>(v[0] + side_ * (v[1] + side_ * v[2]));
+  }
+
+  int level_;
+  int side_;
+  std::vector<std::int16_t> cells_;
+};
+
+// Boxes of few materials, so that solid blocks of many sizes meet; sometimes every voxel by chance, or one
+// material through and through.
+Cells random_cells(std::mt19937_64& random) {
+  Cells cells(static_cast<int>(pick(random, 1, 6)));
+  const int materials = static_cast<int>(pick(random, 1, 3));
+  const auto any = [&] { return static_cast<int>(pick(random, kAir, materials - 1)); };
+  const std::int64_t kind = pick(random, 0, 5);
+  if (kind == 0) {
+    for (int z = 0; z < cells.side(); ++z) {
+      for (int y = 0; y < cells.side(); ++y) {
+        for (int x = 0; x < cells.side(); ++x) {
+          cells.set({x, y, z}, any());
+        }
+      }
+    }
+    return cells;
+  }
+  const int filling = kind == 1 ? kAir : any();
+  cells.fill({0, 0, 0}, {cells.side(), cells.side(), cells.side()}, filling);
+  const std::int64_t boxes = pick(random, 0, 12);
+  for (std::int64_t i = 0; i < boxes; ++i) {
+    reference::Voxel low{};
+    reference::Voxel high{};
+    const std::int64_t size = pick(random, 1, cells.side());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = static_cast<int>(pick(random, 0, cells.side() - 1));
+      high[axis] = low[axis] + static_cast<int>(pick(random, 1, size));
+    }
+    cells.fill(low, high, any());
+  }
+  return cells;
+}
+
+struct Tally {
+  std::int64_t rays = 0;
+  std::int64_t degenerate = 0;  // through edges or corners, or within planes
+  std::int64_t starts = 0;      // on faces
+  std::int64_t walks = 0;       // through a medium, of more than no length
+  std::int64_t left_world = 0;
+  std::int64_t into_solid = 0;
+  std::int64_t diagonal = 0;  // left media through an edge or corner
+  std::int64_t mirrored = 0;
+  std::int64_t narrow = 0;
+  std::int64_t most_visits_part = 0;  // 100 * visits / (3 * side)
+  std::int64_t wrong = 0;
+  std::string first;
+
+  void fail(const std::string& what) {
+    if (++wrong <= 5) {
+      first += "\n" + what;
+    }
+  }
+};
+
+reference::Time time_of(const RayPoint& point) {
+  return {point.t_numerator, point.t_denominator};
+}
+
+class Judge {
+ public:
+  Judge(const Cells& cells, std::uint64_t seed, Tally& tally)
+      : cells_(cells),
+        bytes_(cells.tree(static_cast<int>(3 + seed % 4))),
+        tree_(open_or_throw(bytes_)),
+        random_(seed),
+        tally_(tally) {}
+
+  const CompactTree& tree() const { return tree_; }
+
+  void check_ray(const RayCase& ray_case) {
+    const Ray ray = to_core(ray_case.ray);
+    tally_.degenerate +=
+        ray_case.aimed() || ray_case.kind == RayKind::kInPlane || ray_case.kind == RayKind::kSimple;
+    const reference::Voxel first = reference::voxel_after(ray_case.ray, {});
+    const Vec3i starting = starting_voxel(ray);
+    if (first != reference::Voxel{starting.x, starting.y, starting.z}) {
+      tally_.fail("starting voxel of " + reference::describe(ray_case.ray));
+    }
+    const int here = cells_.at(first);
+    std::uint8_t material = 99;
+    if (material_at(tree_, starting, &material) != (here != kAir) || (here != kAir && material != here)) {
+      tally_.fail("material at the start of " + reference::describe(ray_case.ray));
+    }
+    check_medium(ray, here == kAir ? 0 : here, {});
+
+    Hit hit;
+    REQUIRE(closest_hit(tree_, ray, &hit) == Status::kOk);
+    check_before(ray, hit);
+    if (hit.kind != HitKind::kHit) {
+      return;
+    }
+    check_start(ray, hit);
+    // The same ray on through what it hit, and what comes then.
+    const MediumExit exit = check_medium(ray, hit.material, point_of(hit));
+    check_from(ray, point_of(hit));
+    check_from(ray, point_of(exit.hit));
+    if (!exit.left_world) {
+      check_start(ray, exit.hit);
+    }
+    if (hit.axis >= 0) {
+      check_away(ray, hit);
+      check_into(ray, hit);
+    }
+  }
+
+  MediumExit check_medium(const Ray& ray, int material, const RayPoint& from) {
+    ++tally_.rays;
+    const reference::Ray judged = to_reference(ray);
+    const std::string place = reference::describe(judged) + " from " + std::to_string(from.t_numerator) +
+                              "/" + std::to_string(from.t_denominator) + " in " + std::to_string(material);
+    MediumExit exit;
+    REQUIRE(leave_medium(tree_, ray, static_cast<std::uint8_t>(material), &exit, from) == Status::kOk);
+    check_narrow(ray, material, from, exit, place);
+    if (!cells_.contains(reference::voxel_after(judged, time_of(from)))) {
+      if (!exit.left_world || exit.into_solid || exit.hit.axis != -1 || exit.hit.visits != 0) {
+        tally_.fail("not in the world: " + place);
+      }
+      return exit;
+    }
+    const reference::Hit expected = reference::first_voxel(
+        judged, time_of(from), [&](const reference::Voxel& v) { return cells_.at(v) != material; },
+        [](const reference::Voxel&) { return false; });
+    const int found = cells_.at(expected.voxel);
+    const bool outside = !cells_.contains(expected.voxel);
+    if (!same_answer(exit.hit, expected) || exit.left_world != outside ||
+        exit.into_solid != (found != kAir) || (found != kAir && exit.hit.material != found) ||
+        exit.hit.block_level != 0) {
+      tally_.fail("leave_medium: " + place + ": " + tests::describe(exit.hit) + " instead of " +
+                  reference::describe(expected));
+    }
+    if (exit.hit.visits > 3U * static_cast<unsigned>(cells_.side())) {
+      tally_.fail("visits: " + place);
+    }
+    tally_.most_visits_part =
+        std::max(tally_.most_visits_part, std::int64_t{100} * exit.hit.visits / (3 * cells_.side()));
+    tally_.walks += exit.hit.axis >= 0 ? 1 : 0;
+    tally_.left_world += outside ? 1 : 0;
+    tally_.into_solid += found != kAir ? 1 : 0;
+    return exit;
+  }
+
+ private:
+  void check_narrow(const Ray& ray, int material, const RayPoint& from, const MediumExit& wide,
+                    const std::string& place) {
+    MediumExit exit;
+    const Status status = leave_medium_32(tree_, ray, static_cast<std::uint8_t>(material), &exit, from);
+    TraceOptions options;
+    options.width = Width::k32;
+    MediumExit same;
+    if (leave_medium(tree_, ray, static_cast<std::uint8_t>(material), &same, from, options) != status) {
+      tally_.fail("32 bits in two ways: " + place);
+    }
+    if (status == Status::kOutOfRange && !accepts_32(ray, cells_.level())) {
+      return;
+    }
+    Hit narrow;
+    Hit hit;
+    REQUIRE(closest_hit_from_32(tree_, ray, from, &narrow) == Status::kOk);
+    REQUIRE(closest_hit_from(tree_, ray, from, &hit) == Status::kOk);
+    if (narrow.kind != hit.kind || narrow.voxel != hit.voxel || narrow.axis != hit.axis ||
+        narrow.t_numerator != hit.t_numerator || narrow.visits != hit.visits) {
+      tally_.fail("32 bits, closest: " + place);
+    }
+    ++tally_.narrow;
+    if (status != Status::kOk || exit.left_world != wide.left_world || exit.into_solid != wide.into_solid ||
+        exit.hit.voxel != wide.hit.voxel || exit.hit.axis != wide.hit.axis ||
+        exit.hit.t_numerator != wide.hit.t_numerator || exit.hit.t_denominator != wide.hit.t_denominator ||
+        exit.hit.visits != wide.hit.visits || exit.hit.material != wide.hit.material) {
+      tally_.fail("32 bits: " + place);
+    }
+  }
+
+  void check_start(const Ray& ray, const Hit& hit) {
+    ++tally_.rays;
+    ++tally_.starts;
+    const reference::Hit judged{
+        true, {hit.voxel.x, hit.voxel.y, hit.voxel.z}, hit.t_numerator, hit.t_denominator, hit.axis};
+    const reference::PointQ8 expected = reference::start_on_face(to_reference(ray), judged);
+    const Vec3Q8 start = start_on_face(ray, hit);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (start[axis].raw != expected[static_cast<std::size_t>(axis)]) {
+        tally_.fail("start: " + reference::describe(to_reference(ray)) + " " + tests::describe(hit));
+        return;
+      }
+    }
+  }
+
+  void check_from(const Ray& ray, const RayPoint& from) {
+    ++tally_.rays;
+    const reference::Ray judged = to_reference(ray);
+    const reference::Hit expected = reference::first_voxel(
+        judged, time_of(from), [&](const reference::Voxel& v) { return cells_.at(v) != kAir; },
+        [&](const reference::Voxel& v) { return !cells_.contains(v); });
+    Hit hit;
+    REQUIRE(closest_hit_from(tree_, ray, from, &hit) == Status::kOk);
+    if (!same_answer(hit, expected) || (expected.hit && hit.material != cells_.at(expected.voxel))) {
+      tally_.fail("closest_hit_from: " + reference::describe(judged) + " from " +
+                  std::to_string(from.t_numerator) + "/" + std::to_string(from.t_denominator) + ": " +
+                  tests::describe(hit) + " instead of " + reference::describe(expected));
+    }
+  }
+
+  // Not before its own t, but before the least more; and before any fraction as cross products say.
+  void check_before(const Ray& ray, const Hit& hit) {
+    ++tally_.rays;
+    const RayPoint any{static_cast<std::int32_t>(pick(random_, 0, INT32_MAX >> pick(random_, 0, 30))),
+                       static_cast<std::int32_t>(pick(random_, 1, INT32_MAX >> pick(random_, 0, 30)))};
+    __extension__ typedef __int128 Int128;
+    const bool expected = hit.kind == HitKind::kHit && Int128{hit.t_numerator} * any.t_denominator <
+                                                           Int128{any.t_numerator} * hit.t_denominator;
+    HitKind kind = HitKind::kStepLimit;
+    std::uint32_t visits = 0;
+    REQUIRE(any_hit_before(tree_, ray, any, &kind, &visits) == Status::kOk);
+    if ((kind == HitKind::kHit) != expected || visits != hit.visits) {
+      tally_.fail("any_hit_before: " + reference::describe(to_reference(ray)));
+    }
+    if (hit.kind == HitKind::kHit) {
+      HitKind own = HitKind::kStepLimit;
+      HitKind more = HitKind::kStepLimit;
+      REQUIRE(any_hit_before(tree_, ray, point_of(hit), &own) == Status::kOk);
+      REQUIRE(any_hit_before(tree_, ray, {hit.t_numerator + 1, hit.t_denominator}, &more) == Status::kOk);
+      if (own != HitKind::kMiss || more != HitKind::kHit) {
+        tally_.fail("any_hit_before its own t: " + reference::describe(to_reference(ray)));
+      }
+    }
+  }
+
+  // A mirrored ray, or any that leaves the face: it never meets the voxel that it comes from, and what it
+  // meets is what the reference says of the same ray.
+  void check_away(const Ray& ray, const Hit& hit) {
+    ++tally_.rays;
+    ++tally_.mirrored;
+    const bool smaller = looks_to_smaller(ray, hit);
+    Ray away{start_on_face(ray, hit), reflect(ray.direction, hit.axis)};
+    if (pick(random_, 0, 1) == 0) {
+      away.direction = occlusion_direction(static_cast<int>(pick(random_, 0, kOcclusionDirections - 1)),
+                                           hit.axis, smaller);
+    }
+    REQUIRE(leaves_face(away.direction, hit.axis, smaller));
+    Hit next;
+    REQUIRE(closest_hit(tree_, away, &next) == Status::kOk);
+    if (next.kind == HitKind::kHit && next.voxel == hit.voxel) {
+      tally_.fail("acne: " + reference::describe(to_reference(away)) + " hits " + tests::describe(next));
+    }
+    check_from(away, {});
+  }
+
+  // A ray into the block: it starts in it, or leaves through another of its planes at once.
+  void check_into(const Ray& ray, const Hit& hit) {
+    Ray into{start_on_face(ray, hit), shorten(ray.direction)};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis != hit.axis && pick(random_, 0, 1) == 0) {
+        into.direction[axis] = static_cast<std::int32_t>(pick(random_, -kMaxShort, kMaxShort));
+      }
+    }
+    if (!enters_face(into.direction, hit.axis, looks_to_smaller(ray, hit))) {
+      return;  // a component that shortening took
+    }
+    const Vec3i first = starting_voxel(into);
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool through =
+          into.origin[axis].raw == hit.voxel[axis] * Q8::kOne && into.direction[axis] < 0 && axis != hit.axis;
+      if (first[axis] != hit.voxel[axis] - (through ? 1 : 0)) {
+        tally_.fail("into: " + reference::describe(to_reference(into)) + " from " + tests::describe(hit));
+      }
+    }
+    const MediumExit exit = check_medium(into, hit.material, {});
+    if (exit.hit.axis >= 0) {
+      int planes = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t plane =
+            std::int64_t{exit.hit.voxel[axis] + (into.direction[axis] < 0 ? 1 : 0)} * 256;
+        planes +=
+            into.direction[axis] != 0 && (plane - into.origin[axis].raw) * exit.hit.t_denominator ==
+                                             std::int64_t{exit.hit.t_numerator} * into.direction[axis] * 256;
+      }
+      tally_.diagonal += planes > 1 ? 1 : 0;
+    }
+  }
+
+  const Cells& cells_;
+  HeapBytes bytes_;
+  CompactTree tree_;
+  std::mt19937_64 random_;
+  Tally& tally_;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "secondary rays: random rays in worlds of materials -> starts, exits and hits as the exact reference has "
+    "them") {
+  const std::int64_t rays = number_from_environment("THIMBLE_RAYS", default_rays());
+  const std::int64_t seed = number_from_environment("THIMBLE_SEED", 20261121);
+  Tally tally;
+  std::int64_t worlds = 0;
+  std::int64_t cases = 0;
+  for (; tally.rays < rays; ++worlds) {
+    const std::uint64_t own = static_cast<std::uint64_t>(seed + worlds);
+    std::mt19937_64 random(own);
+    const Cells cells = random_cells(random);
+    Judge judge(cells, own, tally);
+    RayCases any(own * 2 + 1, {cells.side(), cells.side(), cells.side()});
+    // From within, and within what the 32-bit path takes.
+    RayLimits limits;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      limits.origin_high_q8[axis] = 256 * cells.side();
+    }
+    limits.direction = (std::int64_t{1} << (31 - 9 - cells.level())) - 1;
+    limits.direction = std::min(limits.direction, reference::kMaxDirection);
+    RayCases within(own * 2 + 2, {cells.side(), cells.side(), cells.side()}, limits);
+    const std::int64_t wrong = tally.wrong;
+    for (int i = 0; i < 500; ++i, ++cases) {
+      judge.check_ray(i % 3 == 0 ? any.next() : within.next());
+    }
+    if (tally.wrong != wrong) {
+      tally.first += "\nseed " + std::to_string(own) + " side " + std::to_string(cells.side());
+    }
+  }
+  std::cout << "secondary rays: seeds " << seed << " .. " << seed + worlds - 1 << ", answers compared "
+            << tally.rays << " of " << cases << " first rays (" << tally.degenerate
+            << " of them through edges and corners or within planes), starts on faces " << tally.starts
+            << ", ways through a medium " << tally.walks << " (out of the world " << tally.left_world
+            << ", into another solid " << tally.into_solid << ", bent ones out by an edge or corner "
+            << tally.diagonal << "), rays away from faces " << tally.mirrored << ", with 32 bits "
+            << tally.narrow << ", visits up to " << tally.most_visits_part << " % of the bound, differences "
+            << tally.wrong << std::endl;
+  CHECK_MESSAGE(tally.wrong == 0, tally.first);
+  CHECK(tally.rays >= rays);
+  CHECK(tally.degenerate * 3 >= cases);
+  CHECK(tally.diagonal > 0);
+  CHECK(tally.left_world > 0);
+  CHECK(tally.into_solid > 0);
+  CHECK(tally.walks * 10 >= tally.rays);
+  CHECK(tally.mirrored > 0);
+  CHECK(tally.narrow * 10 >= tally.rays);
+}
