@@ -100,7 +100,8 @@ class Cells {
 
  private:
   std::size_t index(const reference::Voxel& v) const {
-    return static_cast<std::size_t>(v[0] + side_ * (v[1] + side_ * v[2]));
+    const int number = v[0] + side_ * (v[1] + side_ * v[2]);
+    return static_cast<std::size_t>(number);
   }
 
   int level_;
