@@ -19,6 +19,15 @@
 
 namespace thimble {
 
+// Stands before the effects: behind them, gcc 12 would say that kGlass and kMedia shadow theirs.
+enum class SurfaceKind : uint8_t {
+  kDiffuse,
+  kMetal,  ///< mixes its own colour with what it mirrors
+  kGlass,  ///< clear: light goes through, bent and filtered
+  kEmit,   ///< shines with its own colour
+  kMedia,  ///< a cloud: takes light away by distance, bends none
+};
+
 /// Effects, as bits of a set. Each is a part of its own: a renderer made for a set holds the others neither
 /// in its code nor in its state.
 using EffectSet = uint32_t;
@@ -41,14 +50,6 @@ inline constexpr EffectSet kBranchingEffects = kMirror | kGlass | kMedia | kWate
 
 /// The name of an effect as the command writes it ("shadows", "ambient-occlusion"); "" for other values.
 const char* effect_name(EffectSet effect);
-
-enum class SurfaceKind : uint8_t {
-  kDiffuse,
-  kMetal,  ///< mixes its own colour with what it mirrors
-  kGlass,  ///< clear: light goes through, bent and filtered
-  kEmit,   ///< shines with its own colour
-  kMedia,  ///< a cloud: takes light away by distance, bends none
-};
 
 /// What a material does with light. 12 bytes at any address, the same on every machine: a table of them in
 /// flash is used where it lies (baked_lighting.h).
