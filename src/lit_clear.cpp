@@ -106,9 +106,9 @@ void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
                       surface_of(frame, meeting.beyond.material).kind == SurfaceKind::kMedia);
   leg->medium = meeting.beyond;
   leg->from = point_of(meeting.hit);
-  const LitRayKind kind = media              ? LitRayKind::kMedia
-                          : meeting.at_water ? LitRayKind::kWater
-                                             : LitRayKind::kGlass;
+  const LitRayKind kind = media              ? LitRayKind::kMediaRay
+                          : meeting.at_water ? LitRayKind::kWaterRay
+                                             : LitRayKind::kGlassRay;
   count_ray(frame, kind);
   if ((frame.effects & kWater) != 0) {
     // The water is asked from the beginning of a ray only: a new one, from the face on.

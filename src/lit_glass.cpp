@@ -111,7 +111,7 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   }
   const int32_t cosine = here < there ? cosine_in : cosine_out;
   const uint32_t back = passes ? fresnel_q16(cosine, r0_q16(here, there)) : kOneQ16;
-  const LitRayKind kind = meeting.at_water ? LitRayKind::kWater : LitRayKind::kGlass;
+  const LitRayKind kind = meeting.at_water ? LitRayKind::kWaterRay : LitRayKind::kGlassRay;
   send(frame, *now, kind, at, reflected, back, pending, count);
   if (passes) {
     send(frame, *now, kind, at, refracted, kOneQ16 - back, pending, count);

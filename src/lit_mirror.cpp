@@ -22,7 +22,7 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, PendingRay* 
   }
   PendingRay out;
   out.bounces = static_cast<uint8_t>(now->bounces + 1);
-  out.kind = LitRayKind::kMirror;
+  out.kind = LitRayKind::kMirrorRay;
   const bool rough = metal.roughness != 0 && now->bounces == 0;
   for (int i = 0; i < (rough ? kRoughnessRays : 1); ++i) {
     out.ray = {spot.at, reflect(spot.arriving, axis)};
@@ -38,7 +38,7 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, PendingRay* 
       }
     }
     if (is_seen(out.weight) && leaves_face(out.ray.direction, axis, spot.face.negative)) {
-      count_ray(frame, LitRayKind::kMirror);
+      count_ray(frame, LitRayKind::kMirrorRay);
       pending[(*count)++] = out;
     }
   }

@@ -47,7 +47,7 @@ void meet_water(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* me
   WaterHit hit;
   const bool inside = leg.medium.kind == Medium::kWaterBody;
   const bool found = inside ? water_leave(water, now.ray, &hit) : water_enter(water, now.ray, &hit);
-  frame.counts.node_visits[static_cast<int>(LitRayKind::kWater)] += hit.visits;
+  frame.counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] += hit.visits;
   // What is solid goes before water: on a common face too.
   if (found && hit.axis >= 0 && (!meeting->found || is_before(point_of_water(hit), point_of(meeting->hit)))) {
     meet_face(frame, now.ray, hit, inside ? Medium::kAir : Medium::kWaterBody, meeting);
@@ -60,7 +60,7 @@ void filter_by_water(Frame& frame, LightRay* light) {
   if (!water_leave(water, light->ray, &hit)) {
     return;
   }
-  frame.counts.node_visits[static_cast<int>(LitRayKind::kWater)] += hit.visits;
+  frame.counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] += hit.visits;
   RayPoint end = point_of_water(hit);
   if (light->is_point && is_before(light->place, end)) {
     end = light->place;

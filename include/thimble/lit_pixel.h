@@ -23,9 +23,17 @@
 
 namespace thimble {
 
-/// What a ray was sent for. kGlass and kWater: reflected or refracted at such a boundary; kMedia: not a ray
-/// of its own but a stretch of one, from where it left a cloud (or glass of index 1) straight on.
-enum class LitRayKind : uint8_t { kPrimary, kShadow, kOcclusion, kMirror, kGlass, kMedia, kWater };
+/// What a ray was sent for. kGlassRay and kWaterRay: reflected or refracted at such a boundary; kMediaRay:
+/// not a ray of its own but a stretch of one, from where it left a cloud (or glass of index 1) straight on.
+enum class LitRayKind : uint8_t {
+  kPrimary,
+  kShadow,
+  kOcclusion,
+  kMirrorRay,
+  kGlassRay,
+  kMediaRay,
+  kWaterRay
+};
 inline constexpr int kLitRayKinds = 7;
 
 /// What a renderer did. An effect that is not in the set counts 0.

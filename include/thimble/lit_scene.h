@@ -19,7 +19,6 @@
 
 namespace thimble {
 
-// Stands before the effects: behind them, gcc 12 would say that kGlass and kMedia shadow theirs.
 enum class SurfaceKind : uint8_t {
   kDiffuse,
   kMetal,  ///< mixes its own colour with what it mirrors
