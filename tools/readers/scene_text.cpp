@@ -279,6 +279,7 @@ int axis_of(Line& line, const char* what) {
 
 constexpr double kFar =
     9.0 * 4096;  // no world has anything farther away; the world's own limit is checked later
+constexpr double kMostDirection = 65535;
 constexpr double kMostBrightness = 100;
 constexpr double kMostDensity = 200;
 constexpr double kMostEmission = 200;
@@ -383,7 +384,7 @@ class Parser {
       } else if (word.text == "target") {
         target = three_reals(line, "target", -kFar, kFar);
       } else if (word.text == "up") {
-        up = three_reals(line, "up", -1e6, 1e6);
+        up = three_reals(line, "up", -kMostDirection, kMostDirection);
         if (is_zero(up)) {
           fail_at(word.place, "up 0 0 0 has no direction");
         }
@@ -426,7 +427,7 @@ class Parser {
       const Word word = line.word();
       said.once(word);
       if (word.text == "toward" && !is_point) {
-        const Real3 direction = three_reals(line, "toward", -1e6, 1e6);
+        const Real3 direction = three_reals(line, "toward", -kMostDirection, kMostDirection);
         if (is_zero(direction)) {
           fail_at(word.place, "toward 0 0 0 has no direction");
         }

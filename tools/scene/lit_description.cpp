@@ -182,4 +182,50 @@ LitScene with_defaults(LitScene scene, EffectSet effects) {
   return scene;
 }
 
+std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const UsedMaterials& used,
+                                           EffectSet effects, int level) {
+  if (effects == kNoEffects) {
+    return {};
+  }
+  BakedLighting lighting;
+  lighting.effects = effects;
+  LitScene& scene = lighting.scene;
+  scene = with_defaults(lit.lit_scene(), effects);
+  const LitScene plain;
+  const auto unwanted = [effects](EffectSet effect) { return (effects & effect) == 0; };
+  if (unwanted(kDirectLight)) {
+    scene.lights = {};
+  }
+  scene.has_shadows = scene.has_shadows && !unwanted(kShadows);
+  scene.has_depth_cue = scene.has_depth_cue && !unwanted(kDepthCue);
+  if (unwanted(kAmbientOcclusion)) {
+    scene.occlusion = plain.occlusion;
+  }
+  if (unwanted(kFog)) {
+    scene.fog = plain.fog;
+  }
+  if (unwanted(kSky)) {
+    scene.has_sky = false;
+    scene.sky = plain.sky;
+  }
+  if (unwanted(kWater)) {
+    scene.has_water = false;
+    scene.water = plain.water;
+    scene.water_material = plain.water_material;
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.surfaces.size; ++i) {
+    if (used.is[i] && scene.surfaces[i].kind != SurfaceKind::kDiffuse) {
+      count = i + 1;
+    }
+  }
+  constexpr EffectSet kOfMaterials = kEmission | kMirror | kGlass | kMedia;
+  scene.surfaces = {scene.surfaces.data, (effects & kOfMaterials) != 0 ? count : 0};
+  std::vector<std::uint8_t> bytes(lighting_bytes(scene));
+  if (bytes.empty() || write_lighting(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk) {
+    throw InputError("its lights, surfaces or water are beyond the limits of a baked scene");
+  }
+  return bytes;
+}
+
 }  // namespace thimble::tools

@@ -98,6 +98,12 @@ EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, c
 /// `scene`, or of a constant.
 LitScene with_defaults(LitScene scene, EffectSet effects);
 
+/// The section of a baked scene (`SectionKind::kLighting`) with what these effects need and no more; empty
+/// where that is nothing. Surfaces reach up to the last used material that is not plain; the palette has the
+/// rest. Throws InputError when a number is beyond the core's limits.
+std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const UsedMaterials& used,
+                                           EffectSet effects, int level);
+
 }  // namespace thimble::tools
 
 #endif
