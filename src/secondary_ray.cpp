@@ -22,7 +22,6 @@ struct Search {
 template <class Path>
 struct Step {
   typename Path::State state;
-  uint32_t index;
   uint32_t link;  // the first child
   uint8_t mask;
   uint8_t octant;  // the child that the walk is in; mirrored, as `rest`
@@ -293,9 +292,11 @@ MirroredRay in_all_of(int level, const Ray& ray) {
   return MirroredRay(ray, side, {{0, 0, 0}, {side, side, side}});
 }
 
-// Both widths, and the narrow one alone, with nothing of the other behind it.
-Status search_from(const CompactTree& tree, const Ray& ray, const RayPoint& from, Search search, Width width,
-                   bool* in_world, MediumExit* exit) {
+// Both widths, and the narrow one alone, with nothing of the other behind it. Inlined, so that they have no
+// frame of their own on a small stack.
+[[gnu::always_inline]] inline Status search_from(const CompactTree& tree, const Ray& ray,
+                                                 const RayPoint& from, Search search, Width width,
+                                                 bool* in_world, MediumExit* exit) {
   const int level = tree.level();
   const Status status = begin_at(ray, level, from, &search);
   if (status != Status::kOk) {
@@ -314,8 +315,9 @@ Status search_from(const CompactTree& tree, const Ray& ray, const RayPoint& from
                      : walk<int64_t, uint64_t>(tree, mirrored, search, exit);
   return Status::kOk;
 }
-Status search_from_32(const CompactTree& tree, const Ray& ray, const RayPoint& from, Search search,
-                      bool* in_world, MediumExit* exit) {
+[[gnu::always_inline]] inline Status search_from_32(const CompactTree& tree, const Ray& ray,
+                                                    const RayPoint& from, Search search, bool* in_world,
+                                                    MediumExit* exit) {
   const int level = tree.level();
   const Status status = begin_at(ray, level, from, &search);
   if (status != Status::kOk) {

@@ -355,6 +355,9 @@ TEST_CASE("refract: the critical angle -> total reflection from its exact intege
   CHECK(refract(Vec3i{4096, 0, 15864}, 2, 16384, &out));
   CHECK_FALSE(refract(Vec3i{4096, 0, 15863}, Vec3i{0, 0, kUnitQ14}, 16384, &out));
   CHECK(refract(Vec3i{4096, 0, 15864}, Vec3i{0, 0, -kUnitQ14}, 16384, &out));
+  // On it: a triangle of 3, 4 and 5 and the ratio 5/4.
+  CHECK_FALSE(refract(Vec3i{0, 4 * 3277, -3 * 3277}, 2, 5120, &out));
+  CHECK(refract(Vec3i{0, 4 * 3277, -3 * 3277}, 2, 5119, &out));
   CHECK_FALSE(refract(Vec3i{0, kUnitQ14, 0}, 2, 4095, &out));
   CHECK(refract(Vec3i{0, kUnitQ14, 1}, 2, 4095, &out));
 }

@@ -32,6 +32,10 @@ std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
   return text != nullptr && *text != '\0' ? std::atoll(text) : otherwise;
 }
 
+std::uint64_t seed_or(std::int64_t otherwise) {
+  return static_cast<std::uint64_t>(number_from_environment("THIMBLE_SEED", otherwise));
+}
+
 std::int64_t default_rays() {
 #if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
   return 60000;
@@ -96,7 +100,8 @@ class Cells {
 
  private:
   std::size_t index(const reference::Voxel& v) const {
-    return static_cast<std::size_t>(v[0] + side_ * (v[1] + side_ * v[2]));
+    const int number = v[0] + side_ * (v[1] + side_ * v[2]);
+    return static_cast<std::size_t>(number);
   }
 
   int level_;
@@ -440,4 +445,389 @@ TEST_CASE(
   CHECK(tally.walks * 10 >= tally.rays);
   CHECK(tally.mirrored > 0);
   CHECK(tally.narrow * 10 >= tally.rays);
+}
+
+TEST_CASE(
+    "start on a face: worlds to 4096, blocks of every size, any direction -> the exact point rounded down") {
+  std::mt19937_64 random(seed_or(7));
+  int wrong = 0;
+  int starts = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const int level = static_cast<int>(pick(random, 1, kMaxLevel));
+    const int block_level = static_cast<int>(pick(random, 0, 3) == 0 ? pick(random, 0, level) : 0);
+    const int side = 1 << block_level;
+    reference::Block block;
+    block.log2_side = block_level;
+    for (int& corner : block.lowest) {
+      corner = side * static_cast<int>(pick(random, 0, (1 << (level - block_level)) - 1));
+    }
+    RayCases cases(random(), {1 << level, 1 << level, 1 << level}, {block.lowest});
+    for (int j = 0; j < 40; ++j) {
+      const reference::Ray ray = cases.next().ray;
+      const reference::Hit judged = reference::judge_blocks({block}, ray);
+      if (!judged.hit) {
+        continue;
+      }
+      ++starts;
+      Hit hit;
+      hit.kind = HitKind::kHit;
+      hit.axis = static_cast<std::int8_t>(judged.axis);
+      hit.block_level = static_cast<std::uint8_t>(block_level);
+      hit.voxel = {judged.voxel[0], judged.voxel[1], judged.voxel[2]};
+      hit.t_numerator = static_cast<std::int32_t>(judged.t_numerator);
+      hit.t_denominator = static_cast<std::int32_t>(judged.t_denominator);
+      const reference::PointQ8 expected = reference::start_on_face(ray, judged, side);
+      const Vec3Q8 start = start_on_face(tests::to_core(ray), hit);
+      const bool same =
+          start.x.raw == expected[0] && start.y.raw == expected[1] && start.z.raw == expected[2];
+      CAPTURE(reference::describe(ray));
+      wrong += same ? 0 : 1;
+      // On a plane that is not the lattice's and in a box of any size, as those of water are.
+      if (judged.axis >= 0) {
+        const std::size_t axis = static_cast<std::size_t>(judged.axis);
+        const std::int64_t plane =
+            ray.origin_q8[axis] + (ray.direction[axis] > 0 ? 1 : -1) * pick(random, 0, 1 << 20);
+        Vec3i low;
+        Vec3i high;
+        for (int a = 0; a < 3; ++a) {
+          low[a] = static_cast<std::int32_t>(pick(random, -(1 << 21), 1 << 20));
+          high[a] = low[a] + static_cast<std::int32_t>(pick(random, 1, 1 << pick(random, 0, 20)));
+        }
+        const Vec3Q8 on =
+            start_on_plane(tests::to_core(ray), judged.axis, static_cast<std::int32_t>(plane), low, high);
+        for (std::size_t a = 0; a < 3; ++a) {
+          const std::int64_t way = plane - ray.origin_q8[axis];
+          std::int64_t exact = plane;
+          if (a != axis) {
+            // floor(origin + way * d / d_axis) by the remainder's sign.
+            const std::int64_t dividend = way * ray.direction[a] * (ray.direction[axis] < 0 ? -1 : 1);
+            const std::int64_t divisor = std::abs(ray.direction[axis]);
+            const std::int64_t down = dividend / divisor - (dividend % divisor < 0 ? 1 : 0);
+            exact = std::clamp<std::int64_t>(ray.origin_q8[a] + down, low[static_cast<int>(a)],
+                                             high[static_cast<int>(a)] - 1);
+          }
+          wrong += on[static_cast<int>(a)].raw == exact ? 0 : 1;
+        }
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(starts > 10000);
+}
+
+TEST_CASE("leave_medium: merged blocks -> crossed whole as media, entered as blocks") {
+  std::mt19937_64 random(seed_or(8));
+  int wrong = 0;
+  int merged = 0;
+  for (int world = 0; world < 40; ++world) {
+    const int level = 4;
+    std::vector<std::uint8_t> bytes(Octree::octree_bytes(6000));
+    Octree pool;
+    REQUIRE(pool.init({bytes.data(), bytes.size()}, level) == Status::kOk);
+    for (int i = 0; i < 700; ++i) {
+      const auto at = [&] { return static_cast<std::int32_t>(pick(random, 0, 15)); };
+      const std::int32_t x = at();
+      const std::int32_t y = at();
+      REQUIRE(pool.insert({x, y, at()}, static_cast<std::uint8_t>(1 + x / 2 % 2)) == Status::kOk);
+    }
+    REQUIRE(pool.coarsen_to(pool.nodes_used() * 3 / 4) == Status::kOk);
+    const HeapBytes tree_bytes = compact_of(pool);
+    const CompactTree tree = open_or_throw(tree_bytes);
+    const auto at = [&](const reference::Voxel& v) {
+      std::uint8_t material = 0;
+      return material_at(tree, {v[0], v[1], v[2]}, &material) ? int{material} : kAir;
+    };
+    RayLimits limits;
+    limits.origin_high_q8 = {4096, 4096, 4096};
+    limits.direction = 4095;
+    RayCases cases(random(), {16, 16, 16}, limits);
+    for (int i = 0; i < 300; ++i) {
+      const reference::Ray judged = cases.next().ray;
+      const Ray ray = tests::to_core(judged);
+      const reference::Voxel first = reference::voxel_after(judged, {});
+      const int here = at(first);
+      const bool inside = std::all_of(first.begin(), first.end(), [](int c) { return c >= 0 && c < 16; });
+      if (here == kAir || !inside) {
+        continue;
+      }
+      reference::Hit expected = reference::first_voxel(
+          judged, {}, [&](const reference::Voxel& v) { return at(v) != here; },
+          [](const reference::Voxel&) { return false; });
+      MediumExit exit;
+      REQUIRE(leave_medium(tree, ray, static_cast<std::uint8_t>(here), &exit) == Status::kOk);
+      if (exit.hit.block_level > 0) {
+        ++merged;
+        const reference::Block block{{exit.hit.voxel.x, exit.hit.voxel.y, exit.hit.voxel.z},
+                                     exit.hit.block_level};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          wrong += (expected.voxel[axis] & -(1 << exit.hit.block_level)) == block.lowest[axis] ? 0 : 1;
+        }
+        expected = reference::judge_blocks({block}, judged);
+      }
+      wrong += same_answer(exit.hit, expected) && exit.into_solid == (at(expected.voxel) != kAir) ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(merged > 100);
+}
+
+TEST_CASE("glass of index 1: every pixel's ray -> what is behind it, bit for bit, as without it") {
+  // A cube of glass between the eye and a floor with pillars, one of which touches the glass.
+  Cells with(5);
+  with.fill({0, 0, 0}, {32, 32, 2}, 1);
+  with.fill({20, 3, 2}, {23, 9, 20}, 2);
+  with.fill({14, 18, 2}, {18, 22, 12}, 3);
+  Cells without = with;
+  for (int z = 4; z < 17; ++z) {
+    for (int y = 5; y < 21; ++y) {
+      for (int x = 7; x < 18; ++x) {
+        if (with.at({x, y, z}) == kAir) {
+          with.set({x, y, z}, 9);
+        }
+      }
+    }
+  }
+  const HeapBytes bytes_with = with.tree();
+  const HeapBytes bytes_without = without.tree();
+  const CompactTree glass = open_or_throw(bytes_with);
+  const CompactTree plain = open_or_throw(bytes_without);
+  int through = 0;
+  int differ = 0;
+  for (int eye = 0; eye < 3; ++eye) {
+    const Vec3Q8 origin{Q8::from_raw(eye == 2 ? 2816 : -2000), Q8::from_raw(3000),
+                        Q8::from_raw(eye == 1 ? 9000 : 2600)};
+    for (int y = -60; y < 60; ++y) {
+      for (int x = -60; x < 60; ++x) {
+        const Ray ray{origin, {1000, 9 * x, (eye == 1 ? -900 : -100) + 9 * y}};
+        Hit expected;
+        REQUIRE(closest_hit(plain, ray, &expected) == Status::kOk);
+        Hit hit;
+        REQUIRE(closest_hit(glass, ray, &hit) == Status::kOk);
+        for (int surfaces = 0; surfaces < 8 && hit.kind == HitKind::kHit && hit.material == 9; ++surfaces) {
+          ++through;
+          MediumExit exit;
+          REQUIRE(leave_medium(glass, ray, 9, &exit, point_of(hit)) == Status::kOk);
+          REQUIRE(exit.hit.material != 9);
+          REQUIRE(closest_hit_from(glass, ray, point_of(exit.hit), &hit) == Status::kOk);
+        }
+        differ += hit.kind == expected.kind &&
+                          (hit.kind == HitKind::kMiss ||
+                           (hit.voxel == expected.voxel && hit.axis == expected.axis &&
+                            hit.t_numerator == expected.t_numerator &&
+                            hit.t_denominator == expected.t_denominator && hit.material == expected.material))
+                      ? 0
+                      : 1;
+      }
+    }
+  }
+  CHECK(differ == 0);
+  CHECK(through > 5000);
+}
+
+TEST_CASE("closed mirror box: a ray with any number of bounces -> never outside, never the voxel it left") {
+  Cells cells(4);
+  cells.fill({0, 0, 0}, {16, 16, 16}, 4);
+  cells.fill({1, 1, 1}, {15, 15, 15}, kAir);
+  const HeapBytes bytes = cells.tree();
+  const CompactTree tree = open_or_throw(bytes);
+  std::mt19937_64 random(11);
+  int bad = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Ray ray;
+    for (int axis = 0; axis < 3; ++axis) {
+      ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(pick(random, 256, 15 * 256 - 1)));
+      ray.direction[axis] = static_cast<std::int32_t>(pick(random, -40, 40) * pick(random, 0, 700));
+    }
+    if (ray.direction == Vec3i{}) {
+      continue;
+    }
+    for (int bounce = 0; bounce < 50; ++bounce) {
+      Hit hit;
+      REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
+      if (hit.kind != HitKind::kHit || hit.axis < 0) {
+        // In an edge or a corner of the box a start may lie on a wall's plane: then the ray is in that wall
+        // at once.
+        const Vec3i voxel = starting_voxel(ray);
+        bad += hit.kind == HitKind::kHit && hit.axis < 0 && hit.voxel == voxel ? 0 : 1;
+        break;
+      }
+      const Ray next{start_on_face(ray, hit), reflect(ray.direction, hit.axis)};
+      bad += leaves_face(next.direction, hit.axis, looks_to_smaller(ray, hit)) ? 0 : 1;
+      Hit after;
+      REQUIRE(closest_hit(tree, next, &after) == Status::kOk);
+      bad += after.kind == HitKind::kHit && after.voxel != hit.voxel ? 0 : 1;
+      ray = next;
+    }
+  }
+  CHECK(bad == 0);
+}
+
+TEST_CASE(
+    "occlusion: an open plane -> no ray of the pattern is stopped; at the bottom of a deep pit -> all but "
+    "the steepest") {
+  Cells cells(6);
+  cells.fill({0, 0, 0}, {64, 64, 40}, 1);
+  cells.fill({31, 31, 3}, {32, 32, 40}, kAir);
+  const HeapBytes bytes = cells.tree();
+  const CompactTree tree = open_or_throw(bytes);
+  int open = 0;
+  int pit = 0;
+  int near = 0;
+  for (int i = 0; i < kOcclusionDirections; ++i) {
+    const Vec3i direction = occlusion_direction(i, 2, false);
+    HitKind kind = HitKind::kStepLimit;
+    REQUIRE(any_hit_before(tree,
+                           {{Q8::from_raw(2600), Q8::from_raw(2600), Q8::from_raw(40 * 256)}, direction},
+                           {64, kOcclusionLength}, &kind) == Status::kOk);
+    open += kind == HitKind::kHit ? 1 : 0;
+    const Ray up{{Q8::from_raw(31 * 256 + 128), Q8::from_raw(31 * 256 + 128), Q8::from_raw(3 * 256)},
+                 direction};
+    REQUIRE(any_hit_before(tree, up, {64, kOcclusionLength}, &kind) == Status::kOk);
+    pit += kind == HitKind::kHit ? 1 : 0;
+    // Nothing is as near as a tenth of a voxel.
+    REQUIRE(any_hit_before(tree, up, {1, 10 * kOcclusionLength}, &kind) == Status::kOk);
+    near += kind == HitKind::kHit ? 1 : 0;
+  }
+  CHECK(open == 0);
+  CHECK(pit == kOcclusionDirections);
+  CHECK(near == 0);
+}
+
+TEST_CASE("ray_towards: two points -> a ray that is at the second at the t given") {
+  std::mt19937_64 random(seed_or(9));
+  int wrong = 0;
+  for (int i = 0; i < 100000; ++i) {
+    Vec3Q8 from;
+    Vec3Q8 to;
+    std::int64_t largest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t reach = std::int64_t{1} << pick(random, 0, 22);
+      from[axis] = Q8::from_raw(static_cast<std::int32_t>(pick(random, -reach, reach)));
+      to[axis] = Q8::from_raw(
+          static_cast<std::int32_t>(pick(random, 0, 4) == 0 ? from[axis].raw : pick(random, -reach, reach)));
+      largest = std::max(largest, std::abs(std::int64_t{to[axis].raw} - from[axis].raw));
+    }
+    const int bits = static_cast<int>(pick(random, 2, 20));
+    Ray ray;
+    RayPoint place;
+    if (!ray_towards(from, to, bits, &ray, &place)) {
+      wrong += largest == 0 ? 0 : 1;
+      continue;
+    }
+    std::int64_t most = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t way = std::int64_t{to[axis].raw} - from[axis].raw;
+      const std::int64_t moved = std::int64_t{place.t_numerator} * ray.direction[axis];
+      wrong += 2 * std::abs(moved - way) <= place.t_numerator - 1 + (place.t_numerator > 1 ? 1 : 0) ? 0 : 1;
+      wrong += way == 0 && ray.direction[axis] != 0 ? 1 : 0;
+      most = std::max<std::int64_t>(most, std::abs(ray.direction[axis]));
+    }
+    wrong += place.t_denominator == 256 && most < (std::int64_t{1} << bits) && ray.origin == from ? 0 : 1;
+    wrong += place.t_numerator == 1 || most >= (std::int64_t{1} << (bits - 1)) ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("faces: directions -> leave, enter or neither, by one sign") {
+  CHECK(leaves_face({-1, 9, 9}, 0, true));
+  CHECK_FALSE(leaves_face({1, -9, -9}, 0, true));
+  CHECK(leaves_face({0, 0, 1}, 2, false));
+  CHECK_FALSE(leaves_face({5, 5, 0}, 2, false));
+  CHECK_FALSE(enters_face({5, 5, 0}, 2, false));
+  CHECK(enters_face({5, 5, -1}, 2, false));
+  CHECK(enters_face({1, 0, 0}, 0, true));
+  CHECK_FALSE(enters_face({-1, 0, 0}, 0, true));
+  CHECK(leaves_face({1, 2, 3}, -1, false));
+  CHECK(enters_face({1, 2, 3}, -1, true));
+}
+
+TEST_CASE("leave_medium: rays beyond the limits, step limits, an empty tree -> as closest_hit says") {
+  Cells cells(4);
+  const HeapBytes none = cells.tree();
+  const CompactTree empty = open_or_throw(none);
+  const Ray ray{{Q8::from_raw(640), Q8::from_raw(640), Q8::from_raw(640)}, {3, -2, 1}};
+  MediumExit exit;
+  REQUIRE(leave_medium(empty, ray, 0, &exit) == Status::kOk);
+  CHECK(exit.hit.voxel == Vec3i{2, 2, 2});
+  CHECK(exit.hit.axis == -1);
+  CHECK_FALSE(exit.into_solid);
+  CHECK_FALSE(exit.left_world);
+  CHECK_FALSE(material_at(empty, {2, 2, 2}, nullptr));
+  Hit hit;
+  REQUIRE(closest_hit_from(empty, ray, {}, &hit) == Status::kOk);
+  CHECK(hit.kind == HitKind::kMiss);
+
+  cells.fill({0, 0, 0}, {16, 16, 16}, 1);
+  cells.set({15, 0, 15}, 2);
+  const HeapBytes bytes = cells.tree();
+  const CompactTree tree = open_or_throw(bytes);
+  const MediumExit before = exit;
+  CHECK(leave_medium(tree, {ray.origin, {0, 0, 0}}, 1, &exit) == Status::kBadArgument);
+  CHECK(leave_medium(tree, {ray.origin, {kMaxDirection + 1, 0, 0}}, 1, &exit) == Status::kOutOfRange);
+  CHECK(leave_medium_32(tree, {ray.origin, {kMaxDirection, 0, 1}}, 1, &exit) == Status::kOutOfRange);
+  CHECK(closest_hit_from(tree, {ray.origin, {0, 0, 0}}, {}, &hit) == Status::kBadArgument);
+  HitKind kind = HitKind::kMiss;
+  CHECK(any_hit_before(tree, {ray.origin, {0, 0, 0}}, {1, 1}, &kind) == Status::kBadArgument);
+  CHECK(exit.hit.voxel == before.hit.voxel);
+  std::uint32_t full = 0;
+  for (std::uint32_t limit = 0; limit <= 60; ++limit) {
+    TraceOptions options;
+    options.max_visits = limit;
+    REQUIRE(leave_medium(tree, ray, 1, &exit, {}, options) == Status::kOk);
+    CHECK(exit.hit.visits <= limit);
+    if (exit.hit.kind == HitKind::kHit) {
+      full = full == 0 ? exit.hit.visits : full;
+      CHECK(exit.hit.visits == full);
+      CHECK(exit.left_world);
+    } else {
+      CHECK(exit.hit.kind == HitKind::kStepLimit);
+      CHECK(full == 0);
+    }
+  }
+  CHECK(full > 0);
+  // A full world of one material is one node.
+  cells.set({15, 0, 15}, 1);
+  const HeapBytes whole = cells.tree();
+  REQUIRE(leave_medium(open_or_throw(whole), ray, 1, &exit) == Status::kOk);
+  CHECK(exit.hit.visits == 1);
+  CHECK(exit.left_world);
+  CHECK(exit.hit.axis == 1);
+  CHECK(exit.hit.voxel == Vec3i{6, -1, 3});
+}
+
+TEST_CASE(
+    "leave_medium: damaged trees under a valid checksum -> inside the bytes, the bound and the world's rim") {
+  std::mt19937_64 random(seed_or(10));
+  int opened = 0;
+  for (int i = 0; i < 400; ++i) {
+    const HeapBytes whole = random_cells(random).tree(3);
+    HeapBytes damaged(whole.view().size);
+    std::copy(whole.view().begin(), whole.view().end(), damaged.span().begin());
+    for (std::int64_t n = pick(random, 1, 5); n > 0 && damaged.view().size > kCompactHeaderBytes; --n) {
+      const auto last = static_cast<std::int64_t>(damaged.view().size) - 1;
+      damaged.span()[static_cast<std::size_t>(pick(random, kCompactHeaderBytes, last))] =
+          static_cast<std::uint8_t>(random());
+    }
+    CompactTree tree;
+    if (CompactTree::open(damaged.view(), &tree) != Status::kOk) {
+      continue;
+    }
+    ++opened;
+    const int side = 1 << tree.level();
+    RayCases cases(random(), {side, side, side});
+    for (int j = 0; j < 50; ++j) {
+      const Ray ray = tests::to_core(cases.next().ray);
+      MediumExit exit;
+      REQUIRE(leave_medium(tree, ray, static_cast<std::uint8_t>(j % 3), &exit) == Status::kOk);
+      REQUIRE(exit.hit.visits <= 3U * static_cast<unsigned>(side));
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool inside = exit.hit.voxel[axis] >= 0 && exit.hit.voxel[axis] < side;
+        REQUIRE((inside || exit.left_world));
+      }
+      Hit hit;
+      REQUIRE(closest_hit_from(tree, ray, point_of(exit.hit), &hit) == Status::kOk);
+      static_cast<void>(material_at(tree, starting_voxel(ray), nullptr));
+    }
+  }
+  CHECK(opened > 300);
 }

@@ -42,7 +42,7 @@ struct Pool {
   }
   void block(std::int32_t x, std::int32_t y) {
     mask.resize((static_cast<std::size_t>(config.width) * static_cast<std::size_t>(config.depth) + 7) / 8);
-    const std::size_t bit = static_cast<std::size_t>(y * config.width + x);
+    const auto bit = static_cast<std::uint32_t>(y * config.width + x);
     mask[bit / 8] = static_cast<std::uint8_t>(mask[bit / 8] | (1U << (bit % 8)));
   }
 };
@@ -71,7 +71,7 @@ struct Plain {
       }
     }
   }
-  std::size_t at(std::int32_t x, std::int32_t y) const { return static_cast<std::size_t>(y * width + x); }
+  std::size_t at(std::int32_t x, std::int32_t y) const { return static_cast<std::uint32_t>(y * width + x); }
   // Calls visit(axis, column, neighbour) for each edge between two columns that hold water.
   template <class Visit>
   void edges(Visit visit) const {

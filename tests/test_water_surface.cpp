@@ -60,7 +60,7 @@ struct Columns {
   std::vector<std::int32_t> q16;
 
   std::int64_t height_q8(std::int32_t x, std::int32_t y) const {
-    const std::int32_t fine = q16[static_cast<std::size_t>(y * width + x)];
+    const std::int32_t fine = q16[static_cast<std::uint32_t>(y * width + x)];
     return fine < 0 ? 0 : (fine + 128) / 256;
   }
   WaterSurface surface() const {
@@ -539,7 +539,7 @@ TEST_CASE(
   for (const Columns& columns : {slope, island}) {
     for (std::int32_t y = 0; y < 5 * 256; y += 37) {
       for (std::int32_t x = 0; x < 6 * 256; x += 41) {
-        if (columns.q16[static_cast<std::size_t>(y / 256 * 6 + x / 256)] >= 0) {
+        if (columns.q16[static_cast<std::uint32_t>(y / 256 * 6 + x / 256)] >= 0) {
           REQUIRE(water_normal(columns.surface(), at(x), at(y)) == Vec3i{-4096, 2048, 1 << 14});
         }
       }
@@ -624,7 +624,7 @@ TEST_CASE(
     for (int step = 0; step < 60; ++step) {
       for (std::int32_t y = 0; y < 7; ++y) {
         for (std::int32_t x = 0; x < 9; ++x) {
-          columns.q16[static_cast<std::size_t>(9 * y + x)] = water.height_q16(x, y);
+          columns.q16[static_cast<std::uint32_t>(9 * y + x)] = water.height_q16(x, y);
         }
       }
       for (int i = 0; i < 100; ++i) {

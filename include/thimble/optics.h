@@ -142,9 +142,9 @@ inline constexpr int32_t kOcclusionLength = 127;
 constexpr Vec3i occlusion_direction(int index, int axis, bool towards_smaller) {
   const PatternDirection& from = kOcclusionPattern[index];
   Vec3i direction;
-  direction[axis] = towards_smaller ? -from.z : from.z;
-  direction[axis == 2 ? 0 : axis + 1] = from.x;
-  direction[axis == 0 ? 2 : axis - 1] = from.y;
+  direction[axis] = towards_smaller ? -int32_t{from.z} : int32_t{from.z};
+  direction[axis == 2 ? 0 : axis + 1] = int32_t{from.x};
+  direction[axis == 0 ? 2 : axis - 1] = int32_t{from.y};
   return direction;
 }
 

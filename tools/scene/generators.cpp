@@ -291,8 +291,8 @@ void generate_spheres(const GeneratorSpec& spec, const VoxelSink& sink) {
 // ---- water
 
 // Palette indices of `water`.
-constexpr std::uint8_t kAir = 0;  ///< nothing there, no voxel
-constexpr std::uint8_t kWater = 1;
+constexpr std::uint8_t kAir = 0;    ///< nothing there, no voxel
+constexpr std::uint8_t kWater = 1;  ///< no voxel either: the palette's entry for its colour
 constexpr std::uint8_t kSand = 2;
 constexpr std::uint8_t kRock = 3;
 constexpr std::uint8_t kGlass = 4;
@@ -379,7 +379,7 @@ std::uint8_t water_material(const Lagoon& lagoon, const Point& point, std::int32
       return ball.material;
     }
   }
-  return point[2] < kWaterLevel ? kWater : kAir;
+  return kAir;
 }
 
 void generate_water(const GeneratorSpec& spec, const VoxelSink& sink) {
@@ -493,25 +493,53 @@ Palette generator_palette(GeneratorKind kind) {
     }
   }
   if (kind == GeneratorKind::kWater) {
-    palette[kWater] = colored({46, 124, 178});
+    palette[kWater] = colored({40, 120, 140});
     palette[kWater].kind = SurfaceKind::kGlass;
     palette[kWater].alpha = 128;
     palette[kWater].ior = 1.33;
-    palette[kWater].transparency = 0.8;
-    palette[kWater].attenuation = 0.05;
+    palette[kWater].transparency = 0.9;
+    palette[kWater].attenuation = 0.01;
     palette[kSand] = colored({226, 200, 144});
     palette[kRock] = colored({124, 116, 110});
-    palette[kGlass] = colored({196, 232, 224});
+    palette[kGlass] = colored({206, 238, 226});
     palette[kGlass].kind = SurfaceKind::kGlass;
     palette[kGlass].alpha = 64;
     palette[kGlass].ior = 1.5;
-    palette[kGlass].transparency = 0.95;
-    palette[kMetal] = colored({218, 170, 72});
+    palette[kGlass].transparency = 1;
+    palette[kGlass].attenuation = 0.15;
+    palette[kMetal] = colored({226, 178, 82});
     palette[kMetal].kind = SurfaceKind::kMetal;
-    palette[kMetal].roughness = 0.1;
-    palette[kMetal].metalness = 1;
+    palette[kMetal].metalness = 0.85;
   }
   return palette;
+}
+
+LitDescription generator_lighting(const GeneratorSpec& spec) {
+  LitDescription lit = describe_palette(generator_palette(spec.kind));
+  if (spec.kind != GeneratorKind::kWater) {
+    return lit;
+  }
+  // Low from the left, so that the island's shadow falls across the water and the sun stands in the metal.
+  Light sun;
+  sun.place = {-12, -3, 10};
+  sun.color_q8[0] = 300;
+  sun.color_q8[1] = 282;
+  sun.color_q8[2] = 246;
+  lit.lights.push_back(sun);
+  lit.rest.has_shadows = true;
+  lit.rest.has_sky = true;
+  // The columns between the walls, from the ground of the world up to the level; sand and rock take
+  // precedence.
+  std::int32_t first = 0;
+  while (voxel_center(first, spec.depth) < kWallThickness) {
+    ++first;
+  }
+  const std::int32_t columns = (std::int32_t{1} << spec.depth) - 2 * first;
+  lit.rest.has_water = true;
+  lit.rest.water =
+      still_water({first, first, 0}, columns, columns, kWaterLevel >> (kWorldBits - spec.depth - Q8::kBits));
+  lit.rest.water_material = lit.surfaces[kWater];
+  return lit;
 }
 
 }  // namespace thimble::tools
