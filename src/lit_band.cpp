@@ -13,6 +13,21 @@ uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, i
   return (channel * levels + (128 - place) * kWhite / 128) / kWhite;
 }
 
+// What is brighter than white: half way between cutting channels off, which turns orange into yellow, and
+// keeping their ratio, which makes a lamp look like paint.
+void expose(const Color& color, uint32_t (*channel)[3]) {
+  uint32_t most = kWhite;
+  for (const uint32_t one : color.c) {
+    most = one > most ? one : most;
+  }
+  most = most < kMaxChannel ? most : kMaxChannel;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t one = color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel;
+    const uint32_t cut = one < kWhite ? one : kWhite;
+    (*channel)[i] = most == kWhite ? cut : (cut + one * kWhite / most) / 2;  // 16 bits by 14
+  }
+}
+
 }  // namespace
 
 Status draw_plain(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
@@ -50,9 +65,7 @@ void clear_row(const Frame& frame, const Band& band, uint8_t* line) {
 
 void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32_t y, const Color& color) {
   uint32_t channel[3];
-  for (int i = 0; i < 3; ++i) {
-    channel[i] = color.c[i] < kWhite ? color.c[i] : kWhite;
-  }
+  expose(color, &channel);
   const uint32_t gray = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
   Rgb8 stored;
   switch (band.format) {

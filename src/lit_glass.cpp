@@ -83,7 +83,14 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   const Vec3Q8 at = meeting.at_water ? meeting.at : start_on_face(now->ray, meeting.hit);
   const Vec3i unit = unit_q14(now->ray.direction);
   const uint32_t eta = eta_q12(here, there);
-  const bool upwards = now->ray.direction[axis] < 0;  // where what is reflected goes
+  // Which way what is reflected goes. At a step of a wave a ray may come to the surface from the wrong side;
+  // it then goes straight on.
+  const bool upwards =
+      meeting.at_surface ? leg->medium.kind != Medium::kWaterBody : now->ray.direction[axis] < 0;
+  if (meeting.at_surface && upwards != (now->ray.direction[axis] < 0)) {
+    go_straight(frame, now, leg, meeting);
+    return true;
+  }
   Vec3i reflected = reflect(now->ray.direction, axis);
   Vec3i refracted;
   int32_t cosine_in = unit[axis];
@@ -91,7 +98,7 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   int32_t cosine_out = 0;
   Vec3i normal;
   bool bent = false;
-  if (meeting.at_water && axis == 2 && meeting.water_side > 0) {
+  if (meeting.at_surface) {
     normal = water_normal(frame.scene.water, at.x, at.y);
     // A ray that comes from behind the slope meets the flat surface.
     bent = (normal.x != 0 || normal.y != 0) && (dot_q14(unit, normal) < 0) == upwards;

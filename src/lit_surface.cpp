@@ -9,6 +9,45 @@ namespace {
 // +y, -z, +z (256 = 1) an edge is seen in the shadow too.
 constexpr uint16_t kAmbientShare[6] = {222, 222, 200, 200, 160, 256};
 
+// Where light is gathered for a hit, and by which face. A solid voxel entered through an edge counts as
+// entered by the lowest of the faces there, which may be one that another voxel hides: then light would not
+// reach what the eye sees. So it is the lowest that is not hidden; and where all are, in a crease, the point
+// on the edge itself, from where rays go out of the crease as from both of its sides.
+Vec3Q8 choose_face(const Frame& frame, const Ray& ray, Hit* hit) {
+  const int32_t side = int32_t{1} << hit->block_level;
+  Hit entered[3];  // through each of the faces crossed at that t
+  int count = 0;
+  Vec3Q8 edge = start_on_face(ray, *hit);
+  for (int axis = hit->axis < 0 ? 3 : hit->axis; axis < 3; ++axis) {
+    const int32_t direction = ray.direction[axis];
+    const int32_t plane = (hit->voxel[axis] + (direction > 0 ? 0 : side)) * Q8::kOne;
+    const int32_t distance = plane - ray.origin[axis].raw;
+    Hit one = *hit;
+    one.axis = static_cast<int8_t>(axis);
+    one.t_numerator = direction > 0 ? distance : -distance;
+    one.t_denominator = static_cast<int32_t>(absolute(direction)) * Q8::kOne;
+    if (direction != 0 && one.t_numerator >= 0 && !is_before(point_of(one), point_of(*hit))) {
+      entered[count++] = one;
+      edge[axis] = Q8::from_raw(plane);
+    }
+  }
+  if (count < 2) {
+    return edge;
+  }
+  for (int i = 0; i < count; ++i) {
+    const int axis = entered[i].axis;
+    const Vec3Q8 at = start_on_face(ray, entered[i]);
+    Vec3i before{at.x.floor(), at.y.floor(), at.z.floor()};
+    before[axis] = hit->voxel[axis] + (ray.direction[axis] > 0 ? -1 : side);
+    uint8_t material = 0;
+    if (!material_at(frame.tree, before, &material) || is_clear(frame, material)) {
+      *hit = entered[i];
+      return at;
+    }
+  }
+  return edge;
+}
+
 }  // namespace
 
 void count_ray(Frame& frame, LitRayKind kind) {
@@ -46,12 +85,13 @@ void meet_solid(Frame& frame, const PendingRay& now, Meeting* meeting) {
 }
 
 Spot spot_of(const Frame& frame, const Ray& ray, const Meeting& meeting) {
+  Hit hit = meeting.hit;
   Spot spot;
-  spot.at = start_on_face(ray, meeting.hit);
-  spot.face = face_of(meeting.hit, ray.direction);
-  spot.inside = meeting.hit.axis < 0;
+  spot.at = choose_face(frame, ray, &hit);
+  spot.face = face_of(hit, ray.direction);
+  spot.inside = hit.axis < 0;
   spot.arriving = ray.direction;
-  spot.surface = surface_of(frame, meeting.hit.material);
+  spot.surface = surface_of(frame, hit.material);
   return spot;
 }
 

@@ -9,29 +9,48 @@ RayPoint point_of_water(const WaterHit& hit) {
   return {hit.t_numerator, hit.t_denominator};
 }
 
-// Makes the meeting one with a face of the water.
+// Height of the column beyond the face that was crossed; 0 where there is no water.
+int32_t height_beyond_q8(const WaterSurface& water, const WaterHit& hit) {
+  const int32_t x = hit.column_x + (hit.axis == 0 ? hit.side : 0);
+  const int32_t y = hit.column_y + (hit.axis == 1 ? hit.side : 0);
+  if (x < 0 || y < 0 || x >= water.width || y >= water.depth || water.height_q16(x, y) < 0) {
+    return 0;
+  }
+  return water.height_q8(x, y);
+}
+
+// Makes the meeting one with a face of the water. A side between two columns is no wall but a step of the
+// wave: the ray goes on from the top of the column that it enters, or over which it leaves, at its edge.
 void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::Kind beyond,
                Meeting* meeting) {
   const WaterSurface& water = frame.scene.water;
+  const int32_t height = water.height_q8(hit.column_x, hit.column_y);
   const Vec3i low{(water.corner.x + hit.column_x) * Q8::kOne, (water.corner.y + hit.column_y) * Q8::kOne,
                   water.corner.z * Q8::kOne};
-  const Vec3i high{low.x + Q8::kOne, low.y + Q8::kOne, low.z + water.height_q8(hit.column_x, hit.column_y)};
+  const Vec3i high{low.x + Q8::kOne, low.y + Q8::kOne, low.z + height};
   *meeting = Meeting{};
   meeting->found = true;
   meeting->at_water = true;
-  meeting->water_side = hit.side;
+  meeting->at_surface = hit.axis == 2 && hit.side > 0;
   meeting->beyond = {beyond, 0};
   meeting->hit.axis = hit.axis;
   meeting->hit.t_numerator = hit.t_numerator;
   meeting->hit.t_denominator = hit.t_denominator;
   meeting->at = start_on_plane(ray, hit.axis, hit.side < 0 ? low[hit.axis] : high[hit.axis], low, high);
+  const int32_t step = hit.axis == 2 ? 0 : height_beyond_q8(water, hit);
+  if (step > 0) {
+    meeting->at_surface = true;
+    meeting->hit.axis = 2;
+    meeting->at.z = Q8::from_raw(low.z + (beyond == Medium::kAir ? step : height));
+  }
 }
 
 }  // namespace
 
 void begin_in_water(const Frame& frame, const PendingRay& now, Leg* leg) {
-  if (leg->medium.kind == Medium::kAir && water_holds(frame.scene.water, now.ray.origin, now.ray.direction)) {
-    leg->medium = {Medium::kWaterBody, 0};
+  if (leg->medium.kind != Medium::kSolid) {
+    const bool inside = water_holds(frame.scene.water, now.ray.origin, now.ray.direction);
+    leg->medium = {inside ? Medium::kWaterBody : Medium::kAir, 0};
   }
 }
 

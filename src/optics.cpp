@@ -79,9 +79,9 @@ int32_t dot(const Vec3i& a, const Vec3i& b) {
                               static_cast<uint32_t>(a.z) * static_cast<uint32_t>(b.z));
 }
 
-// 2^57 / square for a square near 2^28, as 2^29 less it: the first two terms of 1 / (1 + e) = 1 - e + ...,
-// and e is below 2^-8 for a unit within 16 of its length, so what is left out is below 2^-17.
-int64_t inverse_of_square_q57(int32_t square) {
+// 2^56 / square for a square near 2^28, as 2^29 less it: the first two terms of 1 / (1 + e) = 1 - e + ...,
+// and e is below 2^-8 for a vector within 16 of the length of a unit, so what is left out is below 2^-17.
+int64_t inverse_of_square_q56(int32_t square) {
   return (int64_t{1} << 29) - square;
 }
 
@@ -144,8 +144,8 @@ int32_t dot_q14(const Vec3i& a, const Vec3i& unit_q14) {
 Vec3i reflect(const Vec3i& direction, const Vec3i& normal_q14) {
   // Twice the component along the normal, in units of it: 2 D / N, with D below 2^30.
   const int64_t d = dot(direction, normal_q14);
-  const int64_t inverse = inverse_of_square_q57(dot(normal_q14, normal_q14));
-  const int32_t twice_q14 = rounded(d * inverse, 42);
+  const int64_t inverse = inverse_of_square_q56(dot(normal_q14, normal_q14));
+  const int32_t twice_q14 = rounded(d * inverse, 41);
   Vec3i result;
   for (int axis = 0; axis < 3; ++axis) {
     result[axis] = direction[axis] - rounded(int64_t{twice_q14} * normal_q14[axis], 14);
@@ -210,7 +210,7 @@ bool refract(const Vec3i& unit, const Vec3i& normal_q14, uint32_t eta_q12, Vec3i
   // In Q28 * 4096: 2^31 * 2^10 and 2^14 * 2^28, both below 2^43; times the inverse cut to 2^19.
   const int64_t onward_q40 =
       (int64_t{root_q15} << 25) - static_cast<int64_t>(uint64_t{magnitude_of(d)} * eta);
-  const int64_t inverse_q47 = inverse_of_square_q57(static_cast<int32_t>(normal_square)) >> 10;
+  const int64_t inverse_q47 = inverse_of_square_q56(static_cast<int32_t>(normal_square)) >> 9;
   const int64_t h_q18 = (onward_q40 * inverse_q47) >> 41;  // below 2^43 * 2^19; 2^20 after the shift
   const int64_t h = d < 0 ? -h_q18 : h_q18;
   for (int axis = 0; axis < 3; ++axis) {
@@ -229,8 +229,9 @@ uint32_t r0_q16(uint32_t n1_q12, uint32_t n2_q12) {
   if (difference == sum) {
     return kOneQ16;
   }
-  // Below 2^32, the half added only after the division where it could carry.
-  const uint32_t ratio_q16 = (difference << 16) / sum;
+  // With 16 bits each the ratio is below 1 - 2^-17, so it rounds to 65535 at the most; the dividend is below
+  // 2^32 - 2^16.
+  const uint32_t ratio_q16 = ((difference << 16) + (sum >> 1)) / sum;
   const uint32_t square = (ratio_q16 * ratio_q16 + (1U << 15)) >> 16;
   return square == 0 ? 1 : square;
 }

@@ -22,7 +22,6 @@ struct Search {
 template <class Path>
 struct Step {
   typename Path::State state;
-  uint32_t index;
   uint32_t link;  // the first child
   uint8_t mask;
   uint8_t octant;  // the child that the walk is in; mirrored, as `rest`
@@ -266,44 +265,105 @@ template <class Int, class Unsigned>
 // Chips with 32-bit registers take the narrow path whenever they may.
 constexpr bool kPrefer32 = sizeof(void*) <= 4;
 
-Status search_from(const CompactTree& tree, const Ray& ray, const RayPoint& from, Search search,
-                   const TraceOptions& options, bool* in_world, MediumExit* exit) {
+// A ray as the walk takes it, or what is wrong with it.
+Status begin_at(const Ray& ray, int level, const RayPoint& from, Search* search) {
+  search->numerator = from.t_numerator;
+  search->denominator = from.t_denominator >> Q8::kBits;
+  if (from.t_numerator <= 0 || search->denominator <= 0) {
+    search->numerator = 0;
+    search->denominator = 1;
+  }
+  return check_ray(ray, level);
+}
+
+// The point is a plane's, so its terms are a distance and a component like those of the ray; they are judged
+// as such.
+bool accepts_32_from(const Ray& ray, int level, const Search& search) {
+  uint32_t directions = static_cast<uint32_t>(search.denominator);
+  for (int axis = 0; axis < 3; ++axis) {
+    directions |= static_cast<uint32_t>(magnitude(ray.direction[axis]));
+  }
+  return accepts_32(ray, level) &&
+         bits::bit_length(static_cast<uint32_t>(search.numerator)) + bits::bit_length(directions) <= 31;
+}
+
+MirroredRay in_all_of(int level, const Ray& ray) {
+  const int32_t side = int32_t{1} << level;
+  return MirroredRay(ray, side, {{0, 0, 0}, {side, side, side}});
+}
+
+// Both widths, and the narrow one alone, with nothing of the other behind it. Inlined, so that they have no
+// frame of their own on a small stack.
+[[gnu::always_inline]] inline Status search_from(const CompactTree& tree, const Ray& ray,
+                                                 const RayPoint& from, Search search, Width width,
+                                                 bool* in_world, MediumExit* exit) {
   const int level = tree.level();
-  const Status status = check_ray(ray, level);
+  const Status status = begin_at(ray, level, from, &search);
   if (status != Status::kOk) {
     return status;
   }
-  search.numerator = from.t_numerator;
-  search.denominator = from.t_denominator >> Q8::kBits;
-  if (from.t_numerator <= 0 || search.denominator <= 0) {
-    search.numerator = 0;
-    search.denominator = 1;
-  }
-  bool narrow = options.width == Width::k32;
-  if (narrow || (kPrefer32 && options.width == Width::kAuto)) {
-    // The point is a plane's, so its terms are a distance and a component like those of the ray.
-    uint32_t directions = static_cast<uint32_t>(search.denominator);
-    for (int axis = 0; axis < 3; ++axis) {
-      directions |= static_cast<uint32_t>(magnitude(ray.direction[axis]));
-    }
-    const bool accepted =
-        accepts_32(ray, level) &&
-        bits::bit_length(static_cast<uint32_t>(search.numerator)) + bits::bit_length(directions) <= 31;
+  bool narrow = width == Width::k32;
+  if (narrow || (kPrefer32 && width == Width::kAuto)) {
+    const bool accepted = accepts_32_from(ray, level, search);
     if (narrow && !accepted) {
       return Status::kOutOfRange;
     }
     narrow = accepted;
   }
-  const int32_t side = int32_t{1} << level;
-  const MirroredRay mirrored(ray, side, {{0, 0, 0}, {side, side, side}});
+  const MirroredRay mirrored = in_all_of(level, ray);
   *in_world = narrow ? walk<int32_t, uint32_t>(tree, mirrored, search, exit)
                      : walk<int64_t, uint64_t>(tree, mirrored, search, exit);
+  return Status::kOk;
+}
+[[gnu::always_inline]] inline Status search_from_32(const CompactTree& tree, const Ray& ray,
+                                                    const RayPoint& from, Search search, bool* in_world,
+                                                    MediumExit* exit) {
+  const int level = tree.level();
+  const Status status = begin_at(ray, level, from, &search);
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (!accepts_32_from(ray, level, search)) {
+    return Status::kOutOfRange;
+  }
+  *in_world = walk<int32_t, uint32_t>(tree, in_all_of(level, ray), search, exit);
   return Status::kOk;
 }
 
 // Whether the hit's t is below that of the point: 31 bits times 28 and 23 times 31.
 bool earlier(const Hit& hit, const RayPoint& point) {
   return int64_t{hit.t_numerator} * point.t_denominator < int64_t{point.t_numerator} * hit.t_denominator;
+}
+
+// For a ray that is not in the world at `from`: it comes to it after that, or has left it.
+void only_from(const RayPoint& from, Hit* hit) {
+  if (hit->kind == HitKind::kHit && earlier(*hit, from)) {
+    const uint32_t visits = hit->visits;
+    *hit = Hit{};
+    hit->visits = visits;
+  }
+}
+
+Status finish(Status status, const Ray& ray, bool in_world, const MediumExit& found, MediumExit* exit) {
+  if (status == Status::kOk) {
+    *exit = found;
+    if (!in_world) {
+      exit->hit.kind = HitKind::kHit;
+      exit->hit.voxel = starting_voxel(ray);
+      exit->left_world = true;
+    }
+  }
+  return status;
+}
+
+Status finish_before(Status status, const Hit& hit, const RayPoint& before, HitKind* kind, uint32_t* visits) {
+  if (status == Status::kOk) {
+    *kind = hit.kind == HitKind::kHit && !earlier(hit, before) ? HitKind::kMiss : hit.kind;
+    if (visits != nullptr) {
+      *visits = hit.visits;
+    }
+  }
+  return status;
 }
 
 }  // namespace
@@ -382,18 +442,17 @@ Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, M
                     const RayPoint& from, const TraceOptions& options) {
   MediumExit found;
   bool in_world = true;
+  const Status status = search_from(tree, ray, from, {true, material, options.max_visits, 0, 1},
+                                    options.width, &in_world, &found);
+  return finish(status, ray, in_world, found, exit);
+}
+Status leave_medium_32(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
+                       const RayPoint& from, uint32_t max_visits) {
+  MediumExit found;
+  bool in_world = true;
   const Status status =
-      search_from(tree, ray, from, {true, material, options.max_visits, 0, 1}, options, &in_world, &found);
-  if (status != Status::kOk) {
-    return status;
-  }
-  if (!in_world) {
-    found.hit.kind = HitKind::kHit;
-    found.hit.voxel = starting_voxel(ray);
-    found.left_world = true;
-  }
-  *exit = found;
-  return Status::kOk;
+      search_from_32(tree, ray, from, {true, material, max_visits, 0, 1}, &in_world, &found);
+  return finish(status, ray, in_world, found, exit);
 }
 
 Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
@@ -401,15 +460,24 @@ Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint&
   MediumExit found;
   bool in_world = true;
   Status status =
-      search_from(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options, &in_world, &found);
+      search_from(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options.width, &in_world, &found);
   if (status == Status::kOk && !in_world) {
-    // The ray comes to the world after that, or has left it.
     status = closest_hit(tree, ray, &found.hit, options);
-    if (status == Status::kOk && found.hit.kind == HitKind::kHit && earlier(found.hit, from)) {
-      const uint32_t visits = found.hit.visits;
-      found.hit = Hit{};
-      found.hit.visits = visits;
-    }
+    only_from(from, &found.hit);
+  }
+  if (status == Status::kOk) {
+    *hit = found.hit;
+  }
+  return status;
+}
+Status closest_hit_from_32(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
+                           uint32_t max_visits) {
+  MediumExit found;
+  bool in_world = true;
+  Status status = search_from_32(tree, ray, from, {false, 0, max_visits, 0, 1}, &in_world, &found);
+  if (status == Status::kOk && !in_world) {
+    status = closest_hit_32(tree, ray, &found.hit, max_visits);
+    only_from(from, &found.hit);
   }
   if (status == Status::kOk) {
     *hit = found.hit;
@@ -421,14 +489,13 @@ Status any_hit_before(const CompactTree& tree, const Ray& ray, const RayPoint& b
                       uint32_t* visits, const TraceOptions& options) {
   Hit hit;
   const Status status = closest_hit(tree, ray, &hit, options);
-  if (status != Status::kOk) {
-    return status;
-  }
-  *kind = hit.kind == HitKind::kHit && !earlier(hit, before) ? HitKind::kMiss : hit.kind;
-  if (visits != nullptr) {
-    *visits = hit.visits;
-  }
-  return Status::kOk;
+  return finish_before(status, hit, before, kind, visits);
+}
+Status any_hit_before_32(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,
+                         uint32_t* visits, uint32_t max_visits) {
+  Hit hit;
+  const Status status = closest_hit_32(tree, ray, &hit, max_visits);
+  return finish_before(status, hit, before, kind, visits);
 }
 
 bool ray_towards(const Vec3Q8& start, const Vec3Q8& point, int direction_bits, Ray* ray, RayPoint* place) {

@@ -5,6 +5,8 @@
 // is common to all and left out until the hit.
 #include "thimble/water_surface.h"
 
+#include "bits.h"
+
 namespace thimble {
 namespace {
 
@@ -106,7 +108,7 @@ struct Walk {
   }
 
   // Goes to the column in which the ray is just after `time`, or just before it; it is within the columns
-  // then. The quotient is a column's number, so twelve bits of it are all: no division.
+  // then. The quotient is a column's number, so at most twelve bits of it are all: no division.
   void start(const Time& time, bool just_before) {
     since = time;
     for (int axis = 0; axis < 2; ++axis) {
@@ -115,12 +117,12 @@ struct Walk {
       // Just before a plane is the column below it: ceil - 1 of the quotient, for integers.
       rest -= just_before && speed[axis] != 0 ? 1 : 0;
       int32_t number = 0;
-      for (int bit = 11; bit >= 0; --bit) {
-        const int64_t part = int64_t{time.speed} << (bit + 8);
-        if (rest >= part) {
-          rest -= part;
-          number |= int32_t{1} << bit;
-        }
+      for (int bit = bits::bit_length(static_cast<uint32_t>(side(axis) - 1)) - 1; bit >= 0; --bit) {
+        // Without a branch, which nobody could predict: all ones where the part fits.
+        const int64_t left = rest - (int64_t{time.speed} << (bit + 8));
+        const int64_t fits = ~(left >> 63);
+        rest += (left - rest) & fits;
+        number |= (int32_t{1} << bit) & static_cast<int32_t>(fits);
       }
       cell[axis] = number;
     }
@@ -142,8 +144,7 @@ struct Walk {
       }
       end = {place[2], speed[2]};
     } else if (ends) {
-      // One unit below, so that the ray still is in the water on both sides of a plane it crosses there.
-      end = {lowest - 1 - place[2], speed[2]};
+      end = {lowest - place[2], speed[2]};
     } else if (place[2] >= lowest) {
       return;
     }

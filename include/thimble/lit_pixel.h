@@ -113,12 +113,12 @@ struct Medium {
 
 /// Where a stretch of a ray ends.
 struct Meeting {
-  bool found = false;     ///< false: it leaves the world
-  bool opaque = false;    ///< a surface; else a boundary of clear media
-  bool at_water = false;  ///< a boundary of the water: `at` is valid, of `hit` axis and t
-  int8_t water_side = 0;  ///< as in `WaterHit`
-  Medium beyond;          ///< if not opaque
-  Hit hit;                ///< what is entered, even where that is an empty voxel
+  bool found = false;       ///< false: it leaves the world
+  bool opaque = false;      ///< a surface; else a boundary of clear media
+  bool at_water = false;    ///< a boundary of the water: `at` is valid, of `hit` axis and t
+  bool at_surface = false;  ///< its upper one, which waves bend
+  Medium beyond;            ///< if not opaque
+  Hit hit;                  ///< what is entered, even where that is an empty voxel
   Vec3Q8 at;
 };
 
@@ -192,6 +192,7 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, PendingRay* 
 void begin_leg(const Frame& frame, const PendingRay& now, Leg* leg);
 void meet_clear(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting);
 /// The same with water: `leg` and `meeting` have what there is without it.
+/// At the start of a ray, also of one that goes straight on.
 void begin_in_water(const Frame& frame, const PendingRay& now, Leg* leg);
 void meet_water(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting);
 /// What glass and water take from the ray on its way to the meeting.
@@ -331,6 +332,9 @@ void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Co
       }
     } else if constexpr (kStretches) {
       go_straight(frame, &now, &leg, meeting);
+    }
+    if constexpr (kHasWater<kSet>) {
+      begin_in_water(frame, now, &leg);
     }
   }
 }

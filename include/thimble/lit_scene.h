@@ -93,7 +93,7 @@ static_assert(sizeof(Light) == 21 && alignof(Light) == 1);
 struct Sky {
   Rgb8 zenith{70, 120, 190};
   Rgb8 horizon{200, 215, 230};
-  Rgb8 ground{90, 85, 80};
+  Rgb8 ground{142, 138, 134};
   friend constexpr bool operator==(const Sky&, const Sky&) = default;
 };
 
@@ -124,7 +124,7 @@ struct LitScene {
   Occlusion occlusion;
   bool has_water = false;
   WaterSurface water;
-  Surface water_material{{40, 110, 120}, SurfaceKind::kGlass, 0, 255, kWaterIndexQ12, 24, 0};
+  Surface water_material{{70, 170, 190}, SurfaceKind::kGlass, 0, 255, kWaterIndexQ12, 16, 0};
   /// Rays that follow one another from a pixel, the first one not counted: 0 .. kMaxBounces.
   uint8_t bounces = kDefaultBounces;
 };

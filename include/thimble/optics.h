@@ -37,7 +37,7 @@ inline constexpr uint32_t kShortenErrorUrad = 53;   ///< sqrt(3)/2 units of 2^14
 inline constexpr uint32_t kUnitErrorUrad = 106;     ///< of `unit_q14`, shortening included
 inline constexpr int32_t kUnitLengthError = 2;      ///< | |unit| - 16384 |
 inline constexpr uint32_t kReflectErrorUrad = 100;  ///< at a bent normal; at an axis it is exact
-inline constexpr uint32_t kRefractErrorUrad = 150;  ///< ratios 1/4 .. 4, at an axis and a bent normal
+inline constexpr uint32_t kRefractErrorUrad = 130;  ///< ratios 1/4 .. 4, at an axis and a bent normal
 inline constexpr uint32_t kSchlickErrorQ16 = 3;     ///< of `fresnel_q16` against Schlick's formula
 inline constexpr uint32_t kNormalErrorQ16 = 2;      ///< of `r0_q16`
 inline constexpr uint32_t kTransmittanceErrorQ16 = 2;
@@ -142,9 +142,9 @@ inline constexpr int32_t kOcclusionLength = 127;
 constexpr Vec3i occlusion_direction(int index, int axis, bool towards_smaller) {
   const PatternDirection& from = kOcclusionPattern[index];
   Vec3i direction;
-  direction[axis] = towards_smaller ? -from.z : from.z;
-  direction[axis == 2 ? 0 : axis + 1] = from.x;
-  direction[axis == 0 ? 2 : axis - 1] = from.y;
+  direction[axis] = towards_smaller ? -int32_t{from.z} : int32_t{from.z};
+  direction[axis == 2 ? 0 : axis + 1] = int32_t{from.x};
+  direction[axis == 0 ? 2 : axis - 1] = int32_t{from.y};
   return direction;
 }
 
