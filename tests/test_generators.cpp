@@ -312,7 +312,18 @@ TEST_CASE("generators: demo -> each voxel once; a camera in the air that looks a
     CHECK(places.count({35 * voxel, 33 * voxel, 13 * voxel}) == 1);
     CHECK(places.count({35 * voxel, 33 * voxel, 15 * voxel}) == 0);
   }
-  CHECK_FALSE(generator_camera(*parse_generator("water")).has_value());
+  CHECK_FALSE(generator_camera(*parse_generator("spheres")).has_value());
+}
+
+TEST_CASE("generators: water's camera -> at the same place of the world at every depth") {
+  for (const int depth : {1, 4, 6, 12}) {
+    CAPTURE(depth);
+    const auto camera = generator_camera(*parse_generator("water,depth=" + std::to_string(depth)));
+    REQUIRE(camera.has_value());
+    CHECK(camera->eye.x.raw == 6 * 256 * (1 << depth) / 64);
+    CHECK(camera->eye.y.raw == -22 * 256 * (1 << depth) / 64);
+    CHECK(camera->target.z.raw == 11 * 256 * (1 << depth) / 64);
+  }
 }
 
 TEST_CASE("generators: a sink that throws -> the exception comes through") {
