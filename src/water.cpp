@@ -108,7 +108,7 @@ Status Water::init(Bytes bytes, const WaterConfig& config, Water* water) {
 
 // The flux from `here` to `there` after it was `flux`. What a column may give or take through one edge is a
 // quarter of what there is or of what there is room for.
-int32_t Water::next_flux(int32_t here, int32_t there, int32_t flux) {
+inline int32_t Water::next_flux(int32_t here, int32_t there, int32_t flux) {
   const int32_t fall = cut(here - there, steepest_);
   // 2^13 * 2^15 + 2^28 + 2^12 at most: below 2^30.
   const int32_t both = 8192 * flux + speed_squared_q12_ * fall;
@@ -117,10 +117,12 @@ int32_t Water::next_flux(int32_t here, int32_t there, int32_t flux) {
   size -= ((size >> 10) * damping_q12_) >> 2;  // 2^20 * 2^11
   size >>= 12;
   moving_ = moving_ || size != 0;
-  const int32_t sum = both < 0 ? -static_cast<int32_t>(size) : static_cast<int32_t>(size);
-  const int32_t most = least_of(least_of((here - least_) >> 2, (greatest_ - there) >> 2), kMostFlux);
-  const int32_t least = -least_of(least_of((there - least_) >> 2, (greatest_ - here) >> 2), kMostFlux);
-  return most_of(least, least_of(sum - flux, most));
+  const int32_t wanted = (both < 0 ? -static_cast<int32_t>(size) : static_cast<int32_t>(size)) - flux;
+  // Both bounds hold 0, so only the one ahead can be in the way.
+  if (wanted >= 0) {
+    return least_of(wanted, least_of(least_of(here - least_, greatest_ - there) >> 2, kMostFlux));
+  }
+  return most_of(wanted, -least_of(least_of(there - least_, greatest_ - here) >> 2, kMostFlux));
 }
 
 // Fluxes of columns first .. end - 1 of a row to their neighbours on the right and below. Between blocked

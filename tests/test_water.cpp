@@ -364,7 +364,7 @@ TEST_CASE(
 
 TEST_CASE("water: two columns that swing -> a turn that falls between two steps is not taken for rest") {
   int turns = 0;
-  for (std::int32_t depth = 1; depth <= 3000 / kShare; ++depth) {
+  for (std::int32_t depth = 1; depth <= 3000; ++depth) {
     CAPTURE(depth);
     Pool pool;
     make_pool(pool, 2, 1);

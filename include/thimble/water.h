@@ -82,7 +82,7 @@ class Water {
   /// smaller is taken as 384: a bowl needs some columns). Where a height would leave its limits, the whole is
   /// made half as deep, a quarter ..., or is left out. The deepest column sinks by `depth_q8` to within 1 per
   /// cent where there are no walls near. `kOutOfRange`: beyond these limits, or the point beyond +-2^21.
-  /// Cost: some 40 instructions a column within the radius, three times; more where limits are near.
+  /// Cost: some 600 instructions for each column of the square around; more where limits are near.
   Status touch(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t depth_q8);
 
   /// A thing that falls in: its momentum becomes fluxes away from it, so that the water yields from the next
@@ -94,7 +94,7 @@ class Water {
   // --- Time
 
   /// One step. Nothing at all when the water is still; else only columns that are not at rest and their
-  /// neighbours are looked at, some 60 instructions each.
+  /// neighbours are looked at, some 160 instructions each.
   void step();
   /// Whether every column is at the rest level and nothing flows. Once all heights are within 1/1024 voxel of
   /// the rest level and all fluxes below that a step, or the last two steps have taken nothing from the
@@ -174,8 +174,8 @@ class Water {
   uint64_t columns_updated_ = 0;
   bool has_blocked_ = false;
   bool still_ = true;
-  bool moving_ = false;   // the step has taken something, or could have
-  bool quiet_ = false;    // the step before had not
+  bool moving_ = false;   // some cut sum was not 0: the step was not quiet
+  bool quiet_ = false;    // the step before was
   bool visible_ = false;  // the step has left something above the threshold
 };
 

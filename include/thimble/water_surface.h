@@ -74,7 +74,7 @@ struct WaterHit {
   /// 256 * |direction[axis]| (1 for axis -1). Not reduced. Compare with a Hit's by cross products (2^51).
   int32_t t_numerator = 0;
   int32_t t_denominator = 1;
-  /// Columns looked at: at most width + depth + 1.
+  /// Columns looked at: at most width + depth + 4.
   uint32_t visits = 0;
 };
 

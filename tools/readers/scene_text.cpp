@@ -708,7 +708,7 @@ class Parser {
       if (word.text == "at") {
         part.center = to_q8(three_reals(line, "at", -kSceneTextReach, kSceneTextReach));
       } else if (word.text == "radius") {
-        part.radius_q8 = std::max(1, fixed(real(line, "radius", 0.5, 4096), Q8::kOne));
+        part.radius_q8 = fixed(real(line, "radius", 1, 4096), Q8::kOne);
       } else {
         said.unknown(word, "at and radius");
       }

@@ -54,7 +54,7 @@ struct SceneText {
     Vec3i min;                   ///< box: voxels min .. max - 1
     Vec3i max;                   ///< box
     Vec3Q8 center;               ///< ball
-    std::int32_t radius_q8 = 0;  ///< ball, above 0
+    std::int32_t radius_q8 = 0;  ///< ball, at least a voxel
 
     // Models.
     std::string file;  ///< path relative to the scene's own folder, or a generator

@@ -18,11 +18,10 @@ using MaterialMap = std::array<std::uint8_t, 256>;
 
 // A model where it stands.
 struct Placement {
-  std::shared_ptr<const SceneSource> source;
+  std::shared_ptr<const OpenedModel> model;
   const SceneText::Part* part = nullptr;
   std::array<std::int32_t, 3> size{};  // of its box, unturned
   VoxelBox solid;                      // what it fills of the world, before anything is cut off
-  std::uint64_t voxels = 0;
   MaterialMap material{};
 };
 
@@ -50,8 +49,10 @@ void grow(VoxelBox* box, const Vec3i& voxel) {
 VoxelBox box_of_ball(const SceneText::Part& ball) {
   VoxelBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] = (ball.center[axis].raw - ball.radius_q8) >> Q8::kBits;
-    box.max[axis] = ((ball.center[axis].raw + ball.radius_q8) >> Q8::kBits) + 1;
+    // From the first voxel whose centre lies within to the last.
+    const std::int32_t center = ball.center[axis].raw - Q8::kOne / 2;
+    box.min[axis] = -((ball.radius_q8 - center) >> Q8::kBits);
+    box.max[axis] = ((ball.radius_q8 + center) >> Q8::kBits) + 1;
   }
   return box;
 }
@@ -134,7 +135,7 @@ class TextScene final : public SceneSource {
   }
 
   void stream_model(const Placement& model, const VoxelSink& sink) const {
-    model.source->stream(
+    model.model->source->stream(
         [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
           const Vec3i at = placed(model, {x, y, z});
           if (inside(at)) {
@@ -190,55 +191,50 @@ class TextScene final : public SceneSource {
       }
       const std::string key = arguments.scene + '\n' + std::to_string(part.depth.value_or(0)) +
                               (part.as_voxels ? "v" : "") + (part.z_up ? "z" : "");
-      std::shared_ptr<const SceneSource>& kept = opening->opened[key];
+      std::shared_ptr<const OpenedModel>& kept = opening->opened[key];
       if (opening->opened.size() > kMostSceneModels) {
         throw InputError("the scene opens more than the limit of " + grouped(kMostSceneModels) + " models");
       }
       if (kept == nullptr) {
-        kept = open_scene(arguments, opening, progress);
+        kept = survey(open_scene(arguments, opening, progress));
       }
-      model.source = kept;
-      // Scenes within scenes multiply: judged before anything is streamed.
-      const auto* nested = dynamic_cast<const TextScene*>(kept.get());
-      placements_ += nested != nullptr ? nested->placements_ : 0;
-      if (placements_ > kMostPlacements) {
-        throw InputError("with this the scene places more than the limit of " + grouped(kMostPlacements) +
-                         " models, boxes and balls");
-      }
-      surveyed_ += nested != nullptr ? nested->voxels_ : 0;
-      check_voxels();
-      survey(&model);
-      surveyed_ += nested != nullptr ? 0 : model.voxels;
-      check_voxels();
+      model.model = kept;
     } catch (const InputError& error) {
       fail_at(part.file_place, printable(part.file) + ": " + error.what());
     }
-  }
-
-  void check_voxels() const {
+    // Scenes within scenes multiply.
+    placements_ += model.model->placements;
+    if (placements_ > kMostPlacements) {
+      fail_at(part.place, "with this the scene places more than the limit of " + grouped(kMostPlacements) +
+                              " models, boxes and balls");
+    }
+    surveyed_ += model.model->voxels;
     if (surveyed_ > kMostSceneVoxels) {
-      throw InputError("with this the scene places more than the limit of " + grouped(kMostSceneVoxels) +
-                       " voxels");
+      fail_at(part.place,
+              "with this the scene places more than the limit of " + grouped(kMostSceneVoxels) + " voxels");
+    }
+    model.size = model.model->source->extent();
+    const VoxelBox& solid = model.model->solid;
+    if (!solid.empty()) {
+      grow(&model.solid, placed(model, solid.min));
+      grow(&model.solid, placed(model, {solid.max.x - 1, solid.max.y - 1, solid.max.z - 1}));
     }
   }
 
-  // Streams the model once: what it fills, and which of its materials it uses.
-  void survey(Placement* model) {
-    model->size = model->source->extent();
-    std::array<bool, 256>& used = used_.emplace_back();
-    VoxelBox solid;
-    model->source->stream(
+  // Streams a model once.
+  static std::shared_ptr<const OpenedModel> survey(std::shared_ptr<const SceneSource> source) {
+    auto model = std::make_shared<OpenedModel>();
+    source->stream(
         [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-          used[material] = true;
+          model->used.is[material] = true;
           ++model->voxels;
-          grow(&solid, {x, y, z});
+          grow(&model->solid, {x, y, z});
         },
         {});
-    if (!solid.empty()) {
-      const Vec3i last{solid.max.x - 1, solid.max.y - 1, solid.max.z - 1};
-      grow(&model->solid, placed(*model, solid.min));
-      grow(&model->solid, placed(*model, last));
-    }
+    const auto* nested = dynamic_cast<const TextScene*>(source.get());
+    model->placements = nested != nullptr ? nested->placements_ : 0;
+    model->source = std::move(source);
+    return model;
   }
 
   void choose_level(const std::optional<int>& asked) {
@@ -283,7 +279,7 @@ class TextScene final : public SceneSource {
                                        std::to_string(side()) + " voxels a side (depth " +
                                        std::to_string(level_) + "); crop cuts them off");
       }
-      take(kept, model.voxels);
+      take(kept, model.model->voxels);
     }
     std::uint64_t primitive_voxels = 0;
     for (const SceneText::Part& part : text_.parts) {
@@ -373,9 +369,9 @@ class TextScene final : public SceneSource {
         continue;
       }
       Placement& model = models_[number];
-      const LitDescription lit = model.source->lighting();
+      const LitDescription lit = model.model->source->lighting();
       for (std::size_t index = 0; index < 256; ++index) {
-        if (!used_[number][index]) {
+        if (!model.model->used.is[index]) {
           continue;
         }
         Surface surface = lit.surfaces[index];
@@ -409,7 +405,6 @@ class TextScene final : public SceneSource {
 
   SceneText text_;
   std::vector<Placement> models_;  // in the order of the parts
-  std::vector<std::array<bool, 256>> used_;
   std::vector<std::uint8_t> part_material_;
   Palette palette_{};
   LitDescription lit_;

@@ -31,10 +31,19 @@ inline constexpr std::uint64_t kMostPrimitiveVoxels = std::uint64_t{1} << 30;
 /// Voxels that all models may stream, each counted in all its places.
 inline constexpr std::uint64_t kMostSceneVoxels = std::uint64_t{1} << 31;
 
+/// A model, and what streaming it once has told.
+struct OpenedModel {
+  std::shared_ptr<const SceneSource> source;
+  UsedMaterials used;
+  VoxelBox solid;
+  std::uint64_t voxels = 0;      ///< streamed, repeated ones too
+  std::uint64_t placements = 0;  ///< a scene's own models, boxes and balls
+};
+
 /// What the files of one scene share while they are opened.
 struct SceneOpening {
   std::vector<std::string> path;  ///< the .scene files that are being opened, each inside the one before
-  std::map<std::string, std::shared_ptr<const SceneSource>> opened;  ///< by path and options
+  std::map<std::string, std::shared_ptr<const OpenedModel>> opened;  ///< by path and options
 };
 
 /// Opens what `text`, the content of `arguments.scene`, puts together. `opening` is null for the outermost
