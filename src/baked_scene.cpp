@@ -34,7 +34,8 @@ constexpr uint32_t kSpan = 56;
 constexpr uint32_t kCameraBytes = 60;
 
 constexpr SectionKind kKinds[] = {SectionKind::kTree, SectionKind::kPalette, SectionKind::kCamera,
-                                  SectionKind::kBrickMap, SectionKind::kName};
+                                  SectionKind::kBrickMap, SectionKind::kName,
+                                  SectionKind::kLighting};
 
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
@@ -154,6 +155,8 @@ size_t section_bytes(const BakedParts& parts, SectionKind kind) {
       return parts.brick_map.size;
     case SectionKind::kName:
       return parts.name.size;
+    case SectionKind::kLighting:
+      return parts.lighting.size;
   }
   return 0;
 }
@@ -184,6 +187,9 @@ void write_section(uint8_t* to, const BakedParts& parts, SectionKind kind) {
       return;
     case SectionKind::kName:
       copy(to, parts.name);
+      return;
+    case SectionKind::kLighting:
+      copy(to, parts.lighting);
       return;
   }
 }
@@ -282,6 +288,7 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
         }
         break;
       case SectionKind::kBrickMap:
+      case SectionKind::kLighting:
         break;  // whoever uses it opens it
     }
   }
@@ -338,7 +345,8 @@ ConstBytes BakedScene::section(SectionKind kind) const {
 
 size_t baked_bytes(const BakedParts& parts) {
   if (parts.palette.size > kMaxPaletteColors || parts.name.size > kMaxNameBytes ||
-      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX) {
+      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX ||
+      parts.lighting.size > UINT32_MAX) {
     return SIZE_MAX;
   }
   uint64_t bytes = kBakedHeaderBytes;

@@ -1,5 +1,6 @@
 #include "thimble/render.h"
 
+#include "band.h"
 #include "path_cache.h"
 
 namespace thimble {
@@ -108,23 +109,13 @@ struct NarrowRay {
 template <class Structure, class Trace>
 Status draw(const Structure& structure, const Camera& camera, const Shading& shading, const Band& band,
             RenderCounts* counts, Trace&& trace) {
+  size_t stride = 0;
+  const Status status = check_band(camera, structure.level(), band, &stride);
+  if (status != Status::kOk || band.rows == 0) {
+    return status;
+  }
   const int32_t width = camera.width_px();
-  if (width == 0 || camera.level() != structure.level() || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row) {
-    return Status::kBadArgument;
-  }
   const size_t line_bytes = row_bytes(band.format, width);
-  const size_t stride = band.stride_bytes == 0 ? line_bytes : band.stride_bytes;
-  if (stride < line_bytes) {
-    return Status::kBadArgument;
-  }
-  if (band.rows == 0) {
-    return Status::kOk;
-  }
-  const size_t rows_above = static_cast<size_t>(band.rows) - 1;
-  if (line_bytes > band.pixels.size || rows_above > (band.pixels.size - line_bytes) / stride) {
-    return Status::kOutOfMemory;
-  }
   if (trace.only_32()) {
     // Directions are affine in the pixel, origins too: the corners are the extremes.
     for (unsigned corner = 0; corner < 4; ++corner) {
@@ -176,6 +167,27 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
 }
 
 }  // namespace
+
+Status check_band(const Camera& camera, int level, const Band& band, size_t* stride) {
+  const int32_t width = camera.width_px();
+  if (width == 0 || camera.level() != level || band.first_row < 0 || band.rows < 0 ||
+      band.rows > camera.height_px() - band.first_row) {
+    return Status::kBadArgument;
+  }
+  const size_t line_bytes = row_bytes(band.format, width);
+  *stride = band.stride_bytes == 0 ? line_bytes : band.stride_bytes;
+  if (*stride < line_bytes) {
+    return Status::kBadArgument;
+  }
+  if (band.rows == 0) {
+    return Status::kOk;
+  }
+  const size_t rows_above = static_cast<size_t>(band.rows) - 1;
+  if (line_bytes > band.pixels.size || rows_above > (band.pixels.size - line_bytes) / *stride) {
+    return Status::kOutOfMemory;
+  }
+  return Status::kOk;
+}
 
 Status render_band(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts, const TraceOptions& options) {

@@ -1,5 +1,5 @@
 /// @file baked_scene.h
-/// A whole scene as bytes: compact tree, palette, camera, and tables that make tracing faster.
+/// A whole scene as bytes: compact tree, palette, camera, lighting, and tables that make tracing faster.
 ///
 /// `thimble bake` writes them, as a file (`.oct`) or as a C array for flash (`.h`); a program opens them
 /// where they lie. Nothing is copied or unpacked, no alignment is needed (a brick map wants the bytes to
@@ -41,6 +41,7 @@ enum class SectionKind : uint32_t {
   kCamera = 3,    ///< SceneCamera
   kBrickMap = 4,  ///< tables for frames on a chip (brick_map.h)
   kName = 5,      ///< what it was made from: text in UTF-8, no final zero
+  kLighting = 6,  ///< surfaces, lights, sky, fog, water (baked_lighting.h)
 };
 
 /// How a scene wants to be looked at. The picture's size is the display's own.
@@ -112,6 +113,7 @@ struct BakedParts {
   const SceneCamera* camera = nullptr;
   ConstBytes brick_map;
   ConstBytes name;
+  ConstBytes lighting;  ///< as `write_lighting` makes it
 };
 /// Bytes that `bake` writes for these parts; SIZE_MAX when a scene cannot hold them.
 size_t baked_bytes(const BakedParts& parts);

@@ -57,17 +57,21 @@ constexpr uint8_t gray_of(Rgb8 color) {
   return static_cast<uint8_t>((77U * color.r + 150U * color.g + 29U * color.b) >> 8);
 }
 
-/// Whether a pixel of that grey at column `x`, row `y` is lit in 1 bit: Bayer's 8 x 8 matrix (B. E. Bayer,
-/// "An optimum method for two-level rendition of continuous-tone pictures", ICC 1973). 0 is never lit, 255
-/// always.
-constexpr bool dithered(uint8_t gray, int32_t x, int32_t y) {
+/// Place of a pixel in Bayer's 8 x 8 matrix, 0 .. 63 (B. E. Bayer, "An optimum method for two-level rendition
+/// of continuous-tone pictures", ICC 1973).
+constexpr unsigned bayer_rank(int32_t x, int32_t y) {
   const unsigned column = static_cast<unsigned>(x);
   const unsigned across = column ^ static_cast<unsigned>(y);
   unsigned rank = 0;
   for (unsigned bit = 0; bit < 3; ++bit) {
     rank = rank << 2 | ((across >> bit) & 1U) << 1 | ((column >> bit) & 1U);
   }
-  return gray > 2 + rank * 4;
+  return rank;
+}
+
+/// Whether a pixel of that grey at column `x`, row `y` is lit in 1 bit. 0 is never lit, 255 always.
+constexpr bool dithered(uint8_t gray, int32_t x, int32_t y) {
+  return gray > 2 + bayer_rank(x, y) * 4;
 }
 
 /// Stores the pixel of column `x` into its `row` (row_bytes(format, width) bytes). `y` is the row's number on

@@ -27,14 +27,16 @@ extern const Group kShadingGroup;      ///< colours
 extern const Group kRenderGroup;       ///< bands
 extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
 extern const Group kGoldenGroup;       ///< golden frames
+extern const Group kWaterGroup;        ///< moving water and its rays
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
 inline constexpr const Group* kCoreGroups[] = {
     &kNumberGroup,      &kPixelGroup,     &kRayGroup,    &kTraceGroup,   &kOctreeGroup,
     &kCompactTreeGroup, &kDenseGridGroup, &kCameraGroup, &kShadingGroup, &kRenderGroup,
 };
-/// What lies in flash (the application `golden`): baked scenes and the golden frames.
-inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup};
+/// What lies in flash (the application `golden`): baked scenes and the golden frames; and water, for which
+/// `selftest` has no room left on the smallest chip.
+inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kWaterGroup};
 
 }  // namespace thimble::portable
 

@@ -8,9 +8,49 @@
 #include <cstdint>
 
 #include "support/compact_damage.h"
+#include "thimble/baked_lighting.h"
 #include "thimble/baked_scene.h"
 
 namespace thimble::tests {
+
+/// What opens of a lighting section keeps every limit of lit_scene.h.
+inline const char* use_lighting(const BakedLighting& lighting, int level) {
+  const LitScene& scene = lighting.scene;
+  const std::int32_t side = 1 << level;
+  if ((lighting.effects & ~kAllEffects) != 0 || scene.surfaces.size > kMaxSurfaces ||
+      scene.lights.size > kMaxLights || scene.bounces > kMaxBounces) {
+    return "lighting beyond its limits";
+  }
+  const auto sound = [](const Surface& surface) {
+    return surface.kind <= SurfaceKind::kMedia && surface.index_q12 >= kMinIndexQ12 &&
+           surface.index_q12 <= kMaxIndexQ12;
+  };
+  for (const Surface& surface : scene.surfaces) {
+    if (!sound(surface)) {
+      return "a surface beyond its limits";
+    }
+  }
+  for (const Light& light : scene.lights) {
+    if (light.reach == 0 || (!light.is_point && light.place == PackedVec3i())) {
+      return "a light beyond its limits";
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t at = light.place[axis];
+      if (light.is_point ? at < -4 * 256 * side || at > 5 * 256 * side
+                         : at < -kMaxLightComponent || at > kMaxLightComponent) {
+        return "a light beyond its limits";
+      }
+    }
+  }
+  const WaterSurface& water = scene.water;
+  if (!sound(scene.water_material) || water.heights_q16 != nullptr || water.corner.x < 0 ||
+      water.corner.y < 0 || water.corner.z < 0 || water.corner.x + water.width > side ||
+      water.corner.y + water.depth > side || water.highest_q8 < 0 ||
+      water.highest_q8 > (side - water.corner.z) * 256 || scene.has_water != (water.width > 0)) {
+    return "water beyond its limits";
+  }
+  return nullptr;
+}
 
 /// Opens `bytes` and does with the scene what a program may do: reads every section, makes the camera, traces
 /// rays through the tree. Returns a phrase when a promise is broken, else nullptr. Reads outside the bytes
@@ -35,6 +75,15 @@ inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   }
   if (scene.bytes().size > bytes.size || scene.palette().size > kMaxPaletteColors || sum == UINT32_MAX) {
     return "more than there is";
+  }
+  BakedLighting lighting;
+  lighting.effects = UINT32_MAX;
+  if (open_lighting(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) == Status::kOk) {
+    if (const char* text = use_lighting(lighting, scene.tree().level())) {
+      return text;
+    }
+  } else if (lighting.effects != UINT32_MAX) {
+    return "lighting that is refused was changed";
   }
   if (scene.has_camera()) {
     Camera camera;

@@ -27,6 +27,7 @@ struct BakeCommand {
   std::string identifier = kDefaultIdentifier;
   bool as_header = false;
   bool brick_map = false;
+  EffectChoice effects;
 };
 
 // --memory or what the board's flash has for a scene, the smaller of both.
@@ -50,6 +51,7 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   options.limit_bytes = limit_bytes(command.scene);
   options.name = scene_name(command.scene.arguments.scene);
   options.brick_map = command.brick_map || command.scene.board != nullptr;
+  options.effects = command.effects;
   options.camera = [&command, &source, note](int level, const VoxelBox& bounds) {
     SceneCamera chosen;
     command.view.camera(source, level, bounds, note, &chosen);
@@ -96,6 +98,9 @@ void report(const BakeCommand& command, const Baked& baked, const std::string& n
   }
   text += grouped(tree.voxel_count()) + (tree.voxel_count() == 1 ? " voxel" : " voxels") + " in " +
           grouped(bytes) + " bytes (depth " + std::to_string(tree.level()) + ratio.data() + ")\n";
+  if (baked.effects != kNoEffects) {
+    text += "for the effects " + effects_text(baked.effects) + "\n";
+  }
   if (tree.solid_added() != 0) {
     text += "coarsened to fit: " + grouped(tree.solid_added()) +
             (tree.solid_added() == 1 ? " voxel" : " voxels") + " of solid volume added\n";
@@ -214,6 +219,16 @@ void add_bake(CLI::App& app) {
          "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
          "as long as all keeps the limit; --board always does")
       ->disable_flag_override();
+  add_text_option(
+      *sub, "--effects", "LIST",
+      [command](const std::string& text) {
+        const auto choice = parse_effects(text);
+        command->effects = choice.value_or(EffectChoice{});
+        return choice ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+      },
+      "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
+      "commas between them; a header states the set as a macro, so that firmware holds no others")
+      ->default_str("auto");
   add_text_option(
       *sub, "--name", "IDENT",
       [command](const std::string& text) {

@@ -1,9 +1,9 @@
 // thimble info: what a scene is, and what it takes.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
-#include <set>
 
 #include "commands/commands.h"
 #include "commands/options.h"
@@ -57,6 +57,27 @@ std::string describe(const SceneCamera& camera) {
   return text;
 }
 
+// Lights and the rest, where there are any, and what they and the materials call for.
+template <class Row>
+void describe(const LitDescription& lit, const UsedMaterials& used, const Row& row) {
+  const LitScene& rest = lit.rest;
+  if (!lit.lights.empty()) {
+    const auto points = std::count_if(lit.lights.begin(), lit.lights.end(),
+                                      [](const Light& light) { return light.is_point; });
+    row("lights", std::to_string(lit.lights.size()) + ": " +
+                      std::to_string(lit.lights.size() - static_cast<std::size_t>(points)) + " distant, " +
+                      std::to_string(points) + " in the world");
+  }
+  if (rest.has_water) {
+    const WaterSurface& water = rest.water;
+    const double level = water.corner.z + static_cast<double>(water.highest_q8) / Q8::kOne;
+    row("water", std::to_string(water.width) + " x " + std::to_string(water.depth) + " columns from " +
+                     std::to_string(water.corner.x) + "," + std::to_string(water.corner.y) + ", level " +
+                     shortest(level));
+  }
+  row("effects", effects_text(called_for(lit, used)));
+}
+
 // What only a baked scene has.
 template <class Row>
 void describe(const BakedScene& baked, const Row& row) {
@@ -81,6 +102,7 @@ void describe(const BakedScene& baked, const Row& row) {
   section("camera", SectionKind::kCamera);
   section("brick map", SectionKind::kBrickMap);
   section("name", SectionKind::kName);
+  section("lighting", SectionKind::kLighting);
   row("sections", sections + "rest " + grouped(baked.bytes().size - content));
   row("palette entries", std::to_string(baked.palette().size));
   row("camera", baked.has_camera() ? describe(baked.camera()) : "none");
@@ -123,18 +145,17 @@ void run(const SceneOptions& options) {
                                 std::to_string(box.min.z) + " to " + std::to_string(box.max.x) + "," +
                                 std::to_string(box.max.y) + "," + std::to_string(box.max.z) + " (exclusive)");
 
-  // Which palette entries the voxels use, counted over the stream.
-  std::set<int> used;
-  if (const BakedScene* baked = source->baked()) {
-    for_each_block(baked->tree(), [&](const Vec3i&, int, std::uint8_t material) { used.insert(material); });
-  } else {
-    source->stream([&](auto, auto, auto, std::uint8_t material) { used.insert(material); }, {});
-  }
+  const UsedMaterials used = used_materials(*source);
+  const LitDescription lit = source->lighting();
   std::array<int, 5> kinds{};
-  for (const int index : used) {
-    ++kinds[static_cast<std::size_t>(source->palette()[static_cast<std::size_t>(index)].kind)];
+  int used_count = 0;
+  for (std::size_t index = 0; index < kMaxSurfaces; ++index) {
+    if (used.is[index]) {
+      ++used_count;
+      ++kinds[static_cast<std::size_t>(lit.surfaces[index].kind)];
+    }
   }
-  std::string materials = std::to_string(used.size());
+  std::string materials = std::to_string(used_count);
   const char* separator = ": ";
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind] != 0) {
@@ -143,6 +164,7 @@ void run(const SceneOptions& options) {
     }
   }
   row("materials", materials);
+  describe(lit, used, row);
 
   if (built.nodes() != 0) {
     row("nodes", grouped(built.nodes()));

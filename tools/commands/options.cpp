@@ -144,15 +144,16 @@ constexpr double kFill = 0.94;
 
 void SceneOptions::add_scene(CLI::App& app, bool required) {
   app.add_option("scene", arguments.scene,
-                 "a file (.vox .ply .obj .off .xyz .csv .oct, a Gadget-1 snapshot, .gz of any) or a "
+                 "a file (.vox .ply .obj .off .xyz .csv .scene .oct, a Gadget-1 snapshot, .gz of any) or a "
                  "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L")
       ->required(required)
       ->type_name("SCENE");
   add_whole_option(
       app, "--depth", "L", kMinLevel, kMaxLevel,
       [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
-      "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox or --as-voxels "
-      "file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for the others)");
+      "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox, .scene or "
+      "--as-voxels file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for the "
+      "others)");
   app.add_flag("--as-voxels", arguments.as_voxels,
                "point files: coordinates are voxel indices; nothing is scaled, turned or moved")
       ->disable_flag_override();

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cstdio>
 
+#include "thimble/baked_lighting.h"
+
 namespace thimble::tools {
 namespace {
 
@@ -85,6 +87,19 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   define("HAS_CAMERA", scene.has_camera() ? "1" : "0");
   define("IS_PERSPECTIVE", scene.has_camera() && scene.camera().is_perspective ? "1" : "0");
   define("IS_ORTHOGRAPHIC", scene.has_camera() && !scene.camera().is_perspective ? "1" : "0");
+  BakedLighting lighting;
+  if (open_lighting(scene.section(SectionKind::kLighting), tree.level(), &lighting) != Status::kOk) {
+    lighting.effects = kNoEffects;  // baked without
+  }
+  std::array<char, 16> effects{};
+  std::snprintf(effects.data(), effects.size(), "0x%03xu", static_cast<unsigned>(lighting.effects));
+  // The bits are those of thimble/lit_scene.h; words for a person.
+  std::string names;
+  for (int bit = 0; bit < kEffectCount; ++bit) {
+    const EffectSet effect = EffectSet{1} << bit;
+    names += (lighting.effects & effect) != 0 ? std::string(" ") + effect_name(effect) : "";
+  }
+  define("EFFECTS", effects.data() + (names.empty() ? "" : " /*" + names + " */"));
   define("HAS_BRICK_MAP", scene.section(SectionKind::kBrickMap).empty() ? "0" : "1");
   text +=
       "\n/* Aligned, so that a chip that wants whole words reads them at once. Constant, so that it stays in "

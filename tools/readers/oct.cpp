@@ -4,6 +4,8 @@
 #include <array>
 #include <string>
 
+#include "thimble/baked_lighting.h"
+
 namespace thimble::tools {
 namespace {
 
@@ -48,6 +50,16 @@ Source read_oct(const SharedBytes& file, const Progress&) {
   result.file = file;
   if (BakedScene::open(view, &result.scene) != Status::kOk) {
     throw InputError("damaged");
+  }
+  // The core leaves this to whoever draws light; here the whole file must be sound.
+  const ConstBytes lighting = result.scene.section(SectionKind::kLighting);
+  if (lighting.data != nullptr) {
+    const char* fault = check_lighting(lighting, result.scene.tree().level(), &place);
+    if (fault != nullptr) {
+      throw InputError("damaged at " +
+                       std::to_string(static_cast<std::size_t>(lighting.data - view.data) + place) + ": " +
+                       fault);
+    }
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include "readers/oct.h"
 #include "readers/off.h"
 #include "readers/ply.h"
+#include "readers/scene_text.h"
 #include "readers/text.h"
 #include "readers/vox.h"
 #include "readers/xyz.h"
@@ -27,7 +28,7 @@ bool looks_like_vox(std::span<const std::uint8_t> bytes) {
 }
 
 // The one place that knows all formats.
-constexpr std::array<ReaderRow, 7> kRows{{
+constexpr std::array<ReaderRow, 8> kRows{{
     {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply},
     {".obj", "Wavefront mesh", read_obj, nullptr},
@@ -35,6 +36,7 @@ constexpr std::array<ReaderRow, 7> kRows{{
     {".xyz .csv", "points, one a line", read_xyz, nullptr},
     {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget},
     {".oct", "baked scene", read_oct, looks_like_oct},
+    {".scene", "scene text", read_scene_text, nullptr},
 }};
 
 bool has_ending(std::string_view path, std::string_view ending) {

@@ -18,6 +18,7 @@
 
 #include "readers/shared_bytes.h"
 #include "thimble/baked_scene.h"
+#include "thimble/lit_scene.h"
 
 namespace thimble::tools {
 
@@ -34,8 +35,8 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// MagicaVoxel's material kinds; kept for the effects, not used by plain colour shading.
-enum class SurfaceKind : std::uint8_t { kDiffuse, kMetal, kGlass, kEmit, kMedia };
+/// Kept for the effects, not used by plain colour shading.
+using thimble::SurfaceKind;
 
 /// One palette entry. Parameters as in the file, clamped to their documented ranges; absent ones keep these
 /// defaults.
@@ -100,8 +101,11 @@ struct BakedFile {
   BakedScene scene;  ///< views into `file`
 };
 
-using Source =
-    std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh, BakedFile>;
+/// What a person wrote: models to be opened and put together, lights, a camera (scene_text.h).
+struct SceneText;
+
+using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh, BakedFile,
+                            std::shared_ptr<const SceneText>>;
 
 /// Called now and then while reading: fraction done, 0..1. May throw to cancel.
 using Progress = std::function<void(double)>;

@@ -56,6 +56,11 @@ class Assembly {
       camera_ = options.camera(tree.level(), tree.bounds());
       parts_.camera = &camera_;
     }
+    const LitDescription lit = source.lighting();
+    const UsedMaterials used = used_materials(tree);
+    effects_ = chosen_effects(lit, used, options.effects);
+    lighting_ = lighting_section(lit, used, effects_, tree.level());
+    parts_.lighting = {lighting_.data(), lighting_.size()};
   }
   Assembly(const Assembly&) = delete;
   Assembly& operator=(const Assembly&) = delete;
@@ -84,6 +89,7 @@ class Assembly {
     if (size == SIZE_MAX) {
       throw InputError("too large to be baked: a baked scene holds less than 4 GiB");
     }
+    result->effects = effects_;
     result->bytes.resize(size);
     if (bake(parts_, {result->bytes.data(), size}) != Status::kOk ||
         BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk) {
@@ -95,6 +101,8 @@ class Assembly {
   std::vector<Rgb8> palette_;
   std::string name_;
   SceneCamera camera_;
+  EffectSet effects_ = kNoEffects;
+  std::vector<std::uint8_t> lighting_;
   std::vector<std::uint64_t> map_;  // for its alignment
   BakedParts parts_;
 };

@@ -20,6 +20,8 @@ struct BakingOptions {
   /// Add a brick map (brick_map.h), which makes frames on a chip faster, where the world has one and it keeps
   /// the limit.
   bool brick_map = false;
+  /// Which effects the scene is baked for; what they need goes into a section of its own.
+  EffectChoice effects;
   std::string name;  ///< cut off at kMaxNameBytes
   /// Chooses the camera once the tree is known; without it the scene gets none.
   std::function<SceneCamera(int level, const VoxelBox& bounds)> camera;
@@ -29,6 +31,7 @@ struct BakingOptions {
 struct Baked {
   std::vector<std::uint8_t> bytes;
   BakedScene scene;  ///< views into `bytes`; moving this keeps them, copying does not
+  EffectSet effects = kNoEffects;
   std::uint64_t work_bytes = 0;
   double seconds = 0;
   /// Whether it keeps the limit. If not, it is the scene as it is (or, coarsened, as small as it gets).

@@ -291,8 +291,8 @@ void generate_spheres(const GeneratorSpec& spec, const VoxelSink& sink) {
 // ---- water
 
 // Palette indices of `water`.
-constexpr std::uint8_t kAir = 0;  ///< nothing there, no voxel
-constexpr std::uint8_t kWater = 1;
+constexpr std::uint8_t kAir = 0;    ///< nothing there, no voxel
+constexpr std::uint8_t kWater = 1;  ///< no voxel either: the palette's entry for its colour
 constexpr std::uint8_t kSand = 2;
 constexpr std::uint8_t kRock = 3;
 constexpr std::uint8_t kGlass = 4;
@@ -379,7 +379,7 @@ std::uint8_t water_material(const Lagoon& lagoon, const Point& point, std::int32
       return ball.material;
     }
   }
-  return point[2] < kWaterLevel ? kWater : kAir;
+  return kAir;
 }
 
 void generate_water(const GeneratorSpec& spec, const VoxelSink& sink) {
@@ -471,6 +471,21 @@ std::optional<SceneCamera> generator_camera(const GeneratorSpec& spec) {
   if (spec.kind == GeneratorKind::kDemo) {
     return demo_world_camera(spec.depth);
   }
+  if (spec.kind == GeneratorKind::kWater) {
+    // Over the near wall, down to the island.
+    const auto at = [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+      const auto steps = [&](std::int32_t count) {
+        return Q8::from_raw(
+            static_cast<std::int32_t>(std::int64_t{count} * kStep >> (kWorldBits - spec.depth - Q8::kBits)));
+      };
+      return Vec3Q8{steps(x), steps(y), steps(z)};
+    };
+    SceneCamera camera;
+    camera.eye = at(6, -22, 46);
+    camera.target = at(34, 33, 11);
+    camera.fov_degrees = Q16::saturate(46);
+    return camera;
+  }
   return std::nullopt;
 }
 
@@ -493,25 +508,60 @@ Palette generator_palette(GeneratorKind kind) {
     }
   }
   if (kind == GeneratorKind::kWater) {
-    palette[kWater] = colored({46, 124, 178});
+    palette[kWater] = colored({70, 160, 172});
     palette[kWater].kind = SurfaceKind::kGlass;
     palette[kWater].alpha = 128;
     palette[kWater].ior = 1.33;
-    palette[kWater].transparency = 0.8;
-    palette[kWater].attenuation = 0.05;
+    palette[kWater].transparency = 1;
     palette[kSand] = colored({226, 200, 144});
     palette[kRock] = colored({124, 116, 110});
-    palette[kGlass] = colored({196, 232, 224});
+    palette[kGlass] = colored({206, 238, 226});
     palette[kGlass].kind = SurfaceKind::kGlass;
     palette[kGlass].alpha = 64;
     palette[kGlass].ior = 1.5;
-    palette[kGlass].transparency = 0.95;
-    palette[kMetal] = colored({218, 170, 72});
+    palette[kGlass].transparency = 1;
+    palette[kGlass].attenuation = 0.1;
+    palette[kMetal] = colored({226, 178, 82});
     palette[kMetal].kind = SurfaceKind::kMetal;
-    palette[kMetal].roughness = 0.1;
-    palette[kMetal].metalness = 1;
+    palette[kMetal].metalness = 0.85;
   }
   return palette;
+}
+
+LitDescription generator_lighting(const GeneratorSpec& spec) {
+  LitDescription lit = describe_palette(generator_palette(spec.kind));
+  if (spec.kind != GeneratorKind::kWater) {
+    return lit;
+  }
+  // From the left and over the viewer's shoulder: the island's shadow falls across the water.
+  Light sun;
+  sun.place = {-12, -7, 11};
+  sun.color_q8[0] = 300;
+  sun.color_q8[1] = 282;
+  sun.color_q8[2] = 246;
+  lit.lights.push_back(sun);
+  lit.rest.has_shadows = true;
+  lit.rest.has_sky = true;
+  lit.rest.ambient_q8[0] = 92;
+  lit.rest.ambient_q8[1] = 104;
+  lit.rest.ambient_q8[2] = 120;
+  // As clear at every depth: a finer world has more voxels on the same way.
+  for (const std::uint8_t clear : {kWater, kGlass}) {
+    PackedU16& density = lit.surfaces[clear].density_q8;
+    density = static_cast<std::uint16_t>(std::max(1, (density << 6) >> spec.depth));
+  }
+  // The columns between the walls, from the ground of the world up to the level; sand and rock take
+  // precedence.
+  std::int32_t first = 0;
+  while (voxel_center(first, spec.depth) < kWallThickness) {
+    ++first;
+  }
+  const std::int32_t columns = (std::int32_t{1} << spec.depth) - 2 * first;
+  lit.rest.has_water = true;
+  lit.rest.water =
+      still_water({first, first, 0}, columns, columns, kWaterLevel >> (kWorldBits - spec.depth - Q8::kBits));
+  lit.rest.water_material = lit.surfaces[kWater];
+  return lit;
 }
 
 }  // namespace thimble::tools

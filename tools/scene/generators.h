@@ -4,7 +4,9 @@
 ///   points:N    N voxels uniformly random in the world, repetitions allowed: the paper's workload
 ///   cluster:N   N voxels of a mixture of Plummer spheres, as star clusters have them
 ///   spheres     solid balls of several sizes and colours: the paper's Figure 2
-///   water       a basin with an island and floating bodies of glass and metal
+///   water       a basin with an island and floating bodies of glass and metal, in the sun; the water itself
+///   is
+///               no voxels but a still surface (water_surface.h), which only effects show
 ///   demo        a castle in a valley (demo_world.h): what the firmware shows
 ///
 /// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`.
@@ -20,6 +22,7 @@
 #include <string>
 
 #include "readers/source.h"
+#include "scene/lit_description.h"
 #include "scene/voxel_sink.h"
 #include "thimble/baked_scene.h"
 
@@ -54,6 +57,9 @@ std::optional<SceneCamera> generator_camera(const GeneratorSpec& spec);
 
 /// The palette that the material numbers refer to; index 0 is the default material.
 Palette generator_palette(GeneratorKind kind);
+
+/// What light does in the scene: `water` has its surface, a sun and a sky; the others only surfaces.
+LitDescription generator_lighting(const GeneratorSpec& spec);
 
 }  // namespace thimble::tools
 

@@ -9,7 +9,9 @@
 #include "scene/fit_points.h"
 #include "scene/generators.h"
 #include "scene/palette.h"
+#include "scene/text_scene.h"
 #include "scene/voxelise.h"
+#include "thimble/baked_lighting.h"
 #include "thimble/ray.h"
 
 namespace thimble::tools {
@@ -66,6 +68,7 @@ class GeneratedScene final : public SceneSource {
   bool single_material() const override { return is_point_set(); }
   const Palette& palette() const override { return palette_; }
   const SceneCamera* camera() const override { return camera_ ? &*camera_ : nullptr; }
+  LitDescription lighting() const override { return generator_lighting(spec_); }
   void stream(const VoxelSink& sink, const Progress& progress) const override {
     Meter meter(progress, is_point_set() ? spec_.count : std::uint64_t{1} << (3 * spec_.depth - 3));
     generate(spec_, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
@@ -206,6 +209,16 @@ class BakedFileScene final : public SceneSource {
       const Rgb8 color = file_.scene.palette()[i];
       palette_[i].color = {color.r, color.g, color.b};
     }
+    BakedLighting lighting;
+    if (open_lighting(file_.scene.section(SectionKind::kLighting), level_, &lighting) != Status::kOk) {
+      return;  // baked without
+    }
+    lit_ = describe_baked(lighting, palette_);
+    for (std::size_t i = 0; i < lighting.scene.surfaces.size; ++i) {
+      const Rgb color = palette_[i].color;
+      palette_[i] = material_of(lighting.scene.surfaces[i]);
+      palette_[i].color = color;
+    }
   }
   std::string kind() const override { return "baked scene"; }
   std::uint64_t points() const override { return tree().voxel_count(); }
@@ -215,6 +228,7 @@ class BakedFileScene final : public SceneSource {
   const SceneCamera* camera() const override {
     return file_.scene.has_camera() ? &file_.scene.camera() : nullptr;
   }
+  LitDescription lighting() const override { return lit_ ? *lit_ : describe_palette(palette_); }
   const BakedScene* baked() const override { return &file_.scene; }
   std::array<std::int32_t, 3> extent() const override {
     const Vec3i& max = tree().bounds().max;
@@ -241,6 +255,7 @@ class BakedFileScene final : public SceneSource {
 
   BakedFile file_;
   Palette palette_;
+  std::optional<LitDescription> lit_;
 };
 
 }  // namespace
@@ -251,6 +266,11 @@ std::array<std::int32_t, 3> SceneSource::extent() const {
 }
 
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress) {
+  return open_scene(arguments, nullptr, progress);
+}
+
+std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOpening* opening,
+                                        const Progress& progress) {
   if (arguments.depth) {
     check_depth(*arguments.depth);
   }
@@ -269,6 +289,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const P
   }
   if (arguments.as_voxels) {
     throw InputError("--as-voxels is for point files");
+  }
+  if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
+    return open_text_scene(**text, arguments, opening, progress);
   }
   if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
     return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);

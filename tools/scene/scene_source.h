@@ -10,6 +10,7 @@
 #include <string>
 
 #include "readers/source.h"
+#include "scene/lit_description.h"
 #include "scene/voxel_sink.h"
 
 namespace thimble::tools {
@@ -44,6 +45,9 @@ class SceneSource {
   virtual bool is_scalable() const { return true; }
   /// The camera that the scene brings along, or null: a baked one, or a generator's own.
   virtual const SceneCamera* camera() const { return nullptr; }
+  /// What light does in it: what its file, its text or its generator says, else the palette's surfaces alone.
+  /// Made anew by each call.
+  virtual LitDescription lighting() const { return describe_palette(palette()); }
   /// The baked scene that it is, or null. Its bytes live as long as the source.
   virtual const BakedScene* baked() const { return nullptr; }
   /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
@@ -55,6 +59,10 @@ class SceneSource {
 
 /// Opens SCENE: parses a generator or reads a file. Throws InputError.
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress = {});
+struct SceneOpening;
+/// The same for a model inside a .scene file (text_scene.h).
+std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOpening* opening,
+                                        const Progress& progress);
 
 }  // namespace thimble::tools
 

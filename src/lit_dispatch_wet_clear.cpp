@@ -1,0 +1,11 @@
+#include "lit_instances.h"
+
+namespace thimble::lit {
+
+Status draw_wet_clear(const Frame& frame, const Band& band, LitCounts* counts) {
+  return (frame.effects & kMirror) != 0
+             ? draw_instance<kMirror | kGlass | kMedia | kWater>(frame, band, counts)
+             : draw_instance<kGlass | kMedia | kWater>(frame, band, counts);
+}
+
+}  // namespace thimble::lit

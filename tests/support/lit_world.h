@@ -1,0 +1,116 @@
+/// @file lit_world.h
+/// Small worlds for the tests of lit pictures: boxes and voxels, a camera, a picture as a list of colours.
+#ifndef THIMBLE_TESTS_SUPPORT_LIT_WORLD_H
+#define THIMBLE_TESTS_SUPPORT_LIT_WORLD_H
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "thimble/camera.h"
+#include "thimble/compact_tree.h"
+#include "thimble/lit_render.h"
+#include "thimble/octree.h"
+
+namespace thimble::testing {
+
+inline constexpr EffectSet kTracing =
+    kShadows | kAmbientOcclusion | kMirror | kGlass | kMedia | kWater | kDirectLight;
+
+/// Not to be moved: the tree points into it.
+class LitWorld {
+ public:
+  explicit LitWorld(int level = 5, std::uint32_t nodes = 60000) {
+    pool_bytes_.resize(Octree::octree_bytes(nodes));
+    REQUIRE(pool_.init({pool_bytes_.data(), pool_bytes_.size()}, level) == Status::kOk);
+    surfaces.resize(16);
+  }
+  LitWorld(const LitWorld&) = delete;
+  LitWorld& operator=(const LitWorld&) = delete;
+
+  void box(const Vec3i& min, const Vec3i& max, int material) {
+    REQUIRE(pool_.insert_box({min, max}, static_cast<std::uint8_t>(material)) == Status::kOk);
+  }
+  void voxel(const Vec3i& at, int material) {
+    REQUIRE(pool_.insert(at, static_cast<std::uint8_t>(material)) == Status::kOk);
+  }
+  /// The tree and the scene of what was put in.
+  void finish() {
+    tree_bytes_.resize(compact_bytes(compact_shape(pool_)));
+    std::size_t written = 0;
+    REQUIRE(compact_from_octree(pool_, {tree_bytes_.data(), tree_bytes_.size()}, &written) == Status::kOk);
+    REQUIRE(CompactTree::open({tree_bytes_.data(), written}, &tree) == Status::kOk);
+    scene.surfaces = {surfaces.data(), surfaces.size()};
+    scene.lights = {lights.data(), lights.size()};
+  }
+  /// A camera at `eye` that looks at `target`, both in 1/256 voxel.
+  void look(const Vec3i& eye, const Vec3i& target, int fov = 60, int width = 48, int height = 36) {
+    const Vec3Q8 from = point(eye);
+    const Vec3i forward = look_at(from, point(target));
+    REQUIRE(camera.set(PerspectiveView{from, forward, {}, Q16::saturate(fov), width, height, 0},
+                       tree.level()) == Status::kOk);
+  }
+  static Vec3Q8 point(const Vec3i& raw) {
+    return {Q8::from_raw(raw.x), Q8::from_raw(raw.y), Q8::from_raw(raw.z)};
+  }
+
+  std::vector<Rgb8> draw(EffectSet effects, LitCounts* counts = nullptr) const {
+    std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
+    const Band band{{bytes.data(), bytes.size()}, PixelFormat::kRgb888, 0, 0, camera.height_px()};
+    REQUIRE(render_lit_band(effects, tree, camera, shading, scene, band, counts) == Status::kOk);
+    std::vector<Rgb8> picture;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+      picture.push_back({bytes[i], bytes[i + 1], bytes[i + 2]});
+    }
+    return picture;
+  }
+  Rgb8 middle(EffectSet effects) const {
+    const std::vector<Rgb8> picture = draw(effects);
+    return picture[static_cast<std::size_t>(camera.height_px() / 2 * camera.width_px() +
+                                            camera.width_px() / 2)];
+  }
+
+  CompactTree tree;
+  Camera camera;
+  Shading shading;
+  LitScene scene;
+  std::vector<Surface> surfaces;
+  std::vector<Light> lights;
+
+ private:
+  std::vector<std::uint8_t> pool_bytes_;
+  std::vector<std::uint8_t> tree_bytes_;
+  Octree pool_;
+};
+
+inline Surface surface(SurfaceKind kind, const Rgb8& albedo) {
+  Surface made;
+  made.kind = kind;
+  made.albedo = albedo;
+  return made;
+}
+inline Light sun(const Vec3i& toward, int brightness = 256) {
+  Light light;
+  light.place = toward;
+  for (PackedU16& channel : light.color_q8) {
+    channel = static_cast<std::uint16_t>(brightness);
+  }
+  return light;
+}
+inline Light lamp(const Vec3i& place_q8, int brightness = 256, int reach = 32) {
+  Light light = sun(place_q8, brightness);
+  light.is_point = true;
+  light.reach = static_cast<std::uint16_t>(reach);
+  return light;
+}
+inline void set_ambient(LitScene* scene, int brightness) {
+  for (std::uint16_t& channel : scene->ambient_q8) {
+    channel = static_cast<std::uint16_t>(brightness);
+  }
+}
+
+}  // namespace thimble::testing
+
+#endif

@@ -1,0 +1,231 @@
+#include "scene/lit_description.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "readers/oct.h"
+#include "scene/scene_source.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr double kHalvingsOfE = 1.4426950408889634;  // 1 / ln 2
+
+// `value` within the limits, in units of 1 / one; NaN is the least.
+std::uint16_t fixed(double value, double low, double high, double one) {
+  const double clamped = std::isnan(value) ? low : std::clamp(value, low, high);
+  return static_cast<std::uint16_t>(std::lround(clamped * one));
+}
+std::uint8_t share(double value) {
+  return static_cast<std::uint8_t>(fixed(value, 0, 1, 255));
+}
+std::uint16_t q8(double value) {
+  constexpr double kMost = 65535.0 / 256;
+  const std::uint16_t result = fixed(value, 0, kMost, 256);
+  return value > 0 && result == 0 ? std::uint16_t{1} : result;
+}
+
+constexpr Light kDefaultSun{};
+constexpr std::uint8_t kDefaultOcclusionRays = 8;
+constexpr std::uint32_t kDefaultFogDensity = 65536 / 64;
+
+}  // namespace
+
+UsedMaterials used_materials(const CompactTree& tree) {
+  UsedMaterials used;
+  if (tree.empty() || tree.many_materials()) {
+    for_each_block(tree, [&](const Vec3i&, int, std::uint8_t material) { used.is[material] = true; });
+  } else {
+    used.is[tree.uniform_material()] = true;
+  }
+  return used;
+}
+
+UsedMaterials used_materials(const SceneSource& source) {
+  if (source.baked() != nullptr) {
+    return used_materials(source.baked()->tree());
+  }
+  UsedMaterials used;
+  source.stream([&](auto, auto, auto, std::uint8_t material) { used.is[material] = true; }, {});
+  return used;
+}
+
+LitScene LitDescription::lit_scene() const {
+  LitScene scene = rest;
+  scene.surfaces = {surfaces.data(), surfaces.size()};
+  scene.lights = {lights.data(), lights.size()};
+  return scene;
+}
+
+Surface surface_of(const Material& material) {
+  Surface surface;
+  surface.albedo = {material.color.r, material.color.g, material.color.b};
+  surface.kind = material.kind;
+  surface.roughness = share(material.roughness);
+  surface.mirror = share(material.metalness > 0 ? material.metalness : material.weight);
+  surface.index_q12 = fixed(material.ior, kMinIndexQ12 / 4096.0, kMaxIndexQ12 / 4096.0, 4096);
+  if (material.kind == SurfaceKind::kMedia) {
+    surface.density_q8 = std::max<std::uint16_t>(1, q8(material.density * kHalvingsOfE));
+  } else {
+    // Even the clearest shows its colour within some tens of voxels; an opaque one within a few.
+    constexpr double kClearest = 1.0 / 16;
+    surface.density_q8 =
+        q8(kClearest + material.attenuation + (1 - std::clamp(material.transparency, 0.0, 1.0)) / 4);
+  }
+  const double power = material.emission > 0 ? material.emission : material.weight;
+  surface.emission_q8 = q8(power * std::exp2(std::clamp(material.flux, 0.0, 8.0)));
+  return surface;
+}
+
+Material material_of(const Surface& surface) {
+  Material material;
+  material.color = {surface.albedo.r, surface.albedo.g, surface.albedo.b};
+  material.kind = surface.kind;
+  material.roughness = surface.roughness / 255.0;
+  material.metalness = surface.mirror / 255.0;
+  material.ior = surface.index_q12 / 4096.0;
+  material.density = surface.density_q8 / 256.0;
+  material.emission = std::min(1.0, surface.emission_q8 / 256.0);
+  return material;
+}
+
+LitDescription describe_palette(const Palette& palette) {
+  LitDescription lit;
+  std::transform(palette.begin(), palette.end(), lit.surfaces.begin(), surface_of);
+  return lit;
+}
+
+LitDescription describe_baked(const BakedLighting& lighting, const Palette& palette) {
+  LitDescription lit = describe_palette(palette);
+  std::copy(lighting.scene.surfaces.begin(), lighting.scene.surfaces.end(), lit.surfaces.begin());
+  lit.lights.assign(lighting.scene.lights.begin(), lighting.scene.lights.end());
+  lit.rest = lighting.scene;
+  lit.rest.surfaces = {};
+  lit.rest.lights = {};
+  lit.on = lighting.effects;
+  lit.off = kAllEffects & ~lighting.effects;
+  return lit;
+}
+
+EffectSet called_for(const LitDescription& lit, const UsedMaterials& used) {
+  EffectSet set = (effects_of(lit.lit_scene(), &used.is) | lit.on) & ~lit.off;
+  if ((lit.on & kShadows) != 0 && (lit.off & kDirectLight) == 0) {
+    set |= kDirectLight;
+  }
+  return (set & kDirectLight) != 0 ? set : set & ~kShadows;
+}
+
+std::optional<EffectChoice> parse_effects(std::string_view text) {
+  EffectChoice choice;
+  if (text == "auto") {
+    return choice;
+  }
+  choice.automatic = false;
+  if (text == "none") {
+    return choice;
+  }
+  for (;;) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view name = text.substr(0, comma);
+    EffectSet found = kNoEffects;
+    for (int bit = 0; bit < kEffectCount; ++bit) {
+      const EffectSet effect = EffectSet{1} << bit;
+      found |= name == effect_name(effect) ? effect : kNoEffects;
+    }
+    if (found == kNoEffects || (choice.effects & found) != 0) {
+      return std::nullopt;
+    }
+    choice.effects |= found;
+    if (comma == text.size()) {
+      return choice;
+    }
+    text.remove_prefix(comma + 1);
+  }
+}
+
+std::string effects_text(EffectSet effects) {
+  std::string text;
+  for (int bit = 0; bit < kEffectCount; ++bit) {
+    const EffectSet effect = EffectSet{1} << bit;
+    if ((effects & effect) != 0) {
+      text += (text.empty() ? "" : ",") + std::string(effect_name(effect));
+    }
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string effect_names() {
+  return effects_text(kAllEffects);
+}
+
+EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice) {
+  if (choice.automatic) {
+    return called_for(lit, used);
+  }
+  return choice.effects | ((choice.effects & kShadows) != 0 ? kDirectLight : kNoEffects);
+}
+
+LitScene with_defaults(LitScene scene, EffectSet effects) {
+  const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
+  if (wanted(kDirectLight) && scene.lights.empty()) {
+    scene.lights = {&kDefaultSun, 1};
+  }
+  scene.has_shadows = scene.has_shadows || wanted(kShadows);
+  scene.has_sky = scene.has_sky || wanted(kSky);
+  scene.has_depth_cue = scene.has_depth_cue || wanted(kDepthCue);
+  if (wanted(kAmbientOcclusion) && scene.occlusion.rays == 0) {
+    scene.occlusion.rays = kDefaultOcclusionRays;
+  }
+  if (wanted(kFog) && scene.fog.density_q16 == 0) {
+    scene.fog.density_q16 = kDefaultFogDensity;
+  }
+  return scene;
+}
+
+std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const UsedMaterials& used,
+                                           EffectSet effects, int level) {
+  if (effects == kNoEffects) {
+    return {};
+  }
+  BakedLighting lighting;
+  lighting.effects = effects;
+  LitScene& scene = lighting.scene;
+  scene = with_defaults(lit.lit_scene(), effects);
+  const LitScene plain;
+  const auto unwanted = [effects](EffectSet effect) { return (effects & effect) == 0; };
+  if (unwanted(kDirectLight)) {
+    scene.lights = {};
+  }
+  scene.has_shadows = scene.has_shadows && !unwanted(kShadows);
+  scene.has_depth_cue = scene.has_depth_cue && !unwanted(kDepthCue);
+  if (unwanted(kAmbientOcclusion)) {
+    scene.occlusion = plain.occlusion;
+  }
+  if (unwanted(kFog)) {
+    scene.fog = plain.fog;
+  }
+  if (unwanted(kSky)) {
+    scene.has_sky = false;
+    scene.sky = plain.sky;
+  }
+  if (unwanted(kWater)) {
+    scene.has_water = false;
+    scene.water = plain.water;
+    scene.water_material = plain.water_material;
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.surfaces.size; ++i) {
+    if (used.is[i] && scene.surfaces[i].kind != SurfaceKind::kDiffuse) {
+      count = i + 1;
+    }
+  }
+  constexpr EffectSet kOfMaterials = kEmission | kMirror | kGlass | kMedia;
+  scene.surfaces = {scene.surfaces.data, (effects & kOfMaterials) != 0 ? count : 0};
+  std::vector<std::uint8_t> bytes(lighting_bytes(scene));
+  if (bytes.empty() || write_lighting(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk) {
+    throw InputError("its lights, surfaces or water are beyond the limits of a baked scene");
+  }
+  return bytes;
+}
+
+}  // namespace thimble::tools

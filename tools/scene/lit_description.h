@@ -1,0 +1,109 @@
+/// @file lit_description.h
+/// What light does in a scene, as a source has it: surfaces of all palette entries, lights, sky, water. The
+/// one home of the conversions into the core's `LitScene`.
+///
+/// From a scene to what is drawn:
+///
+///     const LitDescription lit = source.lighting();
+///     const EffectSet effects = chosen_effects(lit, used_materials(built.compact()), choice);
+///     const LitScene scene = with_defaults(lit.lit_scene(), effects);   // views into `lit`
+///
+/// and where it is looked at from is `source.camera()`.
+#ifndef THIMBLE_TOOLS_SCENE_LIT_DESCRIPTION_H
+#define THIMBLE_TOOLS_SCENE_LIT_DESCRIPTION_H
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "readers/source.h"
+#include "thimble/baked_lighting.h"
+#include "thimble/compact_tree.h"
+#include "thimble/lit_scene.h"
+
+namespace thimble::tools {
+
+class SceneSource;
+
+/// Which palette entries occur in what was built.
+struct UsedMaterials {
+  bool is[256] = {};
+  friend bool operator==(const UsedMaterials&, const UsedMaterials&) = default;
+};
+
+/// Of a tree, block by block.
+UsedMaterials used_materials(const CompactTree& tree);
+/// Of all that a source streams, by streaming it (a baked one's by its tree). What is covered later counts
+/// too.
+UsedMaterials used_materials(const SceneSource& source);
+
+struct LitDescription {
+  /// By palette index, all 256 of them.
+  std::vector<Surface> surfaces = std::vector<Surface>(kMaxSurfaces);
+  std::vector<Light> lights;
+  /// All the rest; its spans are empty.
+  LitScene rest;
+  /// Effects that the scene's author turned on or off, whatever materials and lights call for.
+  EffectSet on = kNoEffects;
+  EffectSet off = kNoEffects;
+
+  /// A view of it all, as long as this lives and keeps its vectors.
+  LitScene lit_scene() const;
+};
+
+/// What a material of a file does with light. Parameters beyond what the core takes are clamped: roughness
+/// and shares to 0..1, the index of refraction to 1..4, density and emission to 16 bits in 1/256; NaN counts
+/// as the least. `.vox` parameters mean:
+///   metal   share mirrored: metalness, or the weight where there is none
+///   glass   density: halvings a voxel of a channel that its colour lacks; from attenuation and opacity
+///   emit    emission (or the weight) times 2^flux
+///   media   density d as exp(-d) a voxel, 1.44 d halvings
+Surface surface_of(const Material& material);
+/// What the colour of a surface and its kind are to those who know palettes only.
+Material material_of(const Surface& surface);
+
+/// Surfaces of a whole palette and nothing else: no light, no sky.
+LitDescription describe_palette(const Palette& palette);
+
+/// What a baked scene holds, with the rest of its palette as plain surfaces. The set that it was baked for is
+/// what it calls for, no more and no less.
+LitDescription describe_baked(const BakedLighting& lighting, const Palette& palette);
+
+/// The effects that `used` materials and the rest call for (`effects_of`), with what the author turned on and
+/// without what he turned off. Shadows need direct light: they come and go with it.
+EffectSet called_for(const LitDescription& lit, const UsedMaterials& used);
+
+/// What --effects says.
+struct EffectChoice {
+  bool automatic = true;
+  EffectSet effects = kNoEffects;  ///< unless automatic
+};
+/// "auto", "none" or names of effects with commas between them; nothing for anything else.
+std::optional<EffectChoice> parse_effects(std::string_view text);
+/// The names of a set's effects with commas between them; "none" for the empty one.
+std::string effects_text(EffectSet effects);
+/// All names, for help and errors.
+std::string effect_names();
+
+/// The set that is drawn: what the scene calls for, or what was asked for. Asked-for shadows bring direct
+/// light along.
+EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice);
+
+/// `scene` with something to show for each effect of the set: a sun where direct light has no lights,
+/// shadows, a sky, 8 rays of occlusion, fog that halves light in 64 voxels, a depth cue. What effects of
+/// materials and water need cannot be made up: they stay without work. The result's spans are those of
+/// `scene`, or of a constant.
+LitScene with_defaults(LitScene scene, EffectSet effects);
+
+/// The section of a baked scene (`SectionKind::kLighting`) with what these effects need and no more; empty
+/// where that is nothing. Surfaces reach up to the last used material that is not plain; the palette has the
+/// rest. Throws InputError when a number is beyond the core's limits.
+std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const UsedMaterials& used,
+                                           EffectSet effects, int level);
+
+}  // namespace thimble::tools
+
+#endif

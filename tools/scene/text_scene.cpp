@@ -1,0 +1,444 @@
+#include "scene/text_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "output/units.h"
+#include "scene/generators.h"
+#include "thimble/ray.h"
+
+namespace thimble::tools {
+namespace {
+
+using MaterialMap = std::array<std::uint8_t, 256>;
+
+// A model where it stands.
+struct Placement {
+  std::shared_ptr<const OpenedModel> model;
+  const SceneText::Part* part = nullptr;
+  std::array<std::int32_t, 3> size{};  // of its box, unturned
+  VoxelBox solid;                      // what it fills of the world, before anything is cut off
+  MaterialMap material{};
+};
+
+Vec3i placed(const Placement& placement, const Vec3i& voxel) {
+  const SceneText::Part& part = *placement.part;
+  Vec3i result;
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const int from = part.axis[at];
+    const std::int32_t side = placement.size[static_cast<std::size_t>(from)];
+    result[i] = part.at[i] + (part.sign[at] > 0 ? voxel[from] : side - 1 - voxel[from]);
+  }
+  return result;
+}
+
+void grow(VoxelBox* box, const Vec3i& voxel) {
+  const bool was_empty = box->empty();
+  for (int axis = 0; axis < 3; ++axis) {
+    box->min[axis] = was_empty ? voxel[axis] : std::min(box->min[axis], voxel[axis]);
+    box->max[axis] = was_empty ? voxel[axis] + 1 : std::max(box->max[axis], voxel[axis] + 1);
+  }
+}
+
+// The box of voxels that a ball may fill.
+VoxelBox box_of_ball(const SceneText::Part& ball) {
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    // From the first voxel whose centre lies within to the last.
+    const std::int32_t center = ball.center[axis].raw - Q8::kOne / 2;
+    box.min[axis] = -((ball.radius_q8 - center) >> Q8::kBits);
+    box.max[axis] = ((ball.radius_q8 + center) >> Q8::kBits) + 1;
+  }
+  return box;
+}
+
+VoxelBox box_of(const SceneText::Part& part) {
+  return part.kind == SceneText::PartKind::kBox ? VoxelBox{part.min, part.max} : box_of_ball(part);
+}
+
+VoxelBox cut(const VoxelBox& box, std::int32_t side) {
+  VoxelBox result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min[axis] = std::clamp(box.min[axis], 0, side);
+    result.max[axis] = std::clamp(box.max[axis], 0, side);
+  }
+  return result;
+}
+
+std::string corner_text(const Vec3i& corner) {
+  return std::to_string(corner.x) + " " + std::to_string(corner.y) + " " + std::to_string(corner.z);
+}
+
+class TextScene final : public SceneSource {
+ public:
+  TextScene(const SceneText& text, const SceneArguments& arguments, SceneOpening* opening,
+            const Progress& progress)
+      : text_(text), placements_(text.parts.size()) {
+    models_.reserve(text_.parts.size());
+    for (const SceneText::Part& part : text_.parts) {
+      if (part.kind == SceneText::PartKind::kModel) {
+        add_model(part, arguments.scene, opening, progress);
+      }
+    }
+    choose_level(arguments.depth);
+    check_parts();
+    check_numbers();
+    merge_palettes();
+    make_lighting();
+  }
+
+  std::string kind() const override { return "scene text"; }
+  std::uint64_t points() const override { return voxels_; }
+  bool is_point_set() const override { return false; }
+  bool single_material() const override { return materials_ <= 1; }
+  bool is_scalable() const override { return false; }
+  std::array<std::int32_t, 3> extent() const override { return {extent_.x, extent_.y, extent_.z}; }
+  const Palette& palette() const override { return palette_; }
+  const SceneCamera* camera() const override { return text_.camera ? &*text_.camera : nullptr; }
+  LitDescription lighting() const override { return lit_; }
+
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    std::uint64_t done = 0;
+    const VoxelSink counted = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      sink(x, y, z, material);
+      constexpr std::uint64_t kEvery = 1 << 16;
+      if (++done % kEvery == 0 && progress) {
+        progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(voxels_)));
+      }
+    };
+    std::size_t model = 0;
+    for (std::size_t i = 0; i < text_.parts.size(); ++i) {
+      switch (text_.parts[i].kind) {
+        case SceneText::PartKind::kModel:
+          stream_model(models_[model++], counted);
+          break;
+        case SceneText::PartKind::kBox:
+          stream_box(text_.parts[i], part_material_[i], counted);
+          break;
+        case SceneText::PartKind::kBall:
+          stream_ball(text_.parts[i], part_material_[i], counted);
+          break;
+      }
+    }
+  }
+
+ private:
+  std::int32_t side() const { return std::int32_t{1} << level_; }
+  bool inside(const Vec3i& voxel) const {
+    const auto within = [this](std::int32_t v) { return v >= 0 && v < side(); };
+    return within(voxel.x) && within(voxel.y) && within(voxel.z);
+  }
+
+  void stream_model(const Placement& model, const VoxelSink& sink) const {
+    model.model->source->stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+          const Vec3i at = placed(model, {x, y, z});
+          if (inside(at)) {
+            sink(at.x, at.y, at.z, model.material[material]);
+          }
+        },
+        {});
+  }
+
+  void stream_box(const SceneText::Part& part, std::uint8_t material, const VoxelSink& sink) const {
+    const VoxelBox box = cut(box_of(part), side());
+    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
+        for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+          sink(x, y, z, material);
+        }
+      }
+    }
+  }
+
+  // The voxels whose centres lie in the ball.
+  void stream_ball(const SceneText::Part& part, std::uint8_t material, const VoxelSink& sink) const {
+    const VoxelBox box = cut(box_of(part), side());
+    const auto squared = [&](std::int32_t voxel, int axis) {
+      const std::int64_t away = std::int64_t{voxel} * Q8::kOne + Q8::kOne / 2 - part.center[axis].raw;
+      return away * away;
+    };
+    const std::int64_t reach = std::int64_t{part.radius_q8} * part.radius_q8;
+    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
+        const std::int64_t left = reach - squared(y, 1) - squared(z, 2);
+        for (std::int32_t x = box.min.x; left >= 0 && x < box.max.x; ++x) {
+          if (squared(x, 0) <= left) {
+            sink(x, y, z, material);
+          }
+        }
+      }
+    }
+  }
+
+  void add_model(const SceneText::Part& part, const std::string& own_path, SceneOpening* opening,
+                 const Progress& progress) {
+    SceneArguments arguments;
+    arguments.scene = part.file;
+    arguments.depth = part.depth;
+    arguments.as_voxels = part.as_voxels;
+    arguments.z_up = part.z_up;
+    Placement& model = models_.emplace_back();
+    model.part = &part;
+    try {
+      if (!parse_generator(part.file)) {
+        arguments.scene = (std::filesystem::path(own_path).parent_path() / part.file).string();
+      }
+      const std::string key = arguments.scene + '\n' + std::to_string(part.depth.value_or(0)) +
+                              (part.as_voxels ? "v" : "") + (part.z_up ? "z" : "");
+      std::shared_ptr<const OpenedModel>& kept = opening->opened[key];
+      if (opening->opened.size() > kMostSceneModels) {
+        throw InputError("the scene opens more than the limit of " + grouped(kMostSceneModels) + " models");
+      }
+      if (kept == nullptr) {
+        kept = survey(open_scene(arguments, opening, progress));
+      }
+      model.model = kept;
+    } catch (const InputError& error) {
+      fail_at(part.file_place, printable(part.file) + ": " + error.what());
+    }
+    // Scenes within scenes multiply.
+    placements_ += model.model->placements;
+    if (placements_ > kMostPlacements) {
+      fail_at(part.place, "with this the scene places more than the limit of " + grouped(kMostPlacements) +
+                              " models, boxes and balls");
+    }
+    surveyed_ += model.model->voxels;
+    if (surveyed_ > kMostSceneVoxels) {
+      fail_at(part.place,
+              "with this the scene places more than the limit of " + grouped(kMostSceneVoxels) + " voxels");
+    }
+    model.size = model.model->source->extent();
+    const VoxelBox& solid = model.model->solid;
+    if (!solid.empty()) {
+      grow(&model.solid, placed(model, solid.min));
+      grow(&model.solid, placed(model, {solid.max.x - 1, solid.max.y - 1, solid.max.z - 1}));
+    }
+  }
+
+  // Streams a model once.
+  static std::shared_ptr<const OpenedModel> survey(std::shared_ptr<const SceneSource> source) {
+    auto model = std::make_shared<OpenedModel>();
+    source->stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+          model->used.is[material] = true;
+          ++model->voxels;
+          grow(&model->solid, {x, y, z});
+        },
+        {});
+    const auto* nested = dynamic_cast<const TextScene*>(source.get());
+    model->placements = nested != nullptr ? nested->placements_ : 0;
+    model->source = std::move(source);
+    return model;
+  }
+
+  void choose_level(const std::optional<int>& asked) {
+    std::int32_t largest = 1;
+    TextPlace largest_place{1, 1};
+    const auto need = [&](const VoxelBox& box, const TextPlace& place) {
+      const std::int32_t end = std::max({box.max.x, box.max.y, box.max.z});
+      if (!box.empty() && end > largest) {
+        largest = end;
+        largest_place = place;
+      }
+    };
+    // What is cut off at a given depth counts for the depth when nobody gives one.
+    for (const Placement& model : models_) {
+      need(model.solid, model.part->place);
+    }
+    for (const SceneText::Part& part : text_.parts) {
+      if (part.kind != SceneText::PartKind::kModel) {
+        need(box_of(part), part.place);
+      }
+    }
+    level_ = asked ? *asked : text_.depth.value_or(0);
+    if (level_ == 0) {
+      level_ = kMinLevel;
+      while (level_ < kMaxLevel && side() < largest) {
+        ++level_;
+      }
+      if (side() < largest) {
+        fail_at(largest_place, "this reaches to " + std::to_string(largest) + "; the largest world ends at " +
+                                   std::to_string(side()));
+      }
+    }
+  }
+
+  void check_parts() {
+    for (const Placement& model : models_) {
+      const VoxelBox& box = model.solid;
+      const VoxelBox kept = cut(box, side());
+      if (!model.part->crop && !(kept == box)) {
+        fail_at(model.part->place, "the model's voxels from " + corner_text(box.min) + " to " +
+                                       corner_text(box.max) + " leave the world of " +
+                                       std::to_string(side()) + " voxels a side (depth " +
+                                       std::to_string(level_) + "); crop cuts them off");
+      }
+      take(kept, model.model->voxels);
+    }
+    std::uint64_t primitive_voxels = 0;
+    for (const SceneText::Part& part : text_.parts) {
+      if (part.kind == SceneText::PartKind::kModel) {
+        continue;
+      }
+      const VoxelBox box = cut(box_of(part), side());
+      if (box.empty()) {
+        fail_at(part.place, "all of this lies outside the world of " + std::to_string(side()) +
+                                " voxels a side (depth " + std::to_string(level_) + ")");
+      }
+      const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.max.x - box.min.x) *
+                                   static_cast<std::uint64_t>(box.max.y - box.min.y) *
+                                   static_cast<std::uint64_t>(box.max.z - box.min.z);
+      primitive_voxels += volume;
+      if (primitive_voxels > kMostPrimitiveVoxels) {
+        fail_at(part.place, "boxes and balls up to here hold " + grouped(primitive_voxels) +
+                                " voxels, the limit is " + grouped(kMostPrimitiveVoxels));
+      }
+      take(box, volume);
+    }
+  }
+
+  void take(const VoxelBox& box, std::uint64_t voxels) {
+    voxels_ += voxels;
+    for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
+      extent_[axis] = std::max(extent_[axis], box.max[axis]);
+    }
+  }
+
+  // What only the world's size decides.
+  void check_numbers() {
+    const auto in_reach = [this](std::int32_t raw) {
+      return raw >= kMinOriginWorlds * (Q8::kOne << level_) && raw <= kMaxOriginWorlds * (Q8::kOne << level_);
+    };
+    const std::string limits = std::to_string(kMinOriginWorlds * side()) + " to " +
+                               std::to_string(kMaxOriginWorlds * side()) + " (-4 to 5 world sizes)";
+    for (const SceneText::PlacedLight& each : text_.lights) {
+      const Vec3i at = each.light.place;
+      if (each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z))) {
+        fail_at(each.place, "the lamp is outside the accepted " + limits);
+      }
+    }
+    if (text_.camera) {
+      const Vec3Q8& eye = text_.camera->eye;
+      if (!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw))) {
+        fail_at(text_.camera_place, "the eye of the camera is outside the accepted " + limits);
+      }
+      Camera camera;
+      if (make_camera(*text_.camera, 1, 1, level_, &camera) == Status::kBadArgument) {
+        fail_at(text_.camera_place, "up of the camera is parallel to the direction of view");
+      }
+    }
+    if (text_.water) {
+      const SceneText::WaterArea& water = *text_.water;
+      const bool fits = !water.from_to || ((*water.from_to)[2] <= side() && (*water.from_to)[3] <= side());
+      if (!fits || water.level_q8 > side() * Q8::kOne) {
+        fail_at(water.place, "the water leaves the world of " + std::to_string(side()) +
+                                 " voxels a side (depth " + std::to_string(level_) + ")");
+      }
+    }
+  }
+
+  std::uint8_t world_material(const Surface& surface, const TextPlace& place) {
+    const auto begin = lit_.surfaces.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(materials_);
+    const auto found = std::find(begin, end, surface);
+    if (found == end) {
+      if (materials_ == kMaxSurfaces) {
+        fail_at(place, "with this the scene has more than the limit of " + std::to_string(kMaxSurfaces) +
+                           " different materials");
+      }
+      lit_.surfaces[materials_] = surface;
+      palette_[materials_] = material_of(surface);
+      return static_cast<std::uint8_t>(materials_++);
+    }
+    return static_cast<std::uint8_t>(found - begin);
+  }
+
+  void merge_palettes() {
+    part_material_.resize(text_.parts.size());
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < text_.parts.size(); ++i) {
+      const SceneText::Part& part = text_.parts[i];
+      if (part.kind != SceneText::PartKind::kModel) {
+        part_material_[i] = world_material(text_.materials[part.material].surface, part.place);
+        continue;
+      }
+      Placement& model = models_[number];
+      const LitDescription lit = model.model->source->lighting();
+      for (std::size_t index = 0; index < 256; ++index) {
+        if (!model.model->used.is[index]) {
+          continue;
+        }
+        Surface surface = lit.surfaces[index];
+        if (part.replaces && part.replaced[index] >= 0) {
+          const auto& named = text_.materials[static_cast<std::size_t>(part.replaced[index])];
+          const Rgb8 own = surface.albedo;
+          surface = named.surface;
+          surface.albedo = named.has_color ? surface.albedo : own;
+        }
+        model.material[index] = world_material(surface, part.place);
+      }
+      ++number;
+    }
+  }
+
+  void make_lighting() {
+    for (const SceneText::PlacedLight& each : text_.lights) {
+      lit_.lights.push_back(each.light);
+    }
+    lit_.rest = text_.rest;
+    lit_.on = text_.on;
+    lit_.off = text_.off;
+    if (text_.water) {
+      const SceneText::WaterArea& water = *text_.water;
+      const std::array<std::int32_t, 4> plan = water.from_to.value_or(std::array{0, 0, side(), side()});
+      lit_.rest.has_water = true;
+      lit_.rest.water = still_water({plan[0], plan[1], water.floor}, plan[2] - plan[0], plan[3] - plan[1],
+                                    water.level_q8 - water.floor * Q8::kOne);
+    }
+  }
+
+  SceneText text_;
+  std::vector<Placement> models_;  // in the order of the parts
+  std::vector<std::uint8_t> part_material_;
+  Palette palette_{};
+  LitDescription lit_;
+  std::size_t materials_ = 0;
+  std::size_t placements_;      // parts, those of scenes within this one counted each time
+  std::uint64_t surveyed_ = 0;  // voxels of models
+  std::uint64_t voxels_ = 0;
+  Vec3i extent_{1, 1, 1};
+};
+
+std::string canonical(const std::string& path) {
+  std::error_code error;
+  const auto result = std::filesystem::weakly_canonical(path, error);
+  return error ? path : result.string();
+}
+
+}  // namespace
+
+std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneArguments& arguments,
+                                             SceneOpening* opening, const Progress& progress) {
+  SceneOpening outermost;
+  SceneOpening* const all = opening != nullptr ? opening : &outermost;
+  const std::string path = canonical(arguments.scene);
+  if (std::find(all->path.begin(), all->path.end(), path) != all->path.end()) {
+    throw InputError("this scene is a model of itself");
+  }
+  if (all->path.size() == kMostNestedScenes) {
+    throw InputError("scenes stand within scenes deeper than the limit of " +
+                     std::to_string(kMostNestedScenes));
+  }
+  all->path.push_back(path);
+  auto result = std::make_unique<TextScene>(text, arguments, all, progress);
+  all->path.pop_back();
+  return result;
+}
+
+}  // namespace thimble::tools
