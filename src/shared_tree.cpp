@@ -171,6 +171,28 @@ uint32_t SharedTree::leaves_of(uint32_t node) const {
   return leaves;
 }
 
+uint64_t SharedTree::bytes_with_materials() const {
+  if (materials_ != nullptr || base_ == nullptr) {
+    return size_bytes_;
+  }
+  uint64_t counted = 0;  // nodes that would get a count
+  uint64_t links = 0;
+  for (uint32_t at = level_3_; at < nodes_end_; ++counted) {
+    const uint32_t children = bits::popcount8(base_[at]);
+    links += children;
+    at += 1 + merged_bytes_ + children * link_bytes_;
+  }
+  const uint64_t others = nodes_end_ - links * link_bytes_ + counted * bytes_for(leaf_count_);
+  uint64_t end = 0;
+  for (unsigned link_bytes = 1; link_bytes <= 4; ++link_bytes) {
+    end = others + links * link_bytes;
+    if (end <= uint64_t{1} << (8 * link_bytes)) {
+      break;
+    }
+  }
+  return ((end + 3) & ~uint64_t{3}) + ((uint64_t{leaf_count_} + 3) & ~uint64_t{3});
+}
+
 uint8_t SharedTree::material(const Vec3i& voxel) const {
   const uint32_t side = uint32_t{1} << level_;
   if (static_cast<uint32_t>(voxel.x) >= side || static_cast<uint32_t>(voxel.y) >= side ||

@@ -110,6 +110,10 @@ class SharedTree {
   int link_bytes() const { return link_bytes_; }
   int count_bytes() const { return count_bytes_; }
 
+  /// Bytes of this tree if it had several materials: counts, and one byte a leaf. Its own size where it has.
+  /// One pass over the nodes.
+  uint64_t bytes_with_materials() const;
+
   /// The material of the leaf that holds `voxel` of the world; 0 where nothing is solid. At most 7 siblings
   /// to count on each of 12 levels.
   uint8_t material(const Vec3i& voxel) const;
