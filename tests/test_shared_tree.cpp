@@ -14,6 +14,7 @@
 #include "support/compact_damage.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
+#include "support/subtree_count.h"
 #include "thimble/render.h"
 #include "thimble/shared_tree.h"
 
@@ -94,60 +95,6 @@ void check_same_hits(const SharedTree& shared, const CompactTree& compact, std::
     }
   }
   CHECK_MESSAGE(first.empty(), first);
-}
-
-// Counts the different subtrees of a world of one material by hand: every block is written as a text. Fills
-// `texts` with those of level 2 and above that are neither empty nor full, by level.
-using Texts = std::array<std::map<std::string, int>, kMaxLevel + 1>;
-std::string text_of(const reference::BitGrid& grid, const reference::Voxel& corner, int level, Texts* texts) {
-  if (level == 0) {
-    return grid.test(corner) ? "#" : ".";
-  }
-  const int half = 1 << (level - 1);
-  std::string text;
-  for (int octant = 0; octant < 8; ++octant) {
-    text += text_of(grid,
-                    {corner[0] + ((octant & 1) != 0 ? half : 0), corner[1] + ((octant & 2) != 0 ? half : 0),
-                     corner[2] + ((octant & 4) != 0 ? half : 0)},
-                    level - 1, texts);
-  }
-  if (text.find('#') == std::string::npos) {
-    return ".";
-  }
-  if (text.find_first_not_of('#') == std::string::npos && text.size() == 8) {
-    return "#";
-  }
-  text = "(" + text + ")";
-  if (level >= 2) {
-    ++(*texts)[static_cast<std::size_t>(level)][text];
-  }
-  return text;
-}
-
-// Children of a text: blocks at the first depth of parentheses that are not empty.
-int children_of(const std::string& text) {
-  int depth = 0;
-  int children = 0;
-  for (const char c : text) {
-    depth -= c == ')' ? 1 : 0;
-    children += depth == 1 && (c == '(' || c == '#') ? 1 : 0;
-    depth += c == '(' ? 1 : 0;
-  }
-  return children;
-}
-
-std::size_t bytes_by_hand(const Texts& texts, int level) {
-  for (std::size_t link = 1;; ++link) {
-    std::size_t bytes = 64 + 4 * static_cast<std::size_t>(level - 1);
-    for (std::size_t each = 2; each <= kMaxLevel; ++each) {
-      for (const auto& [text, times] : texts[each]) {
-        bytes += 1 + static_cast<std::size_t>(children_of(text)) * (each == 2 ? 1 : link);
-      }
-    }
-    if (bytes <= std::size_t{1} << (8 * link)) {
-      return (bytes + 3) / 4 * 4;
-    }
-  }
 }
 
 // Solid blocks of several sizes, some materials, some of it coarsened.
@@ -247,14 +194,10 @@ TEST_CASE("shared tree: small worlds of one material -> as many nodes and bytes 
     CAPTURE(level);
     const SceneUnderTest scene(voxels.size, voxels.voxels);
     const OwnedShared shared(scene.compact());
-    Texts texts;
-    text_of(scene.reference(), {0, 0, 0}, level, &texts);
-    std::size_t nodes = 0;
-    for (const auto& each : texts) {
-      nodes += each.size();
-    }
-    CHECK(shared.tree.node_count() == nodes);
-    CHECK(shared.build.bytes == bytes_by_hand(texts, level));
+    // A full world has no node at all, which the count says as well.
+    const CountedTrees counted = count_trees(scene.reference(), level);
+    CHECK(shared.tree.node_count() == counted.shared_nodes);
+    CHECK(shared.build.bytes == counted.shared_bytes);
     CHECK(shared.tree.size_bytes() == shared.build.bytes);
   }
 }

@@ -213,18 +213,16 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
 }
 
 std::string bytes_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{
-      {"depth", "voxels", "dense", "pool", "compact", "DAG", "compact/voxel", "DAG/voxel"}};
+  std::vector<Cells> rows{{"depth", "voxels", "dense", "pool", "compact", "/voxel", "DAG", "/voxel"}};
   for (const DepthRow& row : study.depths) {
     Cells cells{std::to_string(row.depth), grouped(row.voxels)};
-    for (const StructureFigures& figures : row.structures) {
-      cells.push_back(grouped(figures.bytes));
-    }
-    for (const std::size_t i : {kCompact, kShared}) {
-      cells.push_back(
-          row.voxels == 0
-              ? "-"
-              : fixed(static_cast<double>(row.structures[i].bytes) / static_cast<double>(row.voxels), 2));
+    for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+      const std::uint64_t bytes = row.structures[i].bytes;
+      cells.push_back(grouped(bytes));
+      if (i == kCompact || i == kShared) {
+        cells.push_back(
+            row.voxels == 0 ? "-" : fixed(static_cast<double>(bytes) / static_cast<double>(row.voxels), 2));
+      }
     }
     rows.push_back(cells);
   }
@@ -250,24 +248,28 @@ std::string stored_table(const MemoryStudy& study) {
          columns_of(rows, 1);
 }
 
-std::string work_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{
-      {"depth", "dense", "pool", "compact", "DAG", "wrong px", "%", "silhouette px", "depth mean", "max"}};
+std::string building_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"depth", "dense", "pool", "compact", "DAG"}};
   for (const DepthRow& row : study.depths) {
     Cells cells{std::to_string(row.depth)};
     for (const StructureFigures& figures : row.structures) {
       cells.push_back(grouped(figures.build_bytes));
     }
-    const PictureError& error = row.error;
-    for (const std::string& cell :
-         {grouped(error.wrong_px), percent(error.wrong_px, study.pixels), grouped(error.silhouette_px),
-          fixed(error.depth_mean_voxels, 2), fixed(error.depth_max_voxels, 1)}) {
-      cells.push_back(cell);
-    }
     rows.push_back(cells);
   }
-  return "\nbytes in use while building, and the picture's error against the deepest (depth in its "
-         "voxels)\n" +
+  return "\nmost bytes in use while building\n" + columns_of(rows, 0);
+}
+
+std::string picture_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"depth", "wrong px", "%", "silhouette px", "%", "depth mean", "depth max"}};
+  for (const DepthRow& row : study.depths) {
+    const PictureError& error = row.error;
+    rows.push_back({std::to_string(row.depth), grouped(error.wrong_px), percent(error.wrong_px, study.pixels),
+                    grouped(error.silhouette_px), percent(error.silhouette_px, study.pixels),
+                    fixed(error.depth_mean_voxels, 2), fixed(error.depth_max_voxels, 1)});
+  }
+  return "\nthe picture against the deepest: pixels of another colour, pixels hit in one only, error of the\n"
+         "distance where both hit, in voxels of the deepest\n" +
          columns_of(rows, 0);
 }
 
@@ -332,8 +334,8 @@ std::string paper_table() {
 }
 
 std::string budget_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{{"budget", "dense", "pool", "compact", "DAG", "wrong %", "depth mean", "coarsened",
-                           "solid added", "wrong %", "depth mean"}};
+  std::vector<Cells> rows{{"budget", "dense", "pool", "compact", "DAG", "wrong %", "depth", "coarsened",
+                           "added", "wrong %", "depth"}};
   for (const BudgetRow& row : study.budgets) {
     Cells cells{grouped(row.budget_bytes)};
     for (const int depth : row.depth) {
@@ -351,8 +353,9 @@ std::string budget_table(const MemoryStudy& study) {
     cells.push_back(coarsened ? fixed(row.coarsened_error.depth_mean_voxels, 2) : "-");
     rows.push_back(cells);
   }
-  return "\nthe deepest depth that fits a budget, the compact one's picture, and the whole depth coarsened "
-         "to fit\n" +
+  return "\nthe deepest depth whose bytes fit a budget and the compact one's picture; the whole depth "
+         "coarsened\n"
+         "to fit, the voxels added and its picture (depth: mean error of distance)\n" +
          columns_of(rows, 0);
 }
 
@@ -403,7 +406,7 @@ std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) 
   Plot plot;
   plot.title = "Picture error against budget: " + printable(command.scene.arguments.scene);
   plot.x_label = "budget for the structure, bytes";
-  plot.y_label = "mean depth error, voxels of the deepest world";
+  plot.y_label = "mean depth error, voxels of the deepest (0 not shown)";
   Series compact{"compact tree, the depth that fits", false, {}};
   Series dag{"DAG, the depth that fits", false, {}};
   Series coarsened{"compact tree, coarsened to fit", false, {}};
@@ -471,7 +474,7 @@ void run(const MemoryCommand& command) {
   if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
     OutputFile output("-");
     output.write(printable(command.scene.arguments.scene) + "\n\n" + bytes_table(study) +
-                 stored_table(study) + work_table(study) +
+                 stored_table(study) + building_table(study) + picture_table(study) +
                  (command.study.frames > 0 ? frame_table(study) : "") + boards_table(study) + paper_table() +
                  (study.budgets.empty() ? "" : budget_table(study)));
     output.commit();
