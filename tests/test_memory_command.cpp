@@ -142,14 +142,15 @@ TEST_CASE("memory: small scenes -> every figure is what counting by hand gives")
       const int side = 1 << depth;
       const reference::BitGrid grid({side, side, side}, {parents.begin(), parents.end()});
       const CountedTrees counted = count_trees(grid, depth);
-      const std::size_t units = static_cast<std::size_t>(most[0] * most[1] * most[2]);
+      const std::size_t units = static_cast<std::size_t>(most[0]) * static_cast<std::size_t>(most[1]) *
+                                static_cast<std::size_t>(most[2]);
       CHECK(row["row"] == "depth");
       CHECK(row["depth"] == depth);
       CHECK(row["grid"] ==
             std::to_string(most[0]) + "x" + std::to_string(most[1]) + "x" + std::to_string(most[2]));
       CHECK(row["units"] == units);
       CHECK(row["voxels"] == parents.size());
-      const bool full = parents.size() == static_cast<std::size_t>(side * side * side);
+      const bool full = parents.size() == std::size_t{1} << (3 * depth);
       const std::size_t nodes = full ? 1 : counted.nodes;
       const std::size_t leaves = full ? 1 : counted.leaves;
       const std::size_t compact = full ? 64 : counted.compact_bytes();

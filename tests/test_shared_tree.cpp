@@ -314,6 +314,7 @@ TEST_CASE("shared tree: damaged bytes -> found, or traced within the bytes to an
     const OwnedShared shared(open_or_throw(bytes));
     const std::size_t size = shared.build.bytes;
     std::vector<Ray> rays;
+    rays.reserve(12);
     RayCases cases(91, {16, 16, 16});
     for (int i = 0; i < 12; ++i) {
       rays.push_back(to_core(cases.next().ray));

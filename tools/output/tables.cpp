@@ -12,7 +12,7 @@ std::string csv_cell(const JsonRow& value) {
   if (!value.is_string()) {
     return value.dump();
   }
-  const auto plain = value.get<std::string>();
+  auto plain = value.get<std::string>();
   if (plain.find_first_of(",\"\n") == std::string::npos) {
     return plain;
   }
