@@ -71,6 +71,8 @@ Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const Trac
                    PathCache* cache);
 Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
                    PathCache* cache);
+Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
+                   PathCache* cache);
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options,
                    PathCache* cache);
 

@@ -197,6 +197,10 @@ Status render_band(const Octree& tree, const Camera& camera, const Shading& shad
                    RenderCounts* counts, const TraceOptions& options) {
   return draw(tree, camera, shading, band, counts, AnyRay{options});
 }
+Status render_band(const SharedTree& tree, const Camera& camera, const Shading& shading, const Band& band,
+                   RenderCounts* counts, const TraceOptions& options) {
+  return draw(tree, camera, shading, band, counts, AnyRay{options});
+}
 Status render_band(const DenseGrid& grid, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts, const TraceOptions& options) {
   return draw(grid, camera, shading, band, counts, AnyRay{options});

@@ -81,6 +81,24 @@ struct PoolNodes {
   }
 };
 
+// References are looked up child by child, so a node's link is its own one. Materials are not at the nodes:
+// they are found from the voxel that was hit, once it is known.
+struct SharedNodes {
+  const SharedTree& tree;
+
+  int level() const { return tree.level(); }
+  bool empty() const { return tree.empty(); }
+  uint32_t root() const { return tree.root(); }
+  bool load(uint32_t index, NodeRef* node) const { return tree.load(index, &node->mask); }
+  void find_children(uint32_t index, NodeRef* node) const { node->link = index; }
+  uint32_t child(const NodeRef& node, unsigned octant) const {
+    return tree.child(node.link, node.mask, octant);
+  }
+  bool merged(uint32_t index) const { return (index & SharedTree::kMergedBit) != 0; }
+  uint8_t block_material(uint32_t) const { return tree.uniform_material(); }
+  uint8_t voxel_material(uint32_t, uint8_t, unsigned) const { return tree.uniform_material(); }
+};
+
 struct Request {
   uint32_t max_visits;
   bool any;  // only the kind is wanted
@@ -292,6 +310,15 @@ template <class Int, class Unsigned>
   return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request, cache);
 }
 template <class Int, class Unsigned>
+[[gnu::noinline]] Hit walk(const SharedTree& tree, const MirroredRay& ray, const Request& request,
+                           DirectionPath<Unsigned>* cache) {
+  Hit hit = walk_octree<SharedNodes, Int, Unsigned>(SharedNodes{tree}, ray, request, cache);
+  if (hit.kind == HitKind::kHit && !request.any && tree.many_materials()) {
+    hit.material = tree.material(hit.voxel);
+  }
+  return hit;
+}
+template <class Int, class Unsigned>
 Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request, DirectionPath<Unsigned>*) {
   return walk_grid<Int>(grid, ray, request);
 }
@@ -372,6 +399,14 @@ Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOpti
                    PathCache* cache) {
   return trace(tree, ray, options, false, hit, cache);
 }
+Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options) {
+  PathCache cache;
+  return trace(tree, ray, options, false, hit, &cache);
+}
+Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
+                   PathCache* cache) {
+  return trace(tree, ray, options, false, hit, cache);
+}
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options) {
   PathCache cache;
   return trace(grid, ray, options, false, hit, &cache);
@@ -403,6 +438,10 @@ Status any_hit(const CompactTree& tree, const Ray& ray, HitKind* kind, uint32_t*
   return trace_kind(tree, ray, options, kind, visits);
 }
 Status any_hit(const Octree& tree, const Ray& ray, HitKind* kind, uint32_t* visits,
+               const TraceOptions& options) {
+  return trace_kind(tree, ray, options, kind, visits);
+}
+Status any_hit(const SharedTree& tree, const Ray& ray, HitKind* kind, uint32_t* visits,
                const TraceOptions& options) {
   return trace_kind(tree, ray, options, kind, visits);
 }

@@ -60,6 +60,18 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
                 "--coarsen", "--name",  "--size",           "--projection", "--eye",    "--target", "--up",
                 "--fov",     "--span",  "--direction-bits", "--quiet",      "--stats",  ".oct",     ".h"}},
       {"boards", {"SCENE", "--depth", "--as-voxels", "--z-up", "--csv", "--json", "--quiet"}},
+      {"memory", {"SCENE",        "--depth",
+                  "--as-voxels",  "--z-up",
+                  "--memory",     "--budget-sweep",
+                  "--frames",     "--size",
+                  "--projection", "--eye",
+                  "--shade",      "--csv",
+                  "--json",       "--plot",
+                  "--quiet",      "wrong_px",
+                  "units",        "S_build_bytes",
+                  "S_frame_ms",   "S_visits_per_ray",
+                  "S_boards",     "depth_error_mean_voxels",
+                  "budget_bytes"}},
       {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine"}}};
   for (Help& help : all) {
     if (help.subcommand == "render" || help.subcommand == "trace" || help.subcommand == "info") {
@@ -110,7 +122,7 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
     check_refused({"render", "spheres", "-o", "picture.ppm", option, "1"}, 2,
                   {std::string("\"") + option + "\""});
   }
-  for (const char* subcommand : {"memory", "accuracy", "effects"}) {
+  for (const char* subcommand : {"accuracy", "effects"}) {
     check_refused({subcommand}, 2, {std::string("\"") + subcommand + "\""});
   }
 }

@@ -57,6 +57,8 @@ Status render_band(const CompactTree& tree, const Camera& camera, const Shading&
                    RenderCounts* counts = nullptr, const TraceOptions& options = {});
 Status render_band(const Octree& tree, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts = nullptr, const TraceOptions& options = {});
+Status render_band(const SharedTree& tree, const Camera& camera, const Shading& shading, const Band& band,
+                   RenderCounts* counts = nullptr, const TraceOptions& options = {});
 Status render_band(const DenseGrid& grid, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts = nullptr, const TraceOptions& options = {});
 

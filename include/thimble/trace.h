@@ -1,5 +1,5 @@
 /// @file trace.h
-/// The first solid voxel along a ray: exact, in integers, for each of the three structures.
+/// The first solid voxel along a ray: exact, in integers, for each of the four structures.
 ///
 /// Every function here gives the answer that ray.h defines, whatever structure and arithmetic width it uses.
 /// There is no epsilon, no division and no rounding in it.
@@ -16,6 +16,7 @@
 #include "thimble/dense_grid.h"
 #include "thimble/octree.h"
 #include "thimble/ray.h"
+#include "thimble/shared_tree.h"
 #include "thimble/status.h"
 
 namespace thimble {
@@ -46,6 +47,9 @@ bool accepts_32(const Ray& ray, int level);
 /// `hit->visits` nodes.
 Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options = {});
 Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options = {});
+/// The visits are those in the compact tree that it was made from. Materials, where there are several, take
+/// another way down to the voxel.
+Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options = {});
 /// In a dense grid a visit is a cell looked at.
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options = {});
 
@@ -58,6 +62,8 @@ Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_
 Status any_hit(const CompactTree& tree, const Ray& ray, HitKind* kind, uint32_t* visits = nullptr,
                const TraceOptions& options = {});
 Status any_hit(const Octree& tree, const Ray& ray, HitKind* kind, uint32_t* visits = nullptr,
+               const TraceOptions& options = {});
+Status any_hit(const SharedTree& tree, const Ray& ray, HitKind* kind, uint32_t* visits = nullptr,
                const TraceOptions& options = {});
 Status any_hit(const DenseGrid& grid, const Ray& ray, HitKind* kind, uint32_t* visits = nullptr,
                const TraceOptions& options = {});

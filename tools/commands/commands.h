@@ -16,6 +16,7 @@ void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_info(CLI::App& app);
 void add_boards(CLI::App& app);
+void add_memory(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
 
@@ -26,6 +27,7 @@ inline void add_all_commands(CLI::App& app) {
   add_bake(app);
   add_info(app);
   add_boards(app);
+  add_memory(app);
   add_sim(app);
   add_particles(app);
 }

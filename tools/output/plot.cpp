@@ -50,6 +50,14 @@ std::string line(double x1, double y1, double x2, double y2, const char* kind) {
          number(y2) + "\" class=\"" + kind + "\"/>\n";
 }
 
+std::string escaped(const std::string& plain) {
+  std::string text;
+  for (const char c : plain) {
+    text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  }
+  return text;
+}
+
 std::string label(double x, double y, const char* anchor, const std::string& text,
                   const std::string& more = {}) {
   return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
@@ -72,7 +80,26 @@ std::string log_plot_text(const Plot& plot) {
       first = false;
     }
   }
-  const auto x_at = [&](double x) { return kLeft + x_range.part(x) * (kWidth - kLeft - kRight); };
+  for (const Mark& mark : plot.marks) {
+    y_range.hold(mark.y, first);
+    first = false;
+  }
+  // On a linear axis: the whole numbers from the least to the greatest.
+  double least = 0;
+  double greatest = 1;
+  bool any = false;
+  for (const Series& series : plot.series) {
+    for (const auto& point : series.points) {
+      least = any ? std::min(least, point.first) : point.first;
+      greatest = any ? std::max(greatest, point.first) : point.first;
+      any = true;
+    }
+  }
+  greatest = std::max(greatest, least + 1);
+  const auto x_part = [&](double x) {
+    return plot.whole_x ? (x - least) / (greatest - least) : x_range.part(x);
+  };
+  const auto x_at = [&](double x) { return kLeft + x_part(x) * (kWidth - kLeft - kRight); };
   const auto y_at = [&](double y) {
     return kHeight - kBottom - y_range.part(y) * (kHeight - kTop - kBottom);
   };
@@ -81,11 +108,16 @@ std::string log_plot_text(const Plot& plot) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(kHeight) +
       "\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\n"
       ".ground { fill: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: "
-      "#222222 }\n@media (prefers-color-scheme: dark) { .ground { fill: #15181c } text { fill: #e6e6e6 "
+      "#222222 } .mark { stroke: #888888; stroke-dasharray: 2 3 }\n@media (prefers-color-scheme: dark) { "
+      ".ground { fill: #15181c } text { fill: #e6e6e6 "
       "} .grid { stroke: #3a3f45 } .axis { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" "
       "height=\"100%\" class=\"ground\"/>\n";
-  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
-  for (int decade = x_range.low; decade <= x_range.high; ++decade) {
+  svg += label(kWidth / 2, 24, "middle", escaped(plot.title), " font-size=\"15\"");
+  for (double whole = least; plot.whole_x && whole <= greatest; whole += 1) {
+    svg += line(x_at(whole), kTop, x_at(whole), kHeight - kBottom, "grid") +
+           label(x_at(whole), kHeight - kBottom + 18, "middle", std::to_string(std::lround(whole)));
+  }
+  for (int decade = x_range.low; !plot.whole_x && decade <= x_range.high; ++decade) {
     const double x = x_at(std::pow(10, decade));
     svg += line(x, kTop, x, kHeight - kBottom, "grid") +
            label(x, kHeight - kBottom + 18, "middle", decade_text(decade));
@@ -96,10 +128,16 @@ std::string log_plot_text(const Plot& plot) {
   }
   svg += line(kLeft, kTop, kLeft, kHeight - kBottom, "axis") +
          line(kLeft, kHeight - kBottom, kWidth - kRight, kHeight - kBottom, "axis");
-  svg += label((kLeft + kWidth - kRight) / 2, kHeight - kBottom + 40, "middle", plot.x_label);
+  svg += label((kLeft + kWidth - kRight) / 2, kHeight - kBottom + 40, "middle", escaped(plot.x_label));
   const double middle = (kTop + kHeight - kBottom) / 2;
-  svg += label(20, middle, "middle", plot.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
+  svg += label(20, middle, "middle", escaped(plot.y_label),
+               " transform=\"rotate(-90 20 " + number(middle) + ")\"");
 
+  for (const Mark& mark : plot.marks) {
+    const double y = y_at(mark.y);
+    svg += line(kLeft, y, kWidth - kRight, y, "mark") +
+           label(kLeft + 6, y - 4, "start", escaped(mark.name), " font-size=\"11\"");
+  }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
     const std::string color = kColors[i % kColors.size()];
@@ -118,7 +156,7 @@ std::string log_plot_text(const Plot& plot) {
     const double row = kHeight - kBottom + 62 + 18 * static_cast<double>(legend_row);
     svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
            "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
-    svg += label(column + 36, row, "start", series.name);
+    svg += label(column + 36, row, "start", escaped(series.name));
   }
   svg += "</svg>\n";
   return svg;

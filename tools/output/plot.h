@@ -16,14 +16,23 @@ struct Series {
   std::vector<std::pair<double, double>> points;  ///< x, y, both above 0
 };
 
+/// A level that the series are compared with: a thin line right across.
+struct Mark {
+  double y = 1;  ///< above 0
+  std::string name;
+};
+
 struct Plot {
   std::string title;
   std::string x_label;  ///< with unit
   std::string y_label;  ///< with unit
   std::vector<Series> series;
+  bool whole_x = false;  ///< x are whole numbers on a linear axis, a grid line each
+  std::vector<Mark> marks;
 };
 
-/// The plot as SVG text, with logarithmic axes. At most six series keep colours of their own.
+/// The plot as SVG text, with logarithmic axes but for `whole_x`. At most six series keep colours of their
+/// own.
 std::string log_plot_text(const Plot& plot);
 
 }  // namespace thimble::tools

@@ -1,0 +1,539 @@
+// thimble memory: what a scene takes at every depth in every structure, which boards hold it, and what a
+// smaller depth or budget does to its picture.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "instruments/memory_study.h"
+#include "output/output_file.h"
+#include "output/plot.h"
+#include "output/progress.h"
+#include "output/tables.h"
+#include "output/units.h"
+#include "scene/board_fit.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::size_t kDense = 0;
+constexpr std::size_t kPool = 1;
+constexpr std::size_t kCompact = 2;
+constexpr std::size_t kShared = 3;
+constexpr std::array<const char*, kMemoryStructures> kTitles{"dense", "pool", "compact", "DAG"};
+constexpr std::uint64_t kFourGiB = std::uint64_t{1} << 32;
+// The paper's picture, and as deep as it is wide.
+constexpr std::uint64_t kPaperLayer = 800 * 600;
+constexpr std::uint64_t kPaperDepth = 800;
+
+struct MemoryCommand {
+  SceneOptions scene;
+  StudyOptions study;
+  std::string csv_path;
+  std::string json_path;
+  std::string plot_path;
+};
+
+std::string fixed(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+// Bytes of a dense grid in which each unit of space holds that.
+std::uint64_t dense_bytes(std::uint64_t units, std::size_t stored) {
+  return (units + 7) / 8 + units * kStoredBytes[stored];
+}
+
+// The grid of most layers of 800 x 600 that 4 GiB hold.
+std::uint64_t layers_in_4_gib(std::size_t stored) {
+  // 480,000 is a multiple of 8, so each layer takes the same.
+  return kFourGiB / dense_bytes(kPaperLayer, stored);
+}
+
+// The deepest cube that 4 GiB hold.
+int deepest_cube(std::size_t stored) {
+  int depth = 0;
+  while (dense_bytes(std::uint64_t{1} << (3 * (depth + 1)), stored) <= kFourGiB) {
+    ++depth;
+  }
+  return depth;
+}
+
+bool fits_flash(const platform::BoardFacts& board, const MemoryStudy& study, std::uint64_t tree_bytes) {
+  return ((tree_bytes + 3) & ~std::uint64_t{3}) + study.around_tree_bytes <= scene_flash_bytes(board);
+}
+bool fits_ram(const platform::BoardFacts& board, std::uint64_t bytes) {
+  return drawing_ram_bytes(board) + bytes <= board.ram_bytes;
+}
+// Whether the board can draw it: trees that are only read lie in flash, what is built on the chip in RAM.
+bool fits_board(const platform::BoardFacts& board, const MemoryStudy& study, std::size_t structure,
+                const StructureFigures& figures) {
+  return structure == kCompact || structure == kShared ? fits_flash(board, study, figures.bytes)
+                                                       : fits_ram(board, figures.build_bytes);
+}
+
+std::string boards_that_fit(const MemoryStudy& study, const DepthRow& row, std::size_t structure) {
+  std::string names;
+  for (const platform::BoardFacts& board : platform::boards()) {
+    if (fits_board(board, study, structure, row.structures[structure])) {
+      names += (names.empty() ? "" : ";") + std::string(board.name);
+    }
+  }
+  return names;
+}
+
+std::string grid_text(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  return std::to_string(x) + "x" + std::to_string(y) + "x" + std::to_string(z);
+}
+
+JsonRow optional_of(const std::optional<double>& value) {
+  return value ? JsonRow(*value) : JsonRow(nullptr);
+}
+
+// --- rows for machines -------------------------------------------------------------------------------------
+
+JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
+  const auto name = [](std::size_t structure) {
+    return std::string(structure_name(static_cast<MemoryStructure>(structure)));
+  };
+  JsonRow object;
+  object["row"] = "depth";
+  object["depth"] = row.depth;
+  object["grid"] = grid_text(static_cast<std::uint64_t>(row.grid.x), static_cast<std::uint64_t>(row.grid.y),
+                             static_cast<std::uint64_t>(row.grid.z));
+  object["units"] = row.units;
+  object["stored"] = "scene";
+  object["voxels"] = row.voxels;
+  object["leaves"] = row.leaves;
+  object["pool_nodes"] = row.pool_nodes;
+  object["compact_nodes"] = row.compact_nodes;
+  object["dag_nodes"] = row.dag_nodes;
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    object[name(i) + "_bytes"] = row.structures[i].bytes;
+  }
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
+      const double bytes = static_cast<double>(row.structures[i].stored_bytes[stored]);
+      object[name(i) + "_" + kStoredNames[stored] + "_bytes_per_voxel"] =
+          row.voxels == 0 ? JsonRow(nullptr) : JsonRow(bytes / static_cast<double>(row.voxels));
+    }
+  }
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    object[name(i) + "_build_bytes"] = row.structures[i].build_bytes;
+  }
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    object[name(i) + "_frame_ms"] = optional_of(row.structures[i].frame_ms);
+  }
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    object[name(i) + "_visits_per_ray"] = optional_of(row.structures[i].visits_per_ray);
+  }
+  object["wrong_px"] = row.error.wrong_px;
+  object["silhouette_px"] = row.error.silhouette_px;
+  object["depth_error_mean_voxels"] = row.error.depth_mean_voxels;
+  object["depth_error_max_voxels"] = row.error.depth_max_voxels;
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    object[name(i) + "_boards"] = boards_that_fit(study, row, i);
+  }
+  return object;
+}
+
+// The paper's sum has no scene: of a row's columns only those of a dense grid.
+JsonRow paper_object(const JsonRow& like, std::uint64_t layers, std::size_t stored, const char* row) {
+  JsonRow object;
+  for (const auto& [name, value] : like.items()) {
+    object[name] = nullptr;
+  }
+  const std::uint64_t units = kPaperLayer * layers;
+  object["row"] = row;
+  object["grid"] = grid_text(800, 600, layers);
+  object["units"] = units;
+  object["stored"] = kStoredNames[stored];
+  object["dense_bytes"] = dense_bytes(units, stored);
+  return object;
+}
+
+JsonRow depth_objects(const MemoryStudy& study) {
+  JsonRow rows = JsonRow::array();
+  for (const DepthRow& row : study.depths) {
+    rows.push_back(depth_object(study, row));
+  }
+  const JsonRow like = rows.front();
+  for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
+    rows.push_back(paper_object(like, 1, stored, "paper"));
+    rows.push_back(paper_object(like, kPaperDepth, stored, "paper"));
+    rows.push_back(paper_object(like, layers_in_4_gib(stored), stored, "paper_4_gib"));
+  }
+  return rows;
+}
+
+JsonRow budget_objects(const MemoryStudy& study) {
+  JsonRow rows = JsonRow::array();
+  for (const BudgetRow& row : study.budgets) {
+    JsonRow object;
+    object["budget_bytes"] = row.budget_bytes;
+    for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+      object[std::string(structure_name(static_cast<MemoryStructure>(i))) + "_depth"] = row.depth[i];
+    }
+    const auto error = [&](const std::string& prefix, const PictureError* given) {
+      object[prefix + "_wrong_px"] = given == nullptr ? JsonRow(nullptr) : JsonRow(given->wrong_px);
+      object[prefix + "_silhouette_px"] = given == nullptr ? JsonRow(nullptr) : JsonRow(given->silhouette_px);
+      object[prefix + "_depth_error_mean_voxels"] =
+          given == nullptr ? JsonRow(nullptr) : JsonRow(given->depth_mean_voxels);
+      object[prefix + "_depth_error_max_voxels"] =
+          given == nullptr ? JsonRow(nullptr) : JsonRow(given->depth_max_voxels);
+    };
+    const auto error_at = [&](int depth) {
+      return depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
+    };
+    error("compact", error_at(row.depth[kCompact]));
+    error("dag", error_at(row.depth[kShared]));
+    object["coarsened_bytes"] = row.coarsened_bytes ? JsonRow(*row.coarsened_bytes) : JsonRow(nullptr);
+    object["coarsened_solid_added_voxels"] =
+        row.coarsened_bytes ? JsonRow(row.solid_added) : JsonRow(nullptr);
+    error("coarsened", row.coarsened_bytes ? &row.coarsened_error : nullptr);
+    rows.push_back(object);
+  }
+  return rows;
+}
+
+// --- tables for people
+// ---------------------------------------------------------------------------------------
+
+std::string dash_or(const std::optional<double>& value, int digits) {
+  return value ? fixed(*value, digits) : "-";
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
+}
+
+std::string bytes_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"depth", "voxels", "dense", "pool", "compact", "/voxel", "DAG", "/voxel"}};
+  for (const DepthRow& row : study.depths) {
+    Cells cells{std::to_string(row.depth), grouped(row.voxels)};
+    for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+      const std::uint64_t bytes = row.structures[i].bytes;
+      cells.push_back(grouped(bytes));
+      if (i == kCompact || i == kShared) {
+        cells.push_back(
+            row.voxels == 0 ? "-" : fixed(static_cast<double>(bytes) / static_cast<double>(row.voxels), 2));
+      }
+    }
+    rows.push_back(cells);
+  }
+  return "bytes\n" + columns_of(rows, 0);
+}
+
+std::string stored_table(const MemoryStudy& study) {
+  const DepthRow& own = study.depths.back();
+  if (own.voxels == 0) {
+    return {};
+  }
+  std::vector<Cells> rows{{"bytes a voxel", "bit alone", "+ color", "+ normal", "+ opacity"}};
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    Cells cells{kTitles[i]};
+    for (const std::uint64_t bytes : own.structures[i].stored_bytes) {
+      cells.push_back(fixed(static_cast<double>(bytes) / static_cast<double>(own.voxels), 2));
+    }
+    rows.push_back(cells);
+  }
+  return "\nwhat is stored at a place (depth " + std::to_string(own.depth) +
+         "): color 1 byte, normal 2, opacity 1, at every unit of a dense\ngrid, at every solid block and "
+         "voxel of a tree\n" +
+         columns_of(rows, 1);
+}
+
+std::string building_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"depth", "dense", "pool", "compact", "DAG"}};
+  for (const DepthRow& row : study.depths) {
+    Cells cells{std::to_string(row.depth)};
+    for (const StructureFigures& figures : row.structures) {
+      cells.push_back(grouped(figures.build_bytes));
+    }
+    rows.push_back(cells);
+  }
+  return "\nmost bytes in use while building\n" + columns_of(rows, 0);
+}
+
+std::string picture_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"depth", "wrong px", "%", "silhouette px", "%", "depth mean", "depth max"}};
+  for (const DepthRow& row : study.depths) {
+    const PictureError& error = row.error;
+    rows.push_back({std::to_string(row.depth), grouped(error.wrong_px), percent(error.wrong_px, study.pixels),
+                    grouped(error.silhouette_px), percent(error.silhouette_px, study.pixels),
+                    fixed(error.depth_mean_voxels, 2), fixed(error.depth_max_voxels, 1)});
+  }
+  return "\nthe picture against the deepest: pixels of another colour, pixels hit in one only, error of the\n"
+         "distance where both hit, in voxels of the deepest\n" +
+         columns_of(rows, 0);
+}
+
+std::string frame_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"depth", "dense ms", "pool ms", "compact ms", "DAG ms", "dense visits",
+                           "pool visits", "compact visits", "DAG visits"}};
+  for (const DepthRow& row : study.depths) {
+    Cells cells{std::to_string(row.depth)};
+    for (const StructureFigures& figures : row.structures) {
+      cells.push_back(dash_or(figures.frame_ms, 2));
+    }
+    for (const StructureFigures& figures : row.structures) {
+      cells.push_back(dash_or(figures.visits_per_ray, 2));
+    }
+    rows.push_back(cells);
+  }
+  return "\ntime of a frame (median, structures by turns) and nodes visited a ray (dense: cells)\n" +
+         columns_of(rows, 0);
+}
+
+std::string boards_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{
+      {"board", "flash for a scene", "compact", "DAG", "RAM beside drawing", "pool", "dense"}};
+  for (const platform::BoardFacts& board : platform::boards()) {
+    const auto deepest = [&](std::size_t structure) {
+      int depth = 0;
+      for (const DepthRow& row : study.depths) {
+        depth = fits_board(board, study, structure, row.structures[structure]) ? row.depth : depth;
+      }
+      return depth == 0 ? std::string("-") : std::to_string(depth);
+    };
+    const std::uint64_t drawing = drawing_ram_bytes(board);
+    rows.push_back({board.name, grouped(scene_flash_bytes(board)), deepest(kCompact), deepest(kShared),
+                    grouped(board.ram_bytes > drawing ? board.ram_bytes - drawing : 0), deepest(kPool),
+                    deepest(kDense)});
+  }
+  return "\nthe deepest depth that each board holds, of " + std::to_string(study.depths.back().depth) +
+         ": baked in flash, or built in RAM\n" + columns_of(rows, 1);
+}
+
+std::string paper_table() {
+  std::vector<Cells> rows{{"the paper's sum", "units", "bit alone", "+ color", "+ normal", "+ opacity"}};
+  const auto sizes = [](std::uint64_t units, Cells cells) {
+    for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
+      cells.push_back(grouped(dense_bytes(units, stored)));
+    }
+    return cells;
+  };
+  rows.push_back(sizes(kPaperLayer, {"800 x 600 x 1", grouped(kPaperLayer)}));
+  rows.push_back(sizes(kPaperLayer * kPaperDepth, {"800 x 600 x 800", grouped(kPaperLayer * kPaperDepth)}));
+  Cells layers{"layers of 800 x 600 in 4 GiB", ""};
+  Cells cubes{"deepest cube in 4 GiB", ""};
+  for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
+    layers.push_back(grouped(layers_in_4_gib(stored)));
+    cubes.push_back("depth " + std::to_string(deepest_cube(stored)));
+  }
+  rows.push_back(layers);
+  rows.push_back(cubes);
+  return "\n" + columns_of(rows, 1) +
+         "The paper ran out of 4 GB \"with just a few levels of depth\": ten layers of 800 x 600 are then " +
+         grouped(kFourGiB / (10 * kPaperLayer)) + "\nbytes a unit.\n";
+}
+
+std::string budget_table(const MemoryStudy& study) {
+  std::vector<Cells> rows{{"budget", "dense", "pool", "compact", "DAG", "wrong %", "depth", "coarsened",
+                           "added", "wrong %", "depth"}};
+  for (const BudgetRow& row : study.budgets) {
+    Cells cells{grouped(row.budget_bytes)};
+    for (const int depth : row.depth) {
+      cells.push_back(depth == 0 ? "-" : std::to_string(depth));
+    }
+    const int depth = row.depth[kCompact];
+    const PictureError* error =
+        depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
+    cells.push_back(error == nullptr ? "-" : percent(error->wrong_px, study.pixels));
+    cells.push_back(error == nullptr ? "-" : fixed(error->depth_mean_voxels, 2));
+    const bool coarsened = row.coarsened_bytes.has_value();
+    cells.push_back(coarsened ? grouped(*row.coarsened_bytes) : "-");
+    cells.push_back(coarsened ? grouped(row.solid_added) : "-");
+    cells.push_back(coarsened ? percent(row.coarsened_error.wrong_px, study.pixels) : "-");
+    cells.push_back(coarsened ? fixed(row.coarsened_error.depth_mean_voxels, 2) : "-");
+    rows.push_back(cells);
+  }
+  return "\nthe deepest depth whose bytes fit a budget and the compact one's picture; the whole depth "
+         "coarsened\n"
+         "to fit, the voxels added and its picture (depth: mean error of distance)\n" +
+         columns_of(rows, 0);
+}
+
+// --- plots
+// ---------------------------------------------------------------------------------------------------
+
+std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
+  Plot plot;
+  plot.title = "Memory against depth: " + printable(command.scene.arguments.scene);
+  plot.x_label = "depth (a world of 2^depth voxels a side)";
+  plot.y_label = "bytes";
+  plot.whole_x = true;
+  constexpr std::array<const char*, kMemoryStructures> kNames{
+      "dense grid, a bit a unit", "pool, 8 bytes a node", "compact tree, no pointers",
+      "DAG, equal subtrees once"};
+  double most = 0;
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    Series series{kNames[i], false, {}};
+    for (const DepthRow& row : study.depths) {
+      const double bytes = static_cast<double>(row.structures[i].bytes);
+      if (bytes > 0) {
+        series.points.emplace_back(row.depth, bytes);
+        most = std::max(most, bytes);
+      }
+    }
+    plot.series.push_back(series);
+  }
+  Series building{"compact tree, while building", true, {}};
+  Series building_dag{"DAG, while building", true, {}};
+  for (const DepthRow& row : study.depths) {
+    building.points.emplace_back(row.depth, static_cast<double>(row.structures[kCompact].build_bytes));
+    building_dag.points.emplace_back(row.depth, static_cast<double>(row.structures[kShared].build_bytes));
+  }
+  plot.series.push_back(building);
+  plot.series.push_back(building_dag);
+  for (const Mark& mark :
+       {Mark{16.0 * 1024, "16 KiB"}, Mark{256.0 * 1024, "256 KiB"},
+        Mark{static_cast<double>(kPaperLayer * kPaperDepth) / 8, "the paper's 800 x 600 x 800, a bit a unit"},
+        Mark{static_cast<double>(kFourGiB), "4 GiB"}}) {
+    if (mark.y <= 4 * most) {
+      plot.marks.push_back(mark);
+    }
+  }
+  return log_plot_text(plot);
+}
+
+std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) {
+  Plot plot;
+  plot.title = "Picture error against budget: " + printable(command.scene.arguments.scene);
+  plot.x_label = "budget for the structure, bytes";
+  plot.y_label = "mean depth error, voxels of the deepest (0 not shown)";
+  Series compact{"compact tree, the depth that fits", false, {}};
+  Series dag{"DAG, the depth that fits", false, {}};
+  Series coarsened{"compact tree, coarsened to fit", false, {}};
+  for (const BudgetRow& row : study.budgets) {
+    const double budget = static_cast<double>(row.budget_bytes);
+    const auto add = [&](Series* series, double error) {
+      if (error > 0 && budget > 0) {  // what is exact has no place on a logarithmic axis
+        series->points.emplace_back(budget, error);
+      }
+    };
+    for (const auto& [series, structure] : {std::pair{&compact, kCompact}, std::pair{&dag, kShared}}) {
+      const int depth = row.depth[structure];
+      if (depth != 0) {
+        add(series, study.depths[static_cast<std::size_t>(depth) - 1].error.depth_mean_voxels);
+      }
+    }
+    if (row.coarsened_bytes) {
+      add(&coarsened, row.coarsened_error.depth_mean_voxels);
+    }
+  }
+  plot.series = {compact, dag, coarsened};
+  return log_plot_text(plot);
+}
+
+void run(const MemoryCommand& command) {
+  const std::array<std::string, 3> outputs{command.csv_path, command.json_path, command.plot_path};
+  check_distinct(outputs, {&command.scene.arguments.scene, 1});
+  // Opened before the work begins, so that a folder that is not there is known at once.
+  std::array<std::unique_ptr<OutputFile>, 3> files;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    files[i] = outputs[i].empty() ? nullptr : std::make_unique<OutputFile>(outputs[i]);
+  }
+  const auto source = command.scene.open();
+  MemoryStudy study;
+  {
+    ProgressBar bar("measuring", command.scene.quiet);
+    study = study_memory(*source, command.scene.arguments.scene, command.study,
+                         [&](double done) { bar.update(done); });
+  }
+  const bool sweep = command.study.budget_sweep;
+  const JsonRow rows = sweep ? budget_objects(study) : depth_objects(study);
+  if (files[0] != nullptr) {
+    files[0]->write(csv_of(rows));
+  }
+  if (files[1] != nullptr) {
+    files[1]->write(rows.dump(2) + "\n");
+  }
+  if (files[2] != nullptr) {
+    files[2]->write(sweep ? budget_plot(command, study) : depth_plot(command, study));
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->flush();
+    }
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->commit();
+    }
+  }
+  if (!command.scene.quiet && !study.note.empty()) {
+    std::fprintf(stderr, "note: %s\n", study.note.c_str());
+  }
+  // Whoever has the data go to standard output wants no table between them.
+  if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
+    OutputFile output("-");
+    output.write(printable(command.scene.arguments.scene) + "\n\n" + bytes_table(study) +
+                 stored_table(study) + building_table(study) + picture_table(study) +
+                 (command.study.frames > 0 ? frame_table(study) : "") + boards_table(study) + paper_table() +
+                 (study.budgets.empty() ? "" : budget_table(study)));
+    output.commit();
+  }
+}
+
+}  // namespace
+
+void add_memory(CLI::App& app) {
+  auto command = std::make_shared<MemoryCommand>();
+  CLI::App* sub = app.add_subcommand(
+      "memory",
+      "Memory against depth: for every depth from 1 to the scene's own the bytes of a dense bit grid, the "
+      "mutable pool, the compact tree and the DAG (equal subtrees once), bytes while building, time of a "
+      "frame, nodes visited, the picture's error against the deepest, and the boards that hold it. A voxel "
+      "of a lower depth is the parent block of finer voxels, solid when anything in it is.");
+  command->scene.add_scene(*sub);
+  add_bytes(*sub, "--memory", &command->study.budget_bytes,
+            "also the deepest depth whose structure fits so many bytes, such as 65536, 64K or 2M (the "
+            "structure alone: renderer, band and building not counted)");
+  sub->add_flag("--budget-sweep", command->study.budget_sweep,
+                "the same for 1 KiB, 2 KiB, ... until the whole scene fits, and what coarsening to the "
+                "budget does to the picture; --csv, --json and --plot then hold this")
+      ->disable_flag_override();
+  add_whole_option(
+      *sub, "--frames", "N", 0, 99,
+      [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
+      "frames timed for each depth and structure; 0: none, no times and visits")
+      ->default_str("3");
+  command->study.view.add_to(*sub);
+  add_choice_option(
+      *sub, "--shade", {"depth", "normal", "color", "mono"},
+      [command](std::size_t index) {
+        constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
+                                    ShadeMode::kMono};
+        command->study.shade = kModes[index];
+      },
+      "what a wrong pixel is: of another brightness by distance, by the face's direction, of another "
+      "palette colour, or hit or not")
+      ->default_str("depth");
+  add_path_option(
+      *sub, "--csv", "FILE.csv", &command->csv_path,
+      "a line a depth: row (depth; or paper, paper_4_gib: the paper's sum, dense columns only), depth, grid "
+      "(of the dense grid), units (its cells), stored (what dense_bytes holds a unit; scene: a bit), voxels "
+      "(solid), leaves (solid blocks and voxels of a tree), pool_nodes, compact_nodes, dag_nodes; for S of "
+      "dense, pool, compact, dag: S_bytes, S_bit_bytes_per_voxel, S_color_bytes_per_voxel (palette index), "
+      "S_normal_bytes_per_voxel (and 2 bytes), S_opacity_bytes_per_voxel (and 1 byte), S_build_bytes (most "
+      "in use while building), S_frame_ms (median), S_visits_per_ray (nodes; dense: cells), S_boards "
+      "(compact, dag: in flash; dense, pool: in RAM); wrong_px (another colour than the deepest depth's), "
+      "silhouette_px (hit in one only), depth_error_mean_voxels, depth_error_max_voxels (in voxels of the "
+      "deepest). With --budget-sweep a line a budget: budget_bytes, S_depth (deepest that fits, 0: none), "
+      "compact_... and dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, "
+      "coarsened_... (errors of the compact tree of the whole depth, coarsened to fit)");
+  add_path_option(*sub, "--json", "FILE.json", &command->json_path,
+                  "the same, an array of objects; null where the CSV is empty");
+  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,
+                  "bytes against depth; with --budget-sweep mean depth error against budget");
+  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no notes")->disable_flag_override();
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools
