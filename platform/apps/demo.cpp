@@ -178,7 +178,8 @@ Status draw(const Demo& demo, const Band& band) {
                           : frame.begin(tree, demo->camera, demo->shading, screen.format, bytes);
   }
   if (status == Status::kOk) {
-    status = demo->builds ? frame.refine(demo->pool, visits) : frame.refine(tree, visits);
+    status = demo->builds ? frame.refine(demo->pool, pool_visits(visits, !demo->spheres.is_done()))
+                          : frame.refine(tree, visits);
   }
   if (status != Status::kOk) {
     return status;

@@ -44,22 +44,29 @@ inline bool can_hold() {
   return kCanHold && port::facts().visits_a_second != 0;
 }
 
-/// Node visits for a frame: what the rate leaves, less what clearing, flushing and the camera take, an eighth
-/// of a visit a pixel; a sixteenth of a visit a pixel at least, where the rate is beyond the board.
-inline uint32_t visits_a_frame(uint32_t fps) {
+inline uint32_t display_pixels() {
   const port::Display& screen = port::facts().display;
-  const auto pixels = static_cast<uint32_t>(screen.width_px) * static_cast<uint32_t>(screen.height_px);
-  const uint32_t visits = port::facts().visits_a_second / fps;
-  return visits > pixels / 8 + pixels / 16 ? visits - pixels / 8 : pixels / 16;
+  return static_cast<uint32_t>(screen.width_px) * static_cast<uint32_t>(screen.height_px);
 }
 
-/// The least thinning for which a picture by the brick map takes no more than `visits`: a pixel of it costs
-/// as much as one and a half (tests/boards/board.sh holds it to that).
+/// Node visits for a frame: what the rate leaves, less what clearing, flushing and the camera take, a
+/// sixteenth of a visit a pixel; where the rate is beyond the board, that much at least.
+inline uint32_t visits_a_frame(uint32_t fps) {
+  const uint32_t other = display_pixels() / 16;
+  const uint32_t visits = port::facts().visits_a_second / fps;
+  return visits > 2 * other ? visits - other : other;
+}
+/// The same for a tree in a pool, whose visits take more: children there are chains. While it is being built
+/// that takes time too, and the first rays, which read little, are mostly set-up.
+constexpr uint32_t pool_visits(uint32_t visits, bool is_growing) {
+  return is_growing ? visits / 3 : visits * 5 / 8;
+}
+
+/// The least thinning for which a picture by the brick map takes no longer than `visits`: a pixel of it, with
+/// the square that it becomes, takes as long as one and a quarter.
 inline int32_t thinning_for(uint32_t visits) {
-  const port::Display& screen = port::facts().display;
-  const auto pixels = static_cast<uint32_t>(screen.width_px) * static_cast<uint32_t>(screen.height_px);
   for (int32_t step = 1; step < kMostThinned; step *= 2) {
-    if (pixels / static_cast<uint32_t>(step * step) * 3 / 2 <= visits) {
+    if (display_pixels() / static_cast<uint32_t>(step * step) * 5 / 4 <= visits) {
       return step;
     }
   }
