@@ -3,12 +3,14 @@
 #   THIMBLE_APP            which applications, a list (demo): each becomes APP.elf, APP.bin and APP.hex
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
+#   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
 #   THIMBLE_HOLD           whether it then waits for a `q` over the UART, with the last frame on the display (false)
 #
 # Says flash, RAM and stack of each image after its link. platform/build.sh calls this.
 set(THIMBLE_APP demo CACHE STRING "Applications to build")
 set(THIMBLE_SCENE_HEADER "" CACHE FILEPATH "Baked scene")
 set(THIMBLE_FRAMES 0 CACHE STRING "Frames before the application ends; 0: for ever")
+set(THIMBLE_HOLD_FPS 0 CACHE STRING "Rate of frames to hold from the start; 0: none")
 set(THIMBLE_HOLD false CACHE STRING "Wait at the end: true or false")
 
 thimble_list_boards(THIMBLE_BOARDS)

@@ -58,7 +58,8 @@ struct Demo : Placed {
   bool holds = false;
   bool changed = true;  ///< something that is seen, since the last frame
   uint32_t fps = kHoldFps;
-  uint32_t inexact = 0;  ///< pixels of the last frame that may not be exact
+  uint32_t inexact = 0;            ///< pixels of the last frame that may not be exact
+  uint32_t most_instructions = 0;  ///< of a frame that was held, where they are counted
 
   // The scene that is built here.
   bool builds = false;
@@ -429,6 +430,7 @@ int demo() {
       build_more(demo);
       demo->changed = true;
     }
+    const uint32_t start = port::instructions();
     Status status = place_camera(demo);
     if (status != Status::kOk && !demo->builds) {
       // A camera that this display cannot have: round what is solid then.
@@ -439,6 +441,10 @@ int demo() {
     if (status == Status::kOk) {
       status = kCanHold && demo->holds ? draw_held(demo, &crc) : draw_frame(*demo, &crc);
     }
+    if (demo->holds && demo->changed) {
+      const uint32_t taken = port::instructions() - start;
+      demo->most_instructions = taken > demo->most_instructions ? taken : demo->most_instructions;
+    }
     demo->changed = demo->turns;
     if (status != Status::kOk) {
       return refuse(&demo->arena, status_text(status));
@@ -448,6 +454,11 @@ int demo() {
     }
     ++demo->frame;
     demo->turned += demo->turns ? 1 : 0;
+  }
+  if (demo->most_instructions != 0) {
+    put("most instructions of a held frame: ");
+    put_number(demo->most_instructions);
+    put("\n");
   }
   return 0;
 }

@@ -27,6 +27,7 @@ extern const Group kShadingGroup;      ///< colours
 extern const Group kRenderGroup;       ///< bands
 extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
 extern const Group kGoldenGroup;       ///< golden frames
+extern const Group kAnytimeGroup;      ///< golden frames, from coarse to fine
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
 inline constexpr const Group* kCoreGroups[] = {
@@ -34,7 +35,7 @@ inline constexpr const Group* kCoreGroups[] = {
     &kCompactTreeGroup, &kDenseGridGroup, &kCameraGroup, &kShadingGroup, &kRenderGroup,
 };
 /// What lies in flash (the application `golden`): baked scenes and the golden frames.
-inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup};
+inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kAnytimeGroup};
 
 }  // namespace thimble::portable
 

@@ -12,7 +12,8 @@ const Facts& facts() {
   static const Facts kFacts = {
       board::kFacts.name,        board::kFacts.ram_bytes,
       board::kFacts.flash_bytes, static_cast<uint32_t>(reinterpret_cast<uintptr_t>(thimble_stack_bytes)),
-      board::kFacts.display,     board::kFacts.visits_a_second};
+      board::kFacts.display,     board::kFacts.visits_a_second,
+      board::kFacts.hold_fps};
   return kFacts;
 }
 
