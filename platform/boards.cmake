@@ -16,12 +16,12 @@ endfunction()
 # Sets the BOARD_... variables of one board in the caller's scope, and refuses a file that leaves one out.
 macro(thimble_read_board name)
   foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
-      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT CATCHES)
+      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT VISITS_A_SECOND CATCHES)
     unset(BOARD_${fact})
   endforeach()
   include(${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
   foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
-      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT CATCHES)
+      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT VISITS_A_SECOND CATCHES)
     if(NOT DEFINED BOARD_${fact})
       message(FATAL_ERROR "platform/boards/${name}/board.cmake does not set BOARD_${fact}")
     endif()
@@ -56,7 +56,7 @@ function(thimble_write_board_table file)
     thimble_capitalise(screen ${BOARD_DISPLAY})
     string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, ${BOARD_FLASH_BYTES}, "
       "${BOARD_STACK_BYTES}, Screen::k${screen}, ${BOARD_WIDTH_PX}, ${BOARD_HEIGHT_PX}, "
-      "PixelFormat::k${format}, ${BOARD_BUTTONS}, {${app_stacks}}},\n")
+      "PixelFormat::k${format}, ${BOARD_BUTTONS}, {${app_stacks}}, ${BOARD_VISITS_A_SECOND}},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
 endfunction()

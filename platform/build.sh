@@ -2,7 +2,7 @@
 # Builds firmware for a board into build/firmware/BOARD and says what each image takes of it.
 #   build.sh BOARD|all APP[;APP...] [SCENE]     SCENE: what `thimble bake` takes, or a header (.h) that it made;
 #                                               without it there is no scene in the image
-# In the environment: FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then; THIMBLE_FIRMWARE is another place than build/firmware.
+# In the environment: FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then; HOLD_FPS=N holds a rate of frames; THIMBLE_FIRMWARE is another place than build/firmware.
 set -eu
 cd "$(dirname "$0")/.."
 if [ "$1" = all ]; then
@@ -30,5 +30,5 @@ esac
 export CCACHE_DISABLE=1
 cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH)/toolchain.cmake" -DTHIMBLE_BOARD="$board" \
   -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
-  -DTHIMBLE_HOLD="${HOLD:-false}" --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
+  -DTHIMBLE_HOLD="${HOLD:-false}" -DTHIMBLE_HOLD_FPS="${HOLD_FPS:-0}" --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
 cmake --build "$work" -- --quiet

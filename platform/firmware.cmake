@@ -3,12 +3,14 @@
 #   THIMBLE_APP            which applications, a list (demo): each becomes APP.elf, APP.bin and APP.hex
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
+#   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
 #   THIMBLE_HOLD           whether it then waits for a `q` over the UART, with the last frame on the display (false)
 #
 # Says flash, RAM and stack of each image after its link. platform/build.sh calls this.
 set(THIMBLE_APP demo CACHE STRING "Applications to build")
 set(THIMBLE_SCENE_HEADER "" CACHE FILEPATH "Baked scene")
 set(THIMBLE_FRAMES 0 CACHE STRING "Frames before the application ends; 0: for ever")
+set(THIMBLE_HOLD_FPS 0 CACHE STRING "Rate of frames to hold from the start; 0: none")
 set(THIMBLE_HOLD false CACHE STRING "Wait at the end: true or false")
 
 thimble_list_boards(THIMBLE_BOARDS)
@@ -73,6 +75,10 @@ target_compile_options(thimble_app_warnings INTERFACE -Wno-cast-align)
 # Cases without names and expressions where these would fill the flash: a failure then gives its file and line.
 if(BOARD_FLASH_BYTES LESS_EQUAL 131072)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_TERSE_CASES)
+endif()
+# Holding a rate of frames takes 10 KB of code and a whole frame of RAM.
+if(BOARD_VISITS_A_SECOND EQUAL 0)
+  target_compile_definitions(thimble_apps PRIVATE THIMBLE_NO_HOLD)
 endif()
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})

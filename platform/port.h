@@ -41,6 +41,11 @@ struct Facts {
   uint32_t flash_bytes;
   uint32_t stack_bytes;  ///< part of the RAM that is kept for the stack
   Display display;
+  /// Node visits that rays through a tree take in a second, everything about a ray included
+  /// (BOARD_VISITS_A_SECOND); 0 where an application is not to hold a rate of frames.
+  uint32_t visits_a_second = 0;
+  /// The rate that an application is to hold from its start; 0: it draws exact frames as fast as it can.
+  uint32_t hold_fps = 0;
 };
 const Facts& facts();
 

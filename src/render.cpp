@@ -2,85 +2,10 @@
 
 #include "band.h"
 #include "path_cache.h"
+#include "ray_range.h"
 
 namespace thimble {
 namespace {
-
-// What the rays of some pixels in a row have in common: for each axis the least and greatest origin and
-// direction. Both are affine in the pixel and rounded monotonically, so the two ends of the run are the
-// extremes.
-struct RayRange {
-  Vec3i origin_low;
-  Vec3i origin_high;
-  Vec3i direction_low;
-  Vec3i direction_high;
-
-  RayRange(const Ray& first, const Ray& last) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const int32_t a = first.origin[axis].raw;
-      const int32_t b = last.origin[axis].raw;
-      origin_low[axis] = a < b ? a : b;
-      origin_high[axis] = a < b ? b : a;
-      const int32_t c = first.direction[axis];
-      const int32_t d = last.direction[axis];
-      direction_low[axis] = c < d ? c : d;
-      direction_high[axis] = c < d ? d : c;
-    }
-  }
-};
-
-// Whether certainly none of the rays meets `box`: on some axis all start beyond it and none turns to it, or
-// the soonest that any enters it on one axis is later than the last that any leaves it on another. Times are
-// fractions of a distance (below 2^24) and a direction (below 2^20), compared by cross multiplication.
-bool all_miss(const RayRange& rays, const VoxelBox& box) {
-  if (box.empty()) {
-    return true;
-  }
-  int64_t enter_num = 0;
-  int64_t enter_den = 1;
-  int64_t leave_num = 1;
-  int64_t leave_den = 0;  // never
-  for (int axis = 0; axis < 3; ++axis) {
-    const int64_t low = int64_t{box.min[axis]} * Q8::kOne;
-    const int64_t high = int64_t{box.max[axis]} * Q8::kOne;
-    int64_t before = low - rays.origin_high[axis];   // at least so far to go, for rays that go up
-    int64_t through = high - rays.origin_low[axis];  // at most so far
-    int64_t slowest = rays.direction_low[axis];
-    int64_t fastest = rays.direction_high[axis];
-    if (fastest < 0) {  // all go down: the same, mirrored
-      before = rays.origin_low[axis] - high;
-      through = rays.origin_high[axis] - low;
-      slowest = -int64_t{rays.direction_high[axis]};
-      fastest = -int64_t{rays.direction_low[axis]};
-    } else if (slowest <= 0) {  // both ways, or along: nothing is known of leaving
-      const int64_t above = rays.origin_low[axis] - high;
-      if (above > before) {
-        before = above;
-        fastest = -slowest;
-      }
-      slowest = 0;
-    }
-    if (before > 0) {
-      if (fastest == 0) {
-        return true;
-      }
-      if (before * enter_den > enter_num * fastest) {
-        enter_num = before;
-        enter_den = fastest;
-      }
-    }
-    if (slowest > 0) {
-      if (through <= 0) {
-        return true;
-      }
-      if (through * leave_den < leave_num * slowest) {
-        leave_num = through;
-        leave_den = slowest;
-      }
-    }
-  }
-  return enter_num * leave_den >= leave_num * enter_den;
-}
 
 // Pixels of a row that are tested together.
 constexpr int32_t kRunPx = 32;

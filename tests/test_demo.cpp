@@ -65,13 +65,15 @@ struct Run {
 
 /// Runs the demonstration for that many frames; `keys` come over the UART before the frame they stand for.
 Run run_demo(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames,
-             const std::map<std::uint32_t, std::string>& keys = {}, bool connected = false) {
+             const std::map<std::uint32_t, std::string>& keys = {}, bool connected = false,
+             std::uint32_t hold_fps = 0) {
   Run run;
   host::SimulationOptions options;
   options.board = &board;
   options.connected = connected;
   options.scene = scene;
   options.application = apps::demo;
+  options.hold_fps = hold_fps;
   host::Simulation simulation(options);
   for (;;) {
     const host::Moment moment = simulation.wait(60000);
@@ -410,4 +412,89 @@ TEST_CASE(
   CHECK(frames.size() == 4);
   CHECK(frames[0] == golden::kDemoFrameCrc32[0]);
   CHECK(building().out == run.out);
+}
+
+TEST_CASE(
+    "demo: a rate is held with a brick map -> every 2nd pixel exact as squares; standing still -> all are") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
+  tools::BakingOptions options;
+  options.brick_map = true;
+  options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+  const tools::Baked baked = tools::bake_scene(*source, options);
+  const Run exact = run_demo(board, bytes_of(baked.bytes), 6, {}, true);
+  CHECK(exact.out.find(" map 0 ") == std::string::npos);
+  // Stopped before frame 3 is drawn, held from the start.
+  const Run held = run_demo(board, bytes_of(baked.bytes), 6, {{3, "t"}, {5, "h"}}, true, 30);
+  CHECK(held.fault.empty());
+  CHECK(held.out.find("holding 30 frames a second") != std::string::npos);
+  REQUIRE(held.pictures.size() == exact.pictures.size());
+  const auto level = [](const host::PackedPicture& picture, int x, int y) {
+    const std::uint8_t pair = picture.bytes[static_cast<std::size_t>(64 * y + x / 2)];
+    return x % 2 == 0 ? pair >> 4 : pair & 15;
+  };
+  for (std::size_t frame = 0; frame < 4; ++frame) {
+    int others = 0;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        others += level(held.pictures[frame], x, y) == level(exact.pictures[frame], x & ~1, y & ~1) ? 0 : 1;
+      }
+    }
+    CAPTURE(frame);
+    CHECK(others == 0);
+  }
+  // It stands where it stood when the frame before was drawn.
+  CHECK(held.pictures[4].bytes == exact.pictures[3].bytes);
+  CHECK(held.pictures[5].bytes == exact.pictures[3].bytes);
+}
+
+TEST_CASE("demo: a rate is held with a tree alone -> refined by what there is time for, exact in the end") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const ConstBytes scene = bytes_of(demo_scene().bytes);
+  const Run exact = run_demo(board, scene, 2);
+  // Too small for a map in RAM beside it, so that rays go through the tree.
+  platform::BoardFacts small = board;
+  small.ram_bytes = 16384;
+  const Run run = run_demo(small, scene, 90, {{1, "ht"}});
+  CHECK(run.fault.empty());
+  CHECK(run.out.find(" map 0 ") != std::string::npos);
+  std::uint32_t before = 128 * 64;
+  int frames = 0;
+  for (std::size_t at = 0; (at = run.out.find(" inexact ", at)) != std::string::npos; ++at) {
+    const auto inexact = static_cast<std::uint32_t>(std::stoul(run.out.substr(at + 9)));
+    CHECK((inexact < before || inexact == 0));
+    before = inexact;
+    ++frames;
+  }
+  CHECK(frames == 89);
+  CHECK(before == 0);
+  CHECK(run.last.bytes == exact.pictures[1].bytes);
+}
+
+TEST_CASE(
+    "demo: the scene built on the board while a rate is held -> the picture of the pool, exact at rest") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const ConstBytes scene = bytes_of(demo_scene().bytes);
+  // The same pool: what holding takes is taken before it is begun in both.
+  const std::uint32_t frames = 260;
+  const Run held = run_demo(board, scene, frames, {{0, "hb"}, {200, "t"}});
+  const Run exact = run_demo(board, scene, frames, {{0, "hbh"}, {200, "t"}});
+  CHECK(held.fault.empty());
+  const std::size_t last = held.out.rfind("build ");
+  REQUIRE(last != std::string::npos);
+  CHECK(held.out.find(" done inexact 0", last) != std::string::npos);
+  CHECK(held.last.bytes == exact.last.bytes);
+}
+
+TEST_CASE("demo: a board that holds no rate, or has no room for a frame -> it says so and goes on") {
+  const ConstBytes scene = bytes_of(demo_scene().bytes);
+  const Run none = run_demo(*platform::find_board("stm32vldiscovery"), scene, 2, {{0, "h"}});
+  CHECK(none.status == 0);
+  CHECK(none.out.find("this board holds no rate of frames") != std::string::npos);
+  platform::BoardFacts small = *platform::find_board("lm3s6965evb");
+  small.ram_bytes = 8192;
+  const Run full = run_demo(small, scene, 2, {{0, "h"}});
+  CHECK(full.status == 0);
+  CHECK(full.out.find("no room for a whole frame") != std::string::npos);
+  CHECK(full.last.bytes == none.last.bytes);
 }

@@ -186,7 +186,7 @@ TEST_CASE(
     int (*application)();
     std::vector<std::string> says;
   };
-  const std::vector<std::uint8_t> scene(100, 7);
+  const std::vector<std::uint8_t> scene(104, 7);
   const std::vector<Case> cases{
       {"a byte past the RAM",
        [] {
@@ -224,9 +224,9 @@ TEST_CASE(
       {"a read past the scene",
        [] {
          const volatile std::uint8_t* const flash = port::scene().data;
-         return static_cast<int>(flash[100]);
+         return static_cast<int>(flash[104]);
        },
-       {"read outside the scene", "byte 100 of 100"}},
+       {"read outside the scene", "byte 104 of 104"}},
       {"a stack without end",
        [] {
          struct Recursion {

@@ -139,6 +139,20 @@ class Camera {
     return ray_of(varying);
   }
 
+  /// A camera of every `step`-th pixel of this one, from the top left, `step` at least 1: the ray of its
+  /// pixel (i, j) is this one's of (i * step, j * step), integer for integer. For a coarse picture some of
+  /// whose pixels are the fine one's.
+  Camera thinned(int32_t step) const {
+    Camera camera = *this;
+    camera.width_px_ = (width_px_ + step - 1) / step;
+    camera.height_px_ = (height_px_ + step - 1) / step;
+    for (int axis = 0; axis < 3; ++axis) {
+      camera.affine_.step_x[axis] *= step;
+      camera.affine_.step_y[axis] *= step;
+    }
+    return camera;
+  }
+
   bool is_perspective() const { return is_perspective_; }
   int32_t width_px() const { return width_px_; }
   int32_t height_px() const { return height_px_; }

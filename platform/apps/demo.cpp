@@ -1,14 +1,18 @@
 // The demonstration: the baked scene turns; a hand on the buttons steers; bytes over the UART ask for more.
 //
-//   p   the picture on the display, as P5 with 8 bits a pixel
+//   p   the picture on the display, as P5 with 8 bits a pixel; the exact one while a rate is held
 //   b   builds a scene of spheres in a pool in RAM, voxel by voxel; when the pool is full it coarsens
 //   s   back to the baked scene
+//   h   holds a rate of frames (held_frame.h), or draws exact ones as fast as it can
+//   t   stops turning, or turns again
 //   c   CRC-32 of every frame on or off; on from the start where there is no display
 //   q   ends, with status 0
 //
-// A frame is drawn in bands of a few rows. No picture is held in RAM, and nothing but the arena is used.
+// A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
+// is held, and nothing but the arena is used.
 #include "apps/apps.h"
 #include "apps/demo_view.h"
+#include "apps/held_frame.h"
 #include "apps/place.h"
 #include "apps/shown_scene.h"
 #include "apps/spheres.h"
@@ -44,8 +48,18 @@ struct Demo : Placed {
   Shading shading;
   Bytes band;
   int32_t band_rows = 0;
-  uint32_t frame = 0;  ///< of the scene that is shown
+  uint32_t frame = 0;   ///< of the scene that is shown
+  uint32_t turned = 0;  ///< frames in which the camera has turned
+  bool turns = true;
   bool tells_crc = false;
+
+  // Holding a rate of frames.
+  HeldFrame* held = nullptr;  ///< once it was asked for
+  bool holds = false;
+  bool changed = true;  ///< something that is seen, since the last frame
+  uint32_t fps = kHoldFps;
+  uint32_t inexact = 0;            ///< pixels of the last frame that may not be exact
+  uint32_t most_instructions = 0;  ///< of a frame that was held, where they are counted
 
   // The scene that is built here.
   bool builds = false;
@@ -115,6 +129,83 @@ Status draw(const Demo& demo, const Band& band) {
   return Status::kOk;
 }
 
+/// The picture of the thinned camera by the brick map, each pixel as a square.
+[[gnu::noinline]] Status draw_thinned(Demo* demo, int32_t step, uint32_t* crc) {
+  const port::Display& screen = display();
+  HeldFrame& held = *demo->held;
+  held.thin_camera = demo->camera.thinned(step);
+  const int32_t width = held.thin_camera.width_px();
+  const int32_t height = held.thin_camera.height_px();
+  const PixelFormat format = thin_format(screen.format);
+  demo->inexact = static_cast<uint32_t>(screen.width_px * screen.height_px - width * height);
+  *crc = 0;
+  for (int32_t thin_y = 0; thin_y < height; thin_y += kBrickTilePx) {
+    const int32_t rows = height - thin_y < kBrickTilePx ? height - thin_y : kBrickTilePx;
+    const Band thin{held.thin_bytes, format, 0, thin_y, rows};
+    const Status status =
+        render_band(demo->shown.scene.tree(), demo->shown.map, held.thin_camera, demo->shading, thin);
+    if (status != Status::kOk) {
+      return status;
+    }
+    const int32_t last = (thin_y + rows) * step;
+    const int32_t end = last < screen.height_px ? last : screen.height_px;
+    for (int32_t y = thin_y * step; y < end; y += demo->band_rows) {
+      Band band{demo->band, screen.format, 0, y, end - y < demo->band_rows ? end - y : demo->band_rows};
+      band.pixels = demo->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+      const size_t row = row_bytes(screen.format, screen.width_px);
+      for (int32_t i = 0; i < band.rows; ++i) {
+        const auto from = static_cast<size_t>((y + i) / step - thin_y);
+        widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i,
+                  band.pixels.data + static_cast<size_t>(i) * row);
+      }
+      port::flush(band);
+      if (demo->tells_crc) {
+        *crc = crc32(band.pixels, *crc);
+      }
+    }
+  }
+  return Status::kOk;
+}
+
+/// More of an any-time frame: begun anew when something has changed.
+[[gnu::noinline]] Status draw_anytime(Demo* demo, uint32_t visits, uint32_t* crc) {
+  const port::Display& screen = display();
+  AnytimeFrame& frame = demo->held->frame;
+  const Bytes bytes = demo->held->frame_bytes;
+  const CompactTree& tree = demo->shown.scene.tree();
+  Status status = Status::kOk;
+  if (demo->changed) {
+    status = demo->builds ? frame.begin(demo->pool, demo->camera, demo->shading, screen.format, bytes)
+                          : frame.begin(tree, demo->camera, demo->shading, screen.format, bytes);
+  }
+  if (status == Status::kOk) {
+    status = demo->builds ? frame.refine(demo->pool, pool_visits(visits, !demo->spheres.is_done()))
+                          : frame.refine(tree, visits);
+  }
+  if (status != Status::kOk) {
+    return status;
+  }
+  demo->inexact = frame.inexact();
+  const Band all = frame.band(0, screen.height_px);
+  port::flush(all);
+  *crc = demo->tells_crc ? crc32(all.pixels) : 0;
+  return Status::kOk;
+}
+
+/// Draws and flushes what there is time for.
+[[gnu::noinline]] Status draw_held(Demo* demo, uint32_t* crc) {
+  const uint32_t visits = visits_a_frame(demo->fps);
+  if (demo->builds || !demo->shown.has_map) {
+    return draw_anytime(demo, visits, crc);
+  }
+  const int32_t step = demo->changed ? thinning_for(visits) : 1;
+  if (step > 1) {
+    return draw_thinned(demo, step, crc);
+  }
+  demo->inexact = 0;
+  return draw_frame(*demo, crc);
+}
+
 /// The grey of a pixel as the display shows it, 0..255.
 uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   const auto column = static_cast<uint32_t>(x);
@@ -157,7 +248,9 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 
 [[gnu::noinline]] void show_baked(Demo* demo) {
   demo->builds = false;
+  demo->changed = true;
   demo->frame = 0;
+  demo->turned = 0;
   demo->orbit = orbit_of(demo->shown.scene);
   demo->shading = demo_shading(demo->shown.scene.palette());
 }
@@ -171,7 +264,9 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   }
   demo->builds = true;
   demo->is_full = false;
+  demo->changed = true;
   demo->frame = 0;
+  demo->turned = 0;
   demo->spheres.begin(level);
   const int32_t side = int32_t{1} << level;
   demo->orbit = orbit_of(VoxelBox{{0, 0, 0}, {side, side, side}});
@@ -203,9 +298,37 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   }
 }
 
+/// Begins to hold a rate, or leaves it.
+[[gnu::noinline]] void switch_hold(Demo* demo) {
+  demo->changed = true;
+  if (demo->holds || !can_hold()) {
+    demo->holds = false;
+    put(can_hold() ? "exact frames\n" : "this board holds no rate of frames\n");
+    return;
+  }
+  if (demo->held == nullptr) {
+    demo->held = place_held_frame(&demo->arena);
+    if (demo->held == nullptr) {
+      put("no room for a whole frame to hold a rate of frames\n");
+      return;
+    }
+    if (demo->builds) {
+      begin_build(demo);  // its pool lay there
+    }
+  }
+  demo->holds = true;
+  put("holding ");
+  put_number(demo->fps);
+  put(" frames a second: ");
+  put_number(visits_a_frame(demo->fps));
+  put(" visits a frame\n");
+}
+
 /// Whether to go on.
 [[gnu::noinline]] bool obey(Demo* demo) {
-  steer(port::buttons(), &demo->steering);
+  const uint32_t buttons = port::buttons();
+  demo->changed = demo->changed || buttons != 0;
+  steer(buttons, &demo->steering);
   for (int i = 0; i < kKeysAFrame; ++i) {
     switch (port::read()) {
       case -1:
@@ -223,6 +346,12 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
       case 's':
         show_baked(demo);
         break;
+      case 'h':
+        switch_hold(demo);
+        break;
+      case 't':
+        demo->turns = !demo->turns;
+        break;
       case 'c':
         demo->tells_crc = !demo->tells_crc;
         break;
@@ -236,10 +365,10 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 [[gnu::noinline]] Status place_camera(Demo* demo) {
   const port::Display& screen = display();
   if (demo->builds) {
-    return view_at(demo->orbit, demo->pool, demo->frame, demo->steering, screen.width_px, screen.height_px,
+    return view_at(demo->orbit, demo->pool, demo->turned, demo->steering, screen.width_px, screen.height_px,
                    &demo->camera);
   }
-  return view_at(demo->orbit, demo->shown.scene.tree(), demo->frame, demo->steering, screen.width_px,
+  return view_at(demo->orbit, demo->shown.scene.tree(), demo->turned, demo->steering, screen.width_px,
                  screen.height_px, &demo->camera);
 }
 
@@ -256,6 +385,10 @@ void tell_frame(const Demo& demo, uint32_t crc) {
     put(" added ");
     put_number(demo.pool.solid_added());
     put(demo.spheres.is_done() ? " done" : "");
+  }
+  if (demo.holds) {
+    put(" inexact ");
+    put_number(demo.inexact);
   }
   put("\n");
 }
@@ -288,10 +421,16 @@ int demo() {
     return refuse(&demo->arena, "the arena does not hold a row of the picture");
   }
   show_baked(demo);
+  if (port::facts().hold_fps != 0) {
+    demo->fps = port::facts().hold_fps;
+    switch_hold(demo);
+  }
   for (uint32_t drawn = 0; port::running(drawn) && obey(demo); ++drawn) {
-    if (demo->builds) {
+    if (demo->builds && !demo->spheres.is_done()) {
       build_more(demo);
+      demo->changed = true;
     }
+    const uint32_t start = port::instructions();
     Status status = place_camera(demo);
     if (status != Status::kOk && !demo->builds) {
       // A camera that this display cannot have: round what is solid then.
@@ -300,8 +439,13 @@ int demo() {
     }
     uint32_t crc = 0;
     if (status == Status::kOk) {
-      status = draw_frame(*demo, &crc);
+      status = kCanHold && demo->holds ? draw_held(demo, &crc) : draw_frame(*demo, &crc);
     }
+    if (demo->holds && demo->changed) {
+      const uint32_t taken = port::instructions() - start;
+      demo->most_instructions = taken > demo->most_instructions ? taken : demo->most_instructions;
+    }
+    demo->changed = demo->turns;
     if (status != Status::kOk) {
       return refuse(&demo->arena, status_text(status));
     }
@@ -309,6 +453,12 @@ int demo() {
       tell_frame(*demo, crc);
     }
     ++demo->frame;
+    demo->turned += demo->turns ? 1 : 0;
+  }
+  if (demo->most_instructions != 0) {
+    put("most instructions of a held frame: ");
+    put_number(demo->most_instructions);
+    put("\n");
   }
   return 0;
 }

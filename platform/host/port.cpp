@@ -24,7 +24,7 @@ Bytes arena() {
 }
 
 ConstBytes scene() {
-  return here().flash.bytes();
+  return here().scene;
 }
 
 void flush(const Band& band) {

@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::array kFaults{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr std::uint8_t kRamPaint = port::kStackPaint;
+constexpr std::size_t kFlashAlignment = 8;  // without it a baked brick map is not taken
 constexpr std::size_t kSignalStackBytes = 65536;
 
 // The actions of kFaults before the simulation; one at a time has them.
@@ -198,9 +199,12 @@ Simulation::State::State(const SimulationOptions& options)
             options.board->ram_bytes,
             options.board->flash_bytes,
             options.board->stack_bytes,
-            {options.board->width_px, options.board->height_px, options.board->format, options.connected}},
+            {options.board->width_px, options.board->height_px, options.board->format, options.connected},
+            options.board->visits_a_second,
+            options.hold_fps},
       arena(options.board->ram_bytes - options.board->stack_bytes, kRamPaint),
-      flash(options.scene.size, 0),
+      flash((options.scene.size + kFlashAlignment - 1) / kFlashAlignment * kFlashAlignment, 0),
+      scene(flash.bytes().subspan(0, options.scene.size)),
       stack(host_stack_bytes(options.board->stack_bytes), port::kStackPaint),
       signal_stack(kSignalStackBytes, 0),
       display(options.board->width_px, options.board->height_px, options.board->format) {
@@ -320,7 +324,7 @@ MemoryUse Simulation::use() const {
   MemoryUse use;
   use.ram_bytes = static_cast<std::uint32_t>(last - arena.begin());
   use.ram_limit_bytes = static_cast<std::uint32_t>(arena.size);
-  use.flash_bytes = static_cast<std::uint32_t>(state_->flash.bytes().size);
+  use.flash_bytes = static_cast<std::uint32_t>(state_->scene.size);
   use.flash_limit_bytes = state_->facts.flash_bytes;
   use.stack_bytes = used_stack(state_->stack.bytes().begin(), state_->stack_top);
   use.stack_limit_bytes = state_->facts.stack_bytes;

@@ -42,6 +42,8 @@ struct SimulationOptions {
   /// The baked scene in flash; copied.
   ConstBytes scene;
   int (*application)() = nullptr;
+  /// port::Facts::hold_fps.
+  std::uint32_t hold_fps = 0;
 };
 
 enum class Moment : std::uint8_t {

@@ -45,6 +45,7 @@ struct Simulation::State {
   port::Facts facts;
   GuardedBytes arena;
   GuardedBytes flash;
+  ConstBytes scene;  ///< in it; aligned as on the board, so up to 7 bytes lie behind it
   GuardedBytes stack;
   GuardedBytes signal_stack;
   StrictDisplay display;

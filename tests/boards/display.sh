@@ -18,6 +18,7 @@ trap '[ -z "$machine" ] || kill $machine 2>/dev/null || true; rm -rf "$folder"' 
 # start APP KEYS: the emulator in the background, its UART in $work/screen.log, keys sent again and again for 3 s.
 start() {
   # The shell that sends keys ends with the emulator; `exec` makes the process that is killed the emulator itself.
+  rm -f "$folder/keys.$1"
   mkfifo "$folder/keys.$1"
   sh platform/emulate.sh "$board" "$1" -qmp "unix:$socket,server=on,wait=off" <"$folder/keys.$1" >"$work/screen.log" 2>/dev/null &
   machine=$!
@@ -85,6 +86,33 @@ if [ "$(fact BUTTONS)" = 5 ]; then
     echo "buttons:$arrived"
   else
     echo "FAILED: of five buttons these arrived:$arrived"
+    failed=1
+  fi
+  stop
+fi
+# A held rate: the simulator's pictures, and no more instructions than the clock has cycles for.
+fps=30
+if [ "$(fact VISITS_A_SECOND)" != 0 ]; then
+  HOLD_FPS=$fps HOLD=true FRAMES=20 sh platform/build.sh "$board" demo "$scene" >"$work/display.build.log" 2>&1 || {
+    tail -n 5 "$work/display.build.log" >&2
+    exit 1
+  }
+  start demo ""
+  if wait_for '^holding$'; then
+    "$tool" "$socket" shot "$work/held.ppm" $scale
+    most=$(sed -n 's/^most instructions of a held frame: \([0-9]*\).*/\1/p' "$work/screen.log")
+    if ! "$thimble" sim "$scene" --board "$board" --display none --hold $fps --frames 20 --check "$work/held.ppm" --quiet \
+      >"$work/held.check.log" 2>&1; then
+      echo "FAILED: held at $fps frames a second, the display does not show the simulator's picture ($(tail -n 1 "$work/held.check.log"))"
+      failed=1
+    elif [ "$board" = lm3s6965evb ] && [ "$((${most:-999999999} * fps))" -gt "$(($(fact CLOCK_MHZ) * 1000000))" ]; then
+      echo "FAILED: $fps frames a second are too many: a frame takes ${most:-unknown} instructions"
+      failed=1
+    else
+      echo "held at $fps frames a second the display shows the simulator's picture; a frame takes at most ${most:-unknown} instructions"
+    fi
+  else
+    echo "FAILED: did not draw 20 held frames in 30 s"
     failed=1
   fi
   stop

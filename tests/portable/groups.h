@@ -27,6 +27,7 @@ extern const Group kShadingGroup;      ///< colours
 extern const Group kRenderGroup;       ///< bands
 extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
 extern const Group kGoldenGroup;       ///< golden frames
+extern const Group kAnytimeGroup;      ///< golden frames, from coarse to fine
 extern const Group kWaterGroup;        ///< moving water and its rays
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
@@ -36,7 +37,7 @@ inline constexpr const Group* kCoreGroups[] = {
 };
 /// What lies in flash (the application `golden`): baked scenes and the golden frames; and water, for which
 /// `selftest` has no room left on the smallest chip.
-inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kWaterGroup};
+inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kAnytimeGroup, &kWaterGroup};
 
 }  // namespace thimble::portable
 

@@ -210,6 +210,11 @@ void run(const SimCommand& given) {
                                             " is not for the application " + session.application->name +
                                             ", which draws no scene");
   }
+  if (session.hold_fps != 0 &&
+      (std::string(session.application->name) != "demo" || board.visits_a_second == 0)) {
+    throw CLI::ValidationError(
+        "--hold", std::string(session.application->name) + " on " + board.name + " holds no rate of frames");
+  }
   if (command.scene.arguments.scene.empty()) {
     command.scene.arguments.scene = kDefaultScene;
   }
@@ -251,6 +256,16 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       sub, "--scale", "N", 1, 32,
       [command](std::int64_t scale) { command->session.scale = static_cast<std::int32_t>(scale); },
       "screen pixels a pixel at most (default: as fits)");
+  add_whole_option(
+      sub, "--hold", "FPS", 1, 1000,
+      [command](std::int64_t rate) { command->session.hold_fps = static_cast<std::uint32_t>(rate); },
+      "demo: hold so many frames a second of the board's time: while the camera moves a frame is refined "
+      "from "
+      "coarse to fine by as many node visits as the board has time for, and to the exact picture when it "
+      "stands "
+      "still; the key h switches it, t stops the turning; the work a frame depends on the board alone, so "
+      "the "
+      "pictures are the board's");
   add_whole_option(
       sub, "--fps", "N", 1, 1000,
       [command](std::int64_t rate) { command->session.frames_a_second = static_cast<int>(rate); },

@@ -25,8 +25,9 @@ struct SessionOptions {
   host::ScreenKind display = host::ScreenKind::kAuto;
   std::optional<host::Theme> theme;  ///< nothing: the board's own
   std::int32_t scale = 0;
-  std::uint32_t frames = 0;  ///< 0: as long as it lasts
-  int frames_a_second = 30;  ///< of the screen and of the recording
+  std::uint32_t frames = 0;    ///< 0: as long as it lasts
+  int frames_a_second = 30;    ///< of the screen and of the recording
+  std::uint32_t hold_fps = 0;  ///< what the application is told to hold (port::Facts)
   host::KeyScript keys;
   OutputFile* recording = nullptr;
 };

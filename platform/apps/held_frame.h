@@ -1,0 +1,130 @@
+/// @file held_frame.h
+/// What it takes to hold a rate of frames: while the camera moves a frame gets no more work than there is
+/// time for, and when it stands still it becomes exact.
+///
+/// The work depends on the board's facts and the rate alone, never on a clock, so that the pictures are the
+/// same on the board and in the simulator. Two ways, whichever serves better:
+///   - rays through a tree: an any-time frame (thimble/anytime.h) of so many node visits;
+///   - with a brick map, a thirteenth of the instructions a pixel: the thinned camera's picture, every 2nd or
+///     4th pixel both ways by the map, each as a square; the exact picture when the camera stands still.
+#ifndef THIMBLE_PLATFORM_APPS_HELD_FRAME_H
+#define THIMBLE_PLATFORM_APPS_HELD_FRAME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "apps/place.h"
+#include "port.h"
+#include "thimble/anytime.h"
+#include "thimble/arena.h"
+#include "thimble/brick_render.h"
+
+namespace thimble::apps {
+
+#ifdef THIMBLE_NO_HOLD
+inline constexpr bool kCanHold = false;
+#else
+inline constexpr bool kCanHold = true;
+#endif
+
+/// The rate where nothing else was said.
+inline constexpr uint32_t kHoldFps = 30;
+/// The coarsest thinned picture.
+inline constexpr int32_t kMostThinned = 4;
+
+struct HeldFrame : Placed {
+  AnytimeFrame frame;
+  Bytes frame_bytes;
+  Camera thin_camera;
+  Bytes thin_bytes;  ///< kBrickTilePx rows of the thinned picture
+};
+
+/// Whether this board can: its rays have been counted.
+inline bool can_hold() {
+  return kCanHold && port::facts().visits_a_second != 0;
+}
+
+inline uint32_t display_pixels() {
+  const port::Display& screen = port::facts().display;
+  return static_cast<uint32_t>(screen.width_px) * static_cast<uint32_t>(screen.height_px);
+}
+
+/// Node visits for a frame: what the rate leaves, less what clearing, flushing and the camera take, a
+/// sixteenth of a visit a pixel; where the rate is beyond the board, that much at least.
+inline uint32_t visits_a_frame(uint32_t fps) {
+  const uint32_t other = display_pixels() / 16;
+  const uint32_t visits = port::facts().visits_a_second / fps;
+  return visits > 2 * other ? visits - other : other;
+}
+/// The same for a tree in a pool, whose visits take more: children there are chains. While it is being built
+/// that takes time too, and the first rays, which read little, are mostly set-up.
+constexpr uint32_t pool_visits(uint32_t visits, bool is_growing) {
+  return is_growing ? visits / 3 : visits * 5 / 8;
+}
+
+/// The least thinning for which a picture by the brick map takes no longer than `visits`: a pixel of it, with
+/// the square that it becomes, takes as long as one and a quarter.
+inline int32_t thinning_for(uint32_t visits) {
+  for (int32_t step = 1; step < kMostThinned; step *= 2) {
+    if (display_pixels() / static_cast<uint32_t>(step * step) * 5 / 4 <= visits) {
+      return step;
+    }
+  }
+  return kMostThinned;
+}
+
+/// The format of a thinned picture, from which the display's pixels follow exactly.
+inline PixelFormat thin_format(PixelFormat format) {
+  return bits_per_pixel(format) <= 8 ? PixelFormat::kGray8 : format;
+}
+
+/// Takes what holding needs; null, and nothing taken, where the arena does not have it.
+[[gnu::noinline]] inline HeldFrame* place_held_frame(Arena* arena) {
+  const port::Display& screen = port::facts().display;
+  const size_t mark = arena->used_bytes();
+  HeldFrame* const held = place<HeldFrame>(arena);
+  if (held == nullptr) {
+    return nullptr;
+  }
+  held->frame_bytes = arena->take(anytime_bytes(screen.width_px, screen.height_px, screen.format));
+  held->thin_bytes =
+      arena->take(band_bytes(thin_format(screen.format), (screen.width_px + 1) / 2, kBrickTilePx));
+  if (held->frame_bytes.empty() || held->thin_bytes.empty()) {
+    arena->rewind(mark);
+    return nullptr;
+  }
+  return held;
+}
+
+/// The colour of a stored pixel of a thinned picture.
+inline Rgb8 thin_color(const uint8_t* row, int32_t x, PixelFormat format) {
+  const auto column = static_cast<size_t>(x);
+  if (format == PixelFormat::kGray8) {
+    return {row[column], row[column], row[column]};
+  }
+  if (format == PixelFormat::kRgb565) {
+    const unsigned packed = row[2 * column] | static_cast<unsigned>(row[2 * column + 1]) << 8;
+    return {static_cast<uint8_t>(packed >> 8 & 0xF8U), static_cast<uint8_t>(packed >> 3 & 0xFCU),
+            static_cast<uint8_t>(packed << 3 & 0xF8U)};
+  }
+  return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
+}
+
+/// Row `y` of the display from row y / step of the thinned picture.
+[[gnu::noinline]] inline void widen_row(const uint8_t* thin, PixelFormat from, int32_t step, int32_t y,
+                                        uint8_t* row) {
+  const port::Display& screen = port::facts().display;
+  for (size_t i = 0; i < row_bytes(screen.format, screen.width_px); ++i) {
+    row[i] = 0;
+  }
+  for (int32_t x = 0; x < screen.width_px;) {
+    const Rgb8 color = thin_color(thin, x / step, from);
+    for (const int32_t end = x + step < screen.width_px ? x + step : screen.width_px; x < end; ++x) {
+      store_pixel(row, x, y, screen.format, color);
+    }
+  }
+}
+
+}  // namespace thimble::apps
+
+#endif
