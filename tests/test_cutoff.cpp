@@ -197,8 +197,9 @@ TEST_CASE("cutoff: any ray and any cut-off, both widths -> the first box of the 
     const CompactTree& tree = world.compact();
     const Q16 pixels = Q16::from_raw(static_cast<std::int32_t>(pick(random, 1, 1 << pick(random, 8, 22))));
     Cutoff cutoff;
-    const Camera camera = scene % 3 == 0 ? parallel(level, 32, static_cast<int>(pick(random, 8, 60)))
-                                         : pinhole(level, static_cast<int>(pick(random, 4, 200)), 60);
+    const Camera camera = scene % 3 == 0
+                              ? parallel(level, 32, static_cast<int>(pick(random, side / 2, 4 * side)))
+                              : pinhole(level, static_cast<int>(pick(random, 4, 200)), 60);
     REQUIRE(cutoff.set(camera, pixels) == Status::kOk);
     if (scene % 4 == 1) {
       REQUIRE(cutoff.set_level(static_cast<int>(pick(random, 0, level))) == Status::kOk);

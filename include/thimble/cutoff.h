@@ -15,10 +15,10 @@
 /// they are without a cut-off. The answer is the first of these boxes that the ray enters, as ray.h defines
 /// it for voxels, and a ray that does not meet the tree's `bounds()` misses.
 ///
-/// So it only adds solid, less than `pixels` pixels wide and never nearer to the eye than what it belongs to
-/// by more than that: nothing vanishes, and what is hit is never farther away than without a cut-off. The
-/// answer is a fact of integers, the same in every width and on every machine. `pixels` 0 cuts nothing: the
-/// very answers, visits and bytes of trace.h and render.h.
+/// So it only adds solid, in cubes that hold something solid already and are less than `pixels` pixels wide:
+/// nothing vanishes, and what is hit is never farther away than without a cut-off. The answer is a fact of
+/// integers, the same in every width and on every machine. `pixels` 0 cuts nothing: the very answers, visits
+/// and bytes of trace.h and render.h.
 ///
 /// Source: the idea of stopping where a node is smaller than a pixel is that of Crassin, Neyret, Lefebvre and
 /// Eisemann, "GigaVoxels", I3D 2009, and of Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010.
