@@ -246,7 +246,7 @@ TEST_CASE("cutoff: reach and level -> those of real arithmetic, reach within its
   std::mt19937_64 random(kSeed);
   for (int i = 0; i < 2000; ++i) {
     const int level = static_cast<int>(pick(random, 1, 12));
-    const Q16 pixels = Q16::from_raw(static_cast<std::int32_t>(pick(random, 1, kMaxCutoff.raw)));
+    const Q16 pixels = Q16::from_raw(static_cast<std::int32_t>(pick(random, 1, 1 << pick(random, 1, 25))));
     Cutoff cutoff;
     const Camera camera = pinhole(std::max(level, 4), static_cast<int>(pick(random, 2, 1500)),
                                   static_cast<int>(pick(random, 5, 120)));

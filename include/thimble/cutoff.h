@@ -42,8 +42,8 @@
 
 namespace thimble {
 
-/// The largest cut-off, in pixels.
-inline constexpr Q16 kMaxCutoff = Q16::saturate(64);
+/// The largest cut-off, in pixels: 64 of a picture with 8 x 8 samples each (samples.h).
+inline constexpr Q16 kMaxCutoff = Q16::saturate(512);
 /// How far `reach_q8` may lie above the real number 256 |d_c| / (w * pixels), in its own units (1/256 of a
 /// node's side): rounding up to the next integer takes up to 1, the factor's 2^-29 the rest for distances
 /// that there are. Never below it by more than the rest.

@@ -259,6 +259,39 @@ TraceOptions EngineOptions::trace_options() const {
   return options;
 }
 
+void add_quality(CLI::App& app, Quality* quality) {
+  add_text_option(
+      app, "--samples", "N",
+      [quality](const std::string& text) {
+        quality->across = 0;
+        const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
+        for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
+          quality->across = *number == across * across ? across : quality->across;
+        }
+        return quality->across != 0 ? "" : "is not 1, 4, 9, 16, 25, 36, 49 or 64";
+      },
+      "samples a pixel, on a regular grid in it, averaged: 1, 4, 9, 16, 25, 36, 49 or 64")
+      ->default_str("1");
+  add_text_option(
+      app, "--cutoff", "PX",
+      [quality](const std::string& text) -> std::string {
+        const auto pixels = parse_real(text);
+        if (!pixels || *pixels < 0 || *pixels > kMostCutoffPx) {
+          return "is not a number from 0 to " + std::to_string(kMostCutoffPx);
+        }
+        quality->cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(*pixels * Q16::kOne)));
+        return {};
+      },
+      "stop at blocks of the tree that cover less than PX pixels, in their mean colour; 0 to 64, compact "
+      "structure only")
+      ->default_str("0");
+  add_whole_option(
+      app, "--max-depth", "D", kMinLevel, kMaxLevel,
+      [quality](std::int64_t depth) { quality->max_depth = static_cast<int>(depth); },
+      "stop at blocks D levels down in the tree, in their mean colour: the scene as with a depth of D; "
+      "compact structure only");
+}
+
 void add_direction_bits(CLI::App& app, int* bits) {
   add_whole_option(
       app, "--direction-bits", "N", kMinDirectionBits, kMaxDirectionBits,
@@ -323,6 +356,17 @@ void ViewOptions::use_display(const platform::BoardFacts* board) {
     width_px = board->width_px;
     height_px = board->height_px;
   }
+}
+
+ViewOptions ViewOptions::finer(int across) const {
+  ViewOptions fine = *this;
+  if (width_px > kMaxPicturePx / across || height_px > kMaxPicturePx / across) {
+    throw InputError(std::to_string(across * across) + " samples a pixel want a picture of at most " +
+                     std::to_string(kMaxPicturePx / across) + " pixels a side");
+  }
+  fine.width_px *= across;
+  fine.height_px *= across;
+  return fine;
 }
 
 Camera ViewOptions::camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note,

@@ -12,6 +12,7 @@
 
 #include "boards/board_table.h"
 #include "scene/built_scene.h"
+#include "scene/quality.h"
 #include "scene/scene_source.h"
 #include "thimble/baked_scene.h"
 #include "thimble/camera.h"
@@ -92,9 +93,14 @@ struct ViewOptions {
   /// The camera that the scene was baked with, unless `placed` or it has none; then the one above.
   Camera camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note = nullptr,
                 SceneCamera* chosen = nullptr) const;
+  /// The same view in a picture `across` times as wide and high. Throws InputError beyond the largest size.
+  ViewOptions finer(int across) const;
   /// Without --size the picture is as large as the board's.
   void use_display(const platform::BoardFacts* board);
 };
+
+/// --samples, --cutoff and --max-depth.
+void add_quality(CLI::App& app, Quality* quality);
 
 /// --direction-bits, for subcommands that have no camera too.
 void add_direction_bits(CLI::App& app, int* bits);
