@@ -18,6 +18,7 @@ void add_info(CLI::App& app);
 void add_boards(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
+void add_accuracy(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
   add_render(app);
@@ -28,6 +29,7 @@ inline void add_all_commands(CLI::App& app) {
   add_boards(app);
   add_sim(app);
   add_particles(app);
+  add_accuracy(app);
 }
 
 }  // namespace thimble::tools

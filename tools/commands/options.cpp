@@ -299,7 +299,7 @@ void add_direction_bits(CLI::App& app, int* bits) {
       "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
-void ViewOptions::add_to(CLI::App& app) {
+void ViewOptions::add_to(CLI::App& app, bool with_direction_bits) {
   add_text_option(
       app, "--size", "WxH",
       [this](const std::string& text) -> std::string {
@@ -315,7 +315,8 @@ void ViewOptions::add_to(CLI::App& app) {
         size_given = true;
         return {};
       },
-      "the picture's size in pixels (default: 800x600, or the display of --board)");
+      "the picture's size in pixels (default: " + std::to_string(width_px) + "x" + std::to_string(height_px) +
+          (app.get_option_no_throw("--board") != nullptr ? ", or the display of --board)" : ")"));
   add_choice_option(
       app, "--projection", {"perspective", "orthographic"},
       [this](std::size_t index) {
@@ -348,7 +349,9 @@ void ViewOptions::add_to(CLI::App& app) {
         return span && *span > 0 ? "" : "is not a number above 0";
       },
       "orthographic: width of the picture in voxels (default: the whole scene)");
-  add_direction_bits(app, &direction_bits);
+  if (with_direction_bits) {
+    add_direction_bits(app, &direction_bits);
+  }
 }
 
 void ViewOptions::use_display(const platform::BoardFacts* board) {

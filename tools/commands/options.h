@@ -84,7 +84,8 @@ struct ViewOptions {
   std::optional<double> span;
   int direction_bits = 0;
 
-  void add_to(CLI::App& app);
+  /// `with_direction_bits`: --direction-bits too.
+  void add_to(CLI::App& app, bool with_direction_bits = true);
   /// The camera for a world of 2^level; what is not given frames `bounds`. Where that cannot be, because rays
   /// may not start that far away, `note` (may be null) gets a sentence that says so. Throws InputError.
   /// `chosen` (may be null) gets the same camera without the picture's size, as a baked scene keeps it.
