@@ -53,6 +53,13 @@ inline constexpr int kMaxDirectionBits = 20;
 inline constexpr Q16 kMinFov = Q16::saturate(1);
 inline constexpr Q16 kMaxFov = Q16::saturate(120);
 
+/// Bounds, swept by tools/instruments/operation_errors.cpp. `kRayErrorPxQ16`: between any pixel's ray and the
+/// ideal real camera's, in 1/65536 pixel, where the bits are chosen automatically. `kDepthPerTErrorQ8`: of
+/// `depth_per_t_q8` for a perspective camera; `kDepthPerTErrorParallelQ8`: for an orthographic one.
+inline constexpr uint32_t kRayErrorPxQ16 = 8192;
+inline constexpr int32_t kDepthPerTErrorQ8 = 4;
+inline constexpr int32_t kDepthPerTErrorParallelQ8 = 1;
+
 /// A length that may span nine of the largest worlds: 1/16384 voxel, up to 131,072 voxels.
 using Q14 = Fixed<14>;
 

@@ -53,6 +53,11 @@ constexpr size_t row_bytes(PixelFormat format, int32_t width_px) {
   return (static_cast<size_t>(width_px) * static_cast<size_t>(bits_per_pixel(format)) + 7) / 8;
 }
 
+/// Bound on `gray_of` against Rec. 601's 0.299 r + 0.587 g + 0.114 b: coefficients of 8 bits, rounded down.
+inline constexpr int kGrayError = 2;
+/// What kRgb565 loses of a channel of 5 bits.
+inline constexpr int kRgb565Error = 7;
+
 constexpr uint8_t gray_of(Rgb8 color) {
   return static_cast<uint8_t>((77U * color.r + 150U * color.g + 29U * color.b) >> 8);
 }

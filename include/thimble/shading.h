@@ -41,6 +41,16 @@ struct Shading {
 /// What kDepth gives at `far_q8` and beyond: well above black, so that everything hit is seen.
 inline constexpr int kFarBrightness = 40;
 
+/// Bounds of what follows against exact arithmetic on the same integers, swept by
+/// tools/instruments/operation_errors.cpp. Depths are too small by at most 1/2^kPlanarDepthErrorShift of
+/// themselves and kPlanarDepthErrorQ8; the others are of 255 or 256 for full brightness, kDepthShadeErrorQ8
+/// in 1/256 of that.
+inline constexpr int kPlanarDepthErrorShift = 11;
+inline constexpr int32_t kPlanarDepthErrorQ8 = 1;
+inline constexpr int kDepthShadeErrorQ8 = 260;
+inline constexpr int kFaceLightError = 2;
+inline constexpr int kLitChannelError = 1;
+
 /// The near and far planes for `camera` that just hold `bounds`, a box in the world: distances of its nearest
 /// and farthest corner, rounded down. Near is at least 0, far at least one voxel beyond near.
 struct DepthRange {

@@ -19,6 +19,7 @@ void add_boards(CLI::App& app);
 void add_memory(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
+void add_accuracy(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
   add_render(app);
@@ -30,6 +31,7 @@ inline void add_all_commands(CLI::App& app) {
   add_memory(app);
   add_sim(app);
   add_particles(app);
+  add_accuracy(app);
 }
 
 }  // namespace thimble::tools

@@ -260,6 +260,39 @@ TraceOptions EngineOptions::trace_options() const {
   return options;
 }
 
+void add_quality(CLI::App& app, Quality* quality) {
+  add_text_option(
+      app, "--samples", "N",
+      [quality](const std::string& text) {
+        quality->across = 0;
+        const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
+        for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
+          quality->across = *number == across * across ? across : quality->across;
+        }
+        return quality->across != 0 ? "" : "is not 1, 4, 9, 16, 25, 36, 49 or 64";
+      },
+      "samples a pixel, on a regular grid in it, averaged: 1, 4, 9, 16, 25, 36, 49 or 64")
+      ->default_str("1");
+  add_text_option(
+      app, "--cutoff", "PX",
+      [quality](const std::string& text) -> std::string {
+        const auto pixels = parse_real(text);
+        if (!pixels || *pixels < 0 || *pixels > kMostCutoffPx) {
+          return "is not a number from 0 to " + std::to_string(kMostCutoffPx);
+        }
+        quality->cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(*pixels * Q16::kOne)));
+        return {};
+      },
+      "stop at blocks of the tree that cover less than PX pixels, in their mean colour; 0 to 64, compact "
+      "structure only")
+      ->default_str("0");
+  add_whole_option(
+      app, "--max-depth", "D", kMinLevel, kMaxLevel,
+      [quality](std::int64_t depth) { quality->max_depth = static_cast<int>(depth); },
+      "stop at blocks D levels down in the tree, in their mean colour: the scene as with a depth of D; "
+      "compact structure only");
+}
+
 void add_direction_bits(CLI::App& app, int* bits) {
   add_whole_option(
       app, "--direction-bits", "N", kMinDirectionBits, kMaxDirectionBits,
@@ -267,7 +300,7 @@ void add_direction_bits(CLI::App& app, int* bits) {
       "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
-void ViewOptions::add_to(CLI::App& app) {
+void ViewOptions::add_to(CLI::App& app, bool with_direction_bits) {
   add_text_option(
       app, "--size", "WxH",
       [this](const std::string& text) -> std::string {
@@ -283,7 +316,8 @@ void ViewOptions::add_to(CLI::App& app) {
         size_given = true;
         return {};
       },
-      "the picture's size in pixels (default: 800x600, or the display of --board)");
+      "the picture's size in pixels (default: " + std::to_string(width_px) + "x" + std::to_string(height_px) +
+          (app.get_option_no_throw("--board") != nullptr ? ", or the display of --board)" : ")"));
   add_choice_option(
       app, "--projection", {"perspective", "orthographic"},
       [this](std::size_t index) {
@@ -316,7 +350,9 @@ void ViewOptions::add_to(CLI::App& app) {
         return span && *span > 0 ? "" : "is not a number above 0";
       },
       "orthographic: width of the picture in voxels (default: the whole scene)");
-  add_direction_bits(app, &direction_bits);
+  if (with_direction_bits) {
+    add_direction_bits(app, &direction_bits);
+  }
 }
 
 void ViewOptions::use_display(const platform::BoardFacts* board) {
@@ -324,6 +360,17 @@ void ViewOptions::use_display(const platform::BoardFacts* board) {
     width_px = board->width_px;
     height_px = board->height_px;
   }
+}
+
+ViewOptions ViewOptions::finer(int across) const {
+  ViewOptions fine = *this;
+  if (width_px > kMaxPicturePx / across || height_px > kMaxPicturePx / across) {
+    throw InputError(std::to_string(across * across) + " samples a pixel want a picture of at most " +
+                     std::to_string(kMaxPicturePx / across) + " pixels a side");
+  }
+  fine.width_px *= across;
+  fine.height_px *= across;
+  return fine;
 }
 
 Camera ViewOptions::camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note,

@@ -12,6 +12,7 @@
 
 #include "boards/board_table.h"
 #include "scene/built_scene.h"
+#include "scene/quality.h"
 #include "scene/scene_source.h"
 #include "thimble/baked_scene.h"
 #include "thimble/camera.h"
@@ -83,7 +84,8 @@ struct ViewOptions {
   std::optional<double> span;
   int direction_bits = 0;
 
-  void add_to(CLI::App& app);
+  /// `with_direction_bits`: --direction-bits too.
+  void add_to(CLI::App& app, bool with_direction_bits = true);
   /// The camera for a world of 2^level; what is not given frames `bounds`. Where that cannot be, because rays
   /// may not start that far away, `note` (may be null) gets a sentence that says so. Throws InputError.
   /// `chosen` (may be null) gets the same camera without the picture's size, as a baked scene keeps it.
@@ -92,9 +94,14 @@ struct ViewOptions {
   /// The camera that the scene was baked with, unless `placed` or it has none; then the one above.
   Camera camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note = nullptr,
                 SceneCamera* chosen = nullptr) const;
+  /// The same view in a picture `across` times as wide and high. Throws InputError beyond the largest size.
+  ViewOptions finer(int across) const;
   /// Without --size the picture is as large as the board's.
   void use_display(const platform::BoardFacts* board);
 };
+
+/// --samples, --cutoff and --max-depth.
+void add_quality(CLI::App& app, Quality* quality);
 
 /// --direction-bits, for subcommands that have no camera too.
 void add_direction_bits(CLI::App& app, int* bits);

@@ -26,6 +26,7 @@ struct RenderCommand {
   SceneOptions scene;
   EngineOptions engine;
   ViewOptions view;
+  Quality quality;
   ShadeMode shade = ShadeMode::kDepth;
   std::string output;
   std::string hits_path;
@@ -44,8 +45,8 @@ std::int32_t band_rows(const RenderCommand& command, PixelFormat format) {
 }
 
 // Pixel by pixel once more, for the files that hold hits and distances.
-void write_hits(const RenderCommand& command, const BuiltScene& built, const Camera& camera, OutputFile* csv,
-                OutputFile* pfm) {
+void write_hits(const RenderCommand& command, const QualityFrame& frame, const Camera& camera,
+                OutputFile* csv, OutputFile* pfm) {
   if (csv != nullptr) {
     csv->write(std::string("px,py,") + kHitColumns + "\n");
   }
@@ -56,7 +57,7 @@ void write_hits(const RenderCommand& command, const BuiltScene& built, const Cam
     for (std::int32_t x = 0; x < camera.width_px(); ++x) {
       const Ray ray = camera.ray(x, y);
       Hit hit;
-      if (built.closest_hit(ray, &hit, command.engine.trace_options()) != Status::kOk) {
+      if (frame.closest_hit(ray, &hit, command.engine.trace_options()) != Status::kOk) {
         throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
       }
       if (csv != nullptr) {
@@ -103,8 +104,11 @@ void run(const RenderCommand& given) {
   const std::int32_t width = command.view.width_px;
   const std::int32_t height = command.view.height_px;
   const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source, band_bytes(format, width, band_rows(command, format)),
-                                               band_bytes(format, width, 1));
+  const bool plain = command.quality.plain();
+  const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
+  BuiltScene built = command.scene.build(
+      *source, plain ? band_bytes(format, width, band_rows(command, format)) : quality_bytes,
+      plain ? band_bytes(format, width, 1) : quality_bytes);
   // At least a byte a row: a picture is at least a pixel wide.
   const std::size_t one_row = std::max<std::size_t>(1, row_bytes(format, width));
   const auto rows = static_cast<std::int32_t>(built.band().size / one_row);
@@ -118,11 +122,28 @@ void run(const RenderCommand& given) {
   shading.near_q8 = range.near_q8;
   shading.far_q8 = range.far_q8;
 
+  const NodeColors colors = take_node_colors(&built, command.quality, shading);
+
   Image image{width, height, format, std::vector<std::uint8_t>(band_bytes(format, width, height))};
   RenderCounts counts;
   ProgressBar bar("tracing", command.scene.quiet);
   double seconds = 0;
-  for (std::int32_t y = 0; y < height; y += rows) {
+  const Camera fine =
+      command.quality.across == 1
+          ? camera
+          : command.view.finer(command.quality.across).camera(*source, built.level(), built.bounds());
+  const QualityFrame frame(built, command.quality, camera, fine, shading, colors);
+  for (std::int32_t y = 0; !plain && y < height; ++y) {
+    const auto start = std::chrono::steady_clock::now();
+    if (frame.draw_row(y, format, built.band(), &counts, command.engine.trace_options()) != Status::kOk) {
+      throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
+    }
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::size_t row = row_bytes(format, width);
+    std::memcpy(image.pixels.data() + row * static_cast<std::size_t>(y), built.band().data, row);
+    bar.update(static_cast<double>(y) / height);
+  }
+  for (std::int32_t y = 0; plain && y < height; y += rows) {
     Band band;
     band.pixels = built.band();
     band.format = format;
@@ -143,7 +164,7 @@ void run(const RenderCommand& given) {
   const Image shown = converted(image, pixel_format(kind));
   write_image(picture.get(), kind, shown);
   if (hits_file != nullptr || depth_file != nullptr) {
-    write_hits(command, built, camera, hits_file.get(), depth_file.get());
+    write_hits(command, frame, camera, hits_file.get(), depth_file.get());
   }
 
   Stats stats(command.scene.arguments.scene, *source, built);
@@ -154,6 +175,13 @@ void run(const RenderCommand& given) {
   stats.engine = command.engine.resolved();
   const std::vector<std::uint8_t> pixels = file_pixels(shown, kind);
   stats.frame_crc32 = crc_text(static_cast<std::uint32_t>(crc32_z(0, pixels.data(), pixels.size())));
+  if (!plain) {
+    stats.samples = command.quality.samples();
+    stats.cutoff_px = static_cast<double>(command.quality.cutoff.raw) / Q16::kOne;
+  }
+  if (command.quality.max_depth != 0) {
+    stats.max_depth = command.quality.max_depth;
+  }
   if (command.scene.board != nullptr) {
     stats.board = command.scene.board->name;
     stats.display_crc32 =
@@ -212,12 +240,14 @@ void add_render(CLI::App& app) {
       },
       "brightness by distance, the face's direction, the palette in one light, or white where anything is")
       ->default_str("depth");
-  add_path_option(*sub, "--hits", "FILE.csv", &command->hits_path,
-                  std::string("what each pixel's ray hits, a line a pixel, row by row from the top left: "
-                              "px,py,") +
-                      kHitColumns + ", as trace writes them");
+  add_path_option(
+      *sub, "--hits", "FILE.csv", &command->hits_path,
+      std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
+                  "px,py,") +
+          kHitColumns + ", as trace writes them");
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
+  add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
   sub->callback([command] { run(*command); });
 }

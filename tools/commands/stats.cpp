@@ -53,6 +53,9 @@ std::string stats_text(const Stats& stats) {
   add("baked_bytes", stats.baked_bytes);
   add("baked_crc32", stats.baked_crc32);
   add("board", stats.board);
+  add("samples", stats.samples);
+  add("cutoff_px", stats.cutoff_px);
+  add("max_depth", stats.max_depth);
   // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

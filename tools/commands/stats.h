@@ -36,6 +36,9 @@ struct Stats {
   std::optional<std::uint64_t> baked_bytes;
   std::optional<std::string> baked_crc32;
   std::optional<std::string> board;
+  std::optional<int> samples;
+  std::optional<double> cutoff_px;
+  std::optional<int> max_depth;
 
   Stats() = default;
   Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);

@@ -67,6 +67,8 @@ class BuiltScene {
   double build_seconds() const { return build_seconds_; }
   const std::vector<Rgb8>& palette() const { return palette_; }
   Bytes band() const { return band_; }
+  /// So many bytes of the arena beside what was built, within the budget; empty when they do not fit.
+  Bytes take(std::size_t bytes) { return arena_.take(bytes); }
   const CompactTree& compact() const { return compact_; }
 
   Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;

@@ -1,0 +1,181 @@
+// --samples, --cutoff and --max-depth of `thimble render`: what they draw, what they count, what they refuse.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble::tests;
+using nlohmann::json;
+
+struct Picture {
+  std::string bytes;
+  json stats;
+};
+
+Picture render(const std::vector<std::string>& more, const std::string& scene = "spheres") {
+  const TemporaryFolder folder;
+  std::vector<std::string> words{"render",
+                                 scene,
+                                 "--size",
+                                 "64x48",
+                                 "--quiet",
+                                 "-o",
+                                 folder.path("a.ppm"),
+                                 "--stats",
+                                 folder.path("a.json")};
+  words.insert(words.end(), more.begin(), more.end());
+  const CommandResult result = run_command(words);
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  return {read_text(folder.path("a.ppm")), json::parse(read_text(folder.path("a.json")))};
+}
+
+TEST_CASE("render quality: the least of each option -> the very picture and counts without it") {
+  for (const char* projection : {"perspective", "orthographic"}) {
+    const Picture plain = render({"--projection", projection, "--shade", "color"});
+    for (const std::vector<std::string>& option :
+         {std::vector<std::string>{"--samples", "1"}, {"--cutoff", "0"}, {"--max-depth", "6"}}) {
+      INFO(option[0]);
+      const Picture same = render({"--projection", projection, "--shade", "color", option[0], option[1]});
+      CHECK(same.bytes == plain.bytes);
+      CHECK(same.stats["node_visits"] == plain.stats["node_visits"]);
+      CHECK(same.stats["hits"] == plain.stats["hits"]);
+      CHECK(same.stats["frame_crc32"] == plain.stats["frame_crc32"]);
+    }
+    CHECK(!plain.stats.contains("samples"));
+  }
+}
+
+TEST_CASE("render quality: more of each -> samples multiply rays, a cut-off and a depth save visits") {
+  const Picture plain = render({"--shade", "color"});
+  const Picture sampled = render({"--shade", "color", "--samples", "9"});
+  CHECK(sampled.stats["rays"] == 9 * 64 * 48);
+  CHECK(sampled.stats["samples"] == 9);
+  CHECK(sampled.bytes != plain.bytes);
+  CHECK(sampled.bytes.size() == plain.bytes.size());
+  std::uint64_t before = plain.stats["node_visits"];
+  for (const char* pixels : {"2", "4", "16"}) {
+    const Picture cut = render({"--shade", "color", "--cutoff", pixels});
+    const std::uint64_t visits = cut.stats["node_visits"];
+    CHECK(visits < before);
+    CHECK(cut.stats["hits"] >= plain.stats["hits"]);
+    CHECK(cut.stats["cutoff_px"] == std::atof(pixels));
+    before = visits;
+  }
+  const Picture shallow = render({"--shade", "color", "--max-depth", "4"});
+  CHECK(shallow.stats["node_visits"] < plain.stats["node_visits"]);
+  CHECK(shallow.stats["max_depth"] == 4);
+  const Picture all = render({"--shade", "color", "--max-depth", "5", "--cutoff", "3", "--samples", "4"});
+  CHECK(all.stats["rays"] == 4 * 64 * 48);
+}
+
+TEST_CASE("render quality: samples -> the mean of the same view drawn larger, pixel by pixel") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> view{"--eye", "-40,-60,80", "--target", "32,32,30", "--shade", "depth"};
+  const auto draw = [&](const std::string& size, const std::string& samples, const std::string& file) {
+    std::vector<std::string> words{"render",    "spheres", "--quiet", "--size",         size,
+                                   "--samples", samples,   "-o",      folder.path(file)};
+    words.insert(words.end(), view.begin(), view.end());
+    REQUIRE(run_command(words).status == 0);
+    const std::string text = read_text(folder.path(file));
+    return text.substr(text.find("255\n") + 4);
+  };
+  const std::string mean = draw("40x30", "4", "mean.ppm");
+  const std::string fine = draw("80x60", "1", "fine.ppm");
+  REQUIRE(mean.size() == 3U * 40 * 30);
+  REQUIRE(fine.size() == 4 * mean.size());
+  const auto at = [&](std::size_t x, std::size_t y, std::size_t channel) {
+    return static_cast<int>(static_cast<unsigned char>(fine[3 * (y * 80 + x) + channel]));
+  };
+  for (std::size_t y = 0; y < 30; ++y) {
+    for (std::size_t x = 0; x < 40; ++x) {
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const int sum = at(2 * x, 2 * y, channel) + at(2 * x + 1, 2 * y, channel) +
+                        at(2 * x, 2 * y + 1, channel) + at(2 * x + 1, 2 * y + 1, channel);
+        REQUIRE(static_cast<int>(static_cast<unsigned char>(mean[3 * (y * 40 + x) + channel])) ==
+                (sum + 2) / 4);
+      }
+    }
+  }
+}
+
+TEST_CASE("render quality: --hits with a cut-off -> lowest corners of blocks, never farther than without") {
+  const TemporaryFolder folder;
+  const auto hits = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "render", "spheres",           "--quiet", "--size", "32x24", "-o", folder.path("a.ppm"),
+        "--hits", folder.path("h.csv")};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(run_command(words).status == 0);
+    return lines_of(read_text(folder.path("h.csv")));
+  };
+  const auto plain = hits({});
+  const auto cut = hits({"--cutoff", "8", "--samples", "4"});
+  REQUIRE(plain.size() == cut.size());
+  int different = 0;
+  for (std::size_t i = 1; i < plain.size(); ++i) {
+    const auto a = split(plain[i]);
+    const auto b = split(cut[i]);
+    CHECK(std::equal(a.end() - 6, a.end(), b.end() - 6));  // the same rays
+    if (a[2] == "1") {
+      REQUIRE(b[2] == "1");
+      CHECK(std::stod(b[6]) <= std::stod(a[6]));
+      different += a[3] != b[3] || a[4] != b[4] || a[5] != b[5] ? 1 : 0;
+    }
+  }
+  CHECK(different > 10);
+}
+
+TEST_CASE("render quality: bad values -> status 2; what cannot be done -> status 1; each a sentence") {
+  const auto refused = [](const std::vector<std::string>& more, int status, const std::string& named) {
+    std::vector<std::string> words{"render", "spheres", "--quiet", "-o", "-"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_command(words);
+    INFO(result.describe());
+    CHECK(result.status == status);
+    CHECK(is_one_sentence(result.err));
+    CHECK(result.err.find(named) != std::string::npos);
+  };
+  for (const char* value : {"0", "2", "-1", "65", "81", "x", "", "4.0"}) {
+    refused({"--samples", value}, 2, "is not 1, 4, 9, 16, 25, 36, 49 or 64");
+  }
+  for (const char* value : {"-0.1", "64.1", "nan", "inf", "x", ""}) {
+    refused({"--cutoff", value}, 2, "0 to 64");
+  }
+  for (const char* value : {"0", "13", "x"}) {
+    refused({"--max-depth", value}, 2, "1 to 12");
+  }
+  refused({"--cutoff", "1", "--structure", "pool"}, 1, "--structure compact");
+  refused({"--max-depth", "4", "--structure", "dense"}, 1, "--structure compact");
+  refused({"--samples", "64", "--size", "2049x10"}, 1, "2048");
+}
+
+TEST_CASE(
+    "render quality: a budget without room for mean colours -> an error that says how much; then drawn") {
+  const TemporaryFolder folder;
+  const std::string baked = folder.path("s.oct");
+  REQUIRE(run_command({"bake", "spheres", "--quiet", "-o", baked}).status == 0);
+  const Picture plain = render({"--shade", "color", "--cutoff", "0"}, baked);
+  const std::string budget = std::to_string(plain.stats["high_water_bytes"].get<std::uint64_t>());
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"render", baked,      "--size", "64x48",    "--quiet", "-o",
+                                   "-",      "--memory", budget,   "--cutoff", "2"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_command(words);
+  };
+  const CommandResult refused = with({"--shade", "color"});
+  CHECK(refused.status == 1);
+  CHECK(refused.err.find("mean colours") != std::string::npos);
+  CHECK(refused.err.find(" bytes") != std::string::npos);
+  CHECK(with({"--shade", "depth"}).status == 0);  // wants none
+}
+
+}  // namespace

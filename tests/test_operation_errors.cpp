@@ -1,0 +1,40 @@
+// Every fixed-point operation against exact arithmetic: within the bound that its header names, and the bound
+// means something.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "instruments/operation_errors.h"
+
+namespace thimble::tools {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint64_t kCases = 3000;
+#else
+constexpr std::uint64_t kCases = 100000;
+#endif
+constexpr std::uint64_t kSeed = 41;
+
+TEST_CASE("operation errors: sweep -> none above its bound, and no bound above four times what is seen") {
+  INFO("seed ", kSeed);
+  double last = 0;
+  std::set<std::string> names;
+  for (const OperationError& found : sweep_operations(kCases, kSeed, [&](double done) {
+         CHECK(done >= last);
+         last = done;
+       })) {
+    INFO(found.operation, ": ", found.error, " of ", found.bound, " ", found.unit);
+    CHECK(found.cases >= 256);
+    CHECK(found.error <= found.bound);
+    CHECK(found.bound <= 4 * found.error);
+    CHECK(names.insert(found.operation).second);
+  }
+  CHECK(last == 1);
+  CHECK(names.size() >= 14);
+}
+
+}  // namespace
+}  // namespace thimble::tools

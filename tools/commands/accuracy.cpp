@@ -1,0 +1,2 @@
+#include "commands/commands.h"
+namespace thimble::tools { void add_accuracy(CLI::App&) {} }

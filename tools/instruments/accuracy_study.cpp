@@ -1,0 +1,265 @@
+#include "instruments/accuracy_study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "instruments/chip_cost.h"
+#include "output/hit_csv.h"
+#include "readers/source.h"
+
+namespace thimble::tools {
+namespace {
+
+// A setting ready to be drawn.
+struct Prepared {
+  Camera camera;
+  QualityFrame frame;
+};
+
+class Studio {
+ public:
+  Studio(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options)
+      : source_(source), built_(*built), options_(options) {
+    shading_.mode = options.shade;
+    shading_.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
+    camera_ = options.view.camera(source, built->level(), built->bounds());
+    const DepthRange range = depth_range(camera_, built->bounds());
+    shading_.near_q8 = range.near_q8;
+    shading_.far_q8 = range.far_q8;
+    Quality cutting;
+    cutting.max_depth = 1;
+    colors_ = take_node_colors(built, cutting, shading_);
+  }
+
+  // The setting's own cameras, or why there are none. Where the reference frames the scene, so do they.
+  Prepared prepare(const Setting& setting) const {
+    ViewOptions view = options_.view;
+    view.direction_bits = setting.direction_bits;
+    const Camera camera = view.camera(source_, built_.level(), built_.bounds());
+    const Camera fine = view.finer(setting.quality.across).camera(source_, built_.level(), built_.bounds());
+    return {camera, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
+  }
+
+  std::size_t row_bytes_of() const { return row_bytes(PixelFormat::kRgb888, camera_.width_px()); }
+
+  // Draws the whole picture into `pixels`; milliseconds.
+  double draw(const Prepared& prepared, const Quality& quality, std::vector<std::uint8_t>* pixels,
+              RenderCounts* counts) {
+    const std::size_t row = row_bytes_of();
+    pixels->resize(row * static_cast<std::size_t>(camera_.height_px()));
+    work_.resize(
+        static_cast<std::size_t>(quality_band_bytes(quality, PixelFormat::kRgb888, camera_.width_px())));
+    const auto start = std::chrono::steady_clock::now();
+    for (std::int32_t y = 0; y < camera_.height_px(); ++y) {
+      // A plain picture needs no copy: its rows are drawn where they belong.
+      std::uint8_t* target = pixels->data() + row * static_cast<std::size_t>(y);
+      const Bytes work = quality.across == 1 ? Bytes(target, row) : Bytes(work_.data(), work_.size());
+      if (prepared.frame.draw_row(y, PixelFormat::kRgb888, work, counts, options()) != Status::kOk) {
+        throw InputError("internal error: a row cannot be drawn");
+      }
+      if (quality.across != 1) {
+        std::copy_n(work_.data(), row, target);
+      }
+    }
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  // Distances along the unit rays of the pixels' centres, negative for a miss.
+  std::vector<double> distances(const Prepared& prepared) const {
+    std::vector<double> result;
+    for (std::int32_t y = 0; y < camera_.height_px(); ++y) {
+      for (std::int32_t x = 0; x < camera_.width_px(); ++x) {
+        const Ray ray = prepared.camera.ray(x, y);
+        Hit hit;
+        if (prepared.frame.closest_hit(ray, &hit, options()) != Status::kOk) {
+          throw InputError("internal error: a ray cannot be traced");
+        }
+        const double length =
+            std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
+                       static_cast<double>(ray.direction.z));
+        result.push_back(hit.kind == HitKind::kHit ? hit_t(hit) * length : -1);
+      }
+    }
+    return result;
+  }
+
+ private:
+  static TraceOptions options() { return {UINT32_MAX, Width::k64}; }
+
+  const SceneSource& source_;
+  const BuiltScene& built_;
+  const AccuracyOptions& options_;
+  Camera camera_;
+  Shading shading_;
+  NodeColors colors_;
+  std::vector<std::uint8_t> work_;
+};
+
+void compare_pictures(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference,
+                      AccuracyRow* row) {
+  for (std::size_t i = 0; i < picture.size(); i += 3) {
+    int most = 0;
+    for (std::size_t channel = i; channel < i + 3; ++channel) {
+      most = std::max(most, std::abs(int{picture[channel]} - int{reference[channel]}));
+    }
+    row->wrong_px += most > 0 ? 1U : 0U;
+    row->visible_px += most > kVisibleDifference ? 1U : 0U;
+  }
+  row->psnr_db = psnr_db(picture, reference);
+}
+
+void compare_distances(const std::vector<double>& distances, const std::vector<double>& reference,
+                       AccuracyRow* row) {
+  double sum = 0;
+  std::uint64_t both = 0;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if ((distances[i] < 0) != (reference[i] < 0)) {
+      ++row->silhouette_px;
+    } else if (distances[i] >= 0) {
+      const double error = std::abs(distances[i] - reference[i]);
+      sum += error;
+      row->depth_max_voxels = std::max(row->depth_max_voxels, error);
+      ++both;
+    }
+  }
+  row->depth_mean_voxels = both == 0 ? 0 : sum / static_cast<double>(both);
+}
+
+// The value below which `part` of them lie, between neighbours in proportion.
+double quantile(std::vector<double> values, double part) {
+  std::sort(values.begin(), values.end());
+  const double at = part * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
+}
+
+}  // namespace
+
+double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference) {
+  std::uint64_t squares = 0;
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    const int difference = int{picture[i]} - int{reference[i]};
+    squares += static_cast<std::uint64_t>(difference * difference);
+  }
+  if (squares == 0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return 10 * std::log10(255.0 * 255.0 * static_cast<double>(picture.size()) / static_cast<double>(squares));
+}
+
+void mark_front(std::vector<AccuracyRow>* rows) {
+  for (AccuracyRow& row : *rows) {
+    row.front = std::none_of(rows->begin(), rows->end(), [&](const AccuracyRow& other) {
+      return other.ms_median <= row.ms_median && other.psnr_db >= row.psnr_db &&
+             (other.ms_median < row.ms_median || other.psnr_db > row.psnr_db);
+    });
+  }
+}
+
+const AccuracyRow* best_within(const std::vector<AccuracyRow>& rows, double ms) {
+  const AccuracyRow* best = nullptr;
+  for (const AccuracyRow& row : rows) {
+    if (row.ms_median <= ms && (best == nullptr || row.psnr_db > best->psnr_db ||
+                                (row.psnr_db == best->psnr_db && row.ms_median < best->ms_median))) {
+      best = &row;
+    }
+  }
+  return best;
+}
+
+const AccuracyRow* fastest_with(const std::vector<AccuracyRow>& rows, double psnr_db) {
+  const AccuracyRow* best = nullptr;
+  for (const AccuracyRow& row : rows) {
+    if (row.psnr_db >= psnr_db && (best == nullptr || row.ms_median < best->ms_median)) {
+      best = &row;
+    }
+  }
+  return best;
+}
+
+AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options,
+                             const std::function<void(double)>& progress) {
+  Studio studio(source, built, options);
+  AccuracyStudy study;
+  study.pixels =
+      static_cast<std::uint64_t>(options.view.width_px) * static_cast<std::uint64_t>(options.view.height_px);
+
+  // The most samples and bits that this view can have: a fine picture may be too large or too fine.
+  std::optional<Prepared> best;
+  for (int across = kMaxSamplesAcross; across >= 1 && !best; --across) {
+    study.reference = best_setting(across);
+    try {
+      best = studio.prepare(study.reference);
+    } catch (const InputError&) {
+      if (across == 1) {
+        throw;
+      }
+    }
+  }
+  const int most_across = study.reference.quality.across;
+  if (most_across < kMaxSamplesAcross) {
+    study.notes.push_back("this view can have " + std::to_string(most_across * most_across) +
+                          " samples a pixel at most: the reference has so many");
+  }
+
+  std::vector<Prepared> prepared;
+  double rays = 0;  // of a round, in pictures of one sample
+  for (const Trial& trial : trials(built->level(), most_across)) {
+    try {
+      prepared.push_back(studio.prepare(trial.setting));
+    } catch (const InputError& error) {
+      study.notes.push_back(trial.setting.options() + " is left out: " + error.what());
+      continue;
+    }
+    AccuracyRow row;
+    row.trial = trial;
+    study.rows.push_back(row);
+    rays += trial.setting.quality.samples();
+  }
+  const double reference_rays = study.reference.quality.samples();
+  const double all = reference_rays + rays * options.rounds;
+  double done = 0;
+  const auto advance = [&](double more) {
+    done += more;
+    if (progress) {
+      progress(done / all);
+    }
+  };
+
+  std::vector<std::uint8_t> reference;
+  RenderCounts unused;
+  studio.draw(*best, study.reference.quality, &reference, &unused);
+  const std::vector<double> reference_distances = studio.distances(*best);
+  advance(reference_rays);
+
+  std::vector<std::vector<double>> milliseconds(study.rows.size());
+  std::vector<std::uint8_t> picture;
+  for (int round = 0; round < options.rounds; ++round) {
+    for (std::size_t i = 0; i < study.rows.size(); ++i) {
+      AccuracyRow& row = study.rows[i];
+      RenderCounts counts;
+      const Quality& quality = row.trial.setting.quality;
+      milliseconds[i].push_back(studio.draw(prepared[i], quality, &picture, &counts));
+      if (round == 0) {
+        row.counts = counts;
+        row.lm3s_instructions = chip_instructions(counts, quality.cuts(), quality.samples());
+        compare_pictures(picture, reference, &row);
+        compare_distances(studio.distances(prepared[i]), reference_distances, &row);
+      }
+      advance(quality.samples());
+    }
+  }
+  for (std::size_t i = 0; i < study.rows.size(); ++i) {
+    study.rows[i].ms_median = quantile(milliseconds[i], 0.5);
+    study.rows[i].ms_quarter = quantile(milliseconds[i], 0.25);
+    study.rows[i].ms_three_quarters = quantile(milliseconds[i], 0.75);
+  }
+  mark_front(&study.rows);
+  return study;
+}
+
+}  // namespace thimble::tools

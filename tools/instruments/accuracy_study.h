@@ -1,0 +1,71 @@
+/// @file accuracy_study.h
+/// One view of a scene at every setting of the knobs (knobs.h): what each costs, and how far its picture is
+/// from the one with every knob at its best.
+#ifndef THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
+#define THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "commands/options.h"
+#include "instruments/knobs.h"
+
+namespace thimble::tools {
+
+/// A pixel is visibly wrong when a channel is off by more than this, of 255.
+inline constexpr int kVisibleDifference = 8;
+
+struct AccuracyRow {
+  Trial trial;
+  // Against the reference.
+  std::uint64_t wrong_px = 0;       ///< of another colour, by however little
+  std::uint64_t visible_px = 0;     ///< with a channel off by more than kVisibleDifference
+  std::uint64_t silhouette_px = 0;  ///< whose centre's ray hits in one and misses in the other
+  /// Distances along the rays of pixels' centres that hit in both.
+  double depth_mean_voxels = 0;
+  double depth_max_voxels = 0;
+  double psnr_db = 0;  ///< over all pixels and channels; infinite for equal pictures
+  // One frame: median and quartiles.
+  double ms_median = 0;
+  double ms_quarter = 0;
+  double ms_three_quarters = 0;
+  // The same on every machine.
+  RenderCounts counts;
+  double lm3s_instructions = 0;  ///< an estimate: chip_cost.h
+  bool front = false;            ///< no other row is both as fast and as near to the reference
+};
+
+struct AccuracyOptions {
+  ViewOptions view;
+  ShadeMode shade = ShadeMode::kDepth;
+  int rounds = 5;
+};
+
+struct AccuracyStudy {
+  std::vector<AccuracyRow> rows;  ///< the settings as tried
+  Setting reference;
+  std::uint64_t pixels = 0;
+  std::vector<std::string> notes;  ///< sentences for a person: what could not be tried
+};
+
+/// Tries and measures. Frames are drawn by turns, one of each setting a round, so that what else the machine
+/// does falls on all alike. Throws InputError.
+AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options,
+                             const std::function<void(double)>& progress);
+
+/// Marks the rows of the Pareto front: psnr_db against ms_median.
+void mark_front(std::vector<AccuracyRow>* rows);
+
+/// The row with the highest psnr_db of those that take at most `ms`; null when none does.
+const AccuracyRow* best_within(const std::vector<AccuracyRow>& rows, double ms);
+/// The fastest row of those with at least `psnr_db`; null when none has.
+const AccuracyRow* fastest_with(const std::vector<AccuracyRow>& rows, double psnr_db);
+
+/// 10 log10(255^2 / mean squared difference) of two pictures of bytes, infinite when they are equal.
+double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference);
+
+}  // namespace thimble::tools
+
+#endif

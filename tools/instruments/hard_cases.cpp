@@ -1,0 +1,397 @@
+#include "instruments/hard_cases.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "reference/reference.h"
+#include "reference/textbook.h"
+#include "thimble/compact_tree.h"
+#include "thimble/morton.h"
+#include "thimble/trace.h"
+
+namespace thimble::tools {
+namespace {
+
+using Components = std::array<std::int64_t, 3>;
+
+// A random number generator whose numbers are the same in every library.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  /// low .. high, both included.
+  std::int64_t from(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(random_() % (static_cast<std::uint64_t>(high - low) + 1));
+  }
+  std::int64_t sign() { return from(0, 1) == 0 ? -1 : 1; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+// A world of random voxels, for the core, the reference and the textbooks.
+struct World {
+  int level;
+  reference::BitGrid grid;
+  reference::Pyramid pyramid;
+  std::vector<std::uint8_t> bytes;
+  CompactTree tree;
+
+  World(int log2_side, int one_in, std::uint64_t seed)
+      : level(log2_side), grid(filled(log2_side, one_in, seed)), pyramid(grid) {
+    std::vector<std::uint64_t> keys;
+    const int side = 1 << level;
+    for (int z = 0; z < side; ++z) {
+      for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+          if (grid.test({x, y, z})) {
+            keys.push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                       static_cast<std::uint32_t>(z))
+                           << 8);
+          }
+        }
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    std::size_t needed = 0;
+    const Span<const std::uint64_t> sorted{keys.data(), keys.size()};
+    (void)compact_from_keys(sorted, level, Bytes{}, &needed);
+    bytes.resize(needed);
+    if (compact_from_keys(sorted, level, {bytes.data(), bytes.size()}, nullptr) != Status::kOk ||
+        CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
+      throw std::logic_error("the world of the hard cases has no tree");
+    }
+  }
+  World(const World&) = delete;
+
+ private:
+  static reference::BitGrid filled(int level, int one_in, std::uint64_t seed) {
+    const int side = 1 << level;
+    reference::BitGrid grid({side, side, side});
+    Draw draw(seed);
+    for (int z = 0; z < side; ++z) {
+      for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+          if (draw.from(1, one_in) == 1) {
+            grid.set({x, y, z});
+          }
+        }
+      }
+    }
+    return grid;
+  }
+};
+
+// --- The cases. `side` is that of the world in voxels, positions are in 1/256 voxel.
+
+constexpr std::int64_t kOne = 256;
+
+Components any_direction(Draw& draw) {
+  Components direction{};
+  while (direction == Components{}) {
+    for (std::int64_t& component : direction) {
+      component = draw.from(-32767, 32767);
+    }
+  }
+  return direction;
+}
+
+// Back from a point along a direction, so that the ray goes exactly through the point: as far as keeps it
+// near the world.
+Components before(Draw& draw, const Components& point, const Components& direction, std::int64_t side) {
+  std::int64_t most = 0;
+  for (const std::int64_t component : direction) {
+    most = std::max(most, component < 0 ? -component : component);
+  }
+  const std::int64_t times = draw.from(0, std::max<std::int64_t>(2 * side * kOne / most, 1));
+  Components origin{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    origin[axis] = point[axis] - times * direction[axis];
+  }
+  return origin;
+}
+
+Components short_direction(Draw& draw) {
+  Components direction{};
+  for (std::int64_t& component : direction) {
+    component = draw.sign() * draw.from(1, 300);
+  }
+  return direction;
+}
+
+// The number x of 1 .. modulus for which value * x leaves the rest 1; the two have no common divisor.
+std::int64_t inverse(std::int64_t value, std::int64_t modulus) {
+  std::int64_t rest = modulus;
+  std::int64_t next_rest = value % modulus;
+  std::int64_t x = 0;
+  std::int64_t next_x = 1;
+  while (next_rest != 0) {
+    const std::int64_t quotient = rest / next_rest;
+    rest -= quotient * next_rest;
+    x -= quotient * next_x;
+    std::swap(rest, next_rest);
+    std::swap(x, next_x);
+  }
+  return x < 0 ? x + modulus : x;
+}
+
+Components corner(Draw& draw, std::int64_t side) {
+  return {kOne * draw.from(0, side), kOne * draw.from(0, side), kOne * draw.from(0, side)};
+}
+Components inside(Draw& draw, std::int64_t side) {
+  return {draw.from(0, kOne * side - 1), draw.from(0, kOne * side - 1), draw.from(0, kOne * side - 1)};
+}
+
+struct HardCase {
+  const char* name;
+  int level;
+  reference::Ray (*make)(Draw& draw, std::int64_t side);
+};
+
+constexpr int kSmall = 6;
+constexpr int kLarge = 8;
+
+const HardCase kCases[] = {
+    {"any ray", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       return reference::Ray{inside(draw, side), any_direction(draw)};
+     }},
+    {"through an edge", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       Components point = corner(draw, side);
+       point[static_cast<std::size_t>(draw.from(0, 2))] = draw.from(0, kOne * side);
+       const Components direction = short_direction(draw);
+       const Components origin = before(draw, point, direction, side);
+       return reference::Ray{origin, direction};
+     }},
+    {"through a corner", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       const Components point = corner(draw, side);
+       const Components direction = short_direction(draw);
+       const Components origin = before(draw, point, direction, side);
+       return reference::Ray{origin, direction};
+     }},
+    {"through a row of corners", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       const Components point = corner(draw, side);
+       const std::int64_t size = draw.from(1, 32767);
+       const Components direction{draw.sign() * size, draw.sign() * size, draw.sign() * size};
+       return reference::Ray{point, direction};
+     }},
+    {"in a face", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       const auto axis = static_cast<std::size_t>(draw.from(0, 2));
+       Components origin = inside(draw, side);
+       origin[axis] = kOne * draw.from(0, side - 1);
+       Components direction = any_direction(draw);
+       direction[axis] = 0;
+       direction[(axis + 1) % 3] = draw.from(1, 32767);
+       return reference::Ray{origin, direction};
+     }},
+    {"in an edge", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       const auto axis = static_cast<std::size_t>(draw.from(0, 2));
+       Components origin = corner(draw, side);
+       origin[axis] = draw.sign() < 0 ? -kOne * side : kOne * 2 * side;
+       Components direction{};
+       direction[axis] = origin[axis] < 0 ? 1 : -1;
+       return reference::Ray{origin, direction};
+     }},
+    {"starts on a face", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       Components origin = inside(draw, side);
+       origin[static_cast<std::size_t>(draw.from(0, 2))] = kOne * draw.from(0, side);
+       const Components direction = any_direction(draw);
+       return reference::Ray{origin, direction};
+     }},
+    {"starts in a corner", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       const Components origin = corner(draw, side);
+       const Components direction = any_direction(draw);
+       return reference::Ray{origin, direction};
+     }},
+    {"starts a hair off a face", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       Components origin = inside(draw, side);
+       const auto axis = static_cast<std::size_t>(draw.from(0, 2));
+       origin[axis] = kOne * draw.from(0, side);
+       origin[axis] += draw.sign();
+       const Components direction = any_direction(draw);
+       return reference::Ray{origin, direction};
+     }},
+    {"almost along an axis", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       const auto axis = static_cast<std::size_t>(draw.from(0, 2));
+       Components origin = corner(draw, side);
+       origin[axis] = draw.sign() < 0 ? -kOne * side : kOne * 2 * side;
+       Components direction{};
+       for (std::size_t other = 0; other < 3; ++other) {
+         direction[other] = draw.from(-2, 2);
+       }
+       direction[axis] = origin[axis] < 0 ? 1048575 : -1048575;
+       return reference::Ray{origin, direction};
+     }},
+    {"an edge, missed by the least", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       // The order of two planes, s_a * d_b - s_b * d_a, is 1: no ray with such directions comes closer to an
+       // edge without touching it.
+       std::int64_t d_a = 0;
+       std::int64_t d_b = 0;
+       do {
+         d_a = draw.from(16384, 65535);
+         d_b = draw.from(16384, 65535);
+       } while (std::gcd(d_a, d_b) != 1);
+       const std::int64_t s_a = inverse(d_b, d_a);
+       const std::int64_t s_b = (s_a * d_b - 1) / d_a;
+       const auto a = static_cast<std::size_t>(draw.from(0, 2));
+       const auto b = (a + static_cast<std::size_t>(draw.from(1, 2))) % 3;
+       const Components point = corner(draw, side);
+       Components origin = inside(draw, side);
+       Components direction{};
+       direction[3 - a - b] = draw.from(-300, 300);
+       const std::int64_t side_a = draw.sign();
+       const std::int64_t side_b = draw.sign();
+       direction[a] = side_a * d_a;
+       direction[b] = side_b * d_b;
+       origin[a] = point[a] - side_a * s_a;
+       origin[b] = point[b] - side_b * s_b;
+       return reference::Ray{origin, direction};
+     }},
+    {"from four worlds away", kSmall,
+     [](Draw& draw, std::int64_t side) {
+       Components origin{};
+       for (std::int64_t& component : origin) {
+         component = draw.sign() < 0 ? draw.from(-4 * kOne * side, -3 * kOne * side)
+                                     : draw.from(4 * kOne * side, 5 * kOne * side);
+       }
+       const Components target = corner(draw, side);
+       Components direction{};
+       for (std::size_t axis = 0; axis < 3; ++axis) {
+         direction[axis] = (target[axis] - origin[axis]) / 2;
+       }
+       return reference::Ray{origin, direction};
+     }},
+    {"a large world, any ray", kLarge,
+     [](Draw& draw, std::int64_t side) {
+       return reference::Ray{inside(draw, side), any_direction(draw)};
+     }},
+    {"a large world, corners", kLarge,
+     [](Draw& draw, std::int64_t side) {
+       const Components point = corner(draw, side);
+       const Components direction = short_direction(draw);
+       const Components origin = before(draw, point, direction, side);
+       return reference::Ray{origin, direction};
+     }},
+};
+
+Ray core_ray(const reference::Ray& ray) {
+  Ray result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    result.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(ray.origin_q8[index]));
+    result.direction[axis] = static_cast<std::int32_t>(ray.direction[index]);
+  }
+  return result;
+}
+
+reference::TextbookHit core_hit(const CompactTree& tree, const Ray& ray, Width width) {
+  Hit hit;
+  TraceOptions options;
+  options.width = width;
+  if (closest_hit(tree, ray, &hit, options) != Status::kOk) {
+    throw std::logic_error("a hard case is not a ray");
+  }
+  reference::TextbookHit result;
+  result.hit = hit.kind == HitKind::kHit;
+  result.voxel = {hit.voxel.x, hit.voxel.y, hit.voxel.z};
+  result.axis = hit.axis;
+  return result;
+}
+
+void judge(const reference::Hit& right, const reference::TextbookHit& answer, std::size_t tracer,
+           HardCaseRow* row) {
+  if (right.hit != answer.hit || (right.hit && right.voxel != answer.voxel)) {
+    ++row->wrong[tracer];
+  } else if (right.hit && right.axis >= 0 && right.axis != answer.axis) {
+    ++row->wrong_face[tracer];
+  }
+}
+
+void trace_all(const World& world, const reference::Ray& ray, HardCaseRow* row) {
+  const reference::Hit right = reference::walk(world.grid, ray);
+  row->hits += right.hit ? 1 : 0;
+  ++row->rays;
+  const Ray own = core_ray(ray);
+  std::size_t tracer = 0;
+  const auto next = [&](const reference::TextbookHit& answer) { judge(right, answer, tracer++, row); };
+  next(core_hit(world.tree, own, Width::k64));
+  if (accepts_32(own, world.level)) {
+    next(core_hit(world.tree, own, Width::k32));
+  } else {
+    ++tracer;
+  }
+  next(reference::grid_walk<float>(world.grid, ray, 0));
+  next(reference::grid_walk<float>(world.grid, ray, kFloatEpsilon));
+  next(reference::grid_walk<double>(world.grid, ray, 0));
+  next(reference::grid_walk<double>(world.grid, ray, kDoubleEpsilon));
+  next(reference::point_steps<float>(world.grid, ray, 0));
+  next(reference::point_steps<float>(world.grid, ray, kFloatEpsilon));
+  next(reference::point_steps<double>(world.grid, ray, 0));
+  next(reference::point_steps<double>(world.grid, ray, kDoubleEpsilon));
+  next(reference::octree_descent<float>(world.pyramid, ray, 0));
+  next(reference::octree_descent<float>(world.pyramid, ray, kFloatEpsilon));
+  next(reference::octree_descent<double>(world.pyramid, ray, 0));
+  next(reference::octree_descent<double>(world.pyramid, ray, kDoubleEpsilon));
+}
+
+}  // namespace
+
+const std::array<TracerName, kTracers>& tracer_names() {
+  static const std::array<TracerName, kTracers> kNames{{
+      {"thimble_64", "thimble", "64 bits", false},
+      {"thimble_32", "thimble", "32 bits", false},
+      {"walk_float", "grid walk", "float", false},
+      {"walk_float_epsilon", "grid walk", "float", true},
+      {"walk_double", "grid walk", "double", false},
+      {"walk_double_epsilon", "grid walk", "double", true},
+      {"points_float", "point steps", "float", false},
+      {"points_float_epsilon", "point steps", "float", true},
+      {"points_double", "point steps", "double", false},
+      {"points_double_epsilon", "point steps", "double", true},
+      {"octree_float", "octree", "float", false},
+      {"octree_float_epsilon", "octree", "float", true},
+      {"octree_double", "octree", "double", false},
+      {"octree_double_epsilon", "octree", "double", true},
+  }};
+  return kNames;
+}
+
+std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
+                                        const std::function<void(double)>& progress) {
+  const World small(kSmall, 12, seed);
+  const World large(kLarge, 200, seed + 1);
+  std::vector<HardCaseRow> rows;
+  const std::size_t count = std::size(kCases);
+  const std::uint64_t rays_a_case = std::max<std::uint64_t>((rays + count - 1) / count, 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const HardCase& hard = kCases[i];
+    const World& world = hard.level == kSmall ? small : large;
+    Draw draw(seed * 1000003 + i);
+    HardCaseRow row;
+    row.name = hard.name;
+    row.level = hard.level;
+    for (std::uint64_t ray = 0; ray < rays_a_case; ++ray) {
+      trace_all(world, hard.make(draw, std::int64_t{1} << hard.level), &row);
+      if (progress && ray % 1024 == 0) {
+        progress((static_cast<double>(i) + static_cast<double>(ray) / static_cast<double>(rays_a_case)) /
+                 static_cast<double>(count));
+      }
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace thimble::tools

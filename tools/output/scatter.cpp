@@ -1,0 +1,196 @@
+#include "output/scatter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "output/units.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr double kWidth = 760;
+constexpr double kLeft = 72;
+constexpr double kRight = 24;
+constexpr double kTop = 52;
+constexpr double kPlotHeight = 330;
+constexpr double kLineHeight = 18;
+constexpr double kPlotBottom = kTop + kPlotHeight;
+// Names in two columns where there are many.
+constexpr std::size_t kManyNames = 8;
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
+// A tick's value without what powers of ten leave behind.
+std::string rounded(double value) {
+  return shortest(std::round(value * 1e6) / 1e6);
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  }
+  return result;
+}
+
+std::string line(double x1, double y1, double x2, double y2, const char* kind) {
+  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
+         number(y2) + "\" class=\"" + kind + "\"/>\n";
+}
+
+std::string label(double x, double y, const char* anchor, const std::string& text,
+                  const std::string& more = {}) {
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
+         escaped(text) + "</text>\n";
+}
+
+std::string dot(double x, double y, double radius, const std::string& style) {
+  return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"" + number(radius) + "\" " + style +
+         "/>\n";
+}
+
+// Where the axes begin and end: x at a 1, 2 or 5 of a decade, y at multiples of `step`.
+struct Frame {
+  std::vector<double> x_ticks;
+  double low = 0;
+  double high = 1;
+  double step = 1;
+
+  explicit Frame(const std::vector<std::pair<double, double>>& points) {
+    double x_low = 1;
+    double x_high = 1;
+    double y_low = 0;
+    double y_high = 1;
+    bool first_x = true;
+    bool first_y = true;
+    for (const auto& [x, y] : points) {
+      x_low = first_x ? x : std::min(x_low, x);
+      x_high = first_x ? x : std::max(x_high, x);
+      first_x = false;
+      if (std::isfinite(y)) {
+        y_low = first_y ? y : std::min(y_low, y);
+        y_high = first_y ? y : std::max(y_high, y);
+        first_y = false;
+      }
+    }
+    std::vector<double> marks;
+    const int decade = static_cast<int>(std::floor(std::log10(x_low)));
+    for (int power = decade; power <= decade + 12; ++power) {
+      for (const double digit : {1.0, 2.0, 5.0}) {
+        marks.push_back(digit * std::pow(10.0, power));
+      }
+    }
+    std::size_t begin = 0;
+    while (begin + 2 < marks.size() && marks[begin + 1] <= x_low) {
+      ++begin;
+    }
+    std::size_t end = begin + 1;
+    while (end + 1 < marks.size() && marks[end] < x_high) {
+      ++end;
+    }
+    x_ticks.assign(marks.begin() + static_cast<std::ptrdiff_t>(begin),
+                   marks.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+    const double range = std::max(y_high - y_low, 1e-9);
+    step = std::pow(10.0, std::floor(std::log10(range)));
+    while (range / step < 4) {
+      step /= 2;
+    }
+    low = std::floor(y_low / step) * step;
+    high = (std::floor(y_high / step) + 1) * step;
+  }
+  double x_at(double x) const {
+    return kLeft + std::log(x / x_ticks.front()) / std::log(x_ticks.back() / x_ticks.front()) *
+                       (kWidth - kLeft - kRight);
+  }
+  double y_at(double y) const { return kPlotBottom - (std::min(y, high) - low) / (high - low) * kPlotHeight; }
+};
+
+}  // namespace
+
+std::string scatter_text(const Scatter& scatter) {
+  // Okabe and Ito's colours, which stay apart for most kinds of colour vision and on both grounds, and a
+  // grey.
+  constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                               "#e69f00", "#56b4e9", "#8a8a8a", "#a0522d"};
+  std::vector<std::pair<double, double>> points;
+  for (const Cloud& cloud : scatter.clouds) {
+    points.insert(points.end(), cloud.points.begin(), cloud.points.end());
+  }
+  const Frame frame(points);
+  const bool infinite = std::any_of(points.begin(), points.end(),
+                                    [](const auto& point) { return !std::isfinite(point.second); });
+  const std::size_t legend_rows = (scatter.clouds.size() + 3) / 4;
+  const std::size_t columns = scatter.front.size() > kManyNames ? 2 : 1;
+  const std::size_t name_rows = (scatter.front.size() + columns - 1) / columns;
+  const double legend = kPlotBottom + 64;
+  const double names = legend + kLineHeight * static_cast<double>(legend_rows) + 8;
+  const double height =
+      names + kLineHeight * static_cast<double>(scatter.front.empty() ? 0 : name_rows + 1) + 8;
+
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+      "\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\n"
+      ".ground { fill: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: #222222 } "
+      ".front { fill: none; stroke: #222222; stroke-width: 1.5 } .ring { fill: none; stroke: #222222 }\n"
+      "@media (prefers-color-scheme: dark) { .ground { fill: #15181c } text { fill: #e6e6e6 } .grid { "
+      "stroke: "
+      "#3a3f45 } .axis, .front, .ring { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" height=\"100%\" "
+      "class=\"ground\"/>\n";
+  svg += label(kWidth / 2, 26, "middle", scatter.title, " font-size=\"15\"");
+  for (const double tick : frame.x_ticks) {
+    const double x = frame.x_at(tick);
+    svg += line(x, kTop, x, kPlotBottom, "grid") + label(x, kPlotBottom + 18, "middle", rounded(tick));
+  }
+  for (int i = 0; frame.low + i * frame.step <= frame.high + frame.step / 2; ++i) {
+    const double value = frame.low + i * frame.step;
+    const double y = frame.y_at(value);
+    svg += line(kLeft, y, kWidth - kRight, y, "grid") + label(kLeft - 8, y + 4, "end", rounded(value));
+  }
+  svg += line(kLeft, kTop, kLeft, kPlotBottom, "axis") +
+         line(kLeft, kPlotBottom, kWidth - kRight, kPlotBottom, "axis");
+  if (infinite) {
+    svg += label(kLeft + 6, kTop - 6, "start", scatter.infinite_name, " font-size=\"11\"");
+  }
+  svg += label((kLeft + kWidth - kRight) / 2, kPlotBottom + 40, "middle", scatter.x_label);
+  const double middle = kTop + kPlotHeight / 2;
+  svg += label(20, middle, "middle", scatter.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
+
+  if (!scatter.front.empty()) {
+    svg += "<polyline class=\"front\" points=\"";
+    for (const FrontPoint& point : scatter.front) {
+      svg += number(frame.x_at(point.x)) + "," + number(frame.y_at(point.y)) + " ";
+    }
+    svg += "\"/>\n";
+  }
+  for (std::size_t i = 0; i < scatter.clouds.size(); ++i) {
+    const std::string fill = std::string("fill=\"") + kColors[i % kColors.size()] + "\"";
+    for (const auto& [x, y] : scatter.clouds[i].points) {
+      svg += dot(frame.x_at(x), frame.y_at(y), 4, fill);
+    }
+    const double column = kLeft + static_cast<double>(i % 4) * (kWidth - kLeft - kRight) / 4;
+    const double row = legend + kLineHeight * static_cast<double>(i / 4);
+    svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
+  }
+  if (!scatter.front.empty()) {
+    svg += label(kLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
+  }
+  for (std::size_t i = 0; i < scatter.front.size(); ++i) {
+    const FrontPoint& point = scatter.front[i];
+    const double x = frame.x_at(point.x);
+    const double y = frame.y_at(point.y);
+    svg += dot(x, y, 6, "class=\"ring\"");
+    svg += label(x - 8, y - 8, "end", std::to_string(i + 1), " font-size=\"11\"");
+    const double column = kLeft + static_cast<double>(i / name_rows) * (kWidth - kLeft - kRight) / 2;
+    svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
+                 std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace thimble::tools

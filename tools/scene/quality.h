@@ -1,0 +1,63 @@
+/// @file quality.h
+/// What trades a picture's error for time, beside the camera: samples a pixel, a cut-off, a depth.
+#ifndef THIMBLE_TOOLS_SCENE_QUALITY_H
+#define THIMBLE_TOOLS_SCENE_QUALITY_H
+
+#include <cstdint>
+
+#include "scene/built_scene.h"
+#include "thimble/camera.h"
+#include "thimble/cutoff.h"
+#include "thimble/node_colors.h"
+#include "thimble/samples.h"
+#include "thimble/shading.h"
+
+namespace thimble::tools {
+
+inline constexpr int kMostCutoffPx = 64;
+
+struct Quality {
+  int across = 1;     ///< samples a pixel are its square
+  Q16 cutoff;         ///< in pixels, up to kMostCutoffPx; 0: none
+  int max_depth = 0;  ///< nodes that deep are solid through; 0: all levels
+
+  int samples() const { return across * across; }
+  /// Whether nodes are cut at all.
+  bool cuts() const { return cutoff.raw != 0 || max_depth != 0; }
+  bool plain() const { return across == 1 && !cuts(); }
+};
+
+/// Bytes of a band that `QualityFrame::draw_row` works in, for pictures of `width_px`.
+std::uint64_t quality_band_bytes(const Quality& quality, PixelFormat format, std::int32_t width_px);
+
+/// Draws pictures of a scene with a quality. The scene, and a colour table where one is needed, stay the
+/// caller's.
+class QualityFrame {
+ public:
+  /// `camera` is that of the picture, `fine` the same view `quality.across` times as wide and high.
+  QualityFrame(const BuiltScene& built, const Quality& quality, const Camera& camera, const Camera& fine,
+               const Shading& shading, const NodeColors& colors);
+
+  /// Draws row `y` of the picture into the front of `work` (quality_band_bytes); `counts` is added to.
+  Status draw_row(std::int32_t y, PixelFormat format, Bytes work, RenderCounts* counts,
+                  const TraceOptions& options) const;
+  /// What a ray of `camera` meets with this quality's cut-off.
+  Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
+
+ private:
+  const BuiltScene& built_;
+  Quality quality_;
+  Camera fine_;
+  Shading shading_;
+  NodeColors colors_;
+  Cutoff fine_cutoff_;
+  Cutoff cutoff_;
+};
+
+/// The mean colours that `quality` and `shading` call for, in the arena of `built`; none where none are
+/// needed. Throws InputError when they do not fit the budget, or when the scene is no compact tree.
+NodeColors take_node_colors(BuiltScene* built, const Quality& quality, const Shading& shading);
+
+}  // namespace thimble::tools
+
+#endif
