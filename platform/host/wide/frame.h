@@ -1,0 +1,69 @@
+/// @file frame.h
+/// What all boxes of a frame are projected and tested with.
+///
+/// A camera's rays are rounded affine functions of the pixel (thimble/camera.h). Their inverse, without the
+/// rounding, takes a point to the picture: with c the point less the eye,
+///
+///     column = U.c / W.c     row = V.c / W.c        (orthographic: W.c is 1, and c is taken from the base as well)
+///
+/// Which pixels can a box around c with half sides h meet? If the ray of a column P meets the point c + e of the
+/// box (|e| <= h on every axis), then U.(c + e) = P W.(c + e), so
+///
+///     |U.c - P W.c| = |(U - P W).e| <= h |U - P W|_1  and  |column - P| <= h |U - P W|_1 / W.c   for W.c > 0.
+///
+/// The right side is convex in P, so over a tile its greatest value is at one of the tile's two sides: that is
+/// `reach`. Rounding a direction by up to half a unit an axis moves its point on the picture by less than
+/// `slack`; the same bound with the direction itself as the box. Floating point adds to U.c, V.c and W.c at most
+/// `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats decide is only
+/// which pixels are looked at: a superset. Whether a ray meets a box is decided in integers, held in doubles that
+/// are large enough for them (exact.h).
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
+#define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
+
+#include <stdint.h>
+
+#include "thimble/camera.h"
+
+namespace thimble::wide {
+
+/// Pixels x0 .. x1 - 1, y0 .. y1 - 1.
+struct Tile {
+  int32_t x0 = 0;
+  int32_t y0 = 0;
+  int32_t x1 = 0;
+  int32_t y1 = 0;
+};
+
+/// Plain data, made once a frame and tile.
+struct Frame {
+  Tile tile;
+  bool perspective = false;
+
+  // Projection of the point p, in voxels: column = (u.p + u[3]) / (w.p + w[3]).
+  float u[4];
+  float v[4];
+  float w[4];
+  float reach_x;  ///< of a box of one voxel; times its side for larger ones
+  float reach_y;
+  float rounding_x;  ///< added to reach, whatever the box's size
+  float rounding_y;
+  float slack_x;  ///< pixels that are added besides
+  float slack_y;
+  float half_w;  ///< a box of one voxel lies in front of the eye's plane, at least in part, when w > -half_w
+  float rounding_w;
+
+  // The exact ray: component a is round(base + px * step_x + py * step_y), each split as high * 2^20 + low.
+  double base_high[3], base_low[3];
+  double step_x_high[3], step_x_low[3];
+  double step_y_high[3], step_y_low[3];
+  double eye[3];        ///< origin, in 1/256 voxel (orthographic: less the varying part)
+  double direction[3];  ///< orthographic: of every ray
+};
+
+/// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off that floats do
+/// not tell their pixels apart; such frames are drawn ray by ray.
+bool make_frame(const Camera& camera, const Tile& tile, Frame* frame);
+
+}  // namespace thimble::wide
+
+#endif
