@@ -67,6 +67,17 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
     eye[axis] = camera.eye()[axis].raw / 256.0;
   }
 
+  // Three products and two sums of floats: each rounds by at most half a unit of the last place of the largest magnitude
+  // that can occur.
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    frame->map_base[axis] = static_cast<float>(base[axis]);
+    frame->map_step_x[axis] = static_cast<float>(step_x[axis]);
+    frame->map_step_y[axis] = static_cast<float>(step_y[axis]);
+    largest = fmax(largest, fabs(base[axis]) + fabs(step_x[axis]) * tile.x1 + fabs(step_y[axis]) * tile.y1);
+  }
+  frame->map_error = static_cast<float>(fmin(0.5, largest * kRounding * 0.375));
+
   // Rows of the inverse of the matrix whose columns are the map's three vectors: base, step_x and step_y for a
   // perspective camera, direction, step_x and step_y for an orthographic one (in voxels, not 1/256).
   double along[3];

@@ -52,6 +52,11 @@ struct Frame {
   float half_w;  ///< a box of one voxel lies in front of the eye's plane, at least in part, when w > -half_w
   float rounding_w;
 
+  // The same map in floats, for the test that decides where it can: component a is within `map_error` of
+  // base + px * step_x + py * step_y. 0.5 where floats are too coarse to say anything.
+  float map_base[3], map_step_x[3], map_step_y[3];
+  float map_error;
+
   // The exact ray: component a is round(base + px * step_x + py * step_y), each split as high * 2^20 + low.
   double base_high[3], base_low[3];
   double step_x_high[3], step_x_low[3];

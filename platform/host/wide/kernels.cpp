@@ -45,8 +45,8 @@ struct Queue {
 struct Met {
   static constexpr size_t kSize = 1024;
   size_t count = 0;
-  alignas(64) uint64_t value[kSize + 16];  // as in Depths::nearest
-  alignas(64) uint32_t pixel[kSize + 16];  // y * width + x
+  alignas(64) uint64_t value[kSize + 64];  // as in Depths::nearest
+  alignas(64) uint32_t pixel[kSize + 64];  // y * width + x
 };
 
 // Bits 0..11 of numbers to every third bit.
@@ -199,35 +199,45 @@ inline void keep(const Depths& depths, Met* met) {
   met->count = 0;
 }
 
-// The exact test of all that waits.
+// The side of boxes in voxels as a power of two, and their x without the bits that tell it.
+template <class D>
+inline void unpack_side(D d, hn::Vec<D> entry, bool unit, hn::Vec<D>* level, hn::Vec<D>* x) {
+  *x = hn::And(entry, hn::Set(d, 1023U));
+  *level = hn::Zero(d);
+  if (!unit) {
+    const auto code = hn::ShiftRight<30>(entry);
+    const auto is_large = hn::Eq(code, hn::Set(d, 3U));
+    const auto more = hn::IfThenElseZero(is_large, hn::And(entry, hn::Set(d, 7U)));
+    *x = hn::Sub(*x, more);
+    *level = hn::Add(code, more);
+  }
+}
+
+// The exact test of what waits.
 template <bool kPerspective>
-void flush(const Frame& frame, const Run& run, const Depths& depths, Queue* queue, Met* hits, Counts* counts) {
+void test_exactly(const Frame& frame, const Run& run, const Depths& depths, Queue* queue, Met* hits, Counts* counts) {
   const F64 d;
   const size_t lanes = hn::Lanes(d);
-  counts->candidates += queue->count;
-  const size_t padded = queue->count + lanes;
-  for (size_t i = queue->count; i < padded; ++i) {  // the last vector tests pixel 0 of the tile for nothing
+  const HalfU32 d32;
+  const HalfI32 di32;
+  const U64 d64;
+  for (size_t i = queue->count; i < queue->count + lanes; ++i) {  // lanes of the last vector that are for nothing
     queue->entry[i] = 0;
     queue->x[i] = frame.tile.x0;
     queue->y[i] = frame.tile.y0;
   }
-  const HalfU32 d32;
+  counts->exact += queue->count;
   for (size_t at = 0; at < queue->count; at += lanes) {
     const Rays rays = rays_of<kPerspective>(frame, doubles(queue->x + at), doubles(queue->y + at));
     const auto entry = hn::LoadU(d32, queue->entry + at);
-    const auto within = hn::Set(d32, 1023U);
-    auto half = hn::Set(d, 256);
-    auto entry_x = hn::And(entry, within);
-    if (!run.unit) {
-      const auto code = hn::ShiftRight<30>(entry);
-      const auto is_large = hn::Eq(code, hn::Set(d32, 3U));
-      const auto more = hn::IfThenElseZero(is_large, hn::And(entry, hn::Set(d32, 7U)));
-      entry_x = hn::Sub(entry_x, more);
-      half = hn::PromoteTo(d, hn::BitCast(HalfI32(), hn::Shl(hn::Set(d32, 256U), hn::Add(code, more))));
-    }
+    hn::Vec<HalfU32> level;
+    hn::Vec<HalfU32> entry_x;
+    unpack_side(d32, entry, run.unit, &level, &entry_x);
+    const auto half = hn::PromoteTo(d, hn::BitCast(di32, hn::Shl(hn::Set(d32, 256U), level)));
     const auto as_double = [&](auto value, uint32_t corner) {
-      return hn::PromoteTo(d, hn::BitCast(HalfI32(), hn::Add(value, hn::Set(d32, corner))));
+      return hn::PromoteTo(d, hn::BitCast(di32, hn::Add(value, hn::Set(d32, corner))));
     };
+    const auto within = hn::Set(d32, 1023U);
     const hn::Vec<F64> place[3] = {as_double(entry_x, run.corner[0]),
                                    as_double(hn::And(hn::ShiftRight<10>(entry), within), run.corner[1]),
                                    as_double(hn::And(hn::ShiftRight<20>(entry), within), run.corner[2])};
@@ -236,24 +246,186 @@ void flush(const Frame& frame, const Run& run, const Depths& depths, Queue* queu
       center[axis] = hn::Add(hn::Mul(place[axis], hn::Set(d, 512)), half);
       center[axis] = hn::NegMulAdd(rays.origin[axis], hn::Set(d, 2), center[axis]);
     }
-    const auto met = meets(rays, center, half);
-    auto chosen = met;
-    if (queue->count - at < lanes) {
-      chosen = hn::And(chosen, hn::FirstN(d, queue->count - at));
-    }
-    if (hn::AllFalse(d, chosen)) {
+    auto met = hn::And(meets(rays, center, half), hn::FirstN(d, queue->count - at));
+    if (hn::AllFalse(d, met)) {
       continue;
     }
-    const U64 d64;
     const auto number = hn::PromoteTo(d64, hn::LoadU(d32, queue->number + at));
     const auto value = values_of(rays, place, half, run.unit, number);
-    const HalfI32 di32;
     const auto pixel =
         hn::Add(hn::Mul(hn::LoadU(di32, queue->y + at), hn::Set(di32, depths.width_px)), hn::LoadU(di32, queue->x + at));
-    hn::StoreU(hn::Compress(value, hn::RebindMask(d64, chosen)), d64, hits->value + hits->count);
     const auto wide_pixel = hn::PromoteTo(d64, hn::BitCast(d32, pixel));
-    hn::StoreU(hn::TruncateTo(d32, hn::Compress(wide_pixel, hn::RebindMask(d64, chosen))), d32, hits->pixel + hits->count);
-    hits->count += hn::CountTrue(d, chosen);
+    hn::StoreU(hn::Compress(value, hn::RebindMask(d64, met)), d64, hits->value + hits->count);
+    hn::StoreU(hn::TruncateTo(d32, hn::Compress(wide_pixel, hn::RebindMask(d64, met))), d32, hits->pixel + hits->count);
+    hits->count += hn::CountTrue(d, met);
+    if (hits->count + lanes > Met::kSize) {
+      counts->hits += hits->count;
+      keep(depths, hits);
+    }
+  }
+  queue->count = 0;
+}
+
+// Bits 0..9 to every third bit.
+inline hn::Vec<U32> spread10(hn::Vec<U32> v) {
+  const U32 d;
+  v = hn::And(hn::Or(v, hn::ShiftLeft<16>(v)), hn::Set(d, 0x030000FFU));
+  v = hn::And(hn::Or(v, hn::ShiftLeft<8>(v)), hn::Set(d, 0x0300F00FU));
+  v = hn::And(hn::Or(v, hn::ShiftLeft<4>(v)), hn::Set(d, 0x030C30C3U));
+  return hn::And(hn::Or(v, hn::ShiftLeft<2>(v)), hn::Set(d, 0x09249249U));
+}
+
+// The mirrored keys of a cube's corner, for each choice of axes along which rays run downwards.
+struct CubeKeys {
+  uint64_t of[8];
+  explicit CubeKeys(const Run& run) {
+    for (unsigned down = 0; down < 8; ++down) {
+      uint64_t key = 0;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const uint32_t cube = run.corner[axis] >> 10 ^ ((down >> axis & 1U) != 0 ? 3U : 0U);
+        key |= uint64_t{cube & 1U} << (30 + axis) | uint64_t{cube >> 1 & 1U} << (33 + axis);
+      }
+      of[down] = key << kEntryBits;
+    }
+  }
+};
+
+// Tests what waits in floats where they can tell, and exactly where they cannot.
+//
+// Rounded directions: off a half by more than the error of the float map, the float's nearest integer is the direction. Centres (below
+// 2^24) and directions (below 2^16) are then exact, and so is what is compared with: half * (|d_a| + |d_b|) is an integer below 2^24
+// times a power of two. c_a d_b - c_b d_a, by Kahan's method with fused products, is within 2 units in the last place of itself
+// (C.-P. Jeannerod, N. Louvet, J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5), so 2^-21 of
+// it settles what is nearer than that; without fused products the two roundings of the products count too.
+template <bool kPerspective>
+void test_all(const Frame& frame, const Run& run, const Depths& depths, const CubeKeys& cubes, Queue* queue, Queue* unsure,
+              Met* hits, Counts* counts) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  counts->candidates += queue->count;
+  for (size_t i = queue->count; i < queue->count + lanes; ++i) {
+    queue->entry[i] = 0;
+    queue->x[i] = frame.tile.x0;
+    queue->y[i] = frame.tile.y0;
+  }
+  const auto within = hn::Set(du, 1023U);
+  const auto zero = hn::Zero(d);
+  for (size_t at = 0; at < queue->count; at += lanes) {
+    const auto live = hn::FirstN(d, queue->count - at);
+    const auto x = hn::ConvertTo(d, hn::Load(di, queue->x + at));
+    const auto y = hn::ConvertTo(d, hn::Load(di, queue->y + at));
+    const auto entry = hn::Load(du, queue->entry + at);
+    hn::Vec<U32> level;
+    hn::Vec<U32> entry_x;
+    unpack_side(du, entry, run.unit, &level, &entry_x);
+    const auto half = run.unit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
+    const hn::Vec<U32> low[3] = {entry_x, hn::And(hn::ShiftRight<10>(entry), within),
+                                 hn::And(hn::ShiftRight<20>(entry), within)};
+    hn::Vec<F32> direction[3];
+    hn::Vec<F32> center[3];
+    auto unclear = hn::Lt(zero, zero);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto real = hn::MulAdd(x, hn::Set(d, frame.map_step_x[axis]),
+                                   hn::MulAdd(y, hn::Set(d, frame.map_step_y[axis]), hn::Set(d, frame.map_base[axis])));
+      const auto varying = hn::Round(real);
+      unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(real, varying)), hn::Set(d, 0.5F - frame.map_error)));
+      const auto place = hn::ConvertTo(d, hn::BitCast(di, low[axis]));
+      const float origin = static_cast<float>(512.0 * run.corner[axis] - 2 * frame.eye[axis]);
+      center[axis] = hn::Add(hn::MulAdd(place, hn::Set(d, 512.0F), hn::Set(d, origin)), half);
+      if (kPerspective) {
+        direction[axis] = varying;
+      } else {
+        direction[axis] = hn::Set(d, static_cast<float>(frame.direction[axis]));
+        center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), center[axis]);
+      }
+    }
+    // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and there.
+    hn::Vec<F32> size[3];
+    bool still[3] = {false, false, false};
+    for (int axis = 0; axis < 3; ++axis) {
+      size[axis] = hn::Abs(direction[axis]);
+      if (kPerspective) {
+        unclear = hn::Or(unclear, hn::Eq(size[axis], zero));
+      } else {
+        still[axis] = frame.direction[axis] == 0;
+      }
+    }
+    auto met = live;
+    constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+    for (const auto& pair : kPairs) {
+      const int a = pair[0];
+      const int b = pair[1];
+      if (still[a] || still[b]) {
+        continue;
+      }
+      const auto product = hn::Mul(center[b], direction[a]);
+      const auto wanted = hn::Mul(half, hn::Add(size[a], size[b]));
+#if HWY_NATIVE_FMA
+      const auto error = hn::NegMulAdd(center[b], direction[a], product);
+      const auto cross = hn::Abs(hn::Add(hn::MulSub(center[a], direction[b], product), error));
+      const auto margin = hn::Mul(wanted, hn::Set(d, 1.0F / (1 << 21)));
+#else
+      const auto other = hn::Mul(center[a], direction[b]);
+      const auto cross = hn::Abs(hn::Sub(other, product));
+      const auto margin =
+          hn::Mul(hn::Add(wanted, hn::Add(hn::Abs(other), hn::Abs(product))), hn::Set(d, 1.0F / (1 << 21)));
+#endif
+      met = hn::And(met, hn::Lt(cross, wanted));
+      unclear = hn::Or(unclear, hn::Le(hn::Abs(hn::Sub(cross, wanted)), margin));
+    }
+    const auto minus_half = hn::Neg(half);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (still[axis]) {
+        met = hn::And(met, hn::And(hn::Le(center[axis], half), hn::Gt(center[axis], minus_half)));
+        continue;
+      }
+      const auto sign = hn::CopySign(hn::Set(d, 1.0F), direction[axis]);
+      met = hn::And(met, hn::Gt(hn::Mul(sign, center[axis]), minus_half));
+    }
+    unclear = hn::And(unclear, live);
+    if (!hn::AllFalse(d, unclear)) {
+      const auto to = unsure->count;
+      hn::StoreU(hn::Compress(entry, hn::RebindMask(du, unclear)), du, unsure->entry + to);
+      hn::StoreU(hn::Compress(hn::Load(du, queue->number + at), hn::RebindMask(du, unclear)), du, unsure->number + to);
+      hn::StoreU(hn::Compress(hn::Load(di, queue->x + at), hn::RebindMask(di, unclear)), di, unsure->x + to);
+      hn::StoreU(hn::Compress(hn::Load(di, queue->y + at), hn::RebindMask(di, unclear)), di, unsure->y + to);
+      unsure->count += hn::CountTrue(d, unclear);
+      met = hn::AndNot(unclear, met);
+      if (unsure->count + 2 * lanes > Queue::kSize) {
+        test_exactly<kPerspective>(frame, run, depths, unsure, hits, counts);
+      }
+    }
+    if (hn::AllFalse(d, met)) {
+      continue;
+    }
+    // Keys, mirrored by the signs of the directions; then those that were met, in a row.
+    auto key = hn::Zero(du);
+    auto down = hn::Zero(du);
+    const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+    for (int axis = 2; axis >= 0; --axis) {
+      const auto is_down = hn::RebindMask(du, hn::Lt(direction[axis], zero));
+      auto mirrored = hn::Xor(low[axis], hn::IfThenElseZero(is_down, within));
+      if (!run.unit) {
+        mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
+      }
+      key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
+      down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
+    }
+    const auto pixel =
+        hn::Add(hn::Mul(hn::Load(di, queue->y + at), hn::Set(di, depths.width_px)), hn::Load(di, queue->x + at));
+    HWY_ALIGN uint32_t keys[64], downs[64], numbers[64];
+    const auto chosen = hn::RebindMask(du, met);
+    hn::StoreU(hn::Compress(key, chosen), du, keys);
+    hn::StoreU(hn::Compress(down, chosen), du, downs);
+    hn::StoreU(hn::Compress(hn::Load(du, queue->number + at), chosen), du, numbers);
+    hn::StoreU(hn::Compress(hn::BitCast(du, pixel), chosen), du, hits->pixel + hits->count);
+    const size_t count = hn::CountTrue(d, met);
+    for (size_t i = 0; i < count; ++i) {
+      hits->value[hits->count + i] = cubes.of[downs[i]] | uint64_t{keys[i]} << kEntryBits | numbers[i];
+    }
+    hits->count += count;
     if (hits->count + lanes > Met::kSize) {
       counts->hits += hits->count;
       keep(depths, hits);
@@ -337,7 +509,9 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
   const size_t lanes = hn::Lanes(d);
   counts->boxes += run.count;
   HWY_ALIGN Queue queue;
+  HWY_ALIGN Queue unsure;
   HWY_ALIGN Met hits;
+  const CubeKeys cubes(run);
   const auto within = hn::Set(du, 1023U);
   // The corner of the cube and the middle of a voxel go into the constants.
   const auto constant = [&](const float(&row)[4]) {
@@ -358,7 +532,7 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
   const auto one = hn::Set(d, 1.0F);
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
     if (queue.count + 4 * lanes > Queue::kSize) {
-      flush<kPerspective>(frame, run, depths, &queue, &hits, counts);
+      test_all<kPerspective>(frame, run, depths, cubes, &queue, &unsure, &hits, counts);
     }
     const uint32_t left = run.count - at;
     const auto live = hn::FirstN(d, left);
@@ -466,7 +640,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
       push(hn::And(across, down), next_x, next_y);
     }
   }
-  flush<kPerspective>(frame, run, depths, &queue, &hits, counts);
+  test_all<kPerspective>(frame, run, depths, cubes, &queue, &unsure, &hits, counts);
+  test_exactly<kPerspective>(frame, run, depths, &unsure, &hits, counts);
   counts->hits += hits.count;
   keep(depths, &hits);
 }

@@ -29,6 +29,7 @@ inline constexpr int kKeyBits = 36;
 struct Counts {
   uint64_t boxes = 0;       ///< projected
   uint64_t candidates = 0;  ///< pixels whose ray was tested against a box
+  uint64_t exact = 0;       ///< of those, how many floats could not tell
   uint64_t hits = 0;        ///< tests that were met
   uint64_t nodes = 0;       ///< blocks looked at
   uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
