@@ -5,8 +5,8 @@
 namespace thimble::wide {
 namespace {
 
-// Unit roundoff of a float times the operations that a sum of three products, a subtraction and a division take,
-// doubled.
+// Unit roundoff of a float times the operations that a sum of three products, a subtraction and a division
+// take, doubled.
 constexpr double kRounding = 16.0 / (1 << 24);
 
 struct Row {
@@ -18,7 +18,9 @@ Row cross(const double (&a)[3], const double (&b)[3]) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0}};
 }
 
-double dot(const Row& row, const double (&v)[3]) { return row.of[0] * v[0] + row.of[1] * v[1] + row.of[2] * v[2]; }
+double dot(const Row& row, const double (&v)[3]) {
+  return row.of[0] * v[0] + row.of[1] * v[1] + row.of[2] * v[2];
+}
 
 // |one - p * other|_1: how far a box of half side 1 reaches at column (or row) p, times the depth.
 double reach(const Row& one, const Row& other, double p) {
@@ -51,9 +53,9 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   frame->tile = tile;
   frame->perspective = camera.is_perspective();
   const Camera::Affine& affine = camera.affine();
-  double base[3];
-  double step_x[3];
-  double step_y[3];
+  double base[3] = {};
+  double step_x[3] = {};
+  double step_y[3] = {};
   double eye[3];  // in voxels
   for (int axis = 0; axis < 3; ++axis) {
     split(affine.base[axis], &frame->base_high[axis], &frame->base_low[axis]);
@@ -67,19 +69,29 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
     eye[axis] = camera.eye()[axis].raw / 256.0;
   }
 
-  // Three products and two sums of floats: each rounds by at most half a unit of the last place of the largest magnitude
-  // that can occur.
-  double largest = 0;
+  double whole = 0;
+  double rest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    frame->map_base[axis] = static_cast<float>(base[axis]);
-    frame->map_step_x[axis] = static_cast<float>(step_x[axis]);
-    frame->map_step_y[axis] = static_cast<float>(step_y[axis]);
-    largest = fmax(largest, fabs(base[axis]) + fabs(step_x[axis]) * tile.x1 + fabs(step_y[axis]) * tile.y1);
+    const double parts[3] = {base[axis], step_x[axis], step_y[axis]};
+    const double times[3] = {1, static_cast<double>(tile.x1), static_cast<double>(tile.y1)};
+    double whole_sum = 0;
+    double rest_sum = 0;
+    for (int part = 0; part < 3; ++part) {
+      const double nearest = nearbyint(parts[part]);
+      frame->map_whole[part][axis] = static_cast<float>(nearest);
+      frame->map_rest[part][axis] = static_cast<float>(parts[part] - nearest);
+      whole_sum += fabs(nearest) * times[part];
+      rest_sum += fabs(parts[part] - nearest) * times[part];
+    }
+    whole = fmax(whole, whole_sum);
+    rest = fmax(rest, rest_sum);
   }
-  frame->map_error = static_cast<float>(fmin(0.5, largest * kRounding * 0.375));
+  // Each of the three fractions, products and sums is rounded by half a unit in the last place of at most
+  // `rest`.
+  frame->map_error = whole < (1 << 24) ? static_cast<float>(fmin(0.5, rest * 8 / (1 << 24) + 1e-6)) : 0.5F;
 
-  // Rows of the inverse of the matrix whose columns are the map's three vectors: base, step_x and step_y for a
-  // perspective camera, direction, step_x and step_y for an orthographic one (in voxels, not 1/256).
+  // Rows of the inverse of the matrix whose columns are the map's three vectors: base, step_x and step_y for
+  // a perspective camera, direction, step_x and step_y for an orthographic one (in voxels, not 1/256).
   double along[3];
   for (int axis = 0; axis < 3; ++axis) {
     if (frame->perspective) {

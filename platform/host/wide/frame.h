@@ -4,19 +4,21 @@
 /// A camera's rays are rounded affine functions of the pixel (thimble/camera.h). Their inverse, without the
 /// rounding, takes a point to the picture: with c the point less the eye,
 ///
-///     column = U.c / W.c     row = V.c / W.c        (orthographic: W.c is 1, and c is taken from the base as well)
+///     column = U.c / W.c     row = V.c / W.c        (orthographic: W.c is 1, and c is taken from the base as
+///     well)
 ///
-/// Which pixels can a box around c with half sides h meet? If the ray of a column P meets the point c + e of the
-/// box (|e| <= h on every axis), then U.(c + e) = P W.(c + e), so
+/// Which pixels can a box around c with half sides h meet? If the ray of a column P meets the point c + e of
+/// the box (|e| <= h on every axis), then U.(c + e) = P W.(c + e), so
 ///
-///     |U.c - P W.c| = |(U - P W).e| <= h |U - P W|_1  and  |column - P| <= h |U - P W|_1 / W.c   for W.c > 0.
+///     |U.c - P W.c| = |(U - P W).e| <= h |U - P W|_1  and  |column - P| <= h |U - P W|_1 / W.c   for W.c >
+///     0.
 ///
-/// The right side is convex in P, so over a tile its greatest value is at one of the tile's two sides: that is
-/// `reach`. Rounding a direction by up to half a unit an axis moves its point on the picture by less than
-/// `slack`; the same bound with the direction itself as the box. Floating point adds to U.c, V.c and W.c at most
-/// `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats decide is only
-/// which pixels are looked at: a superset. Whether a ray meets a box is decided in integers, held in doubles that
-/// are large enough for them (exact.h).
+/// The right side is convex in P, so over a tile its greatest value is at one of the tile's two sides: that
+/// is `reach`. Rounding a direction by up to half a unit an axis moves its point on the picture by less than
+/// `slack`; the same bound with the direction itself as the box. Floating point adds to U.c, V.c and W.c at
+/// most `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats
+/// decide is only which pixels are looked at: a superset. Whether a ray meets a box is decided in integers,
+/// held in doubles that are large enough for them (exact.h).
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 #define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 
@@ -52,9 +54,10 @@ struct Frame {
   float half_w;  ///< a box of one voxel lies in front of the eye's plane, at least in part, when w > -half_w
   float rounding_w;
 
-  // The same map in floats, for the test that decides where it can: component a is within `map_error` of
-  // base + px * step_x + py * step_y. 0.5 where floats are too coarse to say anything.
-  float map_base[3], map_step_x[3], map_step_y[3];
+  // The same map in floats, for the test that decides where it can. Base and steps are split into whole
+  // numbers, whose sum is exact below 2^24, and fractions of at most a half, whose sum is within `map_error`:
+  // 0.5 where that says nothing.
+  float map_whole[3][3], map_rest[3][3];  ///< of base, step_x, step_y; by axis
   float map_error;
 
   // The exact ray: component a is round(base + px * step_x + py * step_y), each split as high * 2^20 + low.
@@ -65,8 +68,8 @@ struct Frame {
   double direction[3];  ///< orthographic: of every ray
 };
 
-/// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off that floats do
-/// not tell their pixels apart; such frames are drawn ray by ray.
+/// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off
+/// that floats do not tell their pixels apart; such frames are drawn ray by ray.
 bool make_frame(const Camera& camera, const Tile& tile, Frame* frame);
 
 }  // namespace thimble::wide

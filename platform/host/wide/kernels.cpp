@@ -74,14 +74,16 @@ struct Rays {
   hn::Vec<F64> direction[3];
 };
 
-// round(base + x * step_x + y * step_y) / 2^32 with halves away from zero, in exact steps: high parts are below 2^52, low parts
-// below 2^36.
+// round(base + x * step_x + y * step_y) / 2^32 with halves away from zero, in exact steps: high parts are
+// below 2^52, low parts below 2^36.
 inline hn::Vec<F64> rounded(const Frame& frame, int axis, hn::Vec<F64> x, hn::Vec<F64> y) {
   const F64 d;
-  const auto low = hn::MulAdd(x, hn::Set(d, frame.step_x_low[axis]),
-                              hn::MulAdd(y, hn::Set(d, frame.step_y_low[axis]), hn::Set(d, frame.base_low[axis])));
-  const auto high = hn::MulAdd(x, hn::Set(d, frame.step_x_high[axis]),
-                               hn::MulAdd(y, hn::Set(d, frame.step_y_high[axis]), hn::Set(d, frame.base_high[axis])));
+  const auto low =
+      hn::MulAdd(x, hn::Set(d, frame.step_x_low[axis]),
+                 hn::MulAdd(y, hn::Set(d, frame.step_y_low[axis]), hn::Set(d, frame.base_low[axis])));
+  const auto high =
+      hn::MulAdd(x, hn::Set(d, frame.step_x_high[axis]),
+                 hn::MulAdd(y, hn::Set(d, frame.step_y_high[axis]), hn::Set(d, frame.base_high[axis])));
   const auto carry = hn::Floor(hn::Mul(low, hn::Set(d, 1.0 / (1 << 20))));
   const auto rest = hn::NegMulAdd(carry, hn::Set(d, 1 << 20), low);
   const auto whole = hn::Add(high, carry);
@@ -109,11 +111,13 @@ inline Rays rays_of(const Frame& frame, hn::Vec<F64> x, hn::Vec<F64> y) {
   return rays;
 }
 
-// Whether rays spend a positive length, at t >= 0, in boxes whose centres are `center` (less the origin, in 1/512 voxel) and whose half sides
-// are `half` (in the same unit). All numbers are integers; products are below 2^25 * 2^20, so they are exact.
+// Whether rays spend a positive length, at t >= 0, in boxes whose centres are `center` (less the origin, in
+// 1/512 voxel) and whose half sides are `half` (in the same unit). All numbers are integers; products are
+// below 2^25 * 2^20, so they are exact.
 //
-// Two planes of different axes a and b: the ray passes the lower plane of each before the upper one of the other just when
-// |c_a d_b - c_b d_a| < half (|d_a| + |d_b|). Along an axis with d = 0 it must lie in the slab, lower plane included.
+// Two planes of different axes a and b: the ray passes the lower plane of each before the upper one of the
+// other just when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|). Along an axis with d = 0 it must lie in the
+// slab, lower plane included.
 inline hn::Mask<F64> meets(const Rays& rays, const hn::Vec<F64> (&center)[3], hn::Vec<F64> half) {
   const F64 d;
   const auto zero = hn::Zero(d);
@@ -215,13 +219,15 @@ inline void unpack_side(D d, hn::Vec<D> entry, bool unit, hn::Vec<D>* level, hn:
 
 // The exact test of what waits.
 template <bool kPerspective>
-void test_exactly(const Frame& frame, const Run& run, const Depths& depths, Queue* queue, Met* hits, Counts* counts) {
+void test_exactly(const Frame& frame, const Run& run, const Depths& depths, Queue* queue, Met* hits,
+                  Counts* counts) {
   const F64 d;
   const size_t lanes = hn::Lanes(d);
   const HalfU32 d32;
   const HalfI32 di32;
   const U64 d64;
-  for (size_t i = queue->count; i < queue->count + lanes; ++i) {  // lanes of the last vector that are for nothing
+  for (size_t i = queue->count; i < queue->count + lanes;
+       ++i) {  // lanes of the last vector that are for nothing
     queue->entry[i] = 0;
     queue->x[i] = frame.tile.x0;
     queue->y[i] = frame.tile.y0;
@@ -252,11 +258,12 @@ void test_exactly(const Frame& frame, const Run& run, const Depths& depths, Queu
     }
     const auto number = hn::PromoteTo(d64, hn::LoadU(d32, queue->number + at));
     const auto value = values_of(rays, place, half, run.unit, number);
-    const auto pixel =
-        hn::Add(hn::Mul(hn::LoadU(di32, queue->y + at), hn::Set(di32, depths.width_px)), hn::LoadU(di32, queue->x + at));
+    const auto pixel = hn::Add(hn::Mul(hn::LoadU(di32, queue->y + at), hn::Set(di32, depths.width_px)),
+                               hn::LoadU(di32, queue->x + at));
     const auto wide_pixel = hn::PromoteTo(d64, hn::BitCast(d32, pixel));
     hn::StoreU(hn::Compress(value, hn::RebindMask(d64, met)), d64, hits->value + hits->count);
-    hn::StoreU(hn::TruncateTo(d32, hn::Compress(wide_pixel, hn::RebindMask(d64, met))), d32, hits->pixel + hits->count);
+    hn::StoreU(hn::TruncateTo(d32, hn::Compress(wide_pixel, hn::RebindMask(d64, met))), d32,
+               hits->pixel + hits->count);
     hits->count += hn::CountTrue(d, met);
     if (hits->count + lanes > Met::kSize) {
       counts->hits += hits->count;
@@ -292,14 +299,15 @@ struct CubeKeys {
 
 // Tests what waits in floats where they can tell, and exactly where they cannot.
 //
-// Rounded directions: off a half by more than the error of the float map, the float's nearest integer is the direction. Centres (below
-// 2^24) and directions (below 2^16) are then exact, and so is what is compared with: half * (|d_a| + |d_b|) is an integer below 2^24
-// times a power of two. c_a d_b - c_b d_a, by Kahan's method with fused products, is within 2 units in the last place of itself
-// (C.-P. Jeannerod, N. Louvet, J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5), so 2^-21 of
-// it settles what is nearer than that; without fused products the two roundings of the products count too.
+// Rounded directions: off a half by more than the error of the float map, the float's nearest integer is the
+// direction. Centres (below 2^24) and directions (below 2^16) are then exact, and so is what is compared
+// with: half * (|d_a| + |d_b|) is an integer below 2^24 times a power of two. c_a d_b - c_b d_a, by Kahan's
+// method with fused products, is within 2 units in the last place of itself (C.-P. Jeannerod, N. Louvet,
+// J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5), so 2^-21 of it settles what
+// is nearer than that; without fused products the two roundings of the products count too.
 template <bool kPerspective>
-void test_all(const Frame& frame, const Run& run, const Depths& depths, const CubeKeys& cubes, Queue* queue, Queue* unsure,
-              Met* hits, Counts* counts) {
+void test_all(const Frame& frame, const Run& run, const Depths& depths, const CubeKeys& cubes, Queue* queue,
+              Queue* unsure, Met* hits, Counts* counts) {
   const F32 d;
   const I32 di;
   const U32 du;
@@ -320,17 +328,22 @@ void test_all(const Frame& frame, const Run& run, const Depths& depths, const Cu
     hn::Vec<U32> level;
     hn::Vec<U32> entry_x;
     unpack_side(du, entry, run.unit, &level, &entry_x);
-    const auto half = run.unit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
+    const auto half =
+        run.unit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
     const hn::Vec<U32> low[3] = {entry_x, hn::And(hn::ShiftRight<10>(entry), within),
                                  hn::And(hn::ShiftRight<20>(entry), within)};
     hn::Vec<F32> direction[3];
     hn::Vec<F32> center[3];
     auto unclear = hn::Lt(zero, zero);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto real = hn::MulAdd(x, hn::Set(d, frame.map_step_x[axis]),
-                                   hn::MulAdd(y, hn::Set(d, frame.map_step_y[axis]), hn::Set(d, frame.map_base[axis])));
-      const auto varying = hn::Round(real);
-      unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(real, varying)), hn::Set(d, 0.5F - frame.map_error)));
+      const auto map = [&](const float(&of)[3][3]) {
+        return hn::MulAdd(x, hn::Set(d, of[1][axis]),
+                          hn::MulAdd(y, hn::Set(d, of[2][axis]), hn::Set(d, of[0][axis])));
+      };
+      const auto rest = map(frame.map_rest);
+      const auto nearest = hn::Round(rest);
+      unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+      const auto varying = hn::Add(map(frame.map_whole), nearest);
       const auto place = hn::ConvertTo(d, hn::BitCast(di, low[axis]));
       const float origin = static_cast<float>(512.0 * run.corner[axis] - 2 * frame.eye[axis]);
       center[axis] = hn::Add(hn::MulAdd(place, hn::Set(d, 512.0F), hn::Set(d, origin)), half);
@@ -341,7 +354,8 @@ void test_all(const Frame& frame, const Run& run, const Depths& depths, const Cu
         center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), center[axis]);
       }
     }
-    // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and there.
+    // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and
+    // there.
     hn::Vec<F32> size[3];
     bool still[3] = {false, false, false};
     for (int axis = 0; axis < 3; ++axis) {
@@ -388,7 +402,8 @@ void test_all(const Frame& frame, const Run& run, const Depths& depths, const Cu
     if (!hn::AllFalse(d, unclear)) {
       const auto to = unsure->count;
       hn::StoreU(hn::Compress(entry, hn::RebindMask(du, unclear)), du, unsure->entry + to);
-      hn::StoreU(hn::Compress(hn::Load(du, queue->number + at), hn::RebindMask(du, unclear)), du, unsure->number + to);
+      hn::StoreU(hn::Compress(hn::Load(du, queue->number + at), hn::RebindMask(du, unclear)), du,
+                 unsure->number + to);
       hn::StoreU(hn::Compress(hn::Load(di, queue->x + at), hn::RebindMask(di, unclear)), di, unsure->x + to);
       hn::StoreU(hn::Compress(hn::Load(di, queue->y + at), hn::RebindMask(di, unclear)), di, unsure->y + to);
       unsure->count += hn::CountTrue(d, unclear);
@@ -413,8 +428,8 @@ void test_all(const Frame& frame, const Run& run, const Depths& depths, const Cu
       key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
       down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
     }
-    const auto pixel =
-        hn::Add(hn::Mul(hn::Load(di, queue->y + at), hn::Set(di, depths.width_px)), hn::Load(di, queue->x + at));
+    const auto pixel = hn::Add(hn::Mul(hn::Load(di, queue->y + at), hn::Set(di, depths.width_px)),
+                               hn::Load(di, queue->x + at));
     HWY_ALIGN uint32_t keys[64], downs[64], numbers[64];
     const auto chosen = hn::RebindMask(du, met);
     hn::StoreU(hn::Compress(key, chosen), du, keys);
@@ -452,7 +467,8 @@ void draw_large(const Frame& frame, const Run& run, uint32_t entry, uint32_t num
       const Rays rays = rays_of<kPerspective>(frame, column, hn::Set(d, y));
       hn::Vec<F64> center[3];
       for (int axis = 0; axis < 3; ++axis) {
-        center[axis] = hn::NegMulAdd(rays.origin[axis], hn::Set(d, 2), hn::Set(d, corner[axis] * 512 + side * 256));
+        center[axis] =
+            hn::NegMulAdd(rays.origin[axis], hn::Set(d, 2), hn::Set(d, corner[axis] * 512 + side * 256));
       }
       auto met = meets(rays, center, half);
       const int32_t left = where.x1 - x;
@@ -468,7 +484,8 @@ void draw_large(const Frame& frame, const Run& run, uint32_t entry, uint32_t num
       const uint32_t first_pixel = static_cast<uint32_t>(y * depths.width_px + x);
       const auto pixel = hn::Iota(d64, first_pixel);
       hn::StoreU(hn::Compress(value, hn::RebindMask(d64, met)), d64, hits->value + hits->count);
-      hn::StoreU(hn::TruncateTo(HalfU32(), hn::Compress(pixel, hn::RebindMask(d64, met))), HalfU32(), hits->pixel + hits->count);
+      hn::StoreU(hn::TruncateTo(HalfU32(), hn::Compress(pixel, hn::RebindMask(d64, met))), HalfU32(),
+                 hits->pixel + hits->count);
       hits->count += hn::CountTrue(d, met);
       if (hits->count + hn::Lanes(d) > Met::kSize) {
         counts->hits += hits->count;
@@ -478,8 +495,8 @@ void draw_large(const Frame& frame, const Run& run, uint32_t entry, uint32_t num
   }
 }
 
-// Whether a box in the eye's plane may be seen through the tile: not when it lies wholly outside one of the tile's
-// four sides. In doubles, by its corners: few boxes come here.
+// Whether a box in the eye's plane may be seen through the tile: not when it lies wholly outside one of the
+// tile's four sides. In doubles, by its corners: few boxes come here.
 bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
   const double edge[4] = {frame.tile.x0 - 1.0 - frame.slack_x, frame.tile.x1 + 1.0 + frame.slack_x,
                           frame.tile.y0 - 1.0 - frame.slack_y, frame.tile.y1 + 1.0 + frame.slack_y};
@@ -536,7 +553,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
     }
     const uint32_t left = run.count - at;
     const auto live = hn::FirstN(d, left);
-    const auto entry = left >= lanes ? hn::LoadU(du, run.entries + at) : hn::MaskedLoad(hn::FirstN(du, left), du, run.entries + at);
+    const auto entry = left >= lanes ? hn::LoadU(du, run.entries + at)
+                                     : hn::MaskedLoad(hn::FirstN(du, left), du, run.entries + at);
     auto entry_x = hn::And(entry, within);
     auto side = one;
     if (!kUnit) {
@@ -574,10 +592,10 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
       column = hn::Mul(column, per_depth);
       row = hn::Mul(row, per_depth);
     }
-    const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x)), per_depth,
-                                   hn::Set(d, frame.slack_x));
-    const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y)), per_depth,
-                                   hn::Set(d, frame.slack_y));
+    const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x)),
+                                   per_depth, hn::Set(d, frame.slack_x));
+    const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y)),
+                                   per_depth, hn::Set(d, frame.slack_y));
     const auto low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
     const auto high_x = hn::Min(hn::Floor(hn::Add(column, half_x)), last_x);
     const auto low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
@@ -594,7 +612,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
         if (crosses_tile(frame, center, box)) {
           ++counts->crossing;
           draw_large<kPerspective>(frame, run, run.entries[i], run.first + i,
-                                   {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1}, depths, &hits, counts);
+                                   {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1}, depths,
+                                   &hits, counts);
         }
       }
     }
@@ -603,7 +622,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
     }
     const auto wide_x = hn::Gt(high_x, low_x);
     const auto wide_y = hn::Gt(high_y, low_y);
-    const auto large = hn::And(seen, hn::Or(hn::Gt(high_x, hn::Add(low_x, one)), hn::Gt(high_y, hn::Add(low_y, one))));
+    const auto large =
+        hn::And(seen, hn::Or(hn::Gt(high_x, hn::Add(low_x, one)), hn::Gt(high_y, hn::Add(low_y, one))));
     if (!hn::AllFalse(d, large)) {
       HWY_ALIGN int32_t x0[64], x1[64], y0[64], y1[64];
       hn::Store(hn::ConvertTo(di, low_x), di, x0);
@@ -648,9 +668,11 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Count
 
 void draw_run(const Frame& frame, const Run& run, const Depths& depths, Counts* counts) {
   if (frame.perspective) {
-    run.unit ? draw_run_of<true, true>(frame, run, depths, counts) : draw_run_of<true, false>(frame, run, depths, counts);
+    run.unit ? draw_run_of<true, true>(frame, run, depths, counts)
+             : draw_run_of<true, false>(frame, run, depths, counts);
   } else {
-    run.unit ? draw_run_of<false, true>(frame, run, depths, counts) : draw_run_of<false, false>(frame, run, depths, counts);
+    run.unit ? draw_run_of<false, true>(frame, run, depths, counts)
+             : draw_run_of<false, false>(frame, run, depths, counts);
   }
 }
 
@@ -665,8 +687,9 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
     const auto y = hn::Add(hn::LoadU(d, ys + at), middle);
     const auto z = hn::Add(hn::LoadU(d, zs + at), middle);
     const auto apply = [&](const float(&row)[4]) {
-      return hn::MulAdd(hn::Set(d, row[0]), x,
-                        hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, row[3]))));
+      return hn::MulAdd(
+          hn::Set(d, row[0]), x,
+          hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, row[3]))));
     };
     auto column = apply(frame.u);
     auto row = apply(frame.v);
@@ -683,8 +706,10 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
       column = hn::Mul(column, per_depth);
       row = hn::Mul(row, per_depth);
     }
-    const auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x * side + frame.rounding_x), per_depth, hn::Set(d, frame.slack_x));
-    const auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y * side + frame.rounding_y), per_depth, hn::Set(d, frame.slack_y));
+    const auto half_x =
+        hn::MulAdd(hn::Set(d, frame.reach_x * side + frame.rounding_x), per_depth, hn::Set(d, frame.slack_x));
+    const auto half_y =
+        hn::MulAdd(hn::Set(d, frame.reach_y * side + frame.rounding_y), per_depth, hn::Set(d, frame.slack_y));
     const auto first_x = hn::Set(d, static_cast<float>(frame.tile.x0));
     const auto end_x = hn::Set(d, static_cast<float>(frame.tile.x1));
     const auto first_y = hn::Set(d, static_cast<float>(frame.tile.y0));
@@ -707,14 +732,15 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
     hn::StoreU(hn::ConvertTo(di, y1), di, stored[3]);
     for (size_t i = 0; i < lanes; ++i) {
       const bool empty = stored[0][i] >= stored[2][i] || stored[1][i] >= stored[3][i];
-      rectangles[at + i] = empty ? Rectangle{0, 0, 0, 0}
-                                 : Rectangle{stored[0][i], stored[1][i], stored[2][i], stored[3][i]};
+      rectangles[at + i] =
+          empty ? Rectangle{0, 0, 0, 0} : Rectangle{stored[0][i], stored[1][i], stored[2][i], stored[3][i]};
     }
   }
 }
 
 // Every third bit of a key, from bit 0 on, to bits 0..11.
-inline hn::Vec<F64> gathered(hn::Vec<hn::RebindToUnsigned<F64>> key, hn::Mask<F64> mirrored, hn::Vec<HalfI32> side_mask) {
+inline hn::Vec<F64> gathered(hn::Vec<hn::RebindToUnsigned<F64>> key, hn::Mask<F64> mirrored,
+                             hn::Vec<HalfI32> side_mask) {
   const F64 d;
   const hn::RebindToUnsigned<F64> d64;
   auto v = hn::And(key, hn::Set(d64, 0x1249249249249249ULL));
@@ -728,10 +754,12 @@ inline hn::Vec<F64> gathered(hn::Vec<hn::RebindToUnsigned<F64>> key, hn::Mask<F6
   return hn::PromoteTo(d, hn::And(place, side_mask));
 }
 
-// Where the ray enters its box: over the axes, the latest t of the nearer plane, ties to the lowest axis; compared as
-// fractions, num_a |d_b| > num_b |d_a|, in integers below 2^44. The box is one that the ray meets.
+// Where the ray enters its box: over the axes, the latest t of the nearer plane, ties to the lowest axis;
+// compared as fractions, num_a |d_b| > num_b |d_a|, in integers below 2^44. The box is one that the ray
+// meets.
 template <bool kPerspective>
-void resolve(const Frame& frame, int32_t y, int32_t word, const uint64_t* nearest, const int32_t* levels, WordHits* hits) {
+void resolve(const Frame& frame, int32_t y, int32_t word, const uint64_t* nearest, const int32_t* levels,
+             WordHits* hits) {
   const F64 d;
   const HalfI32 d32;
   const hn::RebindToUnsigned<F64> d64;
@@ -776,8 +804,9 @@ void resolve_word(const Frame& frame, int32_t y, int32_t word, const uint64_t* n
                     : resolve<false>(frame, y, word, nearest, levels, hits);
 }
 
-// The core's sum, with its two roundings. Quotients of integers below 2^32 by integers below 2^20 are exact after Floor: two
-// different ones lie farther apart than a double's last bit. The product has up to 55 bits and is taken in two parts.
+// The core's sum, with its two roundings. Quotients of integers below 2^32 by integers below 2^20 are exact
+// after Floor: two different ones lie farther apart than a double's last bit. The product has up to 55 bits
+// and is taken in two parts.
 void find_depths(const WordHits& hits, int32_t depth_per_t_q8, int32_t* depths_q8) {
   const F64 d;
   const HalfI32 d32;
@@ -817,7 +846,9 @@ void find_depths(const WordHits& hits, int32_t depth_per_t_q8, int32_t* depths_q
   }
 }
 
-const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
+const char* instruction_set() {
+  return hwy::TargetName(HWY_TARGET);
+}
 
 }  // namespace
 }  // namespace thimble::wide::HWY_NAMESPACE
@@ -846,7 +877,9 @@ void resolve_word(const Frame& frame, int32_t y, int32_t word, const uint64_t* n
 void find_depths(const WordHits& hits, int32_t depth_per_t_q8, int32_t* depths_q8) {
   HWY_DYNAMIC_DISPATCH(find_depths)(hits, depth_per_t_q8, depths_q8);
 }
-const char* instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
+const char* instruction_set() {
+  return HWY_DYNAMIC_DISPATCH(instruction_set)();
+}
 
 }  // namespace thimble::wide
 #endif

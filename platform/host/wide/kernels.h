@@ -1,6 +1,6 @@
 /// @file kernels.h
-/// The loops that run over boxes and pixels, compiled for several instruction sets and chosen when the program
-/// runs (Highway).
+/// The loops that run over boxes and pixels, compiled for several instruction sets and chosen when the
+/// program runs (Highway).
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
 #define THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
 
@@ -13,10 +13,10 @@ namespace thimble::wide {
 
 /// The nearest box of every pixel so far.
 ///
-/// A box's key is the Morton code of its lowest corner, mirrored in every axis along which the pixel's ray runs
-/// downwards. Of two boxes of an octree that a ray meets, the one met first has the smaller key: they part at
-/// some node, in which the ray passes the children in the order of their mirrored numbers. So depth is compared as integers,
-/// exactly.
+/// A box's key is the Morton code of its lowest corner, mirrored in every axis along which the pixel's ray
+/// runs downwards. Of two boxes of an octree that a ray meets, the one met first has the smaller key: they
+/// part at some node, in which the ray passes the children in the order of their mirrored numbers. So depth
+/// is compared as integers, exactly.
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
   uint64_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit
@@ -57,16 +57,18 @@ void find_rectangles(const Frame& frame, const float* x, const float* y, const f
 
 /// 64 pixels of a row, as the exact rays meet their nearest boxes.
 struct WordHits {
-  alignas(64) int32_t axis[64];         ///< -1: the ray starts inside
-  alignas(64) int32_t numerator[64];    ///< t = numerator / (256 * |direction[axis]|)
+  alignas(64) int32_t axis[64];       ///< -1: the ray starts inside
+  alignas(64) int32_t numerator[64];  ///< t = numerator / (256 * |direction[axis]|)
   alignas(64) int32_t direction[3][64];
 };
-/// Fills in what `nearest` (64 of them, see Depths) says of columns 64 * word and on of row `y`. `levels`: log2 of the
-/// boxes' sides, or null when all are one voxel. Pixels that are not covered get numbers without meaning.
+/// Fills in what `nearest` (64 of them, see Depths) says of columns 64 * word and on of row `y`. `levels`:
+/// log2 of the boxes' sides, or null when all are one voxel. Pixels that are not covered get numbers without
+/// meaning.
 void resolve_word(const Frame& frame, int32_t y, int32_t word, const uint64_t* nearest, const int32_t* levels,
                   WordHits* hits);
 
-/// Distances along the camera's forward vector, in 1/256 voxel (thimble/shading.h: planar_depth_q8), of 64 hits.
+/// Distances along the camera's forward vector, in 1/256 voxel (thimble/shading.h: planar_depth_q8), of 64
+/// hits.
 void find_depths(const WordHits& hits, int32_t depth_per_t_q8, int32_t* depths_q8);
 
 /// The name of the instruction set in use.

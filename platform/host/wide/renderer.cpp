@@ -5,7 +5,9 @@
 namespace thimble::wide {
 namespace {
 
-int32_t words_of(int32_t width_px) { return (width_px + 63) / 64; }
+int32_t words_of(int32_t width_px) {
+  return (width_px + 63) / 64;
+}
 
 bool all_covered(const Depths& depths, const Rectangle& where) {
   const int32_t first = where.x0 >> 6;
@@ -26,7 +28,8 @@ bool all_covered(const Depths& depths, const Rectangle& where) {
   return true;
 }
 
-// Children that lie nearer to the eye in every axis come first: their numbers, exclusive-or'ed with this, ascend.
+// Children that lie nearer to the eye in every axis come first: their numbers, exclusive-or'ed with this,
+// ascend.
 unsigned first_octant(const Camera& camera, const uint32_t (&corner)[3], int level) {
   unsigned first = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -45,7 +48,8 @@ struct Block {
   Rectangle where;
 };
 
-void draw_block(const VoxelLists& lists, const Frame& frame, const Block& block, const Depths& depths, Counts* counts) {
+void draw_block(const VoxelLists& lists, const Frame& frame, const Block& block, const Depths& depths,
+                Counts* counts) {
   const BlockNode& node = lists.nodes()[block.node];
   Run run;
   run.entries = lists.entries().data + node.first_entry;
@@ -73,8 +77,8 @@ void draw_block(const VoxelLists& lists, const Frame& frame, const Block& block,
   }
 }
 
-void draw_blocks(const VoxelLists& lists, const Camera& camera, const Frame& frame, uint32_t block_boxes, const Depths& depths,
-                 Counts* counts) {
+void draw_blocks(const VoxelLists& lists, const Camera& camera, const Frame& frame, uint32_t block_boxes,
+                 const Depths& depths, Counts* counts) {
   const CompactTree& tree = lists.tree();
   if (tree.empty()) {
     return;
@@ -115,7 +119,8 @@ void draw_blocks(const VoxelLists& lists, const Camera& camera, const Frame& fra
       const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
       stack[depth++] = {node.first_child + number,
                         block.level - 1,
-                        {block.corner[0] + ((octant & 1U) != 0 ? side : 0), block.corner[1] + ((octant & 2U) != 0 ? side : 0),
+                        {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
+                         block.corner[1] + ((octant & 2U) != 0 ? side : 0),
                          block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
                         where[octant]};
     }
@@ -125,9 +130,15 @@ void draw_blocks(const VoxelLists& lists, const Camera& camera, const Frame& fra
 // Turns the nearest boxes of some rows into pixels.
 class Painter {
  public:
-  Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band, size_t stride,
-          const Frame& frame, const Depths& depths)
-      : lists_(lists), camera_(camera), shading_(shading), band_(band), stride_(stride), frame_(frame), depths_(depths) {
+  Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
+          size_t stride, const Frame& frame, const Depths& depths)
+      : lists_(lists),
+        camera_(camera),
+        shading_(shading),
+        band_(band),
+        stride_(stride),
+        frame_(frame),
+        depths_(depths) {
     background_ = shade(Hit{}, Ray{}, camera, shading);
   }
 
@@ -138,7 +149,8 @@ class Painter {
     memset(line, 0, row_bytes(band_.format, width));
     uint64_t hits = 0;
     for (int32_t word = 0; word < depths_.words; ++word) {
-      const uint64_t covered = depths_.covered[static_cast<size_t>(y) * static_cast<size_t>(depths_.words) + static_cast<size_t>(word)];
+      const uint64_t covered = depths_.covered[static_cast<size_t>(y) * static_cast<size_t>(depths_.words) +
+                                               static_cast<size_t>(word)];
       const int32_t first = word * 64;
       const int32_t pixels = width - first < 64 ? width - first : 64;
       Rgb8 colors[64];
@@ -156,8 +168,9 @@ class Painter {
 
  private:
   void color_word(int32_t y, int32_t word, uint64_t covered, Rgb8* colors) const {
-    const uint64_t* nearest =
-        depths_.nearest + static_cast<size_t>(y) * static_cast<size_t>(depths_.width_px) + static_cast<size_t>(word) * 64;
+    const uint64_t* nearest = depths_.nearest +
+                              static_cast<size_t>(y) * static_cast<size_t>(depths_.width_px) +
+                              static_cast<size_t>(word) * 64;
     int32_t levels[64] = {};
     const uint32_t number_mask = (uint32_t{1} << kEntryBits) - 1;
     if (lists_.has_blocks()) {
@@ -180,8 +193,9 @@ class Painter {
         const int32_t speed = direction[hit.axis];
         hit.t_denominator = 256 * (speed < 0 ? -speed : speed);
       }
-      hit.material = lists_.materials().empty() ? lists_.tree().uniform_material()
-                                                : lists_.materials()[static_cast<uint32_t>(nearest[i]) & number_mask];
+      hit.material = lists_.materials().empty()
+                         ? lists_.tree().uniform_material()
+                         : lists_.materials()[static_cast<uint32_t>(nearest[i]) & number_mask];
       colors[i] = shade(hit, Ray{{}, direction}, camera_, shading_);
     }
   }
@@ -207,11 +221,12 @@ class Painter {
 size_t workspace_bytes(int32_t width_px, int32_t height_px) {
   const size_t width = static_cast<size_t>(words_of(width_px)) * 64;
   const size_t height = static_cast<size_t>(height_px);
-  return (width * height) * sizeof(uint64_t) + width / 64 * height * sizeof(uint64_t) + 64 * sizeof(uint64_t) + 64;
+  return (width * height) * sizeof(uint64_t) + width / 64 * height * sizeof(uint64_t) +
+         64 * sizeof(uint64_t) + 64;
 }
 
-Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band, Bytes workspace,
-              RenderCounts* counts, const Options& options, Stats* stats) {
+Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
+              Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
   const int32_t width = camera.width_px();
   if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
       band.rows > camera.height_px() - band.first_row) {
@@ -225,7 +240,8 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (band.rows == 0) {
     return Status::kOk;
   }
-  if (line_bytes > band.pixels.size || static_cast<size_t>(band.rows - 1) > (band.pixels.size - line_bytes) / stride ||
+  if (line_bytes > band.pixels.size ||
+      static_cast<size_t>(band.rows - 1) > (band.pixels.size - line_bytes) / stride ||
       workspace.size < workspace_bytes(width, camera.height_px())) {
     return Status::kOutOfMemory;
   }

@@ -75,7 +75,8 @@ size_t VoxelLists::bytes(const CompactTree& tree) {
   }
   const int level = choose_block_level(tree, census);
   const size_t nodes = tree.empty() ? 0 : census.level_begin[level - 1];
-  return census.boxes * (sizeof(uint32_t) + (tree.many_materials() ? 1 : 0)) + nodes * sizeof(BlockNode) + 3 * 64;
+  return census.boxes * (sizeof(uint32_t) + (tree.many_materials() ? 1 : 0)) + nodes * sizeof(BlockNode) +
+         3 * 64;
 }
 
 Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists) {
@@ -97,8 +98,8 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
     return Status::kOutOfMemory;
   }
 
-  // Down and across in Morton order. Nodes of one level come in just the order in which they stand, so a running number a
-  // level finds them without counting bits.
+  // Down and across in Morton order. Nodes of one level come in just the order in which they stand, so a
+  // running number a level finds them without counting bits.
   uint32_t next_node[kMaxLevel + 1];
   for (int level = 1; level <= tree.level(); ++level) {
     next_node[level] = census.level_begin[level];
@@ -136,7 +137,8 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
       } else if (level == 1) {
         for (; step.mask != 0; step.mask &= step.mask - 1) {
           const unsigned octant = static_cast<unsigned>(__builtin_ctz(step.mask));
-          const uint32_t at[3] = {corner[0] + (octant & 1U), corner[1] + (octant >> 1 & 1U), corner[2] + (octant >> 2)};
+          const uint32_t at[3] = {corner[0] + (octant & 1U), corner[1] + (octant >> 1 & 1U),
+                                  corner[2] + (octant >> 2)};
           add(at, 0, materials == nullptr ? 0 : tree.voxel_material(voxel));
           ++voxel;
         }

@@ -6,10 +6,11 @@
 ///     bits  0..9    x     lowest corner, in voxels, within the aligned cube of 1024 a side that holds it
 ///     bits 10..19   y
 ///     bits 20..29   z
-///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner 8-aligned
+///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner
+///     8-aligned
 ///
-/// Every node of the tree covers a run of entries. Nodes of `block_level` and above are kept with their runs, so
-/// that whole blocks can be skipped, or taken front to back.
+/// Every node of the tree covers a run of entries. Nodes of `block_level` and above are kept with their runs,
+/// so that whole blocks can be skipped, or taken front to back.
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_VOXEL_LISTS_H
 #define THIMBLE_PLATFORM_HOST_WIDE_VOXEL_LISTS_H
 
@@ -37,8 +38,8 @@ struct BlockNode {
 /// bytes a node of block_level and above, of which there are at most one in 16 boxes and 4096.
 class VoxelLists {
  public:
-  /// Makes the lists; takes `bytes(tree)` from the arena. One pass over the masks and one over the boxes. kOutOfMemory,
-  /// with nothing taken, when they do not fit; kDamaged for a tree that does not validate.
+  /// Makes the lists; takes `bytes(tree)` from the arena. One pass over the masks and one over the boxes.
+  /// kOutOfMemory, with nothing taken, when they do not fit; kDamaged for a tree that does not validate.
   static Status make(const CompactTree& tree, Arena* arena, VoxelLists* lists);
   /// What `make` takes at most. Reads all masks.
   static size_t bytes(const CompactTree& tree);
