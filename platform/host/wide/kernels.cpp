@@ -498,19 +498,22 @@ void draw_large(const Frame& frame, const Run& run, uint32_t entry, uint32_t num
 // Whether a box in the eye's plane may be seen through the tile: not when it lies wholly outside one of the
 // tile's four sides. In doubles, by its corners: few boxes come here.
 bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
-  const double edge[4] = {frame.tile.x0 - 1.0 - frame.slack_x, frame.tile.x1 + 1.0 + frame.slack_x,
-                          frame.tile.y0 - 1.0 - frame.slack_y, frame.tile.y1 + 1.0 + frame.slack_y};
+  const double slack_x = double{frame.slack_x} + 1;
+  const double slack_y = double{frame.slack_y} + 1;
+  const double edge[4] = {frame.tile.x0 - slack_x, frame.tile.x1 + slack_x, frame.tile.y0 - slack_y,
+                          frame.tile.y1 + slack_y};
   for (int s = 0; s < 4; ++s) {
     const float(&row)[4] = s < 2 ? frame.u : frame.v;
     const double sign = (s & 1) != 0 ? -1 : 1;
-    double distance = sign * (row[3] - edge[s] * frame.w[3]);
+    const auto plane = [&](int i) { return sign * (double{row[i]} - edge[s] * double{frame.w[i]}); };
+    double distance = plane(3);
     double reach = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double normal = sign * (row[axis] - edge[s] * frame.w[axis]);
+      const double normal = plane(axis);
       distance += normal * center[axis];
       reach += (normal < 0 ? -normal : normal) * side * 0.5;
     }
-    const double rounding = s < 2 ? frame.rounding_x : frame.rounding_y;
+    const double rounding = double{s < 2 ? frame.rounding_x : frame.rounding_y};
     if (distance + reach + 2 * rounding < 0) {
       return false;
     }
