@@ -51,6 +51,7 @@ void split(int64_t value, double* high, double* low) {
 bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   constexpr double kOne = 4294967296.0;  // 2^32
   frame->tile = tile;
+  frame->camera = camera;
   frame->perspective = camera.is_perspective();
   const Camera::Affine& affine = camera.affine();
   double base[3] = {};
@@ -64,8 +65,6 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
     base[axis] = static_cast<double>(affine.base[axis]) / kOne;
     step_x[axis] = static_cast<double>(affine.step_x[axis]) / kOne;
     step_y[axis] = static_cast<double>(affine.step_y[axis]) / kOne;
-    frame->eye[axis] = camera.eye()[axis].raw;
-    frame->direction[axis] = camera.direction()[axis];
     eye[axis] = camera.eye()[axis].raw / 256.0;
   }
 
@@ -97,7 +96,7 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
     if (frame->perspective) {
       along[axis] = base[axis];
     } else {
-      along[axis] = frame->direction[axis];
+      along[axis] = camera.direction()[axis];
       eye[axis] += base[axis] / 256;
       step_x[axis] /= 256;
       step_y[axis] /= 256;

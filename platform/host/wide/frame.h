@@ -17,8 +17,8 @@
 /// is `reach`. Rounding a direction by up to half a unit an axis moves its point on the picture by less than
 /// `slack`; the same bound with the direction itself as the box. Floating point adds to U.c, V.c and W.c at
 /// most `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats
-/// decide is only which pixels are looked at: a superset. Whether a ray meets a box is decided in integers,
-/// held in doubles that are large enough for them (exact.h).
+/// decide is only which pixels are looked at: a superset. Whether a ray meets a box is judged on the ray's own
+/// integers (kernels.cpp, exact.h).
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 #define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 
@@ -64,8 +64,7 @@ struct Frame {
   double base_high[3], base_low[3];
   double step_x_high[3], step_x_low[3];
   double step_y_high[3], step_y_low[3];
-  double eye[3];        ///< origin, in 1/256 voxel (orthographic: less the varying part)
-  double direction[3];  ///< orthographic: of every ray
+  Camera camera;
 };
 
 /// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off

@@ -1,6 +1,11 @@
 /// @file kernels.h
 /// The loops that run over boxes and pixels, compiled for several instruction sets and chosen when the
 /// program runs (Highway).
+///
+/// A box goes through three stages. It is projected, sixteen boxes at a time, to the rectangle of pixels that
+/// it might cover. Small rectangles become candidates, pairs of a box and a pixel, in a queue that is tested
+/// when it is full; of large ones the rows are tested at once. What is met goes into the picture when it is
+/// nearer than what is there.
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
 #define THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
 
@@ -8,6 +13,7 @@
 #include <stdint.h>
 
 #include "host/wide/frame.h"
+#include "thimble/shading.h"
 
 namespace thimble::wide {
 
@@ -19,8 +25,8 @@ namespace thimble::wide {
 /// is compared as integers, exactly.
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
-  uint64_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit
-  int32_t width_px;
+  uint32_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit
+  int32_t width_px;   ///< 32 * words, a multiple of 64
   int32_t words;
 };
 inline constexpr int kEntryBits = 28;
@@ -33,19 +39,63 @@ struct Counts {
   uint64_t hits = 0;        ///< tests that were met
   uint64_t nodes = 0;       ///< blocks looked at
   uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
+
+  void add(const Counts& other) {
+    boxes += other.boxes;
+    candidates += other.candidates;
+    exact += other.exact;
+    hits += other.hits;
+    nodes += other.nodes;
+    crossing += other.crossing;
+  }
+};
+
+/// Pairs of a box and a pixel. Behind the last there is room for the store of a whole vector.
+struct Pairs {
+  static constexpr size_t kSize = 512;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
+};
+
+/// What one thread has under way, from run to run. 30 KiB.
+struct Batch {
+  Pairs waiting;  ///< for the test in floats
+  Pairs unclear;  ///< for the exact one
+  // Met, on the way into the picture.
+  size_t met = 0;
+  alignas(64) uint32_t key[Pairs::kRoom];   ///< within the cube
+  alignas(64) uint32_t down[Pairs::kRoom];  ///< a bit for each axis along which the ray runs downwards
+  alignas(64) uint32_t number[Pairs::kRoom];
+  alignas(64) uint32_t pixel[Pairs::kRoom];  ///< y * width_px + x
+  // Of the cube that the pairs lie in.
+  uint32_t corner[3] = {1, 1, 1};  ///< none yet
+  uint64_t cube_value[8];          ///< its corner's key, by `down`
+  float constant[3];               ///< of u, v and w, for corners within the cube
+  Counts counts;
 };
 
 /// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
 struct Run {
   const uint32_t* entries;
   uint32_t count;
-  uint32_t first;  ///< number of the first of them
+  const uint32_t* numbers;  ///< of the entries; null: they count up from `first`
+  uint32_t first;
   uint32_t corner[3];
   bool unit;  ///< whether all are one voxel
+  /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
+  /// look.
+  bool behind;
+  /// Whether, besides, each entry lies in front of the ones after it, where any ray meets both.
+  bool sorted;
 };
 
-/// Draws the boxes of a run into `depths`.
-void draw_run(const Frame& frame, const Run& run, const Depths& depths, Counts* counts);
+/// Draws the boxes of a run. Some may stay in the batch until `finish`.
+void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch);
+/// Draws what waits in the batch.
+void finish(const Frame& frame, const Depths& depths, Batch* batch);
 
 /// Where up to 8 boxes may be seen: the pixels x0 .. x1 - 1, y0 .. y1 - 1 of the tile, none when x0 >= x1.
 struct Rectangle {
@@ -55,21 +105,19 @@ struct Rectangle {
 void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
                      Rectangle* rectangles);
 
-/// 64 pixels of a row, as the exact rays meet their nearest boxes.
-struct WordHits {
-  alignas(64) int32_t axis[64];       ///< -1: the ray starts inside
-  alignas(64) int32_t numerator[64];  ///< t = numerator / (256 * |direction[axis]|)
-  alignas(64) int32_t direction[3][64];
+/// Up to 64 pixels of a row and their nearest boxes.
+struct Pixels {
+  uint32_t count = 0;
+  int32_t y = 0;
+  alignas(64) int32_t x[64];
+  alignas(64) uint64_t nearest[64];  ///< as in Depths
+  alignas(64) int32_t level[64];     ///< log2 of the boxes' sides
 };
-/// Fills in what `nearest` (64 of them, see Depths) says of columns 64 * word and on of row `y`. `levels`:
-/// log2 of the boxes' sides, or null when all are one voxel. Pixels that are not covered get numbers without
-/// meaning.
-void resolve_word(const Frame& frame, int32_t y, int32_t word, const uint64_t* nearest, const int32_t* levels,
-                  WordHits* hits);
-
-/// Distances along the camera's forward vector, in 1/256 voxel (thimble/shading.h: planar_depth_q8), of 64
-/// hits.
-void find_depths(const WordHits& hits, int32_t depth_per_t_q8, int32_t* depths_q8);
+/// What shade() does for ShadeMode::kDepth: `gray[64]`.
+void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
+                uint8_t* gray);
+/// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates: `face[64]`.
+void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face);
 
 /// The name of the instruction set in use.
 const char* instruction_set();

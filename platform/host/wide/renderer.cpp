@@ -1,23 +1,40 @@
 #include "host/wide/renderer.h"
 
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 #include <string.h>
+
+#include <new>
+
+#include "host/wide/exact.h"
+#include "host/wide/painter.h"
 
 namespace thimble::wide {
 namespace {
 
+// Runs of more boxes than this are cut up, flat or not, so that blocks out of sight are not projected.
+constexpr uint32_t kFlatBoxes = 4096;
+constexpr uint32_t kBlockBoxes = 96;
+// Voxels of at least so many pixels a side are drawn one behind the other.
+constexpr float kSortedPx = 2.5F;
+constexpr uint32_t kMostSorted = 512;
+// Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
+constexpr double kBlocksFrom = 1.5;
+
 int32_t words_of(int32_t width_px) {
-  return (width_px + 63) / 64;
+  return (width_px + 63) / 64 * 2;
 }
 
 bool all_covered(const Depths& depths, const Rectangle& where) {
-  const int32_t first = where.x0 >> 6;
-  const int32_t last = (where.x1 - 1) >> 6;
-  const uint64_t head = ~uint64_t{0} << (where.x0 & 63);
-  const uint64_t tail = ~uint64_t{0} >> (63 - ((where.x1 - 1) & 63));
+  const int32_t first = where.x0 >> 5;
+  const int32_t last = (where.x1 - 1) >> 5;
+  const uint32_t head = UINT32_MAX << (where.x0 & 31);
+  const uint32_t tail = UINT32_MAX >> (31 - ((where.x1 - 1) & 31));
   for (int32_t y = where.y0; y < where.y1; ++y) {
-    const uint64_t* row = depths.covered + static_cast<size_t>(y) * static_cast<size_t>(depths.words);
+    const uint32_t* row = depths.covered + static_cast<ptrdiff_t>(y) * depths.words;
     for (int32_t word = first; word <= last; ++word) {
-      uint64_t wanted = ~uint64_t{0};
+      uint32_t wanted = UINT32_MAX;
       wanted &= word == first ? head : wanted;
       wanted &= word == last ? tail : wanted;
       if ((row[word] & wanted) != wanted) {
@@ -28,19 +45,6 @@ bool all_covered(const Depths& depths, const Rectangle& where) {
   return true;
 }
 
-// Children that lie nearer to the eye in every axis come first: their numbers, exclusive-or'ed with this,
-// ascend.
-unsigned first_octant(const Camera& camera, const uint32_t (&corner)[3], int level) {
-  unsigned first = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int64_t middle = (int64_t{corner[axis]} + (int64_t{1} << (level - 1))) * 256;
-    const bool upper_first =
-        camera.is_perspective() ? camera.eye()[axis].raw >= middle : camera.direction()[axis] < 0;
-    first |= upper_first ? 1U << axis : 0U;
-  }
-  return first;
-}
-
 struct Block {
   uint32_t node;
   int level;
@@ -48,188 +52,212 @@ struct Block {
   Rectangle where;
 };
 
-void draw_block(const VoxelLists& lists, const Frame& frame, const Block& block, const Depths& depths,
-                Counts* counts) {
-  const BlockNode& node = lists.nodes()[block.node];
-  Run run;
-  run.entries = lists.entries().data + node.first_entry;
-  run.count = node.entries;
-  run.first = node.first_entry;
-  run.unit = !lists.has_blocks();
-  const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
-  if (block.level <= kCubeLevel) {
+// One tile of the picture, by one thread.
+class TileDrawer {
+ public:
+  TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, bool by_blocks, Batch* batch)
+      : lists_(lists), frame_(frame), depths_(depths), by_blocks_(by_blocks), batch_(batch) {
+    const Camera& camera = frame.camera;
     for (int axis = 0; axis < 3; ++axis) {
-      run.corner[axis] = block.corner[axis] & ~cube;
+      // Rays of a parallel camera come from beyond the world.
+      eye_cell_[axis] = camera.is_perspective()       ? camera.eye()[axis].raw >> 8
+                        : camera.direction()[axis] < 0 ? INT32_MAX
+                                                       : INT32_MIN;
     }
-    draw_run(frame, run, depths, counts);
-    return;
   }
-  // A solid block of several cubes, an entry each, in Morton order.
-  run.count = 1;
-  for (uint32_t piece = 0; piece < node.entries; ++piece) {
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      const uint32_t place = (piece >> axis & 1U) | (piece >> (3 + axis) & 1U) << 1;
-      run.corner[axis] = block.corner[axis] + (place << kCubeLevel);
-    }
-    draw_run(frame, run, depths, counts);
-    ++run.entries;
-    ++run.first;
-  }
-}
 
-void draw_blocks(const VoxelLists& lists, const Camera& camera, const Frame& frame, uint32_t block_boxes,
-                 const Depths& depths, Counts* counts) {
-  const CompactTree& tree = lists.tree();
-  if (tree.empty()) {
-    return;
-  }
-  Block stack[7 * kMaxLevel + 8];
-  int depth = 0;
-  stack[depth++] = {0, tree.level(), {0, 0, 0}, {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1}};
-  while (depth > 0) {
-    const Block block = stack[--depth];
-    ++counts->nodes;
-    if (all_covered(depths, block.where)) {
-      continue;
+  void draw() {
+    const CompactTree& tree = lists_.tree();
+    if (tree.empty()) {
+      return;
     }
-    const BlockNode& node = lists.nodes()[block.node];
-    const unsigned mask = tree.mask(block.node);
-    const bool small = node.entries <= block_boxes && block.level <= kCubeLevel;
-    if (mask == 0 || block.level <= lists.block_level() || small) {
-      draw_block(lists, frame, block, depths, counts);
-      continue;
-    }
-    const uint32_t side = uint32_t{1} << (block.level - 1);
-    float x[8];
-    float y[8];
-    float z[8];
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      x[octant] = static_cast<float>(block.corner[0] + ((octant & 1U) != 0 ? side : 0));
-      y[octant] = static_cast<float>(block.corner[1] + ((octant & 2U) != 0 ? side : 0));
-      z[octant] = static_cast<float>(block.corner[2] + ((octant & 4U) != 0 ? side : 0));
-    }
-    Rectangle where[8];
-    find_rectangles(frame, x, y, z, static_cast<float>(side), where);
-    const unsigned first = first_octant(camera, block.corner, block.level);
-    for (unsigned turn = 8; turn-- > 0;) {  // the last pushed is the first drawn
-      const unsigned octant = turn ^ first;
-      if ((mask >> octant & 1U) == 0 || where[octant].x0 >= where[octant].x1) {
+    Block stack[7 * kMaxLevel + 8];
+    int depth = 0;
+    stack[depth++] = {0, tree.level(), {0, 0, 0}, {frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}};
+    const uint32_t small = by_blocks_ ? kBlockBoxes : kFlatBoxes;
+    while (depth > 0) {
+      const Block block = stack[--depth];
+      ++batch_->counts.nodes;
+      if (by_blocks_ && all_covered(depths_, block.where)) {
         continue;
       }
-      const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
-      stack[depth++] = {node.first_child + number,
-                        block.level - 1,
-                        {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
-                         block.corner[1] + ((octant & 2U) != 0 ? side : 0),
-                         block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
-                        where[octant]};
-    }
-  }
-}
-
-// Turns the nearest boxes of some rows into pixels.
-class Painter {
- public:
-  Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
-          size_t stride, const Frame& frame, const Depths& depths)
-      : lists_(lists),
-        camera_(camera),
-        shading_(shading),
-        band_(band),
-        stride_(stride),
-        frame_(frame),
-        depths_(depths) {
-    background_ = shade(Hit{}, Ray{}, camera, shading);
-  }
-
-  uint64_t paint_row(int32_t row) const {
-    const int32_t y = band_.first_row + row;
-    uint8_t* line = band_.pixels.data + stride_ * static_cast<size_t>(row);
-    const int32_t width = camera_.width_px();
-    memset(line, 0, row_bytes(band_.format, width));
-    uint64_t hits = 0;
-    for (int32_t word = 0; word < depths_.words; ++word) {
-      const uint64_t covered = depths_.covered[static_cast<size_t>(y) * static_cast<size_t>(depths_.words) +
-                                               static_cast<size_t>(word)];
-      const int32_t first = word * 64;
-      const int32_t pixels = width - first < 64 ? width - first : 64;
-      Rgb8 colors[64];
-      for (Rgb8& color : colors) {
-        color = background_;
+      const BlockNode& node = lists_.nodes()[block.node];
+      const unsigned mask = tree.mask(block.node);
+      const bool is_small = node.entries <= small && block.level <= kCubeLevel;
+      if (mask == 0 || block.level <= lists_.block_level() || is_small) {
+        draw_block(block, node);
+        continue;
       }
-      if (covered != 0) {
-        hits += static_cast<unsigned>(__builtin_popcountll(covered));
-        color_word(y, word, covered, colors);
+      const uint32_t side = uint32_t{1} << (block.level - 1);
+      float x[8];
+      float y[8];
+      float z[8];
+      unsigned first = 0;  // the octant nearest to the eye
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        x[octant] = static_cast<float>(block.corner[0] + ((octant & 1U) != 0 ? side : 0));
+        y[octant] = static_cast<float>(block.corner[1] + ((octant & 2U) != 0 ? side : 0));
+        z[octant] = static_cast<float>(block.corner[2] + ((octant & 4U) != 0 ? side : 0));
       }
-      store(line, first, pixels, y, colors);
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        first |= eye_cell_[axis] >= static_cast<int32_t>(block.corner[axis] + side) ? 1U << axis : 0U;
+      }
+      Rectangle where[8];
+      find_rectangles(frame_, x, y, z, static_cast<float>(side), where);
+      for (unsigned turn = 8; turn-- > 0;) {  // the last pushed is the first drawn
+        const unsigned octant = turn ^ first;
+        if ((mask >> octant & 1U) == 0 || where[octant].x0 >= where[octant].x1) {
+          continue;
+        }
+        const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
+        stack[depth++] = {node.first_child + number,
+                          block.level - 1,
+                          {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
+                           block.corner[1] + ((octant & 2U) != 0 ? side : 0),
+                           block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
+                          where[octant]};
+      }
     }
-    return hits;
+    finish(frame_, depths_, batch_);
   }
 
  private:
-  void color_word(int32_t y, int32_t word, uint64_t covered, Rgb8* colors) const {
-    const uint64_t* nearest = depths_.nearest +
-                              static_cast<size_t>(y) * static_cast<size_t>(depths_.width_px) +
-                              static_cast<size_t>(word) * 64;
-    int32_t levels[64] = {};
-    const uint32_t number_mask = (uint32_t{1} << kEntryBits) - 1;
-    if (lists_.has_blocks()) {
-      for (uint64_t left = covered; left != 0; left &= left - 1) {
-        const int i = __builtin_ctzll(left);
-        const uint32_t entry = lists_.entries()[static_cast<uint32_t>(nearest[i]) & number_mask];
-        levels[i] = static_cast<int32_t>((entry >> 30) < 3 ? entry >> 30 : 3 + (entry & 7U));
+  void draw_block(const Block& block, const BlockNode& node) {
+    Run run;
+    run.entries = lists_.entries().data + node.first_entry;
+    run.numbers = nullptr;
+    run.count = node.entries;
+    run.first = node.first_entry;
+    run.unit = !lists_.has_blocks();
+    run.behind = by_blocks_;
+    run.sorted = node.entries <= 1;
+    const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
+    if (block.level <= kCubeLevel) {
+      for (int axis = 0; axis < 3; ++axis) {
+        run.corner[axis] = block.corner[axis] & ~cube;
       }
+      if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && voxel_px(block) >= kSortedPx) {
+        sort(block, &run);
+      }
+      draw_run(frame_, run, depths_, batch_);
+      return;
     }
-    WordHits hits;
-    resolve_word(frame_, y, word, nearest, lists_.has_blocks() ? levels : nullptr, &hits);
-    for (uint64_t left = covered; left != 0; left &= left - 1) {
-      const int i = __builtin_ctzll(left);
-      Hit hit;
-      hit.kind = HitKind::kHit;
-      hit.axis = static_cast<int8_t>(hits.axis[i]);
-      hit.t_numerator = hits.numerator[i];
-      const Vec3i direction{hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
-      if (hit.axis >= 0) {
-        const int32_t speed = direction[hit.axis];
-        hit.t_denominator = 256 * (speed < 0 ? -speed : speed);
+    // A solid block of several cubes, an entry each, in Morton order.
+    run.behind = false;
+    run.count = 1;
+    for (uint32_t piece = 0; piece < node.entries; ++piece) {
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const uint32_t place = (piece >> axis & 1U) | (piece >> (3 + axis) & 1U) << 1;
+        run.corner[axis] = block.corner[axis] + (place << kCubeLevel);
       }
-      hit.material = lists_.materials().empty()
-                         ? lists_.tree().uniform_material()
-                         : lists_.materials()[static_cast<uint32_t>(nearest[i]) & number_mask];
-      colors[i] = shade(hit, Ray{{}, direction}, camera_, shading_);
+      draw_run(frame_, run, depths_, batch_);
+      ++run.entries;
+      ++run.first;
     }
   }
 
-  void store(uint8_t* line, int32_t first, int32_t pixels, int32_t y, const Rgb8* colors) const {
-    for (int32_t i = 0; i < pixels; ++i) {
-      store_pixel(line, first + i, y, band_.format, colors[i]);
+  // How large a voxel of the block looks, about.
+  float voxel_px(const Block& block) const {
+    if (!frame_.perspective) {
+      return 2 * frame_.reach_x;
     }
+    float depth = frame_.w[3];
+    const float middle = static_cast<float>(1 << block.level) * 0.5F;
+    for (int axis = 0; axis < 3; ++axis) {
+      depth += frame_.w[axis] * (static_cast<float>(block.corner[axis]) + middle);
+    }
+    return depth <= 0 ? 1e9F : 2 * frame_.reach_x / depth;
+  }
+
+  // The run front to back. Entries of an octant stand together, in every block of the tree; so the octants are
+  // taken in the order of their distance from the eye, down to single entries.
+  void sort(const Block& block, Run* run) {
+    struct Part {
+      uint32_t begin, end;
+      int32_t level;
+      uint32_t corner[3];
+    };
+    Part stack[7 * kCubeLevel + 8];
+    int depth = 0;
+    uint32_t written = 0;
+    stack[depth++] = {0, run->count, block.level, {block.corner[0], block.corner[1], block.corner[2]}};
+    while (depth > 0) {
+      const Part part = stack[--depth];
+      if (part.end - part.begin == 1 || part.level == 0) {
+        for (uint32_t i = part.begin; i < part.end; ++i) {
+          sorted_entries_[written] = run->entries[i];
+          sorted_numbers_[written] = run->first + i;
+          ++written;
+        }
+        continue;
+      }
+      const int32_t level = part.level - 1;
+      unsigned first = 0;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const int32_t middle = static_cast<int32_t>(part.corner[axis] + (uint32_t{1} << level));
+        first |= eye_cell_[axis] >= middle ? 1U << axis : 0U;
+      }
+      uint32_t begin[9] = {};
+      uint32_t at = part.begin;
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        begin[octant] = at;
+        for (; at < part.end; ++at) {
+          const uint32_t entry = run->entries[at];
+          const unsigned of = (x_of(entry) >> level & 1U) | (entry >> (10 + level) & 1U) << 1 |
+                              (entry >> (20 + level) & 1U) << 2;
+          if (of != octant) {
+            break;
+          }
+        }
+      }
+      begin[8] = at;
+      for (unsigned turn = 8; turn-- > 0;) {
+        const unsigned octant = turn ^ first;
+        if (begin[octant] == begin[octant + 1]) {
+          continue;
+        }
+        Part child{begin[octant], begin[octant + 1], level, {0, 0, 0}};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+          child.corner[axis] = part.corner[axis] + ((octant >> axis & 1U) << level);
+        }
+        stack[depth++] = child;
+      }
+    }
+    run->entries = sorted_entries_;
+    run->numbers = sorted_numbers_;
+    run->sorted = true;
   }
 
   const VoxelLists& lists_;
-  const Camera& camera_;
-  const Shading& shading_;
-  const Band& band_;
-  size_t stride_;
   const Frame& frame_;
   const Depths& depths_;
-  Rgb8 background_;
+  bool by_blocks_;
+  Batch* batch_;
+  int32_t eye_cell_[3];
+  uint32_t sorted_entries_[kMostSorted];
+  uint32_t sorted_numbers_[kMostSorted];
 };
 
-}  // namespace
-
-size_t workspace_bytes(int32_t width_px, int32_t height_px) {
-  const size_t width = static_cast<size_t>(words_of(width_px)) * 64;
-  const size_t height = static_cast<size_t>(height_px);
-  return (width * height) * sizeof(uint64_t) + width / 64 * height * sizeof(uint64_t) +
-         64 * sizeof(uint64_t) + 64;
+// How often over the boxes would cover the picture, about: as many pixels as a voxel in the middle of what is
+// occupied takes, times the boxes.
+double times_covered(const VoxelLists& lists, const Frame& frame) {
+  const VoxelBox& bounds = lists.tree().bounds();
+  double depth = double{frame.w[3]};
+  for (int axis = 0; axis < 3; ++axis) {
+    depth += double{frame.w[axis]} * (bounds.min[axis] + bounds.max[axis]) / 2;
+  }
+  const double nearest = double{frame.half_w} * 64;
+  depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
+  const double area = 4 * double{frame.reach_x} * double{frame.reach_y} / (depth * depth);
+  const double pixels =
+      static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
+  return static_cast<double>(lists.entries().size) * area / pixels;
 }
 
-Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
-              Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
+Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
+             const Options& options) {
   const int32_t width = camera.width_px();
   if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row) {
+      band.rows > camera.height_px() - band.first_row || options.threads < 1 || options.threads > kMaxThreads) {
     return Status::kBadArgument;
   }
   const size_t line_bytes = row_bytes(band.format, width);
@@ -242,37 +270,92 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   }
   if (line_bytes > band.pixels.size ||
       static_cast<size_t>(band.rows - 1) > (band.pixels.size - line_bytes) / stride ||
-      workspace.size < workspace_bytes(width, camera.height_px())) {
+      workspace.size < workspace_bytes(width, band.rows, options.threads)) {
     return Status::kOutOfMemory;
   }
-  if (lists.entries().size > size_t{1} << kEntryBits) {
+  return lists.entries().size > size_t{1} << kEntryBits ? Status::kTooFine : Status::kOk;
+}
+
+}  // namespace
+
+size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
+  const size_t words = static_cast<size_t>(words_of(width_px)) * static_cast<size_t>(rows);
+  return words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) +
+         static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+}
+
+Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
+              Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
+  const Status status = check(lists, camera, band, workspace, options);
+  if (status != Status::kOk || band.rows == 0) {
+    return status;
+  }
+  // A tile is some whole rows. With several threads there are more tiles than threads, so that one that is slow
+  // does not hold the frame.
+  const int32_t tile_count = options.threads == 1 ? 1 : 8 * options.threads;
+  int32_t tile_rows = (band.rows + tile_count - 1) / tile_count;
+  tile_rows = tile_rows < 8 ? 8 : tile_rows;
+  const auto make_tile = [&](int32_t row, Frame* frame) {
+    const int32_t end = row + tile_rows < band.rows ? row + tile_rows : band.rows;
+    return make_frame(camera, {0, band.first_row + row, camera.width_px(), band.first_row + end}, frame);
+  };
+  Frame frame;
+  for (int32_t row = 0; row < band.rows; row += tile_rows) {
+    if (!make_tile(row, &frame)) {
+      return Status::kTooFine;
+    }
+  }
+  if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
     return Status::kTooFine;
   }
+
   Arena arena(workspace);
   Depths depths;
-  depths.words = words_of(width);
-  depths.width_px = depths.words * 64;
-  const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(camera.height_px());
-  depths.covered = reinterpret_cast<uint64_t*>(arena.take(words * sizeof(uint64_t)).data);
-  depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 64 * sizeof(uint64_t)).data);
-  memset(depths.covered, 0, words * sizeof(uint64_t));
+  depths.words = words_of(camera.width_px());
+  depths.width_px = depths.words * 32;
+  const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(band.rows);
+  depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 32 * sizeof(uint64_t), 64).data);
+  depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t)).data);
+  const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
+  const auto batch_of = [&](int thread) {
+    return new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
+  };
 
-  Frame frame;
-  if (!make_frame(camera, {0, band.first_row, width, band.first_row + band.rows}, &frame)) {
-    return Status::kTooFine;
-  }
   Stats done;
-  done.block_boxes = options.block_boxes == 0 ? 256 : options.block_boxes;
-  draw_blocks(lists, camera, frame, done.block_boxes, depths, &done.counts);
-  const Painter painter(lists, camera, shading, band, stride, frame, depths);
+  done.order = options.order;
+  if (done.order == Order::kAuto) {
+    done.order = times_covered(lists, frame) < kBlocksFrom ? Order::kFlat : Order::kBlocks;
+  }
+  const bool by_blocks = done.order == Order::kBlocks || options.threads > 1;
+  const Painter painter(lists, camera, shading, band);
+  const auto draw_tile = [&](int32_t row, Batch* batch) {
+    Frame tile;
+    (void)make_tile(row, &tile);
+    Depths part = depths;  // by rows of the picture
+    const ptrdiff_t first = band.first_row;
+    part.nearest -= first * depths.width_px;
+    part.covered -= first * depths.words;
+    const ptrdiff_t y0 = tile.tile.y0;
+    memset(part.covered + y0 * depths.words, 0,
+           static_cast<size_t>(tile.tile.y1 - y0) * static_cast<size_t>(depths.words) * sizeof(uint32_t));
+    TileDrawer(lists, tile, part, by_blocks, batch).draw();
+    uint64_t hits = 0;
+    for (int32_t y = tile.tile.y0; y < tile.tile.y1; ++y) {
+      hits += painter.paint_row(tile, y, part.covered + static_cast<ptrdiff_t>(y) * depths.words,
+                                part.nearest + static_cast<ptrdiff_t>(y) * depths.width_px);
+    }
+    return hits;
+  };
   uint64_t hits = 0;
-  for (int32_t row = 0; row < band.rows; ++row) {
-    hits += painter.paint_row(row);
+  if (options.threads == 1) {
+    Batch* const batch = batch_of(0);
+    hits = draw_tile(0, batch);
+    done.counts = batch->counts;
   }
   if (counts != nullptr) {
-    counts->rays += static_cast<uint64_t>(width) * static_cast<uint64_t>(band.rows);
+    counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
     counts->hits += hits;
-    counts->node_visits += done.counts.candidates;
+    counts->node_visits += done.counts.candidates + done.counts.nodes;
   }
   if (stats != nullptr) {
     *stats = done;

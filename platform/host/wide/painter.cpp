@@ -1,0 +1,133 @@
+#include "host/wide/painter.h"
+
+#include <string.h>
+
+#include "host/wide/exact.h"
+
+namespace thimble::wide {
+namespace {
+
+constexpr uint32_t kNumberMask = (uint32_t{1} << kEntryBits) - 1;
+
+// A hit on that face, and a ray for it.
+Rgb8 color_of_face(unsigned face, uint8_t material, const Camera& camera, const Shading& shading) {
+  Hit hit;
+  hit.kind = HitKind::kHit;
+  hit.axis = static_cast<int8_t>(face / 2);
+  hit.material = material;
+  Ray ray;
+  ray.direction[static_cast<int>(face / 2)] = face % 2 != 0 ? -1 : 1;
+  return shade(hit, ray, camera, shading);
+}
+
+}  // namespace
+
+Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band)
+    : lists_(lists),
+      camera_(camera),
+      shading_(shading),
+      band_(band),
+      stride_(band.stride_bytes == 0 ? row_bytes(band.format, camera.width_px()) : band.stride_bytes),
+      background_(shade(Hit{}, Ray{}, camera, shading)) {
+  for (unsigned face = 0; face < 6; ++face) {
+    faces_[face] = color_of_face(face, lists.tree().uniform_material(), camera, shading);
+  }
+}
+
+// All of the row. In formats of less than a byte, pixels are or'ed into zeros: the covered ones stay 0.
+void Painter::fill_background(uint8_t* line, int32_t y, const uint32_t* covered) const {
+  const int32_t width = camera_.width_px();
+  const size_t bytes = row_bytes(band_.format, width);
+  const bool is_gray = background_.r == background_.g && background_.g == background_.b;
+  if (background_ == Rgb8{} || (is_gray && band_.format == PixelFormat::kRgb888) ||
+      band_.format == PixelFormat::kGray8) {
+    memset(line, gray_of(background_), bytes);
+    return;
+  }
+  memset(line, 0, bytes);
+  for (int32_t x = 0; x < width; ++x) {
+    if ((covered[x >> 5] >> (x & 31) & 1U) == 0) {
+      store_pixel(line, x, y, band_.format, background_);
+    }
+  }
+}
+
+void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
+  const uint32_t count = pixels->count;
+  const auto number = [&](uint32_t i) { return static_cast<uint32_t>(pixels->nearest[i]) & kNumberMask; };
+  Rgb8 colors[64];
+  if (shading_.mode == ShadeMode::kMono) {
+    for (uint32_t i = 0; i < count; ++i) {
+      colors[i] = {255, 255, 255};
+    }
+  } else {
+    if (lists_.has_blocks()) {
+      for (uint32_t i = 0; i < count; ++i) {
+        pixels->level[i] = level_of(lists_.entries()[number(i)]);
+      }
+    }
+    uint8_t codes[64];
+    if (shading_.mode == ShadeMode::kDepth) {
+      find_grays(frame, *pixels, camera_.depth_per_t_q8(), shading_, codes);
+      if (band_.format == PixelFormat::kGray8) {
+        for (uint32_t i = 0; i < count; ++i) {
+          line[pixels->x[i]] = codes[i];
+        }
+        return;
+      }
+      for (uint32_t i = 0; i < count; ++i) {
+        colors[i] = {codes[i], codes[i], codes[i]};
+      }
+    } else {
+      find_faces(frame, *pixels, codes);
+      const bool by_face = shading_.mode == ShadeMode::kNormal || lists_.materials().empty();
+      for (uint32_t i = 0; i < count; ++i) {
+        colors[i] = by_face
+                        ? faces_[codes[i]]
+                        : color_of_face(codes[i], lists_.materials()[number(i)], camera_, shading_);
+      }
+    }
+  }
+  if (band_.format == PixelFormat::kRgb888) {
+    for (uint32_t i = 0; i < count; ++i) {
+      store_pixel(line, pixels->x[i], pixels->y, PixelFormat::kRgb888, colors[i]);
+    }
+    return;
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    store_pixel(line, pixels->x[i], pixels->y, band_.format, colors[i]);
+  }
+}
+
+uint64_t Painter::paint_row(const Frame& frame, int32_t y, const uint32_t* covered,
+                            const uint64_t* nearest) const {
+  uint8_t* const line = band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
+  fill_background(line, y, covered);
+  Pixels pixels;
+  pixels.y = y;
+  memset(pixels.x, 0, sizeof(pixels.x));
+  memset(pixels.nearest, 0, sizeof(pixels.nearest));
+  memset(pixels.level, 0, sizeof(pixels.level));
+  uint64_t hits = 0;
+  const int32_t words = (camera_.width_px() + 31) / 32;
+  for (int32_t word = 0; word < words; ++word) {
+    uint32_t bits = covered[word];
+    hits += static_cast<unsigned>(__builtin_popcount(bits));
+    if (static_cast<uint32_t>(__builtin_popcount(bits)) + pixels.count > 64) {
+      paint(frame, &pixels, line);
+      pixels.count = 0;
+    }
+    for (; bits != 0; bits &= bits - 1) {
+      const int32_t x = word * 32 + __builtin_ctz(bits);
+      pixels.x[pixels.count] = x;
+      pixels.nearest[pixels.count] = nearest[x];
+      ++pixels.count;
+    }
+  }
+  if (pixels.count != 0) {
+    paint(frame, &pixels, line);
+  }
+  return hits;
+}
+
+}  // namespace thimble::wide
