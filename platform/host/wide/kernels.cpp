@@ -488,6 +488,107 @@ void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch*
   }
 }
 
+// Some boxes of a run on the picture: the pixels low_x .. low_x + wide_x, low_y .. low_y + wide_y.
+struct Projected {
+  hn::Vec<U32> entry;
+  hn::Vec<F32> low_x, low_y;
+  hn::Vec<F32> wide_x, wide_y;
+  hn::Mask<F32> seen;
+  hn::Mask<F32> crossing;  // middle behind the eye's plane, but not all of it
+};
+
+template <bool kPerspective, bool kUnit>
+HWY_INLINE Projected project(const Frame& frame, const Run& run, const Batch& batch, uint32_t at) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  const auto within = hn::Set(du, kWithin);
+  const auto first_x = hn::Set(d, static_cast<float>(frame.tile.x0));
+  const auto last_x = hn::Set(d, static_cast<float>(frame.tile.x1 - 1));
+  const auto first_y = hn::Set(d, static_cast<float>(frame.tile.y0));
+  const auto last_y = hn::Set(d, static_cast<float>(frame.tile.y1 - 1));
+  const auto zero = hn::Zero(d);
+  const auto one = hn::Set(d, 1.0F);
+  Projected boxes;
+  const size_t left = run.count - at < lanes ? run.count - at : lanes;
+  const auto live = hn::FirstN(d, left);
+  boxes.entry = left == lanes ? hn::LoadU(du, run.entries + at)
+                              : hn::MaskedLoad(hn::FirstN(du, left), du, run.entries + at);
+  const auto entry = boxes.entry;
+  hn::Vec<U32> level;
+  hn::Vec<U32> entry_x;
+  unpack_side(du, entry, kUnit, &level, &entry_x);
+  auto x = hn::ConvertTo(d, hn::BitCast(di, entry_x));
+  auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
+  auto z = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<20>(entry), within)));
+  auto side = one;
+  if (!kUnit) {
+    side = hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+    const auto middle = hn::Mul(side, hn::Set(d, 0.5F));
+    x = hn::Add(x, middle);
+    y = hn::Add(y, middle);
+    z = hn::Add(z, middle);
+  }
+  const auto apply = [&](const float(&row)[4], float last) {
+    return hn::MulAdd(hn::Set(d, row[0]), x,
+                      hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, last))));
+  };
+  auto column = apply(frame.u, batch.constant[0]);
+  auto row = apply(frame.v, batch.constant[1]);
+  boxes.seen = live;
+  boxes.crossing = hn::Lt(one, zero);
+  auto per_depth = one;
+  if (kPerspective) {
+    const auto depth = apply(frame.w, batch.constant[2]);
+    const auto behind = hn::Le(depth, zero);
+    const auto reach_w = hn::MulAdd(hn::Set(d, frame.half_w), side, hn::Set(d, frame.rounding_w));
+    boxes.crossing = hn::And(live, hn::And(behind, hn::Gt(hn::Add(depth, reach_w), zero)));
+    boxes.seen = hn::AndNot(behind, boxes.seen);
+    per_depth = hn::Div(one, depth);
+    column = hn::Mul(column, per_depth);
+    row = hn::Mul(row, per_depth);
+  }
+  const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x)),
+                                 per_depth, hn::Set(d, frame.slack_x));
+  const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y)),
+                                 per_depth, hn::Set(d, frame.slack_y));
+  boxes.low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
+  boxes.low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
+  boxes.wide_x = hn::Sub(hn::Min(hn::Floor(hn::Add(column, half_x)), last_x), boxes.low_x);
+  boxes.wide_y = hn::Sub(hn::Min(hn::Floor(hn::Add(row, half_y)), last_y), boxes.low_y);
+  boxes.seen = hn::And(boxes.seen, hn::Ge(hn::Min(boxes.wide_x, boxes.wide_y), zero));
+  return boxes;
+}
+
+// Of the pixels (x .. x + 24, y), a bit each: which are not covered. Lanes outside `mask` get numbers without
+// meaning.
+HWY_INLINE hn::Vec<U32> open_pixels(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) {
+  const U32 d;
+  // Words need not be aligned: the byte that holds the first pixel begins one.
+  const auto byte = hn::Add(hn::Mul(y, hn::Set(d, static_cast<uint32_t>(depths.words) * 4)), hn::ShiftRight<3>(x));
+  const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
+#if HWY_TARGET == HWY_SCALAR
+  uint32_t word = 0;
+  __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths.covered) + hn::GetLane(safe), sizeof(word));
+  const auto covered = hn::Set(d, word);
+#else
+  const auto covered = hn::GatherOffset(d, depths.covered, hn::BitCast(I32(), safe));
+#endif
+  return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
+}
+
+// Whether there is one among the first `wide` + 1 of them.
+HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  // 2^(wide + 1) - 1
+  const auto count = hn::BitCast(du, hn::ConvertTo(di, hn::Add(wide, hn::Set(d, 1.0F))));
+  const auto bits = hn::Sub(hn::Shl(hn::Set(du, 1U), hn::Min(count, hn::Set(du, 25U))), hn::Set(du, 1U));
+  return hn::RebindMask(d, hn::Ne(hn::And(open, bits), hn::Zero(du)));
+}
+
 template <bool kPerspective, bool kUnit>
 void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const F32 d;
@@ -505,71 +606,22 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     kept = false;
   }
   batch->counts.boxes += run.count;
-  const auto within = hn::Set(du, kWithin);
-  const auto first_x = hn::Set(d, static_cast<float>(frame.tile.x0));
-  const auto last_x = hn::Set(d, static_cast<float>(frame.tile.x1 - 1));
-  const auto first_y = hn::Set(d, static_cast<float>(frame.tile.y0));
-  const auto last_y = hn::Set(d, static_cast<float>(frame.tile.y1 - 1));
-  const auto zero = hn::Zero(d);
-  const auto one = hn::Set(d, 1.0F);
   const auto most = hn::Set(d, (run.sorted ? kMostQueuedSorted : kMostQueued) - 1);
   Pairs& waiting = batch->waiting;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
-    const uint32_t left = run.count - at;
-    const size_t lanes_left = left < lanes ? left : lanes;
-    const auto live = hn::FirstN(d, lanes_left);
-    const auto live_u = hn::FirstN(du, lanes_left);
-    const auto entry =
-        left >= lanes ? hn::LoadU(du, run.entries + at) : hn::MaskedLoad(live_u, du, run.entries + at);
-    hn::Vec<U32> level;
-    hn::Vec<U32> entry_x;
-    unpack_side(du, entry, kUnit, &level, &entry_x);
-    auto x = hn::ConvertTo(d, hn::BitCast(di, entry_x));
-    auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
-    auto z = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<20>(entry), within)));
-    auto side = one;
-    if (!kUnit) {
-      side = hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
-      const auto middle = hn::Mul(side, hn::Set(d, 0.5F));
-      x = hn::Add(x, middle);
-      y = hn::Add(y, middle);
-      z = hn::Add(z, middle);
-    }
-    const auto apply = [&](const float(&row)[4], float last) {
-      return hn::MulAdd(hn::Set(d, row[0]), x,
-                        hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, last))));
-    };
-    auto column = apply(frame.u, batch->constant[0]);
-    auto row = apply(frame.v, batch->constant[1]);
-    auto seen = live;
-    hn::Mask<F32> crossing = hn::Lt(one, zero);
-    auto per_depth = one;
-    if (kPerspective) {
-      const auto depth = apply(frame.w, batch->constant[2]);
-      const auto behind = hn::Le(depth, zero);
-      const auto reach_w = hn::MulAdd(hn::Set(d, frame.half_w), side, hn::Set(d, frame.rounding_w));
-      crossing = hn::And(live, hn::And(behind, hn::Gt(hn::Add(depth, reach_w), zero)));
-      seen = hn::AndNot(behind, seen);
-      per_depth = hn::Div(one, depth);
-      column = hn::Mul(column, per_depth);
-      row = hn::Mul(row, per_depth);
-    }
-    const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x)),
-                                   per_depth, hn::Set(d, frame.slack_x));
-    const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y)),
-                                   per_depth, hn::Set(d, frame.slack_y));
-    const auto low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
-    const auto high_x = hn::Min(hn::Floor(hn::Add(column, half_x)), last_x);
-    const auto low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
-    const auto high_y = hn::Min(hn::Floor(hn::Add(row, half_y)), last_y);
-    seen = hn::And(seen, hn::And(hn::Le(low_x, high_x), hn::Le(low_y, high_y)));
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, *batch, at);
+    const auto live_u = hn::FirstN(du, run.count - at < lanes ? run.count - at : lanes);
+    const auto entry = boxes.entry;
+    const auto low_x = boxes.low_x;
+    const auto low_y = boxes.low_y;
+    const auto wide_x = boxes.wide_x;
+    const auto wide_y = boxes.wide_y;
+    auto seen = boxes.seen;
     const auto number =
         run.numbers == nullptr ? hn::Iota(du, run.first + at) : hn::MaskedLoad(live_u, du, run.numbers + at);
-    const auto wide_x = hn::Sub(high_x, low_x);
-    const auto wide_y = hn::Sub(high_y, low_y);
     auto large = hn::And(seen, hn::Gt(hn::Max(wide_x, wide_y), most));
     if (kPerspective) {
-      large = hn::Or(large, crossing);
+      large = hn::Or(large, boxes.crossing);
     }
     if (!hn::AllFalse(d, large)) {
       if (run.sorted) {
@@ -578,11 +630,11 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
       HWY_ALIGN int32_t x0[64], x1[64], y0[64], y1[64];
       HWY_ALIGN uint32_t numbers[64];
       hn::Store(hn::ConvertTo(di, low_x), di, x0);
-      hn::Store(hn::ConvertTo(di, high_x), di, x1);
+      hn::Store(hn::ConvertTo(di, hn::Add(low_x, wide_x)), di, x1);
       hn::Store(hn::ConvertTo(di, low_y), di, y0);
-      hn::Store(hn::ConvertTo(di, high_y), di, y1);
+      hn::Store(hn::ConvertTo(di, hn::Add(low_y, wide_y)), di, y1);
       hn::Store(number, du, numbers);
-      const uint32_t in_plane = kPerspective ? bits_of(d, crossing) : 0;
+      const uint32_t in_plane = kPerspective ? bits_of(d, boxes.crossing) : 0;
       for (uint32_t bits = bits_of(d, large); bits != 0; bits &= bits - 1) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(bits));
         const uint32_t box = run.entries[at + lane];
@@ -607,32 +659,82 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     if (hn::AllFalse(d, seen)) {
       continue;
     }
-    const auto first = hn::Or(hn::ShiftLeft<16>(hn::BitCast(du, hn::ConvertTo(di, low_y))),
-                              hn::BitCast(du, hn::ConvertTo(di, low_x)));
-    const float tallest = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(seen, wide_y)));
-    const float widest = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(seen, wide_x)));
-    for (uint32_t down = 0; static_cast<float>(down) <= tallest; ++down) {
-      const auto in_row = hn::And(seen, hn::Ge(wide_y, hn::Set(d, static_cast<float>(down))));
-      for (uint32_t across = 0; static_cast<float>(across) <= widest; ++across) {
-        auto chosen = hn::And(in_row, hn::Ge(wide_x, hn::Set(d, static_cast<float>(across))));
-        const auto place = hn::Add(first, hn::Set(du, down << 16 | across));
-        if (run.behind && (run.sorted || !kept)) {
-          // Lanes that are not chosen may point anywhere.
-          const auto safe = hn::IfThenElseZero(hn::RebindMask(du, chosen), place);
-          const auto pixel_x = hn::And(safe, hn::Set(du, 0xFFFFU));
-          const auto word = hn::Add(hn::Mul(hn::ShiftRight<16>(safe), hn::Set(du, static_cast<uint32_t>(depths.words))),
-                                    hn::ShiftRight<5>(pixel_x));
-          const auto covered = hn::GatherIndex(du, depths.covered, hn::BitCast(di, word));
-          const auto bit = hn::Shl(hn::Set(du, 1U), hn::And(pixel_x, hn::Set(du, 31U)));
-          chosen = hn::And(chosen, hn::RebindMask(d, hn::Eq(hn::And(covered, bit), hn::Zero(du))));
+    const auto int_x = hn::BitCast(du, hn::ConvertTo(di, low_x));
+    const auto int_y = hn::BitCast(du, hn::ConvertTo(di, low_y));
+    const auto first = hn::Or(hn::ShiftLeft<16>(int_y), int_x);
+    const bool reject = run.behind && (run.sorted || !kept);
+    auto in_row = seen;
+    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+      auto in_column = in_row;
+      auto open = hn::Set(du, UINT32_MAX);
+      if (reject) {
+        open = open_pixels(depths, in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
+        in_column = hn::And(in_row, any_open(open, wide_x));
+      }
+      for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
+        auto chosen = in_column;
+        if (reject) {
+          chosen = hn::And(chosen, hn::RebindMask(d, hn::Ne(hn::And(open, hn::Set(du, 1U << across)), hn::Zero(du))));
         }
-        append(chosen, entry, number, place, &waiting);
+        append(chosen, entry, number, hn::Add(first, hn::Set(du, down << 16 | across)), &waiting);
         if (waiting.count + lanes > Pairs::kSize) {
           test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
         }
+        in_column = hn::And(in_column, hn::Gt(wide_x, hn::Set(d, static_cast<float>(across))));
       }
+      in_row = hn::And(in_row, hn::Gt(wide_y, hn::Set(d, static_cast<float>(down))));
     }
   }
+}
+
+// Which boxes of the run may be seen at pixels that are not covered: their entries and numbers, in the order of
+// the run.
+template <bool kPerspective, bool kUnit>
+uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                     uint32_t* numbers) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  bool kept = false;
+  test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+  keep(depths, batch);
+  batch->counts.boxes += run.count;
+  uint32_t count = 0;
+  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, *batch, at);
+    // Wider or taller ones are not looked at so closely.
+    const auto most = hn::Set(d, 24.0F);
+    auto chosen = hn::And(boxes.seen, hn::Or(hn::Gt(boxes.wide_x, most), hn::Gt(boxes.wide_y, most)));
+    if (kPerspective) {
+      chosen = hn::Or(chosen, boxes.crossing);
+    }
+    auto in_row = hn::AndNot(chosen, boxes.seen);
+    const auto int_x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
+    const auto int_y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
+    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+      const auto open = open_pixels(depths, in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
+      const auto found = hn::And(in_row, any_open(open, boxes.wide_x));
+      chosen = hn::Or(chosen, found);
+      in_row = hn::AndNot(found, hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down)))));
+    }
+    const auto chosen_u = hn::RebindMask(du, chosen);
+    hn::StoreU(hn::Compress(boxes.entry, chosen_u), du, entries + count);
+    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen_u), du, numbers + count);
+    count += static_cast<uint32_t>(hn::CountTrue(du, chosen_u));
+  }
+  return count;
+}
+
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers) {
+  if (frame.perspective) {
+    return run.unit ? cull_run_of<true, true>(frame, run, depths, batch, entries, numbers)
+                    : cull_run_of<true, false>(frame, run, depths, batch, entries, numbers);
+  }
+  return run.unit ? cull_run_of<false, true>(frame, run, depths, batch, entries, numbers)
+                  : cull_run_of<false, false>(frame, run, depths, batch, entries, numbers);
 }
 
 void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
@@ -884,6 +986,7 @@ namespace thimble::wide {
 
 HWY_EXPORT(draw_run);
 HWY_EXPORT(finish);
+HWY_EXPORT(cull_run);
 HWY_EXPORT(find_rectangles);
 HWY_EXPORT(find_grays);
 HWY_EXPORT(find_faces);
@@ -894,6 +997,10 @@ void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* b
 }
 void finish(const Frame& frame, const Depths& depths, Batch* batch) {
   HWY_DYNAMIC_DISPATCH(finish)(frame, depths, batch);
+}
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers) {
+  return HWY_DYNAMIC_DISPATCH(cull_run)(frame, run, depths, batch, entries, numbers);
 }
 void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
                      Rectangle* rectangles) {

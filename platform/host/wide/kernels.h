@@ -25,7 +25,8 @@ namespace thimble::wide {
 /// is compared as integers, exactly.
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
-  uint32_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit
+  uint32_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit;
+                      ///< 4 bytes more can be read behind the last
   int32_t width_px;   ///< 32 * words, a multiple of 64
   int32_t words;
 };
@@ -96,6 +97,11 @@ struct Run {
 void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch);
 /// Draws what waits in the batch.
 void finish(const Frame& frame, const Depths& depths, Batch* batch);
+
+/// Which boxes of the run may be seen at pixels that are not covered yet: their entries and numbers, in the
+/// order of the run, to `entries` and `numbers`, which have room for run.count + 64. Returns how many.
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers);
 
 /// Where up to 8 boxes may be seen: the pixels x0 .. x1 - 1, y0 .. y1 - 1 of the tile, none when x0 >= x1.
 struct Rectangle {

@@ -15,7 +15,7 @@ namespace {
 
 // Runs of more boxes than this are cut up, flat or not, so that blocks out of sight are not projected.
 constexpr uint32_t kFlatBoxes = 4096;
-constexpr uint32_t kBlockBoxes = 96;
+constexpr uint32_t kBlockBoxes = 320;
 // Voxels of at least so many pixels a side are drawn one behind the other.
 constexpr float kSortedPx = 2.5F;
 constexpr uint32_t kMostSorted = 512;
@@ -77,6 +77,13 @@ class TileDrawer {
     const uint32_t small = by_blocks_ ? kBlockBoxes : kFlatBoxes;
     while (depth > 0) {
       const Block block = stack[--depth];
+      if (depth > 0) {
+        // The next one's boxes are wanted while this one's are drawn.
+        const uint32_t* next = lists_.entries().data + lists_.nodes()[stack[depth - 1].node].first_entry;
+        for (int line = 0; line < 5; ++line) {
+          __builtin_prefetch(next + 16 * line);
+        }
+      }
       ++batch_->counts.nodes;
       if (by_blocks_ && all_covered(depths_, block.where)) {
         continue;
@@ -109,6 +116,7 @@ class TileDrawer {
           continue;
         }
         const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
+        __builtin_prefetch(&lists_.nodes()[node.first_child + number]);
         stack[depth++] = {node.first_child + number,
                           block.level - 1,
                           {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
@@ -136,6 +144,10 @@ class TileDrawer {
         run.corner[axis] = block.corner[axis] & ~cube;
       }
       if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && voxel_px(block) >= kSortedPx) {
+        run.count = cull_run(frame_, run, depths_, batch_, entries_, numbers_);
+        if (run.count == 0) {
+          return;
+        }
         sort(block, &run);
       }
       draw_run(frame_, run, depths_, batch_);
@@ -168,7 +180,7 @@ class TileDrawer {
     return depth <= 0 ? 1e9F : 2 * frame_.reach_x / depth;
   }
 
-  // The run front to back. Entries of an octant stand together, in every block of the tree; so the octants are
+  // The `run->count` boxes of entries_ front to back. Entries of an octant stand together, in every block of the tree; so the octants are
   // taken in the order of their distance from the eye, down to single entries.
   void sort(const Block& block, Run* run) {
     struct Part {
@@ -184,8 +196,8 @@ class TileDrawer {
       const Part part = stack[--depth];
       if (part.end - part.begin == 1 || part.level == 0) {
         for (uint32_t i = part.begin; i < part.end; ++i) {
-          sorted_entries_[written] = run->entries[i];
-          sorted_numbers_[written] = run->first + i;
+          sorted_entries_[written] = entries_[i];
+          sorted_numbers_[written] = numbers_[i];
           ++written;
         }
         continue;
@@ -201,7 +213,7 @@ class TileDrawer {
       for (unsigned octant = 0; octant < 8; ++octant) {
         begin[octant] = at;
         for (; at < part.end; ++at) {
-          const uint32_t entry = run->entries[at];
+          const uint32_t entry = entries_[at];
           const unsigned of = (x_of(entry) >> level & 1U) | (entry >> (10 + level) & 1U) << 1 |
                               (entry >> (20 + level) & 1U) << 2;
           if (of != octant) {
@@ -233,6 +245,8 @@ class TileDrawer {
   bool by_blocks_;
   Batch* batch_;
   int32_t eye_cell_[3];
+  uint32_t entries_[kMostSorted + 64];
+  uint32_t numbers_[kMostSorted + 64];
   uint32_t sorted_entries_[kMostSorted];
   uint32_t sorted_numbers_[kMostSorted];
 };
@@ -280,7 +294,7 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
   const size_t words = static_cast<size_t>(words_of(width_px)) * static_cast<size_t>(rows);
-  return words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) +
+  return words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) + sizeof(uint64_t) +
          static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
 }
 
@@ -315,7 +329,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   depths.width_px = depths.words * 32;
   const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(band.rows);
   depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 32 * sizeof(uint64_t), 64).data);
-  depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t)).data);
+  depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t) + sizeof(uint64_t)).data);
   const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
   const auto batch_of = [&](int thread) {
     return new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
