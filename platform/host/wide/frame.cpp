@@ -34,6 +34,21 @@ double greatest_reach(const Row& one, const Row& other, double low, double high)
   return fmax(reach(one, other, low), reach(one, other, high));
 }
 
+double rounding_of(const Row& one, const Row& other, double p) {
+  return kRounding * (one.norm() + p * other.norm());
+}
+double across_length(const Row& one, const Row& other) {
+  double along = 0;
+  double square = 0;
+  double other_square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    along += one.of[axis] * other.of[axis];
+    square += one.of[axis] * one.of[axis];
+    other_square += other.of[axis] * other.of[axis];
+  }
+  return sqrt(fmax(0, square - along * along / other_square)) * 0.999;
+}
+
 void store(const Row& row, float (&to)[4]) {
   for (int i = 0; i < 4; ++i) {
     to[i] = static_cast<float>(row.of[i]);
@@ -150,6 +165,13 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   }
   frame->slack_x = static_cast<float>(across * unit / shrink + kRounding * right + 1e-4);
   frame->slack_y = static_cast<float>(down * unit / shrink + kRounding * bottom + 1e-4);
+  frame->spread_x = static_cast<float>(kRounding * right + 1e-4);
+  frame->spread_y = static_cast<float>(kRounding * bottom + 1e-4);
+  frame->per_direction = static_cast<float>(0.5 / shrink * 1.0001);
+  // |U - column W|_1 is at least the length of U's part across W; floats must keep it within a two-thousandth.
+  const bool is_sound = frame->perspective && rounding_of(u, w, right) < 5e-4 * across_length(u, w) &&
+                        rounding_of(v, w, bottom) < 5e-4 * across_length(v, w);
+  frame->norm_w = is_sound ? static_cast<float>(w.norm() * 1.0001) : 1e30F;
   return frame->slack_x < 4 && frame->slack_y < 4 && frame->rounding_x < 16 * frame->reach_x &&
          frame->rounding_y < 16 * frame->reach_y;
 }

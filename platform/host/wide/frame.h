@@ -10,12 +10,18 @@
 /// Which pixels can a box around c with half sides h meet? If the ray of a column P meets the point c + e of
 /// the box (|e| <= h on every axis), then U.(c + e) = P W.(c + e), so
 ///
-///     |U.c - P W.c| = |(U - P W).e| <= h |U - P W|_1  and  |column - P| <= h |U - P W|_1 / W.c   for W.c >
-///     0.
+///     |U.c - P W.c| = |(U - P W).e| <= h |U - P W|_1  and  |column - P| <= h |U - P W|_1 / W.c  for W.c > 0.
 ///
 /// The right side is convex in P, so over a tile its greatest value is at one of the tile's two sides: that
 /// is `reach`. Rounding a direction by up to half a unit an axis moves its point on the picture by less than
-/// `slack`; the same bound with the direction itself as the box. Floating point adds to U.c, V.c and W.c at
+/// `slack`; the same bound with the direction itself as the box.
+///
+/// Most boxes are far away for their size, and then less will do. With k = (h + t / 2) / W.c for both causes
+/// together, t <= (W.c + h |W|_1) / (1 - |W|_1 / 2), and |U - P W|_1 <= |U - column W|_1 + |P - column| |W|_1,
+///
+///     |column - P| <= k |U - column W|_1 / (1 - r)  with  r = k |W|_1,
+///
+/// which is used where r <= 1/8: there 1 / (1 - r) <= 1 + 1.15 r. Floating point adds to U.c, V.c and W.c at
 /// most `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats
 /// decide is only which pixels are looked at: a superset. Whether a ray meets a box is judged on the ray's own
 /// integers (kernels.cpp, exact.h).
@@ -51,6 +57,10 @@ struct Frame {
   float rounding_y;
   float slack_x;  ///< pixels that are added besides
   float slack_y;
+  float spread_x;  ///< pixels that are added to the nearer bound of far boxes
+  float spread_y;
+  float norm_w;         ///< |W|_1, or so much that the nearer bound is never used
+  float per_direction;  ///< 1/2 / (1 - |W|_1 / 2)
   float half_w;  ///< a box of one voxel lies in front of the eye's plane, at least in part, when w > -half_w
   float rounding_w;
 

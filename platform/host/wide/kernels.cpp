@@ -249,7 +249,7 @@ void test_unclear(const Frame& frame, const Depths& depths, bool* kept, Batch* b
     batch->key[batch->met] = key;
     batch->down[batch->met] = down;
     batch->number[batch->met] = pairs.number[i];
-    batch->pixel[batch->met] = static_cast<uint32_t>(y * depths.width_px + x);
+    batch->pixel[batch->met] = static_cast<uint32_t>((y - depths.first_row) * depths.width_px + x);
     ++batch->met;
   }
   pairs.count = 0;
@@ -317,7 +317,8 @@ HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* k
       key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
       down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
     }
-    const auto pixel = hn::Add(hn::Mul(int_y, hn::Set(du, static_cast<uint32_t>(depths.width_px))), int_x);
+    const auto row = hn::Sub(int_y, hn::Set(du, static_cast<uint32_t>(depths.first_row)));
+    const auto pixel = hn::Add(hn::Mul(row, hn::Set(du, static_cast<uint32_t>(depths.width_px))), int_x);
     const auto chosen = hn::RebindMask(du, met);
     hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
     hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
@@ -352,8 +353,8 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
     return value_of(*batch, mirrored_key(corner, level, down), down, number);
   };
   for (int32_t y = where.y0; y < where.y1; ++y) {
-    uint32_t* const row = depths.covered + static_cast<ptrdiff_t>(y) * depths.words;
-    uint64_t* const nearest = depths.nearest + static_cast<ptrdiff_t>(y) * depths.width_px;
+    uint32_t* const row = depths.covered + depths.first_word(y);
+    uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
     for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
       uint32_t wanted = all_lanes;
       wanted &= x < where.x0 ? UINT32_MAX << (where.x0 - x) : UINT32_MAX;
@@ -549,10 +550,27 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Batch& ba
     column = hn::Mul(column, per_depth);
     row = hn::Mul(row, per_depth);
   }
-  const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x)),
-                                 per_depth, hn::Set(d, frame.slack_x));
-  const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y)),
-                                 per_depth, hn::Set(d, frame.slack_y));
+  auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x));
+  auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y));
+  half_x = hn::MulAdd(half_x, per_depth, hn::Set(d, frame.slack_x));
+  half_y = hn::MulAdd(half_y, per_depth, hn::Set(d, frame.slack_y));
+  if (kPerspective) {
+    const auto nearness = hn::Mul(hn::Mul(hn::Set(d, frame.half_w), side), per_depth);
+    const auto k = hn::MulAdd(hn::Mul(hn::Set(d, 0.5F), side), per_depth,
+                              hn::Mul(hn::Set(d, frame.per_direction), hn::Add(one, nearness)));
+    const auto r = hn::Mul(k, hn::Set(d, frame.norm_w));
+    const auto factor = hn::Mul(k, hn::MulAdd(r, hn::Set(d, 1.152F), hn::Set(d, 1.001F)));
+    const auto reach = [&](const float(&of)[4], auto place) {
+      auto sum = hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[0]), hn::Set(d, of[0])));
+      sum = hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[1]), hn::Set(d, of[1]))));
+      return hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[2]), hn::Set(d, of[2]))));
+    };
+    const auto is_far = hn::Le(r, hn::Set(d, 0.125F));
+    const auto near_x = hn::MulAdd(hn::Set(d, frame.rounding_x), per_depth, hn::Set(d, frame.spread_x));
+    const auto near_y = hn::MulAdd(hn::Set(d, frame.rounding_y), per_depth, hn::Set(d, frame.spread_y));
+    half_x = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.u, column), factor, near_x), half_x);
+    half_y = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.v, row), factor, near_y), half_y);
+  }
   boxes.low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
   boxes.low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
   boxes.wide_x = hn::Sub(hn::Min(hn::Floor(hn::Add(column, half_x)), last_x), boxes.low_x);
@@ -561,22 +579,70 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Batch& ba
   return boxes;
 }
 
-// Of the pixels (x .. x + 24, y), a bit each: which are not covered. Lanes outside `mask` get numbers without
-// meaning.
-HWY_INLINE hn::Vec<U32> open_pixels(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) {
-  const U32 d;
-  // Words need not be aligned: the byte that holds the first pixel begins one.
-  const auto byte = hn::Add(hn::Mul(y, hn::Set(d, static_cast<uint32_t>(depths.words) * 4)), hn::ShiftRight<3>(x));
-  const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
-#if HWY_TARGET == HWY_SCALAR
-  uint32_t word = 0;
-  __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths.covered) + hn::GetLane(safe), sizeof(word));
-  const auto covered = hn::Set(d, word);
+// Which pixels of a run's rectangle are not covered, where that has at most 32 rows of 32 pixels: looked up in
+// registers (AVX-512) or in a table of its own, instead of all over the picture. The wide case reads the
+// picture.
+class OpenPixels {
+ public:
+  OpenPixels(const Depths& depths, const Rectangle& where) : depths_(depths) {
+    small_ = where.x1 - where.x0 <= 32 && where.y1 - where.y0 <= 32;
+    if (!small_) {
+      return;
+    }
+    x0_ = static_cast<uint32_t>(where.x0);
+    y0_ = static_cast<uint32_t>(where.y0);
+    const uint8_t* at = reinterpret_cast<const uint8_t*>(depths.covered) +
+                        4 * depths.first_word(where.y0) + (x0_ >> 3);
+    const int32_t rows = where.y1 - where.y0;
+    for (int32_t row = 0; row < rows; ++row, at += static_cast<size_t>(depths.words) * 4) {
+      uint64_t bits = 0;
+      __builtin_memcpy(&bits, at, sizeof(bits));
+      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 7U));
+    }
+  }
+
+  // What is known was read before the run was begun.
+  bool is_small() const { return small_; }
+
+  // Of the pixels (x .. x + 24, y), a bit each. Lanes outside `mask` get numbers without meaning.
+  HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
+    const U32 d;
+    if (small_) {
+      const auto row = hn::And(hn::Sub(y, hn::Set(d, y0_)), hn::Set(d, 31U));
+      const auto column = hn::And(hn::Sub(x, hn::Set(d, x0_)), hn::Set(d, 31U));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+      const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
+      const auto low = hn::TableLookupLanes(hn::Load(d, rows_), index);
+      const auto high = hn::TableLookupLanes(hn::Load(d, rows_ + 16), index);
+      const auto bits = hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
 #else
-  const auto covered = hn::GatherOffset(d, depths.covered, hn::BitCast(I32(), safe));
+      const auto bits = hn::GatherIndex(d, rows_, hn::BitCast(I32(), row));
 #endif
-  return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
-}
+      return hn::Shr(bits, column);
+    }
+    // Words need not be aligned: the byte that holds the first pixel begins one.
+    const auto byte =
+        hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths_.first_row))),
+                        hn::Set(d, static_cast<uint32_t>(depths_.words) * 4)),
+                hn::ShiftRight<3>(x));
+    const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
+#if HWY_TARGET == HWY_SCALAR
+    uint32_t word = 0;
+    __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths_.covered) + hn::GetLane(safe), sizeof(word));
+    const auto covered = hn::Set(d, word);
+#else
+    const auto covered = hn::GatherOffset(d, depths_.covered, hn::BitCast(I32(), safe));
+#endif
+    return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
+  }
+
+ private:
+  const Depths& depths_;
+  bool small_ = false;
+  uint32_t x0_ = 0;
+  uint32_t y0_ = 0;
+  alignas(64) uint32_t rows_[32];
+};
 
 // Whether there is one among the first `wide` + 1 of them.
 HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
@@ -606,6 +672,7 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     kept = false;
   }
   batch->counts.boxes += run.count;
+  const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0});
   const auto most = hn::Set(d, (run.sorted ? kMostQueuedSorted : kMostQueued) - 1);
   Pairs& waiting = batch->waiting;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
@@ -662,13 +729,13 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     const auto int_x = hn::BitCast(du, hn::ConvertTo(di, low_x));
     const auto int_y = hn::BitCast(du, hn::ConvertTo(di, low_y));
     const auto first = hn::Or(hn::ShiftLeft<16>(int_y), int_x);
-    const bool reject = run.behind && (run.sorted || !kept);
+    const bool reject = run.behind && (run.sorted || !kept || open_pixels.is_small());
     auto in_row = seen;
     for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
       auto in_column = in_row;
       auto open = hn::Set(du, UINT32_MAX);
       if (reject) {
-        open = open_pixels(depths, in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
+        open = open_pixels.at(in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
         in_column = hn::And(in_row, any_open(open, wide_x));
       }
       for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
@@ -701,6 +768,7 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
   test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
   keep(depths, batch);
   batch->counts.boxes += run.count;
+  const OpenPixels open_pixels(depths, run.where);
   uint32_t count = 0;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
     const Projected boxes = project<kPerspective, kUnit>(frame, run, *batch, at);
@@ -714,7 +782,7 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
     const auto int_x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
     const auto int_y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
     for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
-      const auto open = open_pixels(depths, in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
+      const auto open = open_pixels.at(in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
       const auto found = hn::And(in_row, any_open(open, boxes.wide_x));
       chosen = hn::Or(chosen, found);
       in_row = hn::AndNot(found, hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down)))));

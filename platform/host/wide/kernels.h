@@ -26,9 +26,15 @@ namespace thimble::wide {
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
   uint32_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit;
-                      ///< 4 bytes more can be read behind the last
+                      ///< 8 bytes more can be read behind the last
   int32_t width_px;   ///< 32 * words, a multiple of 64
   int32_t words;
+  int32_t first_row;  ///< the row of the picture that comes first
+
+  /// Where row `y` of the picture begins in `covered`; 32 times that in `nearest`.
+  size_t first_word(int32_t y) const {
+    return static_cast<size_t>(y - first_row) * static_cast<size_t>(words);
+  }
 };
 inline constexpr int kEntryBits = 28;
 inline constexpr int kKeyBits = 36;
@@ -70,12 +76,17 @@ struct Batch {
   alignas(64) uint32_t key[Pairs::kRoom];   ///< within the cube
   alignas(64) uint32_t down[Pairs::kRoom];  ///< a bit for each axis along which the ray runs downwards
   alignas(64) uint32_t number[Pairs::kRoom];
-  alignas(64) uint32_t pixel[Pairs::kRoom];  ///< y * width_px + x
+  alignas(64) uint32_t pixel[Pairs::kRoom];  ///< (y - first_row) * width_px + x
   // Of the cube that the pairs lie in.
   uint32_t corner[3] = {1, 1, 1};  ///< none yet
   uint64_t cube_value[8];          ///< its corner's key, by `down`
   float constant[3];               ///< of u, v and w, for corners within the cube
   Counts counts;
+};
+
+/// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
+struct Rectangle {
+  int32_t x0, y0, x1, y1;
 };
 
 /// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
@@ -86,6 +97,8 @@ struct Run {
   uint32_t first;
   uint32_t corner[3];
   bool unit;  ///< whether all are one voxel
+  /// Holds all pixels of the tile at which any of them may be seen.
+  Rectangle where;
   /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
   /// look.
   bool behind;
@@ -103,10 +116,7 @@ void finish(const Frame& frame, const Depths& depths, Batch* batch);
 uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
                   uint32_t* numbers);
 
-/// Where up to 8 boxes may be seen: the pixels x0 .. x1 - 1, y0 .. y1 - 1 of the tile, none when x0 >= x1.
-struct Rectangle {
-  int32_t x0, y0, x1, y1;
-};
+/// Where up to 8 boxes may be seen, within the tile.
 /// Cubes of `side` voxels with lowest corners `x[i]`, `y[i]`, `z[i]`, i < 8.
 void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
                      Rectangle* rectangles);

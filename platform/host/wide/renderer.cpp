@@ -1,10 +1,12 @@
 #include "host/wide/renderer.h"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #include <string.h>
 
+#include <atomic>
 #include <new>
 
 #include "host/wide/exact.h"
@@ -32,7 +34,7 @@ bool all_covered(const Depths& depths, const Rectangle& where) {
   const uint32_t head = UINT32_MAX << (where.x0 & 31);
   const uint32_t tail = UINT32_MAX >> (31 - ((where.x1 - 1) & 31));
   for (int32_t y = where.y0; y < where.y1; ++y) {
-    const uint32_t* row = depths.covered + static_cast<ptrdiff_t>(y) * depths.words;
+    const uint32_t* row = depths.covered + depths.first_word(y);
     for (int32_t word = first; word <= last; ++word) {
       uint32_t wanted = UINT32_MAX;
       wanted &= word == first ? head : wanted;
@@ -136,6 +138,7 @@ class TileDrawer {
     run.count = node.entries;
     run.first = node.first_entry;
     run.unit = !lists_.has_blocks();
+    run.where = block.where;
     run.behind = by_blocks_;
     run.sorted = node.entries <= 1;
     const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
@@ -327,10 +330,14 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   Depths depths;
   depths.words = words_of(camera.width_px());
   depths.width_px = depths.words * 32;
+  depths.first_row = band.first_row;
   const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(band.rows);
   depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 32 * sizeof(uint64_t), 64).data);
   depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t) + sizeof(uint64_t)).data);
   const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
+  const auto batch_at = [&](int thread) {
+    return std::launder(reinterpret_cast<Batch*>(batches.data) + thread);
+  };
   const auto batch_of = [&](int thread) {
     return new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
   };
@@ -345,18 +352,14 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   const auto draw_tile = [&](int32_t row, Batch* batch) {
     Frame tile;
     (void)make_tile(row, &tile);
-    Depths part = depths;  // by rows of the picture
-    const ptrdiff_t first = band.first_row;
-    part.nearest -= first * depths.width_px;
-    part.covered -= first * depths.words;
-    const ptrdiff_t y0 = tile.tile.y0;
-    memset(part.covered + y0 * depths.words, 0,
-           static_cast<size_t>(tile.tile.y1 - y0) * static_cast<size_t>(depths.words) * sizeof(uint32_t));
-    TileDrawer(lists, tile, part, by_blocks, batch).draw();
+    const size_t rows = static_cast<size_t>(tile.tile.y1 - tile.tile.y0);
+    memset(depths.covered + depths.first_word(tile.tile.y0), 0,
+           rows * static_cast<size_t>(depths.words) * sizeof(uint32_t));
+    TileDrawer(lists, tile, depths, by_blocks, batch).draw();
     uint64_t hits = 0;
     for (int32_t y = tile.tile.y0; y < tile.tile.y1; ++y) {
-      hits += painter.paint_row(tile, y, part.covered + static_cast<ptrdiff_t>(y) * depths.words,
-                                part.nearest + static_cast<ptrdiff_t>(y) * depths.width_px);
+      hits += painter.paint_row(tile, y, depths.covered + depths.first_word(y),
+                                depths.nearest + depths.first_word(y) * 32);
     }
     return hits;
   };
@@ -365,6 +368,30 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     Batch* const batch = batch_of(0);
     hits = draw_tile(0, batch);
     done.counts = batch->counts;
+  } else {
+    // More threads than processors are no gain, but what was asked for.
+    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
+                                              static_cast<size_t>(options.threads));
+    oneapi::tbb::task_arena workers(options.threads);
+    for (int thread = 0; thread < options.threads; ++thread) {
+      batch_of(thread);
+    }
+    std::atomic<uint64_t> all_hits{0};
+    workers.execute([&] {
+      oneapi::tbb::parallel_for(
+          oneapi::tbb::blocked_range<int32_t>(0, (band.rows + tile_rows - 1) / tile_rows, 1),
+          [&](const oneapi::tbb::blocked_range<int32_t>& tiles) {
+            const int thread = oneapi::tbb::this_task_arena::current_thread_index();
+            for (int32_t tile = tiles.begin(); tile != tiles.end(); ++tile) {
+              all_hits += draw_tile(tile * tile_rows, batch_at(thread));
+            }
+          },
+          oneapi::tbb::simple_partitioner());
+    });
+    hits = all_hits;
+    for (int thread = 0; thread < options.threads; ++thread) {
+      done.counts.add(batch_at(thread)->counts);
+    }
   }
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
