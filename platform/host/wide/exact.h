@@ -18,8 +18,8 @@ inline uint32_t x_of(uint32_t entry) {
   return (entry >> 30) < 3 ? entry & 1023U : entry & 1016U;
 }
 
-/// The Morton code of a box of 2^level voxels with lowest corner `corner` (below 1024), mirrored in the axes of
-/// `down` (a bit each).
+/// The Morton code of a box of 2^level voxels with lowest corner `corner` (below 1024), mirrored in the axes
+/// of `down` (a bit each).
 uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down);
 
 /// Whether the ray spends a positive length, at t >= 0, in the entry of the cube at `cube` (voxels). If so,

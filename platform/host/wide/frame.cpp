@@ -168,7 +168,8 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   frame->spread_x = static_cast<float>(kRounding * right + 1e-4);
   frame->spread_y = static_cast<float>(kRounding * bottom + 1e-4);
   frame->per_direction = static_cast<float>(0.5 / shrink * 1.0001);
-  // |U - column W|_1 is at least the length of U's part across W; floats must keep it within a two-thousandth.
+  // |U - column W|_1 is at least the length of U's part across W; floats must keep it within a
+  // two-thousandth.
   const bool is_sound = frame->perspective && rounding_of(u, w, right) < 5e-4 * across_length(u, w) &&
                         rounding_of(v, w, bottom) < 5e-4 * across_length(v, w);
   frame->norm_w = is_sound ? static_cast<float>(w.norm() * 1.0001) : 1e30F;

@@ -17,14 +17,15 @@
 /// `slack`; the same bound with the direction itself as the box.
 ///
 /// Most boxes are far away for their size, and then less will do. With k = (h + t / 2) / W.c for both causes
-/// together, t <= (W.c + h |W|_1) / (1 - |W|_1 / 2), and |U - P W|_1 <= |U - column W|_1 + |P - column| |W|_1,
+/// together, t <= (W.c + h |W|_1) / (1 - |W|_1 / 2), and |U - P W|_1 <= |U - column W|_1 + |P - column|
+/// |W|_1,
 ///
 ///     |column - P| <= k |U - column W|_1 / (1 - r)  with  r = k |W|_1,
 ///
 /// which is used where r <= 1/8: there 1 / (1 - r) <= 1 + 1.15 r. Floating point adds to U.c, V.c and W.c at
 /// most `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats
-/// decide is only which pixels are looked at: a superset. Whether a ray meets a box is judged on the ray's own
-/// integers (kernels.cpp, exact.h).
+/// decide is only which pixels are looked at: a superset. Whether a ray meets a box is judged on the ray's
+/// own integers (kernels.cpp, exact.h).
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 #define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 

@@ -226,7 +226,8 @@ HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> numb
 
 inline void origin_of(const Frame& frame, const Batch& batch, float (&origin)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
-    origin[axis] = static_cast<float>(int64_t{512} * batch.corner[axis] - int64_t{2} * frame.camera.eye()[axis].raw);
+    origin[axis] =
+        static_cast<float>(int64_t{512} * batch.corner[axis] - int64_t{2} * frame.camera.eye()[axis].raw);
   }
 }
 
@@ -332,8 +333,8 @@ HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* k
 // A box that covers many pixels: along the rows of its rectangle, a vector of pixels at a time, straight into
 // the picture. `reject`: covered pixels need no look.
 template <bool kPerspective>
-HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number, const Rectangle& where, bool reject,
-                             const Depths& depths, Batch* batch) {
+HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number, const Rectangle& where,
+                             bool reject, const Depths& depths, Batch* batch) {
   const F32 d;
   const U64 d64;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
@@ -414,8 +415,8 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
       }
       for (; met != 0; met &= met - 1) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(met));
-        const uint32_t down = (axis_bits[0] >> lane & 1U) | (axis_bits[1] >> lane & 1U) << 1 |
-                              (axis_bits[2] >> lane & 1U) << 2;
+        const uint32_t down =
+            (axis_bits[0] >> lane & 1U) | (axis_bits[1] >> lane & 1U) << 1 | (axis_bits[2] >> lane & 1U) << 2;
         const uint64_t one = value_for(down);
         const uint32_t bit = uint32_t{1} << (shift + lane);
         uint64_t* const at = nearest + x + static_cast<int32_t>(lane);
@@ -452,8 +453,8 @@ bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
   return true;
 }
 
-// Rectangles of at most so many pixels a side become candidates; sorted runs gain by going into the picture at
-// once.
+// Rectangles of at most so many pixels a side become candidates; sorted runs gain by going into the picture
+// at once.
 constexpr float kMostQueued = 8;
 constexpr float kMostQueuedSorted = 3;
 
@@ -514,8 +515,7 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Batch& ba
   Projected boxes;
   const size_t left = run.count - at < lanes ? run.count - at : lanes;
   const auto live = hn::FirstN(d, left);
-  boxes.entry = left == lanes ? hn::LoadU(du, run.entries + at)
-                              : hn::MaskedLoad(hn::FirstN(du, left), du, run.entries + at);
+  boxes.entry = hn::LoadU(du, run.entries + at);
   const auto entry = boxes.entry;
   hn::Vec<U32> level;
   hn::Vec<U32> entry_x;
@@ -579,8 +579,8 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Batch& ba
   return boxes;
 }
 
-// Which pixels of a run's rectangle are not covered, where that has at most 32 rows of 32 pixels: looked up in
-// registers (AVX-512) or in a table of its own, instead of all over the picture. The wide case reads the
+// Which pixels of a run's rectangle are not covered, where that has at most 32 rows of 32 pixels: looked up
+// in registers (AVX-512) or in a table of its own, instead of all over the picture. The wide case reads the
 // picture.
 class OpenPixels {
  public:
@@ -591,8 +591,8 @@ class OpenPixels {
     }
     x0_ = static_cast<uint32_t>(where.x0);
     y0_ = static_cast<uint32_t>(where.y0);
-    const uint8_t* at = reinterpret_cast<const uint8_t*>(depths.covered) +
-                        4 * depths.first_word(where.y0) + (x0_ >> 3);
+    const uint8_t* at =
+        reinterpret_cast<const uint8_t*>(depths.covered) + 4 * depths.first_word(where.y0) + (x0_ >> 3);
     const int32_t rows = where.y1 - where.y0;
     for (int32_t row = 0; row < rows; ++row, at += static_cast<size_t>(depths.words) * 4) {
       uint64_t bits = 0;
@@ -621,14 +621,14 @@ class OpenPixels {
       return hn::Shr(bits, column);
     }
     // Words need not be aligned: the byte that holds the first pixel begins one.
-    const auto byte =
-        hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths_.first_row))),
-                        hn::Set(d, static_cast<uint32_t>(depths_.words) * 4)),
-                hn::ShiftRight<3>(x));
+    const auto byte = hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths_.first_row))),
+                                      hn::Set(d, static_cast<uint32_t>(depths_.words) * 4)),
+                              hn::ShiftRight<3>(x));
     const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
 #if HWY_TARGET == HWY_SCALAR
     uint32_t word = 0;
-    __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths_.covered) + hn::GetLane(safe), sizeof(word));
+    __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths_.covered) + hn::GetLane(safe),
+                     sizeof(word));
     const auto covered = hn::Set(d, word);
 #else
     const auto covered = hn::GatherOffset(d, depths_.covered, hn::BitCast(I32(), safe));
@@ -677,7 +677,6 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   Pairs& waiting = batch->waiting;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
     const Projected boxes = project<kPerspective, kUnit>(frame, run, *batch, at);
-    const auto live_u = hn::FirstN(du, run.count - at < lanes ? run.count - at : lanes);
     const auto entry = boxes.entry;
     const auto low_x = boxes.low_x;
     const auto low_y = boxes.low_y;
@@ -685,7 +684,7 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     const auto wide_y = boxes.wide_y;
     auto seen = boxes.seen;
     const auto number =
-        run.numbers == nullptr ? hn::Iota(du, run.first + at) : hn::MaskedLoad(live_u, du, run.numbers + at);
+        run.numbers == nullptr ? hn::Iota(du, run.first + at) : hn::LoadU(du, run.numbers + at);
     auto large = hn::And(seen, hn::Gt(hn::Max(wide_x, wide_y), most));
     if (kPerspective) {
       large = hn::Or(large, boxes.crossing);
@@ -717,8 +716,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
           ++batch->counts.crossing;
           where = {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1};
         }
-        draw_large<kPerspective>(frame, box, numbers[lane], where, run.behind && (run.sorted || !kept), depths,
-                                 batch);
+        draw_large<kPerspective>(frame, box, numbers[lane], where, run.behind && (run.sorted || !kept),
+                                 depths, batch);
         kept = true;
       }
       seen = hn::AndNot(large, seen);
@@ -741,7 +740,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
       for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
         auto chosen = in_column;
         if (reject) {
-          chosen = hn::And(chosen, hn::RebindMask(d, hn::Ne(hn::And(open, hn::Set(du, 1U << across)), hn::Zero(du))));
+          chosen = hn::And(chosen,
+                           hn::RebindMask(d, hn::Ne(hn::And(open, hn::Set(du, 1U << across)), hn::Zero(du))));
         }
         append(chosen, entry, number, hn::Add(first, hn::Set(du, down << 16 | across)), &waiting);
         if (waiting.count + lanes > Pairs::kSize) {
@@ -754,11 +754,11 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   }
 }
 
-// Which boxes of the run may be seen at pixels that are not covered: their entries and numbers, in the order of
-// the run.
+// Which boxes of the run may be seen at pixels that are not covered: their entries and numbers, in the order
+// of the run.
 template <bool kPerspective, bool kUnit>
-uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
-                     uint32_t* numbers) {
+uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch,
+                     uint32_t* entries, uint32_t* numbers) {
   const F32 d;
   const I32 di;
   const U32 du;
@@ -942,6 +942,28 @@ HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, size_t a
     found.speed = hn::IfThenElse(later, speed, found.speed);
     found.direction[axis] = rays.direction[axis];
   }
+  if (!pixels.any_voxels) {
+    return found;
+  }
+  // Of a solid block it is a voxel that is entered. Where the ray passes from one voxel's slab to the next on
+  // a lower axis just as it enters the block, it enters the voxel through that face too, and the lowest axis
+  // counts.
+  const auto is_voxel = hn::Gt(hn::PromoteTo(d, hn::LoadU(d32, pixels.voxels + at)), zero);
+  const auto block_axis = found.axis;
+  const auto block_numerator = found.numerator;
+  const auto block_speed = found.speed;
+  for (int axis = 1; axis >= 0; --axis) {
+    const auto speed = hn::Abs(rays.direction[axis]);
+    const auto product = hn::Mul(block_numerator, speed);
+    const auto way = hn::Round(hn::Div(product, block_speed));
+    const auto place = hn::Add(rays.origin[axis], hn::CopySign(way, rays.direction[axis]));
+    const auto voxel = hn::Mul(hn::Floor(hn::Mul(place, hn::Set(d, 1.0 / 256))), hn::Set(d, 256));
+    auto passes = hn::And(is_voxel, hn::And(hn::Gt(block_axis, hn::Set(d, axis)), hn::Gt(speed, zero)));
+    passes = hn::And(passes, hn::And(hn::Eq(hn::Mul(way, block_speed), product), hn::Eq(voxel, place)));
+    found.axis = hn::IfThenElse(passes, hn::Set(d, axis), found.axis);
+    found.numerator = hn::IfThenElse(passes, way, found.numerator);
+    found.speed = hn::IfThenElse(passes, speed, found.speed);
+  }
   return found;
 }
 
@@ -962,10 +984,9 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, int32_t depth_per_t
   const auto dividend = hn::Set(d, static_cast<double>(static_cast<uint32_t>(depth_per_t_q8) << shift));
   const auto most = hn::Set(d, 2147483647.0);
   const double scale = 1.0 / static_cast<double>(uint64_t{1} << (shift + 8));
-  const uint32_t range =
-      shading.far_q8 > shading.near_q8
-          ? static_cast<uint32_t>(shading.far_q8) - static_cast<uint32_t>(shading.near_q8)
-          : 1;
+  const uint32_t range = shading.far_q8 > shading.near_q8
+                             ? static_cast<uint32_t>(shading.far_q8) - static_cast<uint32_t>(shading.near_q8)
+                             : 1;
   const int excess = range >= (1U << 24) ? 8 : 0;
   const auto near_plane = hn::Set(d, static_cast<double>(shading.near_q8));
   const auto far_plane = hn::Set(d, static_cast<double>(shading.far_q8));
@@ -1083,6 +1104,22 @@ void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face) {
 }
 const char* instruction_set() {
   return HWY_DYNAMIC_DISPATCH(instruction_set)();
+}
+
+int instruction_set_count() {
+  hwy::SetSupportedTargetsForTest(0);
+  return __builtin_popcountll(static_cast<uint64_t>(hwy::SupportedTargets() & HWY_TARGETS));
+}
+void use_instruction_set(int number) {
+  hwy::SetSupportedTargetsForTest(0);
+  if (number >= 0) {
+    uint64_t targets = static_cast<uint64_t>(hwy::SupportedTargets() & HWY_TARGETS);
+    for (; number > 0; --number) {
+      targets &= targets - 1;
+    }
+    hwy::SetSupportedTargetsForTest(static_cast<int64_t>(targets & (0 - targets)));
+  }
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 }  // namespace thimble::wide

@@ -89,9 +89,12 @@ struct Rectangle {
   int32_t x0, y0, x1, y1;
 };
 
+/// A vector of entries or numbers is read at a time, even when only its first is wanted.
+inline constexpr uint32_t kReadAhead = 64;
+
 /// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
 struct Run {
-  const uint32_t* entries;
+  const uint32_t* entries;  ///< `count`, and kReadAhead more that can be read
   uint32_t count;
   const uint32_t* numbers;  ///< of the entries; null: they count up from `first`
   uint32_t first;
@@ -112,7 +115,8 @@ void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* b
 void finish(const Frame& frame, const Depths& depths, Batch* batch);
 
 /// Which boxes of the run may be seen at pixels that are not covered yet: their entries and numbers, in the
-/// order of the run, to `entries` and `numbers`, which have room for run.count + 64. Returns how many.
+/// order of the run, to `entries` and `numbers`, which have room for run.count + kReadAhead. Returns how
+/// many.
 uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
                   uint32_t* numbers);
 
@@ -128,6 +132,8 @@ struct Pixels {
   alignas(64) int32_t x[64];
   alignas(64) uint64_t nearest[64];  ///< as in Depths
   alignas(64) int32_t level[64];     ///< log2 of the boxes' sides
+  alignas(64) int32_t voxels[64];    ///< 1: what is hit is a voxel of the box, 0: the box
+  bool any_voxels = false;           ///< of boxes larger than one
 };
 /// What shade() does for ShadeMode::kDepth: `gray[64]`.
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
@@ -135,8 +141,12 @@ void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8
 /// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates: `face[64]`.
 void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face);
 
-/// The name of the instruction set in use.
+/// The name of the instruction set in use: the best one that this machine has.
 const char* instruction_set();
+/// How many this machine and this build have. `use_instruction_set` takes the one of that number from now on
+/// (for tests; not while anything is drawn), the best one again when it is negative.
+int instruction_set_count();
+void use_instruction_set(int number);
 
 }  // namespace thimble::wide
 

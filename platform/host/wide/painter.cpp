@@ -64,6 +64,8 @@ void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
     if (lists_.has_blocks()) {
       for (uint32_t i = 0; i < count; ++i) {
         pixels->level[i] = level_of(lists_.entries()[number(i)]);
+        const bool is_block = !lists_.merged().empty() && lists_.merged()[number(i)] != 0;
+        pixels->voxels[i] = pixels->level[i] > 0 && !is_block ? 1 : 0;
       }
     }
     uint8_t codes[64];
@@ -82,9 +84,8 @@ void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
       find_faces(frame, *pixels, codes);
       const bool by_face = shading_.mode == ShadeMode::kNormal || lists_.materials().empty();
       for (uint32_t i = 0; i < count; ++i) {
-        colors[i] = by_face
-                        ? faces_[codes[i]]
-                        : color_of_face(codes[i], lists_.materials()[number(i)], camera_, shading_);
+        colors[i] = by_face ? faces_[codes[i]]
+                            : color_of_face(codes[i], lists_.materials()[number(i)], camera_, shading_);
       }
     }
   }
@@ -107,6 +108,8 @@ uint64_t Painter::paint_row(const Frame& frame, int32_t y, const uint32_t* cover
   pixels.y = y;
   memset(pixels.x, 0, sizeof(pixels.x));
   memset(pixels.nearest, 0, sizeof(pixels.nearest));
+  pixels.any_voxels = lists_.has_blocks();
+  memset(pixels.voxels, 0, sizeof(pixels.voxels));
   memset(pixels.level, 0, sizeof(pixels.level));
   uint64_t hits = 0;
   const int32_t words = (camera_.width_px() + 31) / 32;

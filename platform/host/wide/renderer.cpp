@@ -62,7 +62,7 @@ class TileDrawer {
     const Camera& camera = frame.camera;
     for (int axis = 0; axis < 3; ++axis) {
       // Rays of a parallel camera come from beyond the world.
-      eye_cell_[axis] = camera.is_perspective()       ? camera.eye()[axis].raw >> 8
+      eye_cell_[axis] = camera.is_perspective()        ? camera.eye()[axis].raw >> 8
                         : camera.direction()[axis] < 0 ? INT32_MAX
                                                        : INT32_MIN;
     }
@@ -75,7 +75,8 @@ class TileDrawer {
     }
     Block stack[7 * kMaxLevel + 8];
     int depth = 0;
-    stack[depth++] = {0, tree.level(), {0, 0, 0}, {frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}};
+    stack[depth++] = {
+        0, tree.level(), {0, 0, 0}, {frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}};
     const uint32_t small = by_blocks_ ? kBlockBoxes : kFlatBoxes;
     while (depth > 0) {
       const Block block = stack[--depth];
@@ -183,8 +184,8 @@ class TileDrawer {
     return depth <= 0 ? 1e9F : 2 * frame_.reach_x / depth;
   }
 
-  // The `run->count` boxes of entries_ front to back. Entries of an octant stand together, in every block of the tree; so the octants are
-  // taken in the order of their distance from the eye, down to single entries.
+  // The `run->count` boxes of entries_ front to back. Entries of an octant stand together, in every block of
+  // the tree; so the octants are taken in the order of their distance from the eye, down to single entries.
   void sort(const Block& block, Run* run) {
     struct Part {
       uint32_t begin, end;
@@ -248,10 +249,10 @@ class TileDrawer {
   bool by_blocks_;
   Batch* batch_;
   int32_t eye_cell_[3];
-  uint32_t entries_[kMostSorted + 64];
-  uint32_t numbers_[kMostSorted + 64];
-  uint32_t sorted_entries_[kMostSorted];
-  uint32_t sorted_numbers_[kMostSorted];
+  uint32_t entries_[kMostSorted + kReadAhead];
+  uint32_t numbers_[kMostSorted + kReadAhead];
+  uint32_t sorted_entries_[kMostSorted + kReadAhead];
+  uint32_t sorted_numbers_[kMostSorted + kReadAhead];
 };
 
 // How often over the boxes would cover the picture, about: as many pixels as a voxel in the middle of what is
@@ -265,8 +266,7 @@ double times_covered(const VoxelLists& lists, const Frame& frame) {
   const double nearest = double{frame.half_w} * 64;
   depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
   const double area = 4 * double{frame.reach_x} * double{frame.reach_y} / (depth * depth);
-  const double pixels =
-      static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
+  const double pixels = static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
   return static_cast<double>(lists.entries().size) * area / pixels;
 }
 
@@ -274,7 +274,8 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
              const Options& options) {
   const int32_t width = camera.width_px();
   if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row || options.threads < 1 || options.threads > kMaxThreads) {
+      band.rows > camera.height_px() - band.first_row || options.threads < 1 ||
+      options.threads > kMaxThreads) {
     return Status::kBadArgument;
   }
   const size_t line_bytes = row_bytes(band.format, width);
@@ -307,8 +308,8 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (status != Status::kOk || band.rows == 0) {
     return status;
   }
-  // A tile is some whole rows. With several threads there are more tiles than threads, so that one that is slow
-  // does not hold the frame.
+  // A tile is some whole rows. With several threads there are more tiles than threads, so that one that is
+  // slow does not hold the frame.
   const int32_t tile_count = options.threads == 1 ? 1 : 8 * options.threads;
   int32_t tile_rows = (band.rows + tile_count - 1) / tile_count;
   tile_rows = tile_rows < 8 ? 8 : tile_rows;

@@ -2,10 +2,10 @@
 /// The core's picture, faster: voxels are taken to the pixels that they cover instead of rays to the voxels
 /// that they meet.
 ///
-/// Same tree in, same picture out, pixel by pixel, for every instruction set and number of threads: every pair
-/// of a ray and a box is judged by the core's own rule on the ray's integers, in floats where their error bound
-/// proves the answer and in integers elsewhere (kernels.cpp). Blocks of the tree are taken front to back, and
-/// left out when all pixels that they could reach are covered.
+/// Same tree in, same picture out, pixel by pixel, for every instruction set and number of threads: every
+/// pair of a ray and a box is judged by the core's own rule on the ray's integers, in floats where their
+/// error bound proves the answer and in integers elsewhere (kernels.cpp). Blocks of the tree are taken front
+/// to back, and left out when all pixels that they could reach are covered.
 ///
 /// The core does not know of it. It needs the voxel lists (voxel_lists.h), 8 1/8 bytes a pixel and 30 KiB a
 /// thread; where the caller has less to give, or the camera is beyond what floats resolve, the core's own

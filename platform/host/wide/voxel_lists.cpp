@@ -75,8 +75,8 @@ size_t VoxelLists::bytes(const CompactTree& tree) {
   }
   const int level = choose_block_level(tree, census);
   const size_t nodes = tree.empty() ? 0 : census.level_begin[level - 1];
-  return census.boxes * (sizeof(uint32_t) + (tree.many_materials() ? 1 : 0)) + nodes * sizeof(BlockNode) +
-         3 * 64;
+  return census.boxes * (sizeof(uint32_t) + (tree.many_materials() ? 1 : 0) + (tree.merged() ? 1 : 0)) +
+         kEntriesAhead * sizeof(uint32_t) + nodes * sizeof(BlockNode) + 4 * 64;
 }
 
 Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists) {
@@ -90,11 +90,13 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
   made.block_level_ = choose_block_level(tree, census);
   const size_t node_count = tree.empty() ? 0 : census.level_begin[made.block_level_ - 1];
   Arena taken = *arena;
-  uint32_t* entries = array<uint32_t>(&taken, census.boxes);
+  uint32_t* entries = array<uint32_t>(&taken, census.boxes + kEntriesAhead);
   BlockNode* nodes = array<BlockNode>(&taken, node_count);
   uint8_t* materials = tree.many_materials() ? array<uint8_t>(&taken, census.boxes) : nullptr;
-  if ((entries == nullptr && census.boxes != 0) || (nodes == nullptr && node_count != 0) ||
-      (materials == nullptr && tree.many_materials() && census.boxes != 0)) {
+  uint8_t* merged = tree.merged() ? array<uint8_t>(&taken, census.boxes) : nullptr;
+  if (entries == nullptr || (nodes == nullptr && node_count != 0) ||
+      (materials == nullptr && tree.many_materials() && census.boxes != 0) ||
+      (merged == nullptr && tree.merged() && census.boxes != 0)) {
     return Status::kOutOfMemory;
   }
 
@@ -126,6 +128,9 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
       const auto add = [&](const uint32_t(&at)[3], int box_level, uint8_t material) {
         if (materials != nullptr) {
           materials[written] = material;
+        }
+        if (merged != nullptr) {
+          merged[written] = tree.is_merged(step.node) ? 1 : 0;
         }
         entries[written++] = packed(at, box_level);
       };
@@ -163,8 +168,12 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
     }
     ++level;
   }
+  for (uint32_t i = 0; i < kEntriesAhead; ++i) {
+    entries[written + i] = 0;
+  }
   made.entries_ = Span<const uint32_t>(entries, written);
   made.nodes_ = Span<const BlockNode>(nodes, node_count);
+  made.merged_ = Span<const uint8_t>(merged, merged == nullptr ? 0 : written);
   made.materials_ = Span<const uint8_t>(materials, materials == nullptr ? 0 : written);
   *arena = taken;
   *lists = made;

@@ -27,6 +27,9 @@ namespace thimble::wide {
 /// Worlds above this level are several cubes of entries.
 inline constexpr int kCubeLevel = 10;
 
+/// Behind the entries stand so many zeros, so that vectors of them can be read to the end.
+inline constexpr uint32_t kEntriesAhead = 64;
+
 /// A node of the tree at block level or above.
 struct BlockNode {
   uint32_t first_entry;
@@ -34,8 +37,9 @@ struct BlockNode {
   uint32_t first_child;  ///< number of its first child; the mask is the tree's
 };
 
-/// The lists of one tree, in bytes that the caller gave. 4 bytes a box, 1 more with many materials, and 12
-/// bytes a node of block_level and above, of which there are at most one in 16 boxes and 4096.
+/// The lists of one tree, in bytes that the caller gave. 4 bytes a box, 1 more with many materials, 1 more
+/// with merged blocks, and 12 bytes a node of block_level and above, of which there are at most one in 16
+/// boxes and 4096.
 class VoxelLists {
  public:
   /// Makes the lists; takes `bytes(tree)` from the arena. One pass over the masks and one over the boxes.
@@ -48,6 +52,9 @@ class VoxelLists {
   Span<const uint32_t> entries() const { return entries_; }
   /// Materials of the entries; empty where the tree has one material.
   Span<const uint8_t> materials() const { return materials_; }
+  /// 1 for entries that coarsening made: a hit on one is a hit on the block, not on a voxel of it. Empty
+  /// where the tree has none.
+  Span<const uint8_t> merged() const { return merged_; }
   Span<const BlockNode> nodes() const { return nodes_; }
   int block_level() const { return block_level_; }
   /// Whether any entry is more than one voxel.
@@ -57,6 +64,7 @@ class VoxelLists {
   CompactTree tree_;
   Span<const uint32_t> entries_;
   Span<const uint8_t> materials_;
+  Span<const uint8_t> merged_;
   Span<const BlockNode> nodes_;
   int block_level_ = 0;
   bool has_blocks_ = false;
