@@ -181,7 +181,7 @@ void run(const TraceCommand& command) {
   output.write(std::string(kHitColumns) + "\n");
   ProgressBar bar("tracing", command.scene.quiet);
   Stats stats(command.scene.arguments.scene, *source, built);
-  stats.engine = command.engine.resolved();
+  stats.engine = command.engine.resolved(false);
   std::string lines;
   const auto start = std::chrono::steady_clock::now();
   for_each_ray(command, text, built.level(), [&](const Ray& ray, std::size_t line, std::size_t offset) {
@@ -223,7 +223,7 @@ void add_trace(CLI::App& app) {
                       "; point = q-origin / 256 + t * q-direction, in voxels; - is standard output")
       ->default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
-  command->engine.add_to(*sub);
+  command->engine.add_ray_engines_to(*sub);
   sub->callback([command] { run(*command); });
 }
 

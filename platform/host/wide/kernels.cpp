@@ -113,7 +113,9 @@ void keep(const Depths& depths, Batch* batch) {
     uint32_t* covered = depths.covered + (pixel >> 5);
     uint64_t* nearest = depths.nearest + pixel;
     const uint64_t value = value_of(*batch, batch->key[i], batch->down[i], batch->number[i]);
-    const uint64_t before = (*covered & bit) != 0 ? *nearest : UINT64_MAX;
+    // No branch: what is there when the bit is not set is then made the greatest number.
+    const uint64_t nothing = uint64_t{*covered >> (pixel & 31U) & 1U} - 1;
+    const uint64_t before = *nearest | nothing;
     *covered |= bit;
     *nearest = value < before ? value : before;
   }
@@ -500,16 +502,17 @@ struct Projected {
 };
 
 template <bool kPerspective, bool kUnit>
-HWY_INLINE Projected project(const Frame& frame, const Run& run, const Batch& batch, uint32_t at) {
+HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle& clip, const Batch& batch,
+                             uint32_t at) {
   const F32 d;
   const I32 di;
   const U32 du;
   const size_t lanes = hn::Lanes(d);
   const auto within = hn::Set(du, kWithin);
-  const auto first_x = hn::Set(d, static_cast<float>(frame.tile.x0));
-  const auto last_x = hn::Set(d, static_cast<float>(frame.tile.x1 - 1));
-  const auto first_y = hn::Set(d, static_cast<float>(frame.tile.y0));
-  const auto last_y = hn::Set(d, static_cast<float>(frame.tile.y1 - 1));
+  const auto first_x = hn::Set(d, static_cast<float>(clip.x0));
+  const auto last_x = hn::Set(d, static_cast<float>(clip.x1 - 1));
+  const auto first_y = hn::Set(d, static_cast<float>(clip.y0));
+  const auto last_y = hn::Set(d, static_cast<float>(clip.y1 - 1));
   const auto zero = hn::Zero(d);
   const auto one = hn::Set(d, 1.0F);
   Projected boxes;
@@ -594,15 +597,26 @@ class OpenPixels {
     const uint8_t* at =
         reinterpret_cast<const uint8_t*>(depths.covered) + 4 * depths.first_word(where.y0) + (x0_ >> 3);
     const int32_t rows = where.y1 - where.y0;
+    const uint32_t inside = UINT32_MAX >> (32 - (where.x1 - where.x0));
+    uint32_t columns = 0;
+    uint32_t open_rows = 0;
     for (int32_t row = 0; row < rows; ++row, at += static_cast<size_t>(depths.words) * 4) {
       uint64_t bits = 0;
       __builtin_memcpy(&bits, at, sizeof(bits));
-      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 7U));
+      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 7U)) & inside;
+      columns |= rows_[row];
+      open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
+    }
+    if (columns != 0) {
+      bounds_ = {where.x0 + __builtin_ctz(columns), where.y0 + __builtin_ctz(open_rows),
+                 where.x0 + 32 - __builtin_clz(columns), where.y0 + 32 - __builtin_clz(open_rows)};
     }
   }
 
   // What is known was read before the run was begun.
   bool is_small() const { return small_; }
+  // Holds all pixels of the small rectangle that are not covered; empty when there is none.
+  const Rectangle& bounds() const { return bounds_; }
 
   // Of the pixels (x .. x + 24, y), a bit each. Lanes outside `mask` get numbers without meaning.
   HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
@@ -639,6 +653,7 @@ class OpenPixels {
  private:
   const Depths& depths_;
   bool small_ = false;
+  Rectangle bounds_{0, 0, 0, 0};
   uint32_t x0_ = 0;
   uint32_t y0_ = 0;
   alignas(64) uint32_t rows_[32];
@@ -673,10 +688,11 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   }
   batch->counts.boxes += run.count;
   const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0});
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
   const auto most = hn::Set(d, (run.sorted ? kMostQueuedSorted : kMostQueued) - 1);
   Pairs& waiting = batch->waiting;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
-    const Projected boxes = project<kPerspective, kUnit>(frame, run, *batch, at);
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, *batch, at);
     const auto entry = boxes.entry;
     const auto low_x = boxes.low_x;
     const auto low_y = boxes.low_y;
@@ -728,11 +744,17 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     const auto int_x = hn::BitCast(du, hn::ConvertTo(di, low_x));
     const auto int_y = hn::BitCast(du, hn::ConvertTo(di, low_y));
     const auto first = hn::Or(hn::ShiftLeft<16>(int_y), int_x);
-    const bool reject = run.behind && (run.sorted || !kept || open_pixels.is_small());
+    // Nothing may go into the picture between the boxes of a sorted vector: a farther one may have been
+    // tested before a nearer one has been looked up.
+    constexpr size_t kMostSortedPairs = static_cast<size_t>(kMostQueuedSorted * kMostQueuedSorted);
+    if (run.sorted && waiting.count + (kMostSortedPairs + 1) * lanes > Pairs::kSize) {
+      test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+    }
     auto in_row = seen;
     for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
       auto in_column = in_row;
       auto open = hn::Set(du, UINT32_MAX);
+      const bool reject = run.behind && (run.sorted || !kept || open_pixels.is_small());
       if (reject) {
         open = open_pixels.at(in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
         in_column = hn::And(in_row, any_open(open, wide_x));
@@ -769,9 +791,10 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
   keep(depths, batch);
   batch->counts.boxes += run.count;
   const OpenPixels open_pixels(depths, run.where);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
   uint32_t count = 0;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
-    const Projected boxes = project<kPerspective, kUnit>(frame, run, *batch, at);
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, *batch, at);
     // Wider or taller ones are not looked at so closely.
     const auto most = hn::Set(d, 24.0F);
     auto chosen = hn::And(boxes.seen, hn::Or(hn::Gt(boxes.wide_x, most), hn::Gt(boxes.wide_y, most)));

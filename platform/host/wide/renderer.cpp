@@ -267,7 +267,7 @@ double times_covered(const VoxelLists& lists, const Frame& frame) {
   depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
   const double area = 4 * double{frame.reach_x} * double{frame.reach_y} / (depth * depth);
   const double pixels = static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
-  return static_cast<double>(lists.entries().size) * area / pixels;
+  return static_cast<double>(lists.face_area()) * area / pixels;
 }
 
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
@@ -397,7 +397,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
     counts->hits += hits;
-    counts->node_visits += done.counts.candidates + done.counts.nodes;
+    counts->node_visits += done.counts.nodes;
   }
   if (stats != nullptr) {
     *stats = done;

@@ -41,8 +41,8 @@ struct Stats {
 /// Bytes that `render` wants as workspace for bands of `rows` rows of this width.
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads = 1);
 
-/// Draws the band's rows. `counts` (may be null) is added to: rays, hits, and as node_visits the rays tested
-/// against boxes and the blocks looked at. `stats` (may be null) is overwritten.
+/// Draws the band's rows. `counts` (may be null) is added to: rays, hits, and as node_visits the blocks
+/// looked at. `stats` (may be null) is overwritten.
 /// Errors, with nothing drawn: those of render_band; kBadArgument for `threads`; kOutOfMemory for a workspace
 /// that is too small; kTooFine for cameras and lists that this renderer leaves to the core.
 Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,

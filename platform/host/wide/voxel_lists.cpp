@@ -132,6 +132,7 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
         if (merged != nullptr) {
           merged[written] = tree.is_merged(step.node) ? 1 : 0;
         }
+        made.face_area_ += uint64_t{1} << (2 * box_level);
         entries[written++] = packed(at, box_level);
       };
       if (solid) {

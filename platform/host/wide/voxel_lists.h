@@ -57,6 +57,8 @@ class VoxelLists {
   Span<const uint8_t> merged() const { return merged_; }
   Span<const BlockNode> nodes() const { return nodes_; }
   int block_level() const { return block_level_; }
+  /// Area of a face of every entry, in all, in square voxels.
+  uint64_t face_area() const { return face_area_; }
   /// Whether any entry is more than one voxel.
   bool has_blocks() const { return has_blocks_; }
 
@@ -66,6 +68,7 @@ class VoxelLists {
   Span<const uint8_t> materials_;
   Span<const uint8_t> merged_;
   Span<const BlockNode> nodes_;
+  uint64_t face_area_ = 0;
   int block_level_ = 0;
   bool has_blocks_ = false;
 };
