@@ -11,7 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "commands/options.h"
 #include "host/wide/renderer.h"
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/octree.h"
@@ -404,6 +407,57 @@ TEST_CASE("wide: thick surfaces, voxels of about a pixel to many -> every pixel 
       const auto ours = draw_wide(scene, frame, options);
       REQUIRE(ours.has_value());
       CHECK(*ours == expected);
+    }
+  }
+}
+
+TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the core's") {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kFrames = 2;
+  const std::vector<std::string> names{"spheres,depth=7"};
+#else
+  // Frames enough to see what goes wrong in one pixel of a hundred thousand.
+  constexpr int kFrames = 5;
+  const std::vector<std::string> names{"spheres,depth=9", "points:3000000", "water"};
+#endif
+  for (const std::string& name : names) {
+    tools::SceneArguments arguments;
+    arguments.scene = name;
+    tools::BuiltScene built(*tools::open_scene(arguments), {});
+    REQUIRE(built.prepare_wide(800, 600, 1));
+    const double side = 1 << built.level();
+    for (int i = name == names.front() ? 0 : kFrames - 2; i < kFrames; ++i) {
+      CAPTURE(name);
+      CAPTURE(i);
+      const double drift = 0.003 * side * (i + 1);
+      tools::ViewOptions view;
+      view.orthographic = i == 4;
+      view.target = tools::Real3{side / 2 + drift / 3, side / 2, side / 2 + drift / 5};
+      view.eye = i == 3 ? tools::Real3{side / 2, side * 0.3, side / 2}
+                        : tools::Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
+      const Camera camera = view.camera(built.level(), built.bounds());
+      Shading shading;
+      shading.near_q8 = depth_range(camera, built.bounds()).near_q8;
+      shading.far_q8 = depth_range(camera, built.bounds()).far_q8;
+      std::vector<std::uint8_t> ours(800 * 600);
+      std::vector<std::uint8_t> expected(800 * 600);
+      Band band;
+      band.format = PixelFormat::kGray8;
+      band.rows = 600;
+      band.pixels = Bytes(ours.data(), ours.size());
+      wide::Counts work;
+      RenderCounts counts;
+      REQUIRE(built.render_wide(camera, shading, band, &counts, &work) == Status::kOk);
+      CHECK(work.exact < work.candidates / 50);  // floats decide nearly all
+      band.pixels = Bytes(expected.data(), expected.size());
+      RenderCounts expected_counts;
+      REQUIRE(built.render_band(camera, shading, band, &expected_counts, {}) == Status::kOk);
+      CHECK(counts.hits == expected_counts.hits);
+      std::size_t different = 0;
+      for (std::size_t at = 0; at < ours.size(); ++at) {
+        different += ours[at] != expected[at] ? 1U : 0U;
+      }
+      CHECK(different == 0);
     }
   }
 }

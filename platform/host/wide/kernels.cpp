@@ -492,6 +492,41 @@ void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch*
   }
 }
 
+// How far boxes of `side` voxels reach from their middles' places on the picture: frame.h.
+template <class D>
+struct Extent {
+  hn::Vec<D> x;
+  hn::Vec<D> y;
+};
+
+template <bool kPerspective, class D>
+HWY_INLINE Extent<D> extent(D d, const Frame& frame, hn::Vec<D> side, hn::Vec<D> column, hn::Vec<D> row,
+                            hn::Vec<D> per_depth) {
+  const auto one = hn::Set(d, 1.0F);
+  auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x));
+  auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y));
+  half_x = hn::MulAdd(half_x, per_depth, hn::Set(d, frame.slack_x));
+  half_y = hn::MulAdd(half_y, per_depth, hn::Set(d, frame.slack_y));
+  if (kPerspective) {
+    const auto nearness = hn::Mul(hn::Mul(hn::Set(d, frame.half_w), side), per_depth);
+    const auto k = hn::MulAdd(hn::Mul(hn::Set(d, 0.5F), side), per_depth,
+                              hn::Mul(hn::Set(d, frame.per_direction), hn::Add(one, nearness)));
+    const auto r = hn::Mul(k, hn::Set(d, frame.norm_w));
+    const auto factor = hn::Mul(k, hn::MulAdd(r, hn::Set(d, 1.152F), hn::Set(d, 1.001F)));
+    const auto reach = [&](const float(&of)[4], auto place) {
+      auto sum = hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[0]), hn::Set(d, of[0])));
+      sum = hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[1]), hn::Set(d, of[1]))));
+      return hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[2]), hn::Set(d, of[2]))));
+    };
+    const auto is_far = hn::Le(r, hn::Set(d, 0.125F));
+    const auto near_x = hn::MulAdd(hn::Set(d, frame.rounding_x), per_depth, hn::Set(d, frame.spread_x));
+    const auto near_y = hn::MulAdd(hn::Set(d, frame.rounding_y), per_depth, hn::Set(d, frame.spread_y));
+    half_x = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.u, column), factor, near_x), half_x);
+    half_y = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.v, row), factor, near_y), half_y);
+  }
+  return {half_x, half_y};
+}
+
 // Some boxes of a run on the picture: the pixels low_x .. low_x + wide_x, low_y .. low_y + wide_y.
 struct Projected {
   hn::Vec<U32> entry;
@@ -553,27 +588,9 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle
     column = hn::Mul(column, per_depth);
     row = hn::Mul(row, per_depth);
   }
-  auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x));
-  auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y));
-  half_x = hn::MulAdd(half_x, per_depth, hn::Set(d, frame.slack_x));
-  half_y = hn::MulAdd(half_y, per_depth, hn::Set(d, frame.slack_y));
-  if (kPerspective) {
-    const auto nearness = hn::Mul(hn::Mul(hn::Set(d, frame.half_w), side), per_depth);
-    const auto k = hn::MulAdd(hn::Mul(hn::Set(d, 0.5F), side), per_depth,
-                              hn::Mul(hn::Set(d, frame.per_direction), hn::Add(one, nearness)));
-    const auto r = hn::Mul(k, hn::Set(d, frame.norm_w));
-    const auto factor = hn::Mul(k, hn::MulAdd(r, hn::Set(d, 1.152F), hn::Set(d, 1.001F)));
-    const auto reach = [&](const float(&of)[4], auto place) {
-      auto sum = hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[0]), hn::Set(d, of[0])));
-      sum = hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[1]), hn::Set(d, of[1]))));
-      return hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[2]), hn::Set(d, of[2]))));
-    };
-    const auto is_far = hn::Le(r, hn::Set(d, 0.125F));
-    const auto near_x = hn::MulAdd(hn::Set(d, frame.rounding_x), per_depth, hn::Set(d, frame.spread_x));
-    const auto near_y = hn::MulAdd(hn::Set(d, frame.rounding_y), per_depth, hn::Set(d, frame.spread_y));
-    half_x = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.u, column), factor, near_x), half_x);
-    half_y = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.v, row), factor, near_y), half_y);
-  }
+  const auto half = extent<kPerspective>(d, frame, side, column, row, per_depth);
+  const auto half_x = half.x;
+  const auto half_y = half.y;
   boxes.low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
   boxes.low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
   boxes.wide_x = hn::Sub(hn::Min(hn::Floor(hn::Add(column, half_x)), last_x), boxes.low_x);
@@ -876,10 +893,10 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
       column = hn::Mul(column, per_depth);
       row = hn::Mul(row, per_depth);
     }
-    const auto half_x =
-        hn::MulAdd(hn::Set(d, frame.reach_x * side + frame.rounding_x), per_depth, hn::Set(d, frame.slack_x));
-    const auto half_y =
-        hn::MulAdd(hn::Set(d, frame.reach_y * side + frame.rounding_y), per_depth, hn::Set(d, frame.slack_y));
+    const auto half = frame.perspective ? extent<true>(d, frame, hn::Set(d, side), column, row, per_depth)
+                                        : extent<false>(d, frame, hn::Set(d, side), column, row, per_depth);
+    const auto half_x = half.x;
+    const auto half_y = half.y;
     const auto first_x = hn::Set(d, static_cast<float>(frame.tile.x0));
     const auto end_x = hn::Set(d, static_cast<float>(frame.tile.x1));
     const auto first_y = hn::Set(d, static_cast<float>(frame.tile.y0));
@@ -908,20 +925,67 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
   }
 }
 
-// Every third bit of a key, from bit 0 on, to bits 0..11.
-inline hn::Vec<F64> gathered(hn::Vec<hn::RebindToUnsigned<F64>> key, hn::Mask<F64> mirrored,
-                             hn::Vec<HalfI32> side_mask) {
-  const F64 d;
-  const hn::RebindToUnsigned<F64> d64;
-  auto v = hn::And(key, hn::Set(d64, 0x1249249249249249ULL));
-  v = hn::And(hn::Or(v, hn::ShiftRight<2>(v)), hn::Set(d64, 0x10C30C30C30C30C3ULL));
-  v = hn::And(hn::Or(v, hn::ShiftRight<4>(v)), hn::Set(d64, 0x100F00F00F00F00FULL));
-  v = hn::And(hn::Or(v, hn::ShiftRight<8>(v)), hn::Set(d64, 0x001F0000FF0000FFULL));
-  v = hn::And(hn::Or(v, hn::ShiftRight<16>(v)), hn::Set(d64, 0x001F00000000FFFFULL));
-  v = hn::And(hn::Or(v, hn::ShiftRight<32>(v)), hn::Set(d64, 0xFFFULL));
-  const auto flip = hn::IfThenElseZero(hn::RebindMask(d64, mirrored), hn::Set(d64, 0xFFFULL));
-  const auto place = hn::BitCast(HalfI32(), hn::TruncateTo(HalfU32(), hn::Xor(v, flip)));
-  return hn::PromoteTo(d, hn::And(place, side_mask));
+// Every third bit to bits 0..9.
+inline hn::Vec<U32> gathered10(hn::Vec<U32> v) {
+  const U32 d;
+  v = hn::And(v, hn::Set(d, 0x09249249U));
+  v = hn::And(hn::Or(v, hn::ShiftRight<2>(v)), hn::Set(d, 0x030C30C3U));
+  v = hn::And(hn::Or(v, hn::ShiftRight<4>(v)), hn::Set(d, 0x0300F00FU));
+  v = hn::And(hn::Or(v, hn::ShiftRight<8>(v)), hn::Set(d, 0x030000FFU));
+  return hn::And(hn::Or(v, hn::ShiftRight<16>(v)), hn::Set(d, 0x3FFU));
+}
+
+// The mirrored corners that keys stand for.
+struct Corners {
+  alignas(64) int32_t at[3][kMostPixels + 64];
+};
+
+void find_corners(const Pixels& pixels, Corners* corners) {
+  const U32 d;
+  static_assert(kEntryBits == 28 && kKeyBits == 36);
+  for (size_t at = 0; at < pixels.count; at += hn::Lanes(d)) {
+    const auto key = hn::LoadU(d, pixels.key + at);
+    const auto cube = hn::LoadU(d, pixels.cube + at);
+    const hn::Vec<U32> keys[3] = {key, hn::ShiftRight<1>(key), hn::ShiftRight<2>(key)};
+    const hn::Vec<U32> cubes[3] = {cube, hn::ShiftRight<1>(cube), hn::ShiftRight<2>(cube)};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = hn::And(cubes[axis], hn::Set(d, 1U));
+      const auto high = hn::And(hn::ShiftRight<2>(cubes[axis]), hn::Set(d, 2U));
+      const auto corner = hn::Or(gathered10(keys[axis]), hn::ShiftLeft<10>(hn::Or(low, high)));
+      hn::StoreU(hn::BitCast(I32(), corner), I32(), corners->at[axis] + at);
+    }
+  }
+}
+
+void collect(const uint32_t* covered, const uint64_t* nearest, int32_t first_word, int32_t end_word,
+             Pixels* pixels) {
+  const U64 d;
+  const HalfU32 d32;
+  const size_t lanes = hn::Lanes(d);
+  uint32_t count = 0;
+  HWY_ALIGN uint64_t values[kMostPixels + 64];
+  for (int32_t word = first_word; word < end_word; ++word) {
+    for (uint32_t bits = covered[word]; bits != 0; bits &= bits - 1) {
+      const int32_t x = word * 32 + __builtin_ctz(bits);
+      pixels->x[count] = x;
+      values[count] = nearest[x];
+      ++count;
+    }
+  }
+  pixels->count = count;
+  // Behind the last come some that mean nothing, but are places of the picture.
+  for (uint32_t i = count; i < count + hn::Lanes(U32()); ++i) {
+    values[i] = 0;
+    pixels->x[i] = 0;
+  }
+  for (uint32_t at = 0; at < count; at += static_cast<uint32_t>(lanes)) {
+    const auto value = hn::LoadU(d, values + at);
+    hn::StoreU(hn::TruncateTo(d32, hn::And(value, hn::Set(d, (uint64_t{1} << kEntryBits) - 1))), d32,
+               pixels->number + at);
+    const auto key = hn::And(hn::ShiftRight<kEntryBits>(value), hn::Set(d, 0x3FFFFFFFU));
+    hn::StoreU(hn::TruncateTo(d32, key), d32, pixels->key + at);
+    hn::StoreU(hn::TruncateTo(d32, hn::ShiftRight<kEntryBits + 30>(value)), d32, pixels->cube + at);
+  }
 }
 
 // Where rays enter their boxes: over the axes, the latest t of the nearer plane, ties to the lowest axis;
@@ -935,25 +999,27 @@ struct Entries {
 };
 
 template <bool kPerspective>
-HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, size_t at) {
+HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, const Corners& corners, size_t at) {
   const F64 d;
   const HalfI32 d32;
-  const U64 d64;
   const auto zero = hn::Zero(d);
   Entries found;
   const Rays rays = rays_of<kPerspective>(frame, hn::PromoteTo(d, hn::LoadU(d32, pixels.x + at)),
                                           hn::Set(d, static_cast<double>(pixels.y)));
-  const auto side = hn::Shl(hn::Set(d32, 1), hn::LoadU(d32, pixels.level + at));
-  const auto side_mask = hn::Neg(side);
-  const auto size = hn::Mul(hn::PromoteTo(d, side), hn::Set(d, 256));
-  const auto key = hn::ShiftRight<kEntryBits>(hn::LoadU(d64, pixels.nearest + at));
-  const hn::Vec<U64> keys[3] = {key, hn::ShiftRight<1>(key), hn::ShiftRight<2>(key)};
+  auto side = hn::Set(d, 1);
+  if (pixels.any_levels) {
+    side = hn::PromoteTo(d, hn::Shl(hn::Set(d32, 1), hn::LoadU(d32, pixels.level + at)));
+  }
+  const auto size = hn::Mul(side, hn::Set(d, 256));
+  // Mirrored in a world of 4096 voxels.
+  const auto last = hn::Sub(hn::Set(d, 4096), side);
   found.axis = hn::Set(d, -1);
   found.numerator = zero;
   found.speed = hn::Set(d, 1);
   for (int axis = 0; axis < 3; ++axis) {
     const auto downward = hn::Lt(rays.direction[axis], zero);
-    const auto corner = gathered(keys[axis], downward, side_mask);
+    const auto mirrored = hn::PromoteTo(d, hn::LoadU(d32, corners.at[axis] + at));
+    const auto corner = hn::IfThenElse(downward, hn::Sub(last, mirrored), mirrored);
     const auto low = hn::Sub(hn::Mul(corner, hn::Set(d, 256)), rays.origin[axis]);
     const auto speed = hn::Abs(rays.direction[axis]);
     const auto distance = hn::IfThenElse(downward, hn::Neg(hn::Add(low, size)), low);
@@ -965,7 +1031,7 @@ HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, size_t a
     found.speed = hn::IfThenElse(later, speed, found.speed);
     found.direction[axis] = rays.direction[axis];
   }
-  if (!pixels.any_voxels) {
+  if (!pixels.any_levels) {
     return found;
   }
   // Of a solid block it is a voxel that is entered. Where the ray passes from one voxel's slab to the next on
@@ -1016,8 +1082,10 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, int32_t depth_per_t
   const auto cut = hn::Set(d, excess == 0 ? 1.0 : 1.0 / 256);
   const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
   const auto divisor = hn::Set(d, static_cast<double>(range >> excess));
+  Corners corners;
+  find_corners(pixels, &corners);
   for (size_t at = 0; at < pixels.count; at += lanes) {
-    const Entries found = entries_of<kPerspective>(frame, pixels, at);
+    const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
     const auto ratio = hn::Floor(hn::Div(dividend, found.speed));
     const auto high = hn::Floor(hn::Mul(ratio, hn::Set(d, 1.0 / 65536)));
     const auto low = hn::NegMulAdd(high, hn::Set(d, 65536), ratio);
@@ -1058,8 +1126,10 @@ void find_faces_of(const Frame& frame, const Pixels& pixels, uint8_t* face) {
   const HalfI32 d32;
   const size_t lanes = hn::Lanes(d);
   const auto zero = hn::Zero(d);
+  Corners corners;
+  find_corners(pixels, &corners);
   for (size_t at = 0; at < pixels.count; at += lanes) {
-    const Entries found = entries_of<kPerspective>(frame, pixels, at);
+    const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
     // From inside: the face opposed to the largest component, the lowest axis on a tie.
     auto largest = hn::Abs(found.direction[0]);
     auto inside_axis = zero;
@@ -1100,6 +1170,7 @@ HWY_EXPORT(draw_run);
 HWY_EXPORT(finish);
 HWY_EXPORT(cull_run);
 HWY_EXPORT(find_rectangles);
+HWY_EXPORT(collect);
 HWY_EXPORT(find_grays);
 HWY_EXPORT(find_faces);
 HWY_EXPORT(instruction_set);
@@ -1117,6 +1188,10 @@ uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batc
 void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
                      Rectangle* rectangles) {
   HWY_DYNAMIC_DISPATCH(find_rectangles)(frame, x, y, z, side, rectangles);
+}
+void collect(const uint32_t* covered, const uint64_t* nearest, int32_t first_word, int32_t end_word,
+             Pixels* pixels) {
+  HWY_DYNAMIC_DISPATCH(collect)(covered, nearest, first_word, end_word, pixels);
 }
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray) {

@@ -7,8 +7,6 @@
 namespace thimble::wide {
 namespace {
 
-constexpr uint32_t kNumberMask = (uint32_t{1} << kEntryBits) - 1;
-
 // A hit on that face, and a ray for it.
 Rgb8 color_of_face(unsigned face, uint8_t material, const Camera& camera, const Shading& shading) {
   Hit hit;
@@ -54,8 +52,7 @@ void Painter::fill_background(uint8_t* line, int32_t y, const uint32_t* covered)
 
 void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
   const uint32_t count = pixels->count;
-  const auto number = [&](uint32_t i) { return static_cast<uint32_t>(pixels->nearest[i]) & kNumberMask; };
-  Rgb8 colors[64];
+  Rgb8 colors[kMostPixels];
   if (shading_.mode == ShadeMode::kMono) {
     for (uint32_t i = 0; i < count; ++i) {
       colors[i] = {255, 255, 255};
@@ -63,12 +60,12 @@ void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
   } else {
     if (lists_.has_blocks()) {
       for (uint32_t i = 0; i < count; ++i) {
-        pixels->level[i] = level_of(lists_.entries()[number(i)]);
-        const bool is_block = !lists_.merged().empty() && lists_.merged()[number(i)] != 0;
+        pixels->level[i] = level_of(lists_.entries()[pixels->number[i]]);
+        const bool is_block = !lists_.merged().empty() && lists_.merged()[pixels->number[i]] != 0;
         pixels->voxels[i] = pixels->level[i] > 0 && !is_block ? 1 : 0;
       }
     }
-    uint8_t codes[64];
+    uint8_t codes[kMostPixels + 64];
     if (shading_.mode == ShadeMode::kDepth) {
       find_grays(frame, *pixels, camera_.depth_per_t_q8(), shading_, codes);
       if (band_.format == PixelFormat::kGray8) {
@@ -84,8 +81,9 @@ void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
       find_faces(frame, *pixels, codes);
       const bool by_face = shading_.mode == ShadeMode::kNormal || lists_.materials().empty();
       for (uint32_t i = 0; i < count; ++i) {
-        colors[i] = by_face ? faces_[codes[i]]
-                            : color_of_face(codes[i], lists_.materials()[number(i)], camera_, shading_);
+        colors[i] = by_face
+                        ? faces_[codes[i]]
+                        : color_of_face(codes[i], lists_.materials()[pixels->number[i]], camera_, shading_);
       }
     }
   }
@@ -106,29 +104,19 @@ uint64_t Painter::paint_row(const Frame& frame, int32_t y, const uint32_t* cover
   fill_background(line, y, covered);
   Pixels pixels;
   pixels.y = y;
-  memset(pixels.x, 0, sizeof(pixels.x));
-  memset(pixels.nearest, 0, sizeof(pixels.nearest));
-  pixels.any_voxels = lists_.has_blocks();
-  memset(pixels.voxels, 0, sizeof(pixels.voxels));
-  memset(pixels.level, 0, sizeof(pixels.level));
+  pixels.any_levels = lists_.has_blocks();
+  if (pixels.any_levels) {
+    memset(pixels.level, 0, sizeof(pixels.level));
+    memset(pixels.voxels, 0, sizeof(pixels.voxels));
+  }
   uint64_t hits = 0;
   const int32_t words = (camera_.width_px() + 31) / 32;
-  for (int32_t word = 0; word < words; ++word) {
-    uint32_t bits = covered[word];
-    hits += static_cast<unsigned>(__builtin_popcount(bits));
-    if (static_cast<uint32_t>(__builtin_popcount(bits)) + pixels.count > 64) {
+  for (int32_t word = 0; word < words; word += kMostPixelWords) {
+    collect(covered, nearest, word, word + kMostPixelWords < words ? word + kMostPixelWords : words, &pixels);
+    hits += pixels.count;
+    if (pixels.count != 0) {
       paint(frame, &pixels, line);
-      pixels.count = 0;
     }
-    for (; bits != 0; bits &= bits - 1) {
-      const int32_t x = word * 32 + __builtin_ctz(bits);
-      pixels.x[pixels.count] = x;
-      pixels.nearest[pixels.count] = nearest[x];
-      ++pixels.count;
-    }
-  }
-  if (pixels.count != 0) {
-    paint(frame, &pixels, line);
   }
   return hits;
 }

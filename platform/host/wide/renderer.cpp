@@ -19,32 +19,61 @@ namespace {
 constexpr uint32_t kFlatBoxes = 4096;
 constexpr uint32_t kBlockBoxes = 320;
 // Voxels of at least so many pixels a side are drawn one behind the other.
-constexpr float kSortedPx = 2.5F;
+constexpr float kSortedPx = 2.0F;
 constexpr uint32_t kMostSorted = 512;
 // Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
 constexpr double kBlocksFrom = 1.5;
+
+constexpr int32_t kPatchRows = 16;
 
 int32_t words_of(int32_t width_px) {
   return (width_px + 63) / 64 * 2;
 }
 
-bool all_covered(const Depths& depths, const Rectangle& where) {
+// Whether all pixels of `where` are covered. Patches of a word by kPatchRows rows that were seen full are
+// remembered in `full` (a byte each, `words` to a row of patches), so that large rectangles cost little.
+bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
   const int32_t first = where.x0 >> 5;
   const int32_t last = (where.x1 - 1) >> 5;
   const uint32_t head = UINT32_MAX << (where.x0 & 31);
   const uint32_t tail = UINT32_MAX >> (31 - ((where.x1 - 1) & 31));
-  for (int32_t y = where.y0; y < where.y1; ++y) {
-    const uint32_t* row = depths.covered + depths.first_word(y);
-    for (int32_t word = first; word <= last; ++word) {
-      uint32_t wanted = UINT32_MAX;
-      wanted &= word == first ? head : wanted;
-      wanted &= word == last ? tail : wanted;
-      if ((row[word] & wanted) != wanted) {
+  const auto are_full = [&](int32_t word, uint32_t wanted, int32_t y0, int32_t y1) {
+    const uint32_t* at = depths.covered + depths.first_word(y0) + word;
+    for (int32_t y = y0; y < y1; ++y, at += depths.words) {
+      if ((*at & wanted) != wanted) {
         return false;
       }
     }
+    return true;
+  };
+  const int32_t y_end = where.y1 - depths.first_row;
+  for (int32_t y = where.y0 - depths.first_row; y < y_end;) {
+    const int32_t patch_y = y / kPatchRows;
+    const int32_t next = (patch_y + 1) * kPatchRows;
+    const int32_t end = next < y_end ? next : y_end;
+    uint8_t* const flags = full + static_cast<size_t>(patch_y) * static_cast<size_t>(depths.words);
+    for (int32_t word = first; word <= last; ++word) {
+      if (flags[word] != 0) {
+        continue;
+      }
+      uint32_t wanted = UINT32_MAX;
+      wanted &= word == first ? head : wanted;
+      wanted &= word == last ? tail : wanted;
+      if (!are_full(word, wanted, y + depths.first_row, end + depths.first_row)) {
+        return false;
+      }
+      if (end == next &&
+          are_full(word, UINT32_MAX, next - kPatchRows + depths.first_row, next + depths.first_row)) {
+        flags[word] = 1;
+      }
+    }
+    y = end;
   }
   return true;
+}
+
+size_t words_of_patches(int32_t width_px, int32_t rows) {
+  return static_cast<size_t>(words_of(width_px)) * static_cast<size_t>((rows + kPatchRows - 1) / kPatchRows);
 }
 
 struct Block {
@@ -57,8 +86,9 @@ struct Block {
 // One tile of the picture, by one thread.
 class TileDrawer {
  public:
-  TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, bool by_blocks, Batch* batch)
-      : lists_(lists), frame_(frame), depths_(depths), by_blocks_(by_blocks), batch_(batch) {
+  TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, uint8_t* full, bool by_blocks,
+             Batch* batch)
+      : lists_(lists), frame_(frame), depths_(depths), full_(full), by_blocks_(by_blocks), batch_(batch) {
     const Camera& camera = frame.camera;
     for (int axis = 0; axis < 3; ++axis) {
       // Rays of a parallel camera come from beyond the world.
@@ -88,13 +118,14 @@ class TileDrawer {
         }
       }
       ++batch_->counts.nodes;
-      if (by_blocks_ && all_covered(depths_, block.where)) {
-        continue;
-      }
       const BlockNode& node = lists_.nodes()[block.node];
       const unsigned mask = tree.mask(block.node);
       const bool is_small = node.entries <= small && block.level <= kCubeLevel;
-      if (mask == 0 || block.level <= lists_.block_level() || is_small) {
+      const bool is_leaf = mask == 0 || block.level <= lists_.block_level() || is_small;
+      if (by_blocks_ && all_covered(depths_, block.where, full_)) {
+        continue;
+      }
+      if (is_leaf) {
         draw_block(block, node);
         continue;
       }
@@ -246,6 +277,7 @@ class TileDrawer {
   const VoxelLists& lists_;
   const Frame& frame_;
   const Depths& depths_;
+  uint8_t* full_;  // see all_covered
   bool by_blocks_;
   Batch* batch_;
   int32_t eye_cell_[3];
@@ -298,8 +330,8 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
   const size_t words = static_cast<size_t>(words_of(width_px)) * static_cast<size_t>(rows);
-  return words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) + sizeof(uint64_t) +
-         static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+  return words_of_patches(width_px, rows) + words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) +
+         sizeof(uint64_t) + static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
 }
 
 Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
@@ -312,7 +344,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   // slow does not hold the frame.
   const int32_t tile_count = options.threads == 1 ? 1 : 8 * options.threads;
   int32_t tile_rows = (band.rows + tile_count - 1) / tile_count;
-  tile_rows = tile_rows < 8 ? 8 : tile_rows;
+  tile_rows = (tile_rows + kPatchRows - 1) / kPatchRows * kPatchRows;
   const auto make_tile = [&](int32_t row, Frame* frame) {
     const int32_t end = row + tile_rows < band.rows ? row + tile_rows : band.rows;
     return make_frame(camera, {0, band.first_row + row, camera.width_px(), band.first_row + end}, frame);
@@ -335,6 +367,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(band.rows);
   depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 32 * sizeof(uint64_t), 64).data);
   depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t) + sizeof(uint64_t)).data);
+  const Bytes patches = arena.take(words_of_patches(camera.width_px(), band.rows), 1);
   const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
   const auto batch_at = [&](int thread) {
     return std::launder(reinterpret_cast<Batch*>(batches.data) + thread);
@@ -356,7 +389,9 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     const size_t rows = static_cast<size_t>(tile.tile.y1 - tile.tile.y0);
     memset(depths.covered + depths.first_word(tile.tile.y0), 0,
            rows * static_cast<size_t>(depths.words) * sizeof(uint32_t));
-    TileDrawer(lists, tile, depths, by_blocks, batch).draw();
+    const size_t first_patch = words_of_patches(camera.width_px(), row);
+    memset(patches.data + first_patch, 0, words_of_patches(camera.width_px(), tile.tile.y1 - tile.tile.y0));
+    TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();
     uint64_t hits = 0;
     for (int32_t y = tile.tile.y0; y < tile.tile.y1; ++y) {
       hits += painter.paint_row(tile, y, depths.covered + depths.first_word(y),
