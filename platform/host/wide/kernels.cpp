@@ -527,6 +527,35 @@ HWY_INLINE Extent<D> extent(D d, const Frame& frame, hn::Vec<D> side, hn::Vec<D>
   return {half_x, half_y};
 }
 
+// How far boxes reach from their middles' places: the tile's bound (frame.h) for the part of it in which the
+// run may be seen.
+struct Reach {
+  float x, y;
+  float slack_x, slack_y;
+
+  Reach(const Frame& frame, const Rectangle& where)
+      : x(frame.reach_x), y(frame.reach_y), slack_x(frame.slack_x), slack_y(frame.slack_y) {
+    if (!frame.perspective || frame.norm_w > 1e20F) {
+      return;
+    }
+    const auto sum = [&](const float(&row)[4], int32_t at) {
+      const float place = static_cast<float>(at);
+      float total = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        total += __builtin_fabsf(row[axis] - place * frame.w[axis]);
+      }
+      return total * 1.001F;
+    };
+    const auto greater = [](float a, float b) { return a > b ? a : b; };
+    const float across = greater(sum(frame.u, where.x0), sum(frame.u, where.x1));
+    const float down = greater(sum(frame.v, where.y0), sum(frame.v, where.y1));
+    x = 0.5F * across;
+    y = 0.5F * down;
+    slack_x = across * frame.per_direction + frame.spread_x;
+    slack_y = down * frame.per_direction + frame.spread_y;
+  }
+};
+
 // Some boxes of a run on the picture: the pixels low_x .. low_x + wide_x, low_y .. low_y + wide_y.
 struct Projected {
   hn::Vec<U32> entry;
@@ -537,8 +566,8 @@ struct Projected {
 };
 
 template <bool kPerspective, bool kUnit>
-HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle& clip, const Batch& batch,
-                             uint32_t at) {
+HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle& clip, const Reach& reach,
+                             const Batch& batch, uint32_t at) {
   const F32 d;
   const I32 di;
   const U32 du;
@@ -588,9 +617,10 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle
     column = hn::Mul(column, per_depth);
     row = hn::Mul(row, per_depth);
   }
-  const auto half = extent<kPerspective>(d, frame, side, column, row, per_depth);
-  const auto half_x = half.x;
-  const auto half_y = half.y;
+  const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, reach.x), side, hn::Set(d, frame.rounding_x)),
+                                 per_depth, hn::Set(d, reach.slack_x));
+  const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, reach.y), side, hn::Set(d, frame.rounding_y)),
+                                 per_depth, hn::Set(d, reach.slack_y));
   boxes.low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
   boxes.low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
   boxes.wide_x = hn::Sub(hn::Min(hn::Floor(hn::Add(column, half_x)), last_x), boxes.low_x);
@@ -706,10 +736,11 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   batch->counts.boxes += run.count;
   const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0});
   const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const Reach reach(frame, clip);
   const auto most = hn::Set(d, (run.sorted ? kMostQueuedSorted : kMostQueued) - 1);
   Pairs& waiting = batch->waiting;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
-    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, *batch, at);
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
     const auto entry = boxes.entry;
     const auto low_x = boxes.low_x;
     const auto low_y = boxes.low_y;
@@ -809,9 +840,10 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
   batch->counts.boxes += run.count;
   const OpenPixels open_pixels(depths, run.where);
   const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const Reach reach(frame, clip);
   uint32_t count = 0;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
-    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, *batch, at);
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
     // Wider or taller ones are not looked at so closely.
     const auto most = hn::Set(d, 24.0F);
     auto chosen = hn::And(boxes.seen, hn::Or(hn::Gt(boxes.wide_x, most), hn::Gt(boxes.wide_y, most)));

@@ -22,7 +22,7 @@ constexpr uint32_t kBlockBoxes = 320;
 constexpr float kSortedPx = 2.0F;
 constexpr uint32_t kMostSorted = 512;
 // Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
-constexpr double kBlocksFrom = 1.5;
+constexpr double kBlocksFrom = 3;
 
 constexpr int32_t kPatchRows = 16;
 
@@ -107,7 +107,9 @@ class TileDrawer {
     int depth = 0;
     stack[depth++] = {
         0, tree.level(), {0, 0, 0}, {frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}};
-    const uint32_t small = by_blocks_ ? kBlockBoxes : kFlatBoxes;
+    // Of a part of the picture, blocks outside it are to be left out too.
+    const bool is_part = frame_.tile.y1 - frame_.tile.y0 < frame_.camera.height_px();
+    const uint32_t small = by_blocks_ || is_part ? kBlockBoxes : kFlatBoxes;
     while (depth > 0) {
       const Block block = stack[--depth];
       if (depth > 0) {
@@ -381,7 +383,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (done.order == Order::kAuto) {
     done.order = times_covered(lists, frame) < kBlocksFrom ? Order::kFlat : Order::kBlocks;
   }
-  const bool by_blocks = done.order == Order::kBlocks || options.threads > 1;
+  const bool by_blocks = done.order == Order::kBlocks;
   const Painter painter(lists, camera, shading, band);
   const auto draw_tile = [&](int32_t row, Batch* batch) {
     Frame tile;
