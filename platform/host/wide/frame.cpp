@@ -151,8 +151,6 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   const Row& depth = frame->perspective ? w : none;
   const double across = greatest_reach(u, depth, left, right);
   const double down = greatest_reach(v, depth, top, bottom);
-  frame->reach_x = static_cast<float>(across * 0.5 * 1.0001);
-  frame->reach_y = static_cast<float>(down * 0.5 * 1.0001);
   frame->rounding_x = static_cast<float>(kRounding * (magnitude[0] + right * magnitude[2]));
   frame->rounding_y = static_cast<float>(kRounding * (magnitude[1] + bottom * magnitude[2]));
   frame->half_w = static_cast<float>(frame->perspective ? w.norm() * 0.5 * 1.0001 : 0);
@@ -163,6 +161,10 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   if (!(shrink > 0.5)) {
     return false;
   }
+  // A box's far side is (1 + h |W|_1 / W.c) times as far away as its middle, and moved by as much more.
+  const double farther = 1 + (frame->perspective ? unit / shrink * w.norm() : 0);
+  frame->reach_x = static_cast<float>(across * 0.5 * 1.0001 * farther);
+  frame->reach_y = static_cast<float>(down * 0.5 * 1.0001 * farther);
   frame->slack_x = static_cast<float>(across * unit / shrink + kRounding * right + 1e-4);
   frame->slack_y = static_cast<float>(down * unit / shrink + kRounding * bottom + 1e-4);
   frame->spread_x = static_cast<float>(kRounding * right + 1e-4);

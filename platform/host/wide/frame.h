@@ -7,25 +7,23 @@
 ///     column = U.c / W.c     row = V.c / W.c        (orthographic: W.c is 1, and c is taken from the base as
 ///     well)
 ///
-/// Which pixels can a box around c with half sides h meet? If the ray of a column P meets the point c + e of
-/// the box (|e| <= h on every axis), then U.(c + e) = P W.(c + e), so
+/// Which pixels can a box around c with half sides h meet? Let the ray of column P have the direction D + r,
+/// with D the map's own and |r| <= 1/2 on every axis, and meet the point c + e of the box (|e| <= h) at t.
+/// Since U.D = P and W.D = 1,
 ///
-///     |U.c - P W.c| = |(U - P W).e| <= h |U - P W|_1  and  |column - P| <= h |U - P W|_1 / W.c  for W.c > 0.
+///     U.(c + e) - P W.(c + e) = t (U - P W).r,   hence   |column - P| <= k |U - P W|_1   for W.c > 0,
+///     k = (h + t / 2) / W.c,   t <= (W.c + h |W|_1) / (1 - |W|_1 / 2).
 ///
-/// The right side is convex in P, so over a tile its greatest value is at one of the tile's two sides: that
-/// is `reach`. Rounding a direction by up to half a unit an axis moves its point on the picture by less than
-/// `slack`; the same bound with the direction itself as the box.
+/// With s = 1/2 / (1 - |W|_1 / 2), that is k <= (1 + s |W|_1) h / W.c + s: `reach` and `slack`. |U - P W|_1
+/// is convex in P, so over a tile, or the part of it in which some boxes may be seen, its greatest value is
+/// at one of the two sides. Or it is taken from the middle's own column, since |U - P W|_1 <= |U - column
+/// W|_1 + |P - column| |W|_1:
 ///
-/// Most boxes are far away for their size, and then less will do. With k = (h + t / 2) / W.c for both causes
-/// together, t <= (W.c + h |W|_1) / (1 - |W|_1 / 2), and |U - P W|_1 <= |U - column W|_1 + |P - column|
-/// |W|_1,
+///     |column - P| <= k |U - column W|_1 / (1 - k |W|_1),   where k |W|_1 <= 1/8: 1 / (1 - q) <= 1 + 1.15 q.
 ///
-///     |column - P| <= k |U - column W|_1 / (1 - r)  with  r = k |W|_1,
-///
-/// which is used where r <= 1/8: there 1 / (1 - r) <= 1 + 1.15 r. Floating point adds to U.c, V.c and W.c at
-/// most `kRounding` times the sum of the magnitudes that went in, which is added to `reach`. So what floats
-/// decide is only which pixels are looked at: a superset. Whether a ray meets a box is judged on the ray's
-/// own integers (kernels.cpp, exact.h).
+/// Floating point adds to U.c, V.c and W.c at most `kRounding` times the sum of the magnitudes that went in,
+/// which is added to `reach`. So what floats decide is only which pixels are looked at: a superset. Whether a
+/// ray meets a box is judged on the ray's own integers (kernels.cpp, exact.h).
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 #define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
 

@@ -549,8 +549,9 @@ struct Reach {
     const auto greater = [](float a, float b) { return a > b ? a : b; };
     const float across = greater(sum(frame.u, where.x0), sum(frame.u, where.x1));
     const float down = greater(sum(frame.v, where.y0), sum(frame.v, where.y1));
-    x = 0.5F * across;
-    y = 0.5F * down;
+    const float farther = 1 + frame.per_direction * frame.norm_w;
+    x = 0.5F * across * farther;
+    y = 0.5F * down * farther;
     slack_x = across * frame.per_direction + frame.spread_x;
     slack_y = down * frame.per_direction + frame.spread_y;
   }
