@@ -432,14 +432,16 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
 // Whether a box in the eye's plane may be seen through the tile: not when it lies wholly outside one of the
 // tile's four sides. In doubles, by its corners: few boxes come here.
 bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
-  const double slack_x = double{frame.slack_x} + 1;
-  const double slack_y = double{frame.slack_y} + 1;
+  const double slack_x = static_cast<double>(frame.slack_x) + 1;
+  const double slack_y = static_cast<double>(frame.slack_y) + 1;
   const double edge[4] = {frame.tile.x0 - slack_x, frame.tile.x1 + slack_x, frame.tile.y0 - slack_y,
                           frame.tile.y1 + slack_y};
   for (int s = 0; s < 4; ++s) {
     const float(&row)[4] = s < 2 ? frame.u : frame.v;
     const double sign = (s & 1) != 0 ? -1 : 1;
-    const auto plane = [&](int i) { return sign * (double{row[i]} - edge[s] * double{frame.w[i]}); };
+    const auto plane = [&](int i) {
+      return sign * (static_cast<double>(row[i]) - edge[s] * static_cast<double>(frame.w[i]));
+    };
     double distance = plane(3);
     double reach = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -447,7 +449,7 @@ bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
       distance += normal * center[axis];
       reach += (normal < 0 ? -normal : normal) * side * 0.5;
     }
-    const double rounding = double{s < 2 ? frame.rounding_x : frame.rounding_y};
+    const double rounding = static_cast<double>(s < 2 ? frame.rounding_x : frame.rounding_y);
     if (distance + reach + 2 * rounding < 0) {
       return false;
     }
@@ -473,9 +475,9 @@ void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch*
   // The corner of the cube and the middle of a voxel go into the constants.
   const float* const rows[3] = {frame.u, frame.v, frame.w};
   for (int i = 0; i < 3; ++i) {
-    double sum = double{rows[i][3]};
+    double sum = static_cast<double>(rows[i][3]);
     for (int axis = 0; axis < 3; ++axis) {
-      sum += double{rows[i][axis]} * (run.corner[axis] + (kUnit ? 0.5 : 0.0));
+      sum += static_cast<double>(rows[i][axis]) * (run.corner[axis] + (kUnit ? 0.5 : 0.0));
     }
     batch->constant[i] = static_cast<float>(sum);
   }

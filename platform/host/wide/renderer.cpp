@@ -293,13 +293,14 @@ class TileDrawer {
 // occupied takes, times the boxes.
 double times_covered(const VoxelLists& lists, const Frame& frame) {
   const VoxelBox& bounds = lists.tree().bounds();
-  double depth = double{frame.w[3]};
+  double depth = static_cast<double>(frame.w[3]);
   for (int axis = 0; axis < 3; ++axis) {
-    depth += double{frame.w[axis]} * (bounds.min[axis] + bounds.max[axis]) / 2;
+    depth += static_cast<double>(frame.w[axis]) * (bounds.min[axis] + bounds.max[axis]) / 2;
   }
-  const double nearest = double{frame.half_w} * 64;
+  const double nearest = static_cast<double>(frame.half_w) * 64;
   depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
-  const double area = 4 * double{frame.reach_x} * double{frame.reach_y} / (depth * depth);
+  const double area =
+      4 * static_cast<double>(frame.reach_x) * static_cast<double>(frame.reach_y) / (depth * depth);
   const double pixels = static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
   return static_cast<double>(lists.face_area()) * area / pixels;
 }
