@@ -67,22 +67,23 @@ struct Pairs {
   alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
 };
 
-/// What one thread has under way, from run to run. 30 KiB.
+/// What one thread has under way, from run to run. Less than 24 KiB.
 struct Batch {
   Pairs waiting;  ///< for the test in floats
   Pairs unclear;  ///< for the exact one
-  // Met, on the way into the picture.
-  size_t met = 0;
-  alignas(64) uint32_t key[Pairs::kRoom];   ///< within the cube
-  alignas(64) uint32_t down[Pairs::kRoom];  ///< a bit for each axis along which the ray runs downwards
-  alignas(64) uint32_t number[Pairs::kRoom];
-  alignas(64) uint32_t pixel[Pairs::kRoom];  ///< (y - first_row) * width_px + x
+  // `met` of them were met and are on the way into the picture.
+  alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube
+  alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
+  alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry
+  alignas(64) uint32_t pixel[Pairs::kRoom];   ///< (y - first_row) * width_px + x
   // Of the cube that the pairs lie in.
-  uint32_t corner[3] = {1, 1, 1};  ///< none yet
   uint64_t cube_value[8];          ///< its corner's key, by `down`
+  uint32_t corner[3] = {1, 1, 1};  ///< none yet
   float constant[3];               ///< of u, v and w, for corners within the cube
+  size_t met = 0;
   Counts counts;
 };
+static_assert(sizeof(Batch) < 24 * 1024);
 
 /// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
 struct Rectangle {
