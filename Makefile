@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps all run test bench format tidy clean \
-  deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
+  firmware emulate flash test-boards test-framebuffer deps-boards deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -15,9 +15,11 @@ deps: ## Install what building, testing and measuring need (apt-get; as root or 
 deps-build:
 	@.ci/deps build tools
 deps-test:
-	@.ci/deps build tools test boards
+	@.ci/deps build tools test
 deps-bench:
 	@.ci/deps build tools bench
+deps-boards:
+	@.ci/deps build tools boards
 deps-format:
 	@.ci/deps format
 
@@ -50,10 +52,36 @@ bench: deps-bench ## Build and run the benchmarks
 	@cmake --build build/release -- --quiet
 	@build/release/thimble_benchmarks $(BENCH_ARGS)
 
+# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes.
+BOARD ?= lm3s6965evb
+APP ?= demo
+SCENE ?= demo
+export FRAMES
+firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
+	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
+	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"
+emulate: firmware ## Run that image under QEMU: the UART on this terminal, the exit status passed on
+	@sh platform/emulate.sh "$(BOARD)" "$(APP)" $(QEMU_ARGS)
+flash: firmware ## Write that image to a real board
+	@sh platform/flash.sh "$(BOARD)" "$(APP)"
+test-boards: ## Run the tests of the firmware on every board under QEMU; says first what it installs
+	@sh tests/boards/deps.sh
+	@$(MAKE) --no-print-directory all
+	@sh tests/boards/run.sh
+
+test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says first what it downloads
+	@.ci/deps build tools framebuffer
+	@$(MAKE) --no-print-directory all
+	@$(CONFIGURE) -B build/static -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF -DCMAKE_EXE_LINKER_FLAGS=-static >/dev/null
+	@cmake --build build/static --target thimble_framebuffer -- --quiet
+	@mkdir -p build/framebuffer && build/release/thimble bake demo -o build/framebuffer/demo.oct --quiet
+	@sh tests/linux/framebuffer.sh . build/framebuffer build/static/thimble-fb build/framebuffer/demo.oct
+
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i
 tidy: deps-test ## Lint the core, the tools and the ports with clang-tidy
 	@sh tests/checks/tidy.sh . build/tidy src tools platform tests/reference
+	@sh tests/boards/tidy.sh build/tidy-boards
 
 clean: ## Remove everything that was built
 	@rm -rf build out

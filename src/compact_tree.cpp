@@ -128,16 +128,23 @@ uint32_t CompactTree::first_child(uint32_t index) const {
 #endif
 }
 
-uint8_t CompactTree::block_material(uint32_t index) const {
-  if (materials_ == nullptr || block_ranks_ == nullptr) {
-    return uniform_material_;
+uint32_t CompactTree::blocks_before(uint32_t index) const {
+  if (block_ranks_ == nullptr) {
+    return 0;
   }
   const uint32_t block = index >> rank_shift_;
   uint32_t number = bits::load32(block_ranks_ + 4 * size_t{block});
   for (uint32_t at = block << rank_shift_; at < index; ++at) {
     number += masks_[at] == 0 ? 1U : 0U;
   }
-  return number < solid_blocks_ ? materials_[number] : 0;
+  return number;
+}
+
+uint8_t CompactTree::block_material(uint32_t index) const {
+  if (materials_ == nullptr || block_ranks_ == nullptr) {
+    return uniform_material_;
+  }
+  return material_of_block(blocks_before(index));
 }
 
 uint8_t CompactTree::voxel_material(uint32_t number) const {

@@ -9,39 +9,57 @@
 
 namespace thimble {
 
-// The path of the last direction traced, in the width it was traced with; for one structure's rays only. An
-// orthographic frame sets it up once, a perspective one for every ray.
+// The path of the last direction traced, in one width and for one structure's rays only. An orthographic
+// frame sets it up once, a perspective one for every ray.
+template <class Unsigned>
+class DirectionPath {
+ public:
+  const NodePath<Unsigned>& path(const MirroredRay& ray, int level) {
+    if (!held_ || !(direction_ == ray.direction) || flip_ != ray.flip) {
+      held_ = true;
+      direction_ = ray.direction;
+      flip_ = ray.flip;
+      path_ = NodePath<Unsigned>(ray, level);
+    }
+    return path_;
+  }
+  void forget() { held_ = false; }
+
+ private:
+  Vec3i direction_;
+  unsigned flip_ = 0;
+  bool held_ = false;
+  NodePath<Unsigned> path_;
+};
+
+// The same for rays of either width, in the same bytes.
 class PathCache {
  public:
-  const NodePath<uint32_t>& path(const MirroredRay& ray, int level, uint32_t) {
-    if (!holds(ray, 32)) {
-      narrow_ = NodePath<uint32_t>(ray, level);
-    }
-    return narrow_;
+  DirectionPath<uint32_t>* of(uint32_t) {
+    turn_to(32);
+    return &narrow_;
   }
-  const NodePath<uint64_t>& path(const MirroredRay& ray, int level, uint64_t) {
-    if (!holds(ray, 64)) {
-      wide_ = NodePath<uint64_t>(ray, level);
-    }
-    return wide_;
+  DirectionPath<uint64_t>* of(uint64_t) {
+    turn_to(64);
+    return &wide_;
   }
 
  private:
-  // Whether the path is the one of `ray` at that width; it is from now on.
-  bool holds(const MirroredRay& ray, uint8_t width) {
-    const bool held = width_ == width && direction_ == ray.direction && flip_ == ray.flip;
-    width_ = width;
-    direction_ = ray.direction;
-    flip_ = ray.flip;
-    return held;
+  void turn_to(uint8_t width) {
+    if (width_ != width) {
+      width_ = width;
+      if (width == 32) {
+        narrow_.forget();
+      } else {
+        wide_.forget();
+      }
+    }
   }
 
-  Vec3i direction_;
-  unsigned flip_ = 0;
   uint8_t width_ = 0;  // 0: nothing is held
   union {
-    NodePath<uint32_t> narrow_;
-    NodePath<uint64_t> wide_;
+    DirectionPath<uint32_t> narrow_;
+    DirectionPath<uint64_t> wide_;
   };
 
  public:
@@ -55,6 +73,10 @@ Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOpti
                    PathCache* cache);
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options,
                    PathCache* cache);
+
+// As closest_hit_32, with the path of the last direction.
+Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_t max_visits,
+                      DirectionPath<uint32_t>* cache);
 
 }  // namespace thimble
 

@@ -84,9 +84,30 @@ bool all_miss(const RayRange& rays, const VoxelBox& box) {
 // Pixels of a row that are tested together.
 constexpr int32_t kRunPx = 32;
 
-template <class Structure>
+// How the rays of a band are traced: any of them, or those that take 32 bits.
+struct AnyRay {
+  const TraceOptions& options;
+  PathCache cache{};
+
+  bool only_32() const { return options.width == Width::k32; }
+  template <class Structure>
+  Status operator()(const Structure& structure, const Ray& ray, Hit* hit) {
+    return closest_hit(structure, ray, hit, options, &cache);
+  }
+};
+struct NarrowRay {
+  uint32_t max_visits;
+  DirectionPath<uint32_t> cache{};
+
+  bool only_32() const { return true; }
+  Status operator()(const CompactTree& tree, const Ray& ray, Hit* hit) {
+    return closest_hit_32(tree, ray, hit, max_visits, &cache);
+  }
+};
+
+template <class Structure, class Trace>
 Status draw(const Structure& structure, const Camera& camera, const Shading& shading, const Band& band,
-            RenderCounts* counts, const TraceOptions& options) {
+            RenderCounts* counts, Trace&& trace) {
   const int32_t width = camera.width_px();
   if (width == 0 || camera.level() != structure.level() || band.first_row < 0 || band.rows < 0 ||
       band.rows > camera.height_px() - band.first_row) {
@@ -104,7 +125,7 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
   if (line_bytes > band.pixels.size || rows_above > (band.pixels.size - line_bytes) / stride) {
     return Status::kOutOfMemory;
   }
-  if (options.width == Width::k32) {
+  if (trace.only_32()) {
     // Directions are affine in the pixel, origins too: the corners are the extremes.
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Ray ray =
@@ -117,7 +138,6 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
 
   const Rgb8 background = shade(Hit{}, Ray{}, camera, shading);
   RenderCounts done;
-  PathCache cache;
   for (int32_t row = 0; row < band.rows; ++row) {
     const int32_t y = band.first_row + row;
     uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row);
@@ -135,7 +155,7 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
         }
         const Ray ray = rays.ray();
         Hit hit;
-        if (closest_hit(structure, ray, &hit, options, &cache) != Status::kOk) {
+        if (trace(structure, ray, &hit) != Status::kOk) {
           return Status::kBadArgument;
         }
         store_pixel(line, x, y, band.format, shade(hit, ray, camera, shading));
@@ -159,15 +179,20 @@ Status draw(const Structure& structure, const Camera& camera, const Shading& sha
 
 Status render_band(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts, const TraceOptions& options) {
-  return draw(tree, camera, shading, band, counts, options);
+  return draw(tree, camera, shading, band, counts, AnyRay{options});
 }
 Status render_band(const Octree& tree, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts, const TraceOptions& options) {
-  return draw(tree, camera, shading, band, counts, options);
+  return draw(tree, camera, shading, band, counts, AnyRay{options});
 }
 Status render_band(const DenseGrid& grid, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts, const TraceOptions& options) {
-  return draw(grid, camera, shading, band, counts, options);
+  return draw(grid, camera, shading, band, counts, AnyRay{options});
+}
+
+Status render_band_32(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
+                      RenderCounts* counts, uint32_t max_visits) {
+  return draw(tree, camera, shading, band, counts, NarrowRay{max_visits});
 }
 
 }  // namespace thimble

@@ -147,7 +147,8 @@ void descend_to_voxel(const Path& path, const MirroredRay& ray, typename Path::S
 // mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
 // through empty octants: it takes the next bit, or goes up to the next level that has one left.
 template <class Nodes, class Int, class Unsigned>
-Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request, PathCache* cache) {
+Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request,
+                DirectionPath<Unsigned>* cache) {
   Hit hit;
   const Crossings<Int> crossings(ray);
   Int num;
@@ -159,7 +160,7 @@ Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& reque
   const int world_level = nodes.level();
   const int32_t side = int32_t{1} << world_level;
   using Path = NodePath<Unsigned>;
-  const Path& path = cache->path(ray, world_level, Unsigned{0});
+  const Path& path = cache->path(ray, world_level);
   Step<Path> stack[kMaxLevel + 1];
   uint32_t pending = 0;  // bit k: stack[k].rest is not 0
   typename Path::State state = path.start(ray, world_level);
@@ -282,16 +283,16 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
 // Not inlined, so that a ray takes the stack of its own width only.
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request,
-                           PathCache* cache) {
+                           DirectionPath<Unsigned>* cache) {
   return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request, cache);
 }
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request,
-                           PathCache* cache) {
+                           DirectionPath<Unsigned>* cache) {
   return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request, cache);
 }
 template <class Int, class Unsigned>
-Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request, PathCache*) {
+Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request, DirectionPath<Unsigned>*) {
   return walk_grid<Int>(grid, ray, request);
 }
 
@@ -317,8 +318,8 @@ Status trace(const Target& target, const Ray& ray, const TraceOptions& options, 
   // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
   const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());
   const Request request{options.max_visits, any};
-  *hit = narrow ? walk<int32_t, uint32_t>(target, mirrored, request, cache)
-                : walk<int64_t, uint64_t>(target, mirrored, request, cache);
+  *hit = narrow ? walk<int32_t, uint32_t>(target, mirrored, request, cache->of(uint32_t{0}))
+                : walk<int64_t, uint64_t>(target, mirrored, request, cache->of(uint64_t{0}));
   return Status::kOk;
 }
 
@@ -378,6 +379,24 @@ Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceO
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options,
                    PathCache* cache) {
   return trace(grid, ray, options, false, hit, cache);
+}
+Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_t max_visits,
+                      DirectionPath<uint32_t>* cache) {
+  const int level = tree.level();
+  const Status status = check_ray(ray, level);
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (!accepts_32(ray, level)) {
+    return Status::kOutOfRange;
+  }
+  const MirroredRay mirrored(ray, int32_t{1} << level, tree.bounds());
+  *hit = walk<int32_t, uint32_t>(tree, mirrored, {max_visits, false}, cache);
+  return Status::kOk;
+}
+Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_t max_visits) {
+  DirectionPath<uint32_t> cache;
+  return closest_hit_32(tree, ray, hit, max_visits, &cache);
 }
 Status any_hit(const CompactTree& tree, const Ray& ray, HitKind* kind, uint32_t* visits,
                const TraceOptions& options) {

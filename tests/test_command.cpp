@@ -37,8 +37,9 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
     std::string subcommand;
     Words names;
   };
-  const Words scene{"SCENE",       "--depth", "--as-voxels", "--z-up",   "--memory",          "--coarsen",
-                    "--structure", "--quiet", "--stats",     "points:N", "dense|pool|compact"};
+  const Words scene{"SCENE",       "--depth", "--as-voxels", "--z-up",   "--memory",           "--coarsen",
+                    "--structure", "--quiet", "--stats",     "points:N", "dense|pool|compact", "--board",
+                    "microbit"};
   std::vector<Help> all{
       {"render",
        {"--output", "--size", "--projection", "--eye", "--target", "--up", "--fov", "--span", "--shade",
@@ -47,9 +48,21 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
        {"--rays", "--output", "--engine", "--direction-bits", "ox,oy,oz,dx,dy,dz",
         "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz"}},
       {"info", {}},
+      {"sim",
+       {"--board", "--app", "--coarsen", "--display", "--theme", "--scale", "--fps", "--frames", "--shot",
+        "--check", "--record", "--keys", "--quiet", "SCENE", "--depth", "--as-voxels", "BUTTON", "TEXT"}},
+      {"particles",
+       {"--size",   "--count",  "--min-size", "--max-size",      "--bounciness", "--gravity",     "--speed",
+        "--seed",   "--bodies", "--substeps", "--subpixel-bits", "--steps",      "--view",        "--eps",
+        "--fps",    "--input",  "TICK",       "--record-input",  "--state",      "--field",       "--output",
+        "--record", "--stats",  "--quiet",    "--figures",       "asleep",       "steps a second"}},
+      {"bake", {"SCENE",     "--depth", "--as-voxels",      "--z-up",       "--output", "--memory", "--board",
+                "--coarsen", "--name",  "--size",           "--projection", "--eye",    "--target", "--up",
+                "--fov",     "--span",  "--direction-bits", "--quiet",      "--stats",  ".oct",     ".h"}},
+      {"boards", {"SCENE", "--depth", "--as-voxels", "--z-up", "--csv", "--json", "--quiet"}},
       {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine", "--threads"}}};
   for (Help& help : all) {
-    if (help.subcommand != "table") {
+    if (help.subcommand == "render" || help.subcommand == "trace" || help.subcommand == "info") {
       help.names.insert(help.names.end(), scene.begin(), scene.end());
     }
     const CommandResult result = run_command({help.subcommand, "--help"});
@@ -90,12 +103,14 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
   check_refused({"table", "--quiet=1"}, 2, {"--quiet takes no value"});
   check_refused({"render", "spheres", "-o", "picture.bmp"}, 2, {"\"picture.bmp\"", ".ppm", ".png"});
   check_refused({"render", "spheres", "-o", ""}, 2, {"--output"});
+  check_refused({"bake"}, 2, {"SCENE"});
+  check_refused({"bake", "spheres"}, 2, {"--output"});
   // What is not built yet is unknown, never ignored.
-  for (const char* option : {"--board", "--effects", "--samples", "--cutoff", "--bounces"}) {
+  for (const char* option : {"--effects", "--samples", "--cutoff", "--bounces"}) {
     check_refused({"render", "spheres", "-o", "picture.ppm", option, "1"}, 2,
                   {std::string("\"") + option + "\""});
   }
-  for (const char* subcommand : {"bake", "memory", "accuracy", "effects", "particles", "sim", "boards"}) {
+  for (const char* subcommand : {"memory", "accuracy", "effects"}) {
     check_refused({subcommand}, 2, {std::string("\"") + subcommand + "\""});
   }
 }

@@ -157,7 +157,9 @@ TEST_CASE("generators: golden streams -> the same on every machine") {
         Golden{"cluster:20000", 20000, 0x95E68EE9},
         Golden{"cluster:1000,seed=18446744073709551615,depth=12", 1000, 0x9D3FCCAB},
         Golden{"spheres", 28327, 0x342B0D8D}, Golden{"spheres,seed=2,depth=5", 3543, 0xA8B3342A},
-        Golden{"water", 70136, 0x9BCF6D0C}, Golden{"water,seed=2,depth=5", 8171, 0xDF75EFD3}}) {
+        Golden{"water", 70136, 0x9BCF6D0C}, Golden{"water,seed=2,depth=5", 8171, 0xDF75EFD3},
+        Golden{"demo", 72295, 0xE189945F}, Golden{"demo,seed=2,depth=5", 9073, 0xD617E655},
+        Golden{"demo,seed=3,depth=7", 589670, 0x9B95AAB3}}) {
     const Digest result = digest(golden.text);
     CAPTURE(std::string(golden.text));
     CHECK(result.calls == golden.calls);
@@ -166,7 +168,7 @@ TEST_CASE("generators: golden streams -> the same on every machine") {
 }
 
 TEST_CASE("generators: another seed -> another scene; the same seed -> the same") {
-  for (const char* text : {"points:100", "cluster:100", "spheres", "water"}) {
+  for (const char* text : {"points:100", "cluster:100", "spheres", "water", "demo"}) {
     const std::string name = text;
     CAPTURE(name);
     CHECK(digest(name).crc == digest(name + ",seed=1").crc);
@@ -175,8 +177,8 @@ TEST_CASE("generators: another seed -> another scene; the same seed -> the same"
 }
 
 TEST_CASE("generators: every kind at every depth -> inside the world, materials in the palette") {
-  for (const char* text : {"points:2000", "cluster:2000", "spheres", "water"}) {
-    const bool solid = text[0] == 's' || text[0] == 'w';
+  for (const char* text : {"points:2000", "cluster:2000", "spheres", "water", "demo"}) {
+    const bool solid = std::string(text).find(':') == std::string::npos;
     for (int depth = 1; depth <= (solid ? 6 : 12); ++depth) {
       const std::string spec = std::string(text) + ",depth=" + std::to_string(depth);
       CAPTURE(spec);
@@ -298,8 +300,34 @@ TEST_CASE(
   CHECK(palette[5].kind == SurfaceKind::kMetal);
 }
 
+TEST_CASE("generators: demo -> each voxel once; a camera in the air that looks at the castle at any depth") {
+  for (const std::string text : {"demo", "demo,seed=5", "demo,depth=7"}) {
+    CAPTURE(text);
+    const auto spec = parse_generator(text);
+    std::set<std::array<int, 3>> places;
+    std::size_t calls = 0;
+    generate(*spec, [&](int x, int y, int z, std::uint8_t) {
+      ++calls;
+      places.insert({x, y, z});
+    });
+    CHECK(places.size() == calls);
+    const auto camera = generator_camera(*spec);
+    REQUIRE(camera.has_value());
+    const int side = 1 << spec->depth;
+    CHECK(places.count({camera->eye.x.floor(), camera->eye.y.floor(), camera->eye.z.floor()}) == 0);
+    CHECK(camera->target.x.floor() == side / 2);
+    CHECK(camera->target.y.floor() == side / 2);
+    CHECK(camera->fov_degrees == thimble::Q16::saturate(52));
+    // The middle of the castle's court is paved, and there is air above it.
+    const int voxel = side / 64;
+    CHECK(places.count({35 * voxel, 33 * voxel, 13 * voxel}) == 1);
+    CHECK(places.count({35 * voxel, 33 * voxel, 15 * voxel}) == 0);
+  }
+  CHECK_FALSE(generator_camera(*parse_generator("water")).has_value());
+}
+
 TEST_CASE("generators: a sink that throws -> the exception comes through") {
-  for (const char* text : {"points:10", "cluster:10", "spheres", "water"}) {
+  for (const char* text : {"points:10", "cluster:10", "spheres", "water", "demo"}) {
     CHECK_THROWS_AS(generate(*parse_generator(text), [](int, int, int, std::uint8_t) { throw 1; }), int);
   }
 }

@@ -150,13 +150,6 @@ TEST_CASE("planar_depth_q8: a picture much wider than high -> keeps its accuracy
   CHECK(std::fabs(planar_depth_q8(hit, camera) - exact) <= exact / 2048 + 1);
 }
 
-TEST_CASE("planar_depth_q8: a start inside, or a camera never set up -> 0") {
-  const Camera camera = camera_along_x();
-  Hit hit = hit_on(-1);
-  CHECK(planar_depth_q8(hit, camera) == 0);
-  CHECK(planar_depth_q8(hit_at(1000), Camera()) == 0);
-}
-
 TEST_CASE("shade depth: distance grows -> brightness falls from 255 at near to kFarBrightness at far") {
   const Camera camera = camera_along_x();
   constexpr DepthRange kRanges[] = {{0, 256}, {1000, 70000}, {0, 1 << 24}, {-500, 8000000}, {77, 78}, {5, 7}};
@@ -271,20 +264,6 @@ TEST_CASE("depth_range: random cameras and boxes -> the nearest and farthest cor
   CHECK(compared[1] > kCameras / 10);
 }
 
-TEST_CASE(
-    "depth_range: empty box or a camera never set up -> the default; behind the eye -> 0 and one voxel") {
-  const Camera camera = camera_along_x();
-  CHECK(depth_range(camera, {}).near_q8 == 0);
-  CHECK(depth_range(camera, {}).far_q8 == 256);
-  CHECK(depth_range(Camera(), {{0, 0, 0}, {4, 4, 4}}).far_q8 == 256);
-  CHECK(depth_range(camera, {{3, 0, 0}, {7, 9, 9}}).near_q8 == 3 * 256);
-  CHECK(depth_range(camera, {{3, 0, 0}, {7, 9, 9}}).far_q8 == 7 * 256);
-  Camera away;
-  REQUIRE(away.set(OrthographicView{{}, {-1, 0, 0}, {}, Q14::saturate(8), 8, 8, 8}, 5) == Status::kOk);
-  CHECK(depth_range(away, {{3, 0, 0}, {7, 9, 9}}).near_q8 == 0);
-  CHECK(depth_range(away, {{3, 0, 0}, {7, 9, 9}}).far_q8 == 256);
-}
-
 TEST_CASE("light_from: random lights -> half-Lambert by doubles, within 1.5/256") {
   constexpr std::uint64_t kSeed = 0x11647;
   SplitMix64 random(kSeed);
@@ -302,119 +281,4 @@ TEST_CASE("light_from: random lights -> half-Lambert by doubles, within 1.5/256"
       CHECK(std::fabs(faces[2 * axis + 1] - (141 + 115 * cosine)) <= 1.5);
     }
   }
-}
-
-TEST_CASE("light_from: straight along an axis -> 256 towards it, 26 away, 141 aside; no light -> 141") {
-  for (const int size : {1, 100, 1 << 14}) {
-    std::uint16_t faces[6];
-    light_from({0, 0, size}, faces);
-    CHECK(faces[5] == 256);
-    CHECK(faces[4] == 26);
-    CHECK(faces[0] == 141);
-    CHECK(faces[3] == 141);
-    light_from({-size, 0, 0}, faces);
-    CHECK(faces[0] == 256);
-    CHECK(faces[1] == 26);
-  }
-  std::uint16_t faces[6];
-  light_from({0, 0, 0}, faces);
-  for (const std::uint16_t face : faces) {
-    CHECK(face == 141);
-  }
-}
-
-TEST_CASE("face_of: an entered face -> looks against the ray") {
-  const Vec3i direction{5, -7, 9};
-  CHECK(face_of(hit_on(0), direction).axis == 0);
-  CHECK(face_of(hit_on(0), direction).negative);
-  CHECK(face_of(hit_on(1), direction).axis == 1);
-  CHECK_FALSE(face_of(hit_on(1), direction).negative);
-  CHECK(face_of(hit_on(2), direction).axis == 2);
-  CHECK(face_of(hit_on(2), direction).negative);
-}
-
-TEST_CASE("face_of: axis -1 -> opposed to the largest component, the lowest axis on a tie") {
-  for (int x = -2; x <= 2; ++x) {
-    for (int y = -2; y <= 2; ++y) {
-      for (int z = -2; z <= 2; ++z) {
-        const Vec3i direction{x * 500000, y * 500000, z * 500000};
-        const int sizes[3] = {std::abs(x), std::abs(y), std::abs(z)};
-        const int wanted =
-            static_cast<int>(std::max_element(sizes, sizes + 3) - sizes);  // the first of equals
-        const Face face = face_of(hit_on(-1), direction);
-        CAPTURE(x);
-        CAPTURE(y);
-        CAPTURE(z);
-        CHECK(face.axis == wanted);
-        CHECK(face.negative == (direction[wanted] > 0));
-      }
-    }
-  }
-}
-
-TEST_CASE("shade normal: each face -> its direction, -1..1 as 0..255") {
-  const Camera camera = camera_along_x();
-  Shading shading;
-  shading.mode = ShadeMode::kNormal;
-  const auto color = [&](int axis, const Vec3i& direction) {
-    return shade(hit_on(axis), {{}, direction}, camera, shading);
-  };
-  CHECK(color(0, {1, 1, 1}) == Rgb8{0, 128, 128});
-  CHECK(color(0, {-1, 1, 1}) == Rgb8{255, 128, 128});
-  CHECK(color(1, {1, 1, 1}) == Rgb8{128, 0, 128});
-  CHECK(color(1, {1, -1, 1}) == Rgb8{128, 255, 128});
-  CHECK(color(2, {1, 1, 1}) == Rgb8{128, 128, 0});
-  CHECK(color(2, {1, 1, -1}) == Rgb8{128, 128, 255});
-  CHECK(color(-1, {1, 1, -2}) == Rgb8{128, 128, 255});
-}
-
-TEST_CASE(
-    "shade color: material -> its palette entry, beyond the palette the default, times the face's light") {
-  const Camera camera = camera_along_x();
-  const Rgb8 palette[] = {{10, 20, 30}, {200, 100, 50}};
-  Shading shading;
-  shading.mode = ShadeMode::kColor;
-  shading.palette = Span<const Rgb8>(palette);
-  shading.default_color = {1, 2, 3};
-  for (int face = 0; face < 6; ++face) {
-    shading.face_light[face] = 256;
-  }
-  const auto color = [&](int material, const Vec3i& direction) {
-    Hit hit = hit_on(0);
-    hit.material = static_cast<std::uint8_t>(material);
-    return shade(hit, {{}, direction}, camera, shading);
-  };
-  CHECK(color(0, {1, 0, 0}) == palette[0]);
-  CHECK(color(1, {1, 0, 0}) == palette[1]);
-  CHECK(color(2, {1, 0, 0}) == Rgb8{1, 2, 3});
-  CHECK(color(255, {1, 0, 0}) == Rgb8{1, 2, 3});
-  shading.face_light[0] = 128;  // -x, which a ray towards +x sees
-  CHECK(color(1, {1, 0, 0}) == Rgb8{100, 50, 25});
-  CHECK(color(1, {-1, 0, 0}) == palette[1]);
-  shading.face_light[0] = 700;  // clamped, not wrapped
-  CHECK(color(1, {1, 0, 0}) == Rgb8{255, 255, 136});
-  shading.face_light[0] = 65535;
-  CHECK(color(1, {1, 0, 0}) == Rgb8{255, 255, 255});
-  shading.face_light[0] = 0;
-  CHECK(color(1, {1, 0, 0}) == Rgb8{0, 0, 0});
-  shading.palette = {};
-  CHECK(color(0, {-1, 0, 0}) == Rgb8{1, 2, 3});
-}
-
-TEST_CASE("shade: a miss or a stopped ray -> the background; mono -> black and white") {
-  const Camera camera = camera_along_x();
-  Shading shading;
-  shading.background = {9, 8, 7};
-  const Ray ray{{}, {255, 0, 0}};
-  Hit stopped;
-  stopped.kind = HitKind::kStepLimit;
-  for (const ShadeMode mode : {ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor}) {
-    shading.mode = mode;
-    CHECK(shade(Hit{}, ray, camera, shading) == Rgb8{9, 8, 7});
-    CHECK(shade(stopped, ray, camera, shading) == Rgb8{9, 8, 7});
-  }
-  shading.mode = ShadeMode::kMono;
-  CHECK(shade(Hit{}, ray, camera, shading) == Rgb8{0, 0, 0});
-  CHECK(shade(stopped, ray, camera, shading) == Rgb8{0, 0, 0});
-  CHECK(shade(hit_at(5), ray, camera, shading) == Rgb8{255, 255, 255});
 }

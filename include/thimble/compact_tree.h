@@ -106,6 +106,16 @@ class CompactTree {
   }
   /// Material of the solid block `index`.
   uint8_t block_material(uint32_t index) const;
+  /// Solid blocks before node `index`, in node order; 0 in a tree of one material.
+  uint32_t blocks_before(uint32_t index) const;
+  /// Material of the solid block that has so many before it.
+  uint8_t material_of_block(uint32_t number) const {
+    return materials_ == nullptr    ? uniform_material_
+           : number < solid_blocks_ ? materials_[number]
+                                    : uint8_t{0};
+  }
+  /// The masks, one a node. Three bytes behind the last one may be read.
+  const uint8_t* masks() const { return masks_; }
   /// Material of the voxel numbered `number` (`first_child` of a level-1 node and on).
   uint8_t voxel_material(uint32_t number) const;
 

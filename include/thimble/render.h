@@ -60,6 +60,11 @@ Status render_band(const Octree& tree, const Camera& camera, const Shading& shad
 Status render_band(const DenseGrid& grid, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts = nullptr, const TraceOptions& options = {});
 
+/// Draws the band with 32-bit products only, as `closest_hit_32` traces: no code and no stack of the 64-bit
+/// path. Errors: also kBadArgument for a camera with rays that it does not take (`accepts_32`).
+Status render_band_32(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
+                      RenderCounts* counts = nullptr, uint32_t max_visits = UINT32_MAX);
+
 }  // namespace thimble
 
 #endif

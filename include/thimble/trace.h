@@ -49,6 +49,10 @@ Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOpti
 /// In a dense grid a visit is a cell looked at.
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options = {});
 
+/// The same with Width::k32 and nothing of the 64-bit path behind it: a firmware that traces only so has
+/// neither its code nor its stack.
+Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_t max_visits = UINT32_MAX);
+
 /// Whether there is a hit at all: `kind` gets what `closest_hit` would find, `visits` (may be null) the nodes
 /// read, without the work of naming the voxel, its face and its t.
 Status any_hit(const CompactTree& tree, const Ray& ray, HitKind* kind, uint32_t* visits = nullptr,

@@ -13,10 +13,15 @@ namespace thimble::apps {
 int demo();
 /// The core's own test cases on the target; closes with `N passed, N failed`.
 int selftest();
+/// Baked scenes and the golden frames on the target; closes in the same way. An application of its own,
+/// because both together do not fit in 128 KiB of flash.
+int golden();
 /// Instructions a frame and a ray, nodes visited, RAM and stack used.
 int bench();
 /// The paper's particle world.
 int particles();
+/// Overflows the stack, writes past the RAM and the like when a key asks for it; only on a board.
+int faults();
 
 }  // namespace thimble::apps
 

@@ -24,4 +24,14 @@ const BoardFacts* find_board(const char* name) {
   return nullptr;
 }
 
+BoardFacts board_for(const BoardFacts& board, const char* app) {
+  BoardFacts result = board;
+  for (const AppStack& own : board.app_stacks) {
+    if (own.app != nullptr && strcmp(own.app, app) == 0) {
+      result.stack_bytes = own.bytes;
+    }
+  }
+  return result;
+}
+
 }  // namespace thimble::platform

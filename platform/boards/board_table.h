@@ -14,6 +14,12 @@ namespace thimble::platform {
 /// How a display looks: white on black, dark on light, or pixels as they are.
 enum class Screen : uint8_t { kNone, kOled, kLcd, kPlain };
 
+/// What an application keeps for the stack where that is not the board's usual.
+struct AppStack {
+  const char* app = nullptr;
+  uint32_t bytes = 0;
+};
+
 struct BoardFacts {
   const char* name;
   const char* title;
@@ -26,12 +32,16 @@ struct BoardFacts {
   int32_t height_px;
   PixelFormat format;
   int32_t buttons;
+  AppStack app_stacks[5];  ///< those that there are, then empty ones
 };
 
 /// All boards, by name in alphabetical order.
 Span<const BoardFacts> boards();
 /// The board of that name, or null.
 const BoardFacts* find_board(const char* name);
+
+/// The board as it is for an application: with that one's own `stack_bytes`.
+BoardFacts board_for(const BoardFacts& board, const char* app);
 
 }  // namespace thimble::platform
 

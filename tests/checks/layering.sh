@@ -3,6 +3,8 @@
 #   include/thimble  <stdint.h>, <stddef.h>, "thimble/..."
 #   src              those, and headers that lie in src
 #   tools, platform  no header of src
+#   platform         nothing of the tests but "portable/..." in the applications that run them on boards
+#   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
 #   tests/reference  nothing of the product: neither the core's nor the tools' headers
 set -eu
 cd "$1"
@@ -40,6 +42,15 @@ for name in $(echo "$own" | tr '|' ' '); do
       "$(includes tools platform | grep -E "[\"/]$name\\.h\"" || true)"
   fi
 done
+tests_on_boards='^platform/apps/(selftest|golden|cases)\.(cpp|h):'
+complain "platform sees no test; only the applications selftest and golden run those of tests/portable" \
+  "$({
+    includes platform | grep -E '["/](golden|portable|support|reference|tests)/' | grep -vE "$tests_on_boards"
+    includes platform | grep -E "$tests_on_boards" | grep -E '["/](golden|support|reference|tests)/'
+  } || true)"
+board='#[[:space:]]*include[[:space:]]*(<stdint\.h>|<stddef\.h>|"(thimble|portable|golden)/[a-z0-9_]+\.(h|inc)")'
+complain "the cases that run on boards include more than <stdint.h>, <stddef.h>, \"thimble/...\" and one another" \
+  "$(includes tests/portable tests/golden | grep -v '^tests/golden/main\.cpp:' | grep -vE "$board" || true)"
 complain "the reference shares no code with the product" \
   "$(includes tests/reference | grep -E '["</](thimble|src|tools|readers|scene|platform)/' || true)"
 exit $failed

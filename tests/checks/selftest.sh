@@ -100,6 +100,17 @@ add tools/tool.cpp '#include "secret.h"'
 catches layering 'never src'
 add platform/port.cpp '#include "../src/sum.h"'
 catches layering 'never src'
+add platform/port.cpp '#include "portable/case.h"'
+catches layering 'platform sees no test'
+mkdir -p "$tree/platform/apps" "$tree/tests/portable"
+add platform/apps/selftest.cpp '#include "portable/case.h"'
+add tests/portable/case.h '#include "thimble/sum.h"'
+passes layering
+add platform/apps/selftest.cpp '#include "support/heap.h"'
+catches layering 'platform sees no test'
+mkdir -p "$tree/tests/portable"
+add tests/portable/case.h '#include <vector>'
+catches layering 'the cases that run on boards'
 add tests/reference/judge.cpp '#include "thimble/sum.h"'
 catches layering 'shares no code'
 
@@ -143,6 +154,38 @@ for target in cortex-m0 cortex-m3 rv32; do
   add src/sum.cpp 'double scale(double a) { return a * 3; }'
   catches core.$target 'dmul\|muldf3'
 done
+
+# The bound of a whole image: a chain through a constructor's second name, a call through a pointer, an interrupt on top.
+graph=$work/image.ci
+printf '%s\n' root taken unused _ZN5ThingC2Ev deep tick >"$work/kept"
+node() {
+  printf 'node: { title: "%s" label: "%s\\nhere\\n%s bytes (static)\\n0 dynamic objects" }\n' "$1" "$1" "$2"
+}
+edge() { echo "edge: { sourcename: \"$1\" targetname: \"$2\" }"; }
+image() {
+  "$stack_bound" --image root tick "$work/kept" "$graph" >"$log" 2>&1
+}
+{
+  node root 8; node file.cpp:_ZN5ThingC2Ev 100; node deep 24; node taken 200; node dropped 4000; node tick 16
+  edge root file.cpp:_ZN5ThingC1Ev; edge file.cpp:_ZN5ThingC2Ev deep; edge deep __aeabi_lmul
+} >"$graph"
+# wants WHAT BYTES
+wants() {
+  if ! image || [ "$(head -n 1 "$log")" != "$2" ]; then
+    cat "$log"
+    echo "selftest: the bound of an image: $1: wanted $2" >&2
+    failed=1
+  fi
+}
+wants 'a constructor, an interrupt' $((8 + 100 + 24 + 64 + 36 + 16))
+edge deep __indirect_call >>"$graph"
+wants 'a call through a pointer' $((8 + 100 + 24 + 200 + 64 + 36 + 16))
+edge deep nowhere >>"$graph"
+if image || ! grep -q 'nowhere is called, and has no call graph' "$log"; then
+  cat "$log"
+  echo "selftest: a function without a call graph should have been missed" >&2
+  failed=1
+fi
 
 [ $failed = 0 ] && echo "selftest: every check fails when it should"
 exit $failed

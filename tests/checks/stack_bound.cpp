@@ -1,6 +1,12 @@
 // The worst stack of every function of the core, from gcc's call graphs (-fcallgraph-info=su,da).
 //
 //   stack_bound TARGET STACK.csv GRAPH.ci...
+//   stack_bound --image ROOT INTERRUPT SYMBOLS GRAPH.ci...
+//
+// The second form prints one number, the bytes that a whole image can need: from the function ROOT on, with
+// the handler INTERRUPT (and the frame that an exception pushes) on top wherever it strikes. SYMBOLS names
+// the functions that the linker kept, one a line. A call through a pointer counts as the worst of all kept
+// functions that nobody calls by name: those whose address somebody takes are among them.
 //
 // A graph is a list of `node: { title: "id" label: "name\nplace\nN bytes (kind)\n..." }` and of
 // `edge: { sourcename: "id" targetname: "id" ... }`. Functions local to a file have `file:` before their id.
@@ -22,6 +28,9 @@
 namespace {
 
 constexpr std::uint64_t kHelperBytes = 64;
+// Cortex-M pushes eight words, and one more to align them to 8 bytes.
+constexpr std::uint64_t kExceptionBytes = 36;
+constexpr const char* kIndirectCall = "__indirect_call";
 
 struct Function {
   std::string name;
@@ -88,6 +97,30 @@ class Graph {
     return file.eof();
   }
 
+  // A constructor or destructor of a whole object is often another name of the one for a part, which is the
+  // only one that has a node: C1 of C2, D1 of D2.
+  void join_constructors() {
+    std::set<std::string> called;
+    for (const auto& [id, function] : functions_) {
+      called.insert(function.callees.begin(), function.callees.end());
+    }
+    for (const char* names : {"C1EC2E", "D1ED2E"}) {
+      const std::string whole(names, 3);
+      const std::string part(names + 3, 3);
+      for (const std::string& id : called) {
+        const std::size_t at = id.find(whole);
+        if (at == std::string::npos || functions_[id].defined) {
+          continue;
+        }
+        const auto found = functions_.find(std::string(id).replace(at, whole.size(), part));
+        if (found != functions_.end() && found->second.defined) {
+          joined_.insert(found->first);
+          functions_[id] = found->second;
+        }
+      }
+    }
+  }
+
   // Prints every fault; the number of them.
   int judge(const std::string& target, const std::vector<Limit>& limits) {
     std::set<std::string> called;
@@ -96,7 +129,7 @@ class Graph {
       if (function.defined && function.dynamic) {
         complain(function, "has a frame whose size is not known when compiling");
       }
-      if (function.callees.contains("__indirect_call")) {
+      if (function.callees.contains(kIndirectCall)) {
         complain(function, "calls through a pointer, so its stack has no known bound");
       }
     }
@@ -127,9 +160,50 @@ class Graph {
     return faults_;
   }
 
+  // Prints what an image needs from `root` on; the number of faults.
+  int judge_image(const std::string& root, const std::string& interrupt, const std::set<std::string>& kept) {
+    std::set<std::string> called;
+    for (const auto& [id, function] : functions_) {
+      if (kept.contains(symbol_of(id))) {
+        called.insert(function.callees.begin(), function.callees.end());
+      }
+    }
+    Function& indirect = functions_[kIndirectCall];
+    for (const auto& [id, function] : functions_) {
+      if (function.defined && kept.contains(symbol_of(id)) && !called.contains(id) && !joined_.contains(id) &&
+          id != root && id != interrupt) {
+        indirect.callees.insert(id);
+      }
+    }
+    if (!functions_[root].defined) {
+      std::fprintf(stderr, "stack: there is no function %s\n", root.c_str());
+      return 1;
+    }
+    std::uint64_t bytes = worst(root) + kHelperBytes;
+    for (const auto& [id, function] : functions_) {
+      if (worst_.contains(id) && function.dynamic) {
+        complain(function, "has a frame whose size is not known when compiling");
+      }
+      // The compiler's helpers begin with two underscores and have kHelperBytes.
+      if (worst_.contains(id) && !function.defined && id != kIndirectCall && !id.starts_with("__")) {
+        std::fprintf(stderr, "stack: %s is called, and has no call graph\n", id.c_str());
+        ++faults_;
+      }
+    }
+    if (functions_[interrupt].defined && kept.contains(interrupt)) {
+      bytes += kExceptionBytes + worst(interrupt);
+    }
+    std::printf("%llu\n", static_cast<unsigned long long>(bytes));
+    print_chain(root);
+    return faults_;
+  }
+
   bool empty() const { return functions_.empty(); }
 
  private:
+  // What the linker calls a function: its id without the file that it is local to.
+  static std::string symbol_of(const std::string& id) { return id.substr(id.rfind(':') + 1); }
+
   void add_node(const std::string& line) {
     Function& function = functions_[field(line, "title")];
     const std::vector<std::string> label = split(field(line, "label"), "\\n");
@@ -203,6 +277,7 @@ class Graph {
   std::map<std::string, std::uint64_t> worst_;
   std::map<std::string, std::string> deepest_;
   std::set<std::string> active_;
+  std::set<std::string> joined_;  // called, by another name
   int faults_ = 0;
 };
 
@@ -232,11 +307,44 @@ bool read_limits(const char* path, std::vector<Limit>& limits) {
   return file.eof();
 }
 
+bool read_graphs(char** first, char** last, Graph& graph) {
+  for (; first != last; ++first) {
+    if (!graph.read(*first)) {
+      std::fprintf(stderr, "stack: cannot read %s\n", *first);
+      return false;
+    }
+  }
+  graph.join_constructors();
+  if (graph.empty()) {
+    std::fprintf(stderr, "stack: no function in any call graph\n");
+    return false;
+  }
+  return true;
+}
+
+int bound_image(int argc, char** argv) {
+  std::set<std::string> kept;
+  std::ifstream symbols(argv[4]);
+  for (std::string name; std::getline(symbols, name);) {
+    kept.insert(name);
+  }
+  Graph graph;
+  if (!read_graphs(argv + 5, argv + argc, graph)) {
+    return 1;
+  }
+  return graph.judge_image(argv[2], argv[3], kept) == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc >= 6 && std::string(argv[1]) == "--image") {
+    return bound_image(argc, argv);
+  }
   if (argc < 4) {
-    std::fprintf(stderr, "usage: stack_bound TARGET STACK.csv GRAPH.ci...\n");
+    std::fprintf(stderr,
+                 "usage: stack_bound TARGET STACK.csv GRAPH.ci...\n"
+                 "       stack_bound --image ROOT INTERRUPT SYMBOLS GRAPH.ci...\n");
     return 2;
   }
   std::vector<Limit> limits;
@@ -245,14 +353,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   Graph graph;
-  for (int i = 3; i < argc; ++i) {
-    if (!graph.read(argv[i])) {
-      std::fprintf(stderr, "stack: cannot read %s\n", argv[i]);
-      return 1;
-    }
-  }
-  if (graph.empty()) {
-    std::fprintf(stderr, "stack: no function in any call graph\n");
+  if (!read_graphs(argv + 3, argv + argc, graph)) {
     return 1;
   }
   return graph.judge(argv[1], limits) == 0 ? 0 : 1;

@@ -1,16 +1,23 @@
-// Draws every golden frame in every variant and compares the CRC-32s with golden_table.h.
+// The cases that run everywhere (tests/portable), the golden frames among them, by the application that runs
+// them on a board (platform/apps/selftest.cpp), over a port that is a block of bytes and standard output.
 //
-//   thimble_golden_tests            compare; exit status 1 when anything differs
-//   thimble_golden_tests --print    write a new golden_table.h to stdout (from the first variant)
+//   thimble_golden_tests                 run all; exit status 1 when anything differs
+//   thimble_golden_tests --arena BYTES   the same with that much memory, as a small board has
+//   thimble_golden_tests --print    write a new golden/golden_table.h to stdout (from the first variant)
+//   thimble_golden_tests --trees    write a new portable/golden_trees.inc to stdout
+//   thimble_golden_tests --crc      write a new portable/result_crc.h to stdout
 //   thimble_golden_tests --sizes    bytes of every scene in every structure, as CSV
 //   thimble_golden_tests --frame NAME   that frame's pixels, as stored, to stdout: to look at a difference
-//
-// Only stdio is used besides the core, and one fixed arena: a board's runner differs in its printf alone.
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "apps/apps.h"
 #include "golden/golden_table.h"
 #include "golden/scenes.h"
+#include "port.h"
+#include "portable/golden_trees.h"
+#include "portable/runner.h"
 
 namespace {
 
@@ -23,117 +30,120 @@ constexpr size_t kBandBytes = size_t{61} * 37 * 3 + 4096;
 constexpr Structure kStructures[] = {Structure::kDense, Structure::kPool, Structure::kCompact};
 
 alignas(8) uint8_t arena_bytes[kArenaBytes];
+size_t arena_size = kArenaBytes;
 uint8_t band_bytes_given[kBandBytes];
 
 const char* name_of(Structure structure) {
   return structure == Structure::kDense ? "dense" : structure == Structure::kPool ? "pool" : "compact";
 }
-const char* name_of(Width width) {
-  return width == Width::kAuto ? "auto" : width == Width::k32 ? "32" : "64";
-}
-
-struct Score {
-  int passed = 0;
-  int failed = 0;
-};
-
-void fail(Score* score, const Frame& frame, const Variant& variant, const char* what) {
-  ++score->failed;
-  printf("FAILED %s (%s, width %s, bands of %d): %s\n", frame.name, name_of(variant.structure),
-         name_of(variant.width), static_cast<int>(variant.band_rows), what);
-}
-
-void compare(const Frame& frame, const Variant& variant, const World& world, uint32_t wanted, Score* score) {
-  uint32_t crc = 0;
-  RenderCounts counts;
-  const Status status =
-      frame_crc32(frame, world, variant.width, variant.band_rows, Bytes(band_bytes_given), &crc, &counts);
-  if (status != Status::kOk) {
-    fail(score, frame, variant, status_text(status));
-  } else if (crc != wanted) {
-    char text[64];
-    snprintf(text, sizeof text, "CRC-32 %08lx, wanted %08lx", static_cast<unsigned long>(crc),
-             static_cast<unsigned long>(wanted));
-    fail(score, frame, variant, text);
-  } else {
-    ++score->passed;
-  }
-}
-
-// The 32-bit path must refuse the frames that are not marked as narrow.
-void expect_refusal(const Frame& frame, const Variant& variant, const World& world, Score* score) {
-  uint32_t crc = 0;
-  const Status status =
-      frame_crc32(frame, world, variant.width, variant.band_rows, Bytes(band_bytes_given), &crc, nullptr);
-  if (status == Status::kBadArgument) {
-    ++score->passed;
-  } else {
-    fail(score, frame, variant, "rays too long for 32 bits were not refused");
-  }
-}
-
-const GoldenEntry* find(const char* name) {
-  for (const GoldenEntry& entry : kGoldenTable) {
-    if (strcmp(entry.name, name) == 0) {
-      return &entry;
-    }
-  }
-  return nullptr;
-}
-
-// Builds each scene once a structure, and draws all its frames.
-void compare_scene(SceneId id, Structure structure, Score* score) {
-  Arena arena{Bytes(arena_bytes)};
-  World world;
-  const Status status = build_scene(id, structure, &arena, &world);
-  if (status != Status::kOk) {
-    ++score->failed;
-    printf("FAILED scene %s (%s): %s\n", scene_info(id).name, name_of(structure), status_text(status));
-    return;
-  }
-  for (int f = 0; f < frame_count(); ++f) {
-    const Frame& shown = frame(f);
-    const GoldenEntry* entry = shown.scene == id ? find(shown.name) : nullptr;
-    if (entry == nullptr) {
-      continue;
-    }
-    for (int v = 0; v < variant_count(); ++v) {
-      const Variant& way = variant(v);
-      if (way.structure != structure) {
-        continue;
-      }
-      if (applies(shown, way)) {
-        compare(shown, way, world, entry->crc32, score);
-      } else if (!shown.narrow && way.width == Width::k32) {
-        expect_refusal(shown, way, world, score);
+// Names tell cases apart, so no two are equal.
+bool names_differ(Span<const portable::Group* const> groups) {
+  bool differ = true;
+  for (const portable::Group* group : groups) {
+    for (int i = 0; i < group->count; ++i) {
+      const portable::Case one = group->at(i);
+      for (int k = 0; k < i; ++k) {
+        const portable::Case other = group->at(k);
+        const char* detail = one.detail != nullptr ? one.detail : "";
+        if (strcmp(one.name, other.name) == 0 &&
+            strcmp(detail, other.detail != nullptr ? other.detail : "") == 0) {
+          printf("FAILED %s: two cases are named %s (%s)\n", group->name, one.name, detail);
+          differ = false;
+        }
       }
     }
   }
+  return differ;
+}
+
+bool lists_agree() {
+  const int counted = portable::count_golden_frame_cases();
+  const int frames = static_cast<int>(sizeof kGoldenTable / sizeof kGoldenTable[0]);
+  if (counted != portable::kGoldenFrameCases || frames != frame_count()) {
+    printf("FAILED golden: %d frames in golden_table.h, %d in scenes.cpp; %d cases in groups.h, counted %d\n",
+           frames, frame_count(), portable::kGoldenFrameCases, counted);
+    return false;
+  }
+  bool agree = true;
+  for (int f = 0; f < frames; ++f) {
+    if (strcmp(kGoldenTable[f].name, frame(f).name) != 0) {
+      printf("FAILED golden: line %d of golden_table.h is %s, not %s\n", f, kGoldenTable[f].name,
+             frame(f).name);
+      agree = false;
+    }
+  }
+  return agree;
 }
 
 int run_all() {
-  Score score;
-  const int listed = static_cast<int>(sizeof kGoldenTable / sizeof kGoldenTable[0]);
-  if (listed != frame_count()) {
-    ++score.failed;
-    printf("FAILED: golden_table.h lists %d frames, there are %d\n", listed, frame_count());
-  }
-  for (int f = 0; f < frame_count(); ++f) {
-    if (find(frame(f).name) == nullptr) {
-      ++score.failed;
-      printf("FAILED %s: not in golden_table.h\n", frame(f).name);
+  // Each of them says what is wrong.
+  const bool sound =
+      lists_agree() && names_differ(portable::kCoreGroups) && names_differ(portable::kGoldenGroups);
+  const int core = apps::selftest();
+  const int frames = apps::golden();
+  return sound && core == 0 && frames == 0 ? 0 : 1;
+}
+
+bool print_crcs(const char* all, const char* common, Span<const portable::Group* const> groups) {
+  portable::Runner* runner = portable::Runner::make(Bytes(arena_bytes));
+  for (const portable::Group* group : groups) {
+    for (int i = 0; i < group->count; ++i) {
+      if (runner->run(group->at(i)) != nullptr) {
+        fprintf(stderr, "%s: %s: failed, so there is no right CRC\n", group->name, group->at(i).name);
+        return false;
+      }
     }
   }
+  printf("inline constexpr uint32_t %s = 0x%08lX;\n", all, static_cast<unsigned long>(runner->crc32()));
+  if (common != nullptr) {
+    printf("inline constexpr uint32_t %s = 0x%08lX;\n", common,
+           static_cast<unsigned long>(runner->common_crc32()));
+  } else if (runner->crc32() != runner->common_crc32()) {
+    fprintf(stderr, "a case needs more than kCommonArenaBytes\n");
+    return false;
+  }
+  return true;
+}
+
+int print_crc() {
+  printf("/// @file result_crc.h\n");
+  printf(
+      "/// What the portable cases compute, as CRC-32s (runner.h). Written by `thimble_golden_tests "
+      "--crc`.\n");
+  printf("#ifndef THIMBLE_TESTS_PORTABLE_RESULT_CRC_H\n#define THIMBLE_TESTS_PORTABLE_RESULT_CRC_H\n\n");
+  printf("#include <stdint.h>\n\nnamespace thimble::portable {\n\n");
+  printf("/// Of the core's own cases, all of which every board runs.\n");
+  if (!print_crcs("kCoreCrc32", nullptr, portable::kCoreGroups)) {
+    return 1;
+  }
+  printf(
+      "/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board "
+      "runs.\n");
+  if (!print_crcs("kGoldenCrc32", "kCommonGoldenCrc32", portable::kGoldenGroups)) {
+    return 1;
+  }
+  printf("\n}  // namespace thimble::portable\n\n#endif\n");
+  return 0;
+}
+
+int print_trees() {
   for (int scene = 0; scene < kSceneCount; ++scene) {
-    const SceneId id = static_cast<SceneId>(scene);
-    compare_scene(id, Structure::kCompact, &score);
-    compare_scene(id, Structure::kPool, &score);
-    if (scene_info(id).has_dense) {
-      compare_scene(id, Structure::kDense, &score);
+    Arena arena{Bytes(arena_bytes)};
+    World world;
+    const Status status = build_scene(static_cast<SceneId>(scene), Structure::kCompact, &arena, &world);
+    if (status != Status::kOk) {
+      fprintf(stderr, "%s: %s\n", scene_info(static_cast<SceneId>(scene)).name, status_text(status));
+      return 1;
     }
+    printf("alignas(4) constexpr uint8_t kTree%d[] = {", scene);
+    int column = 200;
+    for (size_t i = 0; i < world.compact.size_bytes(); ++i) {
+      column = column > 104 ? printf("\n   ") : column;
+      column += printf(" %d,", world.compact.bytes()[i]);
+    }
+    printf("\n};\n");
   }
-  printf("%d passed, %d failed\n", score.passed, score.failed);
-  return score.failed == 0 ? 0 : 1;
+  return 0;
 }
 
 bool first_variant(const Frame& shown, uint32_t* crc) {
@@ -210,12 +220,39 @@ int print_frame(const char* name) {
 
 }  // namespace
 
+// The port: no display, no clock, no buttons.
+namespace thimble::port {
+
+const Facts& facts() {
+  static const Facts host = {"the host", kArenaBytes, 0, 0, {128, 64, PixelFormat::kGray4, false}};
+  return host;
+}
+Bytes arena() {
+  return {arena_bytes, arena_size};
+}
+void write(ConstBytes bytes) {
+  fwrite(bytes.data, 1, bytes.size, stdout);
+}
+
+}  // namespace thimble::port
+
 int main(int argc, char** argv) {
   if (argc == 1) {
     return run_all();
   }
+  if (argc == 3 && strcmp(argv[1], "--arena") == 0) {
+    const unsigned long bytes = strtoul(argv[2], nullptr, 10);
+    arena_size = bytes < kArenaBytes ? bytes : kArenaBytes;
+    return run_all();
+  }
   if (argc == 2 && strcmp(argv[1], "--print") == 0) {
     return print_table();
+  }
+  if (argc == 2 && strcmp(argv[1], "--trees") == 0) {
+    return print_trees();
+  }
+  if (argc == 2 && strcmp(argv[1], "--crc") == 0) {
+    return print_crc();
   }
   if (argc == 2 && strcmp(argv[1], "--sizes") == 0) {
     return print_sizes();
@@ -223,6 +260,8 @@ int main(int argc, char** argv) {
   if (argc == 3 && strcmp(argv[1], "--frame") == 0) {
     return print_frame(argv[2]);
   }
-  fprintf(stderr, "usage: thimble_golden_tests [--print | --sizes | --frame NAME]\n");
+  fprintf(
+      stderr,
+      "usage: thimble_golden_tests [--arena BYTES | --print | --trees | --crc | --sizes | --frame NAME]\n");
   return 2;
 }

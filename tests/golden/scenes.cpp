@@ -442,10 +442,15 @@ Status frame_crc32(const Frame& frame, const World& world, Width width, int32_t 
                    uint32_t* crc, RenderCounts* counts) {
   Camera camera;
   Shading shading;
-  Status status = set_up(frame, &camera, &shading);
+  const Status status = set_up(frame, &camera, &shading);
   if (status != Status::kOk) {
     return status;
   }
+  return frame_crc32(frame, world, camera, shading, width, band_rows, band_bytes, crc, counts);
+}
+
+Status frame_crc32(const Frame& frame, const World& world, const Camera& camera, const Shading& shading,
+                   Width width, int32_t band_rows, Bytes band_bytes, uint32_t* crc, RenderCounts* counts) {
   const int32_t height = camera.height_px();
   const int32_t step = band_rows == 0 ? height : band_rows;
   TraceOptions options;
@@ -457,7 +462,7 @@ Status frame_crc32(const Frame& frame, const World& world, Width width, int32_t 
     band.format = frame.format;
     band.first_row = row;
     band.rows = step < height - row ? step : height - row;
-    status = draw_band(world, camera, shading, band, counts, options);
+    const Status status = draw_band(world, camera, shading, band, counts, options);
     if (status != Status::kOk) {
       return status;
     }

@@ -107,6 +107,9 @@ bool applies(const Frame& frame, const Variant& variant);
 /// picture's bytes, rows without gaps. `counts` is added to. `kOutOfMemory` when a band does not fit.
 Status frame_crc32(const Frame& frame, const World& world, Width width, int32_t band_rows, Bytes band,
                    uint32_t* crc, RenderCounts* counts);
+/// The same with the camera and the shading that `set_up` gave for the frame, for whoever has a small stack.
+Status frame_crc32(const Frame& frame, const World& world, const Camera& camera, const Shading& shading,
+                   Width width, int32_t band_rows, Bytes band, uint32_t* crc, RenderCounts* counts);
 
 }  // namespace thimble::golden
 

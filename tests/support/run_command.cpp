@@ -52,7 +52,7 @@ std::string CommandResult::describe() const {
 }
 
 CommandResult run_command(const std::vector<std::string>& arguments, const CommandLimits& limits) {
-  std::vector<std::string> words{THIMBLE_COMMAND_PATH};
+  std::vector<std::string> words{limits.program.empty() ? THIMBLE_COMMAND_PATH : limits.program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) {

@@ -29,6 +29,7 @@ struct CommandLimits {
   std::uint64_t address_space_bytes = 0;
   std::uint64_t file_size_bytes = 0;  ///< limit on what the child may write to one file; 0 for none
   std::string directory;              ///< where it runs; empty for here
+  std::string program;                ///< what runs; empty for the `thimble` command
   std::string output_path;            ///< where standard output goes; empty: into `CommandResult::out`
 };
 

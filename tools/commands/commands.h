@@ -13,13 +13,21 @@ namespace thimble::tools {
 void add_render(CLI::App& app);
 void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
+void add_bake(CLI::App& app);
 void add_info(CLI::App& app);
+void add_boards(CLI::App& app);
+void add_sim(CLI::App& app);
+void add_particles(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
   add_render(app);
   add_trace(app);
   add_table(app);
+  add_bake(app);
   add_info(app);
+  add_boards(app);
+  add_sim(app);
+  add_particles(app);
 }
 
 }  // namespace thimble::tools

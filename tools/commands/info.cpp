@@ -10,6 +10,8 @@
 #include "commands/stats.h"
 #include "output/output_file.h"
 #include "output/units.h"
+#include "readers/oct.h"
+#include "scene/board_fit.h"
 
 namespace thimble::tools {
 namespace {
@@ -28,6 +30,67 @@ const char* name_of(SurfaceKind kind) {
       return "media";
   }
   return "unknown";
+}
+
+std::string three(double x, double y, double z) {
+  return shortest(x) + "," + shortest(y) + "," + shortest(z);
+}
+
+std::string describe(const SceneCamera& camera) {
+  const auto point = [](const Vec3Q8& at) {
+    const auto real = [](Q8 number) { return static_cast<double>(number.raw) / Q8::kOne; };
+    return three(real(at.x), real(at.y), real(at.z));
+  };
+  std::string text =
+      camera.is_perspective
+          ? "perspective, fov " + shortest(static_cast<double>(camera.fov_degrees.raw) / Q16::kOne) +
+                " degrees"
+          : "orthographic, span " + shortest(static_cast<double>(camera.span.raw) / Q14::kOne) + " voxels";
+  text += ", eye " + point(camera.eye) + ", target " + point(camera.target);
+  if (camera.up != Vec3i{}) {
+    constexpr double kUnit = kMaxViewComponent;
+    text += ", up " + three(camera.up.x / kUnit, camera.up.y / kUnit, camera.up.z / kUnit);
+  }
+  if (camera.direction_bits != 0) {
+    text += ", directions of " + std::to_string(camera.direction_bits) + " bits";
+  }
+  return text;
+}
+
+// What only a baked scene has.
+template <class Row>
+void describe(const BakedScene& baked, const Row& row) {
+  row("format version", std::to_string(kBakedVersion));
+  const ConstBytes name = baked.section(SectionKind::kName);
+  if (!name.empty()) {
+    row("made from", printable({reinterpret_cast<const char*>(name.data), name.size}));
+  }
+  row("crc32", crc_text(baked.crc32()));
+  row("baked bytes", grouped(baked.bytes().size));
+  std::string sections;
+  std::size_t content = 0;
+  const auto section = [&](const char* what, SectionKind kind) {
+    const std::size_t size = baked.section(kind).size;
+    content += size;
+    if (size != 0) {
+      sections += what + std::string(" ") + grouped(size) + ", ";
+    }
+  };
+  section("tree", SectionKind::kTree);
+  section("palette", SectionKind::kPalette);
+  section("camera", SectionKind::kCamera);
+  section("brick map", SectionKind::kBrickMap);
+  section("name", SectionKind::kName);
+  row("sections", sections + "rest " + grouped(baked.bytes().size - content));
+  row("palette entries", std::to_string(baked.palette().size));
+  row("camera", baked.has_camera() ? describe(baked.camera()) : "none");
+  std::string fits;
+  for (const platform::BoardFacts& board : platform::boards()) {
+    if (baked.bytes().size <= scene_flash_bytes(board)) {
+      fits += (fits.empty() ? "" : ", ") + std::string(board.name);
+    }
+  }
+  row("fits the flash of", fits.empty() ? "no board" : fits);
 }
 
 void run(const SceneOptions& options) {
@@ -62,7 +125,11 @@ void run(const SceneOptions& options) {
 
   // Which palette entries the voxels use, counted over the stream.
   std::set<int> used;
-  source->stream([&](auto, auto, auto, std::uint8_t material) { used.insert(material); }, {});
+  if (const BakedScene* baked = source->baked()) {
+    for_each_block(baked->tree(), [&](const Vec3i&, int, std::uint8_t material) { used.insert(material); });
+  } else {
+    source->stream([&](auto, auto, auto, std::uint8_t material) { used.insert(material); }, {});
+  }
   std::array<int, 5> kinds{};
   for (const int index : used) {
     ++kinds[static_cast<std::size_t>(source->palette()[static_cast<std::size_t>(index)].kind)];
@@ -99,8 +166,19 @@ void run(const SceneOptions& options) {
     }
     row("compact tree", "sound");
   }
+  if (const BakedScene* baked = source->baked()) {
+    describe(*baked, row);
+  }
   if (stats_file != nullptr) {
-    stats_file->write(stats_text(Stats(options.arguments.scene, *source, built)));
+    Stats stats(options.arguments.scene, *source, built);
+    if (const BakedScene* baked = source->baked()) {
+      stats.baked_bytes = baked->bytes().size;
+      stats.baked_crc32 = crc_text(baked->crc32());
+    }
+    if (options.board != nullptr) {
+      stats.board = options.board->name;
+    }
+    stats_file->write(stats_text(stats));
     stats_file->commit();
   }
   OutputFile output("-");

@@ -7,6 +7,7 @@
 #include "commands/arguments.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "scene/board_fit.h"
 
 namespace thimble::tools {
 namespace {
@@ -26,12 +27,13 @@ std::optional<Real3> parse_triple(std::string_view text) {
   return result;
 }
 
-void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value,
+void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value, bool* given,
                 const std::string& help) {
   add_text_option(
       app, name, "X,Y,Z",
-      [value](const std::string& text) {
+      [value, given](const std::string& text) {
         *value = parse_triple(text);
+        *given = true;
         return *value ? "" : "is not three numbers X,Y,Z";
       },
       help);
@@ -96,6 +98,17 @@ Vec3Q8 to_q8(const Real3& point, int level, const char* what) {
   return result;
 }
 
+// The nearest point that can be written.
+Vec3Q8 saturated_q8(const Real3& point) {
+  Vec3Q8 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double raw = std::round(point[static_cast<std::size_t>(axis)] * Q8::kOne);
+    result[axis] = Q8::from_raw(static_cast<std::int32_t>(
+        std::clamp(raw, static_cast<double>(INT32_MIN), static_cast<double>(INT32_MAX))));
+  }
+  return result;
+}
+
 // The picture's axes for a direction of view, in doubles: only for framing, rays are made by the core.
 struct Axes {
   Real3 right;
@@ -129,40 +142,78 @@ constexpr double kFill = 0.94;
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& app) {
+void SceneOptions::add_scene(CLI::App& app, bool required) {
   app.add_option("scene", arguments.scene,
-                 "a file (.vox .ply .obj .off .xyz .csv, a Gadget-1 snapshot, .gz of any) or a generator: "
-                 "points:N, cluster:N, spheres or water, each with ,seed=S,depth=L")
-      ->required()
+                 "a file (.vox .ply .obj .off .xyz .csv .oct, a Gadget-1 snapshot, .gz of any) or a "
+                 "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L")
+      ->required(required)
       ->type_name("SCENE");
   add_whole_option(
       app, "--depth", "L", kMinLevel, kMaxLevel,
       [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox or --as-voxels "
-      "file, 9 for other files, 10 for points and cluster, 6 for spheres and water)");
+      "file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for the others)");
   app.add_flag("--as-voxels", arguments.as_voxels,
                "point files: coordinates are voxel indices; nothing is scaled, turned or moved")
       ->disable_flag_override();
   app.add_flag("--z-up", arguments.z_up, "meshes: z is up in the file (default: y is)")
       ->disable_flag_override();
-  add_text_option(
-      app, "--memory", "BYTES",
-      [this](const std::string& text) {
-        memory_bytes = parse_bytes(text);
-        return memory_bytes ? "" : "is not a number of bytes such as 65536, 64K or 2M";
-      },
-      "the budget, such as 65536, 64K or 2M: one block of memory for all that lies between reader and "
-      "display (default: as much as it takes)");
+}
+
+void SceneOptions::add_report(CLI::App& app) {
+  app.add_flag("--quiet", quiet, "no progress bar and no summary on standard error")->disable_flag_override();
+  add_path_option(app, "--stats", "FILE.json", &stats_path, "write counts, bytes and times as JSON");
+}
+
+void SceneOptions::add_to(CLI::App& app) {
+  add_scene(app);
+  add_bytes(app, "--memory", &memory_bytes,
+            "the budget, such as 65536, 64K or 2M: one block of memory for all that lies between reader and "
+            "display (default: as much as it takes)");
+  add_board(app, &board,
+            "keep to a board's RAM less its stack, as with --memory (the smaller of both counts); a baked "
+            "scene lies in its flash and takes no RAM");
   app.add_flag("--coarsen", coarsen,
-               "when --memory is short, merge blocks of voxels instead of failing; this only adds solid")
+               "when the budget is short, merge blocks of voxels instead of failing; this only adds solid")
       ->disable_flag_override();
   add_choice_option(
       app, "--structure", {"dense", "pool", "compact"},
       [this](std::size_t index) { structure = static_cast<StructureKind>(index); },
       "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
       ->default_str("compact");
-  app.add_flag("--quiet", quiet, "no progress bar and no summary on standard error")->disable_flag_override();
-  add_path_option(app, "--stats", "FILE.json", &stats_path, "write counts, bytes and times as JSON");
+  add_report(app);
+}
+
+std::optional<std::uint64_t> SceneOptions::budget_bytes() const {
+  if (board == nullptr) {
+    return memory_bytes;
+  }
+  return std::min(free_ram_bytes(*board), memory_bytes.value_or(UINT64_MAX));
+}
+
+void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64_t>* bytes,
+               const std::string& help) {
+  add_text_option(
+      app, name, "BYTES",
+      [bytes](const std::string& text) {
+        *bytes = parse_bytes(text);
+        return *bytes ? "" : "is not a number of bytes such as 65536, 64K or 2M";
+      },
+      help);
+}
+
+void add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
+  std::string names;
+  for (const platform::BoardFacts& each : platform::boards()) {
+    names += (names.empty() ? "" : ", ") + std::string(each.name);
+  }
+  add_text_option(
+      app, "--board", "NAME",
+      [board, names](const std::string& text) {
+        *board = platform::find_board(text.c_str());
+        return *board != nullptr ? std::string() : "is not a board; there are " + names;
+      },
+      help + "; " + names);
 }
 
 std::unique_ptr<SceneSource> SceneOptions::open() const {
@@ -175,7 +226,19 @@ BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_byt
   ProgressBar bar("building", quiet);
   BuildOptions options;
   options.structure = structure;
-  options.memory_bytes = memory_bytes;
+  options.memory_bytes = budget_bytes();
+  if (board != nullptr) {
+    if (!memory_bytes || *memory_bytes > free_ram_bytes(*board)) {
+      options.budget_name = std::string(board->name) + "'s RAM less its stack";
+    }
+    options.baked_in_flash = true;
+    const BakedScene* baked = source.baked();
+    if (baked != nullptr && structure == StructureKind::kCompact &&
+        baked->bytes().size > scene_flash_bytes(*board)) {
+      throw InputError("takes " + grouped(baked->bytes().size) + " bytes, " + board->name + " has " +
+                       grouped(scene_flash_bytes(*board)) + " bytes of flash for a scene");
+    }
+  }
   options.coarsen = coarsen;
   options.band_bytes = band_bytes;
   options.least_band_bytes = least_band_bytes;
@@ -243,22 +306,30 @@ void ViewOptions::add_to(CLI::App& app) {
         }
         width_px = static_cast<std::int32_t>(*width);
         height_px = static_cast<std::int32_t>(*height);
+        size_given = true;
         return {};
       },
-      "the picture's size in pixels")
-      ->default_str("800x600");
+      "the picture's size in pixels (default: 800x600, or the display of --board)");
   add_choice_option(
       app, "--projection", {"perspective", "orthographic"},
-      [this](std::size_t index) { orthographic = index == 1; }, "how rays leave the camera")
+      [this](std::size_t index) {
+        orthographic = index == 1;
+        placed = true;
+      },
+      "how rays leave the camera")
       ->default_str("perspective");
-  add_triple(app, "--eye", &eye, "where the camera is, in voxels (default: where it sees the whole scene)");
-  add_triple(app, "--target", &target, "what it looks at, in voxels (default: the middle of the scene)");
-  add_triple(app, "--up", &up, "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
+  add_triple(app, "--eye", &eye, &placed,
+             "where the camera is, in voxels (default: where it sees the whole scene)");
+  add_triple(app, "--target", &target, &placed,
+             "what it looks at, in voxels (default: the middle of the scene)");
+  add_triple(app, "--up", &up, &placed,
+             "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
   add_text_option(
       app, "--fov", "DEG",
       [this](const std::string& text) {
         const auto degrees = parse_real(text);
         fov_degrees = degrees.value_or(0);
+        placed = true;
         return fov_degrees >= 1 && fov_degrees <= 120 ? "" : "is not a number from 1 to 120";
       },
       "perspective: vertical field of view in degrees, 1 to 120")
@@ -267,13 +338,44 @@ void ViewOptions::add_to(CLI::App& app) {
       app, "--span", "V",
       [this](const std::string& text) {
         span = parse_real(text);
+        placed = true;
         return span && *span > 0 ? "" : "is not a number above 0";
       },
       "orthographic: width of the picture in voxels (default: the whole scene)");
   add_direction_bits(app, &direction_bits);
 }
 
-Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* note) const {
+void ViewOptions::use_display(const platform::BoardFacts* board) {
+  if (board != nullptr && !size_given) {
+    width_px = board->width_px;
+    height_px = board->height_px;
+  }
+}
+
+Camera ViewOptions::camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note,
+                           SceneCamera* chosen) const {
+  if (placed || source.camera() == nullptr) {
+    return camera(level, bounds, note, chosen);
+  }
+  SceneCamera own = *source.camera();
+  if (direction_bits != 0) {
+    own.direction_bits = static_cast<std::uint8_t>(direction_bits);
+  }
+  Camera result;
+  const Status status = make_camera(own, width_px, height_px, level, &result);
+  if (status != Status::kOk) {
+    throw InputError(std::string("the scene's own camera does not suit a picture of ") +
+                     std::to_string(width_px) + "x" + std::to_string(height_px) + ": " + status_text(status) +
+                     "; another --size, or a camera of your own (--eye, --target, --span), helps");
+  }
+  if (chosen != nullptr) {
+    *chosen = own;
+  }
+  return result;
+}
+
+Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* note,
+                           SceneCamera* chosen) const {
   const std::int32_t side = std::int32_t{1} << level;
   const VoxelBox box = occupied.empty() ? VoxelBox{{0, 0, 0}, {side, side, side}} : occupied;
   const auto corners = corners_of(box);
@@ -350,6 +452,14 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
   }
 
   const Vec3Q8 eye_q8 = to_q8(eye_point, level, eye ? "--eye" : "the eye for this --target,");
+  SceneCamera kept;
+  kept.is_perspective = !orthographic;
+  kept.direction_bits = static_cast<std::uint8_t>(direction_bits);
+  kept.eye = eye_q8;
+  kept.target = saturated_q8(looked_at);
+  kept.forward = forward_view;
+  kept.up = up ? up_view : Vec3i{};
+  kept.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(std::lround(fov_degrees * Q16::kOne)));
   Camera result;
   Status status = Status::kOk;
   std::string advice;
@@ -384,6 +494,7 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
       status = result.set(view, level);
       partial = true;
     }
+    kept.span = view.span;
     // The core's bound starts from the eye and the span as it got them; what rounding them moved is added
     // here.
     const double pixel = static_cast<double>(view.span.raw) / Q14::kOne / width_px;
@@ -411,7 +522,7 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
     view.eye = eye_q8;
     view.forward = forward_view;
     view.up = up_view;
-    view.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(std::lround(fov_degrees * Q16::kOne)));
+    view.fov_degrees = kept.fov_degrees;
     view.width_px = width_px;
     view.height_px = height_px;
     view.direction_bits = direction_bits;
@@ -430,6 +541,9 @@ Camera ViewOptions::camera(int level, const VoxelBox& occupied, std::string* not
   }
   if (partial && note != nullptr) {
     *note = "the whole scene cannot be seen at once from within -4 to 5 world sizes; a part of it is shown";
+  }
+  if (chosen != nullptr) {
+    *chosen = kept;
   }
   return result;
 }

@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "boards/board_table.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
+#include "thimble/baked_scene.h"
 #include "thimble/camera.h"
 #include "thimble/trace.h"
 
@@ -21,7 +23,7 @@ class App;
 
 namespace thimble::tools {
 
-/// SCENE, --depth, --memory and the rest that decides what is built.
+/// SCENE, --depth, --memory, --board and the rest that decides what is built.
 struct SceneOptions {
   SceneArguments arguments;
   std::optional<std::uint64_t> memory_bytes;
@@ -29,13 +31,30 @@ struct SceneOptions {
   StructureKind structure = StructureKind::kCompact;
   bool quiet = false;
   std::string stats_path;
+  const platform::BoardFacts* board = nullptr;
 
+  /// All of them.
   void add_to(CLI::App& app);
+  /// Only SCENE, --depth, --as-voxels and --z-up.
+  void add_scene(CLI::App& app, bool required = true);
+  /// Only --quiet and --stats.
+  void add_report(CLI::App& app);
+
+  /// --memory or what the board's RAM has beside its stack, the smaller of both; nothing without either.
+  std::optional<std::uint64_t> budget_bytes() const;
   std::unique_ptr<SceneSource> open() const;
   /// Builds inside the budget, with `band_bytes` for pixels (0: none are drawn), or at least
   /// `least_band_bytes` when the budget is short.
+  /// With --board a baked scene stays outside the budget, in the board's flash, where it must fit; the source
+  /// must then outlive what is built.
   BuiltScene build(const SceneSource& source, std::uint64_t band_bytes, std::uint64_t least_band_bytes) const;
 };
+
+/// An option --board, whose `help` says what of the board counts.
+void add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help);
+/// An option that is a number of bytes.
+void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64_t>* bytes,
+               const std::string& help);
 
 /// --engine and --threads: what draws. The pictures are the same.
 struct EngineOptions {
@@ -60,6 +79,9 @@ using Real3 = std::array<double, 3>;
 struct ViewOptions {
   std::int32_t width_px = 800;
   std::int32_t height_px = 600;
+  bool size_given = false;
+  /// Whether any option says where the camera is or how it looks (all but --size and --direction-bits).
+  bool placed = false;
   bool orthographic = false;
   std::optional<Real3> eye;
   std::optional<Real3> target;
@@ -71,7 +93,14 @@ struct ViewOptions {
   void add_to(CLI::App& app);
   /// The camera for a world of 2^level; what is not given frames `bounds`. Where that cannot be, because rays
   /// may not start that far away, `note` (may be null) gets a sentence that says so. Throws InputError.
-  Camera camera(int level, const VoxelBox& bounds, std::string* note = nullptr) const;
+  /// `chosen` (may be null) gets the same camera without the picture's size, as a baked scene keeps it.
+  Camera camera(int level, const VoxelBox& bounds, std::string* note = nullptr,
+                SceneCamera* chosen = nullptr) const;
+  /// The camera that the scene was baked with, unless `placed` or it has none; then the one above.
+  Camera camera(const SceneSource& source, int level, const VoxelBox& bounds, std::string* note = nullptr,
+                SceneCamera* chosen = nullptr) const;
+  /// Without --size the picture is as large as the board's.
+  void use_display(const platform::BoardFacts* board);
 };
 
 /// --direction-bits, for subcommands that have no camera too.

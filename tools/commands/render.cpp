@@ -37,9 +37,8 @@ constexpr std::int32_t kMostBandRows = 16;
 // Rows in a band: as many as a sixteenth of the budget holds, fewer when the scene needs the room.
 std::int32_t band_rows(const RenderCommand& command, PixelFormat format) {
   std::uint64_t rows = kMostBandRows;
-  if (command.scene.memory_bytes) {
-    rows = std::min<std::uint64_t>(
-        rows, *command.scene.memory_bytes / 16 / row_bytes(format, command.view.width_px));
+  if (const auto budget = command.scene.budget_bytes()) {
+    rows = std::min<std::uint64_t>(rows, *budget / 16 / row_bytes(format, command.view.width_px));
   }
   return std::clamp(static_cast<std::int32_t>(rows), 1, command.view.height_px);
 }
@@ -87,7 +86,9 @@ std::unique_ptr<OutputFile> open_output(const std::string& path) {
   return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
 }
 
-void run(const RenderCommand& command) {
+void run(const RenderCommand& given) {
+  RenderCommand command = given;
+  command.view.use_display(command.scene.board);
   const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
   const std::array<std::string, 4> outputs{command.output, command.hits_path, command.depth_path,
                                            command.scene.stats_path};
@@ -96,7 +97,9 @@ void run(const RenderCommand& command) {
   std::transform(outputs.begin(), outputs.end(), files.begin(), open_output);
   const auto& [picture, hits_file, depth_file, stats_file] = files;
 
-  const PixelFormat format = pixel_format(kind);
+  // A board's picture is drawn as its display takes it.
+  const PixelFormat format =
+      command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
   const std::int32_t width = command.view.width_px;
   const std::int32_t height = command.view.height_px;
   const auto source = command.scene.open();
@@ -106,7 +109,7 @@ void run(const RenderCommand& command) {
   const std::size_t one_row = std::max<std::size_t>(1, row_bytes(format, width));
   const auto rows = static_cast<std::int32_t>(built.band().size / one_row);
   std::string note;
-  const Camera camera = command.view.camera(built.level(), built.bounds(), &note);
+  const Camera camera = command.view.camera(*source, built.level(), built.bounds(), &note);
 
   Shading shading;
   shading.mode = command.shade;
@@ -160,7 +163,8 @@ void run(const RenderCommand& command) {
   }
 
   bar.clear();
-  write_image(picture.get(), kind, image);
+  const Image shown = converted(image, pixel_format(kind));
+  write_image(picture.get(), kind, shown);
   if (hits_file != nullptr || depth_file != nullptr) {
     write_hits(command, built, camera, hits_file.get(), depth_file.get());
   }
@@ -174,10 +178,13 @@ void run(const RenderCommand& command) {
   stats.threads = is_wide ? command.engine.threads : 1;
   stats.box_tests = work.candidates;
   stats.exact_tests = work.exact;
-  const std::vector<std::uint8_t> pixels = file_pixels(image, kind);
-  std::array<char, 9> crc{};
-  std::snprintf(crc.data(), crc.size(), "%08lx", crc32_z(0, pixels.data(), pixels.size()));
-  stats.frame_crc32 = crc.data();
+  const std::vector<std::uint8_t> pixels = file_pixels(shown, kind);
+  stats.frame_crc32 = crc_text(static_cast<std::uint32_t>(crc32_z(0, pixels.data(), pixels.size())));
+  if (command.scene.board != nullptr) {
+    stats.board = command.scene.board->name;
+    stats.display_crc32 =
+        crc_text(static_cast<std::uint32_t>(crc32_z(0, image.pixels.data(), image.pixels.size())));
+  }
   if (stats_file != nullptr) {
     stats_file->write(stats_text(stats));
   }

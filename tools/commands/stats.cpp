@@ -1,5 +1,8 @@
 #include "commands/stats.h"
 
+#include <array>
+#include <cstdio>
+
 #include <nlohmann/json.hpp>
 
 namespace thimble::tools {
@@ -15,6 +18,12 @@ Stats::Stats(const std::string& scene_name, const SceneSource& source, const Bui
       high_water_bytes(built.high_water_bytes()),
       solid_added(built.solid_added()),
       build_seconds(built.build_seconds()) {}
+
+std::string crc_text(std::uint32_t crc) {
+  std::array<char, 9> text{};
+  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(crc));
+  return text.data();
+}
 
 std::string stats_text(const Stats& stats) {
   nlohmann::ordered_json json;
@@ -37,6 +46,15 @@ std::string stats_text(const Stats& stats) {
   json["threads"] = stats.threads;
   json["engine"] = stats.engine;
   json["frame_crc32"] = stats.frame_crc32;
+  const auto add = [&](const char* name, const auto& value) {
+    if (value) {
+      json[name] = *value;
+    }
+  };
+  add("display_crc32", stats.display_crc32);
+  add("baked_bytes", stats.baked_bytes);
+  add("baked_crc32", stats.baked_crc32);
+  add("board", stats.board);
   // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -4,6 +4,7 @@
 #define THIMBLE_TOOLS_COMMANDS_STATS_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "scene/built_scene.h"
@@ -32,8 +33,18 @@ struct Stats {
   std::string engine;
   std::string frame_crc32;  ///< 8 hex digits; empty where no frame was drawn
 
+  // Only where they make sense; otherwise the JSON does not have them.
+  std::optional<std::string> display_crc32;  ///< of the frame in the board's own pixel format
+  std::optional<std::uint64_t> baked_bytes;
+  std::optional<std::string> baked_crc32;
+  std::optional<std::string> board;
+
+  Stats() = default;
   Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);
 };
+
+/// A CRC-32 as 8 hex digits.
+std::string crc_text(std::uint32_t crc);
 
 /// All of them as one JSON object with the members' names.
 std::string stats_text(const Stats& stats);

@@ -182,6 +182,9 @@ void run(const TraceCommand& command) {
   ProgressBar bar("tracing", command.scene.quiet);
   Stats stats(command.scene.arguments.scene, *source, built);
   stats.engine = command.engine.resolved(false);
+  if (command.scene.board != nullptr) {
+    stats.board = command.scene.board->name;
+  }
   std::string lines;
   const auto start = std::chrono::steady_clock::now();
   for_each_ray(command, text, built.level(), [&](const Ray& ray, std::size_t line, std::size_t offset) {

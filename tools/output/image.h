@@ -30,6 +30,11 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 };
 
+/// The same picture in another format, pixel by pixel as a display shows it: 16 greys are 17 apart, channels
+/// of 5 and 6 bits reach from 0 to 255, and a lit pixel is white. Into a format that holds less, as the core
+/// stores that colour.
+Image converted(const Image& image, PixelFormat format);
+
 /// The pixel bytes as the file holds them (a PNG's before compression): the core's, except that a PBM has 1
 /// for black.
 std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind);

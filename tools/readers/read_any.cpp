@@ -6,6 +6,7 @@
 
 #include "readers/gadget.h"
 #include "readers/obj.h"
+#include "readers/oct.h"
 #include "readers/off.h"
 #include "readers/ply.h"
 #include "readers/text.h"
@@ -26,13 +27,14 @@ bool looks_like_vox(std::span<const std::uint8_t> bytes) {
 }
 
 // The one place that knows all formats.
-constexpr std::array<ReaderRow, 6> kRows{{
+constexpr std::array<ReaderRow, 7> kRows{{
     {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply},
     {".obj", "Wavefront mesh", read_obj, nullptr},
     {".off", "OFF mesh", read_off, looks_like_off},
     {".xyz .csv", "points, one a line", read_xyz, nullptr},
     {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget},
+    {".oct", "baked scene", read_oct, looks_like_oct},
 }};
 
 bool has_ending(std::string_view path, std::string_view ending) {

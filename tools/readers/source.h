@@ -1,6 +1,6 @@
 /// @file source.h
 /// What a reader of scene files hands over. A reader turns bytes into one of these and knows nothing of
-/// trees, arenas or pictures; `scene/` turns a source into voxels.
+/// arenas or pictures, nor (but for the one of baked scenes) of trees; `scene/` turns a source into voxels.
 ///
 /// Memory: a source keeps at most the file's (decompressed) bytes and what they really hold, never what a
 /// header claims. Streaming methods may be called any number of times and give the same sequence each time.
@@ -15,6 +15,9 @@
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "readers/shared_bytes.h"
+#include "thimble/baked_scene.h"
 
 namespace thimble::tools {
 
@@ -91,7 +94,14 @@ struct TriangleMesh {
   std::vector<Rgb> colors;                              ///< one a position, or empty
 };
 
-using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh>;
+/// A scene baked by `thimble bake`, checked to its last byte: `.oct`.
+struct BakedFile {
+  SharedBytes file;
+  BakedScene scene;  ///< views into `file`
+};
+
+using Source =
+    std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh, BakedFile>;
 
 /// Called now and then while reading: fraction done, 0..1. May throw to cancel.
 using Progress = std::function<void(double)>;

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "output/units.h"
+#include "readers/oct.h"
 #include "thimble/morton.h"
 
 namespace thimble::tools {
@@ -68,6 +69,20 @@ std::uint64_t count_distinct(const SceneSource& source, const Progress& progress
   return distinct;
 }
 
+// Everything solid: blocks where the source has them, else voxels, which are blocks of level 0.
+template <class Take>
+void for_each_solid(const SceneSource& source, const Progress& progress, const Take& take) {
+  if (const BakedScene* baked = source.baked()) {
+    for_each_block(baked->tree(), take);
+    return;
+  }
+  source.stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        take(Vec3i{x, y, z}, 0, material);
+      },
+      progress);
+}
+
 }  // namespace
 
 BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress)
@@ -81,7 +96,7 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
                                    : HostMemory::largest();
   } catch (const std::bad_alloc&) {
     throw InputError(options.memory_bytes ? "this machine does not give " + grouped(*options.memory_bytes) +
-                                                " bytes (--memory)"
+                                                " bytes (" + options.budget_name + ")"
                                           : "this machine has no memory left for the scene");
   }
   if (!try_to_build(source, progress)) {
@@ -106,8 +121,8 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
     const bool dense = options.structure == StructureKind::kDense;
     throw InputError(
         (options.coarsen && !dense ? "too little even for a coarse tree: in full it needs " : "needs ") +
-        grouped(needed) + " bytes" + part + ", the budget is " + grouped(*options.memory_bytes) +
-        " (--memory); give it more" +
+        grouped(needed) + " bytes" + part + ", the budget is " + grouped(*options.memory_bytes) + " (" +
+        options.budget_name + "); give it more" +
         (dense             ? " or another --structure"
          : options.coarsen ? ""
                            : ", a smaller --depth or --coarsen"));
@@ -117,7 +132,12 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
   // The tree knows what each merge added when it was made; voxels that came later and were already covered
   // are taken off by counting what the source really has.
   const bool coarsened = structure() == StructureKind::kPool ? octree_.solid_added() != 0 : compact_.merged();
-  solid_added_ = coarsened ? voxels() - count_distinct(source, progress) : 0;
+  const BakedScene* baked = source.baked();
+  if (coarsened) {
+    solid_added_ =
+        voxels() - (baked != nullptr ? baked->tree().voxel_count() : count_distinct(source, progress));
+  }
+  solid_added_ += baked != nullptr ? baked->tree().solid_added() : 0;
 }
 
 // A band of the least size leaves more room for the scene; merging blocks is the last resort.
@@ -150,6 +170,10 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
     if (band_.empty()) {
       throw Shortage{};
     }
+  }
+  if (source.baked() != nullptr && !coarsen && options_.structure == StructureKind::kCompact) {
+    take_baked(source.baked()->tree());
+    return;
   }
   if (coarsen && options_.structure == StructureKind::kCompact) {
     try {
@@ -185,12 +209,28 @@ void BuiltScene::build_dense(const SceneSource& source, const Progress& progress
       progress);
 }
 
-void BuiltScene::insert(const SceneSource& source, const Vec3i& voxel, std::uint8_t material) {
+void BuiltScene::take_baked(const CompactTree& tree) {
+  if (options_.baked_in_flash) {
+    compact_ = tree;
+    return;
+  }
+  const Bytes home = arena_.take(tree.size_bytes());
+  if (home.empty()) {
+    throw Shortage{};
+  }
+  std::memcpy(home.data, tree.bytes(), home.size);
+  if (CompactTree::open(home, &compact_) != Status::kOk) {
+    throw InputError("internal error: the baked tree does not open");
+  }
+}
+
+void BuiltScene::insert(const SceneSource& source, const Vec3i& voxel, int block_level,
+                        std::uint8_t material) {
   // In a point set the greatest material wins, in whatever order and structure it is built.
   if (source.is_point_set() && !source.single_material() && octree_.material(voxel) >= material) {
     return;
   }
-  const Status status = octree_.insert(voxel, material);
+  const Status status = octree_.insert_block(voxel, block_level, material);
   if (status == Status::kOutOfMemory) {
     throw Shortage{};
   }
@@ -209,13 +249,19 @@ void BuiltScene::fill_part(const SceneSource& source, Bytes pool, int part_level
   octree_.set_coarsen(true);
   const std::int32_t inside = (std::int32_t{1} << part_level) - 1;
   const auto number = [&](std::int32_t x) { return static_cast<std::uint32_t>(x >> part_level); };
-  source.stream(
-      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-        if (morton_code(number(x), number(y), number(z)) == part) {
-          insert(source, {x & inside, y & inside, z & inside}, material);
-        }
-      },
-      progress);
+  for_each_solid(source, progress, [&](const Vec3i& at, int block_level, std::uint8_t material) {
+    const std::size_t code = morton_code(number(at.x), number(at.y), number(at.z));
+    if (block_level <= part_level) {
+      if (code == part) {
+        insert(source, {at.x & inside, at.y & inside, at.z & inside}, block_level, material);
+      }
+      return;
+    }
+    const int above = 3 * (block_level - part_level);
+    if (code >> above == part >> above) {
+      insert(source, {}, part_level, material);  // the block holds the whole part
+    }
+  });
 }
 
 // The world in parts: each is built in the pool, coarsened and made compact at once; in the end the parts are
@@ -314,11 +360,9 @@ void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progr
     throw Shortage{};
   }
   octree_.set_coarsen(coarsen);
-  source.stream(
-      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-        insert(source, {x, y, z}, material);
-      },
-      progress);
+  for_each_solid(source, progress, [&](const Vec3i& at, int block_level, std::uint8_t material) {
+    insert(source, at, block_level, material);
+  });
 
   // `rest` is aligned, so the pool needs none of the slack that octree_bytes allows for.
   const std::size_t pool_used = Octree::octree_bytes(octree_.nodes_high_water()) - Octree::octree_bytes(0);

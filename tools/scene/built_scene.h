@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "host/wide/renderer.h"
@@ -28,13 +29,18 @@ struct BuildOptions {
   bool coarsen = false;                       ///< --coarsen
   std::uint64_t band_bytes = 0;               ///< one band of pixels; 0: nothing is rendered
   std::uint64_t least_band_bytes = 0;         ///< what will do for a band when the budget is short
+  std::string budget_name = "--memory";       ///< who set the budget, for errors
+  /// A baked scene is traced where the source has it, as a board does in flash: not part of the budget, and
+  /// the source must outlive the result. Otherwise its tree is copied into the arena. Compact trees only.
+  bool baked_in_flash = false;
 };
 
 /// Built once, then only read. Layout of the arena, front to back:
 ///
 ///   render state and band | pool of nodes, or list of keys, while building | compact tree
 ///
-/// At the end the compact tree moves down over the workspace. What the wide renderer wants stands behind it.
+/// At the end the compact tree moves down over the workspace. A baked scene's tree is just taken up, without
+/// any workspace; the other structures are filled from it. What the wide renderer wants stands behind it.
 /// `arena.high_water_bytes()` is the most that was in use.
 class BuiltScene {
  public:
@@ -89,7 +95,8 @@ class BuiltScene {
   void build_parts(const SceneSource& source, const Progress& progress);
   void fill_part(const SceneSource& source, Bytes pool, int part_level, std::size_t part,
                  const Progress& progress);
-  void insert(const SceneSource& source, const Vec3i& voxel, std::uint8_t material);
+  void insert(const SceneSource& source, const Vec3i& corner, int block_level, std::uint8_t material);
+  void take_baked(const CompactTree& tree);
   template <class Key>
   void build_keys(const SceneSource& source, const Progress& progress);
   void keep_compact(Bytes tree);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "scene/demo_world.h"
 #include "scene/palette.h"
 #include "scene/random.h"
 
@@ -24,10 +25,11 @@ struct Name {
   const char* text;
   GeneratorKind kind;
 };
-constexpr std::array<Name, 4> kNames{{{"points", GeneratorKind::kPoints},
+constexpr std::array<Name, 5> kNames{{{"points", GeneratorKind::kPoints},
                                       {"cluster", GeneratorKind::kCluster},
                                       {"spheres", GeneratorKind::kSpheres},
-                                      {"water", GeneratorKind::kWater}}};
+                                      {"water", GeneratorKind::kWater},
+                                      {"demo", GeneratorKind::kDemo}}};
 
 /// Decimal digits only; nothing when there are none, others, or too many for 64 bits.
 std::optional<std::uint64_t> parse_number(const std::string& text) {
@@ -459,10 +461,23 @@ void generate(const GeneratorSpec& spec, const VoxelSink& sink) {
     case GeneratorKind::kWater:
       generate_water(spec, sink);
       break;
+    case GeneratorKind::kDemo:
+      generate_demo_world(spec.seed, spec.depth, sink);
+      break;
   }
 }
 
+std::optional<SceneCamera> generator_camera(const GeneratorSpec& spec) {
+  if (spec.kind == GeneratorKind::kDemo) {
+    return demo_world_camera(spec.depth);
+  }
+  return std::nullopt;
+}
+
 Palette generator_palette(GeneratorKind kind) {
+  if (kind == GeneratorKind::kDemo) {
+    return demo_world_palette();
+  }
   Palette palette;
   palette.fill(default_material());
   if (kind == GeneratorKind::kSpheres) {

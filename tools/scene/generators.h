@@ -5,6 +5,7 @@
 ///   cluster:N   N voxels of a mixture of Plummer spheres, as star clusters have them
 ///   spheres     solid balls of several sizes and colours: the paper's Figure 2
 ///   water       a basin with an island and floating bodies of glass and metal
+///   demo        a castle in a valley (demo_world.h): what the firmware shows
 ///
 /// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`.
 ///
@@ -20,10 +21,11 @@
 
 #include "readers/source.h"
 #include "scene/voxel_sink.h"
+#include "thimble/baked_scene.h"
 
 namespace thimble::tools {
 
-enum class GeneratorKind : std::uint8_t { kPoints, kCluster, kSpheres, kWater };
+enum class GeneratorKind : std::uint8_t { kPoints, kCluster, kSpheres, kWater, kDemo };
 
 inline constexpr std::uint64_t kMaxGeneratorPoints = 1'000'000'000;
 
@@ -34,18 +36,21 @@ struct GeneratorSpec {
   int depth = 10;  ///< 1..12
 };
 
-/// 10 for points and cluster, 6 for spheres and water.
+/// 10 for points and cluster, 6 for the others.
 int default_depth(GeneratorKind kind);
 
-/// What `text` asks for. Nothing when the part before the first `:` or `,` is not one of the four names, so
+/// What `text` asks for. Nothing when the part before the first `:` or `,` is not one of the five names, so
 /// that it may be a file (`points.xyz`). InputError when the name is one of them and the rest is wrong.
 std::optional<GeneratorSpec> parse_generator(const std::string& text);
 
 /// Streams the scene. `points` and `cluster` call `sink` exactly `count` times, positions may repeat, all
-/// material 0. `spheres` and `water` call it for solid voxels: in `spheres` once for each ball that
-/// holds the voxel (few touch), in `water` once. Time grows with the calls; the solid scenes have roughly an
-/// eighth (spheres) to a quarter (water) of the world's 8^depth voxels, so depths above 9 take long. No heap.
+/// material 0. The others call it for solid voxels: `spheres` once for each ball that holds the
+/// voxel (few touch), `water` and `demo` once. Time grows with the calls; the solid scenes have roughly an
+/// eighth (spheres) to a quarter of the world's 8^depth voxels, so depths above 9 take long. No heap.
 void generate(const GeneratorSpec& spec, const VoxelSink& sink);
+
+/// Where a scene wants to be looked at from; nothing for those that are framed by what they hold.
+std::optional<SceneCamera> generator_camera(const GeneratorSpec& spec);
 
 /// The palette that the material numbers refer to; index 0 is the default material.
 Palette generator_palette(GeneratorKind kind);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "readers/file_bytes.h"
+#include "readers/oct.h"
 #include "readers/read_any.h"
 #include "scene/fit_points.h"
 #include "scene/generators.h"
@@ -39,7 +40,8 @@ void check_depth(int depth) {
 
 class GeneratedScene final : public SceneSource {
  public:
-  explicit GeneratedScene(const GeneratorSpec& spec) : spec_(spec), palette_(generator_palette(spec.kind)) {
+  explicit GeneratedScene(const GeneratorSpec& spec)
+      : spec_(spec), palette_(generator_palette(spec.kind)), camera_(generator_camera(spec)) {
     level_ = spec.depth;
   }
   std::string kind() const override {
@@ -52,6 +54,8 @@ class GeneratedScene final : public SceneSource {
         return "generator spheres";
       case GeneratorKind::kWater:
         return "generator water";
+      case GeneratorKind::kDemo:
+        return "generator demo";
     }
     return "generator";
   }
@@ -61,6 +65,7 @@ class GeneratedScene final : public SceneSource {
   }
   bool single_material() const override { return is_point_set(); }
   const Palette& palette() const override { return palette_; }
+  const SceneCamera* camera() const override { return camera_ ? &*camera_ : nullptr; }
   void stream(const VoxelSink& sink, const Progress& progress) const override {
     Meter meter(progress, is_point_set() ? spec_.count : std::uint64_t{1} << (3 * spec_.depth - 3));
     generate(spec_, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
@@ -72,6 +77,7 @@ class GeneratedScene final : public SceneSource {
  private:
   GeneratorSpec spec_;
   Palette palette_;
+  std::optional<SceneCamera> camera_;
 };
 
 class VoxelModelScene final : public SceneSource {
@@ -98,6 +104,7 @@ class VoxelModelScene final : public SceneSource {
   std::uint64_t points() const override { return voxels_; }
   bool is_point_set() const override { return false; }
   bool single_material() const override { return false; }
+  bool is_scalable() const override { return false; }
   std::array<std::int32_t, 3> extent() const override { return model_->size(); }
   const Palette& palette() const override { return model_->palette(); }
   void stream(const VoxelSink& sink, const Progress& progress) const override {
@@ -129,6 +136,7 @@ class PointScene final : public SceneSource {
   std::uint64_t points() const override { return survey_.points; }
   bool is_point_set() const override { return true; }
   bool single_material() const override { return colors_.colors() == 0; }
+  bool is_scalable() const override { return !as_voxels_; }
   std::array<std::int32_t, 3> extent() const override {
     if (!as_voxels_) {
       return SceneSource::extent();
@@ -186,6 +194,55 @@ class MeshScene final : public SceneSource {
   bool z_up_;
 };
 
+class BakedFileScene final : public SceneSource {
+ public:
+  BakedFileScene(BakedFile file, std::optional<int> depth) : file_(std::move(file)) {
+    level_ = tree().level();
+    if (depth && *depth != level_) {
+      throw InputError("was baked with depth " + std::to_string(level_) + "; --depth cannot change that");
+    }
+    palette_.fill(default_material());
+    for (std::size_t i = 0; i < file_.scene.palette().size; ++i) {
+      const Rgb8 color = file_.scene.palette()[i];
+      palette_[i].color = {color.r, color.g, color.b};
+    }
+  }
+  std::string kind() const override { return "baked scene"; }
+  std::uint64_t points() const override { return tree().voxel_count(); }
+  bool is_point_set() const override { return false; }
+  bool single_material() const override { return !tree().many_materials() && tree().uniform_material() == 0; }
+  bool is_scalable() const override { return false; }
+  const SceneCamera* camera() const override {
+    return file_.scene.has_camera() ? &file_.scene.camera() : nullptr;
+  }
+  const BakedScene* baked() const override { return &file_.scene; }
+  std::array<std::int32_t, 3> extent() const override {
+    const Vec3i& max = tree().bounds().max;
+    return {max.x, max.y, max.z};
+  }
+  const Palette& palette() const override { return palette_; }
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    Meter meter(progress, tree().voxel_count());
+    for_each_block(tree(), [&](const Vec3i& corner, int level, std::uint8_t material) {
+      const std::int32_t side = std::int32_t{1} << level;
+      for (std::int32_t z = corner.z; z < corner.z + side; ++z) {
+        for (std::int32_t y = corner.y; y < corner.y + side; ++y) {
+          for (std::int32_t x = corner.x; x < corner.x + side; ++x) {
+            sink(x, y, z, material);
+            meter.step();
+          }
+        }
+      }
+    });
+  }
+
+ private:
+  const CompactTree& tree() const { return file_.scene.tree(); }
+
+  BakedFile file_;
+  Palette palette_;
+};
+
 }  // namespace
 
 std::array<std::int32_t, 3> SceneSource::extent() const {
@@ -215,6 +272,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const P
   }
   if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
     return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);
+  }
+  if (auto* baked = std::get_if<BakedFile>(&source)) {
+    return std::make_unique<BakedFileScene>(std::move(*baked), arguments.depth);
   }
   return std::make_unique<MeshScene>(std::move(std::get<TriangleMesh>(source)), arguments);
 }

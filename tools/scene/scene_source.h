@@ -40,6 +40,12 @@ class SceneSource {
   /// One past the greatest index on each axis that can occur: what a dense grid must hold.
   virtual std::array<std::int32_t, 3> extent() const;
   virtual const Palette& palette() const = 0;
+  /// Whether another --depth shows the same scene finer or coarser.
+  virtual bool is_scalable() const { return true; }
+  /// The camera that the scene brings along, or null: a baked one, or a generator's own.
+  virtual const SceneCamera* camera() const { return nullptr; }
+  /// The baked scene that it is, or null. Its bytes live as long as the source.
+  virtual const BakedScene* baked() const { return nullptr; }
   /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
   virtual void stream(const VoxelSink& sink, const Progress& progress) const = 0;
 

@@ -1,0 +1,172 @@
+#include "apps/cases.h"
+
+#include "apps/text.h"
+#include "port.h"
+#include "portable/runner.h"
+
+namespace thimble::apps {
+namespace {
+
+using portable::Case;
+using portable::Failure;
+using portable::Group;
+using portable::Runner;
+
+void put_count(int count) {
+  put_number(static_cast<uint32_t>(count));
+}
+
+void put_value(int64_t value) {
+  if (value < 0) {
+    put("-");
+  }
+  put_number(value < 0 ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value));
+}
+
+// Where there are no names (THIMBLE_TERSE_CASES) the number, counted from 0 in the group's file.
+void put_name(const Group& group, const Case& one, int number) {
+  put(group.name);
+  if (one.name == nullptr) {
+    put(" case ");
+    put_count(number);
+    return;
+  }
+  put(": ");
+  put(one.name);
+  if (one.detail != nullptr) {
+    put(" (");
+    put(one.detail);
+    put(")");
+  }
+}
+
+void put_what(const portable::What& what) {
+#ifdef THIMBLE_TERSE_CASES
+  put("line ");
+  put_number(what.line);
+#else
+  put(what.text);
+#endif
+}
+
+[[gnu::noinline]] void put_failure(const Group& group, const Case& one, int number, const Failure& failure) {
+  put("FAILED ");
+  put_name(group, one, number);
+  put("\n  ");
+  put_what(failure.what);
+  put(" is ");
+  put_value(failure.got);
+  put(", wanted ");
+  put_value(failure.wanted);
+  put(" (");
+  put(group.file);
+  put(" or what it calls)\n");
+}
+
+// Not inlined: its frame is all that lies between main and a case.
+[[gnu::noinline]] void run_case(Runner& runner, const Group& group, int index) {
+  const Case one = group.at(index);
+  if (!runner.fits(one)) {
+    return;
+  }
+  const Failure* failure = runner.run(one);
+  if (failure != nullptr) {
+    put_failure(group, one, index, *failure);
+  }
+}
+
+[[gnu::noinline]] void put_group(const Runner& runner, const Group& group) {
+  int run = 0;
+  for (int i = 0; i < group.count; ++i) {
+    run += runner.fits(group.at(i)) ? 1 : 0;
+  }
+  put(group.name);
+  put(": ");
+  put_count(run);
+  put(" of ");
+  put_count(group.count);
+  put(" cases run\n");
+}
+
+int put_skipped(const Runner& runner, Span<const Group* const> groups) {
+  int skipped = 0;
+  for (const Group* group : groups) {
+    for (int i = 0; i < group->count; ++i) {
+      const Case one = group->at(i);
+      if (!runner.fits(one)) {
+        ++skipped;
+        put("skipped: ");
+        put_name(*group, one, i);
+        put(" needs ");
+        put_number(one.arena_bytes + portable::runner_bytes());
+        put(" bytes\n");
+      }
+    }
+  }
+  return skipped;
+}
+
+// Returns how many more failures that is.
+int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
+  if (got == wanted) {
+    return 0;
+  }
+  put("FAILED result crc of ");
+  put(of_what);
+  put(" is ");
+  put_hex(got);
+  put(", wanted ");
+  put_hex(wanted);
+  put("\n");
+  return 1;
+}
+
+// What is said at the end; returns the exit status.
+[[gnu::noinline]] int put_results(const Runner& runner, Span<const Group* const> groups, uint32_t all_crc32,
+                                  uint32_t common_crc32) {
+  const int skipped = put_skipped(runner, groups);
+  int failed = runner.failed();
+  failed += judge_crc("the cases that every board runs", runner.common_crc32(), common_crc32);
+  if (skipped == 0) {
+    failed += judge_crc("all cases", runner.crc32(), all_crc32);
+  }
+  put("result crc ");
+  put_hex(runner.crc32());
+  put(" of ");
+  put_count(runner.passed() + runner.failed());
+  put(" cases run\nresult crc ");
+  put_hex(runner.common_crc32());
+  put(" of the ");
+  put_count(runner.common());
+  put(" cases that every board runs\n");
+  put_count(skipped);
+  put(" skipped\n");
+  put_count(runner.passed());
+  put(" passed, ");
+  put_count(failed);
+  put(" failed\n");
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_crc32, uint32_t common_crc32) {
+  put(title);
+  put(" on ");
+  put(port::facts().name);
+  put("\n");
+  Runner* runner = Runner::make(port::arena());
+  if (runner == nullptr || runner->case_bytes() < portable::kCommonArenaBytes) {
+    put("this board lacks the memory that every board has for a case\n0 passed, 1 failed\n");
+    return 1;
+  }
+  for (const Group* group : groups) {
+    for (int i = 0; i < group->count; ++i) {
+      run_case(*runner, *group, i);
+    }
+    put_group(*runner, *group);
+  }
+  return put_results(*runner, groups, all_crc32, common_crc32);
+}
+
+}  // namespace thimble::apps

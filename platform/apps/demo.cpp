@@ -1,0 +1,316 @@
+// The demonstration: the baked scene turns; a hand on the buttons steers; bytes over the UART ask for more.
+//
+//   p   the picture on the display, as P5 with 8 bits a pixel
+//   b   builds a scene of spheres in a pool in RAM, voxel by voxel; when the pool is full it coarsens
+//   s   back to the baked scene
+//   c   CRC-32 of every frame on or off; on from the start where there is no display
+//   q   ends, with status 0
+//
+// A frame is drawn in bands of a few rows. No picture is held in RAM, and nothing but the arena is used.
+#include "apps/apps.h"
+#include "apps/demo_view.h"
+#include "apps/place.h"
+#include "apps/shown_scene.h"
+#include "apps/spheres.h"
+#include "apps/text.h"
+#include "port.h"
+#include "thimble/arena.h"
+#include "thimble/crc32.h"
+#include "thimble/octree.h"
+#include "thimble/render.h"
+
+namespace thimble::apps {
+namespace {
+
+// The larger functions are not inlined: what one keeps on the stack is gone when the next one draws.
+
+/// Rows in a band, where the arena holds as many.
+constexpr int32_t kBandRows = 8;
+/// Bytes over the UART that are looked at in one frame.
+constexpr int kKeysAFrame = 16;
+/// Places that are looked at for a voxel of the scene that is built, in one frame.
+constexpr uint32_t kPlacesAFrame = 2048;
+/// Spheres that are still begun when the pool is full.
+constexpr uint32_t kSpheresBeyond = 6;
+/// The largest pool, so that it is full in a minute.
+constexpr size_t kMostPoolBytes = size_t{256} << 10;
+
+struct Demo : Placed {
+  Arena arena{port::arena()};
+  ShownScene shown;
+  Orbit orbit;
+  Steering steering;
+  Camera camera;
+  Shading shading;
+  Bytes band;
+  int32_t band_rows = 0;
+  uint32_t frame = 0;  ///< of the scene that is shown
+  bool tells_crc = false;
+
+  // The scene that is built here.
+  bool builds = false;
+  bool is_full = false;  ///< the pool was full once: it coarsens
+  Octree pool;
+  SphereBuilder spheres;
+};
+
+const port::Display& display() {
+  return port::facts().display;
+}
+
+/// A cross from corner to corner: what a display shows that cannot show a message. Without an arena to draw
+/// in, nothing.
+void show_cross(Arena* arena) {
+  const port::Display& screen = display();
+  const Bytes row = arena->take(row_bytes(screen.format, screen.width_px));
+  if (row.empty()) {
+    return;
+  }
+  for (int32_t y = 0; y < screen.height_px; ++y) {
+    for (uint8_t& byte : row) {
+      byte = 0;
+    }
+    const int32_t across = y * (screen.width_px - 1) / (screen.height_px > 1 ? screen.height_px - 1 : 1);
+    const Rgb8 white{255, 255, 255};
+    store_pixel(row.data, across, y, screen.format, white);
+    if (2 * across != screen.width_px - 1) {
+      store_pixel(row.data, screen.width_px - 1 - across, y, screen.format, white);
+    }
+    port::flush({row, screen.format, 0, y, 1});
+  }
+}
+
+[[gnu::noinline]] int refuse(Arena* arena, const char* why) {
+  put("error: ");
+  put(why);
+  put("\n");
+  show_cross(arena);
+  return 1;
+}
+
+Status draw(const Demo& demo, const Band& band) {
+  if (demo.builds) {
+    return render_band(demo.pool, demo.camera, demo.shading, band);
+  }
+  return draw_scene(demo.shown, demo.camera, demo.shading, band);
+}
+
+/// Draws and flushes a frame; `crc` gets that of its bytes.
+[[gnu::noinline]] Status draw_frame(const Demo& demo, uint32_t* crc) {
+  const port::Display& screen = display();
+  *crc = 0;
+  for (int32_t y = 0; y < screen.height_px; y += demo.band_rows) {
+    const int32_t left = screen.height_px - y;
+    Band band{demo.band, screen.format, 0, y, left < demo.band_rows ? left : demo.band_rows};
+    band.pixels = demo.band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+    const Status status = draw(demo, band);
+    if (status != Status::kOk) {
+      return status;
+    }
+    port::flush(band);
+    if (demo.tells_crc) {
+      *crc = crc32(band.pixels, *crc);
+    }
+  }
+  return Status::kOk;
+}
+
+/// The grey of a pixel as the display shows it, 0..255.
+uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
+  const auto column = static_cast<uint32_t>(x);
+  if (format == PixelFormat::kMono1) {
+    return (row[column >> 3] << (column & 7U) & 0x80) != 0 ? 255 : 0;
+  }
+  if (format == PixelFormat::kGray4) {
+    return static_cast<uint8_t>((row[column >> 1] >> ((column & 1U) != 0 ? 0 : 4) & 15) * 17);
+  }
+  return row[column];
+}
+
+/// The frame that was drawn last, once more and over the UART. Pictures in colour are sent in their greys.
+[[gnu::noinline]] void send_picture(const Demo& demo) {
+  const port::Display& screen = display();
+  const bool is_color = bits_per_pixel(screen.format) > 8;
+  const PixelFormat format = is_color ? PixelFormat::kGray8 : screen.format;
+  put("P5\n");
+  put_number(static_cast<uint32_t>(screen.width_px));
+  put(" ");
+  put_number(static_cast<uint32_t>(screen.height_px));
+  put("\n255\n");
+  for (int32_t y = 0; y < screen.height_px; ++y) {
+    // A row of greys is shorter than a row in colour.
+    const Band band{demo.band.subspan(0, row_bytes(format, screen.width_px)), format, 0, y, 1};
+    if (draw(demo, band) != Status::kOk) {
+      return;
+    }
+    uint8_t grays[32];
+    for (int32_t x = 0; x < screen.width_px;) {
+      size_t count = 0;
+      for (; count < sizeof grays && x < screen.width_px; ++x) {
+        grays[count++] = shown_gray(band.pixels.data, x, format);
+      }
+      port::write({grays, count});
+    }
+  }
+  put("\n");
+}
+
+[[gnu::noinline]] void show_baked(Demo* demo) {
+  demo->builds = false;
+  demo->frame = 0;
+  demo->orbit = orbit_of(demo->shown.scene);
+  demo->shading = demo_shading(demo->shown.scene.palette());
+}
+
+[[gnu::noinline]] void begin_build(Demo* demo) {
+  const Bytes bytes = demo->arena.rest().subspan(0, kMostPoolBytes);
+  // A world that spheres cannot fill before they fill the pool.
+  const int level = bytes.size > (size_t{64} << 10) ? 7 : 6;
+  if (demo->pool.init(bytes, level) != Status::kOk) {
+    return;
+  }
+  demo->builds = true;
+  demo->is_full = false;
+  demo->frame = 0;
+  demo->spheres.begin(level);
+  const int32_t side = int32_t{1} << level;
+  demo->orbit = orbit_of(VoxelBox{{0, 0, 0}, {side, side, side}});
+  demo->shading = demo_shading(SphereBuilder::palette());
+  put("building in a pool of ");
+  put_number(demo->pool.capacity());
+  put(" nodes\n");
+}
+
+/// Some voxels more. When the pool is full the tree coarsens from then on, for a few spheres more.
+[[gnu::noinline]] void build_more(Demo* demo) {
+  for (uint32_t i = 0; i < kPlacesAFrame && !demo->spheres.is_done(); ++i) {
+    Voxel voxel;
+    if (!demo->spheres.next(&voxel)) {
+      continue;
+    }
+    if (demo->pool.insert(voxel.position, voxel.material) == Status::kOutOfMemory && !demo->is_full) {
+      put("pool full: voxels ");
+      put_number(demo->pool.voxels());
+      put(" nodes ");
+      put_number(demo->pool.nodes_used());
+      put("; coarsening\n");
+      demo->is_full = true;
+      demo->pool.set_coarsen(true);
+      demo->spheres.end_after(demo->spheres.finished() + kSpheresBeyond);
+      // A pool that coarsens takes everything, or holds no node at all.
+      (void)demo->pool.insert(voxel.position, voxel.material);
+    }
+  }
+}
+
+/// Whether to go on.
+[[gnu::noinline]] bool obey(Demo* demo) {
+  steer(port::buttons(), &demo->steering);
+  for (int i = 0; i < kKeysAFrame; ++i) {
+    switch (port::read()) {
+      case -1:
+        return true;
+      case 'q':
+        return false;
+      case 'p':
+        if (demo->frame != 0) {
+          send_picture(*demo);
+        }
+        break;
+      case 'b':
+        begin_build(demo);
+        break;
+      case 's':
+        show_baked(demo);
+        break;
+      case 'c':
+        demo->tells_crc = !demo->tells_crc;
+        break;
+      default:
+        break;
+    }
+  }
+  return true;
+}
+
+[[gnu::noinline]] Status place_camera(Demo* demo) {
+  const port::Display& screen = display();
+  if (demo->builds) {
+    return view_at(demo->orbit, demo->pool, demo->frame, demo->steering, screen.width_px, screen.height_px,
+                   &demo->camera);
+  }
+  return view_at(demo->orbit, demo->shown.scene.tree(), demo->frame, demo->steering, screen.width_px,
+                 screen.height_px, &demo->camera);
+}
+
+void tell_frame(const Demo& demo, uint32_t crc) {
+  put(demo.builds ? "build " : "frame ");
+  put_number(demo.frame);
+  put(" crc ");
+  put_hex(crc);
+  if (demo.builds) {
+    put(" voxels ");
+    put_number(demo.pool.voxels());
+    put(" nodes ");
+    put_number(demo.pool.nodes_used());
+    put(" added ");
+    put_number(demo.pool.solid_added());
+    put(demo.spheres.is_done() ? " done" : "");
+  }
+  put("\n");
+}
+
+}  // namespace
+
+int demo() {
+  Arena whole(port::arena());
+  Demo* const demo = place<Demo>(&whole);
+  if (demo == nullptr) {
+    return refuse(&whole, "the arena is too small");
+  }
+  demo->arena = whole;
+  if (const char* wrong = open_scene(&demo->shown)) {
+    return refuse(&demo->arena, wrong);
+  }
+  open_map(&demo->shown, &demo->arena);
+  tell_board_and_scene("demo", demo->shown);
+  const port::Display& screen = display();
+  demo->tells_crc = !screen.connected;
+  // At most half of what is left: the other half is for the pool.
+  const size_t row = row_bytes(screen.format, screen.width_px);
+  demo->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
+  while (demo->band_rows > 1 &&
+         band_bytes(screen.format, screen.width_px, demo->band_rows) > demo->arena.free_bytes() / 2) {
+    --demo->band_rows;
+  }
+  demo->band = demo->arena.take(row * static_cast<size_t>(demo->band_rows));
+  if (demo->band.empty()) {
+    return refuse(&demo->arena, "the arena does not hold a row of the picture");
+  }
+  show_baked(demo);
+  for (uint32_t drawn = 0; port::running(drawn) && obey(demo); ++drawn) {
+    if (demo->builds) {
+      build_more(demo);
+    }
+    Status status = place_camera(demo);
+    if (status != Status::kOk && !demo->builds) {
+      // A camera that this display cannot have: round what is solid then.
+      demo->orbit = orbit_of(demo->shown.scene.tree().bounds());
+      status = place_camera(demo);
+    }
+    uint32_t crc = 0;
+    if (status == Status::kOk) {
+      status = draw_frame(*demo, &crc);
+    }
+    if (status != Status::kOk) {
+      return refuse(&demo->arena, status_text(status));
+    }
+    if (demo->tells_crc) {
+      tell_frame(*demo, crc);
+    }
+    ++demo->frame;
+  }
+  return 0;
+}
+
+}  // namespace thimble::apps

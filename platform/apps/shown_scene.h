@@ -1,0 +1,103 @@
+/// @file shown_scene.h
+/// The baked scene of the port, opened and checked, with the fastest way to draw it.
+#ifndef THIMBLE_PLATFORM_APPS_SHOWN_SCENE_H
+#define THIMBLE_PLATFORM_APPS_SHOWN_SCENE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "apps/text.h"
+#include "port.h"
+#include "thimble/arena.h"
+#include "thimble/baked_scene.h"
+#include "thimble/brick_map.h"
+#include "thimble/brick_render.h"
+#include "thimble/render.h"
+
+namespace thimble::apps {
+
+struct ShownScene {
+  BakedScene scene;
+  BrickMap map;
+  bool has_map = false;
+  bool map_in_ram = false;
+};
+
+/// Opens and validates port::scene(). Null when it is sound, else an English phrase that says what is wrong.
+[[gnu::noinline]] inline const char* open_scene(ShownScene* shown) {
+  if (port::scene().empty()) {
+    return "no scene was built in";
+  }
+  if (BakedScene::open(port::scene(), &shown->scene) != Status::kOk) {
+    return "the scene is no baked scene, or damaged";
+  }
+  if (shown->scene.validate() != Status::kOk) {
+    return "the scene is damaged";
+  }
+  return nullptr;
+}
+
+/// Takes the brick map that was baked in, or makes one in the arena when that leaves half of it. A scene
+/// without one is drawn from its tree, with the same pixels.
+[[gnu::noinline]] inline void open_map(ShownScene* shown, Arena* arena) {
+  const CompactTree& tree = shown->scene.tree();
+  const ConstBytes baked = shown->scene.section(SectionKind::kBrickMap);
+  if (!baked.empty()) {
+    shown->has_map = BrickMap::open(baked, &shown->map) == Status::kOk && shown->map.belongs_to(tree);
+    return;
+  }
+  const Bytes half = arena->rest().subspan(0, arena->free_bytes() / 2);
+  size_t written = 0;
+  if (BrickMap::build(tree, half, &written) == Status::kOk) {
+    const Bytes bytes = arena->take(written);
+    shown->has_map = BrickMap::open(bytes, &shown->map) == Status::kOk;
+    shown->map_in_ram = shown->has_map;
+  }
+}
+
+/// Draws a band of it.
+inline Status draw_scene(const ShownScene& shown, const Camera& camera, const Shading& shading,
+                         const Band& band, RenderCounts* counts = nullptr) {
+  return shown.has_map ? render_band(shown.scene.tree(), shown.map, camera, shading, band, counts)
+                       : render_band(shown.scene.tree(), camera, shading, band, counts);
+}
+
+/// Two lines: the board with its memory, the scene with its sizes.
+[[gnu::noinline]] inline void tell_board_and_scene(const char* application, const ShownScene& shown) {
+  const port::Facts& facts = port::facts();
+  const BakedScene& scene = shown.scene;
+  put("thimble ");
+  put(application);
+  put(" on ");
+  put(facts.name);
+  put(": RAM ");
+  put_number(facts.ram_bytes);
+  put(" flash ");
+  put_number(facts.flash_bytes);
+  put(" stack ");
+  put_number(facts.stack_bytes);
+  put(" arena ");
+  put_number(port::arena().size);
+  put(" bytes\nscene ");
+  const ConstBytes name = scene.section(SectionKind::kName);
+  port::write(name.subspan(0, 64));
+  put(name.empty() ? "without a name" : "");
+  put(": depth ");
+  put_number(static_cast<uint32_t>(scene.tree().level()));
+  put(" voxels ");
+  put_number(scene.tree().voxel_count());
+  put(" tree ");
+  put_number(scene.tree().size_bytes());
+  put(" scene ");
+  put_number(scene.bytes().size);
+  put(" map ");
+  put_number(shown.has_map ? shown.map.size_bytes() : 0);
+  put(shown.map_in_ram ? " in RAM" : "");
+  put(" bytes crc ");
+  put_hex(scene.crc32());
+  put("\n");
+}
+
+}  // namespace thimble::apps
+
+#endif

@@ -1,0 +1,29 @@
+// The exit status, by semihosting (Semihosting for AArch32 and AArch64, SYS_EXIT_EXTENDED).
+#include <stdint.h>
+
+#include "common/run.h"
+
+namespace thimble {
+namespace {
+
+constexpr uint32_t kSysExitExtended = 0x20;
+constexpr uint32_t kApplicationExit = 0x20026;
+
+// Without a debugger the call is an exception, whose handler comes back to finish().
+bool is_finishing = false;
+
+}  // namespace
+
+void finish(int status) {
+  const uint32_t block[2] = {kApplicationExit, static_cast<uint32_t>(status)};
+  if (!is_finishing) {
+    is_finishing = true;
+    register uint32_t operation asm("r0") = kSysExitExtended;
+    register const uint32_t* argument asm("r1") = block;
+    asm volatile("svc 0x123456" : "+r"(operation) : "r"(argument) : "memory", "lr");
+  }
+  for (;;) {
+  }
+}
+
+}  // namespace thimble

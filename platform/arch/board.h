@@ -1,0 +1,39 @@
+/// @file board.h
+/// What a board's folder supplies (platform/boards/NAME/*.cpp), and what the rest of the port makes of it.
+///
+/// platform/arch/common turns these functions and the numbers of board.cmake into the contract that
+/// applications see (port.h). A board without a display or without buttons leaves `flush` or `buttons` out:
+/// the library of the port holds empty ones. The same holds for the clock: a Cortex-M board gets SysTick
+/// unless it brings its own.
+#ifndef THIMBLE_PLATFORM_ARCH_BOARD_H
+#define THIMBLE_PLATFORM_ARCH_BOARD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "port.h"
+
+namespace thimble::board {
+
+/// Clocks, pins and the UART; then the display, on and black. Runs once, after .data and .bss are there.
+/// Waits in it are bounded: an emulator need not have the bit that a chip sets.
+void start();
+
+/// Sends a byte over the UART; waits (bounded) until it is taken.
+void put(uint8_t byte);
+/// The next byte that came over the UART, or -1; does not wait.
+int get();
+
+/// port::flush and port::buttons.
+void flush(const Band& band);
+uint32_t buttons();
+
+/// Starts what port::instructions() and port::microseconds() count by.
+void start_clock();
+
+/// How often a wait for a flag of the hardware looks at it before it goes on without.
+inline constexpr uint32_t kPatience = 1000000;
+
+}  // namespace thimble::board
+
+#endif

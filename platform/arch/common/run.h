@@ -1,0 +1,36 @@
+/// @file run.h
+/// From reset to the application and out again, common to all kinds of core.
+#ifndef THIMBLE_PLATFORM_ARCH_COMMON_RUN_H
+#define THIMBLE_PLATFORM_ARCH_COMMON_RUN_H
+
+#include <stdint.h>
+
+/// Called by the reset code with the stack pointer at thimble_stack_top and nothing else set up: memory, the
+/// board, the application, the exit.
+extern "C" [[noreturn]] void thimble_run();
+
+namespace thimble {
+
+/// Supplied by each kind of core: makes the RAM end where it ends, as well as the core can (MPU, PMP, MMU),
+/// and faults arrive at their handlers.
+void raise_fence();
+
+/// Supplied by each kind of core: tells a debugger or an emulator the exit status (semihosting); stops when
+/// there is none.
+[[noreturn]] void finish(int status);
+
+/// What a fault handler found out.
+struct Fault {
+  const char* what;  ///< in words
+  uint32_t pc;       ///< the instruction
+  uint32_t address;  ///< the byte it wanted, if `has_address`
+  bool has_address;
+  uint32_t stack_pointer;
+};
+/// Says what happened over the UART and ends with port::kFaultStatus. The handler has moved the stack pointer
+/// back to the top of the stack: what lay there is lost.
+[[noreturn]] void report_fault(const Fault& fault);
+
+}  // namespace thimble
+
+#endif

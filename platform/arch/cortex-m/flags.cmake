@@ -1,0 +1,2 @@
+# What the compiler must know about the board's core.
+set(THIMBLE_ARCH_FLAGS -mcpu=${BOARD_CPU} -mthumb)

@@ -1,0 +1,34 @@
+#!/bin/sh
+# Builds firmware for a board into build/firmware/BOARD and says what each image takes of it.
+#   build.sh BOARD|all APP[;APP...] [SCENE]     SCENE: what `thimble bake` takes, or a header (.h) that it made;
+#                                               without it there is no scene in the image
+# In the environment: FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then; THIMBLE_FIRMWARE is another place than build/firmware.
+set -eu
+cd "$(dirname "$0")/.."
+if [ "$1" = all ]; then
+  for board in platform/boards/*/; do
+    sh platform/build.sh "$(basename "$board")" "$2" "${3:-}"
+  done
+  exit
+fi
+board=$1
+apps=$2
+scene=${3:-}
+. platform/board_facts.sh
+work=${THIMBLE_FIRMWARE:-build/firmware}/$board
+mkdir -p "$work"
+case $scene in
+  "") header= ;;
+  /*.h) header=$scene ;;
+  *.h) header=$PWD/$scene ;;
+  *)
+    header=$PWD/$work/scene.h
+    build/release/thimble bake "$scene" --board "$board" -o "$header" --quiet
+    ;;
+esac
+# A compiler cache would hand out objects without their call graphs.
+export CCACHE_DISABLE=1
+cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH)/toolchain.cmake" -DTHIMBLE_BOARD="$board" \
+  -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
+  -DTHIMBLE_HOLD="${HOLD:-false}" --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
+cmake --build "$work" -- --quiet

@@ -1,0 +1,57 @@
+#!/bin/sh
+# Writes an image to a real board, the way its board.cmake says (BOARD_PROBE). flash.sh BOARD APP
+set -eu
+cd "$(dirname "$0")/.."
+board=$1
+app=$2
+. platform/board_facts.sh
+image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app
+probe=$(fact PROBE)
+with=${probe#* }
+fail() {
+  echo "thimble: cannot flash $board: $1" >&2
+  exit 1
+}
+need() {
+  command -v "$1" >/dev/null 2>&1 || fail "$1 is not installed (Debian: apt-get install $2)"
+}
+[ -f "$image.elf" ] || fail "$image.elf is not there; make firmware BOARD=$board APP=$app builds it"
+case $probe in
+  "openocd "*)
+    need openocd openocd
+    log=$(mktemp)
+    trap 'rm -f "$log"' EXIT
+    if ! openocd -f "$with" -c "program $image.elf verify reset exit" >"$log" 2>&1; then
+      sed 's/^/  openocd: /' "$log" | grep -i error >&2 || sed 's/^/  openocd: /' "$log" >&2
+      fail "openocd found no probe, or no board behind it; is its USB cable in?"
+    fi
+    ;;
+  "st-flash "*)
+    need st-flash stlink-tools
+    log=$(mktemp)
+    trap 'rm -f "$log"' EXIT
+    if ! st-flash --reset write "$image.bin" "$with" >"$log" 2>&1; then
+      sed 's/^/  st-flash: /' "$log" >&2
+      fail "st-flash found no ST-LINK, or no board behind it; is its USB cable in?"
+    fi
+    ;;
+  "copy "*)
+    drive=
+    file=${with#* }
+    with=${with%% *}
+    # As desktops mount a drive by its label; THIMBLE_DRIVE names another place.
+    for place in ${THIMBLE_DRIVE:+"$THIMBLE_DRIVE"} "/media/${USER:-root}/$with" "/run/media/${USER:-root}/$with" "/media/$with" \
+      "/mnt/$with" "/Volumes/$with"; do
+      if [ -d "$place" ]; then
+        drive=$place
+        break
+      fi
+    done
+    [ -n "$drive" ] || fail "no drive $with is mounted; connect the board, or say where it is: THIMBLE_DRIVE=/path"
+    case $file in *.hex) from=$image.hex ;; *.elf) from=$image.elf ;; *) from=$image.bin ;; esac
+    cp "$from" "$drive/$file" || fail "the drive does not take it"
+    sync
+    ;;
+  *) fail "its board.cmake has no BOARD_PROBE that this script knows: $probe" ;;
+esac
+echo "$board: $app is on the board"

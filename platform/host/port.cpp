@@ -1,0 +1,82 @@
+// The contract of port.h, for an application in a simulation. All of this runs on the application's thread,
+// and on its stack, so it does little and leaves the rest to the other thread.
+#include "port.h"
+
+#include <chrono>
+
+#include "host/simulation_state.h"
+
+namespace thimble::port {
+namespace {
+
+host::Simulation::State& here() {
+  return *host::running_here;
+}
+
+}  // namespace
+
+const Facts& facts() {
+  return here().facts;
+}
+
+Bytes arena() {
+  return here().arena.bytes();
+}
+
+ConstBytes scene() {
+  return here().flash.bytes();
+}
+
+void flush(const Band& band) {
+  if (const auto fault = here().display.flush(band)) {
+    here().stop(*fault);
+  }
+}
+
+uint32_t buttons() {
+  return here().buttons;
+}
+
+int read() {
+  return here().input.take();
+}
+
+void write(ConstBytes bytes) {
+  host::Simulation::State& state = here();
+  for (const uint8_t byte : bytes) {
+    while (!state.output.put(byte)) {
+      state.wants_room = true;
+      state.to_host.post();
+      state.room.wait();
+    }
+  }
+}
+
+bool running(uint32_t frames) {
+  host::Simulation::State& state = here();
+  if (const auto fault = state.display.end_frame()) {
+    state.stop(*fault);
+  }
+  state.frames_asked = frames;
+  state.asked_at = std::chrono::steady_clock::now();
+  state.asks = true;
+  state.to_host.post();
+  state.answered.wait();
+  return state.go_on;
+}
+
+uint32_t instructions() {
+  return 0;  // the host's are not the chip's
+}
+
+uint32_t microseconds() {
+  const auto elapsed = std::chrono::steady_clock::now() - here().start;
+  return static_cast<uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(elapsed).count());
+}
+
+uint32_t stack_high_water() {
+  const host::Simulation::State& state = here();
+  return host::used_stack(state.stack.bytes().begin(), state.stack_top);
+}
+
+}  // namespace thimble::port

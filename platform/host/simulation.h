@@ -1,0 +1,107 @@
+/// @file simulation.h
+/// A board on the host: one application, run with the RAM, flash and display of that board.
+///
+/// What is as on the board: the arena has exactly the bytes that the RAM leaves beside the stack, and a byte
+/// behind them faults; the scene is read-only; the display is a strict one (strict_display.h); buttons and
+/// UART come through port.h. What is not: instructions are the host's and are not counted, and so are the
+/// frames on the stack. The stack is therefore larger than the board's; how much of it was used is measured
+/// by its paint, as on the board, but says nothing exact about the chip.
+///
+/// The application has a thread and a stack of its own, on which nothing else runs. It waits whenever it asks
+/// `running()`, until it is answered; then the thread that made the simulation may look at everything. There
+/// is one simulation at a time, since it takes the signals of a fault.
+///
+///     host::Simulation simulation({.board = board, .application = apps::demo});
+///     while (simulation.wait(10) != host::Moment::kEnded) {
+///       if (simulation.asks()) { show(simulation.picture()); simulation.answer(true); }
+///     }
+#ifndef THIMBLE_PLATFORM_HOST_SIMULATION_H
+#define THIMBLE_PLATFORM_HOST_SIMULATION_H
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "boards/board_table.h"
+#include "host/packed_picture.h"
+#include "thimble/span.h"
+
+namespace thimble::host {
+
+/// A simulation that cannot be: `what()` says why.
+class SimulationError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct SimulationOptions {
+  const platform::BoardFacts* board = nullptr;
+  /// What the application is told about the display (port::Display::connected).
+  bool connected = true;
+  /// The baked scene in flash; copied.
+  ConstBytes scene;
+  int (*application)() = nullptr;
+};
+
+enum class Moment : std::uint8_t {
+  kNothing,  ///< the time is over, or there is UART output
+  kAsks,     ///< the application waits in running()
+  kEnded,    ///< it has returned, or was stopped by a fault
+};
+
+/// Bytes used so far, and those that there are.
+struct MemoryUse {
+  std::uint32_t ram_bytes = 0;  ///< of the arena, up to the last byte that was ever changed
+  std::uint32_t ram_limit_bytes = 0;
+  std::uint32_t flash_bytes = 0;  ///< the scene; code is not counted here
+  std::uint32_t flash_limit_bytes = 0;
+  std::uint32_t stack_bytes = 0;  ///< in this host's frames
+  std::uint32_t stack_limit_bytes = 0;
+};
+
+class Simulation {
+ public:
+  /// Starts the application. Throws SimulationError (a scene larger than the flash, a board whose RAM is all
+  /// stack).
+  explicit Simulation(const SimulationOptions& options);
+  /// An application that has not ended is left where it is, with its memory, until the process ends.
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Waits at most `timeout_ms`, and at once returns kAsks or kEnded while that is so.
+  Moment wait(int timeout_ms);
+  /// Answers a running(); the application goes on. Only after kAsks.
+  void answer(bool go_on);
+
+  // While it asks or has ended:
+  /// What it gave to running(): frames drawn.
+  std::uint32_t frames_asked() const;
+  /// Whole pictures flushed, and the last one.
+  std::uint32_t pictures() const;
+  const PackedPicture& picture() const;
+  /// Looks at every byte that was never used: some tenths of a millisecond.
+  MemoryUse use() const;
+  /// Seconds from the last answer to this question: the frame's time on this host.
+  double frame_seconds() const;
+  /// After kEnded: what it returned, or port::kFaultStatus, and then what happened, as a sentence.
+  int status() const;
+  const std::string& fault() const;
+
+  // At any time:
+  void set_buttons(std::uint32_t buttons);
+  /// A byte over the UART; false, and nothing done, while the application has left 4,096 of them unread.
+  bool type(std::uint8_t byte);
+  /// What came over the UART since the last call.
+  std::string take_output();
+
+  struct State;  ///< shared with port.cpp
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace thimble::host
+
+#endif

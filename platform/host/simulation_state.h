@@ -1,0 +1,93 @@
+/// @file simulation_state.h
+/// What a simulation's two threads share: the application's, which runs through port.cpp, and the host's.
+#ifndef THIMBLE_PLATFORM_HOST_SIMULATION_STATE_H
+#define THIMBLE_PLATFORM_HOST_SIMULATION_STATE_H
+
+#include <pthread.h>
+#include <semaphore.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "host/byte_queue.h"
+#include "host/guarded_bytes.h"
+#include "host/simulation.h"
+#include "host/strict_display.h"
+#include "port.h"
+
+namespace thimble::host {
+
+class Semaphore {
+ public:
+  Semaphore() { sem_init(&semaphore_, 0, 0); }
+  ~Semaphore() { sem_destroy(&semaphore_); }
+  Semaphore(const Semaphore&) = delete;
+  Semaphore& operator=(const Semaphore&) = delete;
+  void post() { sem_post(&semaphore_); }
+  void wait() {
+    while (sem_wait(&semaphore_) != 0) {
+      // A signal's handler ran.
+    }
+  }
+  bool wait_until(std::chrono::steady_clock::time_point end);
+
+ private:
+  sem_t semaphore_{};
+};
+
+struct Simulation::State {
+  explicit State(const SimulationOptions& options);
+
+  int (*application)();
+  port::Facts facts;
+  GuardedBytes arena;
+  GuardedBytes flash;
+  GuardedBytes stack;
+  GuardedBytes signal_stack;
+  StrictDisplay display;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  pthread_t thread{};
+  /// Where the application's frames begin; the stack grows down from here.
+  const std::uint8_t* stack_top = nullptr;
+
+  // Each side says what it has to say and posts; the application waits for the answer.
+  Semaphore to_host;
+  Semaphore answered;
+  Semaphore room;
+  std::atomic<bool> asks{false};
+  std::atomic<bool> ended{false};
+  std::atomic<bool> stopped{false};  ///< by a fault or by the display: the thread waits for ever
+  std::atomic<bool> wants_room{false};
+  bool go_on = true;
+  std::uint32_t frames_asked = 0;
+  std::chrono::steady_clock::time_point answered_at = start;
+  std::chrono::steady_clock::time_point asked_at = start;
+  int status = 0;
+
+  std::atomic<std::uint32_t> buttons{0};
+  ByteQueue<4096> input;
+  ByteQueue<65536> output;
+
+  // What stopped it. From the signal's handler:
+  int signal = 0;
+  std::uintptr_t address = 0;
+  bool is_write = false;
+  // In words, where they are known.
+  std::string fault;
+
+  /// Ends the application where it stands.
+  [[noreturn]] void stop(const std::string& why);
+};
+
+/// The simulation whose application runs on this thread; null on others.
+extern thread_local Simulation::State* running_here;
+
+/// Bytes from the first one that is not paint to `end`; the stack grows down to `begin`.
+std::uint32_t used_stack(const std::uint8_t* begin, const std::uint8_t* end);
+
+}  // namespace thimble::host
+
+#endif

@@ -1,0 +1,42 @@
+/// @file strict_display.h
+/// A display that is stricter than any hardware: what a board would show somehow is an error here.
+///
+/// Every row of a frame comes once, in any order of bands, in the display's format, without gaps, and no
+/// frame is left half sent.
+#ifndef THIMBLE_PLATFORM_HOST_STRICT_DISPLAY_H
+#define THIMBLE_PLATFORM_HOST_STRICT_DISPLAY_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/packed_picture.h"
+#include "thimble/render.h"
+
+namespace thimble::host {
+
+class StrictDisplay {
+ public:
+  StrictDisplay(std::int32_t width_px, std::int32_t height_px, PixelFormat format);
+
+  /// Takes a band. What is wrong with it, if anything; the display is as it was then.
+  std::optional<std::string> flush(const Band& band);
+  /// The application is done with the frame, or with all: what is wrong if some rows came and some did not.
+  std::optional<std::string> end_frame();
+
+  /// Whole pictures so far, and the last of them (all 0 before the first).
+  std::uint32_t pictures() const { return pictures_; }
+  const PackedPicture& picture() const { return shown_; }
+
+ private:
+  PackedPicture shown_;
+  PackedPicture coming_;
+  std::vector<std::uint8_t> has_row_;
+  std::int32_t rows_ = 0;
+  std::uint32_t pictures_ = 0;
+};
+
+}  // namespace thimble::host
+
+#endif

@@ -1,0 +1,497 @@
+#include "host/window_x11.h"
+
+#include <X11/XKBlib.h>
+#include <X11/Xatom.h>
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/keysym.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "host/canvas.h"
+
+namespace thimble::host {
+namespace {
+
+constexpr std::int32_t kMarginPx = 8;         // around the text
+constexpr std::int32_t kFirstWidthPx = 1024;  // what a new window's picture may take
+constexpr std::int32_t kFirstHeightPx = 640;
+constexpr std::int32_t kLeastWidthPx = 512;  // so that a status line has room
+constexpr Rgb8 kPanel{32, 34, 38};
+constexpr Rgb8 kPanelText{206, 210, 216};
+constexpr Rgb8 kOverlayText{255, 255, 255};
+
+Key key_from(KeySym symbol) {
+  struct Pair {
+    KeySym symbol;
+    Key key;
+  };
+  constexpr std::array<Pair, 26> kPairs{{
+      {XK_Up, Key::kUp},
+      {XK_Down, Key::kDown},
+      {XK_Left, Key::kLeft},
+      {XK_Right, Key::kRight},
+      {XK_KP_Up, Key::kUp},
+      {XK_KP_Down, Key::kDown},
+      {XK_KP_Left, Key::kLeft},
+      {XK_KP_Right, Key::kRight},
+      {XK_Home, Key::kHome},
+      {XK_End, Key::kEnd},
+      {XK_Page_Up, Key::kPageUp},
+      {XK_Page_Down, Key::kPageDown},
+      {XK_Insert, Key::kInsert},
+      {XK_Delete, Key::kDelete},
+      {XK_BackSpace, Key::kBackspace},
+      {XK_Tab, Key::kTab},
+      {XK_Return, Key::kEnter},
+      {XK_KP_Enter, Key::kEnter},
+      {XK_Escape, Key::kEscape},
+      {XK_Shift_L, Key::kShift},
+      {XK_Shift_R, Key::kShift},
+      {XK_Control_L, Key::kControl},
+      {XK_Control_R, Key::kControl},
+      {XK_Alt_L, Key::kAlt},
+      {XK_Alt_R, Key::kAlt},
+      {XK_KP_Space, Key::kSpace},
+  }};
+  for (const Pair& pair : kPairs) {
+    if (pair.symbol == symbol) {
+      return pair.key;
+    }
+  }
+  if (symbol >= XK_space && symbol <= XK_asciitilde) {
+    return key_of(static_cast<char>(symbol));
+  }
+  return Key::kNone;
+}
+
+// A channel of 8 bits, moved to where the visual has it.
+std::uint32_t in_mask(std::uint8_t value, unsigned long mask) {
+  const auto bits = static_cast<std::uint32_t>(mask);
+  if (bits == 0) {
+    return 0;
+  }
+  const int low = std::countr_zero(bits);
+  const int width = std::popcount(bits);
+  const std::uint32_t scaled = width >= 8 ? static_cast<std::uint32_t>(value) << (width - 8)
+                                          : static_cast<std::uint32_t>(value) >> (8 - width);
+  return scaled << low;
+}
+
+// A request that fails is no reason to end the program, as Xlib would; the next one may do.
+std::atomic<int> failed_requests{0};
+int on_error(::Display* /*display*/, XErrorEvent* /*error*/) {
+  ++failed_requests;
+  return 0;
+}
+
+class Window final : public Screen {
+ public:
+  explicit Window(const ScreenOptions& options);
+  ~Window() override;
+
+  void show(const Picture& picture) override;
+  void set_status(std::string_view text) override { status_ = text; }
+  void set_overlay(std::string_view text) override { overlay_ = text; }
+  void set_title(std::string_view text) override;
+  std::optional<Event> next_event(int timeout_ms) override;
+  std::int32_t width_px() const override { return canvas_.width_px; }
+  std::int32_t height_px() const override { return canvas_.height_px - panel_px(); }
+  const char* name() const override { return "window"; }
+
+ private:
+  std::int32_t text_scale() const {
+    return canvas_.width_px >= 2 * kGlyphWidthPx * status_columns_ + 2 * kMarginPx ? 2 : 1;
+  }
+  std::int32_t overlay_scale() const;
+  std::int32_t panel_px() const {
+    return status_lines_ == 0 ? 0 : status_lines_ * kGlyphHeightPx * text_scale() + 2 * kMarginPx;
+  }
+  void choose_visual();
+  void open(const ScreenOptions& options);
+  void resize(std::int32_t width, std::int32_t height);
+  void compose();
+  void send();
+  void take(XEvent& event);
+  void take_key(XKeyEvent& event, bool is_down);
+  void take_button(const XButtonEvent& event, bool is_down);
+  Event at(EventKind kind, std::int32_t x, std::int32_t y) const;
+  void release_keys();
+
+  Display* display_ = nullptr;
+  int screen_number_ = 0;
+  XVisualInfo visual_{};
+  ::Window window_ = 0;
+  Colormap colors_ = 0;
+  GC context_ = nullptr;
+  Atom close_atom_ = 0;
+  bool lost_ = false;    // the server is gone
+  bool closed_ = false;  // somebody else destroyed the window
+
+  Look look_;
+  std::int32_t fixed_scale_ = 0;
+  std::int32_t status_lines_ = 0;
+  std::int32_t status_columns_ = 0;
+  std::string status_;
+  std::string overlay_;
+
+  // The picture last shown, to be drawn again when the window asks for it.
+  std::vector<std::uint8_t> rgb_;
+  std::int32_t picture_width_px_ = 0;
+  std::int32_t picture_height_px_ = 0;
+  Canvas canvas_;
+  Placement placement_;
+  std::vector<char> image_;
+
+  std::deque<Event> events_;
+  std::set<Key> held_;
+  std::uint8_t buttons_ = 0;
+  bool needs_sending_ = false;
+};
+
+Window::Window(const ScreenOptions& options)
+    : look_(options.look),
+      fixed_scale_(options.scale),
+      status_lines_(options.status_lines),
+      status_columns_(options.status_columns),
+      picture_width_px_(options.width_px),
+      picture_height_px_(options.height_px) {
+  display_ = XOpenDisplay(nullptr);
+  if (display_ == nullptr) {
+    const char* name = std::getenv("DISPLAY");
+    throw ScreenError(name == nullptr || *name == 0
+                          ? std::string("there is no window system: DISPLAY is not set")
+                          : "the display " + std::string(name) + " cannot be opened");
+  }
+  try {
+    choose_visual();
+    open(options);
+  } catch (...) {
+    XCloseDisplay(display_);
+    throw;
+  }
+}
+
+Window::~Window() {
+  // On a connection that is lost these only give back what the library keeps here.
+  XFreeGC(display_, context_);
+  if (!closed_) {
+    XDestroyWindow(display_, window_);
+  }
+  XFreeColormap(display_, colors_);
+  XCloseDisplay(display_);
+}
+
+void Window::choose_visual() {
+  screen_number_ = DefaultScreen(display_);
+  // The default one serves if it can; a screen of 256 colours may offer a better one beside it.
+  XVisualInfo wanted{};
+  wanted.screen = screen_number_;
+  wanted.visualid = XVisualIDFromVisual(DefaultVisual(display_, screen_number_));
+  int count = 0;
+  XVisualInfo* found = XGetVisualInfo(display_, VisualScreenMask | VisualIDMask, &wanted, &count);
+  const bool usable = found != nullptr && count > 0 && found->c_class == TrueColor;
+  if (usable) {
+    visual_ = *found;
+  }
+  if (found != nullptr) {
+    XFree(found);
+  }
+  if (!usable && XMatchVisualInfo(display_, screen_number_, 24, TrueColor, &visual_) == 0) {
+    throw ScreenError("the display has no true colours");
+  }
+}
+
+void Window::open(const ScreenOptions& options) {
+  const std::int32_t fitting = std::min(kFirstWidthPx / std::max(options.width_px, 1),
+                                        kFirstHeightPx / std::max(options.height_px, 1));
+  const std::int32_t scale = fixed_scale_ > 0 ? fixed_scale_ : std::clamp(fitting, 1, 16);
+  const std::int32_t border = gap_px(look_, scale) != 0 ? 2 * scale : 0;
+  const std::int32_t width = std::max(options.width_px * scale + border, kLeastWidthPx);
+  canvas_.width_px = width;  // panel_px() asks
+  std::int32_t height = std::max(options.height_px * scale + border, 64) + panel_px();
+  height = std::min(height, 32767);
+
+  XSetErrorHandler(on_error);
+  failed_requests = 0;
+  const ::Window root = RootWindow(display_, screen_number_);
+  colors_ = XCreateColormap(display_, root, visual_.visual, AllocNone);
+  XSetWindowAttributes attributes{};
+  attributes.colormap = colors_;
+  attributes.background_pixel = 0;
+  attributes.border_pixel = 0;
+  attributes.bit_gravity = NorthWestGravity;
+  attributes.event_mask = KeyPressMask | KeyReleaseMask | ButtonPressMask | ButtonReleaseMask |
+                          PointerMotionMask | ExposureMask | StructureNotifyMask | FocusChangeMask;
+  window_ = XCreateWindow(display_, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height),
+                          0, visual_.depth, InputOutput, visual_.visual,
+                          CWColormap | CWBackPixel | CWBorderPixel | CWBitGravity | CWEventMask, &attributes);
+  context_ = XCreateGC(display_, window_, 0, nullptr);
+
+  close_atom_ = XInternAtom(display_, "WM_DELETE_WINDOW", False);
+  XSetWMProtocols(display_, window_, &close_atom_, 1);
+  char name[] = "thimble";
+  XClassHint hint{name, name};
+  XSetClassHint(display_, window_, &hint);
+  XkbSetDetectableAutoRepeat(display_, True, nullptr);  // a held key is pressed again, not let go in between
+  // Without these two the library ends the program when the server goes.
+  XSetIOErrorHandler([](Display*) { return 0; });
+  XSetIOErrorExitHandler(
+      display_, [](Display*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
+  set_title(options.title);
+  XMapWindow(display_, window_);
+  resize(width, height);
+  XSync(display_, False);
+  if (failed_requests != 0) {
+    throw ScreenError("the display does not make a window of " + std::to_string(width) + " x " +
+                      std::to_string(height) + " pixels");
+  }
+}
+
+void Window::set_title(std::string_view text) {
+  if (lost_ || closed_) {
+    return;
+  }
+  const std::string title(text);
+  XStoreName(display_, window_, title.c_str());
+  const auto* bytes = reinterpret_cast<const unsigned char*>(title.data());
+  XChangeProperty(display_, window_, XInternAtom(display_, "_NET_WM_NAME", False),
+                  XInternAtom(display_, "UTF8_STRING", False), 8, PropModeReplace, bytes,
+                  static_cast<int>(title.size()));
+}
+
+void Window::resize(std::int32_t width, std::int32_t height) {
+  canvas_.resize(width, height);
+  compose();
+}
+
+// Twice as large where there is room for it.
+std::int32_t Window::overlay_scale() const {
+  const TextSize size = text_size(overlay_);
+  const bool fits = 2 * (size.columns * kGlyphWidthPx + kMarginPx) <= canvas_.width_px &&
+                    2 * (size.lines * kGlyphHeightPx + kMarginPx) <= height_px();
+  return fits ? 2 : 1;
+}
+
+void Window::compose() {
+  const std::int32_t room = height_px();
+  canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
+  placement_ = place(picture_width_px_, picture_height_px_, canvas_.width_px, room, fixed_scale_);
+  if (!rgb_.empty()) {
+    draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
+  }
+  if (!overlay_.empty()) {
+    const std::int32_t scale = overlay_scale();
+    const TextSize size = text_size(overlay_);
+    const std::int32_t x = placement_.x_px + kMarginPx;
+    const std::int32_t y = placement_.y_px + kMarginPx;
+    canvas_.fill(x - 4, y - 4, size.columns * kGlyphWidthPx * scale + 8,
+                 size.lines * kGlyphHeightPx * scale + 6, kPanel);
+    draw_text(&canvas_, x, y, scale, kOverlayText, overlay_);
+  }
+  if (status_lines_ > 0) {
+    canvas_.fill(0, room, canvas_.width_px, panel_px(), kPanel);
+    draw_text(&canvas_, kMarginPx, room + kMarginPx, text_scale(), kPanelText, status_);
+  }
+  needs_sending_ = true;
+}
+
+void Window::send() {
+  needs_sending_ = false;
+  if (lost_ || closed_ || canvas_.width_px == 0 || canvas_.height_px == 0) {
+    return;
+  }
+  const auto width = static_cast<unsigned>(canvas_.width_px);
+  const auto height = static_cast<unsigned>(canvas_.height_px);
+  XImage* image = XCreateImage(display_, visual_.visual, static_cast<unsigned>(visual_.depth), ZPixmap, 0,
+                               nullptr, width, height, 32, 0);
+  if (image == nullptr) {
+    return;
+  }
+  image_.resize(static_cast<std::size_t>(image->bytes_per_line) * height);
+  image->data = image_.data();
+  const bool native_order =
+      image->byte_order == (std::endian::native == std::endian::little ? LSBFirst : MSBFirst);
+  const bool plain = image->bits_per_pixel == 32 && native_order && visual_.red_mask == 0xFF0000 &&
+                     visual_.green_mask == 0xFF00 && visual_.blue_mask == 0xFF;
+  for (std::int32_t y = 0; y < canvas_.height_px; ++y) {
+    const Rgb8* from = canvas_.row(y);
+    char* to = image_.data() + static_cast<std::ptrdiff_t>(y) * image->bytes_per_line;
+    for (std::int32_t x = 0; x < canvas_.width_px; ++x) {
+      const Rgb8 color = from[x];
+      if (plain) {
+        const std::uint32_t packed = 0xFF000000U | static_cast<std::uint32_t>(color.r) << 16 |
+                                     static_cast<std::uint32_t>(color.g) << 8 | color.b;
+        std::memcpy(to + 4 * static_cast<std::ptrdiff_t>(x), &packed, sizeof packed);
+      } else {
+        XPutPixel(image, x, y,
+                  in_mask(color.r, visual_.red_mask) | in_mask(color.g, visual_.green_mask) |
+                      in_mask(color.b, visual_.blue_mask));
+      }
+    }
+  }
+  XPutImage(display_, window_, context_, image, 0, 0, 0, 0, width, height);
+  image->data = nullptr;  // ours
+  XDestroyImage(image);
+  // Waits until the server has drawn, so that a slow connection slows the frames instead of piling them up.
+  XSync(display_, False);
+}
+
+void Window::show(const Picture& picture) {
+  const std::size_t bytes =
+      3 * static_cast<std::size_t>(picture.width_px) * static_cast<std::size_t>(picture.height_px);
+  rgb_.assign(picture.rgb, picture.rgb + bytes);
+  picture_width_px_ = picture.width_px;
+  picture_height_px_ = picture.height_px;
+  compose();
+  send();
+}
+
+Event Window::at(EventKind kind, std::int32_t x, std::int32_t y) const {
+  Event event;
+  event.kind = kind;
+  event.x_px = to_picture(x, placement_.x_px, placement_.width_px, picture_width_px_);
+  event.y_px = to_picture(y, placement_.y_px, placement_.height_px, picture_height_px_);
+  event.buttons = buttons_;
+  return event;
+}
+
+void Window::release_keys() {
+  for (const Key key : held_) {
+    Event event;
+    event.kind = EventKind::kKeyUp;
+    event.key = key;
+    events_.push_back(event);
+  }
+  held_.clear();
+}
+
+void Window::take_key(XKeyEvent& event, bool is_down) {
+  std::array<char, 16> text{};
+  KeySym typed = NoSymbol;
+  const int length = XLookupString(&event, text.data(), static_cast<int>(text.size()), &typed, nullptr);
+  // The key itself: what it gives without shift. Keypads give digits only with Num Lock.
+  Key key = key_from(XLookupKeysym(&event, 0));
+  if (key == Key::kNone) {
+    key = key_from(typed);
+  }
+  if (key != Key::kNone) {
+    Event pressed;
+    pressed.key = key;
+    pressed.kind = is_down ? EventKind::kKeyDown : EventKind::kKeyUp;
+    pressed.repeated = is_down && !held_.insert(key).second;
+    if (is_down || held_.erase(key) != 0) {
+      events_.push_back(pressed);
+    }
+  }
+  if (is_down && length == 1) {
+    Event written;
+    written.kind = EventKind::kText;
+    written.character = static_cast<unsigned char>(text[0]);  // Latin-1, the front of Unicode
+    events_.push_back(written);
+  }
+}
+
+void Window::take_button(const XButtonEvent& event, bool is_down) {
+  if (event.button == Button4 || event.button == Button5) {
+    if (is_down) {
+      Event wheel = at(EventKind::kWheel, event.x, event.y);
+      wheel.steps = event.button == Button4 ? 1 : -1;
+      events_.push_back(wheel);
+    }
+    return;
+  }
+  if (event.button > Button3) {
+    return;
+  }
+  const auto bit = static_cast<std::uint8_t>(1U << (event.button - 1));
+  buttons_ = static_cast<std::uint8_t>(is_down ? buttons_ | bit : buttons_ & ~bit);
+  Event pressed = at(is_down ? EventKind::kMouseDown : EventKind::kMouseUp, event.x, event.y);
+  pressed.button = static_cast<std::uint8_t>(event.button);
+  events_.push_back(pressed);
+}
+
+void Window::take(XEvent& event) {
+  switch (event.type) {
+    case KeyPress:
+    case KeyRelease:
+      take_key(event.xkey, event.type == KeyPress);
+      return;
+    case ButtonPress:
+    case ButtonRelease:
+      take_button(event.xbutton, event.type == ButtonPress);
+      return;
+    case MotionNotify:
+      events_.push_back(at(EventKind::kMouseMove, event.xmotion.x, event.xmotion.y));
+      return;
+    case FocusOut:
+      release_keys();  // their release would go to another window
+      return;
+    case Expose:
+      needs_sending_ = true;
+      return;
+    case MappingNotify:
+      XRefreshKeyboardMapping(&event.xmapping);
+      return;
+    case ConfigureNotify:
+      if (event.xconfigure.width != canvas_.width_px || event.xconfigure.height != canvas_.height_px) {
+        resize(event.xconfigure.width, event.xconfigure.height);
+        events_.push_back({.kind = EventKind::kResize});
+      }
+      return;
+    case DestroyNotify:
+      closed_ = true;
+      return;
+    case ClientMessage:
+      if (static_cast<Atom>(event.xclient.data.l[0]) == close_atom_) {
+        events_.push_back({.kind = EventKind::kClose});
+      }
+      return;
+    default:
+      return;
+  }
+}
+
+std::optional<Event> Window::next_event(int timeout_ms) {
+  for (int round = 0; round < 2 && events_.empty(); ++round) {
+    while (!lost_ && XPending(display_) > 0) {
+      XEvent event{};
+      XNextEvent(display_, &event);
+      take(event);
+    }
+    if (needs_sending_) {
+      send();
+    }
+    if (lost_ || (closed_ && events_.empty())) {
+      return Event{.kind = EventKind::kClose};
+    }
+    if (events_.empty() && round == 0 && timeout_ms > 0) {
+      pollfd connection{ConnectionNumber(display_), POLLIN, 0};
+      ::poll(&connection, 1, timeout_ms);
+    }
+  }
+  if (events_.empty()) {
+    return std::nullopt;
+  }
+  const Event event = events_.front();
+  events_.pop_front();
+  return event;
+}
+
+}  // namespace
+
+std::unique_ptr<Screen> open_window(const ScreenOptions& options) {
+  return std::make_unique<Window>(options);
+}
+
+}  // namespace thimble::host

@@ -1,0 +1,518 @@
+// The particle world beside a uniform grid and Box2D 2.4: cost, agreement, quality, accuracy, as tables.
+//
+//   thimble_particle_table                     all tables, about two minutes
+//   thimble_particle_table speed quality       some of: instructions speed scaling quality accuracy
+//   thimble_particle_table --csv DIR ...       each table also as DIR/NAME.csv
+//
+// Times are processor time of the stepping alone. Engines that stand in one table are run by turns, a few
+// steps each, so that the load of the machine falls on all. Instructions are counted by valgrind (cachegrind
+// without its caches), as the difference of two runs that are the same but for the number of steps: exact,
+// the same on every run, and nothing but the steps. Without valgrind that table is left out.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "benchmarks/particles/engine.h"
+
+namespace thimble::benchmarks {
+namespace {
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string number(double value, int digits = 3) {
+  std::ostringstream text;
+  if (std::abs(value) >= 1000) {
+    text << static_cast<long long>(std::llround(value));
+  } else {
+    text.precision(digits);
+    text << value;
+  }
+  return text.str();
+}
+
+// Rows of text under a heading; printed aligned, and written as CSV where asked.
+class Table {
+ public:
+  Table(std::string name, const std::string& title, std::vector<std::string> columns)
+      : name_(std::move(name)), rows_{std::move(columns)} {
+    std::cout << '\n' << title << "\n\n";
+  }
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  void print(const std::string& csv_folder) const {
+    std::vector<std::size_t> widths(rows_.front().size(), 0);
+    for (const auto& row : rows_) {
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        widths[i] = std::max(widths[i], row[i].size());
+      }
+    }
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      for (std::size_t i = 0; i < rows_[r].size(); ++i) {
+        std::cout << (i == 0 ? "| " : " | ") << rows_[r][i]
+                  << std::string(widths[i] - rows_[r][i].size(), ' ');
+      }
+      std::cout << " |\n";
+      if (r == 0) {
+        for (const std::size_t width : widths) {
+          std::cout << "|" << std::string(width + 2, '-');
+        }
+        std::cout << "|\n";
+      }
+    }
+    std::cout.flush();
+    if (!csv_folder.empty()) {
+      std::ofstream file(csv_folder + "/" + name_ + ".csv");
+      for (const auto& row : rows_) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+          file << (i == 0 ? "" : ",") << row[i];
+        }
+        file << '\n';
+      }
+      if (!file.flush()) {
+        throw std::runtime_error(csv_folder + "/" + name_ + ".csv cannot be written");
+      }
+    }
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+// --- Instructions
+
+// Runs `steps` steps of so many random scenes and prints nothing: what valgrind counts.
+int run_alone(const std::string& engine, const std::string& scene, int balls, int steps,
+              std::uint32_t scenes) {
+  for (std::uint32_t seed = 1; seed <= scenes; ++seed) {
+    const auto world = make_engine(engine, make_scene(scene, balls, seed));
+    for (int i = 0; i < steps; ++i) {
+      world->step();
+    }
+  }
+  return 0;
+}
+
+// Instructions of such a run, or -1 where valgrind is not to be had.
+double instructions_of(const std::string& self, const std::string& engine, const std::string& scene,
+                       int balls, int steps, int scenes) {
+  const std::string command = "valgrind --tool=cachegrind --cache-sim=no --cachegrind-out-file=/dev/null '" +
+                              self + "' --alone '" + engine + "' " + scene + " " + std::to_string(balls) +
+                              " " + std::to_string(steps) + " " + std::to_string(scenes) + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) {
+    return -1;
+  }
+  double result = -1;
+  std::array<char, 512> line{};
+  while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr) {
+    std::string text = line.data();
+    const std::size_t at = text.find("I   refs:");
+    if (at != std::string::npos) {
+      text.erase(std::remove(text.begin(), text.end(), ','), text.end());
+      result = std::strtod(text.c_str() + text.find(':', at) + 1, nullptr);
+    }
+  }
+  return pclose(pipe) == 0 ? result : -1;
+}
+
+// The line y = first + second * x that is nearest to the points.
+std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
+  double sum_x = 0;
+  double sum_y = 0;
+  double sum_xx = 0;
+  double sum_xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum_x += x[i];
+    sum_y += y[i];
+    sum_xx += x[i] * x[i];
+    sum_xy += x[i] * y[i];
+  }
+  const double n = static_cast<double>(x.size());
+  const double slope = (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+  return {(sum_y - slope * sum_x) / n, slope};
+}
+
+void instructions(const std::string& self, const std::string& csv) {
+  // The same stretch of time for all, in many small scenes or one large one.
+  constexpr int kFrom = 10;
+  constexpr int kTo = 50;
+  Table table(
+      "instructions",
+      "Instructions a moving ball and step, at the paper's density, steps 11 to 50. Smaller boxes have more "
+      "walls",
+      {"scene", "balls", "scenes", "bit field", "against 693", "collisions a ball and step", "against fit",
+       "uniform grid"});
+  for (const std::string scene : {"gas", "falling"}) {
+    double at_693 = 0;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<double> counts;
+    std::vector<double> rates;
+    for (const int balls : {10, 100, 693, 10000, 100000}) {
+      const int scenes = std::max(1, 20000 / balls);
+      const double moves = double{kTo - kFrom} * balls * scenes;
+      std::vector<std::string> row{scene, std::to_string(balls), std::to_string(scenes), "", "", "", "", ""};
+      for (const std::string engine : {"bit field", "uniform grid"}) {
+        const double more = instructions_of(self, engine, scene, balls, kTo, scenes);
+        const double fewer = instructions_of(self, engine, scene, balls, kFrom, scenes);
+        if (more < 0 || fewer < 0) {
+          std::cout << "left out: valgrind is not installed\n";
+          return;
+        }
+        row.at(engine == "bit field" ? 3 : 7) = number((more - fewer) / moves);
+        if (engine == "bit field") {
+          counts.push_back((more - fewer) / moves);
+          at_693 = balls == 693 ? counts.back() : at_693;
+        }
+      }
+      double collisions = 0;
+      for (int seed = 1; seed <= scenes; ++seed) {
+        const auto world =
+            make_engine("bit field", make_scene(scene, balls, static_cast<std::uint32_t>(seed)));
+        for (int i = 0; i < kTo; ++i) {
+          collisions -= i == kFrom ? static_cast<double>(world->collisions()) : 0;
+          world->step();
+        }
+        collisions += static_cast<double>(world->collisions());
+      }
+      row[5] = number(collisions / moves);
+      rates.push_back(collisions / moves);
+      rows.push_back(row);
+    }
+    const auto [move, collision] = line_through(rates, counts);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i][4] = number(counts[i] / at_693);
+      rows[i][6] = number(counts[i] / (move + collision * rates[i]));
+      table.add(rows[i]);
+    }
+    table.add({scene, "fit", "", number(move) + " + " + number(collision) + " a collision", "", "", "", ""});
+  }
+  table.print(csv);
+}
+
+// --- Speed
+
+struct Timed {
+  std::string name;
+  std::unique_ptr<Engine> engine;
+  double seconds = 0;
+};
+
+// The same scene in all engines, `steps` steps in turns of `turn`.
+std::vector<Timed> race(const Scene& scene, const std::vector<std::string>& names, int steps, int turn) {
+  std::vector<Timed> engines;
+  for (const std::string& name : names) {
+    engines.push_back({name, make_engine(name, scene)});
+  }
+  for (int done = 0; done < steps; done += turn) {
+    for (Timed& timed : engines) {
+      const double start = processor_seconds();
+      for (int i = 0; i < turn; ++i) {
+        timed.engine->step();
+      }
+      timed.seconds += processor_seconds() - start;
+    }
+  }
+  return engines;
+}
+
+// Collisions by the balls' velocities alone.
+std::uint64_t count_kinks(const Scene& scene, Engine& engine, int steps) {
+  std::uint64_t count = 0;
+  auto before = engine.balls();
+  for (int i = 0; i < steps; ++i) {
+    engine.step();
+    auto after = engine.balls();
+    count += kinks(scene, before, after);
+    before = std::move(after);
+  }
+  return count;
+}
+
+void speed(const std::string& csv) {
+  Table table(
+      "speed",
+      "Step time side by side (the same balls, by turns). Collisions: as the engine counts them, and as "
+      "changes of "
+      "balls' velocities; the last row of each scene is round balls in double precision with 64 substeps",
+      {"scene", "balls", "steps", "engine", "us a step", "ns a ball and step", "time against bit field",
+       "collisions", "against reference", "velocity changes", "against reference"});
+  for (const std::string name : {"gas", "falling"}) {
+    for (const int balls : {693, 10000}) {
+      const Scene scene = make_scene(name, balls);
+      const int steps = 60;
+      auto names = engine_names();
+      if (names.size() == 3) {
+        names.push_back("Box2D 2.4, bullets");
+      }
+      const auto engines = race(scene, names, steps, 4);
+      const auto reference = make_reference_engine(scene, {6, 0});
+      const double true_changes = static_cast<double>(count_kinks(scene, *reference, steps));
+      const double true_collisions = static_cast<double>(reference->collisions());
+      for (const Timed& timed : engines) {
+        const double changes =
+            static_cast<double>(count_kinks(scene, *make_engine(timed.name, scene), steps));
+        const double collisions = static_cast<double>(timed.engine->collisions());
+        table.add({name, std::to_string(balls), std::to_string(steps), timed.name,
+                   number(1e6 * timed.seconds / steps), number(1e9 * timed.seconds / steps / balls),
+                   number(timed.seconds / engines.front().seconds), number(collisions),
+                   number(collisions / true_collisions), number(changes), number(changes / true_changes)});
+      }
+      table.add({name, std::to_string(balls), std::to_string(steps), "reference", "", "", "",
+                 number(true_collisions), "1", number(true_changes), "1"});
+    }
+  }
+  table.print(csv);
+}
+
+void scaling(const std::string& csv) {
+  Table table("scaling", "Time against the number of balls, at the paper's density",
+              {"scene", "balls", "field", "bit field ns a ball and step", "against 693", "uniform grid ns",
+               "collisions a ball and step"});
+  for (const std::string name : {"gas", "falling"}) {
+    double at_693 = 0;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<double> times;
+    for (const int balls : {10, 100, 693, 10000, 100000}) {
+      const Scene scene = make_scene(name, balls);
+      // A fall lasts for 60 steps; small ones are repeated instead.
+      const int steps = name == "falling" ? 60 : std::max(40, 2000000 / balls);
+      const int repeats = name == "falling" ? std::max(1, 2000000 / balls / steps) : 1;
+      std::vector<double> seconds{0, 0};
+      double collisions = 0;
+      for (int i = 0; i < repeats; ++i) {
+        const auto engines = race(scene, {"bit field", "uniform grid"}, steps, balls < 1000 ? steps / 10 : 4);
+        seconds[0] += engines[0].seconds;
+        seconds[1] += engines[1].seconds;
+        collisions += static_cast<double>(engines[0].engine->collisions());
+      }
+      const double moves = static_cast<double>(steps) * balls * repeats;
+      times.push_back(1e9 * seconds[0] / moves);
+      at_693 = balls == 693 ? times.back() : at_693;
+      rows.push_back({name, std::to_string(balls),
+                      std::to_string(scene.width) + "x" + std::to_string(scene.height), number(times.back()),
+                      "", number(1e9 * seconds[1] / moves), number(collisions / moves)});
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i][4] = number(times[i] / at_693);
+      table.add(rows[i]);
+    }
+  }
+  table.print(csv);
+}
+
+// --- Quality
+
+// Balls that were on the other side of the wall, or outside the box, after any of 60 steps.
+std::size_t through_the_wall(const std::string& engine, double speed) {
+  const Scene scene = make_wall_scene(speed);
+  const auto world = make_engine(engine, scene);
+  std::vector<bool> through(scene.balls.size(), false);
+  for (int i = 0; i < 60; ++i) {
+    world->step();
+    const auto balls = world->balls();
+    for (std::size_t ball = 0; ball < balls.size(); ++ball) {
+      const BallState& b = balls[ball];
+      const bool inside = b.x > 0 && b.x < 401 && b.y > 0 && b.y < scene.height;
+      through[ball] = through[ball] || !inside;
+    }
+  }
+  return static_cast<std::size_t>(std::count(through.begin(), through.end(), true));
+}
+
+void quality(const std::string& csv) {
+  Table table(
+      "quality",
+      "Quality. Gas: 693 balls, restitution 1, 10,000 steps. Wall: one pixel, 40 balls. Heap: 693 and 10,000 "
+      "balls fall (gravity 0.1, restitution 0.8)",
+      {"engine", "balls", "gas energy end / start", "greatest overlap px",
+       "through wall at 50, 500, 5000 px a step", "heap: steps until asleep", "asleep", "floating",
+       "overlap in heap px", "heap us a step", "bytes"});
+  for (const std::string& name : engine_names()) {
+    const Scene gas = make_scene("gas", 693);
+    const auto world = make_engine(name, gas);
+    const double start = kinetic_energy(world->balls());
+    double overlap = 0;
+    for (int i = 0; i < 10000; ++i) {
+      world->step();
+      if (i % 100 == 0) {
+        overlap = std::max(overlap, greatest_overlap(gas, world->balls()));
+      }
+    }
+    const double energy = kinetic_energy(world->balls()) / start;
+    std::string through;
+    for (const double pace : {50.0, 500.0, 5000.0}) {
+      through += (through.empty() ? "" : " ") + std::to_string(through_the_wall(name, pace));
+    }
+    for (const int balls : {693, 10000}) {
+      if (balls > 693 && name != "bit field") {
+        continue;  // hours
+      }
+      const Scene falling = make_scene("falling", balls);
+      const auto heap = make_engine(name, falling);
+      const std::size_t bytes = heap->memory_bytes();
+      const int limit = balls == 693 ? 6000 : 10000;
+      int steps = 0;
+      while (steps < limit && heap->asleep() < static_cast<std::size_t>(balls)) {
+        heap->step();
+        ++steps;
+      }
+      const bool sleeps = heap->asleep() == static_cast<std::size_t>(balls);
+      const double from = processor_seconds();
+      const int rest_steps = sleeps ? 100000 : 300;
+      for (int i = 0; i < rest_steps; ++i) {
+        heap->step();
+      }
+      const double us = 1e6 * (processor_seconds() - from) / rest_steps;
+      const auto state = heap->balls();
+      const bool first = balls == 693;
+      table.add({name, std::to_string(balls), first ? number(energy, 7) : "", first ? number(overlap) : "",
+                 first ? through : "",
+                 sleeps ? std::to_string(steps) : "never (" + std::to_string(limit) + ")",
+                 std::to_string(heap->asleep()), std::to_string(floating_sleepers(falling, state)),
+                 number(greatest_overlap(falling, state)), number(us), std::to_string(bytes)});
+    }
+  }
+  table.print(csv);
+}
+
+// --- Accuracy
+
+struct Deviation {
+  double median = 0;
+  double rms = 0;
+};
+
+Deviation deviation(const std::vector<BallState>& a, const std::vector<BallState>& b) {
+  std::vector<double> distances;
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    distances.push_back(std::hypot(a[i].x - b[i].x, a[i].y - b[i].y));
+    squares += distances.back() * distances.back();
+  }
+  std::sort(distances.begin(), distances.end());
+  return {distances[distances.size() / 2], std::sqrt(squares / static_cast<double>(a.size()))};
+}
+
+void accuracy(const std::string& csv) {
+  Table table("accuracy",
+              "Accuracy against time: 693 balls falling, distance in pixels from round balls in double "
+              "precision with "
+              "256 substeps (median, RMS)",
+              {"engine", "substeps", "sub-pixel bits", "ns a ball and step", "median at 10", "RMS at 10",
+               "median at 30", "RMS at 30", "median at 60", "RMS at 60"});
+  const std::array<int, 3> marks{10, 30, 60};
+  const Scene scene = make_scene("falling", 693);
+  // States at the marks, and the time.
+  const auto run = [&](Engine& engine, double* seconds) {
+    std::vector<std::vector<BallState>> states;
+    const double start = processor_seconds();
+    for (int i = 1; i <= marks.back(); ++i) {
+      engine.step();
+      if (std::find(marks.begin(), marks.end(), i) != marks.end()) {
+        states.push_back(engine.balls());
+      }
+    }
+    *seconds = processor_seconds() - start;
+    return states;
+  };
+  double seconds = 0;
+  const auto reference = run(*make_reference_engine(scene, {8, 0}), &seconds);
+  const auto row = [&](const std::string& name, const EngineOptions& options, bool has_bits) {
+    double least = 1e9;
+    std::vector<std::vector<BallState>> states;
+    for (int i = 0; i < 5; ++i) {
+      states = run(*make_engine(name, scene, options), &seconds);
+      least = std::min(least, seconds);
+    }
+    std::vector<std::string> cells{name, std::to_string(1 << options.substeps_log2),
+                                   has_bits ? std::to_string(options.subpixel_bits) : "",
+                                   number(1e9 * least / marks.back() / 693)};
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      const Deviation off = deviation(states[i], reference[i]);
+      cells.push_back(number(off.median));
+      cells.push_back(number(off.rms));
+    }
+    table.add(cells);
+  };
+  for (int substeps = 0; substeps <= 4; ++substeps) {
+    row("bit field", {substeps, 15}, true);
+  }
+  for (const int bits : {12, 10, 8, 6, 4, 2, 1}) {
+    row("bit field", {0, bits}, true);
+  }
+  for (const int substeps : {0, 2, 4, 6}) {
+    row("uniform grid", {substeps, 0}, false);
+  }
+#ifdef THIMBLE_HAVE_BOX2D
+  row("Box2D 2.4", {}, false);
+#endif
+  table.print(csv);
+}
+
+int main_of(const std::vector<std::string>& arguments) {
+  if (arguments.size() == 7 && arguments[1] == "--alone") {
+    return run_alone(arguments[2], arguments[3], std::stoi(arguments[4]), std::stoi(arguments[5]),
+                     static_cast<std::uint32_t>(std::stoi(arguments[6])));
+  }
+  std::string csv;
+  std::vector<std::string> wanted;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    if (arguments[i] == "--csv" && i + 1 < arguments.size()) {
+      csv = arguments[++i];
+    } else {
+      wanted.push_back(arguments[i]);
+    }
+  }
+  const std::vector<std::string> known{"instructions", "speed", "scaling", "quality", "accuracy"};
+  for (const std::string& name : wanted) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      std::cerr << "thimble_particle_table: no table " << name
+                << "; there are instructions, speed, scaling, quality, accuracy\n";
+      return 2;
+    }
+  }
+  const auto is_wanted = [&](const std::string& name) {
+    return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  if (is_wanted("instructions")) {
+    instructions(arguments[0], csv);
+  }
+  if (is_wanted("scaling")) {
+    scaling(csv);
+  }
+  if (is_wanted("speed")) {
+    speed(csv);
+  }
+  if (is_wanted("quality")) {
+    quality(csv);
+  }
+  if (is_wanted("accuracy")) {
+    accuracy(csv);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace thimble::benchmarks
+
+int main(int argument_count, char** arguments) {
+  try {
+    return thimble::benchmarks::main_of({arguments, arguments + argument_count});
+  } catch (const std::exception& error) {
+    std::cerr << "thimble_particle_table: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,141 @@
+#!/bin/sh
+# Builds and judges one board (run.sh): board.sh BOARD. Results are printed as lines at the end, all at once.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$here/../.."
+board=$1
+work=$THIMBLE_FIRMWARE/$board
+results=$THIMBLE_FIRMWARE/$board.results
+measured=$THIMBLE_FIRMWARE/$board.measured
+. platform/board_facts.sh
+limit_s=${THIMBLE_EMULATOR_LIMIT_S:-240}
+failed=0
+mkdir -p "$work"
+: >"$results"
+: >"$measured"
+# say APP RESULT...
+say() {
+  app_said=$1
+  shift
+  printf '%-18s %-10s %s\n' "$board" "$app_said" "$*" >>"$results"
+}
+# fail APP SENTENCE
+fail() {
+  say "$1" "FAILED: $2"
+  failed=1
+}
+# emulate APP KEYS LOG: runs it, sending KEYS again and again, since a UART that is not on yet loses them. Sets `status`.
+emulate() {
+  status=0
+  if [ -n "$2" ]; then
+    for i in $(seq 100); do
+      printf '%s' "$2" 2>/dev/null || break
+      sleep 0.1
+    done | timeout "$limit_s" sh platform/emulate.sh "$board" "$1" >"$3" 2>"$3.noise" || status=$?
+  else
+    timeout "$limit_s" sh platform/emulate.sh "$board" "$1" </dev/null >"$3" 2>"$3.noise" || status=$?
+  fi
+}
+
+# The applications that there are; faults is judged by itself below.
+apps=
+for app in ${THIMBLE_TEST_APPS:-selftest golden demo bench particles}; do
+  [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
+done
+list=faults
+for app in $apps; do
+  list="$list;$app"
+done
+scene=$(sh "$here/scene.sh" "$board")
+if ! FRAMES=4 sh platform/build.sh "$board" "$list" "$scene" >"$work/build.log" 2>&1; then
+  cat "$work/build.log"
+  fail all "does not build"
+  cat "$results"
+  exit 1
+fi
+
+for app in $apps; do
+  log=$work/$app.log
+  emulate "$app" "" "$log"
+  said=
+  if [ "$status" != 0 ]; then
+    tail -n 5 "$log" >&2
+    fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
+  elif [ "$app" = selftest ] || [ "$app" = golden ]; then
+    said=$(grep -E '^[1-9][0-9]* passed, 0 failed' "$log" | head -n 1)
+    [ -n "$said" ] || fail "$app" "did not say how many passed"
+    said="$said, $(sed -n 's/^\([0-9]* skipped\).*/\1/p' "$log" | head -n 1); "
+  elif [ "$app" = bench ]; then
+    said="$(sed -n 's/^\([a-z_]*\)\.instructions_median,\([0-9]*\).*/\2 instructions a frame (\1)/p' "$log" | tr '\n' ';')"
+    said="${said%;}; "
+    # What a frame may cost.
+    while IFS=, read -r row_board most least; do
+      [ "$row_board" = "$board" ] || continue
+      cost=$(sed -n 's/^brick_map\.instructions_median,//p' "$log")
+      times=$(sed -n 's/^brick_map\.times_faster_than_dda,//p' "$log")
+      [ "${cost:-999999999}" -le "$most" ] || fail bench "a frame takes ${cost:-no} instructions, at most $most"
+      if [ -n "$least" ] && ! awk "BEGIN { exit !(${times:-0} >= $least) }"; then
+        fail bench "${times:-not} times faster than the textbook's tracer, at least $least"
+      fi
+    done <tests/budgets/frames.csv
+  elif [ "$app" = particles ]; then
+    crc=$(sed -n 's/^steps 400 crc \([0-9a-f]*\)$/\1/p' "$log" | head -n 1)
+    if [ -z "$crc" ] || ! grep -qi "0x$crc" tests/golden/particles_table.h; then
+      fail particles "its state after 400 steps, ${crc:-none}, is not among the golden ones"
+    fi
+    said="state $crc after 400 steps; "
+  fi
+  sh "$here/budget.sh" "$board" "$app" "$log" >"$work/$app.budget" 2>&1 || failed=1
+  grep FAILED "$work/$app.budget" | sed "s/^/$(printf '%-18s %-10s ' "$board" "$app")/" >>"$results" || true
+  say "$app" "$said$(tail -n 1 "$work/$app.budget")"
+done
+
+# Each fault: told where the board can tell it, and nowhere a hang.
+caught=
+missed=
+for fault in stack ram flash nonsense scene; do
+  case $fault in stack) key=s ;; ram) key=r ;; flash) key=f ;; nonsense) key=n ;; scene) key=d ;; esac
+  log=$work/fault_$fault.log
+  emulate faults $key "$log"
+  case " $(fact CATCHES) " in
+    *" $fault "*)
+      if [ "$status" = 97 ] && grep -q '^fault: ' "$log"; then
+        caught="$caught $fault"
+      else
+        tail -n 5 "$log" >&2
+        fail faults "$fault: exit status $status, wanted 97 and a message"
+      fi
+      ;;
+    *)
+      missed="$missed $fault"
+      if [ "$status" != 1 ] || ! grep -q '^nobody noticed' "$log"; then
+        fail faults "$fault is not among BOARD_CATCHES, and yet: exit status $status"
+      fi
+      ;;
+  esac
+done
+say faults "caught:$caught$([ -n "$missed" ] && echo "; cannot be caught here:$missed")"
+
+# A scene damaged in one byte, in the image: a sentence and status 1.
+awk '/^ *[0-9]+,/ && ++line == 40 { sub(/[0-9]+/, ($1 + 1) % 256) } { print }' "$work/scene.h" >"$work/damaged.h"
+if cmp -s "$work/scene.h" "$work/damaged.h"; then
+  fail demo "the scene could not be damaged"
+elif ! FRAMES=4 sh platform/build.sh "$board" demo "$work/damaged.h" >"$work/build.log" 2>&1; then
+  fail demo "does not build with a damaged scene"
+else
+  emulate demo "" "$work/damaged.log"
+  if [ "$status" = 1 ] && grep -q '^error: ' "$work/damaged.log"; then
+    say demo "refuses a damaged scene"
+  else
+    fail demo "with a damaged scene: exit status $status, wanted 1 and a message"
+  fi
+fi
+
+# What the display shows, and buttons.
+if [ "$(fact DISPLAY)" != none ]; then
+  sh "$here/display.sh" "$board" >"$work/display.results" 2>&1 || failed=1
+  sed "s/^/$(printf '%-18s %-10s ' "$board" display)/" "$work/display.results" >>"$results"
+fi
+
+cat "$results"
+exit $failed

@@ -1,0 +1,92 @@
+#!/bin/sh
+# What a person sees and does: the display's picture equals the simulator's, pixel by pixel, and each button arrives.
+# display.sh BOARD, after board.sh has built it. Prints a line a question; exit status 1 when an answer is wrong.
+set -eu
+cd "$(dirname "$0")/../.."
+board=$1
+. platform/board_facts.sh
+tool=$THIMBLE_FIRMWARE/qemu_screen
+work=$PWD/$THIMBLE_FIRMWARE/$board
+thimble=build/release/thimble
+frames=3
+failed=0
+machine=
+# Sockets have short names.
+folder=$(mktemp -d)
+socket=$folder/qmp
+trap '[ -z "$machine" ] || kill $machine 2>/dev/null || true; rm -rf "$folder"' EXIT
+# start APP KEYS: the emulator in the background, its UART in $work/screen.log, keys sent again and again for 3 s.
+start() {
+  # The shell that sends keys ends with the emulator; `exec` makes the process that is killed the emulator itself.
+  mkfifo "$folder/keys.$1"
+  sh platform/emulate.sh "$board" "$1" -qmp "unix:$socket,server=on,wait=off" <"$folder/keys.$1" >"$work/screen.log" 2>/dev/null &
+  machine=$!
+  for i in $(seq 30); do
+    printf '%s' "$2" 2>/dev/null || break
+    sleep 0.1
+  done >"$folder/keys.$1" &
+}
+# wait_for TEXT: until the UART has said it.
+wait_for() {
+  for i in $(seq 300); do
+    grep -qs "$1" "$work/screen.log" && return 0
+    sleep 0.1
+  done
+  return 1
+}
+stop() {
+  "$tool" "$socket" quit || kill $machine 2>/dev/null || true
+  wait $machine 2>/dev/null || true
+  machine=
+}
+scene=$(sh tests/boards/scene.sh "$board")
+
+HOLD=true FRAMES=$frames sh platform/build.sh "$board" "demo;faults" "$scene" >"$work/display.build.log" 2>&1 || {
+  tail -n 5 "$work/display.build.log" >&2
+  exit 1
+}
+# QEMU magnifies the OLED.
+scale=1
+[ "$(fact DISPLAY)" = oled ] && scale=4
+start demo ""
+if wait_for '^holding'; then
+  "$tool" "$socket" shot "$work/display.ppm" $scale
+  if "$thimble" sim "$scene" --board "$board" --display none --frames $frames --check "$work/display.ppm" --quiet \
+    >"$work/display.check.log" 2>&1; then
+    echo "the display shows the simulator's picture, pixel by pixel"
+  else
+    echo "FAILED: the display does not show the simulator's picture ($(grep -v '^thimble demo\|^scene' "$work/display.check.log" | head -n 1))"
+    failed=1
+  fi
+else
+  echo "FAILED: did not draw $frames frames in 30 s"
+  failed=1
+fi
+stop
+
+if [ "$(fact BUTTONS)" = 5 ]; then
+  start faults b
+  arrived=
+  if wait_for '^buttons'; then
+    for pair in up:up down:down left:left right:right ctrl:select; do
+      key=${pair%:*}
+      button=${pair#*:}
+      # A line of QEMU's is low, as if pressed, until its first release, which wants a press before it.
+      "$tool" "$socket" press "$key"
+      "$tool" "$socket" release "$key"
+      sleep 0.1
+      "$tool" "$socket" press "$key"
+      wait_for "^down: $button" && arrived="$arrived $button"
+      "$tool" "$socket" release "$key"
+      sleep 0.1
+    done
+  fi
+  if [ "$arrived" = " up down left right select" ]; then
+    echo "buttons:$arrived"
+  else
+    echo "FAILED: of five buttons these arrived:$arrived"
+    failed=1
+  fi
+  stop
+fi
+exit $failed

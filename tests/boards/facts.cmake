@@ -1,0 +1,10 @@
+# A board's facts as C++ without its compiler: cmake -DROOT= -DBOARD= -DOUT= -P facts.cmake
+set(PROJECT_SOURCE_DIR ${ROOT})
+include(${ROOT}/platform/boards.cmake)
+set(BOARD_NAME ${BOARD})
+thimble_read_board(${BOARD})
+thimble_capitalise(THIMBLE_FORMAT ${BOARD_FORMAT})
+set(THIMBLE_HAS_DISPLAY true)
+set(THIMBLE_FRAMES 0)
+set(THIMBLE_HOLD false)
+configure_file(${ROOT}/platform/arch/common/facts.h.in ${OUT}/thimble_board_facts.h @ONLY)

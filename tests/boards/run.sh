@@ -1,0 +1,58 @@
+#!/bin/sh
+# Builds and runs the firmware of every board under QEMU and judges it: a line a board and application, exit status 1
+# when anything failed. Two boards at a time.
+#   run.sh [--budgets] [BOARD...]      --budgets writes tests/budgets/firmware.csv anew from what was measured
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$here/../.."
+update=0
+if [ "${1:-}" = --budgets ]; then
+  update=1
+  shift
+fi
+export THIMBLE_FIRMWARE=build/boards
+work=$THIMBLE_FIRMWARE
+budgets=tests/budgets/firmware.csv
+mkdir -p "$work"
+g++ -std=c++20 -O1 -o "$work/stack_bound" tests/checks/stack_bound.cpp
+g++ -std=c++20 -O1 -o "$work/qemu_screen" tests/boards/qemu_screen.cpp
+
+all=$(cd platform/boards && for folder in */; do echo "${folder%/}"; done)
+boards=${*:-$all}
+for board in $boards; do
+  rm -rf "${work:?}/$board.results" "${work:?}/$board.measured"
+done
+failed=0
+# Those with the largest pictures take longest, so they begin.
+for board in $boards; do
+  . platform/board_facts.sh
+  echo "$(($(fact WIDTH_PX) * $(fact HEIGHT_PX))) $board"
+done | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/board.sh" || failed=1
+
+sh "$here/example.sh" "$work/example" || failed=1
+# What must be one number everywhere.
+sh "$here/same.sh" $boards || failed=1
+
+if [ $update = 1 ]; then
+  {
+    grep '^#' "$budgets"
+    echo board,app,flash_bytes,ram_bytes,stack_bound_bytes,stack_painted_bytes
+    for board in $all; do
+      if [ -f "$work/$board.measured" ]; then
+        # A little room, so that the table does not change with every line of code: flash in KiB, stacks in 64 bytes.
+        awk -F, -v OFS=, 'function up(value, step) { return int((value + step - 1) / step) * step }
+          { print $1, $2, up($3, 1024), $4, up($5, 64), up($6, 64) }' "$work/$board.measured"
+      else
+        grep "^$board," "$budgets" || true
+      fi
+    done
+  } >"$work/budgets.csv"
+  mv "$work/budgets.csv" "$budgets"
+  echo "test-boards: wrote $budgets"
+fi
+if [ $failed = 0 ]; then
+  echo "test-boards: all passed"
+else
+  echo "test-boards: something failed, see above" >&2
+fi
+exit $failed

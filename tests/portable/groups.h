@@ -1,0 +1,41 @@
+/// @file groups.h
+/// All cases, topic by topic, in the order in which they are run.
+#ifndef THIMBLE_TESTS_PORTABLE_GROUPS_H
+#define THIMBLE_TESTS_PORTABLE_GROUPS_H
+
+#include "portable/case.h"
+
+namespace thimble::portable {
+
+/// What every board has for a case: 8 KiB less the stack (up to 2,900 bytes) and what the runner keeps. The
+/// cases that need no more are run everywhere, and their CRC is one number everywhere.
+inline constexpr uint32_t kCommonArenaBytes = 4608;
+
+/// Cases of the golden group that draw a frame, and the same counted: the host's runner compares them.
+inline constexpr int kGoldenFrameCases = 324;
+int count_golden_frame_cases();
+
+extern const Group kNumberGroup;       ///< fixed point, spans, the arena, CRC-32, Morton codes
+extern const Group kPixelGroup;        ///< pixels in every format
+extern const Group kRayGroup;          ///< the table of rays (rays.h)
+extern const Group kTraceGroup;        ///< what holds for all rays
+extern const Group kOctreeGroup;       ///< the tree that changes
+extern const Group kCompactTreeGroup;  ///< the tree in flash
+extern const Group kDenseGridGroup;    ///< one bit a voxel
+extern const Group kCameraGroup;       ///< cameras and their rays
+extern const Group kShadingGroup;      ///< colours
+extern const Group kRenderGroup;       ///< bands
+extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
+extern const Group kGoldenGroup;       ///< golden frames
+
+/// The core's own cases (the application `selftest`): every board runs all of them.
+inline constexpr const Group* kCoreGroups[] = {
+    &kNumberGroup,      &kPixelGroup,     &kRayGroup,    &kTraceGroup,   &kOctreeGroup,
+    &kCompactTreeGroup, &kDenseGridGroup, &kCameraGroup, &kShadingGroup, &kRenderGroup,
+};
+/// What lies in flash (the application `golden`): baked scenes and the golden frames.
+inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup};
+
+}  // namespace thimble::portable
+
+#endif

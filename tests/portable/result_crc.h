@@ -1,0 +1,18 @@
+/// @file result_crc.h
+/// What the portable cases compute, as CRC-32s (runner.h). Written by `thimble_golden_tests --crc`.
+#ifndef THIMBLE_TESTS_PORTABLE_RESULT_CRC_H
+#define THIMBLE_TESTS_PORTABLE_RESULT_CRC_H
+
+#include <stdint.h>
+
+namespace thimble::portable {
+
+/// Of the core's own cases, all of which every board runs.
+inline constexpr uint32_t kCoreCrc32 = 0x6A3557F2;
+/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board runs.
+inline constexpr uint32_t kGoldenCrc32 = 0xAEA857A0;
+inline constexpr uint32_t kCommonGoldenCrc32 = 0xC6BD20F8;
+
+}  // namespace thimble::portable
+
+#endif

@@ -1,0 +1,169 @@
+// `thimble boards`: the table, and what of a scene fits.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "boards/board_table.h"
+#include "output/units.h"
+#include "scene/board_fit.h"
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+
+CommandResult boards(const Words& words) {
+  Words all{"boards"};
+  all.insert(all.end(), words.begin(), words.end());
+  CommandResult result = run_command(all);
+  CAPTURE(result.describe());
+  REQUIRE(result.status == 0);
+  CHECK(result.err.empty());
+  return result;
+}
+
+// The table that people read: what is not the scene's own name keeps to 100 columns.
+std::string table(const Words& words) {
+  const CommandResult result = boards(words);
+  for (const std::string& line : lines_of(result.out)) {
+    CAPTURE(line);
+    CHECK((line.size() <= 100 || line == words.front()));
+  }
+  return result.out;
+}
+
+void check_refused(const Words& words, int status, const Words& named) {
+  const CommandResult result = run_command(words);
+  CAPTURE(result.describe());
+  CHECK(result.status == status);
+  CHECK(result.out.empty());
+  CHECK(is_one_sentence(result.err));
+  for (const std::string& name : named) {
+    CAPTURE(name);
+    CHECK(result.err.find(name) != std::string::npos);
+  }
+}
+
+// The line that begins with `name` and a blank, in the part of the text after `from`.
+std::string line_of(const std::string& text, const std::string& name, std::size_t from = 0) {
+  const std::size_t at = text.find("\n" + name + " ", from);
+  REQUIRE(at != std::string::npos);
+  return text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+}
+
+}  // namespace
+
+TEST_CASE("boards: without a scene -> every board's limits, in order, in 100 columns") {
+  const std::string text = table({});
+  CHECK(lines_of(text).size() == 1 + platform::boards().size);
+  std::size_t last = 0;
+  for (const platform::BoardFacts& board : platform::boards()) {
+    const std::size_t at = text.find(board.name);
+    CHECK(at != std::string::npos);
+    CHECK(at > last);
+    last = at;
+  }
+  CHECK(line_of(text, "lm3s6965evb") ==
+        "lm3s6965evb       cortex-m3    128x64 gray4    oled           5     65,536    262,144   " +
+            tools::grouped(platform::find_board("lm3s6965evb")->stack_bytes));
+}
+
+TEST_CASE("boards: with a scene -> what fits is what bake and render say") {
+  const TemporaryFolder folder;
+  const std::string json_path = folder.path("b.json");
+  const std::string csv_path = folder.path("b.csv");
+  const std::string text = table({"spheres", "--json", json_path, "--csv", csv_path});
+  CHECK(text.find("spheres\n28,327 voxels at depth 6, 12,624 bytes baked, 32,368 bytes as a pool") !=
+        std::string::npos);
+  const std::size_t second = text.find("scene flash");
+  const std::uint64_t stack = platform::find_board("microbit")->stack_bytes;
+  CHECK(line_of(text, "microbit", second) == "microbit              221,184   5.7 %        " +
+                                                 tools::grouped(stack + 720) + "   yes        " +
+                                                 tools::grouped(stack + 33088) + "    no        7");
+  const auto rows = nlohmann::ordered_json::parse(read_text(json_path));
+  REQUIRE(rows.size() == platform::boards().size);
+  const std::vector<std::string> csv = lines_of(read_text(csv_path));
+  REQUIRE(csv.size() == rows.size() + 1);
+  std::string header;
+  for (const auto& [name, value] : rows[0].items()) {
+    header += (header.empty() ? "" : ",") + name;
+  }
+  CHECK(csv[0] == header);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& row = rows[i];
+    const platform::BoardFacts& board = platform::boards()[i];
+    CAPTURE(board.name);
+    CHECK(csv[i + 1].starts_with(std::string(board.name) + ","));
+    CHECK(row["ram_bytes"] == board.ram_bytes);
+    CHECK(row["scene_flash_bytes"] == tools::scene_flash_bytes(board));
+    CHECK(row["baked_bytes"] == 12624);
+    CHECK(row["drawing_ram_bytes"] ==
+          row["state_bytes"].get<int>() + row["band_bytes"].get<int>() + row["stack_bytes"].get<int>());
+    CHECK(row["building_ram_bytes"] == row["drawing_ram_bytes"].get<int>() + row["pool_bytes"].get<int>());
+    CHECK(row["builds_in_ram"] == (row["building_ram_bytes"] <= board.ram_bytes ? 1 : 0));
+    // Depth 9 is the last that is tried: solid bodies grow eightfold.
+    const int deepest = row["deepest_depth"];
+    const auto fits = [&](int depth) {
+      return run_command({"bake", "spheres", "-o", folder.path("s.oct"), "--quiet", "--board", board.name,
+                          "--depth", std::to_string(depth)})
+                 .status == 0;
+    };
+    if (i == 0) {
+      CHECK(fits(deepest));
+      CHECK_FALSE(fits(deepest + 1));
+    }
+    CHECK(row["deepest_tried_depth"] == 9);
+  }
+  // The pool is what an octree of the scene takes.
+  CHECK(run_command({"info", "spheres", "--structure", "pool", "--memory", rows[0]["pool_bytes"].dump()})
+            .status == 0);
+}
+
+TEST_CASE("boards: a scene of one depth, a baked one, points -> the deepest depth of each") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  REQUIRE(run_command({"bake", "points:30000,depth=8", "-o", oct, "--quiet"}).status == 0);
+  const std::string json_path = folder.path("b.json");
+  const std::string text = table({oct, "--json", json_path});
+  CHECK(text.find("one depth only") != std::string::npos);
+  auto rows = nlohmann::json::parse(read_text(json_path));
+  for (const auto& row : rows) {
+    const bool fits = row["baked_bytes"] <= row["scene_flash_bytes"];
+    CHECK(row["fits_flash"] == (fits ? 1 : 0));
+    CHECK(row["deepest_depth"] == (fits ? 8 : 0));
+  }
+  // Points of any depth: the whole range is tried, down to where the smallest board takes it.
+  boards({"points:30000", "--json", json_path, "--quiet"});
+  rows = nlohmann::json::parse(read_text(json_path));
+  int least = 99;
+  for (const auto& row : rows) {
+    CHECK(row["deepest_tried_depth"] == 12);
+    CHECK(row["depth"] == 10);
+    least = std::min(least, row["deepest_depth"].get<int>());
+  }
+  CHECK(least < 10);
+  CHECK(least > 1);
+}
+
+TEST_CASE("boards: data on standard output -> no table between; bad usage and input -> a sentence") {
+  const CommandResult csv = boards({"--csv", "-"});
+  CHECK(lines_of(csv.out).size() == 1 + platform::boards().size);
+  CHECK(csv.out.starts_with("board,title,core,ram_bytes,"));
+  // Commas within a title are in quotes.
+  CHECK(csv.out.find("\"Netduino Plus 2 (STM32F405, Cortex-M4F)\"") != std::string::npos);
+  CHECK(nlohmann::json::parse(boards({"--json", "-"}).out).size() == platform::boards().size);
+  check_refused({"boards", "--csv", "-", "--json", "-"}, 1, {"standard output"});
+  check_refused({"boards", "--depth", "3"}, 2, {"--depth"});
+  check_refused({"boards", "nothing.vox"}, 1, {"nothing.vox"});
+  check_refused({"boards", "--board", "microbit"}, 2, {"--board"});
+  check_refused({"boards", "--json", "/no/such/b.json"}, 1, {"/no/such/b.json"});
+  CommandLimits full;
+  full.output_path = "/dev/full";
+  CHECK(run_command({"boards"}, full).status == 1);
+}

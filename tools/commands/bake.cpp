@@ -1,0 +1,230 @@
+// thimble bake: a scene as bytes for flash.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "commands/stats.h"
+#include "output/c_header.h"
+#include "output/output_file.h"
+#include "output/progress.h"
+#include "output/units.h"
+#include "scene/baking.h"
+#include "scene/board_fit.h"
+
+namespace thimble::tools {
+namespace {
+
+struct BakeCommand {
+  SceneOptions scene;  // its --memory is the limit of what is written
+  ViewOptions view;
+  std::string output;
+  std::string identifier = kDefaultIdentifier;
+  bool as_header = false;
+  bool brick_map = false;
+};
+
+// --memory or what the board's flash has for a scene, the smaller of both.
+std::optional<std::uint64_t> limit_bytes(const SceneOptions& scene) {
+  if (scene.board == nullptr) {
+    return scene.memory_bytes;
+  }
+  return std::min(scene_flash_bytes(*scene.board), scene.memory_bytes.value_or(UINT64_MAX));
+}
+
+std::string limit_text(const SceneOptions& scene, std::uint64_t limit) {
+  if (scene.board != nullptr && limit == scene_flash_bytes(*scene.board)) {
+    return std::string(scene.board->name) + " has " + grouped(limit) + " bytes of flash for a scene (" +
+           grouped(scene.board->flash_bytes) + " less " + grouped(kCodeFlashBytes) + " for code)";
+  }
+  return "the limit is " + grouped(limit) + " bytes (--memory)";
+}
+
+BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
+  BakingOptions options;
+  options.limit_bytes = limit_bytes(command.scene);
+  options.name = scene_name(command.scene.arguments.scene);
+  options.brick_map = command.brick_map || command.scene.board != nullptr;
+  options.camera = [&command, &source, note](int level, const VoxelBox& bounds) {
+    SceneCamera chosen;
+    command.view.camera(source, level, bounds, note, &chosen);
+    return chosen;
+  };
+  return options;
+}
+
+// What would fit instead: found by baking at every smaller depth until one does.
+std::string advice(const BakeCommand& command, const SceneSource& source, std::uint64_t limit) {
+  if (!source.is_scalable()) {
+    return "; this scene has one depth only, --coarsen merges blocks until it fits";
+  }
+  ProgressBar bar("trying smaller depths", command.scene.quiet);
+  SceneArguments arguments = command.scene.arguments;
+  for (int depth = source.level() - 1; depth >= kMinLevel; --depth) {
+    arguments.depth = depth;
+    try {
+      const auto smaller = open_scene(arguments);
+      BakingOptions options = baking_options(command, *smaller, nullptr);
+      const Baked baked = bake_scene(*smaller, options, [&](double done) { bar.update(done); });
+      if (baked.bytes.size() <= limit) {
+        return "; --depth " + std::to_string(depth) + " fits with " + grouped(baked.bytes.size()) +
+               " bytes, and --coarsen makes the finest tree that does";
+      }
+    } catch (const InputError&) {
+      break;  // a pipe is read only once; and a camera may suit one world and not another
+    }
+  }
+  return "; --coarsen merges blocks until it fits";
+}
+
+void report(const BakeCommand& command, const Baked& baked, const std::string& note) {
+  const CompactTree& tree = baked.scene.tree();
+  const std::uint64_t bytes = baked.bytes.size();
+  std::string text;
+  if (!note.empty()) {
+    text += "note: " + note + "\n";
+  }
+  std::array<char, 64> ratio{};
+  if (tree.voxel_count() != 0) {
+    std::snprintf(ratio.data(), ratio.size(), ", %.2f bytes a voxel",
+                  static_cast<double>(bytes) / static_cast<double>(tree.voxel_count()));
+  }
+  text += grouped(tree.voxel_count()) + (tree.voxel_count() == 1 ? " voxel" : " voxels") + " in " +
+          grouped(bytes) + " bytes (depth " + std::to_string(tree.level()) + ratio.data() + ")\n";
+  if (tree.solid_added() != 0) {
+    text += "coarsened to fit: " + grouped(tree.solid_added()) +
+            (tree.solid_added() == 1 ? " voxel" : " voxels") + " of solid volume added\n";
+  }
+  if (const platform::BoardFacts* board = command.scene.board) {
+    const std::uint64_t flash = scene_flash_bytes(*board);
+    const std::uint64_t ram = drawing_ram_bytes(*board);
+    text += std::string(board->name) + ": flash " + grouped(bytes) + " of the " + grouped(flash) +
+            " bytes beside the code's " + grouped(kCodeFlashBytes) + "; RAM " + grouped(ram) + " of " +
+            grouped(board->ram_bytes) + " bytes (renderer " + grouped(render_bytes()) + ", band of " +
+            std::to_string(kBoardBandRows) + " rows " + grouped(board_band_bytes(*board)) + ", stack " +
+            grouped(board->stack_bytes) + ")" + (ram > board->ram_bytes ? ": too much" : "") + "\n";
+  }
+  std::fputs(text.c_str(), stderr);
+}
+
+void run(const BakeCommand& given) {
+  BakeCommand command = given;
+  command.view.use_display(command.scene.board);
+  const std::array<std::string, 2> outputs{command.output, command.scene.stats_path};
+  check_distinct(outputs, {&command.scene.arguments.scene, 1});
+  // Opened before the work begins, so that a folder that is not there is known at once.
+  OutputFile file(command.output);
+  std::unique_ptr<OutputFile> stats_file;
+  if (!command.scene.stats_path.empty()) {
+    stats_file = std::make_unique<OutputFile>(command.scene.stats_path);
+  }
+  const auto source = command.scene.open();
+  std::string note;
+  BakingOptions options = baking_options(command, *source, &note);
+  options.coarsen = command.scene.coarsen;
+  Baked baked;
+  {
+    ProgressBar bar("baking", command.scene.quiet);
+    baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
+  }
+  if (!baked.fits) {
+    const std::uint64_t limit = *options.limit_bytes;
+    const std::uint64_t over = baked.bytes.size() - limit;
+    throw InputError((options.coarsen ? "even the coarsest tree takes " : "takes ") +
+                     grouped(baked.bytes.size()) + " bytes at depth " + std::to_string(source->level()) +
+                     ", " + limit_text(command.scene, limit) + ": " + grouped(over) +
+                     (over == 1 ? " byte" : " bytes") + " too many" +
+                     (options.coarsen ? "" : advice(command, *source, limit)));
+  }
+
+  if (command.as_header) {
+    file.write(c_header_text(baked.scene, command.identifier));
+  } else {
+    file.write(baked.bytes);
+  }
+  if (stats_file != nullptr) {
+    const CompactTree& tree = baked.scene.tree();
+    Stats stats;
+    stats.scene = command.scene.arguments.scene;
+    stats.depth = tree.level();
+    stats.points = source->points();
+    stats.voxels = tree.voxel_count();
+    stats.nodes = tree.node_count();
+    stats.tree_bytes = tree.size_bytes();
+    stats.budget_bytes = options.limit_bytes.value_or(baked.bytes.size());
+    stats.high_water_bytes = baked.work_bytes;
+    stats.solid_added = tree.solid_added();
+    stats.build_seconds = baked.seconds;
+    stats.baked_bytes = baked.bytes.size();
+    stats.baked_crc32 = crc_text(baked.scene.crc32());
+    if (command.scene.board != nullptr) {
+      stats.board = command.scene.board->name;
+    }
+    stats_file->write(stats_text(stats));
+    stats_file->flush();
+  }
+  file.flush();  // a full disk is found before either takes its name
+  file.commit();
+  if (stats_file != nullptr) {
+    stats_file->commit();
+  }
+  if (!command.scene.quiet) {
+    report(command, baked, note);
+  }
+}
+
+bool ends_in(const std::string& text, const std::string& ending) {
+  return text.size() > ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+}  // namespace
+
+void add_bake(CLI::App& app) {
+  auto command = std::make_shared<BakeCommand>();
+  CLI::App* sub = app.add_subcommand(
+      "bake", "Bake a scene: its compact tree, palette and camera as one block of bytes for flash.");
+  command->scene.add_scene(*sub);
+  add_text_option(
+      *sub, "-o,--output", "FILE",
+      [command](const std::string& text) {
+        command->output = text;
+        command->as_header = ends_in(text, ".h");
+        return text == "-" || command->as_header || ends_in(text, ".oct") ? "" : "does not end in .oct or .h";
+      },
+      "the bytes as a file (.oct) or as a C and C++ header (.h); - is the bytes on standard output")
+      ->required();
+  add_bytes(*sub, "--memory", &command->scene.memory_bytes,
+            "the most bytes that the baked scene may take, such as 65536, 64K or 2M (default: no limit)");
+  add_board(*sub, &command->scene.board,
+            "the limit is the board's flash less " + grouped(kCodeFlashBytes) +
+                " bytes for code (the smaller counts if --memory is given too), and the camera frames the "
+                "scene for its display");
+  sub->add_flag("--coarsen", command->scene.coarsen,
+                "when it does not fit, merge blocks of voxels until it just does; this only adds solid")
+      ->disable_flag_override();
+  sub->add_flag(
+         "--brick-map", command->brick_map,
+         "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
+         "as long as all keeps the limit; --board always does")
+      ->disable_flag_override();
+  add_text_option(
+      *sub, "--name", "IDENT",
+      [command](const std::string& text) {
+        command->identifier = text;
+        return is_identifier(text) ? "" : "cannot be the name of an array in C and C++";
+      },
+      "what a header calls the array; its macros begin with the same in capitals")
+      ->default_str(kDefaultIdentifier);
+  command->view.add_to(*sub);
+  command->scene.add_report(*sub);
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

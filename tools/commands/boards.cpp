@@ -1,0 +1,338 @@
+// thimble boards: what the boards are, and what of a scene fits on each.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "output/output_file.h"
+#include "output/progress.h"
+#include "output/units.h"
+#include "readers/oct.h"
+#include "scene/baking.h"
+#include "scene/board_fit.h"
+
+namespace thimble::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using platform::BoardFacts;
+
+struct BoardsCommand {
+  SceneOptions scene;
+  std::string csv_path;
+  std::string json_path;
+};
+
+// The scene in the forms that boards take.
+struct SceneSizes {
+  int depth = 0;
+  std::uint64_t voxels = 0;
+  std::uint64_t baked_bytes = 0;
+  std::uint64_t pool_bytes = 0;                 ///< to build it voxel by voxel
+  std::map<int, std::uint64_t> bytes_of_depth;  ///< baked, for the depths tried
+  bool is_scalable = false;
+  int most_depth = 0;  ///< deeper ones were not to be tried
+};
+
+const char* screen_name(platform::Screen screen) {
+  switch (screen) {
+    case platform::Screen::kNone:
+      return "none";
+    case platform::Screen::kOled:
+      return "oled";
+    case platform::Screen::kLcd:
+      return "lcd";
+    case platform::Screen::kPlain:
+      return "plain";
+  }
+  return "unknown";
+}
+
+// Bytes of the scene when it is baked; and fewer than it takes a depth deeper.
+struct BakedSize {
+  std::uint64_t bytes = 0;
+  std::uint64_t least_of_next = 0;
+};
+
+BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& source, const Progress& progress) {
+  BakingOptions options;
+  options.name = scene_name(command.scene.arguments.scene);
+  options.camera = [&](int level, const VoxelBox& bounds) {
+    SceneCamera chosen;
+    ViewOptions{}.camera(source, level, bounds, nullptr, &chosen);
+    return chosen;
+  };
+  const Baked baked = bake_scene(source, options, progress);
+  // A depth deeper every voxel beside a block becomes a node below the nodes that are there. Few of those
+  // are filled to solid blocks then; an eighth is left for them.
+  const CompactTree& tree = baked.scene.tree();
+  std::uint64_t voxels = 0;
+  for_each_block(tree, [&](const Vec3i&, int level, std::uint8_t) { voxels += level == 0 ? 1U : 0U; });
+  return {baked.bytes.size(), (tree.node_count() + voxels) / 8 * 7};
+}
+
+SceneSizes measure(const BoardsCommand& command) {
+  SceneSizes sizes;
+  const auto source = command.scene.open();
+  ProgressBar bar("measuring", command.scene.quiet);
+  const auto progress = [&](double done) { bar.update(done); };
+  sizes.depth = source->level();
+  const BakedSize size = size_when_baked(command, *source, progress);
+  sizes.baked_bytes = size.bytes;
+  BuildOptions pool;
+  pool.structure = StructureKind::kPool;
+  const BuiltScene built(*source, pool, progress);
+  sizes.voxels = built.voxels();
+  sizes.pool_bytes = built.high_water_bytes();
+  sizes.bytes_of_depth[sizes.depth] = sizes.baked_bytes;
+  sizes.most_depth = sizes.depth;
+  sizes.is_scalable = source->is_scalable();
+  if (!sizes.is_scalable) {
+    return sizes;
+  }
+  // The voxels of solid bodies grow eightfold with each depth, so those stop earlier.
+  constexpr int kMostSolidDepth = 9;
+  sizes.most_depth =
+      source->is_point_set() || source->is_mesh() ? kMaxLevel : std::max(sizes.depth, kMostSolidDepth);
+  std::uint64_t least = UINT64_MAX;
+  std::uint64_t most = 0;
+  for (const BoardFacts& board : platform::boards()) {
+    least = std::min(least, scene_flash_bytes(board));
+    most = std::max(most, scene_flash_bytes(board));
+  }
+  SceneArguments arguments = command.scene.arguments;
+  const auto try_depth = [&](int depth) {
+    arguments.depth = depth;
+    const auto other = open_scene(arguments);
+    const BakedSize result = size_when_baked(command, *other, progress);
+    sizes.bytes_of_depth[depth] = result.bytes;
+    return result;
+  };
+  BakedSize last = size;
+  for (int depth = sizes.depth - 1; depth >= kMinLevel && last.bytes > least; --depth) {
+    last = try_depth(depth);
+  }
+  last = size;
+  for (int depth = sizes.depth + 1; depth <= sizes.most_depth && last.bytes <= most; ++depth) {
+    if (last.least_of_next > most) {
+      break;  // the deeper one takes more than every board has, and long to make
+    }
+    last = try_depth(depth);
+  }
+  return sizes;
+}
+
+// The deepest depth whose baked scene the board's flash holds; 0 when none of those tried does.
+int deepest(const SceneSizes& sizes, const BoardFacts& board) {
+  int result = 0;
+  for (const auto& [depth, bytes] : sizes.bytes_of_depth) {
+    if (bytes <= scene_flash_bytes(board)) {
+      result = std::max(result, depth);
+    }
+  }
+  return result;
+}
+
+// Building and drawing on the chip: the pool, and what drawing takes.
+std::uint64_t building_ram_bytes(const SceneSizes& sizes, const BoardFacts& board) {
+  return drawing_ram_bytes(board) + sizes.pool_bytes;
+}
+
+Json row_of(const BoardFacts& board, const SceneSizes* sizes) {
+  Json row;
+  row["board"] = board.name;
+  row["title"] = board.title;
+  row["core"] = board.cpu;
+  row["ram_bytes"] = board.ram_bytes;
+  row["flash_bytes"] = board.flash_bytes;
+  row["stack_bytes"] = board.stack_bytes;
+  row["screen"] = screen_name(board.screen);
+  row["width_px"] = board.width_px;
+  row["height_px"] = board.height_px;
+  row["pixel_format"] = format_name(board.format);
+  row["buttons"] = board.buttons;
+  row["scene_flash_bytes"] = scene_flash_bytes(board);
+  row["state_bytes"] = render_bytes();
+  row["band_bytes"] = board_band_bytes(board);
+  row["drawing_ram_bytes"] = drawing_ram_bytes(board);
+  if (sizes != nullptr) {
+    row["depth"] = sizes->depth;
+    row["voxels"] = sizes->voxels;
+    row["baked_bytes"] = sizes->baked_bytes;
+    row["fits_flash"] = sizes->baked_bytes <= scene_flash_bytes(board) ? 1 : 0;
+    row["pool_bytes"] = sizes->pool_bytes;
+    row["building_ram_bytes"] = building_ram_bytes(*sizes, board);
+    row["builds_in_ram"] = building_ram_bytes(*sizes, board) <= board.ram_bytes ? 1 : 0;
+    row["deepest_depth"] = deepest(*sizes, board);
+    row["deepest_tried_depth"] = sizes->bytes_of_depth.rbegin()->first;
+  }
+  return row;
+}
+
+std::string csv_text(const Json& rows) {
+  std::string text;
+  const auto cell = [](const Json& value) {
+    if (!value.is_string()) {
+      return value.dump();
+    }
+    const auto plain = value.get<std::string>();
+    if (plain.find_first_of(",\"\n") == std::string::npos) {
+      return plain;
+    }
+    std::string quoted = "\"";
+    for (const char c : plain) {
+      quoted += c == '"' ? "\"\"" : std::string(1, c);
+    }
+    return quoted + "\"";
+  };
+  for (const auto& [name, value] : rows.front().items()) {
+    text += (text.empty() ? "" : ",") + name;
+  }
+  for (const Json& row : rows) {
+    std::string line;
+    for (const auto& [name, value] : row.items()) {
+      line += (line.empty() ? "" : ",") + cell(value);
+    }
+    text += "\n" + line;
+  }
+  return text + "\n";
+}
+
+using Cells = std::vector<std::string>;
+
+// Columns two blanks apart, as wide as their widest cell; the first `left` of them begin at their left edge.
+std::string table_text(const std::vector<Cells>& rows, std::size_t left) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Cells& cells : rows) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      widths[i] = std::max(widths[i], cells[i].size());
+    }
+  }
+  std::string text;
+  for (const Cells& cells : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::string gap(widths[i] - cells[i].size(), ' ');
+      line += (i == 0 ? "" : "  ") + (i < left ? cells[i] + gap : gap + cells[i]);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string boards_text() {
+  std::vector<Cells> rows{{"board", "core", "picture", "display", "buttons", "RAM", "flash", "stack"}};
+  for (const BoardFacts& board : platform::boards()) {
+    rows.push_back({board.name, board.cpu,
+                    std::to_string(board.width_px) + "x" + std::to_string(board.height_px) + " " +
+                        format_name(board.format),
+                    screen_name(board.screen), std::to_string(board.buttons), grouped(board.ram_bytes),
+                    grouped(board.flash_bytes), grouped(board.stack_bytes)});
+  }
+  return table_text(rows, 4);
+}
+
+std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
+  std::string text = "\n" + printable(command.scene.arguments.scene) + "\n" + grouped(sizes.voxels) +
+                     (sizes.voxels == 1 ? " voxel" : " voxels") + " at depth " + std::to_string(sizes.depth) +
+                     ", " + grouped(sizes.baked_bytes) + " bytes baked, " + grouped(sizes.pool_bytes) +
+                     " bytes as a pool built on the chip\n\n";
+  std::vector<Cells> rows{
+      {"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits", "deepest"}};
+  for (const BoardFacts& board : platform::boards()) {
+    const std::uint64_t flash = scene_flash_bytes(board);
+    const std::uint64_t building = building_ram_bytes(sizes, board);
+    const auto yes = [](bool fits) { return fits ? "yes" : "no"; };
+    std::array<char, 32> share{"no"};
+    if (sizes.baked_bytes <= flash) {
+      std::snprintf(share.data(), share.size(), "%.1f %%",
+                    100 * static_cast<double>(sizes.baked_bytes) / static_cast<double>(flash));
+    }
+    const int depth = deepest(sizes, board);
+    const bool open_end = sizes.is_scalable && depth == sizes.most_depth && depth < kMaxLevel;
+    rows.push_back({board.name, grouped(flash), share.data(), grouped(drawing_ram_bytes(board)),
+                    yes(drawing_ram_bytes(board) <= board.ram_bytes), grouped(building),
+                    yes(building <= board.ram_bytes),
+                    depth == 0 ? "-" : (open_end ? ">= " : "") + std::to_string(depth)});
+  }
+  text += table_text(rows, 1);
+  text +=
+      "\nscene flash: flash less " + grouped(kCodeFlashBytes) +
+      " bytes for code; scene: the baked scene's part of it. RAM: renderer, a\nband of " +
+      std::to_string(kBoardBandRows) +
+      " rows and the stack; to build it also the pool. deepest: the deepest --depth that fits\nthe flash" +
+      (sizes.is_scalable ? "" : "; this scene has one depth only") + ".\n";
+  return text;
+}
+
+void run(const BoardsCommand& command) {
+  const std::array<std::string, 2> outputs{command.csv_path, command.json_path};
+  const bool has_scene = !command.scene.arguments.scene.empty();
+  check_distinct(outputs, {&command.scene.arguments.scene, has_scene ? 1U : 0U});
+  std::array<std::unique_ptr<OutputFile>, 2> files;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    files[i] = outputs[i].empty() ? nullptr : std::make_unique<OutputFile>(outputs[i]);
+  }
+  std::optional<SceneSizes> sizes;
+  if (has_scene) {
+    sizes = measure(command);
+  }
+  Json rows = Json::array();
+  for (const BoardFacts& board : platform::boards()) {
+    rows.push_back(row_of(board, sizes ? &*sizes : nullptr));
+  }
+  if (files[0] != nullptr) {
+    files[0]->write(csv_text(rows));
+  }
+  if (files[1] != nullptr) {
+    files[1]->write(rows.dump(2) + "\n");
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->flush();
+    }
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->commit();
+    }
+  }
+  // Whoever has the data go to standard output wants no table between them.
+  if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
+    OutputFile output("-");
+    output.write(boards_text() + (sizes ? scene_text(command, *sizes) : ""));
+    output.commit();
+  }
+}
+
+}  // namespace
+
+void add_boards(CLI::App& app) {
+  auto command = std::make_shared<BoardsCommand>();
+  CLI::App* sub = app.add_subcommand(
+      "boards",
+      "The boards and their limits; with a scene also what of it fits: its baked bytes against the flash, "
+      "the RAM to draw it and to build it on the chip, and the deepest --depth.");
+  command->scene.add_scene(*sub, false);
+  for (const char* name : {"--depth", "--as-voxels", "--z-up"}) {
+    sub->get_option(name)->needs("scene");
+  }
+  add_path_option(
+      *sub, "--csv", "FILE.csv", &command->csv_path,
+      "a line a board: board, title, core, ram_bytes, flash_bytes, stack_bytes, screen, width_px, height_px, "
+      "pixel_format, buttons, scene_flash_bytes (flash less code), state_bytes, band_bytes, "
+      "drawing_ram_bytes (state, band and stack); with a scene also depth, voxels, baked_bytes, fits_flash, "
+      "pool_bytes, building_ram_bytes (those and the pool), builds_in_ram, deepest_depth (0: none tried), "
+      "deepest_tried_depth");
+  add_path_option(*sub, "--json", "FILE.json", &command->json_path, "the same, an array of objects");
+  sub->add_flag("--quiet", command->scene.quiet, "no progress bar")->disable_flag_override();
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,350 @@
+// thimble particles: the paper's particle world in a window, in a terminal, or unseen.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "output/image.h"
+#include "output/output_file.h"
+#include "output/units.h"
+#include "particles/session.h"
+#include "particles/world_files.h"
+#include "particles/world_picture.h"
+#include "readers/file_bytes.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::uint64_t kMostInputBytes = std::uint64_t{64} << 20;
+
+struct ParticlesCommand {
+  WorldOptions world;
+  PlayOptions play;
+  bool view_given = false;
+  bool count_given = false;
+  bool gravity_given = false;
+  std::string bodies_path;
+  std::string input_path;
+  std::string input_recording_path;
+  std::string state_path;
+  std::string field_path;
+  std::string frame_path;
+  std::string recording_path;
+  std::string stats_path;
+};
+
+// What is read: errors name the file.
+template <class Read>
+auto about(const std::string& path, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw OutputError(path + ": " + error.what());
+  }
+}
+
+void tell_placing(const ParticlesCommand& command, const Placing& placing) {
+  std::string text = printable(command.bodies_path) + ": " + grouped(placing.placed) + " bodies placed";
+  const auto add = [&](std::uint32_t count, const char* what) {
+    if (count != 0) {
+      text += ", " + grouped(count) + what;
+    }
+  };
+  add(placing.moved, " of them at the nearest free place");
+  add(placing.outside, " left out beyond the box");
+  add(placing.crowded, " left out where there was no room");
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void run(const ParticlesCommand& given) {
+  ParticlesCommand command = given;
+  WorldOptions& world_options = command.world;
+  if (world_options.least_diameter > world_options.most_diameter) {
+    throw CLI::ValidationError("--min-size", std::to_string(world_options.least_diameter) +
+                                                 " is more than --max-size, " +
+                                                 std::to_string(world_options.most_diameter));
+  }
+  const std::array<std::string, 6> outputs{command.input_recording_path, command.state_path,
+                                           command.field_path,           command.frame_path,
+                                           command.recording_path,       command.stats_path};
+  const std::array<std::string, 2> inputs{command.bodies_path, command.input_path};
+  check_distinct(outputs, inputs);
+  if (!command.view_given) {
+    bool for_files = command.play.steps.has_value();
+    for (std::size_t i = 1; i < outputs.size(); ++i) {
+      for_files = for_files || !outputs[i].empty();
+    }
+    command.play.view = for_files ? host::ScreenKind::kNone : host::ScreenKind::kAuto;
+  }
+
+  std::optional<Bodies> bodies;
+  if (!command.bodies_path.empty()) {
+    bodies = about(command.bodies_path, [&] { return read_bodies(load_file(command.bodies_path).text()); });
+    const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(bodies->bodies.size(), kMaxBalls));
+    world_options.count = command.count_given ? std::min(world_options.count, most) : most;
+    if (!command.gravity_given) {
+      world_options.gravity_q16 = {};
+    }
+  }
+  if (!command.input_path.empty()) {
+    command.play.script = about(command.input_path, [&] {
+      return read_input(load_file(command.input_path, kMostInputBytes).text());
+    });
+  }
+  const auto open = [](const std::string& path) {
+    return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
+  };
+  const auto input_recording = open(command.input_recording_path);
+  const auto state = open(command.state_path);
+  const auto field = open(command.field_path);
+  const auto frame = open(command.frame_path);
+  const auto recording = open(command.recording_path);
+  const auto stats = open(command.stats_path);
+  command.play.recording = recording.get();
+  command.play.input_recording = input_recording.get();
+
+  const auto populated = bodies
+                             ? about(command.bodies_path,
+                                     [&] { return std::make_unique<PopulatedWorld>(world_options, bodies); })
+                             : std::make_unique<PopulatedWorld>(world_options, bodies);
+  if (bodies && !command.play.quiet) {
+    tell_placing(command, populated->placing());
+  }
+  PlayResult result;
+  try {
+    result = play(populated.get(), command.play);
+  } catch (const host::ScreenError& error) {
+    throw OutputError(error.what());
+  }
+
+  const ParticleWorld& world = populated->world();
+  if (state != nullptr) {
+    state->write(state_csv(world));
+  }
+  if (field != nullptr) {
+    write_image(field.get(), ImageKind::kPbm, field_image(world.field()));
+  }
+  if (frame != nullptr) {
+    Image image{world.config().width, world.config().height, PixelFormat::kRgb888, {}};
+    draw_world(*populated, &image.pixels);
+    if (command.play.figures_in_files) {
+      draw_figures(image.width_px, image.height_px, result.figures, &image.pixels);
+    }
+    const ImageKind kind = image_kind(command.frame_path).value_or(ImageKind::kPng);
+    write_image(frame.get(), kind, converted(image, pixel_format(kind)));
+  }
+  if (stats != nullptr) {
+    stats->write(particle_stats(*populated, result.counts, result.step_seconds));
+  }
+  const std::array files{input_recording.get(), state.get(),     field.get(),
+                         frame.get(),           recording.get(), stats.get()};
+  for (OutputFile* file : files) {
+    if (file != nullptr) {
+      file->flush();
+    }
+  }
+  for (OutputFile* file : files) {
+    if (file != nullptr) {
+      file->commit();
+    }
+  }
+  if (!command.play.quiet) {
+    std::fputs(particle_summary(*populated, result.counts, result.step_seconds).c_str(), stderr);
+  }
+}
+
+// An option that is a finite number of low .. high.
+void add_real_option(CLI::App& sub, const std::string& name, const std::string& type_name, double low,
+                     double high, const std::function<void(double)>& take, const std::string& help,
+                     const std::string& standard) {
+  add_text_option(
+      sub, name, type_name,
+      [=](const std::string& text) -> std::string {
+        const auto number = parse_real(text);
+        if (!number || *number < low || *number > high) {
+          return "is not a number from " + shortest(low) + " to " + shortest(high);
+        }
+        take(*number);
+        return {};
+      },
+      help)
+      ->default_str(standard);
+}
+
+void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
+  WorldOptions* const world = &command->world;
+  add_text_option(
+      sub, "--size", "WxH",
+      [world](const std::string& text) -> std::string {
+        const std::size_t x = text.find('x');
+        const auto width = parse_whole(text.substr(0, x), 1, kMaxFieldSide);
+        const auto height =
+            x == std::string::npos ? std::nullopt : parse_whole(text.substr(x + 1), 1, kMaxFieldSide);
+        if (!width || !height) {
+          return "is not a size such as 800x600, each side from 1 to " + std::to_string(kMaxFieldSide);
+        }
+        world->width = static_cast<std::int32_t>(*width);
+        world->height = static_cast<std::int32_t>(*height);
+        return {};
+      },
+      "cells of the world, a pixel each")
+      ->default_str("800x600");
+  add_whole_option(
+      sub, "--count", "N", 0, kMaxBalls / 2,
+      [command](std::int64_t count) {
+        command->world.count = static_cast<std::uint32_t>(count);
+        command->count_given = true;
+      },
+      "balls at the start; of --bodies, the first N")
+      ->default_str("693");
+  add_whole_option(
+      sub, "--min-size", "D", 1, kMaxBallDiameter,
+      [world](std::int64_t cells) { world->least_diameter = static_cast<std::int32_t>(cells); },
+      "least diameter of a ball, cells")
+      ->default_str("2");
+  add_whole_option(
+      sub, "--max-size", "D", 1, kMaxBallDiameter,
+      [world](std::int64_t cells) { world->most_diameter = static_cast<std::int32_t>(cells); },
+      "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
+      ->default_str("12");
+  add_real_option(
+      sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
+      "the part of its speed that a ball keeps when it bounces, 0 to 1", "0.8");
+  add_text_option(
+      sub, "--gravity", "X,Y",
+      [command](const std::string& text) -> std::string {
+        constexpr double kMost = kMaxAccelerationQ16 / 65536.0;
+        const std::size_t comma = text.find(',');
+        const auto x = parse_real(text.substr(0, comma));
+        const auto y = comma == std::string::npos ? std::nullopt : parse_real(text.substr(comma + 1));
+        if (!x || !y || std::abs(*x) > kMost || std::abs(*y) > kMost) {
+          return "is not two numbers X,Y from " + shortest(-kMost) + " to " + shortest(kMost);
+        }
+        const auto q16 = [](double value) { return static_cast<std::int32_t>(std::lround(value * 65536)); };
+        command->world.gravity_q16 = {q16(*x), q16(*y)};
+        command->gravity_given = true;
+        return {};
+      },
+      "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
+      ->default_str("0,0.1");
+  add_real_option(
+      sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
+      "random balls start with up to V cells a step on each axis; of --bodies the fastest has V", "3");
+  add_whole_option(
+      sub, "--seed", "S", 0, UINT32_MAX,
+      [world](std::int64_t seed) { world->seed = static_cast<std::uint32_t>(seed); }, "of random balls")
+      ->default_str("1");
+  add_path_option(
+      sub, "--bodies", "FILE", &command->bodies_path,
+      "balls from a file: the number of bodies, the radius of the world, then a line \"x y vx vy m r g b\" "
+      "each. "
+      "The circle of that radius fills the box; area goes with mass, from --max-size down to --min-size; y "
+      "is "
+      "turned; a body whose place is taken goes to the nearest free one; those beyond the box are left out");
+  add_choice_option(
+      sub, "--substeps", {"1", "2", "4", "8", "16"},
+      [world](std::size_t index) { world->substeps_log2 = static_cast<std::int32_t>(index); },
+      "parts that each step is made in")
+      ->default_str("1");
+  add_whole_option(
+      sub, "--subpixel-bits", "N", 1, 15,
+      [world](std::int64_t bits) { world->subpixel_bits = static_cast<std::int32_t>(bits); },
+      "positions are kept to 2^-N cells")
+      ->default_str("15");
+}
+
+void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
+  add_whole_option(
+      sub, "--steps", "N", 0, 1'000'000'000'000,
+      [command](std::int64_t steps) { command->play.steps = static_cast<std::uint64_t>(steps); },
+      "end after N steps (default: where somebody watches, when the window is closed or q is pressed; else "
+      "2000, "
+      "or to the end of a longer --input)");
+  add_choice_option(
+      sub, "--view", {"auto", "none", "window", "terminal"},
+      [command](std::size_t index) {
+        constexpr std::array kKinds{host::ScreenKind::kAuto, host::ScreenKind::kNone,
+                                    host::ScreenKind::kWindow, host::ScreenKind::kTerminal};
+        command->play.view = kKinds[index];
+        command->view_given = index != 0;
+      },
+      "where the world is shown; auto: nowhere where --steps or a file to write (but --record-input) is "
+      "given, "
+      "else in an X11 window where DISPLAY works, else in the terminal where standard output is one, else "
+      "nowhere")
+      ->default_str("auto");
+  add_whole_option(
+      sub, "--eps", "N", 1, 1'000'000,
+      [command](std::int64_t rate) { command->play.rate = static_cast<std::int32_t>(rate); },
+      "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so")
+      ->default_str("60");
+  add_whole_option(
+      sub, "--fps", "N", 1, 1000,
+      [command](std::int64_t rate) { command->play.frames_a_second = static_cast<int>(rate); },
+      "pictures a second on the screen and in a recording (default: 60 in a window, else 30)");
+  add_path_option(sub, "--input", "SCRIPT", &command->input_path,
+                  "play mouse and keys from a file: lines \"TICK: EVENT\", EVENT one of \"key K\" (a "
+                  "character, or space up "
+                  "down left right enter tab escape backspace), \"move X,Y\", \"press BUTTON X,Y\", "
+                  "\"release BUTTON X,Y\" "
+                  "(left, middle, right), \"wheel STEPS X,Y\" and \"end\". A tick is the time of one step, "
+                  "the first is 0; "
+                  "events come before the step of their tick; while paused ticks go on without steps; # "
+                  "begins a comment line");
+  add_path_option(
+      sub, "--record-input", "FILE", &command->input_recording_path,
+      "write all mouse and key events as such a file: with the same other options it gives the same "
+      "world again");
+}
+
+void add_file_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
+  add_path_option(
+      sub, "--state", "FILE.csv", &command->state_path,
+      std::string("write the balls at the end: ") + kStateColumns +
+          "; centre, velocity and half the diameter in 2^-16 cells. The disc's square begins at cell "
+          "floor((x - radius) / 65536 + 1/2); a cell of it belongs to the ball when its centre lies in "
+          "the circle in the middle of that square");
+  add_path_option(sub, "--field", "FILE.pbm", &command->field_path,
+                  "write the collision field at the end as P4: 1 where a ball or a wall is");
+  add_text_option(
+      sub, "-o,--output", "FILE",
+      [command](const std::string& text) {
+        command->frame_path = text;
+        return image_kind(text) ? "" : "does not end in .png, .ppm, .pgm or .pbm";
+      },
+      "write the last picture; - is standard output, as PPM");
+  add_text_option(
+      sub, "--record", "FILE.y4m",
+      [command](const std::string& text) {
+        command->recording_path = text;
+        return text.size() > 4 && text.ends_with(".y4m") ? "" : "does not end in .y4m";
+      },
+      "write moving pictures as YUV4MPEG2, which ffmpeg and mpv play: --fps pictures for --eps steps");
+  sub.add_flag("--figures", command->play.figures_in_files,
+               "also write the figures on these pictures: sizes, bounciness, colliders, Eps")
+      ->disable_flag_override();
+  add_path_option(sub, "--stats", "FILE.json", &command->stats_path,
+                  "write counts, bytes, seconds and the CRC-32 of the state");
+  sub.add_flag("--quiet", command->play.quiet, "no progress bar and no summary on standard error")
+      ->disable_flag_override();
+}
+
+}  // namespace
+
+void add_particles(CLI::App& app) {
+  auto command = std::make_shared<ParticlesCommand>();
+  CLI::App* sub = app.add_subcommand(
+      "particles",
+      "The paper's particle world: balls in a field of bits, to play with by mouse and keys (? lists them).");
+  add_world_options(*sub, command);
+  add_view_options(*sub, command);
+  add_file_options(*sub, command);
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

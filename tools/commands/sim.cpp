@@ -1,0 +1,327 @@
+// thimble sim: the firmware's own application in the host simulator.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "apps/app_table.h"
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "commands/sim_session.h"
+#include "output/image.h"
+#include "output/output_file.h"
+#include "output/progress.h"
+#include "output/units.h"
+#include "readers/file_bytes.h"
+#include "readers/picture.h"
+#include "scene/baking.h"
+#include "scene/board_fit.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr const char* kDefaultBoard = "lm3s6965evb";
+constexpr const char* kDefaultScene = "demo";
+
+struct SimCommand {
+  SceneOptions scene;
+  SessionOptions session;
+  std::string shot_path;
+  std::string check_path;
+  std::string keys_path;
+  std::string record_path;
+};
+
+// The scene as it lies in the board's flash: baked for its display, or a baked file as it is.
+std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
+  const platform::BoardFacts& board = *command.session.board;
+  const auto source = command.scene.open();
+  const std::uint64_t limit = scene_flash_bytes(board);
+  std::vector<std::uint8_t> bytes;
+  if (const BakedScene* baked = source->baked()) {
+    bytes.assign(baked->bytes().begin(), baked->bytes().end());
+  } else {
+    ViewOptions view;
+    view.use_display(&board);
+    BakingOptions options;
+    options.limit_bytes = limit;
+    options.coarsen = command.scene.coarsen;
+    options.brick_map = true;
+    options.name = scene_name(command.scene.arguments.scene);
+    options.camera = [&](int level, const VoxelBox& bounds) {
+      SceneCamera chosen;
+      view.camera(*source, level, bounds, nullptr, &chosen);
+      return chosen;
+    };
+    ProgressBar bar("baking", command.scene.quiet);
+    bytes = bake_scene(*source, options, [&](double done) { bar.update(done); }).bytes;
+  }
+  if (bytes.size() > limit) {
+    throw InputError("takes " + grouped(bytes.size()) + " bytes baked; " + board.name + " has " +
+                     grouped(limit) + " bytes of flash for a scene" +
+                     (source->baked() == nullptr && !command.scene.coarsen
+                          ? "; a smaller --depth may fit, --coarsen merges blocks until it does"
+                          : ""));
+  }
+  return bytes;
+}
+
+// Everything that is read besides the scene: its errors name the file.
+template <class Read>
+auto about(const std::string& path, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw OutputError(path + ": " + error.what());
+  } catch (const host::KeyScriptError& error) {
+    throw OutputError(path + ": " + error.what());
+  }
+}
+
+// How `picture` differs from `wanted`, as a sentence; empty when it does not.
+std::string difference(const Image& picture, const Image& wanted) {
+  std::uint64_t count = 0;
+  std::size_t first = 0;
+  const std::size_t pixels = picture.pixels.size() / 3;
+  for (std::size_t i = pixels; i-- > 0;) {
+    if (!std::equal(picture.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                    picture.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                    wanted.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i))) {
+      ++count;
+      first = i;
+    }
+  }
+  if (count == 0) {
+    return {};
+  }
+  const auto color = [first](const Image& image) {
+    std::array<char, 16> text{};
+    const std::uint8_t* rgb = image.pixels.data() + 3 * first;
+    std::snprintf(text.data(), text.size(), "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    return std::string(text.data());
+  };
+  const auto width = static_cast<std::size_t>(picture.width_px);
+  return grouped(count) + " of " + grouped(pixels) + (count == 1 ? " pixels differs" : " pixels differ") +
+         "; the first is at " + std::to_string(first % width) + "," + std::to_string(first / width) + ": " +
+         color(picture) + " where " + color(wanted) + " should be";
+}
+
+void report(const SimCommand& command, const SessionResult& result) {
+  if (command.scene.quiet) {
+    return;
+  }
+  std::array<char, 64> time{};
+  if (result.mean_frame_seconds != 0) {
+    std::snprintf(time.data(), time.size(), ", %.2f ms each on this machine",
+                  1000 * result.mean_frame_seconds);
+  }
+  std::fprintf(stderr, "%s on %s: %s %s%s\n%s\n", command.session.application->name,
+               command.session.board->name, grouped(result.pictures).c_str(),
+               result.pictures == 1 ? "frame" : "frames", time.data(), memory_text(result.use, "\n").c_str());
+}
+
+// The application's own status is the command's.
+[[noreturn]] void end_with(int status, const std::string& sentence) {
+  std::fprintf(stderr, "thimble: %s\n", printable(sentence).c_str());
+  std::exit(status);
+}
+
+int run_and_write(SimCommand* command, std::string* sentence) {
+  const std::array<std::string, 2> outputs{command->shot_path, command->record_path};
+  const std::array<std::string, 3> inputs{command->scene.arguments.scene, command->check_path,
+                                          command->keys_path};
+  check_distinct(outputs, inputs);
+  const auto open = [](const std::string& path) {
+    return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
+  };
+  const auto shot_file = open(command->shot_path);
+  const auto recording = open(command->record_path);
+  SessionOptions& session = command->session;
+  session.recording = recording.get();
+  const platform::BoardFacts& board = *session.board;
+  std::optional<Image> wanted;
+  if (!command->check_path.empty()) {
+    wanted = about(command->check_path,
+                   [&] { return read_picture(command->check_path, board.width_px, board.height_px); });
+  }
+  if (!command->keys_path.empty()) {
+    session.keys = about(command->keys_path, [&] {
+      return host::KeyScript(load_file(command->keys_path, std::uint64_t{1} << 20).text());
+    });
+  }
+  std::vector<std::uint8_t> scene;
+  if (session.application->wants_scene) {
+    scene = flash_bytes(*command);
+  }
+  session.scene = {scene.data(), scene.size()};
+
+  const SessionResult result = run_session(session);
+  const std::string who = std::string(session.application->name) + " on " + board.name;
+  if (!result.fault.empty()) {
+    *sentence = who + " was stopped: " + result.fault;
+    return result.status;
+  }
+  report(*command, result);
+  if (result.status != 0) {
+    *sentence = who + " ended with status " + std::to_string(result.status);
+    return result.status;
+  }
+  if (result.pictures == 0 && (shot_file != nullptr || wanted || recording != nullptr)) {
+    *sentence = who + " drew no picture";
+    return 1;
+  }
+  const Image picture{board.width_px, board.height_px, PixelFormat::kRgb888,
+                      host::expand_rgb(result.picture)};
+  if (shot_file != nullptr) {
+    const ImageKind kind = image_kind(command->shot_path).value_or(ImageKind::kPng);
+    write_image(shot_file.get(), kind, converted(picture, pixel_format(kind)));
+    shot_file->flush();
+  }
+  if (recording != nullptr) {
+    recording->flush();
+  }
+  for (OutputFile* file : {shot_file.get(), recording.get()}) {
+    if (file != nullptr) {
+      file->commit();
+    }
+  }
+  if (wanted) {
+    const std::string differs = difference(picture, *wanted);
+    if (!differs.empty()) {
+      *sentence = command->check_path + ": " + differs;
+      return 1;
+    }
+    if (!command->scene.quiet) {
+      std::fprintf(stderr, "%s: equal, pixel by pixel\n", printable(command->check_path).c_str());
+    }
+  }
+  return 0;
+}
+
+void run(const SimCommand& given) {
+  SimCommand command = given;
+  SessionOptions& session = command.session;
+  const platform::BoardFacts board = platform::board_for(*session.board, session.application->name);
+  session.board = &board;
+  if (!session.application->wants_scene && !command.scene.arguments.scene.empty()) {
+    throw CLI::ValidationError("SCENE", in_quotes(command.scene.arguments.scene) +
+                                            " is not for the application " + session.application->name +
+                                            ", which draws no scene");
+  }
+  if (command.scene.arguments.scene.empty()) {
+    command.scene.arguments.scene = kDefaultScene;
+  }
+  std::string sentence;
+  int status = 0;
+  try {
+    status = run_and_write(&command, &sentence);
+  } catch (const host::ScreenError& error) {
+    throw OutputError(error.what());
+  } catch (const host::SimulationError& error) {
+    throw OutputError(error.what());
+  }
+  if (status != 0) {
+    end_with(status, sentence);
+  }
+}
+
+void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
+  add_choice_option(
+      sub, "--display", {"auto", "window", "terminal", "none"},
+      [command](std::size_t index) {
+        constexpr std::array kKinds{host::ScreenKind::kAuto, host::ScreenKind::kWindow,
+                                    host::ScreenKind::kTerminal, host::ScreenKind::kNone};
+        command->session.display = kKinds[index];
+      },
+      "where the display is shown; auto: in an X11 window where DISPLAY works, else in the terminal where "
+      "standard output is one, else not at all; a board without a display gets one by window or terminal")
+      ->default_str("auto");
+  add_choice_option(
+      sub, "--theme", {"auto", "oled", "lcd", "plain"},
+      [command](std::size_t index) {
+        constexpr std::array<std::optional<host::Theme>, 4> kThemes{std::nullopt, host::Theme::kOled,
+                                                                    host::Theme::kLcd, host::Theme::kPlain};
+        command->session.theme = kThemes[index];
+      },
+      "how the display looks; auto: as the board's does; pictures in files never have a theme")
+      ->default_str("auto");
+  add_whole_option(
+      sub, "--scale", "N", 1, 32,
+      [command](std::int64_t scale) { command->session.scale = static_cast<std::int32_t>(scale); },
+      "screen pixels a pixel at most (default: as fits)");
+  add_whole_option(
+      sub, "--fps", "N", 1, 1000,
+      [command](std::int64_t rate) { command->session.frames_a_second = static_cast<int>(rate); },
+      "frames a second at most in a window or terminal, and of the recording")
+      ->default_str("30");
+}
+
+void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
+  add_whole_option(
+      sub, "--frames", "N", 1, 1'000'000'000,
+      [command](std::int64_t frames) { command->session.frames = static_cast<std::uint32_t>(frames); },
+      "end after N frames (default: 1 where nobody watches, else when the window is closed or Esc is "
+      "pressed)");
+  add_text_option(
+      sub, "--shot", "FILE",
+      [command](const std::string& text) {
+        command->shot_path = text;
+        return image_kind(text) && text != "-" ? "" : "does not end in .png, .ppm, .pgm or .pbm";
+      },
+      "write the last frame: the display's exact pixels, with 8 bits");
+  add_path_option(
+      sub, "--check", "REF", &command->check_path,
+      "compare the last frame with a PNG, PPM or PGM; status 1 and how many pixels differ, and the "
+      "first, unless they are equal");
+  add_text_option(
+      sub, "--record", "FILE.y4m",
+      [command](const std::string& text) {
+        command->record_path = text;
+        return text.size() > 4 && text.ends_with(".y4m") ? "" : "does not end in .y4m";
+      },
+      "write all frames as YUV4MPEG2, which ffmpeg and mpv play; greys exact (mono), colours as 4:4:4");
+  add_path_option(
+      sub, "--keys", "SCRIPT", &command->keys_path,
+      "buttons and typed text by frame: a file with lines \"FRAME: down BUTTON...\", \"FRAME: up "
+      "BUTTON...\" (up, down, left, right, select) and \"FRAME: type TEXT\" (over the UART, with "
+      "\\n \\r \\t \\\\ \\xHH); a line takes effect before its frame is drawn, frames count from 0; "
+      "# begins a comment");
+}
+
+}  // namespace
+
+void add_sim(CLI::App& app) {
+  const Span<const apps::Application> applications = apps::applications();
+  if (applications.empty()) {
+    return;
+  }
+  auto command = std::make_shared<SimCommand>();
+  command->session.board = platform::find_board(kDefaultBoard);
+  command->session.application = &applications[0];
+  CLI::App* sub = app.add_subcommand(
+      "sim", "Run the firmware's own application on this machine, with a board's RAM, flash and display.");
+  command->scene.add_scene(*sub, false);
+  add_board(*sub, &command->session.board,
+            std::string("whose limits and display count (default: ") + kDefaultBoard + ")");
+  std::vector<std::string> names;
+  for (const apps::Application& application : applications) {
+    names.emplace_back(application.name);
+  }
+  add_choice_option(
+      *sub, "--app", names,
+      [command](std::size_t index) { command->session.application = &apps::applications()[index]; },
+      "the application")
+      ->default_str(names.front());
+  sub->add_flag("--coarsen", command->scene.coarsen,
+                "when the scene does not fit the flash, merge blocks of voxels until it just does")
+      ->disable_flag_override();
+  add_display_options(*sub, command);
+  add_file_options(*sub, command);
+  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no summary on standard error")
+      ->disable_flag_override();
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,53 @@
+/// @file sim_session.h
+/// One run of an application on a simulated board, with somebody watching or nobody.
+#ifndef THIMBLE_TOOLS_COMMANDS_SIM_SESSION_H
+#define THIMBLE_TOOLS_COMMANDS_SIM_SESSION_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/app_table.h"
+#include "boards/board_table.h"
+#include "host/key_script.h"
+#include "host/look.h"
+#include "host/packed_picture.h"
+#include "host/screen.h"
+#include "host/simulation.h"
+#include "output/output_file.h"
+
+namespace thimble::tools {
+
+struct SessionOptions {
+  const platform::BoardFacts* board = nullptr;
+  const apps::Application* application = nullptr;
+  ConstBytes scene;  ///< in flash
+  host::ScreenKind display = host::ScreenKind::kAuto;
+  std::optional<host::Theme> theme;  ///< nothing: the board's own
+  std::int32_t scale = 0;
+  std::uint32_t frames = 0;  ///< 0: as long as it lasts
+  int frames_a_second = 30;  ///< of the screen and of the recording
+  host::KeyScript keys;
+  OutputFile* recording = nullptr;
+};
+
+struct SessionResult {
+  int status = 0;
+  std::string fault;  ///< a sentence where the application was stopped
+  std::uint32_t pictures = 0;
+  host::PackedPicture picture;  ///< the last one
+  host::MemoryUse use;
+  double mean_frame_seconds = 0;  ///< of the application on this machine
+};
+
+/// Runs until the application ends. UART: standard input and output, and with a screen also what is typed
+/// there; a terminal that is the screen shows the last line, and the rest when it is given back. Throws
+/// host::ScreenError, host::SimulationError and OutputError.
+SessionResult run_session(const SessionOptions& options);
+
+/// "RAM 12,288 of 61,440 bytes (20%)" and the like, one a line.
+std::string memory_text(const host::MemoryUse& use, const char* separator);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,351 @@
+#include "particles/player.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "output/units.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::array<const char*, 6> kToolNames{"drag", "attract", "repel", "spawn", "erase", "draw wall"};
+// Cells: how near a ball must be to be taken, how far forces reach, how thick what is erased and drawn is.
+constexpr std::array<std::int32_t, 6> kReaches{12, 120, 120, 1, 12, 3};
+constexpr std::int32_t kMostReach = 1024;
+constexpr std::int32_t kStrengthQ16 = 32768;
+constexpr std::int32_t kGravityStepQ16 = 1311;  // 0.02
+constexpr std::int64_t kCountStep = 10;
+constexpr std::int32_t kMostRate = 1'000'000;
+
+std::size_t index_of(Tool tool) {
+  return static_cast<std::size_t>(tool);
+}
+
+PointerMode mode_of(Tool tool) {
+  switch (tool) {
+    case Tool::kDrag:
+      return PointerMode::kDrag;
+    case Tool::kAttract:
+      return PointerMode::kAttract;
+    case Tool::kRepel:
+      return PointerMode::kRepel;
+    case Tool::kSpawn:
+      return PointerMode::kSpawn;
+    case Tool::kErase:
+      return PointerMode::kErase;
+    case Tool::kWall:
+      break;  // drawn at every event, so that a quick stroke keeps its corners
+  }
+  return PointerMode::kNone;
+}
+
+// The cell of the nearest ball's centre within `reach`, or `at`.
+Vec2i nearest_ball(const ParticleWorld& world, Vec2i at, std::int32_t reach) {
+  Vec2i best = at;
+  std::int64_t least = std::int64_t{reach} * reach + 1;
+  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
+    Particle ball;
+    if (world.particle(id, &ball)) {
+      const Vec2i cell{ball.x_q16 >> 16, ball.y_q16 >> 16};
+      const std::int64_t dx = cell.x - at.x;
+      const std::int64_t dy = cell.y - at.y;
+      if (dx * dx + dy * dy < least) {
+        least = dx * dx + dy * dy;
+        best = cell;
+      }
+    }
+  }
+  return best;
+}
+
+std::string with_decimals(int decimals, double number) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, number);
+  return text.data();
+}
+
+}  // namespace
+
+Player::Player(PopulatedWorld* world, std::int32_t rate)
+    : world_(world), settings_(world->options()), rate_(rate), reach_(kReaches) {
+  strong_gravity_ = settings_.gravity_q16 == Vec2i{} ? kDefaultGravityQ16 : settings_.gravity_q16;
+}
+
+// The left button has the tool that was chosen; the others have one each.
+Tool Player::held_tool() const {
+  return held_button_ == 3 ? Tool::kAttract : held_button_ == 2 ? Tool::kWall : tool_;
+}
+
+void Player::take(const InputEvent& event) {
+  const Vec2i before = place_;
+  switch (event.kind) {
+    case InputKind::kKey:
+      take_key(event.key);
+      return;
+    case InputKind::kEnd:
+      has_ended_ = true;
+      return;
+    case InputKind::kWheel:
+      change_reach(is_held() ? held_tool() : tool_, event.steps);
+      return;
+    case InputKind::kMove:
+    case InputKind::kPress:
+    case InputKind::kRelease:
+      break;
+  }
+  place_ = {event.x, event.y};
+  if (event.kind == InputKind::kPress) {
+    press(event);
+  } else if (is_held() && !is_released_ && held_tool() == Tool::kWall) {
+    world_->world().draw_wall(before, place_, 2 * reach_[index_of(Tool::kWall)] - 1);
+  }
+  if (event.kind == InputKind::kRelease && event.button == held_button_) {
+    is_released_ = true;
+  }
+}
+
+void Player::press(const InputEvent& event) {
+  held_button_ = event.button;
+  is_released_ = false;
+  ParticleWorld& world = world_->world();
+  world.set_pointer(PointerMode::kNone, place_);
+  switch (held_tool()) {
+    case Tool::kDrag:
+      world.set_pointer(PointerMode::kDrag, nearest_ball(world, place_, reach_[index_of(Tool::kDrag)]));
+      break;
+    case Tool::kWall:
+      world.draw_wall(place_, 2 * reach_[index_of(Tool::kWall)] - 1);
+      break;
+    default:
+      break;
+  }
+}
+
+void Player::tick() {
+  ParticleWorld& world = world_->world();
+  if (!stands()) {
+    const Tool tool = held_tool();
+    world.set_pointer(is_held() ? mode_of(tool) : PointerMode::kNone, place_, reach_[index_of(tool)],
+                      kStrengthQ16);
+    world.step();
+    const StepCounters& step = world.counters();
+    ++counts_.steps;
+    counts_.moves += step.moves;
+    counts_.mask_tests += step.mask_tests;
+    counts_.ball_hits += step.ball_hits;
+    counts_.wall_hits += step.wall_hits;
+    counts_.woken += step.woken;
+  }
+  // Only now, so that a click between two steps works in one; in a world that stands it is gone.
+  if (is_released_) {
+    held_button_ = 0;
+    is_released_ = false;
+    world.set_pointer(PointerMode::kNone, place_);
+  }
+  makes_one_ = false;
+  ++ticks_;
+}
+
+void Player::set_gravity(Vec2i gravity_q16) {
+  if (world_->world().set_gravity(gravity_q16) == Status::kOk) {
+    settings_.gravity_q16 = gravity_q16;
+    if (gravity_q16 != Vec2i{}) {
+      strong_gravity_ = gravity_q16;
+    }
+  }
+}
+
+// Adds balls at random places, as far as there is room, or takes those of the highest numbers away.
+void Player::set_count(std::int64_t count) {
+  ParticleWorld& world = world_->world();
+  const std::int64_t wanted = std::clamp<std::int64_t>(count, 0, world.config().capacity);
+  while (world.count() < wanted &&
+         world.spawn_random(static_cast<std::int32_t>(std::lround(settings_.speed * 65536))) == Status::kOk) {
+  }
+  for (std::uint32_t id = world.id_limit(); id > 0 && world.count() > wanted; --id) {
+    static_cast<void>(world.remove(id - 1));
+  }
+  settings_.count = world.count();
+}
+
+void Player::begin_again() {
+  world_->begin_again(settings_);
+  held_button_ = 0;
+  is_released_ = false;
+}
+
+// By an eighth each.
+void Player::change_reach(Tool tool, std::int32_t steps) {
+  std::int32_t& reach = reach_[index_of(tool)];
+  for (; steps != 0; steps += steps < 0 ? 1 : -1) {
+    const std::int32_t part = std::max(1, reach / 8);
+    reach = std::clamp(steps < 0 ? reach - part : reach + part, 1, kMostReach);
+  }
+}
+
+void Player::take_key(const std::string& key) {
+  ParticleWorld& world = world_->world();
+  const auto strength = [&] { return std::max(std::abs(strong_gravity_.x), std::abs(strong_gravity_.y)); };
+  const auto set_sizes = [&](std::int32_t least, std::int32_t most) {
+    if (world.set_diameters(least, most) == Status::kOk) {
+      settings_.least_diameter = least;
+      settings_.most_diameter = most;
+    }
+  };
+  const auto add_bounciness = [&](int hundredths) {
+    const long bounciness = std::clamp(std::lround(100 * settings_.bounciness) + hundredths, 0L, 100L);
+    settings_.bounciness = static_cast<double>(bounciness) / 100;
+    static_cast<void>(world.set_restitution(restitution_q16(settings_.bounciness)));
+  };
+  const auto add_gravity = [&](std::int32_t more) {
+    const std::int32_t size = std::clamp(strength() + more, kGravityStepQ16, kMaxAccelerationQ16);
+    const auto sign = [](std::int32_t value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); };
+    set_gravity({sign(strong_gravity_.x) * size, sign(strong_gravity_.y) * size});
+  };
+  if (key == "left" || key == "right") {
+    set_gravity({key == "left" ? -strength() : strength(), 0});
+    return;
+  }
+  if (key == "up" || key == "down") {
+    set_gravity({0, key == "up" ? -strength() : strength()});
+    return;
+  }
+  if (key == "space") {
+    is_paused_ = !is_paused_;
+    return;
+  }
+  if (key == "escape") {
+    has_ended_ = true;
+    return;
+  }
+  if (key.size() != 1) {
+    return;
+  }
+  switch (key[0]) {
+    case '1':
+    case '2':
+    case '3':
+    case '4':
+    case '5':
+    case '6':
+      tool_ = static_cast<Tool>(key[0] - '1');
+      break;
+    case '[':
+      change_reach(tool_, -1);
+      break;
+    case ']':
+      change_reach(tool_, 1);
+      break;
+    case 'n':
+      set_sizes(settings_.least_diameter - 1, settings_.most_diameter);
+      break;
+    case 'N':
+      set_sizes(settings_.least_diameter + 1, settings_.most_diameter);
+      break;
+    case 'm':
+      set_sizes(settings_.least_diameter, settings_.most_diameter - 1);
+      break;
+    case 'M':
+      set_sizes(settings_.least_diameter, settings_.most_diameter + 1);
+      break;
+    case 'b':
+      add_bounciness(-5);
+      break;
+    case 'B':
+      add_bounciness(5);
+      break;
+    case 'c':
+      set_count(std::int64_t{world.count()} - kCountStep);
+      break;
+    case 'C':
+      set_count(std::int64_t{world.count()} + kCountStep);
+      break;
+    case 'e':
+      rate_ = std::max(rate_ - std::max(1, rate_ / 5), 1);
+      break;
+    case 'E':
+      rate_ = std::min(rate_ + std::max(1, rate_ / 4), kMostRate);
+      break;
+    case 'g':
+      add_gravity(-kGravityStepQ16);
+      break;
+    case 'G':
+      add_gravity(kGravityStepQ16);
+      break;
+    case '0':
+      set_gravity(settings_.gravity_q16 == Vec2i{} ? strong_gravity_ : Vec2i{});
+      break;
+    case '.':
+      is_paused_ = true;
+      makes_one_ = true;
+      break;
+    case 'x':
+      world.erase_box(world.field().bounds());
+      break;
+    case 'r':
+      begin_again();
+      break;
+    case 'o':
+      shows_figures_ = !shows_figures_;
+      break;
+    case '?':
+    case 'h':
+      shows_help_ = !shows_help_;
+      break;
+    case 'q':
+      has_ended_ = true;
+      break;
+    default:
+      break;
+  }
+}
+
+std::string Player::figures(double eps) const {
+  return "Min Size: " + std::to_string(settings_.least_diameter) +
+         "\nMax Size: " + std::to_string(settings_.most_diameter) +
+         "\nBounciness: " + with_decimals(6, settings_.bounciness) +
+         "\n\nTotal Colliders: " + std::to_string(world_->world().count()) +
+         "\nEps: " + with_decimals(6, eps);
+}
+
+std::string Player::figures_line(double eps) const {
+  return "Min Size: " + std::to_string(settings_.least_diameter) +
+         "  Max Size: " + std::to_string(settings_.most_diameter) +
+         "  Bounciness: " + with_decimals(2, settings_.bounciness) +
+         "  Total Colliders: " + std::to_string(world_->world().count()) + "  Eps: " + with_decimals(1, eps);
+}
+
+std::string Player::tool_text() const {
+  const Tool tool = is_held() ? held_tool() : tool_;
+  const std::string reach = tool == Tool::kSpawn ? "" : " within " + std::to_string(reach_[index_of(tool)]);
+  return "mouse: " + std::string(kToolNames[index_of(tool)]) + reach + (is_held() ? " *" : "");
+}
+
+std::string Player::world_text() const {
+  return "asleep " + grouped(world_->world().asleep()) + "   step " + grouped(counts_.steps) +
+         (is_paused_ ? "   PAUSED" : "");
+}
+
+std::string Player::help() {
+  return "Mouse  left button: the tool chosen\n"
+         "       middle: draws a wall    right: attracts\n"
+         "       wheel, [ ]: reach of the tool\n"
+         " 1 drag   2 attract  3 repel\n"
+         " 4 spawn  5 erase    6 draw wall\n"
+         " x erases all walls\n"
+         "\n"
+         "Keys   small letter less, capital more\n"
+         " n N  Min Size  } of balls\n"
+         " m M  Max Size  } that come\n"
+         " b B  Bounciness\n"
+         " c C  Total Colliders, by 10\n"
+         " e E  Eps: steps a second\n"
+         " g G  gravity    arrows: where it pulls\n"
+         " 0    gravity off and on\n"
+         " space pause   . one step   r reset\n"
+         " o figures on and off\n"
+         " ? this help   q ends";
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,90 @@
+/// @file player.h
+/// What keys and mouse do to a particle world, and how its time passes.
+///
+/// Everything that happens is decided by the events and the ticks between them (input_script.h), so the same
+/// events give the same world, watched or not.
+#ifndef THIMBLE_TOOLS_PARTICLES_PLAYER_H
+#define THIMBLE_TOOLS_PARTICLES_PLAYER_H
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "particles/input_script.h"
+#include "particles/populated_world.h"
+
+namespace thimble::tools {
+
+enum class Tool : std::uint8_t { kDrag, kAttract, kRepel, kSpawn, kErase, kWall };
+
+/// Sums over all steps.
+struct PlayedCounts {
+  std::uint64_t steps = 0;
+  std::uint64_t moves = 0;
+  std::uint64_t mask_tests = 0;
+  std::uint64_t ball_hits = 0;
+  std::uint64_t wall_hits = 0;
+  std::uint64_t woken = 0;
+};
+
+class Player {
+ public:
+  /// `world` outlives it. `rate`: ticks a second that somebody who watches sees, 1 .. 1,000,000.
+  Player(PopulatedWorld* world, std::int32_t rate);
+
+  /// An event of this tick.
+  void take(const InputEvent& event);
+  /// Lets a tick pass.
+  void tick();
+
+  std::uint64_t ticks() const { return ticks_; }
+  const PlayedCounts& counts() const { return counts_; }
+  /// Whether ticks pass without steps until the next event.
+  bool stands() const { return is_paused_ && !makes_one_; }
+  bool has_ended() const { return has_ended_; }
+  bool shows_help() const { return shows_help_; }
+  bool shows_figures() const { return shows_figures_; }
+  std::int32_t rate() const { return rate_; }
+  /// Whether the next tick may change what is seen.
+  bool is_moving() const { return !stands() && (world_->world().awake() > 0 || is_held()); }
+
+  /// The five figures of the paper's Figure 1, a line each; `eps` is the rate of steps.
+  std::string figures(double eps) const;
+  /// The same in one line.
+  std::string figures_line(double eps) const;
+  /// What the mouse does, and how the world fares; up to 32 characters each.
+  std::string tool_text() const;
+  std::string world_text() const;
+  static std::string help();
+
+ private:
+  bool is_held() const { return held_button_ != 0; }
+  Tool held_tool() const;
+  void take_key(const std::string& key);
+  void change_reach(Tool tool, std::int32_t steps);
+  void press(const InputEvent& event);
+  void set_count(std::int64_t count);
+  void set_gravity(Vec2i gravity_q16);
+  void begin_again();
+
+  PopulatedWorld* world_;
+  WorldOptions settings_;  // as the keys have changed them
+  std::int32_t rate_;
+  Tool tool_ = Tool::kDrag;
+  std::array<std::int32_t, 6> reach_;
+  Vec2i place_;
+  std::uint8_t held_button_ = 0;
+  bool is_released_ = false;
+  Vec2i strong_gravity_;  // what 0 turns on again
+  bool is_paused_ = false;
+  bool makes_one_ = false;
+  bool has_ended_ = false;
+  bool shows_help_ = false;
+  bool shows_figures_ = true;
+  std::uint64_t ticks_ = 0;
+  PlayedCounts counts_;
+};
+
+}  // namespace thimble::tools
+
+#endif

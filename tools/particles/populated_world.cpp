@@ -1,0 +1,161 @@
+#include "particles/populated_world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/ball_color.h"
+#include "output/units.h"
+#include "readers/source.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr double kOne = 65536;
+constexpr std::int32_t kSearchCells = 64;
+constexpr std::uint32_t kSpareBalls = 1000;
+
+ParticleConfig config_of(const WorldOptions& options) {
+  ParticleConfig config;
+  config.width = options.width;
+  config.height = options.height;
+  config.capacity = std::min(kMaxBalls, std::max(2 * options.count, kSpareBalls));
+  config.least_diameter = options.least_diameter;
+  config.most_diameter = kMaxBallDiameter;  // so that larger ones can come later
+  config.restitution_q16 = restitution_q16(options.bounciness);
+  config.gravity_q16 = options.gravity_q16;
+  config.seed = options.seed;
+  config.substeps_log2 = options.substeps_log2;
+  config.subpixel_bits = options.subpixel_bits;
+  return config;
+}
+
+// The cells within kSearchCells, the nearest first; those of one distance in reading order.
+std::vector<Vec2i> places_around() {
+  const auto square = [](const Vec2i& place) { return place.x * place.x + place.y * place.y; };
+  std::vector<Vec2i> places;
+  for (std::int32_t y = -kSearchCells; y <= kSearchCells; ++y) {
+    for (std::int32_t x = -kSearchCells; x <= kSearchCells; ++x) {
+      if (square({x, y}) <= kSearchCells * kSearchCells) {
+        places.push_back({x, y});
+      }
+    }
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const Vec2i& one, const Vec2i& other) { return square(one) < square(other); });
+  return places;
+}
+
+std::int32_t to_q16(double cells) {
+  return static_cast<std::int32_t>(std::lround(cells * kOne));
+}
+
+}  // namespace
+
+std::uint32_t restitution_q16(double bounciness) {
+  return static_cast<std::uint32_t>(std::lround(bounciness * kOne));
+}
+
+PopulatedWorld::PopulatedWorld(const WorldOptions& options, const std::optional<Bodies>& bodies)
+    : options_(options), bodies_(bodies), bytes_(particles_bytes(config_of(options))) {
+  const std::uint32_t came = fill();
+  if (bodies_) {
+    if (came == 0 && options_.count != 0) {
+      throw InputError("none of the " + grouped(options_.count) + " bodies lies in a box of " +
+                       std::to_string(options_.width) + " x " + std::to_string(options_.height) + " cells");
+    }
+    return;
+  }
+  if (came != options_.count) {
+    throw InputError(grouped(options_.count) + " balls of " + std::to_string(options_.least_diameter) +
+                     " to " + std::to_string(options_.most_diameter) + " cells do not fit into " +
+                     std::to_string(options_.width) + " x " + std::to_string(options_.height) + " cells; " +
+                     grouped(came) + " did");
+  }
+}
+
+std::uint32_t PopulatedWorld::fill() {
+  if (ParticleWorld::init({bytes_.data(), bytes_.size()}, config_of(options_), &world_) != Status::kOk ||
+      world_.set_diameters(options_.least_diameter, options_.most_diameter) != Status::kOk) {
+    throw InputError("a value of the world is beyond its limits");
+  }
+  if (bodies_) {
+    place_bodies();
+    return world_.count();
+  }
+  const std::int32_t speed = to_q16(options_.speed);
+  while (world_.count() < options_.count && world_.spawn_random(speed) == Status::kOk) {
+  }
+  return world_.count();
+}
+
+void PopulatedWorld::place_bodies() {
+  placing_ = {};
+  colors_.clear();
+  const std::vector<Body>& bodies = bodies_->bodies;
+  const std::size_t count = std::min<std::size_t>(bodies.size(), options_.count);
+  const double scale = std::min(options_.width, options_.height) / (2 * bodies_->radius);
+  const auto column_of = [&](const Body& body) { return options_.width / 2.0 + body.x * scale; };
+  const auto row_of = [&](const Body& body) { return options_.height / 2.0 - body.y * scale; };
+  const auto is_inside = [&](const Body& body) {
+    const double x = column_of(body);
+    const double y = row_of(body);
+    return x >= 0 && y >= 0 && x < options_.width && y < options_.height;
+  };
+  double heaviest = 0;
+  double fastest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_inside(bodies[i])) {
+      heaviest = std::max(heaviest, bodies[i].mass);
+      fastest = std::max({fastest, std::abs(bodies[i].vx), std::abs(bodies[i].vy)});
+    }
+  }
+  const std::vector<Vec2i> places = places_around();
+  const double speed_scale = fastest > 0 ? options_.speed / fastest : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Body& body = bodies[i];
+    if (!is_inside(body)) {
+      ++placing_.outside;
+      continue;
+    }
+    const auto diameter = std::clamp(
+        static_cast<std::int32_t>(std::lround(options_.most_diameter * std::sqrt(body.mass / heaviest))),
+        options_.least_diameter, options_.most_diameter);
+    const std::int32_t x = to_q16(column_of(body));
+    const std::int32_t y = to_q16(row_of(body));
+    const std::int32_t vx = to_q16(body.vx * speed_scale);
+    const std::int32_t vy = to_q16(-body.vy * speed_scale);
+    const auto* const free_place =
+        std::find_if(places.data(), places.data() + places.size(), [&](const Vec2i& place) {
+          return world_.spawn(x + place.x * 65536, y + place.y * 65536, vx, vy, diameter, nullptr) ==
+                 Status::kOk;
+        });
+    const bool is_placed = free_place != places.data() + places.size();
+    placing_.moved += is_placed && free_place != places.data() ? 1U : 0U;
+    if (!is_placed) {
+      ++placing_.crowded;
+      continue;
+    }
+    ++placing_.placed;
+    colors_.push_back(body.color);
+  }
+}
+
+Rgb8 PopulatedWorld::color_of(const Particle& ball) const {
+  if (ball.id < colors_.size()) {
+    return ball.asleep ? apps::resting(colors_[ball.id]) : colors_[ball.id];
+  }
+  return apps::ball_color(ball.diameter, ball.asleep);
+}
+
+void PopulatedWorld::begin_again(const WorldOptions& options) {
+  const std::uint32_t count = std::min(options.count, world_.config().capacity);
+  options_ = options;
+  options_.count = count;
+  const std::size_t needed = particles_bytes(config_of(options_));
+  if (needed > bytes_.size()) {
+    bytes_.resize(needed);
+  }
+  fill();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,83 @@
+/// @file populated_world.h
+/// A particle world with its bytes, its balls and their colours, as `thimble particles` begins it.
+#ifndef THIMBLE_TOOLS_PARTICLES_POPULATED_WORLD_H
+#define THIMBLE_TOOLS_PARTICLES_POPULATED_WORLD_H
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "particles/bodies.h"
+#include "thimble/particles.h"
+
+namespace thimble::tools {
+
+/// The gravity of the paper's world in this project: 0.1 cells a step a step, down the picture.
+inline constexpr Vec2i kDefaultGravityQ16{0, 6554};
+
+/// How a world begins.
+struct WorldOptions {
+  std::int32_t width = 800;
+  std::int32_t height = 600;
+  std::uint32_t count = 693;
+  std::int32_t least_diameter = 2;
+  std::int32_t most_diameter = 12;
+  double bounciness = 0.8;
+  Vec2i gravity_q16 = kDefaultGravityQ16;
+  std::uint32_t seed = 1;
+  double speed = 3;  ///< of random balls on each axis, of the fastest body; cells a step
+  std::int32_t substeps_log2 = 0;
+  std::int32_t subpixel_bits = 15;
+};
+
+/// What became of the bodies of a file.
+struct Placing {
+  std::uint32_t placed = 0;
+  std::uint32_t moved = 0;    ///< of those, to the nearest free place
+  std::uint32_t outside = 0;  ///< left out: beyond the box
+  std::uint32_t crowded = 0;  ///< left out: no free place near
+};
+
+/// Balls are numbered as they come. There is room for twice as many as it begins with, and 1,000 at least,
+/// for a hand that adds some.
+///
+/// Bodies: the circle of the file's radius touches the nearer sides of the box, in its middle; y is turned. A
+/// ball's area goes with the mass, from the largest diameter down to the least; speeds so that the fastest
+/// body has `speed`. Where the place is taken, the nearest free one within 64 cells is.
+class PopulatedWorld {
+ public:
+  /// Throws InputError when not all random balls fit, saying how many did, or no body does.
+  PopulatedWorld(const WorldOptions& options, const std::optional<Bodies>& bodies);
+  PopulatedWorld(const PopulatedWorld&) = delete;
+  PopulatedWorld& operator=(const PopulatedWorld&) = delete;
+
+  ParticleWorld& world() { return world_; }
+  const ParticleWorld& world() const { return world_; }
+  const WorldOptions& options() const { return options_; }
+  const Placing& placing() const { return placing_; }
+  bool has_bodies() const { return bodies_.has_value(); }
+
+  /// The colour of ball `id` (apps/ball_color.h, or the file's), at rest darker.
+  Rgb8 color_of(const Particle& ball) const;
+
+  /// Begins again with other sizes, bounciness, gravity or count; as many balls as fit.
+  void begin_again(const WorldOptions& options);
+
+ private:
+  std::uint32_t fill();
+  void place_bodies();
+
+  WorldOptions options_;
+  std::optional<Bodies> bodies_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<Rgb8> colors_;  // of bodies, by number; a ball that came later has none
+  Placing placing_;
+  ParticleWorld world_;
+};
+
+/// What restitution a bounciness of 0 .. 1 is.
+std::uint32_t restitution_q16(double bounciness);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,101 @@
+#include "readers/oct.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace thimble::tools {
+namespace {
+
+// "TMS"; the version follows.
+constexpr std::array<std::uint8_t, 3> kMagic{0x54, 0x4D, 0x53};
+constexpr std::size_t kVersionOffset = 3;
+constexpr std::size_t kSizeOffset = 4;
+
+std::uint32_t load32(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
+         static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
+}
+
+}  // namespace
+
+bool looks_like_oct(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+}
+
+Source read_oct(const SharedBytes& file, const Progress&) {
+  const auto bytes = file.bytes;
+  // What a person can do something about gets a sentence of its own.
+  if (!looks_like_oct(bytes)) {
+    throw InputError("not a scene baked by thimble bake (its first bytes are not TMS)");
+  }
+  if (bytes.size() > kVersionOffset && bytes[kVersionOffset] != kBakedVersion) {
+    throw InputError("baked in version " + std::to_string(bytes[kVersionOffset]) +
+                     " of the format, this command reads version " + std::to_string(kBakedVersion) +
+                     "; bake it again");
+  }
+  if (bytes.size() >= kBakedHeaderBytes && load32(bytes, kSizeOffset) != bytes.size()) {
+    throw InputError("holds " + std::to_string(bytes.size()) + " bytes, its header says " +
+                     std::to_string(load32(bytes, kSizeOffset)) +
+                     (load32(bytes, kSizeOffset) > bytes.size() ? ": it is truncated" : ""));
+  }
+  const ConstBytes view{bytes.data(), bytes.size()};
+  std::uint32_t place = 0;
+  if (const char* fault = BakedScene::validate(view, &place)) {
+    throw InputError("damaged at " + std::to_string(place) + ": " + fault);
+  }
+  BakedFile result;
+  result.file = file;
+  if (BakedScene::open(view, &result.scene) != Status::kOk) {
+    throw InputError("damaged");
+  }
+  return result;
+}
+
+void for_each_block(const CompactTree& tree, const VisitBlock& visit) {
+  if (tree.empty()) {
+    return;
+  }
+  struct Frame {
+    std::uint32_t node = 0;
+    std::uint32_t next_child = 0;
+    unsigned next_octant = 0;
+    Vec3i corner;
+  };
+  std::array<Frame, kMaxLevel + 1> stack{};
+  int level = tree.level();
+  const auto enter = [&](std::uint32_t node, const Vec3i& corner) {
+    if (tree.mask(node) == 0) {
+      visit(corner, level, tree.block_material(node));
+      ++level;
+      return;
+    }
+    stack[static_cast<std::size_t>(level)] = {node, tree.first_child(node), 0, corner};
+  };
+  enter(0, {});
+  while (level <= tree.level()) {
+    Frame& frame = stack[static_cast<std::size_t>(level)];
+    const unsigned mask = tree.mask(frame.node);
+    while (frame.next_octant < 8 && ((mask >> frame.next_octant) & 1U) == 0) {
+      ++frame.next_octant;
+    }
+    if (frame.next_octant == 8) {
+      ++level;
+      continue;
+    }
+    const unsigned octant = frame.next_octant++;
+    const std::uint32_t child = frame.next_child++;
+    Vec3i corner = frame.corner;
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[axis] += ((octant >> axis) & 1U) != 0 ? std::int32_t{1} << (level - 1) : 0;
+    }
+    if (level == 1) {
+      visit(corner, 0, tree.voxel_material(child));
+      continue;
+    }
+    --level;
+    enter(child, corner);
+  }
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,263 @@
+#include "scene/baking.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
+#include "readers/oct.h"
+#include "scene/built_scene.h"
+#include "scene/generators.h"
+#include "scene/host_memory.h"
+#include "thimble/brick_map.h"
+#include "thimble/octree.h"
+
+namespace thimble::tools {
+namespace {
+
+// Colours up to the last one that the tree uses.
+std::vector<Rgb8> used_palette(const SceneSource& source, const CompactTree& tree) {
+  int last = tree.uniform_material();
+  if (tree.many_materials()) {
+    last = 0;
+    for_each_block(tree,
+                   [&](const Vec3i&, int, std::uint8_t material) { last = std::max<int>(last, material); });
+  }
+  std::vector<Rgb8> palette;
+  for (int index = 0; index <= last && !tree.empty(); ++index) {
+    const Rgb color = source.palette()[static_cast<std::size_t>(index)].color;
+    palette.push_back({color.r, color.g, color.b});
+  }
+  return palette;
+}
+
+// The largest front of `text` within the limit that ends between two characters of UTF-8.
+std::string cut_off(std::string text) {
+  if (text.size() > kMaxNameBytes) {
+    std::size_t size = kMaxNameBytes;
+    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) {
+      --size;
+    }
+    text.resize(size);
+  }
+  return text;
+}
+
+// The parts of a baked scene around a tree.
+class Assembly {
+ public:
+  Assembly(const SceneSource& source, const BakingOptions& options, const CompactTree& tree)
+      : palette_(used_palette(source, tree)), name_(cut_off(options.name)) {
+    parts_.tree = {tree.bytes(), tree.size_bytes()};
+    parts_.palette = {palette_.data(), palette_.size()};
+    parts_.name = {reinterpret_cast<const std::uint8_t*>(name_.data()), name_.size()};
+    if (options.camera) {
+      camera_ = options.camera(tree.level(), tree.bounds());
+      parts_.camera = &camera_;
+    }
+  }
+  Assembly(const Assembly&) = delete;
+  Assembly& operator=(const Assembly&) = delete;
+
+  std::size_t bytes() const { return baked_bytes(parts_); }
+
+  /// Adds a brick map of the tree, unless the world has none or all of it would then exceed `limit`.
+  void add_brick_map(const CompactTree& tree, std::uint64_t limit) {
+    if (tree.empty() || tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel) {
+      return;
+    }
+    map_.resize(most_brick_map_bytes(tree.level()) / sizeof(std::uint64_t) + 1);
+    std::size_t written = 0;
+    const Bytes room{reinterpret_cast<std::uint8_t*>(map_.data()), map_.size() * sizeof(std::uint64_t)};
+    if (BrickMap::build(tree, room, &written) != Status::kOk) {
+      return;  // more bricks than a map has numbers for
+    }
+    parts_.brick_map = {room.data, written};
+    if (bytes() > limit) {
+      parts_.brick_map = {};
+    }
+  }
+
+  void write(Baked* result) const {
+    const std::size_t size = bytes();
+    if (size == SIZE_MAX) {
+      throw InputError("too large to be baked: a baked scene holds less than 4 GiB");
+    }
+    result->bytes.resize(size);
+    if (bake(parts_, {result->bytes.data(), size}) != Status::kOk ||
+        BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk) {
+      throw InputError("internal error: the scene cannot be baked");
+    }
+  }
+
+ private:
+  std::vector<Rgb8> palette_;
+  std::string name_;
+  SceneCamera camera_;
+  std::vector<std::uint64_t> map_;  // for its alignment
+  BakedParts parts_;
+};
+
+// A pool that can be set back to where it was.
+class Coarsener {
+ public:
+  explicit Coarsener(const CompactTree& tree) : memory_(HostMemory::largest()) {
+    if (octree_.init(memory_.bytes(), tree.level()) != Status::kOk) {
+      throw InputError("internal error: no pool to coarsen in");
+    }
+    // In Morton order, so that the passes over the pool go through memory from front to back.
+    for_each_block(tree, [&](const Vec3i& at, int level, std::uint8_t material) {
+      if (octree_.insert_block(at, level, material) != Status::kOk) {
+        throw InputError("the scene does not fit into this machine's memory");
+      }
+    });
+    save();
+  }
+
+  const Octree& octree() const { return octree_; }
+  std::uint64_t most_bytes() const { return most_bytes_; }
+
+  void save() {
+    kept_ = octree_;
+    const std::size_t used = octree_.high_water_bytes() + alignof(std::uint64_t);
+    kept_bytes_.assign(memory_.bytes().data, memory_.bytes().data + std::min(used, memory_.bytes().size));
+    most_bytes_ = std::max<std::uint64_t>(most_bytes_, 2 * kept_bytes_.size());
+  }
+  void restore() {
+    octree_ = kept_;
+    std::memcpy(memory_.bytes().data, kept_bytes_.data(), kept_bytes_.size());
+  }
+  void coarsen_at(int step) { octree_.coarsen_at(step); }
+  void coarsen_to(std::uint64_t nodes) {
+    if (octree_.coarsen_to(static_cast<std::size_t>(nodes)) != Status::kOk) {
+      throw InputError("internal error: the tree does not coarsen");
+    }
+  }
+  /// The pool as a compact tree; 0 bytes where it is too large for one.
+  std::size_t tree_bytes() const { return compact_bytes(compact_shape(octree_)); }
+  std::vector<std::uint8_t> tree() const {
+    std::vector<std::uint8_t> bytes(tree_bytes());
+    std::size_t written = 0;
+    if (bytes.empty() ||
+        compact_from_octree(octree_, {bytes.data(), bytes.size()}, &written) != Status::kOk) {
+      throw InputError("internal error: the coarsened tree cannot be written");
+    }
+    return bytes;
+  }
+
+ private:
+  HostMemory memory_;
+  Octree octree_;
+  Octree kept_;
+  std::vector<std::uint8_t> kept_bytes_;
+  std::uint64_t most_bytes_ = 0;
+};
+
+// A tree of at most `limit` bytes that merging gives, less than 1/1024 of the limit or one merge below it;
+// the smallest of all where none is small enough. Coarsening is nested: what a larger pool merges, a smaller
+// one merges too, so each trial starts from the last that was too large.
+std::vector<std::uint8_t> coarsened_tree(const CompactTree& exact, std::uint64_t limit,
+                                         std::uint64_t* work_bytes, const Progress& progress) {
+  Coarsener pool(exact);
+  std::uint64_t high = pool.octree().nodes_used();  // so many nodes are too many
+  std::size_t best_bytes = 0;
+  // Whether the pool's tree fits. If so it goes back to the last that did not, else on from here.
+  int trials = 0;
+  const auto fits = [&] {
+    if (progress) {
+      progress(1 - 1.0 / (1 + ++trials));
+    }
+    const std::size_t size = pool.tree_bytes();
+    if (size == 0 || size > limit) {
+      high = pool.octree().nodes_used();
+      pool.save();
+      return false;
+    }
+    best_bytes = size;
+    return true;
+  };
+  // First prices, a pass over the nodes each: the trees are then near the right size for the second search,
+  // which needs many.
+  int cheap = -1;
+  int dear = Octree::kPriceSteps;
+  std::uint64_t low = 0;  // so many nodes fit, or none do
+  while (cheap + 1 < dear) {
+    const int step = cheap + (dear - cheap) / 2;
+    pool.coarsen_at(step);
+    if (fits()) {
+      dear = step;
+      low = pool.octree().nodes_used();
+      pool.restore();
+    } else {
+      cheap = step;
+    }
+  }
+  bool by_price = true;
+  while (low + 1 < high && (best_bytes == 0 || best_bytes < limit - limit / 1024)) {
+    // Of so many nodes at most; a merge may save many at once.
+    const std::uint64_t most = low + (high - low) / 2;
+    pool.coarsen_to(most);
+    if (fits()) {
+      low = most;
+      by_price = false;
+      pool.restore();
+    }
+  }
+  // The best once more, which takes longer to write than to make.
+  if (best_bytes != 0 && by_price) {
+    pool.coarsen_at(dear);
+  } else {
+    pool.coarsen_to(std::max<std::uint64_t>(1, low));
+  }
+  *work_bytes = pool.most_bytes();
+  return pool.tree();
+}
+
+}  // namespace
+
+Baked bake_scene(const SceneSource& source, const BakingOptions& options, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Baked result;
+  const std::uint64_t limit = options.limit_bytes.value_or(UINT32_MAX);
+  const BuiltScene built(source, {}, progress);
+  const CompactTree& exact = built.compact();
+  Assembly whole(source, options, exact);
+  result.work_bytes = built.high_water_bytes();
+  result.fits = whole.bytes() <= limit;
+  if (result.fits || !options.coarsen) {
+    if (options.brick_map) {
+      whole.add_brick_map(exact, limit);
+    }
+    whole.write(&result);
+  } else {
+    // What stands around the tree takes the same room whatever the tree, or less: merging can only leave
+    // materials unused.
+    const std::uint64_t around = whole.bytes() - exact.size_bytes();
+    std::uint64_t pool_bytes = 0;
+    const std::vector<std::uint8_t> bytes =
+        coarsened_tree(exact, limit > around ? limit - around : 0, &pool_bytes, progress);
+    result.work_bytes += pool_bytes;
+    CompactTree tree;
+    if (CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
+      throw InputError("internal error: the coarsened tree does not open");
+    }
+    Assembly coarse(source, options, tree);
+    result.fits = coarse.bytes() <= limit;
+    if (options.brick_map) {
+      coarse.add_brick_map(tree, limit);
+    }
+    coarse.write(&result);
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+std::string scene_name(const std::string& scene) {
+  if (parse_generator(scene)) {
+    return scene;
+  }
+  return std::filesystem::path(scene).filename().string();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,52 @@
+/// @file baking.h
+/// From a scene to the bytes of a baked one, within a limit.
+#ifndef THIMBLE_TOOLS_SCENE_BAKING_H
+#define THIMBLE_TOOLS_SCENE_BAKING_H
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene_source.h"
+#include "thimble/baked_scene.h"
+
+namespace thimble::tools {
+
+struct BakingOptions {
+  std::optional<std::uint64_t> limit_bytes;  ///< of the baked scene
+  bool coarsen = false;                      ///< merge blocks until it keeps the limit
+  /// Add a brick map (brick_map.h), which makes frames on a chip faster, where the world has one and it keeps
+  /// the limit.
+  bool brick_map = false;
+  std::string name;  ///< cut off at kMaxNameBytes
+  /// Chooses the camera once the tree is known; without it the scene gets none.
+  std::function<SceneCamera(int level, const VoxelBox& bounds)> camera;
+};
+
+/// A baked scene and what its making took.
+struct Baked {
+  std::vector<std::uint8_t> bytes;
+  BakedScene scene;  ///< views into `bytes`; moving this keeps them, copying does not
+  std::uint64_t work_bytes = 0;
+  double seconds = 0;
+  /// Whether it keeps the limit. If not, it is the scene as it is (or, coarsened, as small as it gets).
+  bool fits = true;
+
+  Baked() = default;
+  Baked(Baked&&) = default;
+  Baked& operator=(Baked&&) = default;
+};
+
+/// Bakes `source`. With `coarsen` and a limit that the exact tree does not keep, blocks are merged in the
+/// order of law 1 (octree.h) until it does: what is left of the limit is then less than 1/1024 of it, or than
+/// one merge saves. Throws InputError.
+Baked bake_scene(const SceneSource& source, const BakingOptions& options, const Progress& progress = {});
+
+/// What a baked scene is called: a file's name without its folder, a generator as it is written.
+std::string scene_name(const std::string& scene);
+
+}  // namespace thimble::tools
+
+#endif
