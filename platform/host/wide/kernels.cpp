@@ -332,6 +332,71 @@ HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* k
   pairs.count = 0;
 }
 
+// Of the pixels (x .. x + 24, y), a bit each: whether they are not covered. Lanes outside `mask` get numbers
+// without meaning.
+HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) {
+  const U32 d;
+  // Words need not be aligned: the byte that holds the first pixel begins one.
+  const auto byte = hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths.first_row))),
+                                    hn::Set(d, static_cast<uint32_t>(depths.words) * 4)),
+                            hn::ShiftRight<3>(x));
+  const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
+#if HWY_TARGET == HWY_SCALAR
+  uint32_t word = 0;
+  __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths.covered) + hn::GetLane(safe), sizeof(word));
+  const auto covered = hn::Set(d, word);
+#else
+  const auto covered = hn::GatherOffset(d, depths.covered, hn::BitCast(I32(), safe));
+#endif
+  return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
+}
+
+// Makes candidates of the boxes that wait: pairs with each of their pixels, but for covered ones, until
+// something goes into the picture (`kept`).
+template <bool kPerspective, bool kUnit>
+HWY_NOINLINE void pair_boxes(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  Boxes& boxes = batch->boxes;
+  Pairs& waiting = batch->waiting;
+  const auto low_half = hn::Set(du, 0xFFFFU);
+  for (size_t at = 0; at < boxes.count; at += lanes) {
+    const auto live = hn::FirstN(d, boxes.count - at < lanes ? boxes.count - at : lanes);
+    const auto entry = hn::Load(du, boxes.entry + at);
+    const auto number = hn::Load(du, boxes.number + at);
+    const auto place = hn::Load(du, boxes.place + at);
+    const auto wide = hn::Load(du, boxes.wide + at);
+    const auto x = hn::And(place, low_half);
+    const auto y = hn::ShiftRight<16>(place);
+    const auto wide_x = hn::And(wide, low_half);
+    const auto wide_y = hn::ShiftRight<16>(wide);
+    auto in_row = live;
+    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+      auto in_column = in_row;
+      auto open = hn::Set(du, UINT32_MAX);
+      const bool rejects = batch->all_behind && !*kept;
+      if (rejects) {
+        open = open_at(depths, in_row, x, hn::Add(y, hn::Set(du, down)));
+      }
+      for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
+        auto chosen = in_column;
+        if (rejects) {
+          chosen = hn::And(chosen, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
+        }
+        append(chosen, entry, number, hn::Add(place, hn::Set(du, down << 16 | across)), &waiting);
+        if (waiting.count + lanes > Pairs::kSize) {
+          test_waiting<kPerspective, kUnit>(frame, depths, kept, batch);
+        }
+        in_column = hn::And(in_column, hn::RebindMask(d, hn::Gt(wide_x, hn::Set(du, across))));
+      }
+      in_row = hn::And(in_row, hn::RebindMask(d, hn::Gt(wide_y, hn::Set(du, down))));
+    }
+  }
+  boxes.count = 0;
+  batch->all_behind = true;
+}
+
 // A box that covers many pixels: along the rows of its rectangle, a vector of pixels at a time, straight into
 // the picture. `reject`: covered pixels need no look.
 template <bool kPerspective>
@@ -461,6 +526,8 @@ bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
 // at once.
 constexpr float kMostQueued = 8;
 constexpr float kMostQueuedSorted = 3;
+// So many boxes are paired with their pixels before the next run is looked up.
+constexpr size_t kMostBoxesWaiting = 64;
 
 template <bool kPerspective, bool kUnit>
 void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
@@ -469,6 +536,7 @@ void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch*
     return;
   }
   bool kept = false;
+  pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
   test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
   test_unclear(frame, depths, &kept, batch);
   keep(depths, batch);
@@ -637,7 +705,8 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle
 // picture.
 class OpenPixels {
  public:
-  OpenPixels(const Depths& depths, const Rectangle& where) : depths_(depths) {
+  // `reach`: 0, 2, 4 or 8, see near().
+  OpenPixels(const Depths& depths, const Rectangle& where, uint32_t reach = 0) : depths_(depths) {
     small_ = where.x1 - where.x0 <= 32 && where.y1 - where.y0 <= 32;
     if (!small_) {
       return;
@@ -657,6 +726,15 @@ class OpenPixels {
       columns |= rows_[row];
       open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
     }
+    // Every pixel with those right of and below it, by doubling; from the last row upwards.
+    for (uint32_t width = 1; width < reach; width *= 2) {
+      const uint32_t* from = width == 1 ? rows_ : near_;
+      for (int32_t row = 0; row < rows; ++row) {
+        const int32_t below = row + static_cast<int32_t>(width);
+        const uint32_t both = from[row] | (below < rows ? from[below] : 0);
+        near_[row] = both | both >> width;
+      }
+    }
     if (columns != 0) {
       bounds_ = {where.x0 + __builtin_ctz(columns), where.y0 + __builtin_ctz(open_rows),
                  where.x0 + 32 - __builtin_clz(columns), where.y0 + 32 - __builtin_clz(open_rows)};
@@ -668,45 +746,40 @@ class OpenPixels {
   // Holds all pixels of the small rectangle that are not covered; empty when there is none.
   const Rectangle& bounds() const { return bounds_; }
 
-  // Of the pixels (x .. x + 24, y), a bit each. Lanes outside `mask` get numbers without meaning.
+  // open_at(), but as it was when this was made, where that is known.
   HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
-    const U32 d;
     if (small_) {
-      const auto row = hn::And(hn::Sub(y, hn::Set(d, y0_)), hn::Set(d, 31U));
-      const auto column = hn::And(hn::Sub(x, hn::Set(d, x0_)), hn::Set(d, 31U));
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-      const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
-      const auto low = hn::TableLookupLanes(hn::Load(d, rows_), index);
-      const auto high = hn::TableLookupLanes(hn::Load(d, rows_ + 16), index);
-      const auto bits = hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
-#else
-      const auto bits = hn::GatherIndex(d, rows_, hn::BitCast(I32(), row));
-#endif
-      return hn::Shr(bits, column);
+      return look_up(rows_, x, y);
     }
-    // Words need not be aligned: the byte that holds the first pixel begins one.
-    const auto byte = hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths_.first_row))),
-                                      hn::Set(d, static_cast<uint32_t>(depths_.words) * 4)),
-                              hn::ShiftRight<3>(x));
-    const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
-#if HWY_TARGET == HWY_SCALAR
-    uint32_t word = 0;
-    __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths_.covered) + hn::GetLane(safe),
-                     sizeof(word));
-    const auto covered = hn::Set(d, word);
-#else
-    const auto covered = hn::GatherOffset(d, depths_.covered, hn::BitCast(I32(), safe));
-#endif
-    return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
+    return open_at(depths_, mask, x, y);
   }
+  // Of the small rectangle's pixels: in the lowest bit, whether any of the `reach` by `reach` pixels from
+  // there is not covered.
+  HWY_INLINE hn::Vec<U32> near(hn::Vec<U32> x, hn::Vec<U32> y) const { return look_up(near_, x, y); }
 
  private:
+  HWY_INLINE hn::Vec<U32> look_up(const uint32_t (&rows)[32], hn::Vec<U32> x, hn::Vec<U32> y) const {
+    const U32 d;
+    const auto row = hn::And(hn::Sub(y, hn::Set(d, y0_)), hn::Set(d, 31U));
+    const auto column = hn::And(hn::Sub(x, hn::Set(d, x0_)), hn::Set(d, 31U));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
+    const auto low = hn::TableLookupLanes(hn::Load(d, rows), index);
+    const auto high = hn::TableLookupLanes(hn::Load(d, rows + 16), index);
+    const auto bits = hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
+#else
+    const auto bits = hn::GatherIndex(d, rows, hn::BitCast(I32(), row));
+#endif
+    return hn::Shr(bits, column);
+  }
+
   const Depths& depths_;
   bool small_ = false;
   Rectangle bounds_{0, 0, 0, 0};
   uint32_t x0_ = 0;
   uint32_t y0_ = 0;
   alignas(64) uint32_t rows_[32];
+  alignas(64) uint32_t near_[32];
 };
 
 // Whether there is one among the first `wide` + 1 of them.
@@ -720,109 +793,167 @@ HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
   return hn::RebindMask(d, hn::Ne(hn::And(open, bits), hn::Zero(du)));
 }
 
+// Draws the boxes of a vector that are large, or in the eye's plane: those in `mask`.
+template <bool kPerspective>
+HWY_NOINLINE void draw_large_of(const Frame& frame, const Run& run, uint32_t at, const Projected& boxes,
+                                hn::Mask<F32> mask, bool reject_all, bool* kept, const Depths& depths,
+                                Batch* batch) {
+  const F32 d;
+  const I32 di;
+  HWY_ALIGN int32_t x0[64], x1[64], y0[64], y1[64];
+  hn::Store(hn::ConvertTo(di, boxes.low_x), di, x0);
+  hn::Store(hn::ConvertTo(di, hn::Add(boxes.low_x, boxes.wide_x)), di, x1);
+  hn::Store(hn::ConvertTo(di, boxes.low_y), di, y0);
+  hn::Store(hn::ConvertTo(di, hn::Add(boxes.low_y, boxes.wide_y)), di, y1);
+  const uint32_t in_plane = kPerspective ? bits_of(d, boxes.crossing) : 0;
+  for (uint32_t bits = bits_of(d, mask); bits != 0; bits &= bits - 1) {
+    const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(bits));
+    const uint32_t box = run.entries[at + lane];
+    const uint32_t number = run.numbers == nullptr ? run.first + at + lane : run.numbers[at + lane];
+    Rectangle where{x0[lane], y0[lane], x1[lane] + 1, y1[lane] + 1};
+    if (kPerspective && (in_plane >> lane & 1U) != 0) {
+      const double box_side = 1 << level_of(box);
+      const double center[3] = {run.corner[0] + x_of(box) + box_side / 2,
+                                run.corner[1] + (box >> 10 & kWithin) + box_side / 2,
+                                run.corner[2] + (box >> 20 & kWithin) + box_side / 2};
+      if (!crosses_tile(frame, center, box_side)) {
+        continue;
+      }
+      ++batch->counts.crossing;
+      where = {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1};
+    }
+    draw_large<kPerspective>(frame, box, number, where, reject_all || (run.behind && !*kept), depths, batch);
+    *kept = true;
+  }
+}
+
+// A run in no order. Boxes whose pixels may all be covered go first; those left wait in the batch until there
+// are enough to fill vectors.
+//
+// Boxes that wait are of whole runs, and all that goes into the picture before they are paired is of runs
+// before theirs, so that pixels covered by then need no look. Where a run is cut in between, `all_behind`
+// says so.
 template <bool kPerspective, bool kUnit>
 void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const F32 d;
   const I32 di;
   const U32 du;
-  const size_t lanes = hn::Lanes(d);
+  const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  Boxes& queue = batch->boxes;
   bool kept = false;
   if (run.behind) {
     // So that coverage is known where it saves work.
-    if (batch->waiting.count >= 128) {
+    if (queue.count >= kMostBoxesWaiting) {
+      pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
       test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
     }
     keep(depths, batch);
     kept = false;
   }
   batch->counts.boxes += run.count;
-  const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0});
+  // Boxes of more than `near` pixels a side are not looked up.
+  const uint32_t near = run.voxel_px < 1.6F ? 2 : run.voxel_px < 3.5F ? 4 : 8;
+  const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0}, near);
   const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  if (clip.x0 >= clip.x1) {
+    return;
+  }
   const Reach reach(frame, clip);
-  const auto most = hn::Set(d, (run.sorted ? kMostQueuedSorted : kMostQueued) - 1);
-  Pairs& waiting = batch->waiting;
-  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
+  const auto most = hn::Set(d, kMostQueued - 1);
+  bool cut = false;
+  for (uint32_t at = 0; at < run.count; at += lanes) {
     const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
-    const auto entry = boxes.entry;
-    const auto low_x = boxes.low_x;
-    const auto low_y = boxes.low_y;
-    const auto wide_x = boxes.wide_x;
-    const auto wide_y = boxes.wide_y;
     auto seen = boxes.seen;
-    const auto number =
-        run.numbers == nullptr ? hn::Iota(du, run.first + at) : hn::LoadU(du, run.numbers + at);
-    auto large = hn::And(seen, hn::Gt(hn::Max(wide_x, wide_y), most));
+    const auto widest = hn::Max(boxes.wide_x, boxes.wide_y);
+    auto large = hn::And(seen, hn::Gt(widest, most));
     if (kPerspective) {
       large = hn::Or(large, boxes.crossing);
     }
     if (!hn::AllFalse(d, large)) {
-      if (run.sorted) {
-        large = hn::Or(large, seen);  // one after the other
-      }
-      HWY_ALIGN int32_t x0[64], x1[64], y0[64], y1[64];
-      HWY_ALIGN uint32_t numbers[64];
-      hn::Store(hn::ConvertTo(di, low_x), di, x0);
-      hn::Store(hn::ConvertTo(di, hn::Add(low_x, wide_x)), di, x1);
-      hn::Store(hn::ConvertTo(di, low_y), di, y0);
-      hn::Store(hn::ConvertTo(di, hn::Add(low_y, wide_y)), di, y1);
-      hn::Store(number, du, numbers);
-      const uint32_t in_plane = kPerspective ? bits_of(d, boxes.crossing) : 0;
-      for (uint32_t bits = bits_of(d, large); bits != 0; bits &= bits - 1) {
-        const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(bits));
-        const uint32_t box = run.entries[at + lane];
-        Rectangle where{x0[lane], y0[lane], x1[lane] + 1, y1[lane] + 1};
-        if (kPerspective && (in_plane >> lane & 1U) != 0) {
-          const double box_side = 1 << level_of(box);
-          const double center[3] = {run.corner[0] + x_of(box) + box_side / 2,
-                                    run.corner[1] + (box >> 10 & kWithin) + box_side / 2,
-                                    run.corner[2] + (box >> 20 & kWithin) + box_side / 2};
-          if (!crosses_tile(frame, center, box_side)) {
-            continue;
-          }
-          ++batch->counts.crossing;
-          where = {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1};
-        }
-        draw_large<kPerspective>(frame, box, numbers[lane], where, run.behind && (run.sorted || !kept),
-                                 depths, batch);
-        kept = true;
-      }
+      pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+      draw_large_of<kPerspective>(frame, run, at, boxes, large, false, &kept, depths, batch);
+      cut = true;
       seen = hn::AndNot(large, seen);
     }
-    if (hn::AllFalse(d, seen)) {
+    const auto x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
+    const auto y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
+    if (run.behind && open_pixels.is_small()) {
+      const auto is_open = hn::RebindMask(d, hn::TestBit(open_pixels.near(x, y), hn::Set(du, 1U)));
+      seen = hn::And(seen, hn::Or(is_open, hn::Ge(widest, hn::Set(d, static_cast<float>(near)))));
+    }
+    // No branch on whether any is left: that would be guessed wrong in every third vector.
+    const auto chosen = hn::RebindMask(du, seen);
+    const auto wide_x = hn::BitCast(du, hn::ConvertTo(di, boxes.wide_x));
+    const auto wide_y = hn::BitCast(du, hn::ConvertTo(di, boxes.wide_y));
+    hn::StoreU(hn::Compress(boxes.entry, chosen), du, queue.entry + queue.count);
+    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, queue.number + queue.count);
+    hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(y), x), chosen), du, queue.place + queue.count);
+    hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(wide_y), wide_x), chosen), du, queue.wide + queue.count);
+    queue.count += hn::CountTrue(du, chosen);
+    batch->all_behind = batch->all_behind && run.behind && !cut;
+    if (queue.count + lanes > Boxes::kSize) {
+      pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+      cut = true;
+    }
+  }
+}
+
+// A run in order: what goes into the picture lies in front of all that follows.
+template <bool kPerspective, bool kUnit>
+void draw_sorted_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  bool kept = false;
+  pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+  if (batch->waiting.count >= 128) {
+    test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+  }
+  keep(depths, batch);
+  batch->counts.boxes += run.count;
+  const OpenPixels open_pixels(depths, run.where);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const Reach reach(frame, clip);
+  const auto most = hn::Set(d, kMostQueuedSorted - 1);
+  Pairs& waiting = batch->waiting;
+  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
+    auto large = hn::And(boxes.seen, hn::Gt(hn::Max(boxes.wide_x, boxes.wide_y), most));
+    if (kPerspective) {
+      large = hn::Or(large, boxes.crossing);
+    }
+    if (!hn::AllFalse(d, large)) {  // one after the other
+      draw_large_of<kPerspective>(frame, run, at, boxes, hn::Or(large, boxes.seen), true, &kept, depths,
+                                  batch);
       continue;
     }
-    const auto int_x = hn::BitCast(du, hn::ConvertTo(di, low_x));
-    const auto int_y = hn::BitCast(du, hn::ConvertTo(di, low_y));
-    const auto first = hn::Or(hn::ShiftLeft<16>(int_y), int_x);
-    // Nothing may go into the picture between the boxes of a sorted vector: a farther one may have been
-    // tested before a nearer one has been looked up.
+    if (hn::AllFalse(d, boxes.seen)) {
+      continue;
+    }
+    const auto number = hn::LoadU(du, run.numbers + at);
+    const auto x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
+    const auto y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
+    const auto first = hn::Or(hn::ShiftLeft<16>(y), x);
+    // Nothing may go into the picture between the boxes of a vector: a farther one may have been tested
+    // before a nearer one has been looked up.
     constexpr size_t kMostSortedPairs = static_cast<size_t>(kMostQueuedSorted * kMostQueuedSorted);
-    if (run.sorted && waiting.count + (kMostSortedPairs + 1) * lanes > Pairs::kSize) {
+    if (waiting.count + (kMostSortedPairs + 1) * lanes > Pairs::kSize) {
       test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
     }
-    auto in_row = seen;
+    auto in_row = boxes.seen;
     for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
-      auto in_column = in_row;
-      auto open = hn::Set(du, UINT32_MAX);
-      const bool reject = run.behind && (run.sorted || !kept || open_pixels.is_small());
-      if (reject) {
-        open = open_pixels.at(in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
-        in_column = hn::And(in_row, any_open(open, wide_x));
-      }
+      const auto open = open_pixels.at(in_row, x, hn::Add(y, hn::Set(du, down)));
+      auto in_column = hn::And(in_row, any_open(open, boxes.wide_x));
       for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
-        auto chosen = in_column;
-        if (reject) {
-          chosen = hn::And(chosen,
-                           hn::RebindMask(d, hn::Ne(hn::And(open, hn::Set(du, 1U << across)), hn::Zero(du))));
-        }
-        append(chosen, entry, number, hn::Add(first, hn::Set(du, down << 16 | across)), &waiting);
-        if (waiting.count + lanes > Pairs::kSize) {
-          test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
-        }
-        in_column = hn::And(in_column, hn::Gt(wide_x, hn::Set(d, static_cast<float>(across))));
+        const auto chosen =
+            hn::And(in_column, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
+        append(chosen, boxes.entry, number, hn::Add(first, hn::Set(du, down << 16 | across)), &waiting);
+        in_column = hn::And(in_column, hn::Gt(boxes.wide_x, hn::Set(d, static_cast<float>(across))));
       }
-      in_row = hn::And(in_row, hn::Gt(wide_y, hn::Set(d, static_cast<float>(down))));
+      in_row = hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down))));
     }
   }
 }
@@ -838,6 +969,7 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
   const size_t lanes = hn::Lanes(d);
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
   bool kept = false;
+  pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
   test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
   keep(depths, batch);
   batch->counts.boxes += run.count;
@@ -880,20 +1012,31 @@ uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batc
                   : cull_run_of<false, false>(frame, run, depths, batch, entries, numbers);
 }
 
+template <bool kPerspective, bool kUnit>
+void draw_any(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  run.sorted ? draw_sorted_of<kPerspective, kUnit>(frame, run, depths, batch)
+             : draw_run_of<kPerspective, kUnit>(frame, run, depths, batch);
+}
+
 void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
   if (frame.perspective) {
-    run.unit ? draw_run_of<true, true>(frame, run, depths, batch)
-             : draw_run_of<true, false>(frame, run, depths, batch);
+    run.unit ? draw_any<true, true>(frame, run, depths, batch)
+             : draw_any<true, false>(frame, run, depths, batch);
   } else {
-    run.unit ? draw_run_of<false, true>(frame, run, depths, batch)
-             : draw_run_of<false, false>(frame, run, depths, batch);
+    run.unit ? draw_any<false, true>(frame, run, depths, batch)
+             : draw_any<false, false>(frame, run, depths, batch);
   }
 }
 
 void finish(const Frame& frame, const Depths& depths, Batch* batch) {
   bool kept = false;
-  frame.perspective ? test_waiting<true, false>(frame, depths, &kept, batch)
-                    : test_waiting<false, false>(frame, depths, &kept, batch);
+  if (frame.perspective) {
+    pair_boxes<true, false>(frame, depths, &kept, batch);
+    test_waiting<true, false>(frame, depths, &kept, batch);
+  } else {
+    pair_boxes<false, false>(frame, depths, &kept, batch);
+    test_waiting<false, false>(frame, depths, &kept, batch);
+  }
   test_unclear(frame, depths, &kept, batch);
   keep(depths, batch);
 }

@@ -67,8 +67,22 @@ struct Pairs {
   alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
 };
 
-/// What one thread has under way, from run to run. Less than 24 KiB.
+/// Boxes that may be seen, and where: the pixels x .. x + wide_x, y .. y + wide_y.
+struct Boxes {
+  static constexpr size_t kSize = 192;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
+  alignas(64) uint32_t wide[kRoom];   ///< wide_y << 16 | wide_x
+};
+
+/// What one thread has under way, from run to run. Less than 28 KiB.
 struct Batch {
+  Boxes boxes;  ///< not yet paired with their pixels
+  /// Whether all of the picture lies in front of them: of whole runs that said so.
+  bool all_behind = true;
   Pairs waiting;  ///< for the test in floats
   Pairs unclear;  ///< for the exact one
   // `met` of them were met and are on the way into the picture.
@@ -83,7 +97,7 @@ struct Batch {
   size_t met = 0;
   Counts counts;
 };
-static_assert(sizeof(Batch) < 24 * 1024);
+static_assert(sizeof(Batch) < 28 * 1024);
 
 /// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
 struct Rectangle {
@@ -106,7 +120,10 @@ struct Run {
   /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
   /// look.
   bool behind;
-  /// Whether, besides, each entry lies in front of the ones after it, where any ray meets both.
+  /// How large a voxel looks, about, in pixels.
+  float voxel_px;
+  /// Whether, besides, each entry lies in front of the ones after it, where any ray meets both. With
+  /// `numbers`.
   bool sorted;
 };
 

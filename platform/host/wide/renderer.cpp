@@ -112,13 +112,6 @@ class TileDrawer {
     const uint32_t small = by_blocks_ || is_part ? kBlockBoxes : kFlatBoxes;
     while (depth > 0) {
       const Block block = stack[--depth];
-      if (depth > 0) {
-        // The next one's boxes are wanted while this one's are drawn.
-        const uint32_t* next = lists_.entries().data + lists_.nodes()[stack[depth - 1].node].first_entry;
-        for (int line = 0; line < 5; ++line) {
-          __builtin_prefetch(next + 16 * line);
-        }
-      }
       ++batch_->counts.nodes;
       const BlockNode& node = lists_.nodes()[block.node];
       const unsigned mask = tree.mask(block.node);
@@ -128,7 +121,15 @@ class TileDrawer {
         continue;
       }
       if (is_leaf) {
-        draw_block(block, node);
+        // Its boxes are fetched while those of the blocks before it are drawn.
+        const uint32_t* entries = lists_.entries().data + node.first_entry;
+        for (uint32_t line = 0; line < 5 && 16 * line < node.entries; ++line) {
+          __builtin_prefetch(entries + 16 * line);
+        }
+        if (ahead_count_ == kAhead) {
+          draw_oldest();
+        }
+        ahead_[(ahead_first_ + ahead_count_++) % kAhead] = block;
         continue;
       }
       const uint32_t side = uint32_t{1} << (block.level - 1);
@@ -161,10 +162,22 @@ class TileDrawer {
                           where[octant]};
       }
     }
+    while (ahead_count_ != 0) {
+      draw_oldest();
+    }
     finish(frame_, depths_, batch_);
   }
 
  private:
+  static constexpr uint32_t kAhead = 4;
+
+  void draw_oldest() {
+    const Block block = ahead_[ahead_first_];
+    ahead_first_ = (ahead_first_ + 1) % kAhead;
+    --ahead_count_;
+    draw_block(block, lists_.nodes()[block.node]);
+  }
+
   void draw_block(const Block& block, const BlockNode& node) {
     Run run;
     run.entries = lists_.entries().data + node.first_entry;
@@ -174,13 +187,14 @@ class TileDrawer {
     run.unit = !lists_.has_blocks();
     run.where = block.where;
     run.behind = by_blocks_;
-    run.sorted = node.entries <= 1;
+    run.sorted = false;
+    run.voxel_px = voxel_px(block);
     const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
     if (block.level <= kCubeLevel) {
       for (int axis = 0; axis < 3; ++axis) {
         run.corner[axis] = block.corner[axis] & ~cube;
       }
-      if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && voxel_px(block) >= kSortedPx) {
+      if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && run.voxel_px >= kSortedPx) {
         run.count = cull_run(frame_, run, depths_, batch_, entries_, numbers_);
         if (run.count == 0) {
           return;
@@ -283,6 +297,9 @@ class TileDrawer {
   bool by_blocks_;
   Batch* batch_;
   int32_t eye_cell_[3];
+  Block ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
+  uint32_t ahead_first_ = 0;
+  uint32_t ahead_count_ = 0;
   uint32_t entries_[kMostSorted + kReadAhead];
   uint32_t numbers_[kMostSorted + kReadAhead];
   uint32_t sorted_entries_[kMostSorted + kReadAhead];
