@@ -700,6 +700,13 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle
   return boxes;
 }
 
+// Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
+HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
+  const F32 d;
+  const U32 du;
+  return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
+}
+
 // Which pixels of a run's rectangle are not covered, where that has at most 32 rows of 32 pixels: looked up
 // in registers (AVX-512) or in a table of its own, instead of all over the picture. The wide case reads the
 // picture.
@@ -836,7 +843,6 @@ HWY_NOINLINE void draw_large_of(const Frame& frame, const Run& run, uint32_t at,
 template <bool kPerspective, bool kUnit>
 void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const F32 d;
-  const I32 di;
   const U32 du;
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
@@ -876,16 +882,16 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
       cut = true;
       seen = hn::AndNot(large, seen);
     }
-    const auto x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
-    const auto y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
+    const auto x = small_number(boxes.low_x);
+    const auto y = small_number(boxes.low_y);
     if (run.behind && open_pixels.is_small()) {
       const auto is_open = hn::RebindMask(d, hn::TestBit(open_pixels.near(x, y), hn::Set(du, 1U)));
       seen = hn::And(seen, hn::Or(is_open, hn::Ge(widest, hn::Set(d, static_cast<float>(near)))));
     }
     // No branch on whether any is left: that would be guessed wrong in every third vector.
     const auto chosen = hn::RebindMask(du, seen);
-    const auto wide_x = hn::BitCast(du, hn::ConvertTo(di, boxes.wide_x));
-    const auto wide_y = hn::BitCast(du, hn::ConvertTo(di, boxes.wide_y));
+    const auto wide_x = small_number(boxes.wide_x);
+    const auto wide_y = small_number(boxes.wide_y);
     hn::StoreU(hn::Compress(boxes.entry, chosen), du, queue.entry + queue.count);
     hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, queue.number + queue.count);
     hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(y), x), chosen), du, queue.place + queue.count);
@@ -1135,29 +1141,17 @@ void find_corners(const Pixels& pixels, Corners* corners) {
   }
 }
 
-void collect(const uint32_t* covered, const uint64_t* nearest, int32_t first_word, int32_t end_word,
-             Pixels* pixels) {
+void unpack(Pixels* pixels) {
   const U64 d;
   const HalfU32 d32;
-  const size_t lanes = hn::Lanes(d);
-  uint32_t count = 0;
-  HWY_ALIGN uint64_t values[kMostPixels + 64];
-  for (int32_t word = first_word; word < end_word; ++word) {
-    for (uint32_t bits = covered[word]; bits != 0; bits &= bits - 1) {
-      const int32_t x = word * 32 + __builtin_ctz(bits);
-      pixels->x[count] = x;
-      values[count] = nearest[x];
-      ++count;
-    }
-  }
-  pixels->count = count;
-  // Behind the last come some that mean nothing, but are places of the picture.
+  const uint32_t count = pixels->count;
   for (uint32_t i = count; i < count + hn::Lanes(U32()); ++i) {
-    values[i] = 0;
+    pixels->value[i] = 0;
     pixels->x[i] = 0;
+    pixels->y[i] = 0;
   }
-  for (uint32_t at = 0; at < count; at += static_cast<uint32_t>(lanes)) {
-    const auto value = hn::LoadU(d, values + at);
+  for (uint32_t at = 0; at < count; at += static_cast<uint32_t>(hn::Lanes(d))) {
+    const auto value = hn::LoadU(d, pixels->value + at);
     hn::StoreU(hn::TruncateTo(d32, hn::And(value, hn::Set(d, (uint64_t{1} << kEntryBits) - 1))), d32,
                pixels->number + at);
     const auto key = hn::And(hn::ShiftRight<kEntryBits>(value), hn::Set(d, 0x3FFFFFFFU));
@@ -1183,7 +1177,7 @@ HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, const Co
   const auto zero = hn::Zero(d);
   Entries found;
   const Rays rays = rays_of<kPerspective>(frame, hn::PromoteTo(d, hn::LoadU(d32, pixels.x + at)),
-                                          hn::Set(d, static_cast<double>(pixels.y)));
+                                          hn::PromoteTo(d, hn::LoadU(d32, pixels.y + at)));
   auto side = hn::Set(d, 1);
   if (pixels.any_levels) {
     side = hn::PromoteTo(d, hn::Shl(hn::Set(d32, 1), hn::LoadU(d32, pixels.level + at)));
@@ -1234,68 +1228,188 @@ HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, const Co
   return found;
 }
 
-// The core's sum, with its roundings (src/shading.cpp). Quotients of integers below 2^32 by integers below
-// 2^32 are exact after Floor: one that is no integer lies farther from the next than a double's last bit. The
-// product has up to 55 bits and is taken in two parts.
-template <bool kPerspective>
-void find_grays_of(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
-                   uint8_t* gray) {
-  const F64 d;
-  const HalfI32 d32;
-  const size_t lanes = hn::Lanes(d);
-  int shift = 0;
-  while (depth_per_t_q8 > 0 && (static_cast<uint32_t>(depth_per_t_q8) << shift & 0x80000000U) == 0) {
-    ++shift;
+// Of depths along the camera, from where rays enter their boxes: the core's sum, with its roundings
+// (src/shading.cpp). The ratio of integers below 2^32 is exact after Floor: one that is no integer lies
+// farther from the next than a double's last bit. The product has up to 55 bits and is taken in two parts.
+// The last quotient has a half added above, and so is no integer, by more than the inverse divisor's error.
+class Grays {
+ public:
+  Grays(int32_t depth_per_t_q8, const Shading& shading) {
+    while (depth_per_t_q8 > 0 && (static_cast<uint32_t>(depth_per_t_q8) << shift_ & 0x80000000U) == 0) {
+      ++shift_;
+    }
+    dividend_ = static_cast<double>(static_cast<uint32_t>(depth_per_t_q8) << shift_);
+    scale_ = 1.0 / static_cast<double>(uint64_t{1} << (shift_ + 8));
+    const uint32_t range = shading.far_q8 > shading.near_q8 ? static_cast<uint32_t>(shading.far_q8) -
+                                                                  static_cast<uint32_t>(shading.near_q8)
+                                                            : 1;
+    const int excess = range >= (1U << 24) ? 8 : 0;
+    near_ = static_cast<double>(shading.near_q8);
+    far_ = static_cast<double>(shading.far_q8);
+    cut_ = excess == 0 ? 1.0 : 1.0 / 256;
+    inverse_ = 1.0 / static_cast<double>(range >> excess);
   }
-  const auto zero = hn::Zero(d);
-  const auto dividend = hn::Set(d, static_cast<double>(static_cast<uint32_t>(depth_per_t_q8) << shift));
-  const auto most = hn::Set(d, 2147483647.0);
-  const double scale = 1.0 / static_cast<double>(uint64_t{1} << (shift + 8));
-  const uint32_t range = shading.far_q8 > shading.near_q8
-                             ? static_cast<uint32_t>(shading.far_q8) - static_cast<uint32_t>(shading.near_q8)
-                             : 1;
-  const int excess = range >= (1U << 24) ? 8 : 0;
-  const auto near_plane = hn::Set(d, static_cast<double>(shading.near_q8));
-  const auto far_plane = hn::Set(d, static_cast<double>(shading.far_q8));
-  const auto cut = hn::Set(d, excess == 0 ? 1.0 : 1.0 / 256);
-  const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
-  const auto divisor = hn::Set(d, static_cast<double>(range >> excess));
-  Corners corners;
-  find_corners(pixels, &corners);
-  for (size_t at = 0; at < pixels.count; at += lanes) {
-    const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
-    const auto ratio = hn::Floor(hn::Div(dividend, found.speed));
+
+  // Of t = numerator / (256 * speed).
+  HWY_INLINE hn::Vec<HalfI32> of(hn::Vec<F64> numerator, hn::Vec<F64> speed) const {
+    const F64 d;
+    const HalfI32 d32;
+    const auto zero = hn::Zero(d);
+    const auto dividend = hn::Set(d, dividend_);
+    const auto near_plane = hn::Set(d, near_);
+    const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
+    const auto ratio = hn::Floor(hn::Div(dividend, speed));
     const auto high = hn::Floor(hn::Mul(ratio, hn::Set(d, 1.0 / 65536)));
     const auto low = hn::NegMulAdd(high, hn::Set(d, 65536), ratio);
     // numerator * ratio = a * 2^16 + b, divided by 2^(shift + 8) and rounded down.
-    const auto a = hn::Mul(found.numerator, high);
-    const auto b = hn::Mul(found.numerator, low);
+    const auto a = hn::Mul(numerator, high);
+    const auto b = hn::Mul(numerator, low);
     const auto b_high = hn::Floor(hn::Mul(b, hn::Set(d, 1.0 / 65536)));
     const auto whole = hn::Add(a, b_high);  // of 2^16, below 2^40
     hn::Vec<F64> depth;
-    if (shift + 8 >= 16) {
-      depth = hn::Floor(hn::Mul(whole, hn::Set(d, scale * 65536)));
+    if (shift_ + 8 >= 16) {
+      depth = hn::Floor(hn::Mul(whole, hn::Set(d, scale_ * 65536)));
     } else {
       const auto b_low = hn::NegMulAdd(b_high, hn::Set(d, 65536), b);
-      depth = hn::Floor(hn::MulAdd(whole, hn::Set(d, scale * 65536), hn::Mul(b_low, hn::Set(d, scale))));
+      depth = hn::Floor(hn::MulAdd(whole, hn::Set(d, scale_ * 65536), hn::Mul(b_low, hn::Set(d, scale_))));
     }
-    depth = hn::IfThenElse(hn::Gt(hn::Min(found.numerator, dividend), zero), hn::Min(depth, most), zero);
-    const auto part = hn::Floor(hn::Mul(hn::Sub(depth, near_plane), cut));
-    auto fall = hn::Floor(hn::Div(hn::Mul(part, most_fall), divisor));
-    fall = hn::IfThenElse(hn::Lt(depth, far_plane), fall, most_fall);
+    depth = hn::IfThenElse(hn::Gt(hn::Min(numerator, dividend), zero),
+                           hn::Min(depth, hn::Set(d, 2147483647.0)), zero);
+    const auto part = hn::Floor(hn::Mul(hn::Sub(depth, near_plane), hn::Set(d, cut_)));
+    auto fall = hn::Floor(hn::Mul(hn::MulAdd(part, most_fall, hn::Set(d, 0.5)), hn::Set(d, inverse_)));
+    fall = hn::IfThenElse(hn::Lt(depth, hn::Set(d, far_)), fall, most_fall);
     fall = hn::IfThenElseZero(hn::Gt(depth, near_plane), fall);
-    HWY_ALIGN int32_t grays[64];
-    hn::Store(hn::DemoteTo(d32, hn::Sub(hn::Set(d, 255.0), fall)), d32, grays);
-    for (size_t i = 0; i < lanes; ++i) {
-      gray[at + i] = static_cast<uint8_t>(grays[i]);
+    return hn::DemoteTo(d32, hn::Sub(hn::Set(d, 255.0), fall));
+  }
+
+ private:
+  int shift_ = 0;
+  double dividend_, scale_, near_, far_, cut_, inverse_;
+};
+
+HWY_INLINE void store_bytes(hn::Vec<HalfI32> values, uint8_t* to) {
+  const HalfI32 d;
+  HWY_ALIGN int32_t stored[64];
+  hn::Store(values, d, stored);
+  for (size_t i = 0; i < hn::Lanes(d); ++i) {
+    to[i] = static_cast<uint8_t>(stored[i]);
+  }
+}
+
+template <bool kPerspective>
+HWY_NOINLINE void find_grays_exactly(const Frame& frame, const Pixels& pixels, const Grays& grays,
+                                     uint8_t* gray) {
+  Corners corners;
+  find_corners(pixels, &corners);
+  for (size_t at = 0; at < pixels.count; at += hn::Lanes(F64())) {
+    const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
+    store_bytes(grays.of(found.numerator, found.speed), gray + at);
+  }
+}
+
+// Where rays enter their boxes, in floats: distances are integers below 2^24, directions as in judge(), and
+// products are compared where they differ by more than their roundings. What is not clear is done again.
+template <bool kPerspective>
+void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays, uint8_t* gray) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const F64 d64;
+  const size_t lanes = hn::Lanes(d);
+  const size_t lanes64 = hn::Lanes(d64);
+  const hn::Rebind<float, F64> half_d;
+  const auto zero = hn::Zero(d);
+  Corners corners;
+  find_corners(pixels, &corners);
+  uint32_t unclear_at[kMostPixels];
+  uint32_t unclear_count = 0;
+  for (size_t at = 0; at < pixels.count; at += lanes) {
+    const auto x = hn::ConvertTo(d, hn::LoadU(di, pixels.x + at));
+    const auto y = hn::ConvertTo(d, hn::LoadU(di, pixels.y + at));
+    auto side = hn::Set(d, 1.0F);
+    auto unclear = hn::Lt(zero, zero);
+    if (pixels.any_levels) {
+      const auto level = hn::BitCast(du, hn::LoadU(di, pixels.level + at));
+      side = hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+      unclear = hn::Gt(side, hn::Set(d, 1.0F));
     }
+    const auto size = hn::Mul(side, hn::Set(d, 256.0F));
+    const auto last = hn::Sub(hn::Set(d, 4096.0F), side);
+    auto numerator = zero;
+    auto found_speed = hn::Set(d, 1.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto map = [&](const float(&of)[3][3]) {
+        return hn::MulAdd(x, hn::Set(d, of[1][axis]),
+                          hn::MulAdd(y, hn::Set(d, of[2][axis]), hn::Set(d, of[0][axis])));
+      };
+      const auto rest = map(frame.map_rest);
+      const auto nearest = hn::Round(rest);
+      unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+      const auto varying = hn::Add(map(frame.map_whole), nearest);
+      auto direction = varying;
+      auto origin = hn::Set(d, static_cast<float>(frame.camera.eye()[axis].raw));
+      if (!kPerspective) {
+        origin = hn::Add(origin, varying);
+        direction = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      }
+      const auto downward = hn::Lt(direction, zero);
+      const auto mirrored = hn::ConvertTo(d, hn::LoadU(di, corners.at[axis] + at));
+      const auto corner = hn::IfThenElse(downward, hn::Sub(last, mirrored), mirrored);
+      const auto low = hn::MulSub(corner, hn::Set(d, 256.0F), origin);
+      const auto speed = hn::Abs(direction);
+      const auto distance = hn::IfThenElse(downward, hn::Neg(hn::Add(low, size)), low);
+      const auto ours = hn::Mul(distance, found_speed);
+      const auto theirs = hn::Mul(numerator, speed);
+      const auto ahead = hn::And(hn::Gt(distance, zero), hn::Gt(speed, zero));
+      const auto later = hn::And(ahead, hn::Gt(ours, theirs));
+      const auto margin = hn::Mul(theirs, hn::Set(d, 1.0F / (1 << 21)));
+      unclear = hn::Or(unclear, hn::And(ahead, hn::Lt(hn::Abs(hn::Sub(ours, theirs)), margin)));
+      numerator = hn::IfThenElse(later, distance, numerator);
+      found_speed = hn::IfThenElse(later, speed, found_speed);
+    }
+    HWY_ALIGN float numerators[64];
+    HWY_ALIGN float speeds[64];
+    hn::Store(numerator, d, numerators);
+    hn::Store(found_speed, d, speeds);
+    for (size_t part = 0; part < lanes; part += lanes64) {
+      store_bytes(grays.of(hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
+                           hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
+                  gray + at + part);
+    }
+    for (uint32_t bits = bits_of(d, unclear); bits != 0; bits &= bits - 1) {
+      const uint32_t i = static_cast<uint32_t>(at) + static_cast<uint32_t>(__builtin_ctz(bits));
+      if (i < pixels.count) {
+        unclear_at[unclear_count++] = i;
+      }
+    }
+  }
+  if (unclear_count == 0) {
+    return;
+  }
+  Pixels few;
+  few.count = unclear_count;
+  few.any_levels = pixels.any_levels;
+  for (uint32_t i = 0; i < unclear_count + lanes; ++i) {  // and some behind, that mean nothing
+    const uint32_t from = unclear_at[i < unclear_count ? i : 0];
+    few.x[i] = pixels.x[from];
+    few.y[i] = pixels.y[from];
+    few.key[i] = pixels.key[from];
+    few.cube[i] = pixels.cube[from];
+    few.level[i] = pixels.any_levels ? pixels.level[from] : 0;
+    few.voxels[i] = pixels.any_levels ? pixels.voxels[from] : 0;
+  }
+  uint8_t again[kMostPixels + 64];
+  find_grays_exactly<kPerspective>(frame, few, grays, again);
+  for (uint32_t i = 0; i < unclear_count; ++i) {
+    gray[unclear_at[i]] = again[i];
   }
 }
 
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray) {
-  frame.perspective ? find_grays_of<true>(frame, pixels, depth_per_t_q8, shading, gray)
-                    : find_grays_of<false>(frame, pixels, depth_per_t_q8, shading, gray);
+  const Grays grays(depth_per_t_q8, shading);
+  frame.perspective ? find_grays_of<true>(frame, pixels, grays, gray)
+                    : find_grays_of<false>(frame, pixels, grays, gray);
 }
 
 template <bool kPerspective>
@@ -1321,11 +1435,7 @@ void find_faces_of(const Frame& frame, const Pixels& pixels, uint8_t* face) {
     component = hn::IfThenElse(hn::Eq(axis, hn::Set(d, 1)), found.direction[1], component);
     component = hn::IfThenElse(hn::Eq(axis, hn::Set(d, 2)), found.direction[2], component);
     const auto upper = hn::IfThenElseZero(hn::Le(component, zero), hn::Set(d, 1));
-    HWY_ALIGN int32_t faces[64];
-    hn::Store(hn::DemoteTo(d32, hn::Add(hn::Add(axis, axis), upper)), d32, faces);
-    for (size_t i = 0; i < lanes; ++i) {
-      face[at + i] = static_cast<uint8_t>(faces[i]);
-    }
+    store_bytes(hn::DemoteTo(d32, hn::Add(hn::Add(axis, axis), upper)), face + at);
   }
 }
 
@@ -1348,7 +1458,7 @@ HWY_EXPORT(draw_run);
 HWY_EXPORT(finish);
 HWY_EXPORT(cull_run);
 HWY_EXPORT(find_rectangles);
-HWY_EXPORT(collect);
+HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
 HWY_EXPORT(find_faces);
 HWY_EXPORT(instruction_set);
@@ -1367,9 +1477,8 @@ void find_rectangles(const Frame& frame, const float* x, const float* y, const f
                      Rectangle* rectangles) {
   HWY_DYNAMIC_DISPATCH(find_rectangles)(frame, x, y, z, side, rectangles);
 }
-void collect(const uint32_t* covered, const uint64_t* nearest, int32_t first_word, int32_t end_word,
-             Pixels* pixels) {
-  HWY_DYNAMIC_DISPATCH(collect)(covered, nearest, first_word, end_word, pixels);
+void unpack(Pixels* pixels) {
+  HWY_DYNAMIC_DISPATCH(unpack)(pixels);
 }
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray) {

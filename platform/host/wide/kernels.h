@@ -143,26 +143,23 @@ uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batc
 void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
                      Rectangle* rectangles);
 
-/// Pixels of a row and their nearest boxes. Behind the last there is room for a vector.
-inline constexpr int32_t kMostPixelWords = 16;
-inline constexpr uint32_t kMostPixels = 32 * kMostPixelWords;
+/// Pixels and their nearest boxes. Behind the last there is room for a vector.
+inline constexpr uint32_t kMostPixels = 512;
 struct Pixels {
   uint32_t count = 0;
-  int32_t y = 0;
-  bool any_levels = false;  ///< whether `level` and `voxels` are to be looked at
+  bool any_levels = false;                       ///< whether `level` and `voxels` are to be looked at
+  alignas(64) uint64_t value[kMostPixels + 64];  ///< of Depths; the next three follow from it
   alignas(64) int32_t x[kMostPixels + 64];
+  alignas(64) int32_t y[kMostPixels + 64];
   alignas(64) uint32_t number[kMostPixels + 64];  ///< of the entry
   alignas(64) uint32_t key[kMostPixels + 64];     ///< the mirrored corner within its cube
   alignas(64) uint32_t cube[kMostPixels + 64];    ///< the same of the cube
   alignas(64) int32_t level[kMostPixels + 64];    ///< log2 of the boxes' sides
   alignas(64) int32_t voxels[kMostPixels + 64];   ///< 1: what is hit is a voxel of the box, 0: the box
 };
-/// Lists the covered pixels of words first_word .. end_word - 1 (at most kMostPixelWords) of a row: all but
-/// `y`, `level` and `voxels`.
-void collect(const uint32_t* covered, const uint64_t* nearest, int32_t first_word, int32_t end_word,
-             Pixels* pixels);
-/// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind
-/// it.
+/// Unpacks the values of the pixels; makes the lanes behind the last pixels too.
+void unpack(Pixels* pixels);
+/// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind it.
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray);
 /// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates:

@@ -33,25 +33,26 @@ Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& s
 }
 
 // All of the row. In formats of less than a byte, pixels are or'ed into zeros: the covered ones stay 0.
-void Painter::fill_background(uint8_t* line, int32_t y, const uint32_t* covered) const {
+void Painter::fill_background(uint8_t* to, int32_t y, const uint32_t* covered) const {
   const int32_t width = camera_.width_px();
   const size_t bytes = row_bytes(band_.format, width);
   const bool is_gray = background_.r == background_.g && background_.g == background_.b;
   if (background_ == Rgb8{} || (is_gray && band_.format == PixelFormat::kRgb888) ||
       band_.format == PixelFormat::kGray8) {
-    memset(line, gray_of(background_), bytes);
+    memset(to, gray_of(background_), bytes);
     return;
   }
-  memset(line, 0, bytes);
+  memset(to, 0, bytes);
   for (int32_t x = 0; x < width; ++x) {
     if ((covered[x >> 5] >> (x & 31) & 1U) == 0) {
-      store_pixel(line, x, y, band_.format, background_);
+      store_pixel(to, x, y, band_.format, background_);
     }
   }
 }
 
-void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
+void Painter::paint(const Frame& frame, Pixels* pixels) const {
   const uint32_t count = pixels->count;
+  unpack(pixels);
   Rgb8 colors[kMostPixels];
   if (shading_.mode == ShadeMode::kMono) {
     for (uint32_t i = 0; i < count; ++i) {
@@ -70,7 +71,14 @@ void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
       find_grays(frame, *pixels, camera_.depth_per_t_q8(), shading_, codes);
       if (band_.format == PixelFormat::kGray8) {
         for (uint32_t i = 0; i < count; ++i) {
-          line[pixels->x[i]] = codes[i];
+          line(pixels->y[i])[pixels->x[i]] = codes[i];
+        }
+        return;
+      }
+      if (band_.format == PixelFormat::kRgb888) {
+        for (uint32_t i = 0; i < count; ++i) {
+          uint8_t* const to = line(pixels->y[i]) + 3 * static_cast<size_t>(pixels->x[i]);
+          to[0] = to[1] = to[2] = codes[i];
         }
         return;
       }
@@ -89,36 +97,58 @@ void Painter::paint(const Frame& frame, Pixels* pixels, uint8_t* line) const {
   }
   if (band_.format == PixelFormat::kRgb888) {
     for (uint32_t i = 0; i < count; ++i) {
-      store_pixel(line, pixels->x[i], pixels->y, PixelFormat::kRgb888, colors[i]);
+      store_pixel(line(pixels->y[i]), pixels->x[i], pixels->y[i], PixelFormat::kRgb888, colors[i]);
     }
     return;
   }
   for (uint32_t i = 0; i < count; ++i) {
-    store_pixel(line, pixels->x[i], pixels->y, band_.format, colors[i]);
+    store_pixel(line(pixels->y[i]), pixels->x[i], pixels->y[i], band_.format, colors[i]);
   }
 }
 
-uint64_t Painter::paint_row(const Frame& frame, int32_t y, const uint32_t* covered,
-                            const uint64_t* nearest) const {
-  uint8_t* const line = band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
-  fill_background(line, y, covered);
+uint64_t Painter::paint_tile(const Frame& frame, const Depths& depths) const {
   Pixels pixels;
-  pixels.y = y;
   pixels.any_levels = lists_.has_blocks();
   if (pixels.any_levels) {
     memset(pixels.level, 0, sizeof(pixels.level));
     memset(pixels.voxels, 0, sizeof(pixels.voxels));
   }
   uint64_t hits = 0;
+  uint32_t count = 0;
   const int32_t words = (camera_.width_px() + 31) / 32;
-  for (int32_t word = 0; word < words; word += kMostPixelWords) {
-    collect(covered, nearest, word, word + kMostPixelWords < words ? word + kMostPixelWords : words, &pixels);
-    hits += pixels.count;
-    if (pixels.count != 0) {
-      paint(frame, &pixels, line);
+  for (int32_t y = frame.tile.y0; y < frame.tile.y1; ++y) {
+    const uint32_t* const covered = depths.covered + depths.first_word(y);
+    const uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
+    fill_background(line(y), y, covered);
+    for (int32_t word = 0; word < words; ++word) {
+      // Four at a time, without a look at how many there are: most words hold no more, and the next word
+      // writes over what was none.
+      uint32_t bits = covered[word];
+      const uint32_t end = count + static_cast<uint32_t>(__builtin_popcount(bits));
+      do {
+        for (uint32_t i = 0; i < 4; ++i) {
+          const int32_t x = 32 * word + (bits == 0 ? 0 : __builtin_ctz(bits));
+          pixels.x[count + i] = x;
+          pixels.y[count + i] = y;
+          pixels.value[count + i] = nearest[x];
+          bits &= bits - 1;
+        }
+        count += 4;
+      } while (bits != 0);
+      count = end;
+      if (count > kMostPixels - 32) {
+        pixels.count = count;
+        paint(frame, &pixels);
+        hits += count;
+        count = 0;
+      }
     }
   }
-  return hits;
+  pixels.count = count;
+  if (count != 0) {
+    paint(frame, &pixels);
+  }
+  return hits + count;
 }
 
 }  // namespace thimble::wide

@@ -14,13 +14,15 @@ class Painter {
  public:
   Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
 
-  /// Paints row `y` of the picture, whose nearest boxes are `nearest[width]` where `covered` (a bit a pixel)
-  /// says so. Returns how many there are.
-  uint64_t paint_row(const Frame& frame, int32_t y, const uint32_t* covered, const uint64_t* nearest) const;
+  /// Paints the rows of the frame's tile. Returns how many pixels hold anything.
+  uint64_t paint_tile(const Frame& frame, const Depths& depths) const;
 
  private:
   void fill_background(uint8_t* line, int32_t y, const uint32_t* covered) const;
-  void paint(const Frame& frame, Pixels* pixels, uint8_t* line) const;
+  void paint(const Frame& frame, Pixels* pixels) const;
+  uint8_t* line(int32_t y) const {
+    return band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
+  }
 
   const VoxelLists& lists_;
   const Camera& camera_;

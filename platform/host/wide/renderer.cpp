@@ -412,12 +412,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     const size_t first_patch = words_of_patches(camera.width_px(), row);
     memset(patches.data + first_patch, 0, words_of_patches(camera.width_px(), tile.tile.y1 - tile.tile.y0));
     TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();
-    uint64_t hits = 0;
-    for (int32_t y = tile.tile.y0; y < tile.tile.y1; ++y) {
-      hits += painter.paint_row(tile, y, depths.covered + depths.first_word(y),
-                                depths.nearest + depths.first_word(y) * 32);
-    }
-    return hits;
+    return painter.paint_tile(tile, depths);
   };
   uint64_t hits = 0;
   if (options.threads == 1) {
