@@ -462,6 +462,59 @@ TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the co
   }
 }
 
+TEST_CASE("wide: the order is chosen by what boxes hide -> few more tests than pixels, whatever the scene") {
+#ifdef __SANITIZE_ADDRESS__
+  const std::vector<std::string> names{"points:100000", "spheres", "water,depth=7"};
+#else
+  const std::vector<std::string> names{"points:100000", "points:2000000", "spheres", "spheres,depth=8",
+                                       "water,depth=9"};
+#endif
+  for (const std::string& name : names) {
+    tools::SceneArguments arguments;
+    arguments.scene = name;
+    const auto source = tools::open_scene(arguments);
+    const tools::BuiltScene built(*source, {});
+    HeapBytes list_bytes(wide::VoxelLists::bytes(built.compact()));
+    Arena arena(list_bytes.span());
+    wide::VoxelLists lists;
+    REQUIRE(wide::VoxelLists::make(built.compact(), &arena, &lists) == Status::kOk);
+    std::vector<std::uint8_t> workspace(wide::workspace_bytes(400, 300));
+    std::vector<std::uint8_t> pixels(std::size_t{400} * 300);
+    for (const bool orthographic : {false, true}) {
+      CAPTURE(name);
+      CAPTURE(orthographic);
+      tools::ViewOptions view;
+      view.orthographic = orthographic;
+      view.width_px = 400;
+      view.height_px = 300;
+      const Camera camera = view.camera(built.level(), built.bounds());
+      Band band;
+      band.format = PixelFormat::kGray8;
+      band.rows = 300;
+      band.pixels = Bytes(pixels.data(), pixels.size());
+      const auto draw = [&](wide::Order order) {
+        wide::Options options;
+        options.order = order;
+        wide::Stats stats;
+        REQUIRE(wide::render(lists, camera, {}, band, Bytes(workspace.data(), workspace.size()), nullptr,
+                             options, &stats) == Status::kOk);
+        return stats;
+      };
+      const wide::Stats chosen = draw(wide::Order::kAuto);
+      const wide::Stats flat = draw(wide::Order::kFlat);
+      const wide::Stats blocks = draw(wide::Order::kBlocks);
+      // A box costs about as much as two tests, a block as much as twenty boxes.
+      const auto cost = [](const wide::Stats& stats) {
+        return 2 * stats.counts.candidates + stats.counts.boxes + 20 * stats.counts.nodes;
+      };
+      CAPTURE(cost(flat));
+      CAPTURE(cost(blocks));
+      CHECK(cost(chosen) * 10 <= std::min(cost(flat), cost(blocks)) * 16);
+      CHECK(chosen.counts.candidates < 4 * pixels.size());
+    }
+  }
+}
+
 TEST_CASE("wide: every instruction set, order and number of threads -> the same bytes") {
   const BestInstructionSet after;
   const int sets = wide::instruction_set_count();

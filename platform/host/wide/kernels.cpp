@@ -1408,6 +1408,15 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays,
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray) {
   const Grays grays(depth_per_t_q8, shading);
+  uint32_t blocks = 0;  // are never clear in floats
+  for (uint32_t i = 0; pixels.any_levels && i < pixels.count; ++i) {
+    blocks += pixels.level[i] > 0 ? 1 : 0;
+  }
+  if (blocks > pixels.count / 4) {
+    frame.perspective ? find_grays_exactly<true>(frame, pixels, grays, gray)
+                      : find_grays_exactly<false>(frame, pixels, grays, gray);
+    return;
+  }
   frame.perspective ? find_grays_of<true>(frame, pixels, grays, gray)
                     : find_grays_of<false>(frame, pixels, grays, gray);
 }

@@ -1,5 +1,6 @@
 #include "host/wide/renderer.h"
 
+#include <math.h>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -18,11 +19,13 @@ namespace {
 // Runs of more boxes than this are cut up, flat or not, so that blocks out of sight are not projected.
 constexpr uint32_t kFlatBoxes = 4096;
 constexpr uint32_t kBlockBoxes = 320;
-// Voxels of at least so many pixels a side are drawn one behind the other.
+// Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
 constexpr float kSortedPx = 2.0F;
 constexpr uint32_t kMostSorted = 512;
 // Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
 constexpr double kBlocksFrom = 3;
+// Large ones cost more the second time: each is tested at many pixels.
+constexpr double kLargeBlocksFrom = 1;
 
 constexpr int32_t kPatchRows = 16;
 
@@ -82,6 +85,12 @@ struct Block {
   uint32_t corner[3];
   Rectangle where;
 };
+
+// Side of a box in voxels, as the root of the mean of their faces.
+double mean_side(const VoxelLists& lists) {
+  const size_t count = lists.entries().size;
+  return count == 0 ? 1 : sqrt(static_cast<double>(lists.face_area()) / static_cast<double>(count));
+}
 
 // One tile of the picture, by one thread.
 class TileDrawer {
@@ -175,6 +184,11 @@ class TileDrawer {
     const Block block = ahead_[ahead_first_];
     ahead_first_ = (ahead_first_ + 1) % kAhead;
     --ahead_count_;
+    // What lay before it may have been drawn since. Small ones are looked up as they are drawn.
+    const bool is_large = block.where.x1 - block.where.x0 > 32 || block.where.y1 - block.where.y0 > 32;
+    if (by_blocks_ && is_large && all_covered(depths_, block.where, full_)) {
+      return;
+    }
     draw_block(block, lists_.nodes()[block.node]);
   }
 
@@ -194,7 +208,9 @@ class TileDrawer {
       for (int axis = 0; axis < 3; ++axis) {
         run.corner[axis] = block.corner[axis] & ~cube;
       }
-      if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && run.voxel_px >= kSortedPx) {
+      const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(node.face_area);
+      const bool is_large = face_px >= kSortedPx * kSortedPx * static_cast<float>(node.entries);
+      if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && is_large) {
         run.count = cull_run(frame_, run, depths_, batch_, entries_, numbers_);
         if (run.count == 0) {
           return;
@@ -306,9 +322,9 @@ class TileDrawer {
   uint32_t sorted_numbers_[kMostSorted + kReadAhead];
 };
 
-// How often over the boxes would cover the picture, about: as many pixels as a voxel in the middle of what is
-// occupied takes, times the boxes.
-double times_covered(const VoxelLists& lists, const Frame& frame) {
+// Whether boxes hide one another enough for blocks to pay: by how often over they would cover the picture,
+// about, were each as large as one in the middle of what is occupied.
+bool hide_one_another(const VoxelLists& lists, const Frame& frame) {
   const VoxelBox& bounds = lists.tree().bounds();
   double depth = static_cast<double>(frame.w[3]);
   for (int axis = 0; axis < 3; ++axis) {
@@ -316,10 +332,12 @@ double times_covered(const VoxelLists& lists, const Frame& frame) {
   }
   const double nearest = static_cast<double>(frame.half_w) * 64;
   depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
-  const double area =
+  const double voxel_area =
       4 * static_cast<double>(frame.reach_x) * static_cast<double>(frame.reach_y) / (depth * depth);
   const double pixels = static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
-  return static_cast<double>(lists.face_area()) * area / pixels;
+  const double times = static_cast<double>(lists.face_area()) * voxel_area / pixels;
+  const bool is_large = sqrt(voxel_area) * mean_side(lists) >= static_cast<double>(kSortedPx);
+  return times >= (is_large ? kLargeBlocksFrom : kBlocksFrom);
 }
 
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
@@ -399,7 +417,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   Stats done;
   done.order = options.order;
   if (done.order == Order::kAuto) {
-    done.order = times_covered(lists, frame) < kBlocksFrom ? Order::kFlat : Order::kBlocks;
+    done.order = hide_one_another(lists, frame) ? Order::kBlocks : Order::kFlat;
   }
   const bool by_blocks = done.order == Order::kBlocks;
   const Painter painter(lists, camera, shading, band);

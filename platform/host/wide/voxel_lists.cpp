@@ -123,7 +123,8 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
       step.mask = tree.mask(step.node);
       const bool solid = step.mask == 0;
       if (level >= made.block_level_) {
-        nodes[step.node] = {written, 0, level > 1 && !solid ? next_node[level - 1] : 0};
+        nodes[step.node] = {written, 0, level > 1 && !solid ? next_node[level - 1] : 0,
+                            static_cast<uint32_t>(made.face_area_)};
       }
       const auto add = [&](const uint32_t(&at)[3], int box_level, uint8_t material) {
         if (materials != nullptr) {
@@ -163,6 +164,7 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
     }
     if (level >= made.block_level_) {
       nodes[step.node].entries = written - nodes[step.node].first_entry;
+      nodes[step.node].face_area = static_cast<uint32_t>(made.face_area_) - nodes[step.node].face_area;
     }
     if (level == tree.level()) {
       break;

@@ -35,10 +35,11 @@ struct BlockNode {
   uint32_t first_entry;
   uint32_t entries;
   uint32_t first_child;  ///< number of its first child; the mask is the tree's
+  uint32_t face_area;    ///< of a face of every entry, in all, in square voxels, modulo 2^32
 };
 
 /// The lists of one tree, in bytes that the caller gave. 4 bytes a box, 1 more with many materials, 1 more
-/// with merged blocks, and 12 bytes a node of block_level and above, of which there are at most one in 16
+/// with merged blocks, and 16 bytes a node of block_level and above, of which there are at most one in 16
 /// boxes and 4096.
 class VoxelLists {
  public:
