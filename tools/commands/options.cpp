@@ -250,8 +250,8 @@ void EngineOptions::add_to(CLI::App& app) {
   add_choice_option(
       app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
       "wide: object order, with vectors and threads, for --structure compact where there is room; ray64, "
-      "ray32: ray "
-      "by ray with products of that width; the answers are the same, but ray32 refuses rays that need more")
+      "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
+      "need more; auto: wide where it can be, but not with --board, else ray64")
       ->default_str("auto");
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,

@@ -118,7 +118,9 @@ void run(const RenderCommand& given) {
   shading.near_q8 = range.near_q8;
   shading.far_q8 = range.far_q8;
 
-  bool is_wide = command.engine.prepare(&built, width, height);
+  // With --board the budget is the board's RAM, in which nothing of the host's is to stand unasked.
+  const bool may_be_wide = command.scene.board == nullptr || command.engine.name == "wide";
+  bool is_wide = may_be_wide && command.engine.prepare(&built, width, height);
 
   Image image{width, height, format, std::vector<std::uint8_t>(band_bytes(format, width, height))};
   RenderCounts counts;
