@@ -33,9 +33,8 @@ constexpr uint32_t kFov = 52;
 constexpr uint32_t kSpan = 56;
 constexpr uint32_t kCameraBytes = 60;
 
-constexpr SectionKind kKinds[] = {SectionKind::kTree, SectionKind::kPalette, SectionKind::kCamera,
-                                  SectionKind::kBrickMap, SectionKind::kName,
-                                  SectionKind::kLighting};
+constexpr SectionKind kKinds[] = {SectionKind::kTree,     SectionKind::kPalette, SectionKind::kCamera,
+                                  SectionKind::kBrickMap, SectionKind::kName,    SectionKind::kLighting};
 
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
@@ -345,8 +344,7 @@ ConstBytes BakedScene::section(SectionKind kind) const {
 
 size_t baked_bytes(const BakedParts& parts) {
   if (parts.palette.size > kMaxPaletteColors || parts.name.size > kMaxNameBytes ||
-      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX ||
-      parts.lighting.size > UINT32_MAX) {
+      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX || parts.lighting.size > UINT32_MAX) {
     return SIZE_MAX;
   }
   uint64_t bytes = kBakedHeaderBytes;

@@ -37,7 +37,8 @@ inline constexpr const Group* kCoreGroups[] = {
 };
 /// What lies in flash (the application `golden`): baked scenes and the golden frames; and water, for which
 /// `selftest` has no room left on the smallest chip.
-inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kAnytimeGroup, &kWaterGroup};
+inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kAnytimeGroup,
+                                                 &kWaterGroup};
 
 }  // namespace thimble::portable
 
