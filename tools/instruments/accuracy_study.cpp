@@ -193,7 +193,7 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   for (int across = kMaxSamplesAcross; across >= 1 && !best; --across) {
     study.reference = best_setting(across);
     try {
-      best = studio.prepare(study.reference);
+      best.emplace(studio.prepare(study.reference));
     } catch (const InputError&) {
       if (across == 1) {
         throw;
