@@ -43,7 +43,7 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
   std::vector<Help> all{
       {"render",
        {"--output", "--size", "--projection", "--eye", "--target", "--up", "--fov", "--span", "--shade",
-        "--hits", "--depth-image", "--engine", "--direction-bits"}},
+        "--hits", "--depth-image", "--engine", "--threads", "--direction-bits"}},
       {"trace",
        {"--rays", "--output", "--engine", "--direction-bits", "ox,oy,oz,dx,dy,dz",
         "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz"}},
@@ -60,7 +60,7 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
                 "--coarsen", "--name",  "--size",           "--projection", "--eye",    "--target", "--up",
                 "--fov",     "--span",  "--direction-bits", "--quiet",      "--stats",  ".oct",     ".h"}},
       {"boards", {"SCENE", "--depth", "--as-voxels", "--z-up", "--csv", "--json", "--quiet"}},
-      {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine"}}};
+      {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine", "--threads"}}};
   for (Help& help : all) {
     if (help.subcommand == "render" || help.subcommand == "trace" || help.subcommand == "info") {
       help.names.insert(help.names.end(), scene.begin(), scene.end());
@@ -106,7 +106,7 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
   check_refused({"bake"}, 2, {"SCENE"});
   check_refused({"bake", "spheres"}, 2, {"--output"});
   // What is not built yet is unknown, never ignored.
-  for (const char* option : {"--threads", "--effects", "--samples", "--cutoff", "--bounces"}) {
+  for (const char* option : {"--effects", "--samples", "--cutoff", "--bounces"}) {
     check_refused({"render", "spheres", "-o", "picture.ppm", option, "1"}, 2,
                   {std::string("\"") + option + "\""});
   }
@@ -145,7 +145,8 @@ TEST_CASE("command: values out of range -> status 2, the option, the value and t
   render("--shade", "pretty", {"depth, normal, color or mono"});
   render("--structure", "bvh", {"dense, pool or compact"});
   render("--projection", "fisheye", {"perspective or orthographic"});
-  render("--engine", "gpu", {"auto, ray64 or ray32"});
+  render("--engine", "gpu", {"auto, wide, ray64 or ray32"});
+  render("--threads", "0", {"1 to 256"});
   for (const char* value : {"7", "21", "auto"}) {
     render("--direction-bits", value, {"8 to 20"});
   }

@@ -528,9 +528,14 @@ TEST_CASE("render: every structure and engine -> the same picture and, but for t
       std::vector<std::string> first;
       std::string first_picture;
       for (const char* structure : {"dense", "pool", "compact"}) {
-        for (const char* engine : {"auto", "ray64", "ray32"}) {
-          const Rendered all = render_all(folder, one + Words{"--size", "40x30", "--projection", projection,
-                                                              "--structure", structure, "--engine", engine});
+        for (const std::string engine : {"auto", "wide", "ray64", "ray32"}) {
+          const bool is_compact = std::string(structure) == "compact";
+          if (engine == "wide" && !is_compact) {
+            continue;
+          }
+          const Rendered all = render_all(
+              folder, one + Words{"--size", "40x30", "--projection", projection, "--structure", structure,
+                                  "--engine", engine, "--threads", engine == "wide" ? "2" : "1"});
           std::vector<std::string> lines;
           for (const std::string& line : lines_of(read_text(folder.path("all.csv")))) {
             std::vector<std::string> columns = split(line);
@@ -553,11 +558,38 @@ TEST_CASE("render: every structure and engine -> the same picture and, but for t
           // "points" has no colours, so that a dense grid can show what the trees do.
           CHECK(all.picture == first_picture);
           CHECK(lines == first);
-          CHECK(all.stats["engine"] == (std::string(engine) == "ray32" ? "ray32" : "ray64"));
+          const std::string used = engine == "auto" ? (is_compact ? "wide" : "ray64") : engine;
+          CHECK(all.stats["engine"] == used);
+          CHECK(all.stats["threads"] == (engine == "wide" ? 2 : 1));
+          CHECK((used == "wide" || all.stats["box_tests"] == 0));
         }
       }
     }
   }
+}
+
+TEST_CASE("render: no room for the wide engine's lists -> rays draw the same picture, or one sentence") {
+  const TemporaryFolder folder;
+  const Words scene{"points:5000", "--size", "64x48"};
+  const json roomy = render_all(folder, scene).stats;
+  CHECK(roomy["engine"] == "wide");
+  // The tree is built in 5000 keys of 4 bytes; lists and 48 rows of 64 pixels want more than is left beside
+  // it.
+  const json tight = render_all(folder, scene + Words{"--memory", "64K"}).stats;
+  CHECK(tight["engine"] == "ray64");
+  CHECK(tight["high_water_bytes"] <= 65536);
+  CHECK(tight["frame_crc32"] == roomy["frame_crc32"]);
+  CHECK(tight["hits"] == roomy["hits"]);
+  // Somewhere between, the picture is drawn a few rows at a time.
+  const json between = render_all(folder, scene + Words{"--memory", "130K"}).stats;
+  CHECK(between["engine"] == "wide");
+  CHECK(between["high_water_bytes"] <= 130 * 1024);
+  CHECK(between["frame_crc32"] == roomy["frame_crc32"]);
+  CHECK(between["hits"] == roomy["hits"]);
+  const CommandResult forced = run_command({"render", "points:5000", "-o", folder.path("p.ppm"), "--size",
+                                            "64x48", "--engine", "wide", "--memory", "64K"});
+  CHECK(forced.status == 1);
+  CHECK(forced.err.find("--engine wide") != std::string::npos);
 }
 
 TEST_CASE("render: --engine ray32 on rays that need more -> status 1, nothing written") {
@@ -706,8 +738,9 @@ TEST_CASE(
 TEST_CASE("render: --stats -> every key of the contract, with its type") {
   const TemporaryFolder folder;
   const json stats = render_all(folder, {"cluster:1000", "--size", "16x12", "--memory", "1M"}).stats;
-  for (const char* key : {"depth", "points", "voxels", "nodes", "tree_bytes", "budget_bytes",
-                          "high_water_bytes", "solid_added", "rays", "hits", "node_visits", "threads"}) {
+  for (const char* key :
+       {"depth", "points", "voxels", "nodes", "tree_bytes", "budget_bytes", "high_water_bytes", "solid_added",
+        "rays", "hits", "node_visits", "threads", "box_tests", "exact_tests"}) {
     CAPTURE(key);
     CHECK(stats[key].is_number_unsigned());
   }

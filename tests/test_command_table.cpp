@@ -92,7 +92,7 @@ TEST_CASE("table: two counts of points -> a row a projection, the paper's figure
       CHECK(row["seconds"] > 0);
       CHECK(row["hits"].is_number_unsigned());
       CHECK(row["exact_mismatches"] == 0);
-      CHECK(row["engine"] == "ray64");
+      CHECK(row["engine"] == "wide");
       CHECK(row["paper_seconds"].is_null() == (points[i] == 7));
     }
     CHECK(table[2]["hits"] > 0);

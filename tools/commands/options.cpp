@@ -246,11 +246,38 @@ BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_byt
 }
 
 void EngineOptions::add_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "wide", "ray64", "ray32"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      "wide: object order, with vectors and threads, for --structure compact where there is room; ray64, "
+      "ray32: ray "
+      "by ray with products of that width; the answers are the same, but ray32 refuses rays that need more")
+      ->default_str("auto");
+  add_whole_option(
+      app, "--threads", "N", 1, wide::kMaxThreads,
+      [this](std::int64_t number) { threads = static_cast<int>(number); }, "threads of the wide engine")
+      ->default_str("1");
+}
+
+void EngineOptions::add_ray_engines_to(CLI::App& app) {
   static const std::vector<std::string> kNames{"auto", "ray64", "ray32"};
   add_choice_option(
       app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
       "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more")
       ->default_str("auto");
+}
+
+bool EngineOptions::prepare(BuiltScene* built, std::int32_t width_px, std::int32_t height_px) const {
+  if (name != "auto" && name != "wide") {
+    return false;
+  }
+  const bool ready = built->prepare_wide(width_px, height_px, threads);
+  if (!ready && name == "wide") {
+    throw InputError(built->structure() == StructureKind::kCompact
+                         ? "no room for --engine wide within --memory"
+                         : "--engine wide draws --structure compact only");
+  }
+  return ready;
 }
 
 TraceOptions EngineOptions::trace_options() const {

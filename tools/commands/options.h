@@ -56,14 +56,21 @@ void add_board(CLI::App& app, const platform::BoardFacts** board, const std::str
 void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64_t>* bytes,
                const std::string& help);
 
-/// --engine: which arithmetic traces.
+/// --engine and --threads: what draws. The pictures are the same.
 struct EngineOptions {
   std::string name = "auto";
+  int threads = 1;
 
   void add_to(CLI::App& app);
+  /// --engine alone, for subcommands that draw nothing.
+  void add_ray_engines_to(CLI::App& app);
+  /// For single rays, whatever the engine.
   TraceOptions trace_options() const;
-  /// What `auto` stands for here.
-  std::string resolved() const { return name == "auto" ? "ray64" : name; }
+  /// Makes ready what this engine wants for pictures of that size; whether the wide renderer is to draw.
+  /// Throws InputError when it was asked for by name and there is no room for it.
+  bool prepare(BuiltScene* built, std::int32_t width_px, std::int32_t height_px) const;
+  /// What was used.
+  std::string resolved(bool is_wide) const { return is_wide ? "wide" : name == "ray32" ? "ray32" : "ray64"; }
 };
 
 using Real3 = std::array<double, 3>;

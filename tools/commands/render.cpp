@@ -103,8 +103,8 @@ void run(const RenderCommand& given) {
   const std::int32_t width = command.view.width_px;
   const std::int32_t height = command.view.height_px;
   const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source, band_bytes(format, width, band_rows(command, format)),
-                                               band_bytes(format, width, 1));
+  BuiltScene built = command.scene.build(*source, band_bytes(format, width, band_rows(command, format)),
+                                         band_bytes(format, width, 1));
   // At least a byte a row: a picture is at least a pixel wide.
   const std::size_t one_row = std::max<std::size_t>(1, row_bytes(format, width));
   const auto rows = static_cast<std::int32_t>(built.band().size / one_row);
@@ -118,11 +118,35 @@ void run(const RenderCommand& given) {
   shading.near_q8 = range.near_q8;
   shading.far_q8 = range.far_q8;
 
+  bool is_wide = command.engine.prepare(&built, width, height);
+
   Image image{width, height, format, std::vector<std::uint8_t>(band_bytes(format, width, height))};
   RenderCounts counts;
+  wide::Counts work;
   ProgressBar bar("tracing", command.scene.quiet);
   double seconds = 0;
-  for (std::int32_t y = 0; y < height; y += rows) {
+  const std::size_t line = row_bytes(format, width);
+  for (std::int32_t y = 0; is_wide && y < height; y += built.wide_rows()) {
+    Band band;
+    band.rows = std::min(built.wide_rows(), height - y);
+    band.pixels =
+        Bytes(image.pixels.data(), image.pixels.size())
+            .subspan(line * static_cast<std::size_t>(y), line * static_cast<std::size_t>(band.rows));
+    band.format = format;
+    band.first_row = y;
+    const auto start = std::chrono::steady_clock::now();
+    const Status status = built.render_wide(camera, shading, band, &counts, &work);
+    if (status == Status::kTooFine && command.engine.name == "auto") {
+      is_wide = false;  // rays draw it all
+      counts = {};
+      work = {};
+    } else if (status != Status::kOk) {
+      throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
+    }
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    bar.update(static_cast<double>(y) / height);
+  }
+  for (std::int32_t y = 0; !is_wide && y < height; y += rows) {
     Band band;
     band.pixels = built.band();
     band.format = format;
@@ -133,9 +157,8 @@ void run(const RenderCommand& given) {
       throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
     }
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const std::size_t row = row_bytes(format, width);
-    std::memcpy(image.pixels.data() + row * static_cast<std::size_t>(y), band.pixels.data,
-                row * static_cast<std::size_t>(band.rows));
+    std::memcpy(image.pixels.data() + line * static_cast<std::size_t>(y), band.pixels.data,
+                line * static_cast<std::size_t>(band.rows));
     bar.update(static_cast<double>(y) / height);
   }
 
@@ -151,7 +174,10 @@ void run(const RenderCommand& given) {
   stats.rays = counts.rays;
   stats.hits = counts.hits;
   stats.node_visits = counts.node_visits;
-  stats.engine = command.engine.resolved();
+  stats.engine = command.engine.resolved(is_wide);
+  stats.threads = is_wide ? command.engine.threads : 1;
+  stats.box_tests = work.candidates;
+  stats.exact_tests = work.exact;
   const std::vector<std::uint8_t> pixels = file_pixels(shown, kind);
   stats.frame_crc32 = crc_text(static_cast<std::uint32_t>(crc32_z(0, pixels.data(), pixels.size())));
   if (command.scene.board != nullptr) {

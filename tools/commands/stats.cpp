@@ -41,6 +41,8 @@ std::string stats_text(const Stats& stats) {
   json["rays"] = stats.rays;
   json["hits"] = stats.hits;
   json["node_visits"] = stats.node_visits;
+  json["box_tests"] = stats.box_tests;
+  json["exact_tests"] = stats.exact_tests;
   json["threads"] = stats.threads;
   json["engine"] = stats.engine;
   json["frame_crc32"] = stats.frame_crc32;

@@ -27,6 +27,8 @@ struct Stats {
   std::uint64_t rays = 0;
   std::uint64_t hits = 0;
   std::uint64_t node_visits = 0;
+  std::uint64_t box_tests = 0;    ///< of the wide engine: rays tested against boxes
+  std::uint64_t exact_tests = 0;  ///< of them, those that floats could not decide
   int threads = 1;
   std::string engine;
   std::string frame_crc32;  ///< 8 hex digits; empty where no frame was drawn

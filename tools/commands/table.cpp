@@ -72,6 +72,7 @@ struct Row {
   double seconds = 0;  // median
   std::uint64_t hits = 0;
   std::uint64_t mismatches = 0;
+  std::string engine;
 };
 
 // The view of frame `index`: the whole world fills the picture, and every frame is seen from a slightly
@@ -93,7 +94,9 @@ Camera camera_of(const TableCommand& command, bool orthographic, int index) {
   return view.camera(command.depth, {});
 }
 
+// The hit that a ray has by the core, and the picture's pixel beside that hit's colour.
 std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid& grid, const Camera& camera,
+                               const Shading& shading, const std::vector<std::uint8_t>& pixels,
                                const TraceOptions& options, std::mt19937_64* random) {
   std::uint64_t mismatches = 0;
   for (int i = 0; i < kJudgedPixels / kFrames; ++i) {
@@ -115,13 +118,18 @@ std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid
     ours.t_numerator = hit.t_numerator;
     ours.t_denominator = hit.t_denominator;
     ours.axis = int{hit.axis};
-    mismatches += reference::same_answer(ours, reference::walk(grid, judged)) ? 0U : 1U;
+    const Rgb8 color = shade(hit, ray, camera, shading);
+    const std::uint8_t* pixel =
+        pixels.data() + 3 * (static_cast<std::size_t>(y) * kWidthPx + static_cast<std::size_t>(x));
+    const bool same_pixel = Rgb8{pixel[0], pixel[1], pixel[2]} == color;
+    mismatches += same_pixel && reference::same_answer(ours, reference::walk(grid, judged)) ? 0U : 1U;
   }
   return mismatches;
 }
 
 Row measure(const TableCommand& command, const BuiltScene& built, const reference::BitGrid& grid,
-            bool orthographic, std::uint64_t points, const std::function<void(double)>& progress) {
+            bool is_wide, bool orthographic, std::uint64_t points,
+            const std::function<void(double)>& progress) {
   const TraceOptions options = command.engine.trace_options();
   std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, kWidthPx, kHeightPx));
   std::vector<double> seconds;
@@ -141,12 +149,18 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
     band.pixels = Bytes(pixels.data(), pixels.size());
     band.rows = kHeightPx;
     RenderCounts counts;
-    if (built.render_band(camera, shading, band, &counts, options) != Status::kOk) {
+    wide::Counts work;
+    Status status = is_wide ? built.render_wide(camera, shading, band, &counts, &work) : Status::kTooFine;
+    row.engine = command.engine.resolved(status == Status::kOk);
+    if (status == Status::kTooFine && command.engine.name != "wide") {
+      status = built.render_band(camera, shading, band, &counts, options);
+    }
+    if (status != Status::kOk) {
       throw InputError("--engine does not take the rays of this view");
     }
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     row.hits = counts.hits;
-    row.mismatches += count_mismatches(built, grid, camera, options, &random);
+    row.mismatches += count_mismatches(built, grid, camera, shading, pixels, options, &random);
     progress(static_cast<double>(frame + 1) / kFrames);
   }
   std::nth_element(seconds.begin(), seconds.begin() + kFrames / 2, seconds.end());
@@ -168,7 +182,7 @@ void print_row(const Row& row) {
   std::fflush(stdout);
 }
 
-void write_json(OutputFile* file, const TableCommand& command, const std::vector<Row>& rows) {
+void write_json(OutputFile* file, const std::vector<Row>& rows) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
     nlohmann::ordered_json object;
@@ -179,7 +193,7 @@ void write_json(OutputFile* file, const TableCommand& command, const std::vector
     object["paper_seconds"] = paper ? nlohmann::ordered_json(*paper) : nlohmann::ordered_json(nullptr);
     object["hits"] = row.hits;
     object["exact_mismatches"] = row.mismatches;
-    object["engine"] = command.engine.resolved();
+    object["engine"] = row.engine;
     json.push_back(object);
   }
   file->write(json.dump(2) + "\n");
@@ -235,7 +249,8 @@ void run(const TableCommand& command) {
     const auto source = open_scene(arguments);
     BuildOptions build;
     build.memory_bytes.reset();
-    const BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
+    BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
+    const bool is_wide = command.engine.prepare(&built, kWidthPx, kHeightPx);
     const int side = 1 << command.depth;
     reference::BitGrid grid({side, side, side});
     source->stream(
@@ -245,7 +260,7 @@ void run(const TableCommand& command) {
         [&](double done) { bar.update(0.3 + done * 0.3); });
     std::vector<Row> pair;
     for (const bool orthographic : {false, true}) {
-      pair.push_back(measure(command, built, grid, orthographic, points,
+      pair.push_back(measure(command, built, grid, is_wide, orthographic, points,
                              [&](double done) { bar.update(0.6 + 0.2 * (done + (orthographic ? 1 : 0))); }));
     }
     bar.clear();
@@ -255,7 +270,7 @@ void run(const TableCommand& command) {
     }
   }
   if (json_file != nullptr) {
-    write_json(json_file.get(), command, rows);
+    write_json(json_file.get(), rows);
   }
   if (plot_file != nullptr) {
     write_plot(plot_file.get(), command, rows);

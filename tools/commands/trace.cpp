@@ -181,7 +181,7 @@ void run(const TraceCommand& command) {
   output.write(std::string(kHitColumns) + "\n");
   ProgressBar bar("tracing", command.scene.quiet);
   Stats stats(command.scene.arguments.scene, *source, built);
-  stats.engine = command.engine.resolved();
+  stats.engine = command.engine.resolved(false);
   if (command.scene.board != nullptr) {
     stats.board = command.scene.board->name;
   }
@@ -226,7 +226,7 @@ void add_trace(CLI::App& app) {
                       "; point = q-origin / 256 + t * q-direction, in voxels; - is standard output")
       ->default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
-  command->engine.add_to(*sub);
+  command->engine.add_ray_engines_to(*sub);
   sub->callback([command] { run(*command); });
 }
 

@@ -503,6 +503,45 @@ std::uint64_t BuiltScene::tree_bytes() const {
   return 0;
 }
 
+bool BuiltScene::prepare_wide(std::int32_t width_px, std::int32_t height_px, int threads) {
+  if (options_.structure != StructureKind::kCompact) {
+    return false;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t mark = arena_.used_bytes();
+  // Asked before the lists are made: what does not fit costs no time.
+  const std::size_t list_bytes = wide::VoxelLists::bytes(compact_);
+  const std::int32_t least_rows = std::min(height_px, kLeastWideRows);
+  const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
+  if (list_bytes > arena_.free_bytes() || arena_.free_bytes() - list_bytes < workspace(least_rows) ||
+      wide::VoxelLists::make(compact_, &arena_, &lists_) != Status::kOk) {
+    return false;
+  }
+  std::int32_t rows = height_px;
+  while (rows > least_rows && workspace(rows) > arena_.free_bytes()) {
+    rows = std::max(least_rows, rows / 2);
+  }
+  wide_workspace_ = arena_.take(workspace(rows), 64);
+  if (wide_workspace_.empty()) {
+    arena_.rewind(mark);
+    return false;
+  }
+  wide_rows_ = rows;
+  wide_threads_ = threads;
+  build_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return true;
+}
+
+Status BuiltScene::render_wide(const Camera& camera, const Shading& shading, const Band& band,
+                               RenderCounts* counts, wide::Counts* work) const {
+  wide::Options options;
+  options.threads = wide_threads_;
+  wide::Stats stats;
+  const Status status = wide::render(lists_, camera, shading, band, wide_workspace_, counts, options, &stats);
+  work->add(stats.counts);
+  return status;
+}
+
 Status BuiltScene::closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const {
   return with_structure(
       [&](const auto& structure) { return thimble::closest_hit(structure, ray, hit, options); });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/wide/renderer.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
 #include "thimble/arena.h"
@@ -39,8 +40,8 @@ struct BuildOptions {
 ///   render state and band | pool of nodes, or list of keys, while building | compact tree
 ///
 /// At the end the compact tree moves down over the workspace. A baked scene's tree is just taken up, without
-/// any workspace; the other structures are filled from it. `arena.high_water_bytes()` is the most that was
-/// in use.
+/// any workspace; the other structures are filled from it. What the wide renderer wants stands behind it.
+/// `arena.high_water_bytes()` is the most that was in use.
 class BuiltScene {
  public:
   /// Streams `source` into memory of its own. Throws InputError when it does not fit the budget (the sentence
@@ -68,6 +69,17 @@ class BuiltScene {
   const std::vector<Rgb8>& palette() const { return palette_; }
   Bytes band() const { return band_; }
   const CompactTree& compact() const { return compact_; }
+
+  /// Makes the lists of the wide renderer (platform/host/wide) and takes its workspace: for all rows of
+  /// pictures of this size, or for as many as there is room for. False, and nothing taken, when there is no
+  /// compact tree, or room for fewer than `kLeastWideRows`. Its time counts as building.
+  bool prepare_wide(std::int32_t width_px, std::int32_t height_px, int threads);
+  static constexpr std::int32_t kLeastWideRows = 16;
+  /// Most rows in a band for `render_wide`; 0 before `prepare_wide`.
+  std::int32_t wide_rows() const { return wide_rows_; }
+  /// The same pixels as `render_band`; Status::kTooFine for cameras that are left to it.
+  Status render_wide(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
+                     wide::Counts* work) const;
 
   Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
   Status render_band(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
@@ -110,6 +122,10 @@ class BuiltScene {
   Octree octree_;
   DenseGrid dense_;
   std::vector<Rgb8> palette_;
+  wide::VoxelLists lists_;
+  Bytes wide_workspace_;
+  std::int32_t wide_rows_ = 0;
+  int wide_threads_ = 1;
   std::uint64_t least_budget_bytes_ = 0;
   std::uint64_t solid_added_ = 0;
   double build_seconds_ = 0;

@@ -1,0 +1,1511 @@
+// What floats decide and what integers decide: see DESIGN.md, "The wide renderer".
+#include "host/wide/kernels.h"
+
+#include "host/wide/exact.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "host/wide/kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace thimble::wide::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F32 = hn::ScalableTag<float>;
+using I32 = hn::RebindToSigned<F32>;
+using U32 = hn::RebindToUnsigned<F32>;
+using F64 = hn::ScalableTag<double>;
+using U64 = hn::RebindToUnsigned<F64>;
+using HalfI32 = hn::Rebind<int32_t, F64>;  // as many lanes as F64
+using HalfU32 = hn::Rebind<uint32_t, F64>;
+
+// A bit a lane.
+template <class D>
+inline uint32_t bits_of(D d, hn::Mask<D> mask) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return uint32_t{bytes[0]} | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 | uint32_t{bytes[3]} << 24;
+}
+
+constexpr uint32_t kWithin = 1023;  // a coordinate within a cube of entries
+
+// The exact rays of some pixels: numbers that are integers, held in doubles.
+struct Rays {
+  hn::Vec<F64> origin[3];
+  hn::Vec<F64> direction[3];
+};
+
+// round(base + x * step_x + y * step_y) / 2^32 with halves away from zero, in exact steps: high parts are
+// below 2^52, low parts below 2^36.
+inline hn::Vec<F64> rounded(const Frame& frame, int axis, hn::Vec<F64> x, hn::Vec<F64> y) {
+  const F64 d;
+  const auto low =
+      hn::MulAdd(x, hn::Set(d, frame.step_x_low[axis]),
+                 hn::MulAdd(y, hn::Set(d, frame.step_y_low[axis]), hn::Set(d, frame.base_low[axis])));
+  const auto high =
+      hn::MulAdd(x, hn::Set(d, frame.step_x_high[axis]),
+                 hn::MulAdd(y, hn::Set(d, frame.step_y_high[axis]), hn::Set(d, frame.base_high[axis])));
+  const auto carry = hn::Floor(hn::Mul(low, hn::Set(d, 1.0 / (1 << 20))));
+  const auto rest = hn::NegMulAdd(carry, hn::Set(d, 1 << 20), low);
+  const auto whole = hn::Add(high, carry);
+  // A negative number exactly half way between two integers goes down.
+  const auto zero = hn::Zero(d);
+  const auto half_way = hn::And(hn::Lt(whole, zero), hn::Eq(rest, zero));
+  const auto moved = hn::Sub(hn::Add(whole, hn::Set(d, 2048)), hn::IfThenElseZero(half_way, hn::Set(d, 1)));
+  return hn::Floor(hn::Mul(moved, hn::Set(d, 1.0 / 4096)));
+}
+
+template <bool kPerspective>
+inline Rays rays_of(const Frame& frame, hn::Vec<F64> x, hn::Vec<F64> y) {
+  const F64 d;
+  Rays rays;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto varying = rounded(frame, axis, x, y);
+    if (kPerspective) {
+      rays.origin[axis] = hn::Set(d, static_cast<double>(frame.camera.eye()[axis].raw));
+      rays.direction[axis] = varying;
+    } else {
+      rays.origin[axis] = hn::Add(hn::Set(d, static_cast<double>(frame.camera.eye()[axis].raw)), varying);
+      rays.direction[axis] = hn::Set(d, static_cast<double>(frame.camera.direction()[axis]));
+    }
+  }
+  return rays;
+}
+
+// Bits 0..9 to every third bit.
+inline hn::Vec<U32> spread10(hn::Vec<U32> v) {
+  const U32 d;
+  v = hn::And(hn::Or(v, hn::ShiftLeft<16>(v)), hn::Set(d, 0x030000FFU));
+  v = hn::And(hn::Or(v, hn::ShiftLeft<8>(v)), hn::Set(d, 0x0300F00FU));
+  v = hn::And(hn::Or(v, hn::ShiftLeft<4>(v)), hn::Set(d, 0x030C30C3U));
+  return hn::And(hn::Or(v, hn::ShiftLeft<2>(v)), hn::Set(d, 0x09249249U));
+}
+
+// The side of boxes in voxels as a power of two, and their x without the bits that tell it.
+template <class D>
+inline void unpack_side(D d, hn::Vec<D> entry, bool unit, hn::Vec<D>* level, hn::Vec<D>* x) {
+  *x = hn::And(entry, hn::Set(d, 1023U));
+  *level = hn::Zero(d);
+  if (!unit) {
+    const auto code = hn::ShiftRight<30>(entry);
+    const auto is_large = hn::Eq(code, hn::Set(d, 3U));
+    const auto more = hn::IfThenElseZero(is_large, hn::And(entry, hn::Set(d, 7U)));
+    *x = hn::Sub(*x, more);
+    *level = hn::Add(code, more);
+  }
+}
+
+// The value that Depths keeps, less the entry's number.
+inline uint64_t value_of(const Batch& batch, uint32_t key, uint32_t down, uint32_t number) {
+  return batch.cube_value[down] | uint64_t{key} << kEntryBits | number;
+}
+
+// Takes what was met into the picture.
+void keep(const Depths& depths, Batch* batch) {
+  constexpr size_t kAhead = 12;
+  for (size_t i = 0; i < batch->met; ++i) {
+    __builtin_prefetch(depths.nearest + batch->pixel[i + kAhead < batch->met ? i + kAhead : i], 1);
+    const uint32_t pixel = batch->pixel[i];
+    const uint32_t bit = uint32_t{1} << (pixel & 31U);
+    uint32_t* covered = depths.covered + (pixel >> 5);
+    uint64_t* nearest = depths.nearest + pixel;
+    const uint64_t value = value_of(*batch, batch->key[i], batch->down[i], batch->number[i]);
+    // No branch: what is there when the bit is not set is then made the greatest number.
+    const uint64_t nothing = uint64_t{*covered >> (pixel & 31U) & 1U} - 1;
+    const uint64_t before = *nearest | nothing;
+    *covered |= bit;
+    *nearest = value < before ? value : before;
+  }
+  batch->counts.hits += batch->met;
+  batch->met = 0;
+}
+
+// What floats say of some rays and boxes: `met` only where `unclear` is not set.
+struct Verdict {
+  hn::Mask<F32> met;
+  hn::Mask<F32> unclear;
+  hn::Vec<F32> direction[3];
+};
+
+// Rounded directions: off a half by more than the error of the float map, the float's nearest integer is the
+// direction. Centres (below 2^24) and directions (at most 20 bits) are then exact, and so is what is compared
+// with: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two. c_a d_b - c_b d_a, by Kahan's
+// method with fused products, is within 2 units in the last place of itself (C.-P. Jeannerod, N. Louvet,
+// J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5), so 2^-21 of it settles what
+// is nearer than that; without fused products the two roundings of the products count too.
+//
+// `low` are lowest corners within the cube, in voxels; `half` half sides in 1/512 voxel; `origin` the cube's
+// corner less the eye, in 1/512 voxel.
+template <bool kPerspective>
+HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F32> x, hn::Vec<F32> y,
+                         const hn::Vec<F32> (&low)[3], hn::Vec<F32> half) {
+  const F32 d;
+  const auto zero = hn::Zero(d);
+  Verdict verdict;
+  hn::Vec<F32> center[3];
+  auto unclear = hn::Lt(zero, zero);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto map = [&](const float(&of)[3][3]) {
+      return hn::MulAdd(x, hn::Set(d, of[1][axis]),
+                        hn::MulAdd(y, hn::Set(d, of[2][axis]), hn::Set(d, of[0][axis])));
+    };
+    const auto rest = map(frame.map_rest);
+    const auto nearest = hn::Round(rest);
+    unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+    const auto varying = hn::Add(map(frame.map_whole), nearest);
+    center[axis] = hn::Add(hn::MulAdd(low[axis], hn::Set(d, 512.0F), hn::Set(d, origin[axis])), half);
+    if (kPerspective) {
+      verdict.direction[axis] = varying;
+    } else {
+      verdict.direction[axis] = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), center[axis]);
+    }
+  }
+  // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and
+  // there.
+  const auto& direction = verdict.direction;
+  hn::Vec<F32> size[3];
+  bool still[3] = {false, false, false};
+  for (int axis = 0; axis < 3; ++axis) {
+    size[axis] = hn::Abs(direction[axis]);
+    if (kPerspective) {
+      unclear = hn::Or(unclear, hn::Eq(size[axis], zero));
+    } else {
+      still[axis] = frame.camera.direction()[axis] == 0;
+    }
+  }
+  auto met = hn::Eq(zero, zero);
+  constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+  for (const auto& pair : kPairs) {
+    const int a = pair[0];
+    const int b = pair[1];
+    if (still[a] || still[b]) {
+      continue;
+    }
+    const auto product = hn::Mul(center[b], direction[a]);
+    const auto wanted = hn::Mul(half, hn::Add(size[a], size[b]));
+#if HWY_NATIVE_FMA
+    const auto error = hn::NegMulAdd(center[b], direction[a], product);
+    const auto cross = hn::Abs(hn::Add(hn::MulSub(center[a], direction[b], product), error));
+    const auto margin = hn::Mul(wanted, hn::Set(d, 1.0F / (1 << 21)));
+#else
+    const auto other = hn::Mul(center[a], direction[b]);
+    const auto cross = hn::Abs(hn::Sub(other, product));
+    const auto margin =
+        hn::Mul(hn::Add(wanted, hn::Add(hn::Abs(other), hn::Abs(product))), hn::Set(d, 1.0F / (1 << 21)));
+#endif
+    met = hn::And(met, hn::Lt(cross, wanted));
+    unclear = hn::Or(unclear, hn::Le(hn::Abs(hn::Sub(cross, wanted)), margin));
+  }
+  // The upper plane, as the ray goes, lies ahead.
+  const auto minus_half = hn::Neg(half);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (still[axis]) {
+      met = hn::And(met, hn::And(hn::Le(center[axis], half), hn::Gt(center[axis], minus_half)));
+      continue;
+    }
+    const auto sign = hn::CopySign(hn::Set(d, 1.0F), direction[axis]);
+    met = hn::And(met, hn::Gt(hn::Mul(sign, center[axis]), minus_half));
+  }
+  verdict.met = met;
+  verdict.unclear = unclear;
+  return verdict;
+}
+
+// Puts pairs of the lanes in `mask` behind the last.
+HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> number, hn::Vec<U32> place,
+                       Pairs* pairs) {
+  const U32 d;
+  const auto chosen = hn::RebindMask(d, mask);
+  hn::StoreU(hn::Compress(entry, chosen), d, pairs->entry + pairs->count);
+  hn::StoreU(hn::Compress(number, chosen), d, pairs->number + pairs->count);
+  hn::StoreU(hn::Compress(place, chosen), d, pairs->place + pairs->count);
+  pairs->count += hn::CountTrue(d, chosen);
+}
+
+inline void origin_of(const Frame& frame, const Batch& batch, float (&origin)[3]) {
+  for (int axis = 0; axis < 3; ++axis) {
+    origin[axis] =
+        static_cast<float>(int64_t{512} * batch.corner[axis] - int64_t{2} * frame.camera.eye()[axis].raw);
+  }
+}
+
+// The exact test of what floats could not tell.
+void test_unclear(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  Pairs& pairs = batch->unclear;
+  batch->counts.exact += pairs.count;
+  for (size_t i = 0; i < pairs.count; ++i) {
+    const int32_t x = static_cast<int32_t>(pairs.place[i] & 0xFFFFU);
+    const int32_t y = static_cast<int32_t>(pairs.place[i] >> 16);
+    uint32_t key = 0;
+    uint32_t down = 0;
+    if (!meets_exactly(frame.camera.ray(x, y), pairs.entry[i], batch->corner, &key, &down)) {
+      continue;
+    }
+    if (batch->met >= Pairs::kSize) {
+      keep(depths, batch);
+      *kept = true;
+    }
+    batch->key[batch->met] = key;
+    batch->down[batch->met] = down;
+    batch->number[batch->met] = pairs.number[i];
+    batch->pixel[batch->met] = static_cast<uint32_t>((y - depths.first_row) * depths.width_px + x);
+    ++batch->met;
+  }
+  pairs.count = 0;
+}
+
+// Tests what waits in floats where they can tell, and exactly where they cannot. `kept`: set when something
+// went into the picture.
+template <bool kPerspective, bool kUnit>
+HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  Pairs& pairs = batch->waiting;
+  batch->counts.candidates += pairs.count;
+  float origin[3];
+  origin_of(frame, *batch, origin);
+  const auto within = hn::Set(du, kWithin);
+  const auto zero = hn::Zero(d);
+  for (size_t at = 0; at < pairs.count; at += lanes) {
+    const auto live = hn::FirstN(d, pairs.count - at < lanes ? pairs.count - at : lanes);
+    const auto place = hn::Load(du, pairs.place + at);
+    const auto int_x = hn::And(place, hn::Set(du, 0xFFFFU));
+    const auto int_y = hn::ShiftRight<16>(place);
+    const auto x = hn::ConvertTo(d, hn::BitCast(di, int_x));
+    const auto y = hn::ConvertTo(d, hn::BitCast(di, int_y));
+    const auto entry = hn::Load(du, pairs.entry + at);
+    const auto number = hn::Load(du, pairs.number + at);
+    hn::Vec<U32> level;
+    hn::Vec<U32> entry_x;
+    unpack_side(du, entry, kUnit, &level, &entry_x);
+    const auto half =
+        kUnit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
+    const hn::Vec<U32> low[3] = {entry_x, hn::And(hn::ShiftRight<10>(entry), within),
+                                 hn::And(hn::ShiftRight<20>(entry), within)};
+    const hn::Vec<F32> corner[3] = {hn::ConvertTo(d, hn::BitCast(di, low[0])),
+                                    hn::ConvertTo(d, hn::BitCast(di, low[1])),
+                                    hn::ConvertTo(d, hn::BitCast(di, low[2]))};
+    const Verdict verdict = judge<kPerspective>(frame, origin, x, y, corner, half);
+    const auto unclear = hn::And(verdict.unclear, live);
+    const auto met = hn::AndNot(verdict.unclear, hn::And(verdict.met, live));
+    if (!hn::AllFalse(d, unclear)) {
+      append(unclear, entry, number, place, &batch->unclear);
+      if (batch->unclear.count + lanes > Pairs::kSize) {
+        test_unclear(frame, depths, kept, batch);
+      }
+    }
+    if (hn::AllFalse(d, met)) {
+      continue;
+    }
+    // Keys, mirrored by the signs of the directions; then those that were met, in a row.
+    if (batch->met + lanes > Pairs::kSize) {
+      keep(depths, batch);
+      *kept = true;
+    }
+    auto key = hn::Zero(du);
+    auto down = hn::Zero(du);
+    const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+    for (int axis = 2; axis >= 0; --axis) {
+      const auto is_down = hn::RebindMask(du, hn::Lt(verdict.direction[axis], zero));
+      auto mirrored = hn::Xor(low[axis], hn::IfThenElseZero(is_down, within));
+      if (!kUnit) {
+        mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
+      }
+      key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
+      down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
+    }
+    const auto row = hn::Sub(int_y, hn::Set(du, static_cast<uint32_t>(depths.first_row)));
+    const auto pixel = hn::Add(hn::Mul(row, hn::Set(du, static_cast<uint32_t>(depths.width_px))), int_x);
+    const auto chosen = hn::RebindMask(du, met);
+    hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
+    hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
+    hn::StoreU(hn::Compress(number, chosen), du, batch->number + batch->met);
+    hn::StoreU(hn::Compress(pixel, chosen), du, batch->pixel + batch->met);
+    batch->met += hn::CountTrue(du, chosen);
+  }
+  pairs.count = 0;
+}
+
+// Of the pixels (x .. x + 24, y), a bit each: whether they are not covered. Lanes outside `mask` get numbers
+// without meaning.
+HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) {
+  const U32 d;
+  // Words need not be aligned: the byte that holds the first pixel begins one.
+  const auto byte = hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths.first_row))),
+                                    hn::Set(d, static_cast<uint32_t>(depths.words) * 4)),
+                            hn::ShiftRight<3>(x));
+  const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
+#if HWY_TARGET == HWY_SCALAR
+  uint32_t word = 0;
+  __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths.covered) + hn::GetLane(safe), sizeof(word));
+  const auto covered = hn::Set(d, word);
+#else
+  const auto covered = hn::GatherOffset(d, depths.covered, hn::BitCast(I32(), safe));
+#endif
+  return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
+}
+
+// Makes candidates of the boxes that wait: pairs with each of their pixels, but for covered ones, until
+// something goes into the picture (`kept`).
+template <bool kPerspective, bool kUnit>
+HWY_NOINLINE void pair_boxes(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  Boxes& boxes = batch->boxes;
+  Pairs& waiting = batch->waiting;
+  const auto low_half = hn::Set(du, 0xFFFFU);
+  for (size_t at = 0; at < boxes.count; at += lanes) {
+    const auto live = hn::FirstN(d, boxes.count - at < lanes ? boxes.count - at : lanes);
+    const auto entry = hn::Load(du, boxes.entry + at);
+    const auto number = hn::Load(du, boxes.number + at);
+    const auto place = hn::Load(du, boxes.place + at);
+    const auto wide = hn::Load(du, boxes.wide + at);
+    const auto x = hn::And(place, low_half);
+    const auto y = hn::ShiftRight<16>(place);
+    const auto wide_x = hn::And(wide, low_half);
+    const auto wide_y = hn::ShiftRight<16>(wide);
+    auto in_row = live;
+    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+      auto in_column = in_row;
+      auto open = hn::Set(du, UINT32_MAX);
+      const bool rejects = batch->all_behind && !*kept;
+      if (rejects) {
+        open = open_at(depths, in_row, x, hn::Add(y, hn::Set(du, down)));
+      }
+      for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
+        auto chosen = in_column;
+        if (rejects) {
+          chosen = hn::And(chosen, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
+        }
+        append(chosen, entry, number, hn::Add(place, hn::Set(du, down << 16 | across)), &waiting);
+        if (waiting.count + lanes > Pairs::kSize) {
+          test_waiting<kPerspective, kUnit>(frame, depths, kept, batch);
+        }
+        in_column = hn::And(in_column, hn::RebindMask(d, hn::Gt(wide_x, hn::Set(du, across))));
+      }
+      in_row = hn::And(in_row, hn::RebindMask(d, hn::Gt(wide_y, hn::Set(du, down))));
+    }
+  }
+  boxes.count = 0;
+  batch->all_behind = true;
+}
+
+// A box that covers many pixels: along the rows of its rectangle, a vector of pixels at a time, straight into
+// the picture. `reject`: covered pixels need no look.
+template <bool kPerspective>
+HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number, const Rectangle& where,
+                             bool reject, const Depths& depths, Batch* batch) {
+  const F32 d;
+  const U64 d64;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+  const uint32_t all_lanes = lanes == 32 ? UINT32_MAX : (uint32_t{1} << lanes) - 1;
+  const int32_t lanes64 = static_cast<int32_t>(hn::Lanes(d64));
+  const int32_t level = level_of(entry);
+  const uint32_t corner[3] = {x_of(entry), entry >> 10 & kWithin, entry >> 20 & kWithin};
+  const hn::Vec<F32> low[3] = {hn::Set(d, static_cast<float>(corner[0])),
+                               hn::Set(d, static_cast<float>(corner[1])),
+                               hn::Set(d, static_cast<float>(corner[2]))};
+  const auto half = hn::Set(d, static_cast<float>(256 << level));
+  float origin[3];
+  origin_of(frame, *batch, origin);
+  uint32_t known_down = 8;
+  uint64_t value = 0;
+  const auto value_for = [&](uint32_t down) {
+    return value_of(*batch, mirrored_key(corner, level, down), down, number);
+  };
+  for (int32_t y = where.y0; y < where.y1; ++y) {
+    uint32_t* const row = depths.covered + depths.first_word(y);
+    uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
+    for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
+      uint32_t wanted = all_lanes;
+      wanted &= x < where.x0 ? UINT32_MAX << (where.x0 - x) : UINT32_MAX;
+      wanted &= where.x1 - x < lanes ? (uint32_t{1} << (where.x1 - x)) - 1 : UINT32_MAX;
+      const uint32_t shift = static_cast<uint32_t>(x) & 31U;
+      uint32_t* const word = row + (x >> 5);
+      if (reject) {
+        wanted &= ~(*word >> shift);
+      }
+      if (wanted == 0) {
+        continue;
+      }
+      batch->counts.candidates += static_cast<unsigned>(__builtin_popcount(wanted));
+      const Verdict verdict = judge<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
+                                                  hn::Set(d, static_cast<float>(y)), low, half);
+      uint32_t met = bits_of(d, hn::AndNot(verdict.unclear, verdict.met)) & wanted;
+      const uint32_t unclear = bits_of(d, verdict.unclear) & wanted;
+      for (uint32_t left = unclear; left != 0; left &= left - 1) {
+        const int32_t lane = __builtin_ctz(left);
+        uint32_t key = 0;
+        uint32_t down = 0;
+        ++batch->counts.exact;
+        if (meets_exactly(frame.camera.ray(x + lane, y), entry, batch->corner, &key, &down)) {
+          const uint64_t one = value_of(*batch, key, down, number);
+          const uint32_t bit = uint32_t{1} << (shift + static_cast<uint32_t>(lane));
+          nearest[x + lane] = (*word & bit) != 0 && nearest[x + lane] < one ? nearest[x + lane] : one;
+          *word |= bit;
+          ++batch->counts.hits;
+        }
+      }
+      if (met == 0) {
+        continue;
+      }
+      batch->counts.hits += static_cast<unsigned>(__builtin_popcount(met));
+      // Mostly all rays run the same way.
+      uint32_t down_all = 0;
+      uint32_t axis_bits[3];
+      bool same = true;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        axis_bits[axis] = bits_of(d, hn::Lt(verdict.direction[axis], hn::Zero(d))) & met;
+        same = same && (axis_bits[axis] == 0 || axis_bits[axis] == met);
+        down_all |= axis_bits[axis] != 0 ? 1U << axis : 0U;
+      }
+      const uint32_t before = *word >> shift & met;
+      if (same && before == 0) {
+        if (down_all != known_down) {
+          known_down = down_all;
+          value = value_for(down_all);
+        }
+        *word |= met << shift;
+        const auto values = hn::Set(d64, value);
+        for (int32_t part = 0; part < lanes; part += lanes64) {
+          const uint8_t mask_bits[8] = {static_cast<uint8_t>(met >> part & ((1U << lanes64) - 1))};
+          hn::BlendedStore(values, hn::LoadMaskBits(d64, mask_bits), d64, nearest + x + part);
+        }
+        continue;
+      }
+      for (; met != 0; met &= met - 1) {
+        const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(met));
+        const uint32_t down =
+            (axis_bits[0] >> lane & 1U) | (axis_bits[1] >> lane & 1U) << 1 | (axis_bits[2] >> lane & 1U) << 2;
+        const uint64_t one = value_for(down);
+        const uint32_t bit = uint32_t{1} << (shift + lane);
+        uint64_t* const at = nearest + x + static_cast<int32_t>(lane);
+        *at = (*word & bit) != 0 && *at < one ? *at : one;
+        *word |= bit;
+      }
+    }
+  }
+}
+
+// Whether a box in the eye's plane may be seen through the tile: not when it lies wholly outside one of the
+// tile's four sides. In doubles, by its corners: few boxes come here.
+bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
+  const double slack_x = static_cast<double>(frame.slack_x) + 1;
+  const double slack_y = static_cast<double>(frame.slack_y) + 1;
+  const double edge[4] = {frame.tile.x0 - slack_x, frame.tile.x1 + slack_x, frame.tile.y0 - slack_y,
+                          frame.tile.y1 + slack_y};
+  for (int s = 0; s < 4; ++s) {
+    const float(&row)[4] = s < 2 ? frame.u : frame.v;
+    const double sign = (s & 1) != 0 ? -1 : 1;
+    const auto plane = [&](int i) {
+      return sign * (static_cast<double>(row[i]) - edge[s] * static_cast<double>(frame.w[i]));
+    };
+    double distance = plane(3);
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double normal = plane(axis);
+      distance += normal * center[axis];
+      reach += (normal < 0 ? -normal : normal) * side * 0.5;
+    }
+    const double rounding = static_cast<double>(s < 2 ? frame.rounding_x : frame.rounding_y);
+    if (distance + reach + 2 * rounding < 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Rectangles of at most so many pixels a side become candidates; sorted runs gain by going into the picture
+// at once.
+constexpr float kMostQueued = 8;
+constexpr float kMostQueuedSorted = 3;
+// So many boxes are paired with their pixels before the next run is looked up.
+constexpr size_t kMostBoxesWaiting = 64;
+
+template <bool kPerspective, bool kUnit>
+void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  if (batch->corner[0] == run.corner[0] && batch->corner[1] == run.corner[1] &&
+      batch->corner[2] == run.corner[2]) {
+    return;
+  }
+  bool kept = false;
+  pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+  test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+  test_unclear(frame, depths, &kept, batch);
+  keep(depths, batch);
+  // The corner of the cube and the middle of a voxel go into the constants.
+  const float* const rows[3] = {frame.u, frame.v, frame.w};
+  for (int i = 0; i < 3; ++i) {
+    double sum = static_cast<double>(rows[i][3]);
+    for (int axis = 0; axis < 3; ++axis) {
+      sum += static_cast<double>(rows[i][axis]) * (run.corner[axis] + (kUnit ? 0.5 : 0.0));
+    }
+    batch->constant[i] = static_cast<float>(sum);
+  }
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    batch->corner[axis] = run.corner[axis];
+  }
+  for (unsigned down = 0; down < 8; ++down) {
+    uint64_t key = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const uint32_t cube = run.corner[axis] >> 10 ^ ((down >> axis & 1U) != 0 ? 3U : 0U);
+      key |= uint64_t{cube & 1U} << (30 + axis) | uint64_t{cube >> 1 & 1U} << (33 + axis);
+    }
+    batch->cube_value[down] = key << kEntryBits;
+  }
+}
+
+// How far boxes of `side` voxels reach from their middles' places on the picture: frame.h.
+template <class D>
+struct Extent {
+  hn::Vec<D> x;
+  hn::Vec<D> y;
+};
+
+template <bool kPerspective, class D>
+HWY_INLINE Extent<D> extent(D d, const Frame& frame, hn::Vec<D> side, hn::Vec<D> column, hn::Vec<D> row,
+                            hn::Vec<D> per_depth) {
+  const auto one = hn::Set(d, 1.0F);
+  auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x));
+  auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y));
+  half_x = hn::MulAdd(half_x, per_depth, hn::Set(d, frame.slack_x));
+  half_y = hn::MulAdd(half_y, per_depth, hn::Set(d, frame.slack_y));
+  if (kPerspective) {
+    const auto nearness = hn::Mul(hn::Mul(hn::Set(d, frame.half_w), side), per_depth);
+    const auto k = hn::MulAdd(hn::Mul(hn::Set(d, 0.5F), side), per_depth,
+                              hn::Mul(hn::Set(d, frame.per_direction), hn::Add(one, nearness)));
+    const auto r = hn::Mul(k, hn::Set(d, frame.norm_w));
+    const auto factor = hn::Mul(k, hn::MulAdd(r, hn::Set(d, 1.152F), hn::Set(d, 1.001F)));
+    const auto reach = [&](const float(&of)[4], auto place) {
+      auto sum = hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[0]), hn::Set(d, of[0])));
+      sum = hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[1]), hn::Set(d, of[1]))));
+      return hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[2]), hn::Set(d, of[2]))));
+    };
+    const auto is_far = hn::Le(r, hn::Set(d, 0.125F));
+    const auto near_x = hn::MulAdd(hn::Set(d, frame.rounding_x), per_depth, hn::Set(d, frame.spread_x));
+    const auto near_y = hn::MulAdd(hn::Set(d, frame.rounding_y), per_depth, hn::Set(d, frame.spread_y));
+    half_x = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.u, column), factor, near_x), half_x);
+    half_y = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.v, row), factor, near_y), half_y);
+  }
+  return {half_x, half_y};
+}
+
+// How far boxes reach from their middles' places: the tile's bound (frame.h) for the part of it in which the
+// run may be seen.
+struct Reach {
+  float x, y;
+  float slack_x, slack_y;
+
+  Reach(const Frame& frame, const Rectangle& where)
+      : x(frame.reach_x), y(frame.reach_y), slack_x(frame.slack_x), slack_y(frame.slack_y) {
+    if (!frame.perspective || frame.norm_w > 1e20F) {
+      return;
+    }
+    const auto sum = [&](const float(&row)[4], int32_t at) {
+      const float place = static_cast<float>(at);
+      float total = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        total += __builtin_fabsf(row[axis] - place * frame.w[axis]);
+      }
+      return total * 1.001F;
+    };
+    const auto greater = [](float a, float b) { return a > b ? a : b; };
+    const float across = greater(sum(frame.u, where.x0), sum(frame.u, where.x1));
+    const float down = greater(sum(frame.v, where.y0), sum(frame.v, where.y1));
+    const float farther = 1 + frame.per_direction * frame.norm_w;
+    x = 0.5F * across * farther;
+    y = 0.5F * down * farther;
+    slack_x = across * frame.per_direction + frame.spread_x;
+    slack_y = down * frame.per_direction + frame.spread_y;
+  }
+};
+
+// Some boxes of a run on the picture: the pixels low_x .. low_x + wide_x, low_y .. low_y + wide_y.
+struct Projected {
+  hn::Vec<U32> entry;
+  hn::Vec<F32> low_x, low_y;
+  hn::Vec<F32> wide_x, wide_y;
+  hn::Mask<F32> seen;
+  hn::Mask<F32> crossing;  // middle behind the eye's plane, but not all of it
+};
+
+template <bool kPerspective, bool kUnit>
+HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle& clip, const Reach& reach,
+                             const Batch& batch, uint32_t at) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  const auto within = hn::Set(du, kWithin);
+  const auto first_x = hn::Set(d, static_cast<float>(clip.x0));
+  const auto last_x = hn::Set(d, static_cast<float>(clip.x1 - 1));
+  const auto first_y = hn::Set(d, static_cast<float>(clip.y0));
+  const auto last_y = hn::Set(d, static_cast<float>(clip.y1 - 1));
+  const auto zero = hn::Zero(d);
+  const auto one = hn::Set(d, 1.0F);
+  Projected boxes;
+  const size_t left = run.count - at < lanes ? run.count - at : lanes;
+  const auto live = hn::FirstN(d, left);
+  boxes.entry = hn::LoadU(du, run.entries + at);
+  const auto entry = boxes.entry;
+  hn::Vec<U32> level;
+  hn::Vec<U32> entry_x;
+  unpack_side(du, entry, kUnit, &level, &entry_x);
+  auto x = hn::ConvertTo(d, hn::BitCast(di, entry_x));
+  auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
+  auto z = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<20>(entry), within)));
+  auto side = one;
+  if (!kUnit) {
+    side = hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+    const auto middle = hn::Mul(side, hn::Set(d, 0.5F));
+    x = hn::Add(x, middle);
+    y = hn::Add(y, middle);
+    z = hn::Add(z, middle);
+  }
+  const auto apply = [&](const float(&row)[4], float last) {
+    return hn::MulAdd(hn::Set(d, row[0]), x,
+                      hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, last))));
+  };
+  auto column = apply(frame.u, batch.constant[0]);
+  auto row = apply(frame.v, batch.constant[1]);
+  boxes.seen = live;
+  boxes.crossing = hn::Lt(one, zero);
+  auto per_depth = one;
+  if (kPerspective) {
+    const auto depth = apply(frame.w, batch.constant[2]);
+    const auto behind = hn::Le(depth, zero);
+    const auto reach_w = hn::MulAdd(hn::Set(d, frame.half_w), side, hn::Set(d, frame.rounding_w));
+    boxes.crossing = hn::And(live, hn::And(behind, hn::Gt(hn::Add(depth, reach_w), zero)));
+    boxes.seen = hn::AndNot(behind, boxes.seen);
+    per_depth = hn::Div(one, depth);
+    column = hn::Mul(column, per_depth);
+    row = hn::Mul(row, per_depth);
+  }
+  const auto half_x = hn::MulAdd(hn::MulAdd(hn::Set(d, reach.x), side, hn::Set(d, frame.rounding_x)),
+                                 per_depth, hn::Set(d, reach.slack_x));
+  const auto half_y = hn::MulAdd(hn::MulAdd(hn::Set(d, reach.y), side, hn::Set(d, frame.rounding_y)),
+                                 per_depth, hn::Set(d, reach.slack_y));
+  boxes.low_x = hn::Max(hn::Ceil(hn::Sub(column, half_x)), first_x);
+  boxes.low_y = hn::Max(hn::Ceil(hn::Sub(row, half_y)), first_y);
+  boxes.wide_x = hn::Sub(hn::Min(hn::Floor(hn::Add(column, half_x)), last_x), boxes.low_x);
+  boxes.wide_y = hn::Sub(hn::Min(hn::Floor(hn::Add(row, half_y)), last_y), boxes.low_y);
+  boxes.seen = hn::And(boxes.seen, hn::Ge(hn::Min(boxes.wide_x, boxes.wide_y), zero));
+  return boxes;
+}
+
+// Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
+HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
+  const F32 d;
+  const U32 du;
+  return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
+}
+
+// Which pixels of a run's rectangle are not covered, where that has at most 32 rows of 32 pixels: looked up
+// in registers (AVX-512) or in a table of its own, instead of all over the picture. The wide case reads the
+// picture.
+class OpenPixels {
+ public:
+  // `reach`: 0, 2, 4 or 8, see near().
+  OpenPixels(const Depths& depths, const Rectangle& where, uint32_t reach = 0) : depths_(depths) {
+    small_ = where.x1 - where.x0 <= 32 && where.y1 - where.y0 <= 32;
+    if (!small_) {
+      return;
+    }
+    x0_ = static_cast<uint32_t>(where.x0);
+    y0_ = static_cast<uint32_t>(where.y0);
+    const uint8_t* at =
+        reinterpret_cast<const uint8_t*>(depths.covered) + 4 * depths.first_word(where.y0) + (x0_ >> 3);
+    const int32_t rows = where.y1 - where.y0;
+    const uint32_t inside = UINT32_MAX >> (32 - (where.x1 - where.x0));
+    uint32_t columns = 0;
+    uint32_t open_rows = 0;
+    for (int32_t row = 0; row < rows; ++row, at += static_cast<size_t>(depths.words) * 4) {
+      uint64_t bits = 0;
+      __builtin_memcpy(&bits, at, sizeof(bits));
+      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 7U)) & inside;
+      columns |= rows_[row];
+      open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
+    }
+    // Every pixel with those right of and below it, by doubling; from the last row upwards.
+    for (uint32_t width = 1; width < reach; width *= 2) {
+      const uint32_t* from = width == 1 ? rows_ : near_;
+      for (int32_t row = 0; row < rows; ++row) {
+        const int32_t below = row + static_cast<int32_t>(width);
+        const uint32_t both = from[row] | (below < rows ? from[below] : 0);
+        near_[row] = both | both >> width;
+      }
+    }
+    if (columns != 0) {
+      bounds_ = {where.x0 + __builtin_ctz(columns), where.y0 + __builtin_ctz(open_rows),
+                 where.x0 + 32 - __builtin_clz(columns), where.y0 + 32 - __builtin_clz(open_rows)};
+    }
+  }
+
+  // What is known was read before the run was begun.
+  bool is_small() const { return small_; }
+  // Holds all pixels of the small rectangle that are not covered; empty when there is none.
+  const Rectangle& bounds() const { return bounds_; }
+
+  // open_at(), but as it was when this was made, where that is known.
+  HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
+    if (small_) {
+      return look_up(rows_, x, y);
+    }
+    return open_at(depths_, mask, x, y);
+  }
+  // Of the small rectangle's pixels: in the lowest bit, whether any of the `reach` by `reach` pixels from
+  // there is not covered.
+  HWY_INLINE hn::Vec<U32> near(hn::Vec<U32> x, hn::Vec<U32> y) const { return look_up(near_, x, y); }
+
+ private:
+  HWY_INLINE hn::Vec<U32> look_up(const uint32_t (&rows)[32], hn::Vec<U32> x, hn::Vec<U32> y) const {
+    const U32 d;
+    const auto row = hn::And(hn::Sub(y, hn::Set(d, y0_)), hn::Set(d, 31U));
+    const auto column = hn::And(hn::Sub(x, hn::Set(d, x0_)), hn::Set(d, 31U));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
+    const auto low = hn::TableLookupLanes(hn::Load(d, rows), index);
+    const auto high = hn::TableLookupLanes(hn::Load(d, rows + 16), index);
+    const auto bits = hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
+#else
+    const auto bits = hn::GatherIndex(d, rows, hn::BitCast(I32(), row));
+#endif
+    return hn::Shr(bits, column);
+  }
+
+  const Depths& depths_;
+  bool small_ = false;
+  Rectangle bounds_{0, 0, 0, 0};
+  uint32_t x0_ = 0;
+  uint32_t y0_ = 0;
+  alignas(64) uint32_t rows_[32];
+  alignas(64) uint32_t near_[32];
+};
+
+// Whether there is one among the first `wide` + 1 of them.
+HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  // 2^(wide + 1) - 1
+  const auto count = hn::BitCast(du, hn::ConvertTo(di, hn::Add(wide, hn::Set(d, 1.0F))));
+  const auto bits = hn::Sub(hn::Shl(hn::Set(du, 1U), hn::Min(count, hn::Set(du, 25U))), hn::Set(du, 1U));
+  return hn::RebindMask(d, hn::Ne(hn::And(open, bits), hn::Zero(du)));
+}
+
+// Draws the boxes of a vector that are large, or in the eye's plane: those in `mask`.
+template <bool kPerspective>
+HWY_NOINLINE void draw_large_of(const Frame& frame, const Run& run, uint32_t at, const Projected& boxes,
+                                hn::Mask<F32> mask, bool reject_all, bool* kept, const Depths& depths,
+                                Batch* batch) {
+  const F32 d;
+  const I32 di;
+  HWY_ALIGN int32_t x0[64], x1[64], y0[64], y1[64];
+  hn::Store(hn::ConvertTo(di, boxes.low_x), di, x0);
+  hn::Store(hn::ConvertTo(di, hn::Add(boxes.low_x, boxes.wide_x)), di, x1);
+  hn::Store(hn::ConvertTo(di, boxes.low_y), di, y0);
+  hn::Store(hn::ConvertTo(di, hn::Add(boxes.low_y, boxes.wide_y)), di, y1);
+  const uint32_t in_plane = kPerspective ? bits_of(d, boxes.crossing) : 0;
+  for (uint32_t bits = bits_of(d, mask); bits != 0; bits &= bits - 1) {
+    const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(bits));
+    const uint32_t box = run.entries[at + lane];
+    const uint32_t number = run.numbers == nullptr ? run.first + at + lane : run.numbers[at + lane];
+    Rectangle where{x0[lane], y0[lane], x1[lane] + 1, y1[lane] + 1};
+    if (kPerspective && (in_plane >> lane & 1U) != 0) {
+      const double box_side = 1 << level_of(box);
+      const double center[3] = {run.corner[0] + x_of(box) + box_side / 2,
+                                run.corner[1] + (box >> 10 & kWithin) + box_side / 2,
+                                run.corner[2] + (box >> 20 & kWithin) + box_side / 2};
+      if (!crosses_tile(frame, center, box_side)) {
+        continue;
+      }
+      ++batch->counts.crossing;
+      where = {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1};
+    }
+    draw_large<kPerspective>(frame, box, number, where, reject_all || (run.behind && !*kept), depths, batch);
+    *kept = true;
+  }
+}
+
+// A run in no order. Boxes whose pixels may all be covered go first; those left wait in the batch until there
+// are enough to fill vectors.
+//
+// Boxes that wait are of whole runs, and all that goes into the picture before they are paired is of runs
+// before theirs, so that pixels covered by then need no look. Where a run is cut in between, `all_behind`
+// says so.
+template <bool kPerspective, bool kUnit>
+void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
+  enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  Boxes& queue = batch->boxes;
+  bool kept = false;
+  if (run.behind) {
+    // So that coverage is known where it saves work.
+    if (queue.count >= kMostBoxesWaiting) {
+      pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+      test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+    }
+    keep(depths, batch);
+    kept = false;
+  }
+  batch->counts.boxes += run.count;
+  // Boxes of more than `near` pixels a side are not looked up.
+  const uint32_t near = run.voxel_px < 1.6F ? 2 : run.voxel_px < 3.5F ? 4 : 8;
+  const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0}, near);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  if (clip.x0 >= clip.x1) {
+    return;
+  }
+  const Reach reach(frame, clip);
+  const auto most = hn::Set(d, kMostQueued - 1);
+  bool cut = false;
+  for (uint32_t at = 0; at < run.count; at += lanes) {
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
+    auto seen = boxes.seen;
+    const auto widest = hn::Max(boxes.wide_x, boxes.wide_y);
+    auto large = hn::And(seen, hn::Gt(widest, most));
+    if (kPerspective) {
+      large = hn::Or(large, boxes.crossing);
+    }
+    if (!hn::AllFalse(d, large)) {
+      pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+      draw_large_of<kPerspective>(frame, run, at, boxes, large, false, &kept, depths, batch);
+      cut = true;
+      seen = hn::AndNot(large, seen);
+    }
+    const auto x = small_number(boxes.low_x);
+    const auto y = small_number(boxes.low_y);
+    if (run.behind && open_pixels.is_small()) {
+      const auto is_open = hn::RebindMask(d, hn::TestBit(open_pixels.near(x, y), hn::Set(du, 1U)));
+      seen = hn::And(seen, hn::Or(is_open, hn::Ge(widest, hn::Set(d, static_cast<float>(near)))));
+    }
+    // No branch on whether any is left: that would be guessed wrong in every third vector.
+    const auto chosen = hn::RebindMask(du, seen);
+    const auto wide_x = small_number(boxes.wide_x);
+    const auto wide_y = small_number(boxes.wide_y);
+    hn::StoreU(hn::Compress(boxes.entry, chosen), du, queue.entry + queue.count);
+    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, queue.number + queue.count);
+    hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(y), x), chosen), du, queue.place + queue.count);
+    hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(wide_y), wide_x), chosen), du, queue.wide + queue.count);
+    queue.count += hn::CountTrue(du, chosen);
+    batch->all_behind = batch->all_behind && run.behind && !cut;
+    if (queue.count + lanes > Boxes::kSize) {
+      pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+      cut = true;
+    }
+  }
+}
+
+// A run in order: what goes into the picture lies in front of all that follows.
+template <bool kPerspective, bool kUnit>
+void draw_sorted_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  bool kept = false;
+  pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+  if (batch->waiting.count >= 128) {
+    test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+  }
+  keep(depths, batch);
+  batch->counts.boxes += run.count;
+  const OpenPixels open_pixels(depths, run.where);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const Reach reach(frame, clip);
+  const auto most = hn::Set(d, kMostQueuedSorted - 1);
+  Pairs& waiting = batch->waiting;
+  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
+    auto large = hn::And(boxes.seen, hn::Gt(hn::Max(boxes.wide_x, boxes.wide_y), most));
+    if (kPerspective) {
+      large = hn::Or(large, boxes.crossing);
+    }
+    if (!hn::AllFalse(d, large)) {  // one after the other
+      draw_large_of<kPerspective>(frame, run, at, boxes, hn::Or(large, boxes.seen), true, &kept, depths,
+                                  batch);
+      continue;
+    }
+    if (hn::AllFalse(d, boxes.seen)) {
+      continue;
+    }
+    const auto number = hn::LoadU(du, run.numbers + at);
+    const auto x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
+    const auto y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
+    const auto first = hn::Or(hn::ShiftLeft<16>(y), x);
+    // Nothing may go into the picture between the boxes of a vector: a farther one may have been tested
+    // before a nearer one has been looked up.
+    constexpr size_t kMostSortedPairs = static_cast<size_t>(kMostQueuedSorted * kMostQueuedSorted);
+    if (waiting.count + (kMostSortedPairs + 1) * lanes > Pairs::kSize) {
+      test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+    }
+    auto in_row = boxes.seen;
+    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+      const auto open = open_pixels.at(in_row, x, hn::Add(y, hn::Set(du, down)));
+      auto in_column = hn::And(in_row, any_open(open, boxes.wide_x));
+      for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
+        const auto chosen =
+            hn::And(in_column, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
+        append(chosen, boxes.entry, number, hn::Add(first, hn::Set(du, down << 16 | across)), &waiting);
+        in_column = hn::And(in_column, hn::Gt(boxes.wide_x, hn::Set(d, static_cast<float>(across))));
+      }
+      in_row = hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down))));
+    }
+  }
+}
+
+// Which boxes of the run may be seen at pixels that are not covered: their entries and numbers, in the order
+// of the run.
+template <bool kPerspective, bool kUnit>
+uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch* batch,
+                     uint32_t* entries, uint32_t* numbers) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  bool kept = false;
+  pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
+  test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+  keep(depths, batch);
+  batch->counts.boxes += run.count;
+  const OpenPixels open_pixels(depths, run.where);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const Reach reach(frame, clip);
+  uint32_t count = 0;
+  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
+    const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
+    // Wider or taller ones are not looked at so closely.
+    const auto most = hn::Set(d, 24.0F);
+    auto chosen = hn::And(boxes.seen, hn::Or(hn::Gt(boxes.wide_x, most), hn::Gt(boxes.wide_y, most)));
+    if (kPerspective) {
+      chosen = hn::Or(chosen, boxes.crossing);
+    }
+    auto in_row = hn::AndNot(chosen, boxes.seen);
+    const auto int_x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
+    const auto int_y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
+    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+      const auto open = open_pixels.at(in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
+      const auto found = hn::And(in_row, any_open(open, boxes.wide_x));
+      chosen = hn::Or(chosen, found);
+      in_row = hn::AndNot(found, hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down)))));
+    }
+    const auto chosen_u = hn::RebindMask(du, chosen);
+    hn::StoreU(hn::Compress(boxes.entry, chosen_u), du, entries + count);
+    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen_u), du, numbers + count);
+    count += static_cast<uint32_t>(hn::CountTrue(du, chosen_u));
+  }
+  return count;
+}
+
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers) {
+  if (frame.perspective) {
+    return run.unit ? cull_run_of<true, true>(frame, run, depths, batch, entries, numbers)
+                    : cull_run_of<true, false>(frame, run, depths, batch, entries, numbers);
+  }
+  return run.unit ? cull_run_of<false, true>(frame, run, depths, batch, entries, numbers)
+                  : cull_run_of<false, false>(frame, run, depths, batch, entries, numbers);
+}
+
+template <bool kPerspective, bool kUnit>
+void draw_any(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  run.sorted ? draw_sorted_of<kPerspective, kUnit>(frame, run, depths, batch)
+             : draw_run_of<kPerspective, kUnit>(frame, run, depths, batch);
+}
+
+void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  if (frame.perspective) {
+    run.unit ? draw_any<true, true>(frame, run, depths, batch)
+             : draw_any<true, false>(frame, run, depths, batch);
+  } else {
+    run.unit ? draw_any<false, true>(frame, run, depths, batch)
+             : draw_any<false, false>(frame, run, depths, batch);
+  }
+}
+
+void finish(const Frame& frame, const Depths& depths, Batch* batch) {
+  bool kept = false;
+  if (frame.perspective) {
+    pair_boxes<true, false>(frame, depths, &kept, batch);
+    test_waiting<true, false>(frame, depths, &kept, batch);
+  } else {
+    pair_boxes<false, false>(frame, depths, &kept, batch);
+    test_waiting<false, false>(frame, depths, &kept, batch);
+  }
+  test_unclear(frame, depths, &kept, batch);
+  keep(depths, batch);
+}
+
+void find_rectangles(const Frame& frame, const float* xs, const float* ys, const float* zs, float side,
+                     Rectangle* rectangles) {
+  const hn::CappedTag<float, 8> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const size_t lanes = hn::Lanes(d);
+  for (size_t at = 0; at < 8; at += lanes) {
+    const auto middle = hn::Set(d, side * 0.5F);
+    const auto x = hn::Add(hn::LoadU(d, xs + at), middle);
+    const auto y = hn::Add(hn::LoadU(d, ys + at), middle);
+    const auto z = hn::Add(hn::LoadU(d, zs + at), middle);
+    const auto apply = [&](const float(&row)[4]) {
+      return hn::MulAdd(
+          hn::Set(d, row[0]), x,
+          hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, row[3]))));
+    };
+    auto column = apply(frame.u);
+    auto row = apply(frame.v);
+    const auto zero = hn::Zero(d);
+    auto per_depth = hn::Set(d, 1.0F);
+    auto crossing = hn::Lt(per_depth, zero);
+    auto hidden = crossing;
+    if (frame.perspective) {
+      const auto depth = apply(frame.w);
+      const float reach = frame.half_w * side + frame.rounding_w;
+      crossing = hn::Le(depth, hn::Set(d, reach));
+      hidden = hn::Le(depth, hn::Set(d, -reach));
+      per_depth = hn::Div(per_depth, hn::IfThenElse(crossing, per_depth, depth));
+      column = hn::Mul(column, per_depth);
+      row = hn::Mul(row, per_depth);
+    }
+    const auto half = frame.perspective ? extent<true>(d, frame, hn::Set(d, side), column, row, per_depth)
+                                        : extent<false>(d, frame, hn::Set(d, side), column, row, per_depth);
+    const auto half_x = half.x;
+    const auto half_y = half.y;
+    const auto first_x = hn::Set(d, static_cast<float>(frame.tile.x0));
+    const auto end_x = hn::Set(d, static_cast<float>(frame.tile.x1));
+    const auto first_y = hn::Set(d, static_cast<float>(frame.tile.y0));
+    const auto end_y = hn::Set(d, static_cast<float>(frame.tile.y1));
+    // A block in the eye's plane is taken to be everywhere in the tile.
+    const auto clamped = [&](auto value, auto low, auto high) { return hn::Max(low, hn::Min(value, high)); };
+    const auto one = hn::Set(d, 1.0F);
+    auto x0 = clamped(hn::Ceil(hn::Sub(column, half_x)), first_x, end_x);
+    auto x1 = clamped(hn::Add(hn::Floor(hn::Add(column, half_x)), one), first_x, end_x);
+    auto y0 = clamped(hn::Ceil(hn::Sub(row, half_y)), first_y, end_y);
+    auto y1 = clamped(hn::Add(hn::Floor(hn::Add(row, half_y)), one), first_y, end_y);
+    x0 = hn::IfThenElse(crossing, first_x, x0);
+    y0 = hn::IfThenElse(crossing, first_y, y0);
+    x1 = hn::IfThenElse(hidden, first_x, hn::IfThenElse(crossing, end_x, x1));
+    y1 = hn::IfThenElse(crossing, end_y, y1);
+    HWY_ALIGN int32_t stored[4][8];
+    hn::StoreU(hn::ConvertTo(di, x0), di, stored[0]);
+    hn::StoreU(hn::ConvertTo(di, y0), di, stored[1]);
+    hn::StoreU(hn::ConvertTo(di, x1), di, stored[2]);
+    hn::StoreU(hn::ConvertTo(di, y1), di, stored[3]);
+    for (size_t i = 0; i < lanes; ++i) {
+      const bool empty = stored[0][i] >= stored[2][i] || stored[1][i] >= stored[3][i];
+      rectangles[at + i] =
+          empty ? Rectangle{0, 0, 0, 0} : Rectangle{stored[0][i], stored[1][i], stored[2][i], stored[3][i]};
+    }
+  }
+}
+
+// Every third bit to bits 0..9.
+inline hn::Vec<U32> gathered10(hn::Vec<U32> v) {
+  const U32 d;
+  v = hn::And(v, hn::Set(d, 0x09249249U));
+  v = hn::And(hn::Or(v, hn::ShiftRight<2>(v)), hn::Set(d, 0x030C30C3U));
+  v = hn::And(hn::Or(v, hn::ShiftRight<4>(v)), hn::Set(d, 0x0300F00FU));
+  v = hn::And(hn::Or(v, hn::ShiftRight<8>(v)), hn::Set(d, 0x030000FFU));
+  return hn::And(hn::Or(v, hn::ShiftRight<16>(v)), hn::Set(d, 0x3FFU));
+}
+
+// The mirrored corners that keys stand for.
+struct Corners {
+  alignas(64) int32_t at[3][kMostPixels + 64];
+};
+
+void find_corners(const Pixels& pixels, Corners* corners) {
+  const U32 d;
+  static_assert(kEntryBits == 28 && kKeyBits == 36);
+  for (size_t at = 0; at < pixels.count; at += hn::Lanes(d)) {
+    const auto key = hn::LoadU(d, pixels.key + at);
+    const auto cube = hn::LoadU(d, pixels.cube + at);
+    const hn::Vec<U32> keys[3] = {key, hn::ShiftRight<1>(key), hn::ShiftRight<2>(key)};
+    const hn::Vec<U32> cubes[3] = {cube, hn::ShiftRight<1>(cube), hn::ShiftRight<2>(cube)};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = hn::And(cubes[axis], hn::Set(d, 1U));
+      const auto high = hn::And(hn::ShiftRight<2>(cubes[axis]), hn::Set(d, 2U));
+      const auto corner = hn::Or(gathered10(keys[axis]), hn::ShiftLeft<10>(hn::Or(low, high)));
+      hn::StoreU(hn::BitCast(I32(), corner), I32(), corners->at[axis] + at);
+    }
+  }
+}
+
+void unpack(Pixels* pixels) {
+  const U64 d;
+  const HalfU32 d32;
+  const uint32_t count = pixels->count;
+  for (uint32_t i = count; i < count + hn::Lanes(U32()); ++i) {
+    pixels->value[i] = 0;
+    pixels->x[i] = 0;
+    pixels->y[i] = 0;
+  }
+  for (uint32_t at = 0; at < count; at += static_cast<uint32_t>(hn::Lanes(d))) {
+    const auto value = hn::LoadU(d, pixels->value + at);
+    hn::StoreU(hn::TruncateTo(d32, hn::And(value, hn::Set(d, (uint64_t{1} << kEntryBits) - 1))), d32,
+               pixels->number + at);
+    const auto key = hn::And(hn::ShiftRight<kEntryBits>(value), hn::Set(d, 0x3FFFFFFFU));
+    hn::StoreU(hn::TruncateTo(d32, key), d32, pixels->key + at);
+    hn::StoreU(hn::TruncateTo(d32, hn::ShiftRight<kEntryBits + 30>(value)), d32, pixels->cube + at);
+  }
+}
+
+// Where rays enter their boxes: over the axes, the latest t of the nearer plane, ties to the lowest axis;
+// compared as fractions, num_a |d_b| > num_b |d_a|, in integers below 2^44. The boxes are ones that the rays
+// meet.
+struct Entries {
+  hn::Vec<F64> axis;       // -1: the ray starts inside
+  hn::Vec<F64> numerator;  // t = numerator / (256 * speed)
+  hn::Vec<F64> speed;      // |direction[axis]|
+  hn::Vec<F64> direction[3];
+};
+
+template <bool kPerspective>
+HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, const Corners& corners, size_t at) {
+  const F64 d;
+  const HalfI32 d32;
+  const auto zero = hn::Zero(d);
+  Entries found;
+  const Rays rays = rays_of<kPerspective>(frame, hn::PromoteTo(d, hn::LoadU(d32, pixels.x + at)),
+                                          hn::PromoteTo(d, hn::LoadU(d32, pixels.y + at)));
+  auto side = hn::Set(d, 1);
+  if (pixels.any_levels) {
+    side = hn::PromoteTo(d, hn::Shl(hn::Set(d32, 1), hn::LoadU(d32, pixels.level + at)));
+  }
+  const auto size = hn::Mul(side, hn::Set(d, 256));
+  // Mirrored in a world of 4096 voxels.
+  const auto last = hn::Sub(hn::Set(d, 4096), side);
+  found.axis = hn::Set(d, -1);
+  found.numerator = zero;
+  found.speed = hn::Set(d, 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto downward = hn::Lt(rays.direction[axis], zero);
+    const auto mirrored = hn::PromoteTo(d, hn::LoadU(d32, corners.at[axis] + at));
+    const auto corner = hn::IfThenElse(downward, hn::Sub(last, mirrored), mirrored);
+    const auto low = hn::Sub(hn::Mul(corner, hn::Set(d, 256)), rays.origin[axis]);
+    const auto speed = hn::Abs(rays.direction[axis]);
+    const auto distance = hn::IfThenElse(downward, hn::Neg(hn::Add(low, size)), low);
+    // A plane at or behind the origin is not entered through.
+    const auto later = hn::And(hn::And(hn::Gt(distance, zero), hn::Gt(speed, zero)),
+                               hn::Gt(hn::Mul(distance, found.speed), hn::Mul(found.numerator, speed)));
+    found.axis = hn::IfThenElse(later, hn::Set(d, axis), found.axis);
+    found.numerator = hn::IfThenElse(later, distance, found.numerator);
+    found.speed = hn::IfThenElse(later, speed, found.speed);
+    found.direction[axis] = rays.direction[axis];
+  }
+  if (!pixels.any_levels) {
+    return found;
+  }
+  // Of a solid block it is a voxel that is entered. Where the ray passes from one voxel's slab to the next on
+  // a lower axis just as it enters the block, it enters the voxel through that face too, and the lowest axis
+  // counts.
+  const auto is_voxel = hn::Gt(hn::PromoteTo(d, hn::LoadU(d32, pixels.voxels + at)), zero);
+  const auto block_axis = found.axis;
+  const auto block_numerator = found.numerator;
+  const auto block_speed = found.speed;
+  for (int axis = 1; axis >= 0; --axis) {
+    const auto speed = hn::Abs(rays.direction[axis]);
+    const auto product = hn::Mul(block_numerator, speed);
+    const auto way = hn::Round(hn::Div(product, block_speed));
+    const auto place = hn::Add(rays.origin[axis], hn::CopySign(way, rays.direction[axis]));
+    const auto voxel = hn::Mul(hn::Floor(hn::Mul(place, hn::Set(d, 1.0 / 256))), hn::Set(d, 256));
+    auto passes = hn::And(is_voxel, hn::And(hn::Gt(block_axis, hn::Set(d, axis)), hn::Gt(speed, zero)));
+    passes = hn::And(passes, hn::And(hn::Eq(hn::Mul(way, block_speed), product), hn::Eq(voxel, place)));
+    found.axis = hn::IfThenElse(passes, hn::Set(d, axis), found.axis);
+    found.numerator = hn::IfThenElse(passes, way, found.numerator);
+    found.speed = hn::IfThenElse(passes, speed, found.speed);
+  }
+  return found;
+}
+
+// Of depths along the camera, from where rays enter their boxes: the core's sum, with its roundings
+// (src/shading.cpp). The ratio of integers below 2^32 is exact after Floor: one that is no integer lies
+// farther from the next than a double's last bit. The product has up to 55 bits and is taken in two parts.
+// The last quotient has a half added above, and so is no integer, by more than the inverse divisor's error.
+class Grays {
+ public:
+  Grays(int32_t depth_per_t_q8, const Shading& shading) {
+    while (depth_per_t_q8 > 0 && (static_cast<uint32_t>(depth_per_t_q8) << shift_ & 0x80000000U) == 0) {
+      ++shift_;
+    }
+    dividend_ = static_cast<double>(static_cast<uint32_t>(depth_per_t_q8) << shift_);
+    scale_ = 1.0 / static_cast<double>(uint64_t{1} << (shift_ + 8));
+    const uint32_t range = shading.far_q8 > shading.near_q8 ? static_cast<uint32_t>(shading.far_q8) -
+                                                                  static_cast<uint32_t>(shading.near_q8)
+                                                            : 1;
+    const int excess = range >= (1U << 24) ? 8 : 0;
+    near_ = static_cast<double>(shading.near_q8);
+    far_ = static_cast<double>(shading.far_q8);
+    cut_ = excess == 0 ? 1.0 : 1.0 / 256;
+    inverse_ = 1.0 / static_cast<double>(range >> excess);
+  }
+
+  // Of t = numerator / (256 * speed).
+  HWY_INLINE hn::Vec<HalfI32> of(hn::Vec<F64> numerator, hn::Vec<F64> speed) const {
+    const F64 d;
+    const HalfI32 d32;
+    const auto zero = hn::Zero(d);
+    const auto dividend = hn::Set(d, dividend_);
+    const auto near_plane = hn::Set(d, near_);
+    const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
+    const auto ratio = hn::Floor(hn::Div(dividend, speed));
+    const auto high = hn::Floor(hn::Mul(ratio, hn::Set(d, 1.0 / 65536)));
+    const auto low = hn::NegMulAdd(high, hn::Set(d, 65536), ratio);
+    // numerator * ratio = a * 2^16 + b, divided by 2^(shift + 8) and rounded down.
+    const auto a = hn::Mul(numerator, high);
+    const auto b = hn::Mul(numerator, low);
+    const auto b_high = hn::Floor(hn::Mul(b, hn::Set(d, 1.0 / 65536)));
+    const auto whole = hn::Add(a, b_high);  // of 2^16, below 2^40
+    hn::Vec<F64> depth;
+    if (shift_ + 8 >= 16) {
+      depth = hn::Floor(hn::Mul(whole, hn::Set(d, scale_ * 65536)));
+    } else {
+      const auto b_low = hn::NegMulAdd(b_high, hn::Set(d, 65536), b);
+      depth = hn::Floor(hn::MulAdd(whole, hn::Set(d, scale_ * 65536), hn::Mul(b_low, hn::Set(d, scale_))));
+    }
+    depth = hn::IfThenElse(hn::Gt(hn::Min(numerator, dividend), zero),
+                           hn::Min(depth, hn::Set(d, 2147483647.0)), zero);
+    const auto part = hn::Floor(hn::Mul(hn::Sub(depth, near_plane), hn::Set(d, cut_)));
+    auto fall = hn::Floor(hn::Mul(hn::MulAdd(part, most_fall, hn::Set(d, 0.5)), hn::Set(d, inverse_)));
+    fall = hn::IfThenElse(hn::Lt(depth, hn::Set(d, far_)), fall, most_fall);
+    fall = hn::IfThenElseZero(hn::Gt(depth, near_plane), fall);
+    return hn::DemoteTo(d32, hn::Sub(hn::Set(d, 255.0), fall));
+  }
+
+ private:
+  int shift_ = 0;
+  double dividend_, scale_, near_, far_, cut_, inverse_;
+};
+
+HWY_INLINE void store_bytes(hn::Vec<HalfI32> values, uint8_t* to) {
+  const HalfI32 d;
+  HWY_ALIGN int32_t stored[64];
+  hn::Store(values, d, stored);
+  for (size_t i = 0; i < hn::Lanes(d); ++i) {
+    to[i] = static_cast<uint8_t>(stored[i]);
+  }
+}
+
+template <bool kPerspective>
+HWY_NOINLINE void find_grays_exactly(const Frame& frame, const Pixels& pixels, const Grays& grays,
+                                     uint8_t* gray) {
+  Corners corners;
+  find_corners(pixels, &corners);
+  for (size_t at = 0; at < pixels.count; at += hn::Lanes(F64())) {
+    const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
+    store_bytes(grays.of(found.numerator, found.speed), gray + at);
+  }
+}
+
+// Where rays enter their boxes, in floats: distances are integers below 2^24, directions as in judge(), and
+// products are compared where they differ by more than their roundings. What is not clear is done again.
+template <bool kPerspective>
+void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays, uint8_t* gray) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const F64 d64;
+  const size_t lanes = hn::Lanes(d);
+  const size_t lanes64 = hn::Lanes(d64);
+  const hn::Rebind<float, F64> half_d;
+  const auto zero = hn::Zero(d);
+  Corners corners;
+  find_corners(pixels, &corners);
+  uint32_t unclear_at[kMostPixels];
+  uint32_t unclear_count = 0;
+  for (size_t at = 0; at < pixels.count; at += lanes) {
+    const auto x = hn::ConvertTo(d, hn::LoadU(di, pixels.x + at));
+    const auto y = hn::ConvertTo(d, hn::LoadU(di, pixels.y + at));
+    auto side = hn::Set(d, 1.0F);
+    auto unclear = hn::Lt(zero, zero);
+    if (pixels.any_levels) {
+      const auto level = hn::BitCast(du, hn::LoadU(di, pixels.level + at));
+      side = hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+      unclear = hn::Gt(side, hn::Set(d, 1.0F));
+    }
+    const auto size = hn::Mul(side, hn::Set(d, 256.0F));
+    const auto last = hn::Sub(hn::Set(d, 4096.0F), side);
+    auto numerator = zero;
+    auto found_speed = hn::Set(d, 1.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto map = [&](const float(&of)[3][3]) {
+        return hn::MulAdd(x, hn::Set(d, of[1][axis]),
+                          hn::MulAdd(y, hn::Set(d, of[2][axis]), hn::Set(d, of[0][axis])));
+      };
+      const auto rest = map(frame.map_rest);
+      const auto nearest = hn::Round(rest);
+      unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+      const auto varying = hn::Add(map(frame.map_whole), nearest);
+      auto direction = varying;
+      auto origin = hn::Set(d, static_cast<float>(frame.camera.eye()[axis].raw));
+      if (!kPerspective) {
+        origin = hn::Add(origin, varying);
+        direction = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      }
+      const auto downward = hn::Lt(direction, zero);
+      const auto mirrored = hn::ConvertTo(d, hn::LoadU(di, corners.at[axis] + at));
+      const auto corner = hn::IfThenElse(downward, hn::Sub(last, mirrored), mirrored);
+      const auto low = hn::MulSub(corner, hn::Set(d, 256.0F), origin);
+      const auto speed = hn::Abs(direction);
+      const auto distance = hn::IfThenElse(downward, hn::Neg(hn::Add(low, size)), low);
+      const auto ours = hn::Mul(distance, found_speed);
+      const auto theirs = hn::Mul(numerator, speed);
+      const auto ahead = hn::And(hn::Gt(distance, zero), hn::Gt(speed, zero));
+      const auto later = hn::And(ahead, hn::Gt(ours, theirs));
+      const auto margin = hn::Mul(theirs, hn::Set(d, 1.0F / (1 << 21)));
+      unclear = hn::Or(unclear, hn::And(ahead, hn::Lt(hn::Abs(hn::Sub(ours, theirs)), margin)));
+      numerator = hn::IfThenElse(later, distance, numerator);
+      found_speed = hn::IfThenElse(later, speed, found_speed);
+    }
+    HWY_ALIGN float numerators[64];
+    HWY_ALIGN float speeds[64];
+    hn::Store(numerator, d, numerators);
+    hn::Store(found_speed, d, speeds);
+    for (size_t part = 0; part < lanes; part += lanes64) {
+      store_bytes(grays.of(hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
+                           hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
+                  gray + at + part);
+    }
+    for (uint32_t bits = bits_of(d, unclear); bits != 0; bits &= bits - 1) {
+      const uint32_t i = static_cast<uint32_t>(at) + static_cast<uint32_t>(__builtin_ctz(bits));
+      if (i < pixels.count) {
+        unclear_at[unclear_count++] = i;
+      }
+    }
+  }
+  if (unclear_count == 0) {
+    return;
+  }
+  Pixels few;
+  few.count = unclear_count;
+  few.any_levels = pixels.any_levels;
+  for (uint32_t i = 0; i < unclear_count + lanes; ++i) {  // and some behind, that mean nothing
+    const uint32_t from = unclear_at[i < unclear_count ? i : 0];
+    few.x[i] = pixels.x[from];
+    few.y[i] = pixels.y[from];
+    few.key[i] = pixels.key[from];
+    few.cube[i] = pixels.cube[from];
+    few.level[i] = pixels.any_levels ? pixels.level[from] : 0;
+    few.voxels[i] = pixels.any_levels ? pixels.voxels[from] : 0;
+  }
+  uint8_t again[kMostPixels + 64];
+  find_grays_exactly<kPerspective>(frame, few, grays, again);
+  for (uint32_t i = 0; i < unclear_count; ++i) {
+    gray[unclear_at[i]] = again[i];
+  }
+}
+
+void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
+                uint8_t* gray) {
+  const Grays grays(depth_per_t_q8, shading);
+  frame.perspective ? find_grays_of<true>(frame, pixels, grays, gray)
+                    : find_grays_of<false>(frame, pixels, grays, gray);
+}
+
+template <bool kPerspective>
+void find_faces_of(const Frame& frame, const Pixels& pixels, uint8_t* face) {
+  const F64 d;
+  const HalfI32 d32;
+  const size_t lanes = hn::Lanes(d);
+  const auto zero = hn::Zero(d);
+  Corners corners;
+  find_corners(pixels, &corners);
+  for (size_t at = 0; at < pixels.count; at += lanes) {
+    const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
+    // From inside: the face opposed to the largest component, the lowest axis on a tie.
+    auto largest = hn::Abs(found.direction[0]);
+    auto inside_axis = zero;
+    for (int axis = 1; axis < 3; ++axis) {
+      const auto size = hn::Abs(found.direction[axis]);
+      inside_axis = hn::IfThenElse(hn::Gt(size, largest), hn::Set(d, axis), inside_axis);
+      largest = hn::Max(size, largest);
+    }
+    const auto axis = hn::IfThenElse(hn::Lt(found.axis, zero), inside_axis, found.axis);
+    auto component = found.direction[0];
+    component = hn::IfThenElse(hn::Eq(axis, hn::Set(d, 1)), found.direction[1], component);
+    component = hn::IfThenElse(hn::Eq(axis, hn::Set(d, 2)), found.direction[2], component);
+    const auto upper = hn::IfThenElseZero(hn::Le(component, zero), hn::Set(d, 1));
+    store_bytes(hn::DemoteTo(d32, hn::Add(hn::Add(axis, axis), upper)), face + at);
+  }
+}
+
+void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face) {
+  frame.perspective ? find_faces_of<true>(frame, pixels, face) : find_faces_of<false>(frame, pixels, face);
+}
+
+const char* instruction_set() {
+  return hwy::TargetName(HWY_TARGET);
+}
+
+}  // namespace
+}  // namespace thimble::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace thimble::wide {
+
+HWY_EXPORT(draw_run);
+HWY_EXPORT(finish);
+HWY_EXPORT(cull_run);
+HWY_EXPORT(find_rectangles);
+HWY_EXPORT(unpack);
+HWY_EXPORT(find_grays);
+HWY_EXPORT(find_faces);
+HWY_EXPORT(instruction_set);
+
+void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  HWY_DYNAMIC_DISPATCH(draw_run)(frame, run, depths, batch);
+}
+void finish(const Frame& frame, const Depths& depths, Batch* batch) {
+  HWY_DYNAMIC_DISPATCH(finish)(frame, depths, batch);
+}
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers) {
+  return HWY_DYNAMIC_DISPATCH(cull_run)(frame, run, depths, batch, entries, numbers);
+}
+void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
+                     Rectangle* rectangles) {
+  HWY_DYNAMIC_DISPATCH(find_rectangles)(frame, x, y, z, side, rectangles);
+}
+void unpack(Pixels* pixels) {
+  HWY_DYNAMIC_DISPATCH(unpack)(pixels);
+}
+void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
+                uint8_t* gray) {
+  HWY_DYNAMIC_DISPATCH(find_grays)(frame, pixels, depth_per_t_q8, shading, gray);
+}
+void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face) {
+  HWY_DYNAMIC_DISPATCH(find_faces)(frame, pixels, face);
+}
+const char* instruction_set() {
+  return HWY_DYNAMIC_DISPATCH(instruction_set)();
+}
+
+int instruction_set_count() {
+  hwy::SetSupportedTargetsForTest(0);
+  return __builtin_popcountll(static_cast<uint64_t>(hwy::SupportedTargets() & HWY_TARGETS));
+}
+void use_instruction_set(int number) {
+  hwy::SetSupportedTargetsForTest(0);
+  if (number >= 0) {
+    uint64_t targets = static_cast<uint64_t>(hwy::SupportedTargets() & HWY_TARGETS);
+    for (; number > 0; --number) {
+      targets &= targets - 1;
+    }
+    hwy::SetSupportedTargetsForTest(static_cast<int64_t>(targets & (0 - targets)));
+  }
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace thimble::wide
+#endif

@@ -1,0 +1,178 @@
+/// @file kernels.h
+/// The loops that run over boxes and pixels, compiled for several instruction sets and chosen when the
+/// program runs (Highway).
+///
+/// A box goes through three stages. It is projected, sixteen boxes at a time, to the rectangle of pixels that
+/// it might cover. Small rectangles become candidates, pairs of a box and a pixel, in a queue that is tested
+/// when it is full; of large ones the rows are tested at once. What is met goes into the picture when it is
+/// nearer than what is there.
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
+#define THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "host/wide/frame.h"
+#include "thimble/shading.h"
+
+namespace thimble::wide {
+
+/// The nearest box of every pixel so far.
+///
+/// A box's key is the Morton code of its lowest corner, mirrored in every axis along which the pixel's ray
+/// runs downwards. Of two boxes of an octree that a ray meets, the one met first has the smaller key: they
+/// part at some node, in which the ray passes the children in the order of their mirrored numbers. So depth
+/// is compared as integers, exactly.
+struct Depths {
+  uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
+  uint32_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit;
+                      ///< 8 bytes more can be read behind the last
+  int32_t width_px;   ///< 32 * words, a multiple of 64
+  int32_t words;
+  int32_t first_row;  ///< the row of the picture that comes first
+
+  /// Where row `y` of the picture begins in `covered`; 32 times that in `nearest`.
+  size_t first_word(int32_t y) const {
+    return static_cast<size_t>(y - first_row) * static_cast<size_t>(words);
+  }
+};
+inline constexpr int kEntryBits = 28;
+inline constexpr int kKeyBits = 36;
+
+struct Counts {
+  uint64_t boxes = 0;       ///< projected
+  uint64_t candidates = 0;  ///< pixels whose ray was tested against a box
+  uint64_t exact = 0;       ///< of those, how many floats could not tell
+  uint64_t hits = 0;        ///< tests that were met
+  uint64_t nodes = 0;       ///< blocks looked at
+  uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
+
+  void add(const Counts& other) {
+    boxes += other.boxes;
+    candidates += other.candidates;
+    exact += other.exact;
+    hits += other.hits;
+    nodes += other.nodes;
+    crossing += other.crossing;
+  }
+};
+
+/// Pairs of a box and a pixel. Behind the last there is room for the store of a whole vector.
+struct Pairs {
+  static constexpr size_t kSize = 512;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
+};
+
+/// Boxes that may be seen, and where: the pixels x .. x + wide_x, y .. y + wide_y.
+struct Boxes {
+  static constexpr size_t kSize = 192;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
+  alignas(64) uint32_t wide[kRoom];   ///< wide_y << 16 | wide_x
+};
+
+/// What one thread has under way, from run to run. Less than 28 KiB.
+struct Batch {
+  Boxes boxes;  ///< not yet paired with their pixels
+  /// Whether all of the picture lies in front of them: of whole runs that said so.
+  bool all_behind = true;
+  Pairs waiting;  ///< for the test in floats
+  Pairs unclear;  ///< for the exact one
+  // `met` of them were met and are on the way into the picture.
+  alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube
+  alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
+  alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry
+  alignas(64) uint32_t pixel[Pairs::kRoom];   ///< (y - first_row) * width_px + x
+  // Of the cube that the pairs lie in.
+  uint64_t cube_value[8];          ///< its corner's key, by `down`
+  uint32_t corner[3] = {1, 1, 1};  ///< none yet
+  float constant[3];               ///< of u, v and w, for corners within the cube
+  size_t met = 0;
+  Counts counts;
+};
+static_assert(sizeof(Batch) < 28 * 1024);
+
+/// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
+struct Rectangle {
+  int32_t x0, y0, x1, y1;
+};
+
+/// A vector of entries or numbers is read at a time, even when only its first is wanted.
+inline constexpr uint32_t kReadAhead = 64;
+
+/// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
+struct Run {
+  const uint32_t* entries;  ///< `count`, and kReadAhead more that can be read
+  uint32_t count;
+  const uint32_t* numbers;  ///< of the entries; null: they count up from `first`
+  uint32_t first;
+  uint32_t corner[3];
+  bool unit;  ///< whether all are one voxel
+  /// Holds all pixels of the tile at which any of them may be seen.
+  Rectangle where;
+  /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
+  /// look.
+  bool behind;
+  /// How large a voxel looks, about, in pixels.
+  float voxel_px;
+  /// Whether, besides, each entry lies in front of the ones after it, where any ray meets both. With
+  /// `numbers`.
+  bool sorted;
+};
+
+/// Draws the boxes of a run. Some may stay in the batch until `finish`.
+void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch);
+/// Draws what waits in the batch.
+void finish(const Frame& frame, const Depths& depths, Batch* batch);
+
+/// Which boxes of the run may be seen at pixels that are not covered yet: their entries and numbers, in the
+/// order of the run, to `entries` and `numbers`, which have room for run.count + kReadAhead. Returns how
+/// many.
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers);
+
+/// Where up to 8 boxes may be seen, within the tile.
+/// Cubes of `side` voxels with lowest corners `x[i]`, `y[i]`, `z[i]`, i < 8.
+void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
+                     Rectangle* rectangles);
+
+/// Pixels and their nearest boxes. Behind the last there is room for a vector.
+inline constexpr uint32_t kMostPixels = 512;
+struct Pixels {
+  uint32_t count = 0;
+  bool any_levels = false;                       ///< whether `level` and `voxels` are to be looked at
+  alignas(64) uint64_t value[kMostPixels + 64];  ///< of Depths; the next three follow from it
+  alignas(64) int32_t x[kMostPixels + 64];
+  alignas(64) int32_t y[kMostPixels + 64];
+  alignas(64) uint32_t number[kMostPixels + 64];  ///< of the entry
+  alignas(64) uint32_t key[kMostPixels + 64];     ///< the mirrored corner within its cube
+  alignas(64) uint32_t cube[kMostPixels + 64];    ///< the same of the cube
+  alignas(64) int32_t level[kMostPixels + 64];    ///< log2 of the boxes' sides
+  alignas(64) int32_t voxels[kMostPixels + 64];   ///< 1: what is hit is a voxel of the box, 0: the box
+};
+/// Unpacks the values of the pixels; makes the lanes behind the last pixels too.
+void unpack(Pixels* pixels);
+/// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind it.
+void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
+                uint8_t* gray);
+/// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates:
+/// `face[count]`, with the same room.
+void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face);
+
+/// The name of the instruction set in use: the best one that this machine has.
+const char* instruction_set();
+/// How many this machine and this build have. `use_instruction_set` takes the one of that number from now on
+/// (for tests; not while anything is drawn), the best one again when it is negative.
+int instruction_set_count();
+void use_instruction_set(int number);
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,154 @@
+#include "host/wide/painter.h"
+
+#include <string.h>
+
+#include "host/wide/exact.h"
+
+namespace thimble::wide {
+namespace {
+
+// A hit on that face, and a ray for it.
+Rgb8 color_of_face(unsigned face, uint8_t material, const Camera& camera, const Shading& shading) {
+  Hit hit;
+  hit.kind = HitKind::kHit;
+  hit.axis = static_cast<int8_t>(face / 2);
+  hit.material = material;
+  Ray ray;
+  ray.direction[static_cast<int>(face / 2)] = face % 2 != 0 ? -1 : 1;
+  return shade(hit, ray, camera, shading);
+}
+
+}  // namespace
+
+Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band)
+    : lists_(lists),
+      camera_(camera),
+      shading_(shading),
+      band_(band),
+      stride_(band.stride_bytes == 0 ? row_bytes(band.format, camera.width_px()) : band.stride_bytes),
+      background_(shade(Hit{}, Ray{}, camera, shading)) {
+  for (unsigned face = 0; face < 6; ++face) {
+    faces_[face] = color_of_face(face, lists.tree().uniform_material(), camera, shading);
+  }
+}
+
+// All of the row. In formats of less than a byte, pixels are or'ed into zeros: the covered ones stay 0.
+void Painter::fill_background(uint8_t* to, int32_t y, const uint32_t* covered) const {
+  const int32_t width = camera_.width_px();
+  const size_t bytes = row_bytes(band_.format, width);
+  const bool is_gray = background_.r == background_.g && background_.g == background_.b;
+  if (background_ == Rgb8{} || (is_gray && band_.format == PixelFormat::kRgb888) ||
+      band_.format == PixelFormat::kGray8) {
+    memset(to, gray_of(background_), bytes);
+    return;
+  }
+  memset(to, 0, bytes);
+  for (int32_t x = 0; x < width; ++x) {
+    if ((covered[x >> 5] >> (x & 31) & 1U) == 0) {
+      store_pixel(to, x, y, band_.format, background_);
+    }
+  }
+}
+
+void Painter::paint(const Frame& frame, Pixels* pixels) const {
+  const uint32_t count = pixels->count;
+  unpack(pixels);
+  Rgb8 colors[kMostPixels];
+  if (shading_.mode == ShadeMode::kMono) {
+    for (uint32_t i = 0; i < count; ++i) {
+      colors[i] = {255, 255, 255};
+    }
+  } else {
+    if (lists_.has_blocks()) {
+      for (uint32_t i = 0; i < count; ++i) {
+        pixels->level[i] = level_of(lists_.entries()[pixels->number[i]]);
+        const bool is_block = !lists_.merged().empty() && lists_.merged()[pixels->number[i]] != 0;
+        pixels->voxels[i] = pixels->level[i] > 0 && !is_block ? 1 : 0;
+      }
+    }
+    uint8_t codes[kMostPixels + 64];
+    if (shading_.mode == ShadeMode::kDepth) {
+      find_grays(frame, *pixels, camera_.depth_per_t_q8(), shading_, codes);
+      if (band_.format == PixelFormat::kGray8) {
+        for (uint32_t i = 0; i < count; ++i) {
+          line(pixels->y[i])[pixels->x[i]] = codes[i];
+        }
+        return;
+      }
+      if (band_.format == PixelFormat::kRgb888) {
+        for (uint32_t i = 0; i < count; ++i) {
+          uint8_t* const to = line(pixels->y[i]) + 3 * static_cast<size_t>(pixels->x[i]);
+          to[0] = to[1] = to[2] = codes[i];
+        }
+        return;
+      }
+      for (uint32_t i = 0; i < count; ++i) {
+        colors[i] = {codes[i], codes[i], codes[i]};
+      }
+    } else {
+      find_faces(frame, *pixels, codes);
+      const bool by_face = shading_.mode == ShadeMode::kNormal || lists_.materials().empty();
+      for (uint32_t i = 0; i < count; ++i) {
+        colors[i] = by_face
+                        ? faces_[codes[i]]
+                        : color_of_face(codes[i], lists_.materials()[pixels->number[i]], camera_, shading_);
+      }
+    }
+  }
+  if (band_.format == PixelFormat::kRgb888) {
+    for (uint32_t i = 0; i < count; ++i) {
+      store_pixel(line(pixels->y[i]), pixels->x[i], pixels->y[i], PixelFormat::kRgb888, colors[i]);
+    }
+    return;
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    store_pixel(line(pixels->y[i]), pixels->x[i], pixels->y[i], band_.format, colors[i]);
+  }
+}
+
+uint64_t Painter::paint_tile(const Frame& frame, const Depths& depths) const {
+  Pixels pixels;
+  pixels.any_levels = lists_.has_blocks();
+  if (pixels.any_levels) {
+    memset(pixels.level, 0, sizeof(pixels.level));
+    memset(pixels.voxels, 0, sizeof(pixels.voxels));
+  }
+  uint64_t hits = 0;
+  uint32_t count = 0;
+  const int32_t words = (camera_.width_px() + 31) / 32;
+  for (int32_t y = frame.tile.y0; y < frame.tile.y1; ++y) {
+    const uint32_t* const covered = depths.covered + depths.first_word(y);
+    const uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
+    fill_background(line(y), y, covered);
+    for (int32_t word = 0; word < words; ++word) {
+      // Four at a time, without a look at how many there are: most words hold no more, and the next word
+      // writes over what was none.
+      uint32_t bits = covered[word];
+      const uint32_t end = count + static_cast<uint32_t>(__builtin_popcount(bits));
+      do {
+        for (uint32_t i = 0; i < 4; ++i) {
+          const int32_t x = 32 * word + (bits == 0 ? 0 : __builtin_ctz(bits));
+          pixels.x[count + i] = x;
+          pixels.y[count + i] = y;
+          pixels.value[count + i] = nearest[x];
+          bits &= bits - 1;
+        }
+        count += 4;
+      } while (bits != 0);
+      count = end;
+      if (count > kMostPixels - 32) {
+        pixels.count = count;
+        paint(frame, &pixels);
+        hits += count;
+        count = 0;
+      }
+    }
+  }
+  pixels.count = count;
+  if (count != 0) {
+    paint(frame, &pixels);
+  }
+  return hits + count;
+}
+
+}  // namespace thimble::wide

@@ -1,0 +1,39 @@
+/// @file painter.h
+/// From the nearest boxes of a row to its pixels, as the core would shade them.
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_PAINTER_H
+#define THIMBLE_PLATFORM_HOST_WIDE_PAINTER_H
+
+#include "host/wide/kernels.h"
+#include "host/wide/voxel_lists.h"
+#include "thimble/render.h"
+
+namespace thimble::wide {
+
+/// Made once a frame: tables of all colours that there can be.
+class Painter {
+ public:
+  Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
+
+  /// Paints the rows of the frame's tile. Returns how many pixels hold anything.
+  uint64_t paint_tile(const Frame& frame, const Depths& depths) const;
+
+ private:
+  void fill_background(uint8_t* line, int32_t y, const uint32_t* covered) const;
+  void paint(const Frame& frame, Pixels* pixels) const;
+  uint8_t* line(int32_t y) const {
+    return band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
+  }
+
+  const VoxelLists& lists_;
+  const Camera& camera_;
+  const Shading& shading_;
+  const Band& band_;
+  size_t stride_;
+  Rgb8 background_;
+  Rgb8 white_;
+  Rgb8 faces_[6];  ///< where there is one material
+};
+
+}  // namespace thimble::wide
+
+#endif

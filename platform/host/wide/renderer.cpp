@@ -1,0 +1,458 @@
+#include "host/wide/renderer.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <string.h>
+
+#include <atomic>
+#include <new>
+
+#include "host/wide/exact.h"
+#include "host/wide/painter.h"
+
+namespace thimble::wide {
+namespace {
+
+// Runs of more boxes than this are cut up, flat or not, so that blocks out of sight are not projected.
+constexpr uint32_t kFlatBoxes = 4096;
+constexpr uint32_t kBlockBoxes = 320;
+// Voxels of at least so many pixels a side are drawn one behind the other.
+constexpr float kSortedPx = 2.0F;
+constexpr uint32_t kMostSorted = 512;
+// Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
+constexpr double kBlocksFrom = 3;
+
+constexpr int32_t kPatchRows = 16;
+
+int32_t words_of(int32_t width_px) {
+  return (width_px + 63) / 64 * 2;
+}
+
+// Whether all pixels of `where` are covered. Patches of a word by kPatchRows rows that were seen full are
+// remembered in `full` (a byte each, `words` to a row of patches), so that large rectangles cost little.
+bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
+  const int32_t first = where.x0 >> 5;
+  const int32_t last = (where.x1 - 1) >> 5;
+  const uint32_t head = UINT32_MAX << (where.x0 & 31);
+  const uint32_t tail = UINT32_MAX >> (31 - ((where.x1 - 1) & 31));
+  const auto are_full = [&](int32_t word, uint32_t wanted, int32_t y0, int32_t y1) {
+    const uint32_t* at = depths.covered + depths.first_word(y0) + word;
+    for (int32_t y = y0; y < y1; ++y, at += depths.words) {
+      if ((*at & wanted) != wanted) {
+        return false;
+      }
+    }
+    return true;
+  };
+  const int32_t y_end = where.y1 - depths.first_row;
+  for (int32_t y = where.y0 - depths.first_row; y < y_end;) {
+    const int32_t patch_y = y / kPatchRows;
+    const int32_t next = (patch_y + 1) * kPatchRows;
+    const int32_t end = next < y_end ? next : y_end;
+    uint8_t* const flags = full + static_cast<size_t>(patch_y) * static_cast<size_t>(depths.words);
+    for (int32_t word = first; word <= last; ++word) {
+      if (flags[word] != 0) {
+        continue;
+      }
+      uint32_t wanted = UINT32_MAX;
+      wanted &= word == first ? head : wanted;
+      wanted &= word == last ? tail : wanted;
+      if (!are_full(word, wanted, y + depths.first_row, end + depths.first_row)) {
+        return false;
+      }
+      if (end == next &&
+          are_full(word, UINT32_MAX, next - kPatchRows + depths.first_row, next + depths.first_row)) {
+        flags[word] = 1;
+      }
+    }
+    y = end;
+  }
+  return true;
+}
+
+size_t words_of_patches(int32_t width_px, int32_t rows) {
+  return static_cast<size_t>(words_of(width_px)) * static_cast<size_t>((rows + kPatchRows - 1) / kPatchRows);
+}
+
+struct Block {
+  uint32_t node;
+  int level;
+  uint32_t corner[3];
+  Rectangle where;
+};
+
+// One tile of the picture, by one thread.
+class TileDrawer {
+ public:
+  TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, uint8_t* full, bool by_blocks,
+             Batch* batch)
+      : lists_(lists), frame_(frame), depths_(depths), full_(full), by_blocks_(by_blocks), batch_(batch) {
+    const Camera& camera = frame.camera;
+    for (int axis = 0; axis < 3; ++axis) {
+      // Rays of a parallel camera come from beyond the world.
+      eye_cell_[axis] = camera.is_perspective()        ? camera.eye()[axis].raw >> 8
+                        : camera.direction()[axis] < 0 ? INT32_MAX
+                                                       : INT32_MIN;
+    }
+  }
+
+  void draw() {
+    const CompactTree& tree = lists_.tree();
+    if (tree.empty()) {
+      return;
+    }
+    Block stack[7 * kMaxLevel + 8];
+    int depth = 0;
+    stack[depth++] = {
+        0, tree.level(), {0, 0, 0}, {frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}};
+    // Of a part of the picture, blocks outside it are to be left out too.
+    const bool is_part = frame_.tile.y1 - frame_.tile.y0 < frame_.camera.height_px();
+    const uint32_t small = by_blocks_ || is_part ? kBlockBoxes : kFlatBoxes;
+    while (depth > 0) {
+      const Block block = stack[--depth];
+      ++batch_->counts.nodes;
+      const BlockNode& node = lists_.nodes()[block.node];
+      const unsigned mask = tree.mask(block.node);
+      const bool is_small = node.entries <= small && block.level <= kCubeLevel;
+      const bool is_leaf = mask == 0 || block.level <= lists_.block_level() || is_small;
+      if (by_blocks_ && all_covered(depths_, block.where, full_)) {
+        continue;
+      }
+      if (is_leaf) {
+        // Its boxes are fetched while those of the blocks before it are drawn.
+        const uint32_t* entries = lists_.entries().data + node.first_entry;
+        for (uint32_t line = 0; line < 5 && 16 * line < node.entries; ++line) {
+          __builtin_prefetch(entries + 16 * line);
+        }
+        if (ahead_count_ == kAhead) {
+          draw_oldest();
+        }
+        ahead_[(ahead_first_ + ahead_count_++) % kAhead] = block;
+        continue;
+      }
+      const uint32_t side = uint32_t{1} << (block.level - 1);
+      float x[8];
+      float y[8];
+      float z[8];
+      unsigned first = 0;  // the octant nearest to the eye
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        x[octant] = static_cast<float>(block.corner[0] + ((octant & 1U) != 0 ? side : 0));
+        y[octant] = static_cast<float>(block.corner[1] + ((octant & 2U) != 0 ? side : 0));
+        z[octant] = static_cast<float>(block.corner[2] + ((octant & 4U) != 0 ? side : 0));
+      }
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        first |= eye_cell_[axis] >= static_cast<int32_t>(block.corner[axis] + side) ? 1U << axis : 0U;
+      }
+      Rectangle where[8];
+      find_rectangles(frame_, x, y, z, static_cast<float>(side), where);
+      for (unsigned turn = 8; turn-- > 0;) {  // the last pushed is the first drawn
+        const unsigned octant = turn ^ first;
+        if ((mask >> octant & 1U) == 0 || where[octant].x0 >= where[octant].x1) {
+          continue;
+        }
+        const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
+        __builtin_prefetch(&lists_.nodes()[node.first_child + number]);
+        stack[depth++] = {node.first_child + number,
+                          block.level - 1,
+                          {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
+                           block.corner[1] + ((octant & 2U) != 0 ? side : 0),
+                           block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
+                          where[octant]};
+      }
+    }
+    while (ahead_count_ != 0) {
+      draw_oldest();
+    }
+    finish(frame_, depths_, batch_);
+  }
+
+ private:
+  static constexpr uint32_t kAhead = 4;
+
+  void draw_oldest() {
+    const Block block = ahead_[ahead_first_];
+    ahead_first_ = (ahead_first_ + 1) % kAhead;
+    --ahead_count_;
+    draw_block(block, lists_.nodes()[block.node]);
+  }
+
+  void draw_block(const Block& block, const BlockNode& node) {
+    Run run;
+    run.entries = lists_.entries().data + node.first_entry;
+    run.numbers = nullptr;
+    run.count = node.entries;
+    run.first = node.first_entry;
+    run.unit = !lists_.has_blocks();
+    run.where = block.where;
+    run.behind = by_blocks_;
+    run.sorted = false;
+    run.voxel_px = voxel_px(block);
+    const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
+    if (block.level <= kCubeLevel) {
+      for (int axis = 0; axis < 3; ++axis) {
+        run.corner[axis] = block.corner[axis] & ~cube;
+      }
+      if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && run.voxel_px >= kSortedPx) {
+        run.count = cull_run(frame_, run, depths_, batch_, entries_, numbers_);
+        if (run.count == 0) {
+          return;
+        }
+        sort(block, &run);
+      }
+      draw_run(frame_, run, depths_, batch_);
+      return;
+    }
+    // A solid block of several cubes, an entry each, in Morton order.
+    run.behind = false;
+    run.count = 1;
+    for (uint32_t piece = 0; piece < node.entries; ++piece) {
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const uint32_t place = (piece >> axis & 1U) | (piece >> (3 + axis) & 1U) << 1;
+        run.corner[axis] = block.corner[axis] + (place << kCubeLevel);
+      }
+      draw_run(frame_, run, depths_, batch_);
+      ++run.entries;
+      ++run.first;
+    }
+  }
+
+  // How large a voxel of the block looks, about.
+  float voxel_px(const Block& block) const {
+    if (!frame_.perspective) {
+      return 2 * frame_.reach_x;
+    }
+    float depth = frame_.w[3];
+    const float middle = static_cast<float>(1 << block.level) * 0.5F;
+    for (int axis = 0; axis < 3; ++axis) {
+      depth += frame_.w[axis] * (static_cast<float>(block.corner[axis]) + middle);
+    }
+    return depth <= 0 ? 1e9F : 2 * frame_.reach_x / depth;
+  }
+
+  // The `run->count` boxes of entries_ front to back. Entries of an octant stand together, in every block of
+  // the tree; so the octants are taken in the order of their distance from the eye, down to single entries.
+  void sort(const Block& block, Run* run) {
+    struct Part {
+      uint32_t begin, end;
+      int32_t level;
+      uint32_t corner[3];
+    };
+    Part stack[7 * kCubeLevel + 8];
+    int depth = 0;
+    uint32_t written = 0;
+    stack[depth++] = {0, run->count, block.level, {block.corner[0], block.corner[1], block.corner[2]}};
+    while (depth > 0) {
+      const Part part = stack[--depth];
+      if (part.end - part.begin == 1 || part.level == 0) {
+        for (uint32_t i = part.begin; i < part.end; ++i) {
+          sorted_entries_[written] = entries_[i];
+          sorted_numbers_[written] = numbers_[i];
+          ++written;
+        }
+        continue;
+      }
+      const int32_t level = part.level - 1;
+      unsigned first = 0;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const int32_t middle = static_cast<int32_t>(part.corner[axis] + (uint32_t{1} << level));
+        first |= eye_cell_[axis] >= middle ? 1U << axis : 0U;
+      }
+      uint32_t begin[9] = {};
+      uint32_t at = part.begin;
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        begin[octant] = at;
+        for (; at < part.end; ++at) {
+          const uint32_t entry = entries_[at];
+          const unsigned of = (x_of(entry) >> level & 1U) | (entry >> (10 + level) & 1U) << 1 |
+                              (entry >> (20 + level) & 1U) << 2;
+          if (of != octant) {
+            break;
+          }
+        }
+      }
+      begin[8] = at;
+      for (unsigned turn = 8; turn-- > 0;) {
+        const unsigned octant = turn ^ first;
+        if (begin[octant] == begin[octant + 1]) {
+          continue;
+        }
+        Part child{begin[octant], begin[octant + 1], level, {0, 0, 0}};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+          child.corner[axis] = part.corner[axis] + ((octant >> axis & 1U) << level);
+        }
+        stack[depth++] = child;
+      }
+    }
+    run->entries = sorted_entries_;
+    run->numbers = sorted_numbers_;
+    run->sorted = true;
+  }
+
+  const VoxelLists& lists_;
+  const Frame& frame_;
+  const Depths& depths_;
+  uint8_t* full_;  // see all_covered
+  bool by_blocks_;
+  Batch* batch_;
+  int32_t eye_cell_[3];
+  Block ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
+  uint32_t ahead_first_ = 0;
+  uint32_t ahead_count_ = 0;
+  uint32_t entries_[kMostSorted + kReadAhead];
+  uint32_t numbers_[kMostSorted + kReadAhead];
+  uint32_t sorted_entries_[kMostSorted + kReadAhead];
+  uint32_t sorted_numbers_[kMostSorted + kReadAhead];
+};
+
+// How often over the boxes would cover the picture, about: as many pixels as a voxel in the middle of what is
+// occupied takes, times the boxes.
+double times_covered(const VoxelLists& lists, const Frame& frame) {
+  const VoxelBox& bounds = lists.tree().bounds();
+  double depth = static_cast<double>(frame.w[3]);
+  for (int axis = 0; axis < 3; ++axis) {
+    depth += static_cast<double>(frame.w[axis]) * (bounds.min[axis] + bounds.max[axis]) / 2;
+  }
+  const double nearest = static_cast<double>(frame.half_w) * 64;
+  depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
+  const double area =
+      4 * static_cast<double>(frame.reach_x) * static_cast<double>(frame.reach_y) / (depth * depth);
+  const double pixels = static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
+  return static_cast<double>(lists.face_area()) * area / pixels;
+}
+
+Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
+             const Options& options) {
+  const int32_t width = camera.width_px();
+  if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
+      band.rows > camera.height_px() - band.first_row || options.threads < 1 ||
+      options.threads > kMaxThreads) {
+    return Status::kBadArgument;
+  }
+  const size_t line_bytes = row_bytes(band.format, width);
+  const size_t stride = band.stride_bytes == 0 ? line_bytes : band.stride_bytes;
+  if (stride < line_bytes) {
+    return Status::kBadArgument;
+  }
+  if (band.rows == 0) {
+    return Status::kOk;
+  }
+  if (line_bytes > band.pixels.size ||
+      static_cast<size_t>(band.rows - 1) > (band.pixels.size - line_bytes) / stride ||
+      workspace.size < workspace_bytes(width, band.rows, options.threads)) {
+    return Status::kOutOfMemory;
+  }
+  return lists.entries().size > size_t{1} << kEntryBits ? Status::kTooFine : Status::kOk;
+}
+
+}  // namespace
+
+size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
+  const size_t words = static_cast<size_t>(words_of(width_px)) * static_cast<size_t>(rows);
+  return words_of_patches(width_px, rows) + words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) +
+         sizeof(uint64_t) + static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+}
+
+Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
+              Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
+  const Status status = check(lists, camera, band, workspace, options);
+  if (status != Status::kOk || band.rows == 0) {
+    return status;
+  }
+  // A tile is some whole rows. With several threads there are more tiles than threads, so that one that is
+  // slow does not hold the frame.
+  const int32_t tile_count = options.threads == 1 ? 1 : 8 * options.threads;
+  int32_t tile_rows = (band.rows + tile_count - 1) / tile_count;
+  tile_rows = (tile_rows + kPatchRows - 1) / kPatchRows * kPatchRows;
+  const auto make_tile = [&](int32_t row, Frame* frame) {
+    const int32_t end = row + tile_rows < band.rows ? row + tile_rows : band.rows;
+    return make_frame(camera, {0, band.first_row + row, camera.width_px(), band.first_row + end}, frame);
+  };
+  Frame frame;
+  for (int32_t row = 0; row < band.rows; row += tile_rows) {
+    if (!make_tile(row, &frame)) {
+      return Status::kTooFine;
+    }
+  }
+  if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
+    return Status::kTooFine;
+  }
+
+  Arena arena(workspace);
+  Depths depths;
+  depths.words = words_of(camera.width_px());
+  depths.width_px = depths.words * 32;
+  depths.first_row = band.first_row;
+  const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(band.rows);
+  depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 32 * sizeof(uint64_t), 64).data);
+  depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t) + sizeof(uint64_t)).data);
+  const Bytes patches = arena.take(words_of_patches(camera.width_px(), band.rows), 1);
+  const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
+  const auto batch_at = [&](int thread) {
+    return std::launder(reinterpret_cast<Batch*>(batches.data) + thread);
+  };
+  const auto batch_of = [&](int thread) {
+    return new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
+  };
+
+  Stats done;
+  done.order = options.order;
+  if (done.order == Order::kAuto) {
+    done.order = times_covered(lists, frame) < kBlocksFrom ? Order::kFlat : Order::kBlocks;
+  }
+  const bool by_blocks = done.order == Order::kBlocks;
+  const Painter painter(lists, camera, shading, band);
+  const auto draw_tile = [&](int32_t row, Batch* batch) {
+    Frame tile;
+    (void)make_tile(row, &tile);
+    const size_t rows = static_cast<size_t>(tile.tile.y1 - tile.tile.y0);
+    memset(depths.covered + depths.first_word(tile.tile.y0), 0,
+           rows * static_cast<size_t>(depths.words) * sizeof(uint32_t));
+    const size_t first_patch = words_of_patches(camera.width_px(), row);
+    memset(patches.data + first_patch, 0, words_of_patches(camera.width_px(), tile.tile.y1 - tile.tile.y0));
+    TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();
+    return painter.paint_tile(tile, depths);
+  };
+  uint64_t hits = 0;
+  if (options.threads == 1) {
+    Batch* const batch = batch_of(0);
+    hits = draw_tile(0, batch);
+    done.counts = batch->counts;
+  } else {
+    // More threads than processors are no gain, but what was asked for.
+    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
+                                              static_cast<size_t>(options.threads));
+    oneapi::tbb::task_arena workers(options.threads);
+    for (int thread = 0; thread < options.threads; ++thread) {
+      batch_of(thread);
+    }
+    std::atomic<uint64_t> all_hits{0};
+    workers.execute([&] {
+      oneapi::tbb::parallel_for(
+          oneapi::tbb::blocked_range<int32_t>(0, (band.rows + tile_rows - 1) / tile_rows, 1),
+          [&](const oneapi::tbb::blocked_range<int32_t>& tiles) {
+            const int thread = oneapi::tbb::this_task_arena::current_thread_index();
+            for (int32_t tile = tiles.begin(); tile != tiles.end(); ++tile) {
+              all_hits += draw_tile(tile * tile_rows, batch_at(thread));
+            }
+          },
+          oneapi::tbb::simple_partitioner());
+    });
+    hits = all_hits;
+    for (int thread = 0; thread < options.threads; ++thread) {
+      done.counts.add(batch_at(thread)->counts);
+    }
+  }
+  if (counts != nullptr) {
+    counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
+    counts->hits += hits;
+    counts->node_visits += done.counts.nodes;
+  }
+  if (stats != nullptr) {
+    *stats = done;
+  }
+  return Status::kOk;
+}
+
+}  // namespace thimble::wide
