@@ -242,6 +242,7 @@ BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_byt
   options.coarsen = coarsen;
   options.band_bytes = band_bytes;
   options.least_band_bytes = least_band_bytes;
+  options.threads = build_threads;
   return BuiltScene(source, options, [&](double done) { bar.update(done); });
 }
 

@@ -103,8 +103,10 @@ void run(const RenderCommand& given) {
   const std::int32_t width = command.view.width_px;
   const std::int32_t height = command.view.height_px;
   const auto source = command.scene.open();
-  BuiltScene built = command.scene.build(*source, band_bytes(format, width, band_rows(command, format)),
-                                         band_bytes(format, width, 1));
+  SceneOptions scene = command.scene;
+  scene.build_threads = command.engine.threads;
+  BuiltScene built = scene.build(*source, band_bytes(format, width, band_rows(command, format)),
+                                 band_bytes(format, width, 1));
   // At least a byte a row: a picture is at least a pixel wide.
   const std::size_t one_row = std::max<std::size_t>(1, row_bytes(format, width));
   const auto rows = static_cast<std::int32_t>(built.band().size / one_row);
