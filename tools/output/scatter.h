@@ -13,6 +13,7 @@ namespace thimble::tools {
 struct Cloud {
   std::string name;
   std::vector<std::pair<double, double>> points;  ///< x above 0, y any; an infinite y lies on the upper edge
+  bool joined = false;                            ///< by a line, in their order
 };
 
 struct FrontPoint {
