@@ -97,7 +97,7 @@ void run_scene(const AccuracyCommand& command) {
       std::fprintf(stderr, "note: %s\n", note.c_str());
     }
   }
-  outputs.print(printable(scene) + ", " + std::to_string(command.study.view.width_px) + "x" +
+  outputs.print(printable(scene) + "\n" + std::to_string(command.study.view.width_px) + "x" +
                 std::to_string(command.study.view.height_px) + ", median of " +
                 std::to_string(command.study.rounds) + " frames each, by turns\n" +
                 accuracy_tables(study, command.study.axis) + answer);

@@ -171,11 +171,11 @@ JsonRow accuracy_objects(const AccuracyStudy& study) {
 }
 
 std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis) {
-  return "reference: " + study.reference.options() + "\nPSNR in dB and RMS in 1/255: channels against the " +
-         "reference; wrong: of another colour; depth off: mean\nerror of distance in voxels; +-%: half the " +
-         "quartiles' distance; visits: nodes a pixel; M instr: millions\nof instructions on lm3s6965evb, " +
-         "estimated; front by " + axis_title(axis) + "\n\n" + settings_table(study) +
-         (study.work.empty() ? "" : work_table(study));
+  return "reference: " + study.reference.options() +
+         "\nPSNR in dB, RMS in 1/255: channels against the reference; wrong: of another colour; depth off:\n"
+         "mean error of distance in voxels; +-%: half the quartiles' distance; visits: nodes a pixel;\n"
+         "M instr: millions of instructions on lm3s6965evb, estimated; front by " +
+         axis_title(axis) + "\n\n" + settings_table(study) + (study.work.empty() ? "" : work_table(study));
 }
 
 std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::string& scene) {
