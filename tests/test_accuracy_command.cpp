@@ -13,11 +13,16 @@
 #include <string>
 #include <vector>
 
+#include "commands/options.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_case_report.h"
 #include "output/scatter.h"
+#include "scene/built_scene.h"
+#include "scene/lit_description.h"
+#include "scene/scene_source.h"
 #include "support/run_command.h"
 #include "support/xml_elements.h"
+#include "thimble/lit_render.h"
 
 namespace {
 
@@ -170,10 +175,11 @@ TEST_CASE("accuracy: every setting -> the errors and counts of what render draws
     double sum = 0;
     double most = 0;
     for (std::size_t i = 0; i < drawn.distances.size(); ++i) {
-      const bool hit = std::isfinite(drawn.distances[i]);
-      silhouette += hit != std::isfinite(best.distances[i]) ? 1U : 0U;
-      if (hit && std::isfinite(best.distances[i])) {
-        const double error = std::abs(double{drawn.distances[i]} - double{best.distances[i]});
+      const double own = drawn.distances[i];
+      const double reference = best.distances[i];
+      silhouette += std::isfinite(own) != std::isfinite(reference) ? 1U : 0U;
+      if (std::isfinite(own) && std::isfinite(reference)) {
+        const double error = std::abs(own - reference);
         sum += error;
         most = std::max(most, error);
         ++both;
@@ -325,6 +331,95 @@ TEST_CASE("accuracy: CSV, JSON and plot -> the same rows, null as empty cells, a
       run_command({"accuracy", "points:20,depth=3", "--csv", "-", "--size", "8x8", "--rounds", "1"});
   CHECK(piped.out.starts_with("row,group,options,"));
   CHECK(piped.out.find("reference:") == std::string::npos);
+}
+
+TEST_CASE(
+    "accuracy: a scene that calls for light -> its knobs, against what the renderer draws at their best") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write(
+      "l.scene",
+      "depth 5\nsun toward 3 5 9\nocclusion rays 8 reach 6 strength 0.8\nbounces 3\n"
+      "material steel metal color 200 200 210 mirror 0.9 roughness 0.3\nmaterial wall color 200 80 60\n"
+      "box wall from 0 0 0 to 32 32 3\nbox steel from 6 6 3 to 14 26 16\nbox steel from 18 6 3 to 20 26 "
+      "20\n");
+  const Words view{path, "--size", "24x18", "--shade", "color"};
+  const Json rows = rows_of(folder, with(view, {"--plot", folder.path("l.svg")}));
+  CHECK(elements_of(read_text(folder.path("l.svg"))) > 100);
+  CHECK(read_text(folder.path("l.svg")).find("bounces 8") != std::string::npos);
+
+  tools::SceneArguments arguments;
+  arguments.scene = path;
+  const auto source = tools::open_scene(arguments);
+  const tools::BuiltScene built(*source, {});
+  tools::ViewOptions options;
+  options.width_px = 24;
+  options.height_px = 18;
+  const Camera camera = options.camera(*source, built.level(), built.bounds());
+  const auto draw_lit = [&](int occlusion_rays, int roughness_rays, int bounces, std::uint64_t* rays) {
+    tools::LitDescription lit = source->lighting();
+    for (Surface& surface : lit.surfaces) {
+      surface.roughness = roughness_rays == 1 ? 0 : surface.roughness;
+    }
+    EffectSet effects = effects_of(lit.lit_scene());
+    REQUIRE((effects & kAmbientOcclusion) != 0);
+    effects &= occlusion_rays == 0 ? ~kAmbientOcclusion : kAllEffects;
+    LitScene scene = lit.lit_scene();
+    scene.occlusion.rays = static_cast<std::uint8_t>(occlusion_rays);
+    scene.bounces = static_cast<std::uint8_t>(bounces);
+    Shading shading;
+    shading.mode = ShadeMode::kColor;
+    shading.palette = {built.palette().data(), built.palette().size()};
+    const DepthRange range = depth_range(camera, built.bounds());
+    shading.near_q8 = range.near_q8;
+    shading.far_q8 = range.far_q8;
+    std::vector<std::uint8_t> pixels(24 * 18 * 3);
+    LitCounts counts;
+    REQUIRE(render_lit_band(effects, built.compact(), camera, shading, scene,
+                            {{pixels.data(), pixels.size()}, PixelFormat::kRgb888, 0, 0, 18},
+                            &counts) == Status::kOk);
+    *rays = 0;
+    for (const std::uint64_t kind : counts.rays) {
+      *rays += kind;
+    }
+    return pixels;
+  };
+  std::uint64_t rays = 0;
+  const auto best = draw_lit(32, 4, 8, &rays);
+  std::map<std::string, int> groups;
+  std::set<Words> settings;
+  int front = 0;
+  bool has_error = false;
+  for (const Json& row : rows) {
+    if (row["row"] != "light") {
+      CHECK(row["bounces"].is_null());
+      continue;
+    }
+    ++groups[row["group"]];
+    front += row["front"].get<int>();
+    CHECK(settings.insert({row["occlusion_rays"].dump(), row["roughness_rays"].dump(), row["bounces"].dump()})
+              .second);
+    const auto picture = draw_lit(row["occlusion_rays"], row["roughness_rays"], row["bounces"], &rays);
+    CHECK(row["rays"] == rays);
+    const double decibel = tools::psnr_db(picture, best);
+    CHECK(row["psnr_db"].is_null() == std::isinf(decibel));
+    if (!std::isinf(decibel)) {
+      CHECK(decibels(row) == doctest::Approx(decibel));
+      has_error = true;
+    }
+    CHECK(row["depth_error_mean_voxels"].is_null());
+  }
+  CHECK(groups["default"] == 1);
+  CHECK(groups["occlusion_rays"] == 4);
+  CHECK(groups["roughness_rays"] == 1);
+  CHECK(groups["bounces"] == 6);
+  CHECK(groups["together"] >= 20);
+  CHECK(front >= 2);
+  CHECK(has_error);
+  // No light asked for, none measured.
+  for (const Json& row : rows_of(folder, with(view, {"--effects", "none"}))) {
+    CHECK(row["row"] != "light");
+  }
+  check_refused({"spheres", "--effects", "magic"}, 2, {"--effects", "\"magic\""});
 }
 
 TEST_CASE("accuracy: empty and smallest worlds, the smallest picture -> rows, not errors") {

@@ -218,9 +218,21 @@ void add_accuracy(CLI::App& app) {
       },
       "what is compared: brightness by distance, by the face's direction, palette colours, or hit or not")
       ->default_str("depth");
+  add_text_option(
+      *sub, "--effects", "LIST",
+      [command](const std::string& text) {
+        const auto choice = parse_effects(text);
+        command->study.effects = choice.value_or(EffectChoice{});
+        return choice ? "" : "is not auto, none or a list of " + effect_names();
+      },
+      "light whose knobs are turned too (rays of occlusion, rays of rough metal, bounces): auto (what the "
+      "scene's materials and lights call for), none, or effects with commas between them: " +
+          effect_names())
+      ->default_str("auto");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->csv_path,
-      "a line a setting: row (setting; anytime: a frame of the defaults stopped early), group (default, the "
+      "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
+      "picture), group (default, the "
       "knob turned alone, together, best: the reference itself, anytime), options (of thimble render), front "
       "(1: no setting is both "
       "cheaper and nearer to the reference), max_depth (0: all), cutoff_px, direction_bits (0: automatic), "
@@ -230,7 +242,8 @@ void add_accuracy(CLI::App& app) {
       "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
       "depth_error_max_voxels (of centres' rays that hit in both); lm3s6965evb_instructions (an estimate, "
       "off by 5 per cent on average on the demonstration); anytime: visits_given, inexact_px, "
-      "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays. With "
+      "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays; light: "
+      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
       "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
       "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
       "(of the others), operation, bound_name, unit, error (the largest), bound, cases");

@@ -36,13 +36,25 @@ std::string spread(const AccuracyRow& row) {
   return row.ms_median <= 0 ? "-" : fixed(50 * (row.ms_three_quarters - row.ms_quarter) / row.ms_median, 0);
 }
 
+// Columns that a row of settings has nothing for.
+constexpr std::array kEarlyAndLight{"visits_given",     "inexact_px",     "error_bound_grays",
+                                    "mean_error_grays", "occlusion_rays", "roughness_rays",
+                                    "bounces"};
+
 JsonRow finite(double value) {
   return std::isfinite(value) ? JsonRow(value) : JsonRow(nullptr);
 }
 
 std::string options_of(const AccuracyRow& row) {
+  if (row.light != LightSetting{}) {
+    return row.light.text();
+  }
   const std::string text = row.trial.setting.options();
   return text.empty() ? "(none: the defaults)" : text;
+}
+
+JsonRow known(int value) {
+  return value < 0 ? JsonRow(nullptr) : JsonRow(value);
 }
 
 // What all rows have.
@@ -105,6 +117,67 @@ std::string work_table(const AccuracyStudy& study) {
          columns_of(rows, 0);
 }
 
+std::string light_table(const AccuracyStudy& study) {
+  std::vector<Cells> rows{
+      {"", "occlusion", "roughness", "bounces", "ms", "+-%", "PSNR", "RMS", "wrong %", "rays", "visits"}};
+  const auto rays_of = [](int value) { return value < 0 ? std::string("-") : std::to_string(value); };
+  for (const AccuracyRow& row : study.light) {
+    if (row.trial.group == "together" && !row.front) {
+      continue;
+    }
+    const double pixels = static_cast<double>(study.pixels);
+    rows.push_back({row.front ? "*" : "", rays_of(row.light.occlusion_rays),
+                    rays_of(row.light.roughness_rays), rays_of(row.light.bounces), brief(row.ms_median),
+                    spread(row), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
+                    percent(row.wrong_px, study.pixels),
+                    fixed(static_cast<double>(row.counts.rays) / pixels, 2),
+                    fixed(static_cast<double>(row.counts.node_visits) / pixels, 2)});
+  }
+  return "\nlight: " + effects_text(study.effects) + "\nagainst " + study.light_reference.text() +
+         ", one sample a pixel\nfirst what the scene asks for, each knob alone, then combinations on the "
+         "front; rays and "
+         "visits\na pixel\n" +
+         columns_of(rows, 1);
+}
+
+// Error against cost of lit pictures; a knob alone a colour.
+Scatter light_scatter(const AccuracyStudy& study, CostAxis axis) {
+  Scatter scatter;
+  scatter.title = "Light: error against ";
+  scatter.y_label = "PSNR against the best light, dB";
+  scatter.infinite_name = "upper edge: equal to the best light";
+  scatter.front_name = "The front: no other light is both cheaper and nearer";
+  for (const auto& [group, name] : {std::pair<const char*, const char*>{"together", "knobs together"},
+                                    {"occlusion_rays", "occlusion rays alone"},
+                                    {"roughness_rays", "roughness rays alone"},
+                                    {"bounces", "bounces alone"},
+                                    {"best", "the reference"},
+                                    {"default", "as the scene asks"}}) {
+    Cloud cloud{name, {}, false};
+    for (const AccuracyRow& row : study.light) {
+      if (row.trial.group == group && cost_of(row, axis) > 0) {
+        cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
+      }
+    }
+    if (!cloud.points.empty()) {
+      scatter.clouds.push_back(cloud);
+    }
+  }
+  return scatter;
+}
+
+// The front's points of those rows, by cost.
+std::vector<FrontPoint> front_of(const std::vector<AccuracyRow>& rows, CostAxis axis) {
+  std::vector<FrontPoint> front;
+  for (const AccuracyRow& row : rows) {
+    if (row.front && cost_of(row, axis) > 0) {
+      front.push_back({cost_of(row, axis), row.psnr_db, options_of(row)});
+    }
+  }
+  std::sort(front.begin(), front.end(), [](const FrontPoint& a, const FrontPoint& b) { return a.x < b.x; });
+  return front;
+}
+
 const char* axis_label(CostAxis axis) {
   return axis == CostAxis::kTime     ? "processor time of a frame, ms (median, this machine; log scale)"
          : axis == CostAxis::kVisits ? "nodes visited a frame (the same on every machine; log scale)"
@@ -116,9 +189,13 @@ const char* axis_title(CostAxis axis) {
 }
 
 std::string answer(const std::string& question, const AccuracyRow& row) {
-  return "\n" + question + "\noptions: " + options_of(row) + "\n  " + brief(row.ms_median) +
-         " ms, RMS error " + fixed(rms_of(row.psnr_db), 2) + " of 255, PSNR " + decibels(row.psnr_db) +
-         (std::isfinite(row.psnr_db) ? " dB\n" : "\n");
+  return "\n" + question + (row.light != LightSetting{} ? "\nlight: " : "\noptions: ") + options_of(row) +
+         "\n  " + brief(row.ms_median) + " ms, RMS error " + fixed(rms_of(row.psnr_db), 2) +
+         " of 255, PSNR " + decibels(row.psnr_db) + (std::isfinite(row.psnr_db) ? " dB\n" : "\n");
+}
+
+std::string light_answer(const AccuracyRow* row) {
+  return row == nullptr ? "" : answer("lit pictures, against the best light", *row);
 }
 
 }  // namespace
@@ -140,10 +217,9 @@ JsonRow accuracy_objects(const AccuracyStudy& study) {
     object["depth_error_mean_voxels"] = row.depth_mean_voxels;
     object["depth_error_max_voxels"] = row.depth_max_voxels;
     object["lm3s6965evb_instructions"] = row.lm3s_instructions;
-    object["visits_given"] = nullptr;
-    object["inexact_px"] = nullptr;
-    object["error_bound_grays"] = nullptr;
-    object["mean_error_grays"] = nullptr;
+    for (const char* name : kEarlyAndLight) {
+      object[name] = nullptr;
+    }
     rows.push_back(object);
   }
   for (const WorkRow& row : study.work) {
@@ -165,6 +241,29 @@ JsonRow accuracy_objects(const AccuracyStudy& study) {
     object["inexact_px"] = row.inexact_px;
     object["error_bound_grays"] = row.error_bound_grays;
     object["mean_error_grays"] = row.mean_error_grays;
+    object["occlusion_rays"] = nullptr;
+    object["roughness_rays"] = nullptr;
+    object["bounces"] = nullptr;
+    rows.push_back(object);
+  }
+  for (const AccuracyRow& row : study.light) {
+    JsonRow object = rows.front();
+    object["row"] = "light";
+    object["group"] = row.trial.group;
+    object["options"] = nullptr;
+    object["front"] = row.front ? 1 : 0;
+    object["max_depth"] = 0;
+    object["cutoff_px"] = 0.0;
+    object["direction_bits"] = 0;
+    object["samples"] = 1;
+    add_measured(row, &object);
+    for (const char* name :
+         {"silhouette_px", "depth_error_mean_voxels", "depth_error_max_voxels", "lm3s6965evb_instructions"}) {
+      object[name] = nullptr;
+    }
+    object["occlusion_rays"] = known(row.light.occlusion_rays);
+    object["roughness_rays"] = known(row.light.roughness_rays);
+    object["bounces"] = known(row.light.bounces);
     rows.push_back(object);
   }
   return rows;
@@ -175,7 +274,8 @@ std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis) {
          "\nPSNR in dB, RMS in 1/255: channels against the reference; wrong: of another colour; depth off:\n"
          "mean error of distance in voxels; +-%: half the quartiles' distance; visits: nodes a pixel;\n"
          "M instr: millions of instructions on lm3s6965evb, estimated; front by " +
-         axis_title(axis) + "\n\n" + settings_table(study) + (study.work.empty() ? "" : work_table(study));
+         axis_title(axis) + "\n\n" + settings_table(study) + (study.work.empty() ? "" : work_table(study)) +
+         (study.light.empty() ? "" : light_table(study));
 }
 
 std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::string& scene) {
@@ -213,19 +313,16 @@ std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::
     }
     scatter.clouds.push_back(cloud);
   }
-  std::vector<const AccuracyRow*> front;
-  for (const AccuracyRow& row : study.rows) {
-    if (row.front && cost_of(row, axis) > 0) {
-      front.push_back(&row);
-    }
+  scatter.front = front_of(study.rows, axis);
+  if (study.light.empty()) {
+    return scatter_text(scatter);
   }
-  std::sort(front.begin(), front.end(), [&](const AccuracyRow* a, const AccuracyRow* b) {
-    return cost_of(*a, axis) < cost_of(*b, axis);
-  });
-  for (const AccuracyRow* row : front) {
-    scatter.front.push_back({cost_of(*row, axis), row->psnr_db, options_of(*row)});
-  }
-  return scatter_text(scatter);
+  const CostAxis light_axis = axis == CostAxis::kInstructions ? CostAxis::kVisits : axis;
+  Scatter light = light_scatter(study, light_axis);
+  light.title += std::string(axis_title(light_axis)) + ": " + printable(scene);
+  light.x_label = axis_label(light_axis);
+  light.front = front_of(study.light, light_axis);
+  return stacked({scatter_text(scatter), scatter_text(light)});
 }
 
 std::string answer_for_ms(const AccuracyStudy& study, double ms) {
@@ -247,7 +344,7 @@ std::string answer_for_ms(const AccuracyStudy& study, double ms) {
             " node visits (AnytimeFrame::refine):\n  " + brief(early->picture.ms_median) + " ms, RMS error " +
             fixed(rms_of(early->picture.psnr_db), 2) + " of 255\n";
   }
-  return text;
+  return text + light_answer(best_within(study.light, ms));
 }
 
 std::string answer_for_error(const AccuracyStudy& study, double rms) {
@@ -261,7 +358,8 @@ std::string answer_for_error(const AccuracyStudy& study, double rms) {
                      " of 255 or less; the nearest, " + options_of(*nearest) + ", has " +
                      fixed(rms_of(nearest->psnr_db), 2));
   }
-  return answer("fastest with an RMS error of " + shortest(rms) + " of 255 at most", *fastest);
+  return answer("fastest with an RMS error of " + shortest(rms) + " of 255 at most", *fastest) +
+         light_answer(fastest_with(study.light, psnr_of(rms)));
 }
 
 }  // namespace thimble::tools

@@ -56,6 +56,16 @@ class Studio {
     return {camera, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
   }
 
+  LightStudio light(const EffectChoice& choice) const { return {source_, built_, choice, camera_, shading_}; }
+
+  // Draws a lit picture; milliseconds.
+  static double draw(const LightStudio& light, const LightSetting& setting, std::vector<std::uint8_t>* pixels,
+                     RenderCounts* counts) {
+    const Stopwatch watch;
+    light.draw(setting, pixels, counts);
+    return watch.ms();
+  }
+
   std::size_t row_bytes_of() const { return row_bytes(PixelFormat::kRgb888, camera_.width_px()); }
 
   // Draws the whole picture into `pixels`; milliseconds.
@@ -163,6 +173,18 @@ double mean_gray_error(const std::uint8_t* picture, const std::vector<std::uint8
   }
   return static_cast<double>(sum) * 3 / static_cast<double>(exact.size());
 }
+
+// All rows one after the other.
+AccuracyRow& row_of(AccuracyStudy* study, std::size_t index) {
+  if (index < study->rows.size()) {
+    return study->rows[index];
+  }
+  index -= study->rows.size();
+  return index < study->work.size() ? study->work[index].picture : study->light[index - study->work.size()];
+}
+
+// A lit picture's work in plain ones, roughly: for the progress bar.
+constexpr double kLitPicture = 4;
 
 // The first step of any-time work: so many visits, and twice as many each time.
 constexpr std::uint32_t kFirstVisits = 256;
@@ -288,8 +310,8 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   Setting defaults;
   const Prepared plain = studio.prepare(defaults);
   std::vector<std::uint8_t> exact;
-  RenderCounts exact_counts;
-  studio.draw(plain, defaults.quality, &exact, &exact_counts);
+  RenderCounts unused;
+  studio.draw(plain, defaults.quality, &exact, &unused);
   std::vector<std::uint8_t> memory;
   for (std::uint32_t visits = kFirstVisits; study.work.empty() || study.work.back().inexact_px != 0;
        visits *= 2) {
@@ -309,8 +331,24 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
     }
   }
 
+  const LightStudio light = studio.light(options.effects);
+  study.effects = light.effects();
+  study.light_reference = light.best();
+  std::vector<std::uint8_t> light_reference(exact.size());
+  for (const LightTrial& trial : light.trials()) {
+    AccuracyRow row;
+    row.trial.group = trial.group;
+    row.light = trial.setting;
+    study.light.push_back(row);
+  }
+  if (!study.light.empty()) {
+    light.draw(study.light_reference, &light_reference, &unused);
+  }
+
   const double reference_rays = study.reference.quality.samples();
-  const double all = reference_rays + (rays + static_cast<double>(study.work.size())) * options.rounds;
+  const double all = reference_rays + (rays + static_cast<double>(study.work.size()) +
+                                       kLitPicture * static_cast<double>(study.light.size())) *
+                                          options.rounds;
   double done = 0;
   const auto advance = [&](double more) {
     done += more;
@@ -320,12 +358,11 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   };
 
   std::vector<std::uint8_t> reference;
-  RenderCounts unused;
   studio.draw(*best, study.reference.quality, &reference, &unused);
   const std::vector<double> reference_distances = studio.distances(*best);
   advance(reference_rays);
 
-  std::vector<std::vector<double>> milliseconds(study.rows.size() + study.work.size());
+  std::vector<std::vector<double>> milliseconds(study.rows.size() + study.work.size() + study.light.size());
   std::vector<std::uint8_t> picture;
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t i = 0; i < study.rows.size(); ++i) {
@@ -352,14 +389,28 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
       }
       advance(1);
     }
+    for (std::size_t i = 0; i < study.light.size(); ++i) {
+      AccuracyRow& row = study.light[i];
+      RenderCounts counts;
+      picture.resize(exact.size());
+      milliseconds[study.rows.size() + study.work.size() + i].push_back(
+          Studio::draw(light, row.light, &picture, &counts));
+      if (round == 0) {
+        row.counts = counts;
+        compare_pictures(picture, light_reference, &row);
+      }
+      advance(kLitPicture);
+    }
   }
   for (std::size_t i = 0; i < milliseconds.size(); ++i) {
-    AccuracyRow& row = i < study.rows.size() ? study.rows[i] : study.work[i - study.rows.size()].picture;
+    AccuracyRow& row = row_of(&study, i);
     row.ms_median = quantile(milliseconds[i], 0.5);
     row.ms_quarter = quantile(milliseconds[i], 0.25);
     row.ms_three_quarters = quantile(milliseconds[i], 0.75);
   }
   mark_front(&study.rows, options.axis);
+  // Instructions are not estimated for light.
+  mark_front(&study.light, options.axis == CostAxis::kInstructions ? CostAxis::kVisits : options.axis);
   return study;
 }
 

@@ -11,6 +11,7 @@
 
 #include "commands/options.h"
 #include "instruments/knobs.h"
+#include "instruments/light_studio.h"
 
 namespace thimble::tools {
 
@@ -19,6 +20,7 @@ inline constexpr int kVisibleDifference = 8;
 
 struct AccuracyRow {
   Trial trial;
+  LightSetting light;  ///< of a lit picture
   // Against the reference.
   std::uint64_t wrong_px = 0;       ///< of another colour, by however little
   std::uint64_t visible_px = 0;     ///< with a channel off by more than kVisibleDifference
@@ -58,12 +60,18 @@ struct AccuracyOptions {
   ShadeMode shade = ShadeMode::kDepth;
   int rounds = 5;
   CostAxis axis = CostAxis::kTime;  ///< of the Pareto front
+  EffectChoice effects;
 };
 
 struct AccuracyStudy {
   std::vector<AccuracyRow> rows;  ///< the settings as tried
   std::vector<WorkRow> work;      ///< more and more work; the last one is done
+  /// Lit pictures with the knobs of light, against the one with these at their best (one sample a pixel); no
+  /// depths, no instructions. Empty where the scene's effects have no knobs.
+  std::vector<AccuracyRow> light;
+  EffectSet effects = kNoEffects;
   Setting reference;
+  LightSetting light_reference;
   std::uint64_t pixels = 0;
   std::vector<std::string> notes;  ///< sentences for a person: what could not be tried
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "output/units.h"
 
@@ -214,7 +215,8 @@ std::string scatter_text(const Scatter& scatter) {
       svg += dot(frame.x_at(x), frame.y_at(y), 4, fill);
     }
     const double column = kLeft + static_cast<double>(i % 4) * (kWidth - kLeft - kRight) / 4;
-    const double row = legend + kLineHeight * static_cast<double>(i / 4);
+    const std::size_t legend_row = i / 4;
+    const double row = legend + kLineHeight * static_cast<double>(legend_row);
     svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
   }
   if (!scatter.front.empty()) {
@@ -227,11 +229,27 @@ std::string scatter_text(const Scatter& scatter) {
     const double y = frame.y_at(point.y);
     svg += dot(x, y, 6, "class=\"ring\"");
     svg += numbers.label_at(x, y, std::to_string(i + 1));
-    const double column = kLeft + static_cast<double>(i / name_rows) * (kWidth - kLeft - kRight) / 2;
+    const std::size_t name_column = i / name_rows;
+    const double column = kLeft + static_cast<double>(name_column) * (kWidth - kLeft - kRight) / 2;
     svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
                  std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
   }
   return svg + "</svg>\n";
+}
+
+std::string stacked(const std::vector<std::string>& plots) {
+  std::string inner;
+  double height = 0;
+  for (const std::string& plot : plots) {
+    const std::string box = "viewBox=\"0 0 " + number(kWidth) + " ";
+    const std::size_t at = plot.find(box);
+    const double own = std::strtod(plot.c_str() + at + box.size(), nullptr);
+    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kWidth) + "\" height=\"" + number(own) +
+             "\" " + plot.substr(at);
+    height += own;
+  }
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+         "\">\n" + inner + "</svg>\n";
 }
 
 }  // namespace thimble::tools

@@ -35,6 +35,9 @@ struct Scatter {
 /// The plot as SVG text: x logarithmic, y linear. At most eight clouds keep colours of their own.
 std::string scatter_text(const Scatter& scatter);
 
+/// Such plots one below the other in one file.
+std::string stacked(const std::vector<std::string>& plots);
+
 }  // namespace thimble::tools
 
 #endif
