@@ -79,8 +79,10 @@ test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says f
 
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i
+# What is linted; `make test` lints the core (src) too.
+TIDY_FOLDERS ?= src tools platform tests/reference
 tidy: deps-test ## Lint the core, the tools and the ports with clang-tidy
-	@sh tests/checks/tidy.sh . build/tidy src tools platform tests/reference
+	@sh tests/checks/tidy.sh . build/tidy $(TIDY_FOLDERS)
 	@sh tests/boards/tidy.sh build/tidy-boards
 
 clean: ## Remove everything that was built
