@@ -223,7 +223,7 @@ std::unique_ptr<SceneSource> SceneOptions::open() const {
 }
 
 BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_bytes,
-                               std::uint64_t least_band_bytes) const {
+                               std::uint64_t least_band_bytes, std::uint64_t render_state_bytes) const {
   ProgressBar bar("building", quiet);
   BuildOptions options;
   options.structure = structure;
@@ -244,6 +244,7 @@ BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_byt
   options.band_bytes = band_bytes;
   options.least_band_bytes = least_band_bytes;
   options.threads = build_threads;
+  options.render_state_bytes = render_state_bytes;
   return BuiltScene(source, options, [&](double done) { bar.update(done); });
 }
 
