@@ -15,6 +15,7 @@
 #include "scene/board_fit.h"
 #include "support/run_command.h"
 #include "support/subtree_count.h"
+#include "support/xml_elements.h"
 
 namespace {
 
@@ -53,37 +54,6 @@ void check_refused(const Words& words, int status, const Words& named) {
     CAPTURE(name);
     CHECK(result.err.find(name) != std::string::npos);
   }
-}
-
-// Every tag closed in order, attributes in quotes; the number of elements, or -1.
-int elements_of(const std::string& xml) {
-  Words open;
-  int elements = 0;
-  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at)) {
-    const std::size_t end = xml.find('>', at);
-    if (end == std::string::npos || xml.find('<', at + 1) < end ||
-        std::count(xml.begin() + static_cast<std::ptrdiff_t>(at),
-                   xml.begin() + static_cast<std::ptrdiff_t>(end), '"') %
-                2 !=
-            0) {
-      return -1;
-    }
-    const std::string tag = xml.substr(at + 1, end - at - 1);
-    const std::string name = tag.substr(0, tag.find_first_of(" /", 1));
-    if (tag.front() == '/') {
-      if (open.empty() || "/" + open.back() != tag) {
-        return -1;
-      }
-      open.pop_back();
-    } else {
-      ++elements;
-      if (tag.back() != '/') {
-        open.push_back(name);
-      }
-    }
-    at = end;
-  }
-  return open.empty() ? elements : -1;
 }
 
 std::string text_of_voxels(const std::vector<reference::Voxel>& voxels) {

@@ -31,6 +31,7 @@ struct SceneOptions {
   bool coarsen = false;
   StructureKind structure = StructureKind::kCompact;
   bool quiet = false;
+  int build_threads = 1;  ///< that may build; the subcommand says
   std::string stats_path;
   const platform::BoardFacts* board = nullptr;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "output/units.h"
 
@@ -111,6 +112,39 @@ struct Frame {
   double y_at(double y) const { return kPlotBottom - (std::min(y, high) - low) / (high - low) * kPlotHeight; }
 };
 
+// Numbers at points, each on the first side of its point where it does not cover another.
+class Numbers {
+ public:
+  std::string label_at(double x, double y, const std::string& text) {
+    struct Side {
+      double right, down;
+      const char* anchor;
+    };
+    constexpr std::array<Side, 6> kSides{{{-8, -8, "end"},
+                                          {9, 14, "start"},
+                                          {9, -8, "start"},
+                                          {-9, 16, "end"},
+                                          {-22, -2, "end"},
+                                          {22, 8, "start"}}};
+    const double width = 7 * static_cast<double>(text.size());
+    for (const Side& side : kSides) {
+      const double middle = x + side.right + (side.right < 0 ? -width / 2 : width / 2);
+      const double line = y + side.down;
+      const bool is_free = std::none_of(taken_.begin(), taken_.end(), [&](const auto& other) {
+        return std::abs(other.first - middle) < width + 2 && std::abs(other.second - line) < 11;
+      });
+      if (is_free || &side == &kSides.back()) {
+        taken_.emplace_back(middle, line);
+        return label(x + side.right, line, side.anchor, text, " font-size=\"11\"");
+      }
+    }
+    return {};
+  }
+
+ private:
+  std::vector<std::pair<double, double>> taken_;  // middle, base line
+};
+
 }  // namespace
 
 std::string scatter_text(const Scatter& scatter) {
@@ -170,27 +204,52 @@ std::string scatter_text(const Scatter& scatter) {
   }
   for (std::size_t i = 0; i < scatter.clouds.size(); ++i) {
     const std::string fill = std::string("fill=\"") + kColors[i % kColors.size()] + "\"";
+    if (scatter.clouds[i].joined) {
+      svg += "<polyline fill=\"none\" stroke=\"" + std::string(kColors[i % kColors.size()]) + "\" points=\"";
+      for (const auto& [x, y] : scatter.clouds[i].points) {
+        svg += number(frame.x_at(x)) + "," + number(frame.y_at(y)) + " ";
+      }
+      svg += "\"/>\n";
+    }
     for (const auto& [x, y] : scatter.clouds[i].points) {
       svg += dot(frame.x_at(x), frame.y_at(y), 4, fill);
     }
     const double column = kLeft + static_cast<double>(i % 4) * (kWidth - kLeft - kRight) / 4;
-    const double row = legend + kLineHeight * static_cast<double>(i / 4);
+    const std::size_t legend_row = i / 4;
+    const double row = legend + kLineHeight * static_cast<double>(legend_row);
     svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
   }
   if (!scatter.front.empty()) {
     svg += label(kLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
   }
+  Numbers numbers;
   for (std::size_t i = 0; i < scatter.front.size(); ++i) {
     const FrontPoint& point = scatter.front[i];
     const double x = frame.x_at(point.x);
     const double y = frame.y_at(point.y);
     svg += dot(x, y, 6, "class=\"ring\"");
-    svg += label(x - 8, y - 8, "end", std::to_string(i + 1), " font-size=\"11\"");
-    const double column = kLeft + static_cast<double>(i / name_rows) * (kWidth - kLeft - kRight) / 2;
+    svg += numbers.label_at(x, y, std::to_string(i + 1));
+    const std::size_t name_column = i / name_rows;
+    const double column = kLeft + static_cast<double>(name_column) * (kWidth - kLeft - kRight) / 2;
     svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
                  std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
   }
   return svg + "</svg>\n";
+}
+
+std::string stacked(const std::vector<std::string>& plots) {
+  std::string inner;
+  double height = 0;
+  for (const std::string& plot : plots) {
+    const std::string box = "viewBox=\"0 0 " + number(kWidth) + " ";
+    const std::size_t at = plot.find(box);
+    const double own = std::strtod(plot.c_str() + at + box.size(), nullptr);
+    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kWidth) + "\" height=\"" + number(own) +
+             "\" " + plot.substr(at);
+    height += own;
+  }
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+         "\">\n" + inner + "</svg>\n";
 }
 
 }  // namespace thimble::tools

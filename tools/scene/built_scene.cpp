@@ -7,6 +7,7 @@
 
 #include "output/units.h"
 #include "readers/oct.h"
+#include "scene/key_sort.h"
 #include "thimble/morton.h"
 
 namespace thimble::tools {
@@ -398,11 +399,13 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
   const std::size_t capacity = std::min<std::size_t>(rest.size / sizeof(Key), UINT32_MAX);
   Key* keys = reinterpret_cast<Key*>(rest.data);
   std::size_t count = 0;
-  std::size_t most = 0;
+  std::size_t most = 0;  // bytes
   bool tidied = false;
   const auto tidy = [&] {
-    most = std::max(most, count);
-    sort_keys(Span<Key>(keys, count), key_bits);
+    const Bytes free = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
+    const Bytes scratch = free.subspan(0, key_sort_scratch_bytes(count, options_.threads));
+    most = std::max(most, static_cast<std::size_t>(free.data - rest.data) + scratch.size);
+    sort_keys_fast(Span<Key>(keys, count), key_bits, scratch, options_.threads);
     count = unique_keys(Span<Key>(keys, count));
   };
   std::uint64_t streamed = 0;
@@ -442,8 +445,8 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
     throw Shortage{};
   }
   const std::size_t offset = static_cast<std::size_t>(rest.data - arena_.rest().data);
-  arena_.note_scratch(std::max(offset + most * sizeof(Key),
-                               static_cast<std::size_t>(target.data - arena_.rest().data) + size));
+  arena_.note_scratch(
+      std::max(offset + most, static_cast<std::size_t>(target.data - arena_.rest().data) + size));
   // The fewest keys that would have done: all that came, or room enough for the different ones when tidied.
   std::size_t fewest = count + count / 15;
   while (most_after_tidying(fewest) < count) {
