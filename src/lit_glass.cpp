@@ -38,6 +38,10 @@ Vec3i turned_to(Vec3i direction, int axis, bool upwards) {
   return direction;
 }
 
+bool runs_on(const Vec3i& before, const Vec3i& after, int axis) {
+  return before[axis] < 0 ? after[axis] < 0 : after[axis] > 0;
+}
+
 void send(Frame& frame, const PendingRay& from, LitRayKind kind, const Vec3Q8& at, const Vec3i& direction,
           uint32_t share_q16, PendingRay* pending, size_t* count) {
   PendingRay out;
@@ -81,6 +85,10 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
     return true;
   }
   const Vec3Q8 at = meeting.at_water ? meeting.at : start_on_face(now->ray, meeting.hit);
+  Vec3Q8 rim = at;
+  if (meeting.step_axis >= 0) {
+    rim.z = meeting.rim;
+  }
   const Vec3i unit = unit_q14(now->ray.direction);
   const uint32_t eta = eta_q12(here, there);
   // Which way what is reflected goes. At a step of a wave a ray may come to the surface from the wrong side;
@@ -119,9 +127,11 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   const int32_t cosine = here < there ? cosine_in : cosine_out;
   const uint32_t back = passes ? fresnel_q16(cosine, r0_q16(here, there)) : kOneQ16;
   const LitRayKind kind = meeting.at_water ? LitRayKind::kWaterRay : LitRayKind::kGlassRay;
-  send(frame, *now, kind, at, reflected, back, pending, count);
+  send(frame, *now, kind, rim, reflected, back, pending, count);
   if (passes) {
-    send(frame, *now, kind, at, refracted, kOneQ16 - back, pending, count);
+    // Through a step, unless the bend turned it back.
+    const bool through = meeting.step_axis < 0 || runs_on(now->ray.direction, refracted, meeting.step_axis);
+    send(frame, *now, kind, through ? at : rim, refracted, kOneQ16 - back, pending, count);
   }
   return false;
 }

@@ -31,7 +31,9 @@ bool is_in_box(const WaterSurface& water, const Vec3Q8& at) {
 }
 
 // Makes the meeting one with a face of the water. A side between two columns is no wall but a step of the
-// wave: the ray goes on from the top of the column that it enters, or over which it leaves, at its edge.
+// wave, which the wave's own slope bends: what goes through goes on from the point itself, but what is
+// reflected, which mostly still runs towards the step, from the top of the column that was entered, or over
+// which it would have left, at its edge.
 void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::Kind beyond,
                Meeting* meeting) {
   const WaterSurface& water = frame.scene.water;
@@ -52,7 +54,8 @@ void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::
   if (step > 0) {
     meeting->at_surface = true;
     meeting->hit.axis = 2;
-    meeting->at.z = Q8::from_raw(low.z + (beyond == Medium::kAir ? step : height));
+    meeting->step_axis = hit.axis;
+    meeting->rim = Q8::from_raw(low.z + (beyond == Medium::kAir ? step : height));
   }
 }
 
