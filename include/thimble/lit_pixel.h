@@ -120,10 +120,6 @@ struct Meeting {
   Medium beyond;            ///< if not opaque
   Hit hit;                  ///< what is entered, even where that is an empty voxel
   Vec3Q8 at;
-  /// Of a step between two columns: the axis it was crossed along, and where what it reflects begins, its
-  /// `z`: the lower column's top for a ray in the water, the higher one's for a ray in the air.
-  int8_t step_axis = -1;
-  Q8 rim;
 };
 
 /// The stretch of a ray that is being followed: what it goes through, and where on the ray it began.
