@@ -175,8 +175,8 @@ TEST_CASE("accuracy: every setting -> the errors and counts of what render draws
     double sum = 0;
     double most = 0;
     for (std::size_t i = 0; i < drawn.distances.size(); ++i) {
-      const double own = drawn.distances[i];
-      const double reference = best.distances[i];
+      const auto own = static_cast<double>(drawn.distances[i]);
+      const auto reference = static_cast<double>(best.distances[i]);
       silhouette += std::isfinite(own) != std::isfinite(reference) ? 1U : 0U;
       if (std::isfinite(own) && std::isfinite(reference)) {
         const double error = std::abs(own - reference);
@@ -469,6 +469,64 @@ TEST_CASE("accuracy: an interrupt half way -> no file, no part of one") {
     CHECK(result.status == 124);  // timeout's own: it did interrupt
     CHECK(folder.names().empty());
   }
+}
+
+TEST_CASE("accuracy --simulation particles -> the lag of a falling ball, halved by twice the substeps") {
+  const TemporaryFolder folder;
+  const Json rows = rows_of(folder, {"--simulation", "particles", "--plot", folder.path("p.svg")});
+  REQUIRE(rows.size() == 20);
+  // A step adds gravity, then moves: after n steps of s parts a ball is g n / (2 s) cells ahead of the
+  // parabola, and the reference's 16 parts as much as that.
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double substeps = rows[i]["substeps"];
+    CHECK(substeps == (1 << i));
+    CHECK(rows[i]["subpixel_bits"] == 15);
+    const double expected = 0.1 * 10 / 2 * (1 / substeps - 1.0 / 16);
+    CHECK(rows[i]["error_median"].get<double>() == doctest::Approx(expected).epsilon(0.25));
+    CHECK(rows[i]["work"] == 693 * 10 * (1 << i));
+  }
+  CHECK(rows[4]["error_most"] == 0);
+  CHECK(rows[4]["front"] == 1);
+  int front = 0;
+  for (const Json& row : rows) {
+    CHECK(row["columns"].is_null());
+    bool beaten = false;
+    for (const Json& other : rows) {
+      const bool no_worse =
+          other["ms_median"] <= row["ms_median"] && other["error_median"] <= row["error_median"];
+      beaten = beaten || (no_worse && (other["ms_median"] < row["ms_median"] ||
+                                       other["error_median"] < row["error_median"]));
+    }
+    CHECK(row["front"] == (beaten ? 0 : 1));
+    front += beaten ? 0 : 1;
+  }
+  CHECK(front >= 2);
+  const std::string svg = read_text(folder.path("p.svg"));
+  CHECK(elements_of(svg) > 30);
+  CHECK(svg.find("cells (0 not shown)") != std::string::npos);
+}
+
+TEST_CASE("accuracy --simulation water -> heights nearer to the finest grid with every doubling of columns") {
+  const TemporaryFolder folder;
+  const Json rows = rows_of(folder, {"--simulation", "water", "--plot", folder.path("w.svg")});
+  REQUIRE(rows.size() == 12);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int columns = rows[i]["columns"];
+    CHECK(columns == 16 << (i % 4));
+    // A wave has crossed half the basin.
+    CHECK(rows[i]["steps"].get<int>() * rows[i]["wave_speed_q6"].get<int>() == 64 * columns / 2);
+    CHECK(rows[i]["substeps"].is_null());
+    CHECK(rows[i]["error_median"] <= rows[i]["error_most"]);
+    if (i % 4 != 0) {
+      CHECK(rows[i]["error_rms"] < rows[i - 1]["error_rms"]);
+      CHECK(rows[i]["work"] > 4 * rows[i - 1]["work"].get<std::uint64_t>());
+    }
+  }
+  CHECK(elements_of(read_text(folder.path("w.svg"))) > 30);
+  check_refused({"--simulation", "fire"}, 2, {"--simulation", "\"fire\""});
+  check_refused({"--simulation", "water", "spheres"}, 2, {"--simulation", "SCENE"});
+  check_refused({"--simulation", "water", "--for-ms", "3"}, 2, {"--simulation", "--for-ms"});
+  check_refused({"--simulation", "water", "--hard-cases"}, 2, {"--simulation", "--hard-cases"});
 }
 
 TEST_CASE("accuracy --hard-cases: every case and tracer -> ours 0, theirs counted, sums that are right") {
