@@ -183,7 +183,9 @@ std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds,
         row.work = coarse.work;
         for (int y = 0; round == 0 && y < row.columns; ++y) {
           for (int x = 0; x < row.columns; ++x) {
-            const double height = coarse.heights[static_cast<std::size_t>(y * row.columns + x)];
+            const double height =
+                coarse.heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(row.columns) +
+                               static_cast<std::size_t>(x)];
             errors.push_back(std::abs(height - mean_height(basin, row.columns, x, y)));
           }
         }
