@@ -15,6 +15,7 @@
 
 #include "commands/options.h"
 #include "instruments/accuracy_study.h"
+#include "instruments/chip_cost.h"
 #include "instruments/hard_case_report.h"
 #include "output/scatter.h"
 #include "scene/built_scene.h"
@@ -420,6 +421,15 @@ TEST_CASE(
     CHECK(row["row"] != "light");
   }
   check_refused({"spheres", "--effects", "magic"}, 2, {"--effects", "\"magic\""});
+}
+
+TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near what was counted there") {
+  const TemporaryFolder folder;
+  const Json rows = rows_of(folder, {"demo", "--size", "128x64", "--shade", "color"});
+  // Ray by ray, setting the camera up included (src/DESIGN.md, "Frames on a chip").
+  const double counted = 40.5e6;
+  CHECK(rows[0]["lm3s6965evb_instructions"].get<double>() ==
+        doctest::Approx(counted).epsilon(tools::kChipCostError));
 }
 
 TEST_CASE("accuracy: empty and smallest worlds, the smallest picture -> rows, not errors") {

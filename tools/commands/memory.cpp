@@ -126,6 +126,7 @@ JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     object[name(i) + "_build_bytes"] = row.structures[i].build_bytes;
   }
+  object["dag_table_bytes"] = row.dag_table_bytes;
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     object[name(i) + "_frame_ms"] = optional_of(row.structures[i].frame_ms);
   }
@@ -523,7 +524,8 @@ void add_memory(CLI::App& app) {
       "(solid), leaves (solid blocks and voxels of a tree), pool_nodes, compact_nodes, dag_nodes; for S of "
       "dense, pool, compact, dag: S_bytes, S_bit_bytes_per_voxel, S_color_bytes_per_voxel (palette index), "
       "S_normal_bytes_per_voxel (and 2 bytes), S_opacity_bytes_per_voxel (and 1 byte), S_build_bytes (most "
-      "in use while building), S_frame_ms (processor time, median), S_visits_per_ray (nodes; dense: cells), "
+      "in use while building), dag_table_bytes (of that, the hash table that the DAG is built in), "
+      "S_frame_ms (processor time, median), S_visits_per_ray (nodes; dense: cells), "
       "S_boards "
       "(compact, dag: in flash; dense, pool: in RAM); wrong_px (another colour than the deepest depth's), "
       "silhouette_px (hit in one only), depth_error_mean_voxels, depth_error_max_voxels (in voxels of the "

@@ -70,6 +70,7 @@ void count_bytes(const SceneSource& source, const DepthScene& scene, const Depth
   row->pool_nodes = scene.pool().nodes_used();
   row->compact_nodes = scene.compact().node_count();
   row->dag_nodes = scene.shared().node_count();
+  row->dag_table_bytes = scene.shared_work_bytes();
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     StructureFigures& figures = row->structures[i];
     const auto structure = static_cast<MemoryStructure>(i);

@@ -42,6 +42,7 @@ struct DepthRow {
   std::uint64_t pool_nodes = 0;
   std::uint64_t compact_nodes = 0;
   std::uint64_t dag_nodes = 0;
+  std::uint64_t dag_table_bytes = 0;  ///< the hash table that the DAG was built in
   std::array<StructureFigures, kMemoryStructures> structures;
   PictureError error;
 };
