@@ -106,7 +106,7 @@ Drawn draw(const TemporaryFolder& folder, const std::string& options) {
 }
 
 // The rows that nothing beats, by the definition.
-void check_front(const Json& rows, const std::string& cost) {
+void check_front(const Json& rows, const std::string& cost, double noise = 0) {
   int front = 0;
   for (const Json& row : rows) {
     if (row["row"] != "setting") {
@@ -118,8 +118,8 @@ void check_front(const Json& rows, const std::string& cost) {
       if (other["row"] == "setting") {
         const double mine = row[cost];
         const double theirs = other[cost];
-        const bool no_worse = theirs <= mine && decibels(other) >= decibels(row);
-        beaten = beaten || (no_worse && (theirs < mine || decibels(other) > decibels(row)));
+        beaten = beaten || (decibels(other) > decibels(row) && theirs <= mine * (1 + noise)) ||
+                 (decibels(other) == decibels(row) && theirs < mine);
       }
     }
     CAPTURE(row["options"]);
@@ -239,7 +239,7 @@ TEST_CASE(
 TEST_CASE(
     "accuracy: the front -> exactly the settings that no other one beats, by time and by what is counted") {
   const TemporaryFolder folder;
-  check_front(rows_of(folder, kView), "ms_median");
+  check_front(rows_of(folder, kView), "ms_median", 0.03);
   check_front(rows_of(folder, with(kView, {"--against", "visits"})), "node_visits");
   check_front(rows_of(folder, with(kView, {"--against", "instructions"})), "lm3s6965evb_instructions");
 }
@@ -632,6 +632,12 @@ TEST_CASE("accuracy: rows made by hand -> front, best within a time, fastest wit
   CHECK(tools::fastest_with(rows, 10) == &rows[0]);
   CHECK(tools::fastest_with(rows, 20) == &rows[2]);
   CHECK(tools::fastest_with(rows, 31) == nullptr);
+  rows[2].ms_median = 2.92;  // 3 takes 2.7 per cent more, and is nearer
+  tools::mark_front(&rows, tools::CostAxis::kTime);
+  CHECK(!rows[2].front);
+  rows[2].ms_median = 2.9;  // 3.4 per cent
+  tools::mark_front(&rows, tools::CostAxis::kTime);
+  CHECK(rows[2].front);
   tools::mark_front(&rows, tools::CostAxis::kVisits);
   CHECK(rows[4].front);
   CHECK(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.front; }) == 1);

@@ -207,11 +207,12 @@ double cost_of(const AccuracyRow& row, CostAxis axis) {
 }
 
 void mark_front(std::vector<AccuracyRow>* rows, CostAxis axis) {
+  const double as_cheap = axis == CostAxis::kTime ? 1 + kTimeNoise : 1;
   for (AccuracyRow& row : *rows) {
     const double cost = cost_of(row, axis);
     row.front = std::none_of(rows->begin(), rows->end(), [&](const AccuracyRow& other) {
-      return cost_of(other, axis) <= cost && other.psnr_db >= row.psnr_db &&
-             (cost_of(other, axis) < cost || other.psnr_db > row.psnr_db);
+      return (other.psnr_db > row.psnr_db && cost_of(other, axis) <= cost * as_cheap) ||
+             (other.psnr_db == row.psnr_db && cost_of(other, axis) < cost);
     });
   }
 }
