@@ -73,6 +73,9 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
                   "S_frame_ms",   "S_visits_per_ray",
                   "S_boards",     "depth_error_mean_voxels",
                   "budget_bytes"}},
+      {"effects",
+       {"SCENE", "--effects", "--bounces", "--size", "--eye", "--frames", "--csv", "--json", "--plot",
+        "--quiet", "K_rays", "node_visits", "q25_ms", "ram_bytes", "flash_bytes", "lm3s6965evb"}},
       {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine", "--threads"}}};
   for (Help& help : all) {
     if (help.subcommand == "render" || help.subcommand == "trace" || help.subcommand == "info") {
