@@ -42,6 +42,15 @@ else()
   set(THIMBLE_SCENE_INCLUDE "")
   set(THIMBLE_SCENE_BYTES "{}")
 endif()
+# The effects that the scene was baked for: the applications hold these and no others.
+set(THIMBLE_IMAGE_EFFECTS 0)
+if(THIMBLE_SCENE_HEADER)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${THIMBLE_SCENE_HEADER})
+  file(STRINGS ${THIMBLE_SCENE_HEADER} line REGEX "^#define THIMBLE_SCENE_EFFECTS ")
+  if(line MATCHES "EFFECTS (0x[0-9a-f]+)u?")
+    set(THIMBLE_IMAGE_EFFECTS ${CMAKE_MATCH_1})
+  endif()
+endif()
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/scene.cpp.in ${generated}/scene.cpp @ONLY)
 
 # One set of flags for the core, the port and the applications.
@@ -88,6 +97,9 @@ endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
 target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+# Those that draw a scene with light (apps/scene_light.h).
+set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp PROPERTIES
+  COMPILE_DEFINITIONS THIMBLE_IMAGE_EFFECTS=${THIMBLE_IMAGE_EFFECTS})
 target_link_libraries(thimble_apps PRIVATE thimble_app_warnings)
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPERTIES
   COMPILE_OPTIONS -fno-tree-loop-distribute-patterns)

@@ -9,14 +9,11 @@ RayPoint point_of_water(const WaterHit& hit) {
   return {hit.t_numerator, hit.t_denominator};
 }
 
-// Height of the column beyond the face that was crossed; 0 where there is no water.
-int32_t height_beyond_q8(const WaterSurface& water, const WaterHit& hit) {
+// Whether there is water in the column beyond the side that was crossed.
+bool has_water_beyond(const WaterSurface& water, const WaterHit& hit) {
   const int32_t x = hit.column_x + (hit.axis == 0 ? hit.side : 0);
   const int32_t y = hit.column_y + (hit.axis == 1 ? hit.side : 0);
-  if (x < 0 || y < 0 || x >= water.width || y >= water.depth || water.height_q16(x, y) < 0) {
-    return 0;
-  }
-  return water.height_q8(x, y);
+  return x >= 0 && y >= 0 && x < water.width && y < water.depth && water.height_q16(x, y) >= 128;
 }
 
 // Whether a point lies in the box that no column leaves, or on its faces.
@@ -31,7 +28,7 @@ bool is_in_box(const WaterSurface& water, const Vec3Q8& at) {
 }
 
 // Makes the meeting one with a face of the water. A side between two columns is no wall but a step of the
-// wave: the ray goes on from the top of the column that it enters, or over which it leaves, at its edge.
+// wave, which the wave's own slope bends.
 void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::Kind beyond,
                Meeting* meeting) {
   const WaterSurface& water = frame.scene.water;
@@ -48,11 +45,9 @@ void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::
   meeting->hit.t_numerator = hit.t_numerator;
   meeting->hit.t_denominator = hit.t_denominator;
   meeting->at = start_on_plane(ray, hit.axis, hit.side < 0 ? low[hit.axis] : high[hit.axis], low, high);
-  const int32_t step = hit.axis == 2 ? 0 : height_beyond_q8(water, hit);
-  if (step > 0) {
+  if (hit.axis != 2 && has_water_beyond(water, hit)) {
     meeting->at_surface = true;
     meeting->hit.axis = 2;
-    meeting->at.z = Q8::from_raw(low.z + (beyond == Medium::kAir ? step : height));
   }
 }
 

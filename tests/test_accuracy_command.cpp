@@ -15,6 +15,7 @@
 
 #include "commands/options.h"
 #include "instruments/accuracy_study.h"
+#include "instruments/chip_cost.h"
 #include "instruments/hard_case_report.h"
 #include "output/scatter.h"
 #include "scene/built_scene.h"
@@ -105,7 +106,7 @@ Drawn draw(const TemporaryFolder& folder, const std::string& options) {
 }
 
 // The rows that nothing beats, by the definition.
-void check_front(const Json& rows, const std::string& cost) {
+void check_front(const Json& rows, const std::string& cost, double noise = 0) {
   int front = 0;
   for (const Json& row : rows) {
     if (row["row"] != "setting") {
@@ -117,8 +118,8 @@ void check_front(const Json& rows, const std::string& cost) {
       if (other["row"] == "setting") {
         const double mine = row[cost];
         const double theirs = other[cost];
-        const bool no_worse = theirs <= mine && decibels(other) >= decibels(row);
-        beaten = beaten || (no_worse && (theirs < mine || decibels(other) > decibels(row)));
+        beaten = beaten || (decibels(other) > decibels(row) && theirs <= mine * (1 + noise)) ||
+                 (decibels(other) == decibels(row) && theirs < mine);
       }
     }
     CAPTURE(row["options"]);
@@ -175,8 +176,8 @@ TEST_CASE("accuracy: every setting -> the errors and counts of what render draws
     double sum = 0;
     double most = 0;
     for (std::size_t i = 0; i < drawn.distances.size(); ++i) {
-      const double own = drawn.distances[i];
-      const double reference = best.distances[i];
+      const auto own = static_cast<double>(drawn.distances[i]);
+      const auto reference = static_cast<double>(best.distances[i]);
       silhouette += std::isfinite(own) != std::isfinite(reference) ? 1U : 0U;
       if (std::isfinite(own) && std::isfinite(reference)) {
         const double error = std::abs(own - reference);
@@ -238,7 +239,7 @@ TEST_CASE(
 TEST_CASE(
     "accuracy: the front -> exactly the settings that no other one beats, by time and by what is counted") {
   const TemporaryFolder folder;
-  check_front(rows_of(folder, kView), "ms_median");
+  check_front(rows_of(folder, kView), "ms_median", 0.03);
   check_front(rows_of(folder, with(kView, {"--against", "visits"})), "node_visits");
   check_front(rows_of(folder, with(kView, {"--against", "instructions"})), "lm3s6965evb_instructions");
 }
@@ -422,6 +423,15 @@ TEST_CASE(
   check_refused({"spheres", "--effects", "magic"}, 2, {"--effects", "\"magic\""});
 }
 
+TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near what was counted there") {
+  const TemporaryFolder folder;
+  const Json rows = rows_of(folder, {"demo", "--size", "128x64", "--shade", "color"});
+  // Ray by ray, setting the camera up included (src/DESIGN.md, "Frames on a chip").
+  const double counted = 40.5e6;
+  CHECK(rows[0]["lm3s6965evb_instructions"].get<double>() ==
+        doctest::Approx(counted).epsilon(tools::kChipCostError));
+}
+
 TEST_CASE("accuracy: empty and smallest worlds, the smallest picture -> rows, not errors") {
   const TemporaryFolder folder;
   CHECK(rows_of(folder, {"points:0,depth=3", "--size", "8x6"})[0]["wrong_px"] == 0);
@@ -471,6 +481,64 @@ TEST_CASE("accuracy: an interrupt half way -> no file, no part of one") {
   }
 }
 
+TEST_CASE("accuracy --simulation particles -> the lag of a falling ball, halved by twice the substeps") {
+  const TemporaryFolder folder;
+  const Json rows = rows_of(folder, {"--simulation", "particles", "--plot", folder.path("p.svg")});
+  REQUIRE(rows.size() == 20);
+  // A step adds gravity, then moves: after n steps of s parts a ball is g n / (2 s) cells ahead of the
+  // parabola, and the reference's 16 parts as much as that.
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double substeps = rows[i]["substeps"];
+    CHECK(substeps == (1 << i));
+    CHECK(rows[i]["subpixel_bits"] == 15);
+    const double expected = 0.1 * 10 / 2 * (1 / substeps - 1.0 / 16);
+    CHECK(rows[i]["error_median"].get<double>() == doctest::Approx(expected).epsilon(0.25));
+    CHECK(rows[i]["work"] == 693 * 10 * (1 << i));
+  }
+  CHECK(rows[4]["error_most"] == 0);
+  CHECK(rows[4]["front"] == 1);
+  int front = 0;
+  for (const Json& row : rows) {
+    CHECK(row["columns"].is_null());
+    bool beaten = false;
+    for (const Json& other : rows) {
+      const bool no_worse =
+          other["ms_median"] <= row["ms_median"] && other["error_median"] <= row["error_median"];
+      beaten = beaten || (no_worse && (other["ms_median"] < row["ms_median"] ||
+                                       other["error_median"] < row["error_median"]));
+    }
+    CHECK(row["front"] == (beaten ? 0 : 1));
+    front += beaten ? 0 : 1;
+  }
+  CHECK(front >= 2);
+  const std::string svg = read_text(folder.path("p.svg"));
+  CHECK(elements_of(svg) > 30);
+  CHECK(svg.find("cells (0 not shown)") != std::string::npos);
+}
+
+TEST_CASE("accuracy --simulation water -> heights nearer to the finest grid with every doubling of columns") {
+  const TemporaryFolder folder;
+  const Json rows = rows_of(folder, {"--simulation", "water", "--plot", folder.path("w.svg")});
+  REQUIRE(rows.size() == 12);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int columns = rows[i]["columns"];
+    CHECK(columns == 16 << (i % 4));
+    // A wave has crossed half the basin.
+    CHECK(rows[i]["steps"].get<int>() * rows[i]["wave_speed_q6"].get<int>() == 64 * columns / 2);
+    CHECK(rows[i]["substeps"].is_null());
+    CHECK(rows[i]["error_median"] <= rows[i]["error_most"]);
+    if (i % 4 != 0) {
+      CHECK(rows[i]["error_rms"] < rows[i - 1]["error_rms"]);
+      CHECK(rows[i]["work"] > 4 * rows[i - 1]["work"].get<std::uint64_t>());
+    }
+  }
+  CHECK(elements_of(read_text(folder.path("w.svg"))) > 30);
+  check_refused({"--simulation", "fire"}, 2, {"--simulation", "\"fire\""});
+  check_refused({"--simulation", "water", "spheres"}, 2, {"--simulation", "SCENE"});
+  check_refused({"--simulation", "water", "--for-ms", "3"}, 2, {"--simulation", "--for-ms"});
+  check_refused({"--simulation", "water", "--hard-cases"}, 2, {"--simulation", "--hard-cases"});
+}
+
 TEST_CASE("accuracy --hard-cases: every case and tracer -> ours 0, theirs counted, sums that are right") {
   const TemporaryFolder folder;
   const CommandResult result = accuracy({"--hard-cases", "--rays", "2800", "--seed", "5", "--json",
@@ -513,7 +581,7 @@ TEST_CASE("accuracy --hard-cases: every case and tracer -> ours 0, theirs counte
   }
   CHECK(cases.size() == 14);
   CHECK(totals == 14);
-  CHECK(operations >= 14);
+  CHECK(operations >= 24);
   CHECK(rays >= 2800);
   CHECK(lines_of(read_text(folder.path("h.csv"))).size() == rows.size() + 1);
   for (const std::string& name : cases) {
@@ -564,6 +632,12 @@ TEST_CASE("accuracy: rows made by hand -> front, best within a time, fastest wit
   CHECK(tools::fastest_with(rows, 10) == &rows[0]);
   CHECK(tools::fastest_with(rows, 20) == &rows[2]);
   CHECK(tools::fastest_with(rows, 31) == nullptr);
+  rows[2].ms_median = 2.92;  // 3 takes 2.7 per cent more, and is nearer
+  tools::mark_front(&rows, tools::CostAxis::kTime);
+  CHECK(!rows[2].front);
+  rows[2].ms_median = 2.9;  // 3.4 per cent
+  tools::mark_front(&rows, tools::CostAxis::kTime);
+  CHECK(rows[2].front);
   tools::mark_front(&rows, tools::CostAxis::kVisits);
   CHECK(rows[4].front);
   CHECK(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.front; }) == 1);

@@ -20,7 +20,8 @@
 ///   - a mirror or a clear boundary splits the ray in at most two, four at the first rough metal; what weighs
 ///     less than 1/256 is dropped; after `LitScene::bounces` a metal shows its plain lit colour, and a clear
 ///     boundary lets the ray go straight on;
-///   - what is clear on both sides with one index, and all media, are passed by the very same ray.
+///   - what is clear on both sides with one index, and all media, are passed by the very same ray; where
+///     there is water, by one that begins anew on the face, to 1/256 voxel.
 #ifndef THIMBLE_LIT_RENDER_H
 #define THIMBLE_LIT_RENDER_H
 

@@ -13,6 +13,7 @@
 #include "instruments/accuracy_report.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_case_report.h"
+#include "instruments/simulation_study.h"
 #include "output/output_file.h"
 #include "output/progress.h"
 #include "output/tables.h"
@@ -27,6 +28,7 @@ constexpr std::uint64_t kLeastCases = 1000;
 struct AccuracyCommand {
   SceneOptions scene;
   AccuracyOptions study;
+  std::optional<SimulationWorld> simulation;
   bool hard_cases = false;
   std::uint64_t hard_rays = 1000000;
   std::uint64_t seed = 1;
@@ -120,27 +122,49 @@ void run_hard(const AccuracyCommand& command) {
   }
 }
 
-void run(const AccuracyCommand& command, const CLI::App& sub) {
-  if (!command.hard_cases) {
-    if (command.scene.arguments.scene.empty()) {
-      throw CLI::RequiredError("SCENE");
-    }
-    for (const char* name : {"--rays", "--seed"}) {
-      if (sub.count(name) != 0) {
-        throw CLI::ValidationError(name, "goes with --hard-cases only");
-      }
-    }
-    run_scene(command);
-    return;
+void run_simulation(const AccuracyCommand& command) {
+  Outputs outputs(command);
+  std::vector<SimulationRow> rows;
+  {
+    ProgressBar bar("measuring", command.scene.quiet);
+    rows =
+        study_simulation(*command.simulation, command.study.rounds, [&](double done) { bar.update(done); });
   }
+  outputs.write(simulation_objects(*command.simulation, rows), simulation_plot(*command.simulation, rows));
+  outputs.print(simulation_table(*command.simulation, rows));
+}
+
+// Options that say what is measured go with few of the others.
+void check_alone(const CLI::App& sub, const std::string& what, const std::vector<std::string>& allowed) {
   for (const CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name();
-    constexpr std::array kTheirs{"--hard-cases", "--rays", "--seed", "--csv", "--json", "--quiet"};
-    if (option->count() != 0 && std::find(kTheirs.begin(), kTheirs.end(), name) == kTheirs.end()) {
-      throw CLI::ValidationError("--hard-cases", "takes no " + (name == "scene" ? "SCENE" : name));
+    if (option->count() != 0 && name != what &&
+        std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
+      throw CLI::ValidationError(what, "takes no " + (name == "scene" ? "SCENE" : name));
     }
   }
-  run_hard(command);
+}
+
+void run(const AccuracyCommand& command, const CLI::App& sub) {
+  if (command.hard_cases) {
+    check_alone(sub, "--hard-cases", {"--rays", "--seed", "--csv", "--json", "--quiet"});
+    run_hard(command);
+    return;
+  }
+  for (const char* name : {"--rays", "--seed"}) {
+    if (sub.count(name) != 0) {
+      throw CLI::ValidationError(name, "goes with --hard-cases only");
+    }
+  }
+  if (command.simulation) {
+    check_alone(sub, "--simulation", {"--rounds", "--csv", "--json", "--plot", "--quiet"});
+    run_simulation(command);
+    return;
+  }
+  if (command.scene.arguments.scene.empty()) {
+    throw CLI::RequiredError("SCENE");
+  }
+  run_scene(command);
 }
 
 void add_positive(CLI::App& app, const std::string& name, const std::string& type_name, double least,
@@ -176,6 +200,14 @@ void add_accuracy(CLI::App& app) {
          "floating point, and every fixed-point operation against exact arithmetic; the exit status is "
          "1 when this tracer gets one wrong")
       ->disable_flag_override();
+  add_choice_option(
+      *sub, "--simulation", {"particles", "water"},
+      [command](std::size_t index) {
+        constexpr std::array kWorlds{SimulationWorld::kParticles, SimulationWorld::kWater};
+        command->simulation = kWorlds[index];
+      },
+      "instead of a scene: substeps and bits of positions of the particle world, or columns and steps of a "
+      "basin of water, against the finest");
   add_whole_option(
       *sub, "--rays", "N", 1, 1000000000,
       [command](std::int64_t number) { command->hard_rays = static_cast<std::uint64_t>(number); },
@@ -246,7 +278,10 @@ void add_accuracy(CLI::App& app) {
       "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
       "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
       "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
-      "(of the others), operation, bound_name, unit, error (the largest), bound, cases");
+      "(of the others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: "
+      "row (particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), "
+      "steps, work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of "
+      "all steps), unit (of the errors), error_rms, error_median, error_most, front");
   add_path_option(*sub, "--json", "FILE.json", &command->json_path,
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <optional>
 
 #include "instruments/chip_cost.h"
+#include "instruments/stopwatch.h"
 #include "output/hit_csv.h"
 #include "output/units.h"
 #include "readers/source.h"
@@ -14,17 +14,6 @@
 
 namespace thimble::tools {
 namespace {
-
-// Time of the processor that this program got: what else runs on the machine stays out of it.
-class Stopwatch {
- public:
-  double ms() const {
-    return static_cast<double>(std::clock() - start_) * 1000 / static_cast<double>(CLOCKS_PER_SEC);
-  }
-
- private:
-  std::clock_t start_ = std::clock();
-};
 
 // A setting ready to be drawn.
 struct Prepared {
@@ -189,15 +178,6 @@ constexpr double kLitPicture = 4;
 // The first step of any-time work: so many visits, and twice as many each time.
 constexpr std::uint32_t kFirstVisits = 256;
 
-// The value below which `part` of them lie, between neighbours in proportion.
-double quantile(std::vector<double> values, double part) {
-  std::sort(values.begin(), values.end());
-  const double at = part * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
-}
-
 }  // namespace
 
 double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference) {
@@ -227,11 +207,12 @@ double cost_of(const AccuracyRow& row, CostAxis axis) {
 }
 
 void mark_front(std::vector<AccuracyRow>* rows, CostAxis axis) {
+  const double as_cheap = axis == CostAxis::kTime ? 1 + kTimeNoise : 1;
   for (AccuracyRow& row : *rows) {
     const double cost = cost_of(row, axis);
     row.front = std::none_of(rows->begin(), rows->end(), [&](const AccuracyRow& other) {
-      return cost_of(other, axis) <= cost && other.psnr_db >= row.psnr_db &&
-             (cost_of(other, axis) < cost || other.psnr_db > row.psnr_db);
+      return (other.psnr_db > row.psnr_db && cost_of(other, axis) <= cost * as_cheap) ||
+             (other.psnr_db == row.psnr_db && cost_of(other, axis) < cost);
     });
   }
 }

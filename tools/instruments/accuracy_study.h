@@ -36,7 +36,7 @@ struct AccuracyRow {
   // The same on every machine.
   RenderCounts counts;
   double lm3s_instructions = 0;  ///< an estimate: chip_cost.h
-  bool front = false;            ///< no other row is both as cheap and as near to the reference
+  bool front = false;            ///< mark_front
 };
 
 /// A frame that was stopped after so much work (thimble/anytime.h), with the knobs at their defaults.
@@ -81,7 +81,10 @@ struct AccuracyStudy {
 AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options,
                              const std::function<void(double)>& progress);
 
-/// Marks the rows of the Pareto front: psnr_db against that cost.
+/// Times this near to each other are taken for equal.
+inline constexpr double kTimeNoise = 0.03;
+/// Marks the rows of the Pareto front, psnr_db against that cost: those that are not dearer than an equal one
+/// and to which no other one is nearer at a cost that is no higher (time: by no more than kTimeNoise).
 void mark_front(std::vector<AccuracyRow>* rows, CostAxis axis);
 
 /// The row with the highest psnr_db of those that take at most `ms`; null when none does.

@@ -112,37 +112,44 @@ struct Frame {
   double y_at(double y) const { return kPlotBottom - (std::min(y, high) - low) / (high - low) * kPlotHeight; }
 };
 
-// Numbers at points, each on the first side of its point where it does not cover another.
+// Numbers at points, each in the nearest place round its point that neither another number nor another point
+// has.
 class Numbers {
  public:
+  explicit Numbers(std::vector<std::pair<double, double>> points) : points_(std::move(points)) {}
+
   std::string label_at(double x, double y, const std::string& text) {
-    struct Side {
-      double right, down;
-      const char* anchor;
-    };
-    constexpr std::array<Side, 6> kSides{{{-8, -8, "end"},
-                                          {9, 14, "start"},
-                                          {9, -8, "start"},
-                                          {-9, 16, "end"},
-                                          {-22, -2, "end"},
-                                          {22, 8, "start"}}};
-    const double width = 7 * static_cast<double>(text.size());
-    for (const Side& side : kSides) {
-      const double middle = x + side.right + (side.right < 0 ? -width / 2 : width / 2);
-      const double line = y + side.down;
-      const bool is_free = std::none_of(taken_.begin(), taken_.end(), [&](const auto& other) {
-        return std::abs(other.first - middle) < width + 2 && std::abs(other.second - line) < 11;
-      });
-      if (is_free || &side == &kSides.back()) {
-        taken_.emplace_back(middle, line);
-        return label(x + side.right, line, side.anchor, text, " font-size=\"11\"");
+    const double half = 3.5 * static_cast<double>(text.size());
+    constexpr double kHalfLine = 4;  // of the height of digits of 11 px
+    std::pair<double, double> middle{x, y};
+    bool found = false;
+    for (double away = 12; !found && away <= 48; away += 6) {
+      // From above left round the point.
+      for (int turn = 0; !found && turn < 12; ++turn) {
+        const double angle = (225 + 30 * turn) * kDegree;
+        middle = {x + (away + half - 3.5) * std::cos(angle), y + away * std::sin(angle)};
+        const bool is_apart = std::none_of(numbers_.begin(), numbers_.end(), [&](const Number& other) {
+          return std::abs(other.x - middle.first) < half + other.half + 2 &&
+                 std::abs(other.y - middle.second) < 2 * kHalfLine + 2;
+        });
+        const bool is_beside = std::none_of(points_.begin(), points_.end(), [&](const auto& point) {
+          return std::abs(point.first - middle.first) < half + 6 &&
+                 std::abs(point.second - middle.second) < kHalfLine + 6;
+        });
+        found = is_apart && is_beside;
       }
     }
-    return {};
+    numbers_.push_back({middle.first, middle.second, half});
+    return label(middle.first, middle.second + kHalfLine, "middle", text, " font-size=\"11\"");
   }
 
  private:
-  std::vector<std::pair<double, double>> taken_;  // middle, base line
+  struct Number {
+    double x, y, half;
+  };
+  static constexpr double kDegree = 3.14159265358979 / 180;
+  std::vector<std::pair<double, double>> points_;
+  std::vector<Number> numbers_;
 };
 
 }  // namespace
@@ -222,7 +229,11 @@ std::string scatter_text(const Scatter& scatter) {
   if (!scatter.front.empty()) {
     svg += label(kLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
   }
-  Numbers numbers;
+  std::vector<std::pair<double, double>> rings;
+  for (const FrontPoint& point : scatter.front) {
+    rings.emplace_back(frame.x_at(point.x), frame.y_at(point.y));
+  }
+  Numbers numbers(rings);
   for (std::size_t i = 0; i < scatter.front.size(); ++i) {
     const FrontPoint& point = scatter.front[i];
     const double x = frame.x_at(point.x);
