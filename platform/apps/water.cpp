@@ -6,6 +6,7 @@
 //   @X,Y.      over the UART: touches the water that pixel X, Y shows (the simulator sends it for the mouse)
 //   !X,Y.      drops a ball there
 //   x  b       the same in the middle of the picture
+//   +  -       nearer, farther
 //   m          rain: a ball now and then, or no more
 //   t          the camera turns by itself, or no more
 //   k          lays the water to rest
@@ -125,7 +126,7 @@ void touch(Pool* pool, int32_t px, int32_t py) {
   const int32_t half = pool->ball_size.half_q8;
   const auto within = [](int32_t value) { return value < (1 << 14) ? value : 1 << 14; };
   if (point_at(*pool, px, py, &x, &y) &&
-      pool->water.columns.touch(x, y, within(half * 5 / 4), within(half / 2)) == Status::kOk) {
+      pool->water.columns.touch(x, y, within(half * 5 / 4), within(half * 3 / 4)) == Status::kOk) {
     ++pool->touches;
     pool->rippled = true;
   }
@@ -373,6 +374,14 @@ bool take_pointing(Pool* pool, int byte) {
   return true;
 }
 
+void zoom(Pool* pool, int32_t by) {
+  const int32_t zoom = pool->steering.zoom + by;
+  if (zoom >= kNearest && zoom <= kFarthest) {
+    pool->steering.zoom = zoom;
+    pool->moved = true;
+  }
+}
+
 [[gnu::noinline]] bool still(Pool* pool) {
   pool->rippled = true;
   return calm_water(tree_of(*pool), pool->rest, &pool->arena, &pool->water) == Status::kOk;
@@ -406,6 +415,12 @@ bool take_pointing(Pool* pool, int byte) {
         break;
       case 'b':
         drop(pool, screen.width_px / 2, screen.height_px / 2);
+        break;
+      case '+':
+        zoom(pool, -1);
+        break;
+      case '-':
+        zoom(pool, 1);
         break;
       case 'm':
         pool->raining = pool->raining == 0 ? 1 : 0;
