@@ -99,7 +99,7 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
            size_t* count) {
   const uint32_t here = index_q12(frame, leg->medium);
   const uint32_t there = index_q12(frame, meeting.beyond);
-  const int axis = meeting.hit.axis;
+  const int8_t axis = meeting.hit.axis;
   if (here == there || axis < 0 || now->bounces >= frame.scene.bounces) {
     go_straight(frame, now, leg, meeting);
     return true;

@@ -43,7 +43,7 @@ Vec3Q8 choose_face(const Frame& frame, const PendingRay& now, Hit* hit) {
     return edge;
   }
   for (int i = 0; i < count; ++i) {
-    const int axis = entered[i].axis;
+    const int8_t axis = entered[i].axis;
     const Vec3Q8 at = start_on_face(ray, entered[i]);
     Vec3i before{at.x.floor(), at.y.floor(), at.z.floor()};
     before[axis] = hit->voxel[axis] + (ray.direction[axis] > 0 ? -1 : side);

@@ -1,4 +1,6 @@
 // --samples, --cutoff and --max-depth of `thimble render`: what they draw, what they count, what they refuse.
+// Plain pictures are drawn by single rays here: the wide renderer counts other visits and has memory of its
+// own.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -24,9 +26,13 @@ Picture render(const std::vector<std::string>& more, const std::string& scene = 
   const TemporaryFolder folder;
   std::vector<std::string> words{"render",
                                  scene,
+                                 "--engine",
+                                 "ray64",
                                  "--size",
                                  "64x48",
                                  "--quiet",
+                                 "--engine",
+                                 "ray64",
                                  "-o",
                                  folder.path("a.ppm"),
                                  "--stats",

@@ -51,11 +51,16 @@ constexpr size_t lit_render_bytes(EffectSet effects) {
 /// Draws the band with exactly the effects of the set. `counts` (may be null) is added to.
 /// Errors, with nothing drawn: those of `render_band`; kOutOfRange for more than kMaxLights lights or
 /// kMaxSurfaces surfaces.
+/// Inlined always: with kNoEffects and no counts it is the call of `render_band`, to the byte.
 template <EffectSet kEffects>
-Status render_lit_band(const CompactTree& tree, const Camera& camera, const Shading& shading,
-                       const LitScene& scene, const Band& band, LitCounts* counts = nullptr,
-                       const LitOptions& options = {}) {
+[[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const Camera& camera,
+                                                     const Shading& shading, const LitScene& scene,
+                                                     const Band& band, LitCounts* counts = nullptr,
+                                                     const LitOptions& options = {}) {
   if constexpr (kEffects == kNoEffects) {
+    if (counts == nullptr) {
+      return render_band(tree, camera, shading, band, nullptr, {options.max_visits, Width::kAuto});
+    }
     return lit::draw_plain(tree, camera, shading, band, counts, options);
   } else {
     return lit::draw<kEffects>({tree, camera, shading, scene, options, kEffects}, band, counts);

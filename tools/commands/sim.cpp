@@ -32,6 +32,7 @@ constexpr const char* kDefaultWaterScene = "water";
 struct SimCommand {
   SceneOptions scene;
   SessionOptions session;
+  EffectChoice effects;
   std::string shot_path;
   std::string check_path;
   std::string keys_path;
@@ -73,6 +74,7 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.limit_bytes = limit;
     options.coarsen = command.scene.coarsen;
     options.brick_map = true;
+    options.effects = command.effects;
     options.name = scene_name(command.scene.arguments.scene);
     options.camera = [&](int level, const VoxelBox& bounds) {
       SceneCamera chosen;
@@ -368,6 +370,15 @@ void add_sim(CLI::App& app) {
   sub->add_flag("--coarsen", command->scene.coarsen,
                 "when the scene does not fit the flash, merge blocks of voxels until it just does")
       ->disable_flag_override();
+  add_text_option(
+      *sub, "--effects", "LIST",
+      [command](const std::string& text) {
+        const auto choice = parse_effects(text);
+        command->effects = choice.value_or(EffectChoice{});
+        return choice ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+      },
+      "what the scene is baked for: auto (what it calls for), none, or effects with commas between them")
+      ->default_str("auto");
   add_display_options(*sub, command);
   add_file_options(*sub, command);
   sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no summary on standard error")
