@@ -302,8 +302,8 @@ void draw_balls(const Pool& pool, const Band& band) {
 
 /// With the scene's effects: those that it was compiled for, or whatever it was baked with.
 Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
-#ifdef THIMBLE_WATER_EFFECTS
-  return render_lit_band<THIMBLE_WATER_EFFECTS>(tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
+#ifdef THIMBLE_IMAGE_EFFECTS
+  return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
                                                 band, counts);
 #else
   return render_lit_band(pool.lighting.effects, tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
@@ -462,6 +462,11 @@ void zoom(Pool* pool, int32_t by) {
       (pool->lighting.effects & kWater) == 0 || !pool->lighting.scene.has_water) {
     return "the scene holds no water";
   }
+#ifdef THIMBLE_IMAGE_EFFECTS
+  if (pool->lighting.effects != THIMBLE_IMAGE_EFFECTS) {
+    return "the image was built for other effects than the scene's";
+  }
+#endif
   pool->rest = pool->lighting.scene.water;
   const port::Display& screen = display();
   pool->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
