@@ -30,4 +30,9 @@ $thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-lig
 $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
+$thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 100 --fps 25 --keys "$out/waves.keys" --quiet \
+  --record "$out/waves.y4m" >/dev/null
+ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
+[b][p]paletteuse=dither=none:diff_mode=rectangle" "$out/waves.gif"
+rm "$out/waves.y4m"
 # simulator.png is the window of: thimble sim demo
