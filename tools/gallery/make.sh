@@ -24,3 +24,16 @@ $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
 # simulator.png is the window of: thimble sim demo
+
+# The studies of the README. Their titles are the names of the files, so they run where these lie.
+plots=$(cd "$out" && pwd)
+case $thimble in */*) thimble=$(cd "$(dirname "$thimble")" && pwd)/$(basename "$thimble") ;; esac
+(
+  cd "$data/mesh"
+  "$thimble" memory dragon_vrip_res2.ply.gz --depth 10 --quiet --plot "$plots/memory-dragon.svg" >/dev/null
+  "$thimble" accuracy dragon_vrip_res2.ply.gz --shade normal --quiet --plot "$plots/accuracy-dragon.svg" >/dev/null
+  cd ../vox/ephtracy
+  "$thimble" memory monu10.vox --shade color --fov 30 --quiet --plot "$plots/memory-monu10.svg" >/dev/null
+  "$thimble" accuracy monu10.vox --shade color --fov 30 --quiet --plot "$plots/accuracy-monu10.svg" >/dev/null
+)
+"$thimble" memory points:1000000 --quiet --plot "$plots/memory-points.svg" >/dev/null
