@@ -52,11 +52,11 @@ bench: deps-bench ## Build and run the benchmarks
 	@cmake --build build/release -- --quiet
 	@build/release/thimble_benchmarks $(BENCH_ARGS)
 
-# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes.
+# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes, EFFECTS its --effects.
 BOARD ?= lm3s6965evb
 APP ?= demo
 SCENE ?= demo
-export FRAMES
+export FRAMES EFFECTS
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
 	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"
@@ -79,8 +79,10 @@ test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says f
 
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i
+# What is linted; `make test` lints the core (src) too.
+TIDY_FOLDERS ?= src tools platform tests/reference
 tidy: deps-test ## Lint the core, the tools and the ports with clang-tidy
-	@sh tests/checks/tidy.sh . build/tidy src tools platform tests/reference
+	@sh tests/checks/tidy.sh . build/tidy $(TIDY_FOLDERS)
 	@sh tests/boards/tidy.sh build/tidy-boards
 
 clean: ## Remove everything that was built

@@ -1,5 +1,5 @@
-// Writing compact trees, from sorted keys and from the mutable octree. Either source is walked level by
-// level, twice: once into a counter that finds the shape, once into a writer.
+// Writing compact trees. Octrees and parts are walked level by level, twice: once into a counter that finds
+// the shape, once into a writer. Sorted keys are read twice in all: all levels are written side by side.
 #include "bits.h"
 #include "compact_header.h"
 #include "thimble/compact_tree.h"
@@ -91,12 +91,22 @@ struct Writer {
 };
 
 // Sorted keys as a source. `Key` is a bare code (32 bits) or a code above an 8-bit material (64 bits).
+//
+// How far two neighbouring keys are apart says where nodes begin: keys that first differ in the octant at
+// level g (0: both in one node of level 1) begin a new node on each of the levels 1 to g. So all levels can
+// be counted and written in one pass, each at a place of its own, and no key is compared with any but its
+// neighbour. A block that is full is found when its last voxel comes: unique keys fill a block of level n
+// just when the key 8^n - 1 places before is its first voxel. Its eight children are then taken back.
 template <class Key>
 struct KeySource {
   static constexpr int kCodeShift = sizeof(Key) == 4 ? 0 : 8;
   Span<const Key> keys;
   int world_level;
   uint8_t material_of_all;
+  // Found by `count`.
+  uint32_t level_nodes[kMaxLevel + 1] = {};
+  uint32_t level_blocks[kMaxLevel + 1] = {};
+  uint32_t voxels = 0;
 
   int level() const { return world_level; }
   uint64_t solid_added() const { return 0; }
@@ -104,59 +114,190 @@ struct KeySource {
   uint8_t material(size_t i) const {
     return kCodeShift == 0 ? material_of_all : static_cast<uint8_t>(keys[i] & 0xFFU);
   }
-  // Whether the keys from `i` on fill the block of `block_level` that starts at key i with one material. Keys
-  // are unique, so it is full when the key 8^level - 1 places on is the block's last voxel.
-  bool fills_block(size_t i, int block_level) const {
-    const Key low_bits = static_cast<Key>((uint64_t{1} << (3 * block_level)) - 1);
-    if ((code(i) & low_bits) != 0 || low_bits >= keys.size - i) {
-      return false;
-    }
-    const size_t last = i + static_cast<size_t>(low_bits);
-    if (code(last) != (code(i) | low_bits)) {
-      return false;
-    }
-    if (kCodeShift != 0) {
-      for (size_t j = i + 1; j <= last; ++j) {
-        if (material(j) != material(i)) {
-          return false;
-        }
+  // The highest level whose octant differs between two codes, less one; 0 also for equal ones.
+  static unsigned level_apart(Key a, Key b) {
+    const Key differing = a ^ b;
+    if constexpr (kCodeShift != 0) {
+      const uint32_t upper = static_cast<uint32_t>(differing >> 18);
+      if (upper != 0) {
+        return 6 + group(upper);
       }
+      return group(static_cast<uint32_t>(differing));
+    } else {
+      return group(differing);
     }
-    return true;
+  }
+  // The group of three bits that holds the highest set bit.
+  static unsigned group(uint32_t word) {
+    return static_cast<unsigned>(bits::highest_bit(word | 1U)) * 11U >> 5;  // a third, for 0..31
+  }
+  // Level of the largest block, of one material and less than the world's parent, that key i is the last
+  // voxel of; 0 when there is none. Keys from `run` on to i have one material.
+  int block_filled(size_t i, size_t run) const {
+    int filled = 0;
+    while (filled < world_level) {
+      const Key inside = static_cast<Key>((uint64_t{1} << (3 * (filled + 1))) - 1);
+      if ((code(i) & inside) != inside || i - run < inside ||
+          code(i - static_cast<size_t>(inside)) != code(i) - inside) {
+        break;
+      }
+      ++filled;
+    }
+    return filled;
   }
 
-  template <class Sink>
-  void walk_level(int level, Sink* sink) const {
-    size_t i = 0;
-    while (i < keys.size) {
-      if (level < world_level && fills_block(i, level + 1)) {
-        i += size_t{1} << (3 * (level + 1));  // inside a solid block of a higher level
-        continue;
-      }
-      if (fills_block(i, level)) {
-        sink->solid(morton_voxel(code(i)), level, material(i), false);
-        i += size_t{1} << (3 * level);
-        continue;
-      }
-      const Key prefix = code(i) >> (3 * level);
-      unsigned mask = 0;
-      if (level > 1) {
-        for (; i < keys.size && (code(i) >> (3 * level)) == prefix; ++i) {
-          mask |= 1U << ((code(i) >> (3 * (level - 1))) & 7U);
-        }
-        sink->inner(mask);
-        continue;
-      }
-      uint8_t materials[8] = {};
-      for (; i < keys.size && (code(i) >> 3) == prefix; ++i) {
-        const unsigned octant = static_cast<unsigned>(code(i) & 7U);
-        mask |= 1U << octant;
-        materials[octant] = material(i);
-      }
-      sink->voxels(morton_voxel(static_cast<uint64_t>(prefix) << 3), mask, materials);
+  Counter count();
+  void write_nodes(Writer* writer) const;
+};
+
+template <class Key>
+Counter KeySource<Key>::count() {
+  Counter counter;
+  counter.shape.level = world_level;
+  if (keys.size == 0) {
+    return counter;
+  }
+  // Bits of one axis order voxels as that axis does.
+  constexpr Key kAxis = static_cast<Key>(0x1249249249249249ULL);
+  Key low[3];
+  Key high[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = high[axis] = code(0) & static_cast<Key>(kAxis << axis);
+  }
+  uint32_t apart[16] = {};  // pairs of neighbours by where they differ
+  uint32_t blocks = 0;
+  size_t run = 0;
+  counter.see_material(material(0));
+  for (size_t i = 1; i < keys.size; ++i) {
+    const Key here = code(i);
+    ++apart[level_apart(here, code(i - 1)) & 15U];
+    for (int axis = 0; axis < 3; ++axis) {
+      const Key along = here & static_cast<Key>(kAxis << axis);
+      low[axis] = along < low[axis] ? along : low[axis];
+      high[axis] = along > high[axis] ? along : high[axis];
+    }
+    if (kCodeShift != 0 && material(i) != material(i - 1)) {
+      counter.see_material(material(i));
+      run = i;
+    }
+    if ((here & 7U) != 7U) {
+      continue;
+    }
+    const int filled = block_filled(i, run);
+    for (int level = 1; level <= filled; ++level) {
+      ++level_blocks[level];
     }
   }
-};
+  uint64_t nodes = 0;
+  uint64_t begun = 1;
+  uint64_t left = keys.size;
+  for (int level = world_level; level >= 1; --level) {
+    begun += apart[level];
+    nodes += begun;
+    level_nodes[level] = static_cast<uint32_t>(begun);
+  }
+  // Blocks within larger ones are taken back.
+  for (int level = 1; level <= world_level; ++level) {
+    const uint32_t within = level < world_level ? 8 * level_blocks[level + 1] : 0;
+    if (level == 1) {
+      left -= uint64_t{8} * level_blocks[1];
+    }
+    level_blocks[level] -= within;
+    level_nodes[level] -= within;
+    nodes -= within;
+    blocks += level_blocks[level];
+  }
+  counter.overflow = nodes > UINT32_MAX || left > UINT32_MAX;
+  voxels = static_cast<uint32_t>(left);
+  counter.shape.nodes = static_cast<uint32_t>(nodes);
+  counter.shape.voxel_bits = voxels;
+  counter.shape.solid_blocks = blocks;
+  counter.volume = keys.size;
+  for (int axis = 0; axis < 3; ++axis) {
+    counter.bounds.min[axis] = morton_voxel(low[axis])[axis];
+    counter.bounds.max[axis] = morton_voxel(high[axis])[axis] + 1;
+  }
+  return counter;
+}
+
+template <class Key>
+void KeySource<Key>::write_nodes(Writer* writer) const {
+  if (keys.size == 0) {
+    return;
+  }
+  // Of each level: the node being written, its mask so far, and where the next solid block's material goes.
+  // What is going to be taken back may lie beyond a level's end, where another level begins: it is left out.
+  struct Place {
+    uint8_t* node;
+    const uint8_t* nodes_end;
+    uint32_t block;
+    uint32_t blocks_end;
+    unsigned mask;
+  } places[kMaxLevel + 1] = {};
+  uint8_t* nodes = writer->masks;
+  uint32_t blocks = 0;
+  for (int level = world_level; level >= 1; --level) {
+    places[level] = {nodes, nodes + level_nodes[level], blocks, blocks + level_blocks[level], 0};
+    nodes += level_nodes[level];
+    blocks += level_blocks[level];
+  }
+  uint32_t voxel = 0;  // number of the next one's material
+  size_t run = 0;
+  for (size_t i = 0; i < keys.size; ++i) {
+    const Key here = code(i);
+    // The first key finds all nodes begun.
+    const int apart = i == 0 ? 0 : static_cast<int>(level_apart(here, code(i - 1)));
+    const auto add = [&](int level) {
+      Place& place = places[level];
+      const bool is_new = level <= apart;
+      place.node += is_new ? 1 : 0;
+      place.mask = (is_new ? 0U : place.mask) | 1U << ((here >> (3 * (level - 1))) & 7U);
+      if (place.node < place.nodes_end) {
+        *place.node = static_cast<uint8_t>(place.mask);
+      }
+    };
+    // Neighbours in random order differ on any of the lowest levels: to write those always costs less than to
+    // guess. A level above the highest new one gets the bit of a child that it may have already.
+    const int last = i == 0 || apart >= world_level ? world_level : apart + 1;
+    int level = 1;
+    if (world_level >= 3) {
+      add(1);
+      add(2);
+      add(3);
+      level = 4;
+    }
+    for (; level <= last; ++level) {
+      add(level);
+    }
+    if (kCodeShift != 0 && writer->voxel_materials != nullptr) {
+      if (voxel < voxels) {
+        writer->voxel_materials[voxel] = material(i);
+      }
+      ++voxel;
+      run = i != 0 && material(i) != material(i - 1) ? i : run;
+    }
+    if ((here & 7U) != 7U) {
+      continue;
+    }
+    const int filled = block_filled(i, run);
+    for (int full = 1; full <= filled; ++full) {
+      Place& place = places[full];
+      if (place.node < place.nodes_end) {
+        *place.node = 0;
+      }
+      if (full > 1) {
+        places[full - 1].node -= 8;
+        places[full - 1].block -= 8;
+      } else {
+        voxel -= 8;
+      }
+      if (writer->block_materials != nullptr && place.block < place.blocks_end) {
+        writer->block_materials[place.block] = material(i);
+      }
+      ++place.block;
+    }
+  }
+}
 
 // The nodes of either tree, as the walk below reads them.
 struct PoolNodes {
@@ -340,13 +481,30 @@ struct PartsSource {
 };
 
 template <class Source>
-Counter count(const Source& source) {
+Counter count(Source& source) {
   Counter counter;
   counter.shape.level = source.level();
   for (int level = source.level(); level >= 1; --level) {
     source.walk_level(level, &counter);
   }
   return counter;
+}
+
+template <class Key>
+Counter count(KeySource<Key>& source) {
+  return source.count();
+}
+
+template <class Source>
+void write_nodes(const Source& source, Writer* writer) {
+  for (int level = source.level(); level >= 1; --level) {
+    source.walk_level(level, writer);
+  }
+}
+
+template <class Key>
+void write_nodes(const KeySource<Key>& source, Writer* writer) {
+  source.write_nodes(writer);
 }
 
 void write_directory(const CompactShape& shape, uint8_t* base, const Sections& at) {
@@ -368,7 +526,7 @@ void write_directory(const CompactShape& shape, uint8_t* base, const Sections& a
 }
 
 template <class Source>
-Status write(const Source& source, Bytes out, size_t* size, int rank_shift) {
+Status write(Source source, Bytes out, size_t* size, int rank_shift) {
   if (rank_shift < kMinRankShift || rank_shift > kMaxRankShift) {
     return Status::kOutOfRange;
   }
@@ -397,9 +555,7 @@ Status write(const Source& source, Bytes out, size_t* size, int rank_shift) {
     writer.block_materials = base + at.materials;
     writer.voxel_materials = base + at.materials + shape.solid_blocks;
   }
-  for (int level = source.level(); level >= 1; --level) {
-    source.walk_level(level, &writer);
-  }
+  write_nodes(source, &writer);
   write_directory(shape, base, at);
 
   bits::store32(base, kMagic);
@@ -427,7 +583,8 @@ Status write(const Source& source, Bytes out, size_t* size, int rank_shift) {
 }  // namespace
 
 CompactShape compact_shape(const Octree& octree, int rank_shift) {
-  CompactShape shape = count(OctreeSource{octree}).shape;
+  const OctreeSource source{octree};
+  CompactShape shape = count(source).shape;
   shape.rank_shift = rank_shift;
   return shape;
 }

@@ -26,6 +26,8 @@ Picture render(const std::vector<std::string>& more, const std::string& scene = 
   const TemporaryFolder folder;
   std::vector<std::string> words{"render",
                                  scene,
+                                 "--engine",
+                                 "ray64",
                                  "--size",
                                  "64x48",
                                  "--quiet",

@@ -322,11 +322,15 @@ TEST_CASE("water: a camera under it sees its floor near by, and up through the s
   CHECK(near(world.middle(effects).r, absorbed(40, 0, 4), 1));
   world.look({16 * 256, 16 * 256, 8 * 256}, {16 * 256, 16 * 256, 40 * 256}, 4, 9, 9);
   CHECK(near(world.middle(effects).r, 0.98 * absorbed(40, 0, 8), 4));
-  // Flat up, beyond 48.6 degrees from straight: total reflection, so the floor's light comes mirrored and no
-  // sky. The floor is white too; made black it is dark.
+  // 56 degrees from straight up, beyond the critical 48.6: total reflection, so the floor's light comes
+  // mirrored and no sky. The floor is white too; made black it is dark. (It comes down at x = 23: flatter,
+  // and it would leave through the open side of the water, into the sky.)
   world.surfaces[0].albedo = {0, 0, 0};
-  world.look({2 * 256, 16 * 256, 14 * 256}, {14 * 256, 16 * 256, 17 * 256}, 4, 9, 9);
-  CHECK(world.middle(effects).b == 0);
+  world.look({2 * 256, 16 * 256, 14 * 256}, {17 * 256, 16 * 256, 24 * 256}, 4, 9, 9);
+  CHECK(world.middle(effects) == Rgb8{0, 0, 0});
+  // 41 degrees: most of it goes out.
+  world.look({2 * 256, 16 * 256, 10 * 256}, {9 * 256, 16 * 256, 18 * 256}, 4, 9, 9);
+  CHECK(world.middle(effects).b > 200);
 }
 
 TEST_CASE("water: a camera exactly on the surface is above it looking up, in it looking down") {

@@ -156,9 +156,8 @@ Status compact_from_parts(Span<const CompactTree> parts, Bytes out, size_t* writ
 
 /// Writes voxels given by sorted, unique Morton keys (morton.h: `sort_unique`) as a compact tree to the front
 /// of `out`. 32-bit keys are bare Morton codes (levels to 10; all voxels get `material`); 64-bit keys hold
-/// the code in bits 8 up and the material in bits 0..7. About 2 * level passes over the keys, no memory
-/// besides. `needed` (may be null) gets the exact size in bytes, also when the status is `kOutOfMemory` and
-/// `out` untouched.
+/// the code in bits 8 up and the material in bits 0..7. Two passes over the keys, no memory besides. `needed`
+/// (may be null) gets the exact size in bytes, also when the status is `kOutOfMemory` and `out` untouched.
 Status compact_from_keys(Span<const uint32_t> keys, int level, uint8_t material, Bytes out, size_t* needed,
                          int rank_shift = kDefaultRankShift);
 Status compact_from_keys(Span<const uint64_t> keys, int level, Bytes out, size_t* needed,

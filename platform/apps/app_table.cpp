@@ -14,6 +14,7 @@ constexpr Application kApplications[] = {
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},
 #endif
+    {"water", water, true, true, true},
     {"faults", faults, false, false},
     {nullptr, nullptr, false, false},  // so that the array is never empty
 };

@@ -20,6 +20,8 @@ int golden();
 int bench();
 /// The paper's particle world.
 int particles();
+/// A lit scene whose water moves: touched, and by what falls in. Draws only what can have changed.
+int water();
 /// Overflows the stack, writes past the RAM and the like when a key asks for it; only on a board.
 int faults();
 

@@ -78,6 +78,16 @@ for app in $apps; do
         fail bench "${times:-not} times faster than the textbook's tracer, at least $least"
       fi
     done <tests/budgets/frames.csv
+    # With light, the host's pictures.
+    sed -n 's/^lit\.lit_crc\.[0-9]*,//p' "$log" | tr '[:lower:]' '[:upper:]' | tr -d '\r' >"$work/lit_crcs"
+    if [ -n "$(fact DEMO_EFFECTS)" ]; then
+      sed -n '/kDemoLitFrameCrc32/,/};/s/0x\([0-9A-F]*\),/\1\n/gp' tests/golden/demo_table.h | tr -d ' ' | grep -x '[0-9A-F]\{8\}' >"$work/lit_golden"
+      if cmp -s "$work/lit_crcs" "$work/lit_golden"; then
+        said="${said}lit frames are the host's; "
+      else
+        fail bench "lit frames are $(tr '\n' ' ' <"$work/lit_crcs"), not those of tests/golden/demo_table.h"
+      fi
+    fi
   elif [ "$app" = particles ]; then
     crc=$(sed -n 's/^steps 400 crc \([0-9a-f]*\)$/\1/p' "$log" | head -n 1)
     if [ -z "$crc" ] || ! grep -qi "0x$crc" tests/golden/particles_table.h; then

@@ -10,8 +10,8 @@ namespace thimble::portable {
 /// Of the core's own cases, all of which every board runs.
 inline constexpr uint32_t kCoreCrc32 = 0x6A3557F2;
 /// Of what lies in flash: baked scenes and golden frames, all of them and those that every board runs.
-inline constexpr uint32_t kGoldenCrc32 = 0x2F9CF152;
-inline constexpr uint32_t kCommonGoldenCrc32 = 0x0A2523C1;
+inline constexpr uint32_t kGoldenCrc32 = 0xEB91F076;
+inline constexpr uint32_t kCommonGoldenCrc32 = 0xDB27E4E0;
 
 }  // namespace thimble::portable
 

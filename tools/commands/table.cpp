@@ -249,6 +249,7 @@ void run(const TableCommand& command) {
     const auto source = open_scene(arguments);
     BuildOptions build;
     build.memory_bytes.reset();
+    build.threads = command.engine.threads;
     BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
     const bool is_wide = command.engine.prepare(&built, kWidthPx, kHeightPx);
     const int side = 1 << command.depth;

@@ -356,8 +356,8 @@ class Parser {
       first_[i] = word.place;
       (this->*kStatements[i].parse)(line, word.place);
       if (!line.at_end()) {
-        fail_at(line.place(),
-                "nothing more belongs into this line, but there is " + quoted(line.word().text));
+        const auto place = line.place();  // before the word is read
+        fail_at(place, "nothing more belongs into this line, but there is " + quoted(line.word().text));
       }
       return;
     }

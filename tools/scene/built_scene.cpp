@@ -7,6 +7,7 @@
 
 #include "output/units.h"
 #include "readers/oct.h"
+#include "scene/key_sort.h"
 #include "thimble/morton.h"
 
 namespace thimble::tools {
@@ -32,10 +33,10 @@ Vec3i dense_size(const SceneSource& source) {
 }
 
 // Bytes of an arena that a renderer with such a band takes first.
-std::uint64_t used_before_structure(std::uint64_t band_bytes) {
+std::uint64_t used_before_structure(std::uint64_t state_bytes, std::uint64_t band_bytes) {
   constexpr std::uint64_t kAlign = alignof(std::uint64_t);
   const auto up = [](std::uint64_t bytes) { return (bytes + kAlign - 1) / kAlign * kAlign; };
-  return band_bytes == 0 ? 0 : up(up(render_bytes()) + band_bytes);
+  return band_bytes == 0 ? 0 : up(up(state_bytes) + band_bytes);
 }
 
 // How many keys a full list may keep after its repeats are gone: one that stays nearly full would be sorted
@@ -108,7 +109,8 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
     if (options.structure == StructureKind::kDense) {
       // Known without building it.
       const Vec3i size = dense_size(source);
-      needed = used_before_structure(options.least_band_bytes) + dense_grid_bytes(size);
+      needed = used_before_structure(options.render_state_bytes, options.least_band_bytes) +
+               dense_grid_bytes(size);
       part = " (" + grouped(dense_grid_bytes(size)) + " of them the grid of " + std::to_string(size.x) +
              " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels)";
     } else {
@@ -163,7 +165,7 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
   arena_ = Arena(memory_.bytes());
   band_ = {};
   if (band_bytes != 0) {
-    if (arena_.take(render_bytes()).empty()) {
+    if (arena_.take(static_cast<std::size_t>(options_.render_state_bytes)).empty()) {
       throw Shortage{};
     }
     band_ = arena_.take(static_cast<std::size_t>(band_bytes));
@@ -397,11 +399,13 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
   const std::size_t capacity = std::min<std::size_t>(rest.size / sizeof(Key), UINT32_MAX);
   Key* keys = reinterpret_cast<Key*>(rest.data);
   std::size_t count = 0;
-  std::size_t most = 0;
+  std::size_t most = 0;  // bytes
   bool tidied = false;
   const auto tidy = [&] {
-    most = std::max(most, count);
-    sort_keys(Span<Key>(keys, count), key_bits);
+    const Bytes free = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
+    const Bytes scratch = free.subspan(0, key_sort_scratch_bytes(count, options_.threads));
+    most = std::max(most, static_cast<std::size_t>(free.data - rest.data) + scratch.size);
+    sort_keys_fast(Span<Key>(keys, count), key_bits, scratch, options_.threads);
     count = unique_keys(Span<Key>(keys, count));
   };
   std::uint64_t streamed = 0;
@@ -441,8 +445,8 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
     throw Shortage{};
   }
   const std::size_t offset = static_cast<std::size_t>(rest.data - arena_.rest().data);
-  arena_.note_scratch(std::max(offset + most * sizeof(Key),
-                               static_cast<std::size_t>(target.data - arena_.rest().data) + size));
+  arena_.note_scratch(
+      std::max(offset + most, static_cast<std::size_t>(target.data - arena_.rest().data) + size));
   // The fewest keys that would have done: all that came, or room enough for the different ones when tidied.
   std::size_t fewest = count + count / 15;
   while (most_after_tidying(fewest) < count) {

@@ -1248,6 +1248,51 @@ class Grays {
     far_ = static_cast<double>(shading.far_q8);
     cut_ = excess == 0 ? 1.0 : 1.0 / 256;
     inverse_ = 1.0 / static_cast<double>(range >> excess);
+    const double per_depth = static_cast<double>(255 - kFarBrightness) / range;
+    float_per_depth_ = static_cast<float>(per_depth);
+    // The error of the fall in floats, see in_floats().
+    const double greatest = near_ + 1.01 * range;
+    float_margin_ = static_cast<float>(per_depth * (1.01 + greatest / (1 << 19)) + 1.0 / (1 << 12));
+    floats_tell_ = dividend_ > 0 && excess == 0 && shading.near_q8 >= 0 && shading.far_q8 > shading.near_q8 &&
+                   float_margin_ < 0.05F;
+  }
+
+  // Whether in_floats() is of use.
+  bool floats_tell() const { return floats_tell_; }
+
+  // What of() says, but for lanes in `unclear`, which are added to. `numerator`: integers below 2^24,
+  // `speed`: integers 1 .. 2^20.
+  //
+  // The core rounds twice: ratio = floor(dividend / speed), depth = floor(numerator * ratio / 2^(shift + 8)).
+  // Where the ratio is below 2^21, it is found exactly, from the remainder in integers; larger ones are off
+  // by less than 2^-20 of themselves. So the depth here is at most 1.01 and 2^-19 of itself from the core's,
+  // and the fall, which comes to at most 255 with three more roundings, is within `float_margin_` of that
+  // before the last rounding down. There is no step at the near plane, so nothing below 1 is ever unclear;
+  // beyond the far plane the margin grows no faster than the fall.
+  HWY_INLINE hn::Vec<I32> in_floats(hn::Vec<F32> numerator, hn::Vec<F32> speed,
+                                    hn::Mask<F32>* unclear) const {
+    const F32 d;
+    const I32 di;
+    const auto float_ratio = hn::Div(hn::Set(d, static_cast<float>(dividend_)), speed);
+    const auto is_small = hn::Lt(float_ratio, hn::Set(d, 2097152.0F));
+    auto ratio = hn::ConvertTo(di, hn::IfThenElseZero(is_small, float_ratio));
+    const auto int_speed = hn::ConvertTo(di, speed);
+    const auto dividend = hn::Set(di, static_cast<int32_t>(static_cast<uint32_t>(dividend_)));
+    const auto rest = hn::Sub(dividend, hn::Mul(ratio, int_speed));  // -speed .. 2 * speed - 1
+    const auto one = hn::Set(di, 1);
+    ratio = hn::Sub(ratio, hn::IfThenElseZero(hn::Lt(rest, hn::Zero(di)), one));
+    ratio = hn::Add(ratio, hn::IfThenElseZero(hn::Gt(rest, hn::Sub(int_speed, one)), one));
+    const auto found = hn::IfThenElse(is_small, hn::ConvertTo(d, ratio), float_ratio);
+    const auto depth = hn::Mul(hn::Mul(numerator, found), hn::Set(d, static_cast<float>(scale_)));
+    const auto fall =
+        hn::Mul(hn::Sub(depth, hn::Set(d, static_cast<float>(near_))), hn::Set(d, float_per_depth_));
+    const auto most_fall = hn::Set(d, static_cast<float>(255 - kFarBrightness));
+    const auto off = hn::Abs(hn::Sub(fall, hn::Round(fall)));
+    const auto near_step = hn::Lt(off, hn::Set(d, float_margin_));
+    const auto in_range = hn::And(hn::Gt(fall, hn::Set(d, 0.5F)), hn::Lt(fall, hn::Set(d, 217.0F)));
+    *unclear = hn::Or(*unclear, hn::And(near_step, in_range));
+    const auto clamped = hn::Max(hn::Zero(d), hn::Min(fall, most_fall));
+    return hn::Sub(hn::Set(di, 255), hn::ConvertTo(di, clamped));
   }
 
   // Of t = numerator / (256 * speed).
@@ -1285,6 +1330,8 @@ class Grays {
  private:
   int shift_ = 0;
   double dividend_, scale_, near_, far_, cut_, inverse_;
+  float float_per_depth_, float_margin_;
+  bool floats_tell_;
 };
 
 HWY_INLINE void store_bytes(hn::Vec<HalfI32> values, uint8_t* to) {
@@ -1367,14 +1414,19 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays,
       numerator = hn::IfThenElse(later, distance, numerator);
       found_speed = hn::IfThenElse(later, speed, found_speed);
     }
-    HWY_ALIGN float numerators[64];
-    HWY_ALIGN float speeds[64];
-    hn::Store(numerator, d, numerators);
-    hn::Store(found_speed, d, speeds);
-    for (size_t part = 0; part < lanes; part += lanes64) {
-      store_bytes(grays.of(hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
-                           hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
-                  gray + at + part);
+    if (grays.floats_tell()) {
+      const hn::Rebind<uint8_t, I32> bytes;
+      hn::StoreU(hn::DemoteTo(bytes, grays.in_floats(numerator, found_speed, &unclear)), bytes, gray + at);
+    } else {
+      HWY_ALIGN float numerators[64];
+      HWY_ALIGN float speeds[64];
+      hn::Store(numerator, d, numerators);
+      hn::Store(found_speed, d, speeds);
+      for (size_t part = 0; part < lanes; part += lanes64) {
+        store_bytes(grays.of(hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
+                             hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
+                    gray + at + part);
+      }
     }
     for (uint32_t bits = bits_of(d, unclear); bits != 0; bits &= bits - 1) {
       const uint32_t i = static_cast<uint32_t>(at) + static_cast<uint32_t>(__builtin_ctz(bits));

@@ -1,0 +1,235 @@
+#include "benchmarks/peers/contest.h"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <ctime>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "commands/options.h"
+#include "readers/oct.h"
+#include "scene/scene_source.h"
+
+namespace thimble::benchmarks {
+namespace {
+
+// Who takes longer draws a single frame.
+constexpr double kSlowSeconds = 0.2;
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// From outside with the cube filling the picture, or along y: as `thimble table` does.
+Camera camera_of(int level, bool orthographic, int frame) {
+  const double side = 1 << level;
+  const double drift = 0.003 * side * (frame % 5 + 1);
+  tools::ViewOptions view;
+  view.width_px = Contest::kWidthPx;
+  view.height_px = Contest::kHeightPx;
+  view.orthographic = orthographic;
+  view.target = tools::Real3{side / 2 + drift / 3, side / 2, side / 2 + drift / 5};
+  if (orthographic) {
+    view.eye = tools::Real3{(*view.target)[0], -1, (*view.target)[2]};
+    view.span = side * Contest::kWidthPx / Contest::kHeightPx;
+  } else {
+    view.eye = tools::Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
+  }
+  return view.camera(level, {});
+}
+
+Shading shading_for(const Camera& camera, const VoxelBox& bounds) {
+  Shading shading;
+  const DepthRange range = depth_range(camera, bounds);
+  shading.near_q8 = range.near_q8;
+  shading.far_q8 = range.far_q8;
+  return shading;
+}
+
+}  // namespace
+
+const Entrant* Result::find(const std::string& name) const {
+  for (const Entrant& entrant : entrants) {
+    if (entrant.name == name) {
+      return &entrant;
+    }
+  }
+  return nullptr;
+}
+
+const Entrant* Result::best_peer() const {
+  const Entrant* best = nullptr;
+  for (std::size_t i = 1; i < entrants.size(); ++i) {
+    if (entrants[i].counts(Contest::kPixels) && (best == nullptr || entrants[i].ms < best->ms)) {
+      best = &entrants[i];
+    }
+  }
+  return best;
+}
+
+Contest::Contest(const std::string& kind, std::uint64_t points, std::uint64_t most_bytes)
+    : kind_(kind), points_(points), pixels_(kPixels) {
+  tools::SceneArguments arguments;
+  arguments.scene = kind + ":" + std::to_string(points);
+  const auto source = tools::open_scene(arguments);
+  built_ = std::make_unique<tools::BuiltScene>(*source, tools::BuildOptions{});
+  if (!built_->prepare_wide(kWidthPx, kHeightPx, 1)) {
+    throw std::runtime_error("no room for the wide renderer");
+  }
+  tools::for_each_block(built_->compact(), [&](const Vec3i& at, int level, std::uint8_t) {
+    const std::int32_t side = std::int32_t{1} << level;
+    for (std::int32_t i = 0; i < side * side * side; ++i) {
+      voxels_.push_back(packed(at.x + i % side, at.y + i / side % side, at.z + i / side / side));
+    }
+  });
+  // What they keep a voxel, about, while they build; and what a grid of bits takes in any case.
+  struct Maker {
+    std::unique_ptr<Peer> (*make)(const std::vector<std::uint32_t>&);
+    std::uint64_t bytes;
+  };
+  for (const Maker& maker :
+       {Maker{make_raster, voxels_.size() * 4}, Maker{make_embree, voxels_.size() * 200},
+        Maker{make_nanovdb, std::min<std::uint64_t>(voxels_.size() * 3000, 5'000'000'000)}}) {
+    if (maker.bytes > most_bytes) {
+      continue;
+    }
+    const double start = processor_seconds();
+    if (auto peer = maker.make(voxels_)) {
+      rivals_.push_back({std::move(peer), processor_seconds() - start});
+    }
+  }
+}
+
+double Contest::draw_wide(const Camera& camera, std::uint64_t* hits) {
+  const double start = processor_seconds();
+  Band band;
+  band.pixels = Bytes(pixels_.data(), pixels_.size());
+  band.format = PixelFormat::kGray8;
+  band.rows = kHeightPx;
+  RenderCounts counts;
+  wide::Counts work;
+  if (built_->render_wide(camera, shading_for(camera, built_->bounds()), band, &counts, &work) !=
+      Status::kOk) {
+    throw std::runtime_error("the wide renderer leaves this view to the core");
+  }
+  *hits = counts.hits;
+  return processor_seconds() - start;
+}
+
+double Contest::draw_core(const Camera& camera) {
+  const double start = processor_seconds();
+  Band band;
+  band.pixels = Bytes(pixels_.data(), pixels_.size());
+  band.format = PixelFormat::kGray8;
+  band.rows = kHeightPx;
+  RenderCounts counts;
+  if (built_->render_band(camera, shading_for(camera, built_->bounds()), band, &counts, {}) != Status::kOk) {
+    throw std::runtime_error("the core does not take the rays of this view");
+  }
+  return processor_seconds() - start;
+}
+
+Result Contest::run(bool orthographic, int frames) {
+  Result result;
+  result.scene = kind_;
+  result.points = points_;
+  result.voxels = voxels_.size();
+  result.orthographic = orthographic;
+  std::vector<std::vector<double>> seconds(2 + rivals_.size());
+  std::vector<std::uint64_t> differing(rivals_.size(), 0);
+  std::vector<std::uint32_t> wanted(kPixels);
+  std::vector<std::uint32_t> shown(kPixels);
+  std::vector<std::uint8_t> core_pixels;
+  std::uint64_t wide_differing = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    const Camera camera = camera_of(built_->level(), orthographic, frame);
+    // This renderer is far faster than the others: it draws as often as costs little, and the median counts.
+    for (int again = 0; again < 5; ++again) {
+      seconds[0].push_back(draw_wide(camera_of(built_->level(), orthographic, frame + again), &result.hits));
+    }
+    if (frame == 0 || seconds[1].front() < kSlowSeconds) {
+      seconds[1].push_back(draw_core(camera));
+    }
+    const Shading shading = shading_for(camera, built_->bounds());
+    for (std::size_t i = 0; i < rivals_.size(); ++i) {
+      if (frame > 0 && seconds[2 + i].front() > kSlowSeconds) {
+        continue;
+      }
+      const double start = processor_seconds();
+      const View view(camera, shading.near_q8, shading.far_q8);
+      rivals_[i].peer->draw(view, pixels_.data(), nullptr);
+      seconds[2 + i].push_back(processor_seconds() - start);
+    }
+  }
+  // One frame more is judged, not timed: by the voxels, and this renderer's and the core's by their pixels.
+  const Camera camera = camera_of(built_->level(), orthographic, 0);
+  for (std::int32_t y = 0; y < kHeightPx; ++y) {
+    for (std::int32_t x = 0; x < kWidthPx; ++x) {
+      Hit hit;
+      if (built_->closest_hit(camera.ray(x, y), &hit, {}) != Status::kOk) {
+        throw std::runtime_error("the core does not take the rays of this view");
+      }
+      wanted[static_cast<std::size_t>(y) * kWidthPx + static_cast<std::size_t>(x)] =
+          hit.kind == HitKind::kHit ? packed(hit.voxel.x, hit.voxel.y, hit.voxel.z) : kNoVoxel;
+    }
+  }
+  draw_core(camera);
+  core_pixels = pixels_;
+  draw_wide(camera, &result.hits);
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    wide_differing += core_pixels[i] != pixels_[i] ? 1U : 0U;
+  }
+  const Shading shading = shading_for(camera, built_->bounds());
+  for (std::size_t i = 0; i < rivals_.size(); ++i) {
+    rivals_[i].peer->draw(View(camera, shading.near_q8, shading.far_q8), pixels_.data(), shown.data());
+    for (std::size_t pixel = 0; pixel < kPixels; ++pixel) {
+      differing[i] += shown[pixel] != wanted[pixel] ? 1U : 0U;
+    }
+  }
+  const std::uint64_t list_bytes = wide::VoxelLists::bytes(built_->compact());
+  result.entrants.push_back({"Thimble", 1e3 * median(seconds[0]), built_->build_seconds(),
+                             built_->tree_bytes() + list_bytes, wide_differing});
+  result.entrants.push_back(
+      {"Thimble, ray by ray", 1e3 * median(seconds[1]), built_->build_seconds(), built_->tree_bytes(), 0});
+  for (std::size_t i = 0; i < rivals_.size(); ++i) {
+    result.entrants.push_back({rivals_[i].peer->name(), 1e3 * median(seconds[2 + i]),
+                               rivals_[i].build_seconds, rivals_[i].peer->bytes(), differing[i]});
+  }
+  return result;
+}
+
+std::vector<std::pair<std::string, std::string>> machine() {
+  std::vector<std::pair<std::string, std::string>> words;
+  std::ifstream processors("/proc/cpuinfo");
+  for (std::string line; std::getline(processors, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 || line.rfind("cache size", 0) == 0) {
+      words.emplace_back(line.substr(0, line.find('\t')), line.substr(colon + 2));
+    }
+    if (line.empty()) {
+      break;  // the others are alike
+    }
+  }
+  words.emplace_back("processors", std::to_string(std::thread::hardware_concurrency()));
+  words.emplace_back("memory_bytes", std::to_string(static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                                                    static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE))));
+  utsname system{};
+  if (uname(&system) == 0) {
+    words.emplace_back("system", std::string(system.sysname) + " " + system.release + " " + system.machine);
+  }
+  words.emplace_back("compiler", __VERSION__);
+  words.emplace_back("instruction_set", wide::instruction_set());
+  return words;
+}
+
+}  // namespace thimble::benchmarks

@@ -1,0 +1,76 @@
+/// @file contest.h
+/// One scene drawn by this renderer and by all peers, frame by frame by turns, so that the load of the
+/// machine falls on all of them.
+#ifndef THIMBLE_TESTS_BENCHMARKS_PEERS_CONTEST_H
+#define THIMBLE_TESTS_BENCHMARKS_PEERS_CONTEST_H
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "benchmarks/peers/peer.h"
+#include "scene/built_scene.h"
+
+namespace thimble::benchmarks {
+
+/// What one of them did. Times are processor time on one thread, the median of the frames.
+struct Entrant {
+  std::string name;
+  double ms = 0;
+  double build_seconds = 0;
+  std::uint64_t bytes = 0;         ///< of what it keeps between frames
+  std::uint64_t differing_px = 0;  ///< pixels that show another voxel than the core's ray, in one frame
+  /// A peer counts when fewer than one pixel in a thousand differs.
+  bool counts(std::uint64_t pixels) const { return differing_px * 1000 < pixels; }
+};
+
+struct Result {
+  std::string scene;
+  std::uint64_t points = 0;
+  std::uint64_t voxels = 0;
+  bool orthographic = false;
+  std::uint64_t hits = 0;
+  std::vector<Entrant> entrants;  ///< this renderer first, then the core ray by ray, then the peers
+
+  const Entrant* find(const std::string& name) const;
+  /// The fastest of the peers that count, the core's own rays among them; null when there is none.
+  const Entrant* best_peer() const;
+};
+
+class Contest {
+ public:
+  static constexpr std::int32_t kWidthPx = 800;
+  static constexpr std::int32_t kHeightPx = 600;
+  static constexpr std::uint64_t kPixels = std::uint64_t{kWidthPx} * kHeightPx;
+
+  /// `kind` is points or cluster. Peers are left out where their structures would take more than
+  /// `most_bytes`.
+  Contest(const std::string& kind, std::uint64_t points, std::uint64_t most_bytes);
+
+  /// `frames` frames each; each is seen from a slightly different place.
+  Result run(bool orthographic, int frames);
+
+ private:
+  double draw_wide(const Camera& camera, std::uint64_t* hits);
+  double draw_core(const Camera& camera);
+
+  std::string kind_;
+  std::uint64_t points_;
+  std::unique_ptr<tools::BuiltScene> built_;
+  std::vector<std::uint32_t> voxels_;  // in the tree's order
+  struct Rival {
+    std::unique_ptr<Peer> peer;
+    double build_seconds;
+  };
+  std::vector<Rival> rivals_;
+  std::vector<std::uint8_t> pixels_;
+};
+
+/// The machine in words: processor, caches, memory, system, compiler, instruction set in use.
+std::vector<std::pair<std::string, std::string>> machine();
+
+}  // namespace thimble::benchmarks
+
+#endif

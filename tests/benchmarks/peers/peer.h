@@ -1,0 +1,92 @@
+/// @file peer.h
+/// Other ways to the same picture: what somebody could use instead of this renderer.
+///
+/// A peer is given the voxels once and then draws frames: clearing, rays, all that depends on the view, and a
+/// grey by depth for every pixel. Each is made as fast as its interface allows, and is told the rays just as
+/// the core quantises them. None is exact; how many of its pixels show another voxel is counted.
+#ifndef THIMBLE_TESTS_BENCHMARKS_PEERS_PEER_H
+#define THIMBLE_TESTS_BENCHMARKS_PEERS_PEER_H
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/wide/frame.h"
+
+namespace thimble::benchmarks {
+
+/// Voxels of a world of at most 1024 a side: x, y and z in 10 bits each.
+constexpr std::uint32_t packed(std::int32_t x, std::int32_t y, std::int32_t z) {
+  return static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 10 |
+         static_cast<std::uint32_t>(z) << 20;
+}
+constexpr std::uint32_t kNoVoxel = UINT32_MAX;
+
+/// A camera, and where its greys begin and end.
+struct View {
+  wide::Frame frame;
+  std::int32_t width_px = 0;
+  std::int32_t height_px = 0;
+  float depth_per_t = 0;  ///< in 1/256 voxel
+  float near_q8 = 0;
+  float per_q8 = 0;
+
+  View(const Camera& camera, std::int32_t near_plane_q8, std::int32_t far_plane_q8);
+
+  std::uint8_t gray(float t) const {
+    return static_cast<std::uint8_t>(255.0F -
+                                     std::min(std::max((t * depth_per_t - near_q8) * per_q8, 0.0F), 215.0F));
+  }
+};
+
+/// The quantised ray of a pixel, but for the few whose numbers lie half way between two: origin in voxels,
+/// direction in integers.
+struct FloatRay {
+  float origin[3];
+  float direction[3];
+};
+inline FloatRay ray_of(const View& view, std::int32_t x, std::int32_t y) {
+  // Adding and taking off 1.5 * 2^23 rounds to the nearest integer.
+  constexpr float kRounder = 12582912.0F;
+  const wide::Frame& frame = view.frame;
+  const auto column = static_cast<float>(x);
+  const auto row = static_cast<float>(y);
+  FloatRay ray;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float whole =
+        frame.map_whole[0][axis] + column * frame.map_whole[1][axis] + row * frame.map_whole[2][axis];
+    const float rest =
+        frame.map_rest[0][axis] + column * frame.map_rest[1][axis] + row * frame.map_rest[2][axis];
+    const float varying = whole + ((rest + kRounder) - kRounder);
+    const float eye = static_cast<float>(frame.camera.eye()[axis].raw) / 256;
+    ray.origin[axis] = frame.perspective ? eye : eye + varying / 256;
+    ray.direction[axis] = frame.perspective ? varying : static_cast<float>(frame.camera.direction()[axis]);
+  }
+  return ray;
+}
+
+class Peer {
+ public:
+  virtual ~Peer() = default;
+  virtual std::string name() const = 0;
+  /// Of all that it keeps between frames.
+  virtual std::size_t bytes() const = 0;
+  /// `gray`: a byte a pixel. `voxels` (may be null): the voxel that each shows, or kNoVoxel.
+  virtual void draw(const View& view, std::uint8_t* gray, std::uint32_t* voxels) = 0;
+};
+
+/// Every point's box, tested at each pixel centre that it can cover, into a depth buffer.
+std::unique_ptr<Peer> make_raster(const std::vector<std::uint32_t>& voxels);
+/// Packets of 16 rays through Embree's hierarchy over unit boxes; null where it is not installed.
+std::unique_ptr<Peer> make_embree(const std::vector<std::uint32_t>& voxels);
+/// A hierarchical DDA over NanoVDB's active voxels; null where it is not installed.
+std::unique_ptr<Peer> make_nanovdb(const std::vector<std::uint32_t>& voxels);
+
+}  // namespace thimble::benchmarks
+
+#endif

@@ -1,0 +1,152 @@
+#include "scene/key_sort.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+
+#include "thimble/morton.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr int kDealBits = 8;
+constexpr std::size_t kBuckets = std::size_t{1} << kDealBits;
+constexpr int kPassBits = 11;
+constexpr std::size_t kPassDigits = std::size_t{1} << kPassBits;
+// Below this the core's sort is as good.
+constexpr std::size_t kShortList = std::size_t{1} << 16;
+// Bytes of scratch a thread: with the bucket itself half of a usual second-level cache.
+constexpr std::size_t kMostScratch = std::size_t{512} << 10;
+
+using Bounds = std::array<std::size_t, kBuckets + 1>;
+
+// Brings `keys` into the order of the 8 bits at `shift`, in place: keys are swapped into the bucket that they
+// belong to. Going through what is left of each bucket, rather than along cycles, leaves swaps independent.
+template <class Key>
+Bounds deal(Span<Key> keys, int shift) {
+  const auto bucket_of = [shift](Key key) { return static_cast<std::size_t>(key >> shift) % kBuckets; };
+  Bounds bounds{};
+  for (std::size_t i = 0; i < keys.size; ++i) {
+    ++bounds[bucket_of(keys[i]) + 1];
+  }
+  for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+    bounds[bucket + 1] += bounds[bucket];
+  }
+  Bounds next = bounds;
+  bool moved = true;
+  while (moved) {
+    moved = false;
+    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+      for (std::size_t i = next[bucket]; i < bounds[bucket + 1]; ++i) {
+        const Key key = keys[i];
+        const std::size_t home = next[bucket_of(key)]++;
+        keys[i] = keys[home];
+        keys[home] = key;
+        moved = true;
+      }
+    }
+  }
+  return bounds;
+}
+
+// Sorts by the lowest `bits` bits, at most 44, by way of `scratch`, which holds as many keys.
+template <class Key>
+void sort_in_passes(Span<Key> keys, int bits, Key* scratch) {
+  Key* from = keys.data;
+  Key* to = scratch;
+  for (int shift = 0; shift < bits; shift += kPassBits) {
+    std::array<std::uint32_t, kPassDigits> place{};
+    const auto digit_of = [shift](Key key) { return static_cast<std::size_t>(key >> shift) % kPassDigits; };
+    for (std::size_t i = 0; i < keys.size; ++i) {
+      ++place[digit_of(from[i])];
+    }
+    std::uint32_t sum = 0;
+    for (std::uint32_t& entry : place) {
+      const std::uint32_t count = entry;
+      entry = sum;
+      sum += count;
+    }
+    for (std::size_t i = 0; i < keys.size; ++i) {
+      to[place[digit_of(from[i])]++] = from[i];
+    }
+    std::swap(from, to);
+  }
+  if (from != keys.data) {
+    std::copy(from, from + keys.size, keys.data);
+  }
+}
+
+// Sorts a bucket whose keys agree above their lowest `bits` bits.
+template <class Key>
+void sort_bucket(Span<Key> keys, int bits, Span<Key> scratch) {
+  constexpr std::size_t kFewForPasses = 2048;  // fewer, and clearing the counters is the greater part
+  if (keys.size < 2 || bits <= 0) {
+    return;
+  }
+  // A digit reaches above `bits`, which is no harm: those bits are equal.
+  if (keys.size <= scratch.size && keys.size >= kFewForPasses) {
+    sort_in_passes(keys, bits, scratch.data);
+    return;
+  }
+  if (keys.size < kFewForPasses || bits <= kDealBits) {
+    sort_keys(keys, bits);
+    return;
+  }
+  const Bounds bounds = deal(keys, bits - kDealBits);
+  for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+    sort_bucket(keys.subspan(bounds[bucket], bounds[bucket + 1] - bounds[bucket]), bits - kDealBits, scratch);
+  }
+}
+
+template <class Key>
+void sort_all(Span<Key> keys, int key_bits, Bytes scratch, int threads) {
+  const Span<Key> room(reinterpret_cast<Key*>(scratch.data), scratch.size / sizeof(Key));
+  if (keys.size < kShortList || key_bits <= kDealBits || room.size == 0) {
+    sort_keys(keys, key_bits);
+    return;
+  }
+  const int bits = key_bits - kDealBits;
+  const Bounds bounds = deal(keys, bits);
+  const auto sort_one = [&](std::size_t bucket, Span<Key> own) {
+    sort_bucket(keys.subspan(bounds[bucket], bounds[bucket + 1] - bounds[bucket]), bits, own);
+  };
+  if (threads <= 1) {
+    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+      sort_one(bucket, room);
+    }
+    return;
+  }
+  const std::size_t share = room.size / static_cast<std::size_t>(threads);
+  // More threads than processors are no gain, but what was asked for.
+  const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(threads));
+  oneapi::tbb::task_arena arena(threads);
+  arena.execute([&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, kBuckets, [&](std::size_t bucket) {
+      const auto slot = static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index());
+      sort_one(bucket, room.subspan(slot * share, share));
+    });
+  });
+}
+
+}  // namespace
+
+std::size_t key_sort_scratch_bytes(std::size_t keys, int threads) {
+  if (keys < kShortList) {
+    return 0;
+  }
+  return std::min(keys, kMostScratch * static_cast<std::size_t>(threads)) / sizeof(std::uint64_t) *
+         sizeof(std::uint64_t);
+}
+
+void sort_keys_fast(Span<std::uint32_t> keys, int key_bits, Bytes scratch, int threads) {
+  sort_all(keys, key_bits, scratch, threads);
+}
+void sort_keys_fast(Span<std::uint64_t> keys, int key_bits, Bytes scratch, int threads) {
+  sort_all(keys, key_bits, scratch, threads);
+}
+
+}  // namespace thimble::tools
