@@ -36,3 +36,16 @@ ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=l
 [b][p]paletteuse=dither=none:diff_mode=rectangle" "$out/waves.gif"
 rm "$out/waves.y4m"
 # simulator.png is the window of: thimble sim demo
+
+# The studies of the README. Their titles are the names of the files, so they run where these lie.
+plots=$(cd "$out" && pwd)
+case $thimble in */*) thimble=$(cd "$(dirname "$thimble")" && pwd)/$(basename "$thimble") ;; esac
+(
+  cd "$data/mesh"
+  "$thimble" memory dragon_vrip_res2.ply.gz --depth 10 --quiet --plot "$plots/memory-dragon.svg" >/dev/null
+  "$thimble" accuracy dragon_vrip_res2.ply.gz --shade normal --quiet --plot "$plots/accuracy-dragon.svg" >/dev/null
+  cd ../vox/ephtracy
+  "$thimble" memory monu10.vox --shade color --fov 30 --quiet --plot "$plots/memory-monu10.svg" >/dev/null
+  "$thimble" accuracy monu10.vox --shade color --fov 30 --quiet --plot "$plots/accuracy-monu10.svg" >/dev/null
+)
+"$thimble" memory points:1000000 --quiet --plot "$plots/memory-points.svg" >/dev/null
