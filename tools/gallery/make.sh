@@ -23,4 +23,13 @@ $thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --targe
 $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
+# What the OLED shows with light, magnified (ImageMagick).
+for picture in demo room; do
+  scene=demo
+  [ $picture = demo ] || scene=$out/scenes/$picture.scene
+  effects=auto
+  [ $picture != demo ] || effects=direct-light,shadows
+  $thimble sim "$scene" --effects $effects --board lm3s6965evb --display none --frames 2 --quiet --shot "$out/oled-$picture.png" >/dev/null
+  convert "$out/oled-$picture.png" -filter point -resize 300% "$out/oled-$picture.png"
+done
 # simulator.png is the window of: thimble sim demo
