@@ -264,11 +264,10 @@ void add_accuracy(CLI::App& app) {
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->csv_path,
       "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
-      "picture), group (default, the "
-      "knob turned alone, together, best: the reference itself, anytime), options (of thimble render), front "
-      "(1: no setting is both "
-      "cheaper and nearer to the reference), max_depth (0: all), cutoff_px, direction_bits (0: automatic), "
-      "samples; against the reference: wrong_px (of another colour), visible_px (a channel off by more than "
+      "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
+      "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
+      "per cent being equal), max_depth (0: all), cutoff_px, direction_bits (0: automatic), samples; against "
+      "the reference: wrong_px (of another colour), visible_px (a channel off by more than "
       "8 of 255), rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; "
       "rays, "
       "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
