@@ -455,7 +455,7 @@ void tell_frame(const Demo& demo, uint32_t crc) {
     put_number(demo.pool.solid_added());
     put(demo.spheres.is_done() ? " done" : "");
   }
-  if (demo.is_lit) {
+  if (kCanLight && demo.is_lit) {
     put(" lit");
   }
   if (demo.holds) {

@@ -129,7 +129,7 @@ template <EffectSet kSet>
 template <EffectSet kSet>
 void run(Check& check, int index) {
   State* state = nullptr;
-  THIMBLE_REQUIRE(make_scene(check, &state));
+  THIMBLE_REQUIRE(make_scene(check, &state) && state != nullptr);
   const Bytes bytes = check.arena.take(kBandBytes, alignof(uint8_t));
   THIMBLE_REQUIRE(!bytes.empty());
   const golden::LitEntry& wanted = golden::kLitTable[index];

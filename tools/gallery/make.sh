@@ -30,6 +30,15 @@ $thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-lig
 $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
+# What the OLED shows with light, magnified (ImageMagick).
+for picture in demo room; do
+  scene=demo
+  [ $picture = demo ] || scene=$out/scenes/$picture.scene
+  effects=auto
+  [ $picture != demo ] || effects=direct-light,shadows
+  $thimble sim "$scene" --effects $effects --board lm3s6965evb --display none --frames 2 --quiet --shot "$out/oled-$picture.png" >/dev/null
+  convert "$out/oled-$picture.png" -filter point -resize 300% "$out/oled-$picture.png"
+done
 $thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 100 --fps 25 --keys "$out/waves.keys" --quiet \
   --record "$out/waves.y4m" >/dev/null
 ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
