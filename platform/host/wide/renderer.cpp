@@ -380,7 +380,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   }
   // A tile is some whole rows. With several threads there are more tiles than threads, so that one that is
   // slow does not hold the frame.
-  const int32_t tile_count = options.threads == 1 ? 1 : 8 * options.threads;
+  const int32_t tile_count = options.threads == 1 ? 1 : 4 * options.threads;
   int32_t tile_rows = (band.rows + tile_count - 1) / tile_count;
   tile_rows = (tile_rows + kPatchRows - 1) / kPatchRows * kPatchRows;
   const auto make_tile = [&](int32_t row, Frame* frame) {

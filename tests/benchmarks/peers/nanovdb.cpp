@@ -16,7 +16,11 @@ namespace {
 // Its builder makes no grids of bits alone; values of 4 bits are the least, and only the bits are looked at.
 using Build = nanovdb::Fp4;
 using Grid = nanovdb::NanoGrid<Build>;
-using RealRay = nanovdb::Ray<double>;
+// Its rays find their points in floats, whatever their type; these do not.
+struct RealRay : nanovdb::Ray<double> {
+  using nanovdb::Ray<double>::Ray;
+  nanovdb::Vec3d operator()(double t) const { return eye() + dir() * t; }
+};
 
 template <class Accessor>
 bool first_voxel(RealRay ray, const nanovdb::CoordBBox& box, Accessor& accessor, nanovdb::Coord* voxel,
