@@ -416,6 +416,11 @@ TEST_CASE(
   CHECK(groups["together"] >= 20);
   CHECK(front >= 2);
   CHECK(has_error);
+  std::string out;
+  rows_of(folder, with(view, {"--for-error", "0"}), &out);
+  CHECK(out.find("light: occlusion rays 32, roughness rays 4, bounces 8\n") != std::string::npos);
+  CHECK(out.find("with --shade as given here") != std::string::npos);
+  CHECK(out.find("--bounces 8 of thimble render") != std::string::npos);
   // No light asked for, none measured.
   for (const Json& row : rows_of(folder, with(view, {"--effects", "none"}))) {
     CHECK(row["row"] != "light");
