@@ -31,8 +31,6 @@ Picture render(const std::vector<std::string>& more, const std::string& scene = 
                                  "--size",
                                  "64x48",
                                  "--quiet",
-                                 "--engine",
-                                 "ray64",
                                  "-o",
                                  folder.path("a.ppm"),
                                  "--stats",
