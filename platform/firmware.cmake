@@ -98,7 +98,8 @@ target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
 target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 # Those that draw a scene with light (apps/scene_light.h).
-set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp PROPERTIES
+set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp
+  ${THIMBLE_PLATFORM_DIR}/apps/water.cpp PROPERTIES
   COMPILE_DEFINITIONS THIMBLE_IMAGE_EFFECTS=${THIMBLE_IMAGE_EFFECTS})
 target_link_libraries(thimble_apps PRIVATE thimble_app_warnings)
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPERTIES

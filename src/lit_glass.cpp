@@ -61,12 +61,13 @@ Vec3Q8 on_its_side(const Frame& frame, const Meeting& meeting, const Vec3Q8& at,
   return moved;
 }
 
-void send(Frame& frame, const PendingRay& from, LitRayKind kind, const Vec3Q8& at, const Vec3i& direction,
-          uint32_t share_q16, PendingRay* pending, size_t* count) {
+void send(Frame& frame, const PendingRay& from, LitRayKind kind, int8_t axis, const Vec3Q8& at,
+          const Vec3i& direction, uint32_t share_q16, PendingRay* pending, size_t* count) {
   PendingRay out;
   out.ray = {at, direction};
   out.bounces = static_cast<uint8_t>(from.bounces + 1);
   out.kind = kind;
+  out.axis = axis;
   for (int i = 0; i < 3; ++i) {
     out.weight.c[i] = weighed(from.weight.c[i], share_q16);
   }
@@ -146,11 +147,11 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   const uint32_t back = passes ? fresnel_q16(cosine, r0_q16(here, there)) : kOneQ16;
   const LitRayKind kind = meeting.at_water ? LitRayKind::kWaterRay : LitRayKind::kGlassRay;
   const bool is_wet = leg->medium.kind == Medium::kWaterBody;
-  send(frame, *now, kind, on_its_side(frame, meeting, at, reflected, is_wet), reflected, back, pending,
-       count);
+  send(frame, *now, kind, meeting.hit.axis, on_its_side(frame, meeting, at, reflected, is_wet), reflected,
+       back, pending, count);
   if (passes) {
-    send(frame, *now, kind, on_its_side(frame, meeting, at, refracted, !is_wet), refracted, kOneQ16 - back,
-         pending, count);
+    send(frame, *now, kind, meeting.hit.axis, on_its_side(frame, meeting, at, refracted, !is_wet), refracted,
+         kOneQ16 - back, pending, count);
   }
   return false;
 }

@@ -15,8 +15,10 @@ constexpr uint16_t kAmbientShare[6] = {222, 222, 200, 200, 160, 256};
 // on the edge itself, from where rays go out of the crease as from both of its sides.
 //
 // A ray that starts in something solid (axis -1) but on a face of it, and goes in there, has come to that
-// face: what is reflected within 1/256 voxel of a crease starts on the other side's face.
-Vec3Q8 choose_face(const Frame& frame, const Ray& ray, Hit* hit) {
+// face: what is reflected within 1/256 voxel of a crease starts on the other side's face. Not on its own:
+// that is behind it.
+Vec3Q8 choose_face(const Frame& frame, const PendingRay& now, Hit* hit) {
+  const Ray& ray = now.ray;
   const int32_t side = int32_t{1} << hit->block_level;
   Hit entered[3];  // through each of the faces crossed at that t
   int count = 0;
@@ -31,7 +33,8 @@ Vec3Q8 choose_face(const Frame& frame, const Ray& ray, Hit* hit) {
     one.t_numerator = direction > 0 ? distance : -distance;
     one.t_denominator = static_cast<int32_t>(absolute(direction)) * Q8::kOne;
     if (direction != 0 &&
-        (starts_inside ? distance == 0 : one.t_numerator >= 0 && !is_before(point_of(one), point_of(*hit)))) {
+        (starts_inside ? distance == 0 && axis != now.axis
+                       : one.t_numerator >= 0 && !is_before(point_of(one), point_of(*hit)))) {
       entered[count++] = one;
       edge[axis] = Q8::from_raw(plane);
     }
@@ -89,13 +92,13 @@ void meet_solid(Frame& frame, const PendingRay& now, Meeting* meeting) {
   meeting->opaque = meeting->found;
 }
 
-Spot spot_of(const Frame& frame, const Ray& ray, const Meeting& meeting) {
+Spot spot_of(const Frame& frame, const PendingRay& now, const Meeting& meeting) {
   Hit hit = meeting.hit;
   Spot spot;
-  spot.at = choose_face(frame, ray, &hit);
-  spot.face = face_of(hit, ray.direction);
+  spot.at = choose_face(frame, now, &hit);
+  spot.face = face_of(hit, now.ray.direction);
   spot.inside = hit.axis < 0;
-  spot.arriving = ray.direction;
+  spot.arriving = now.ray.direction;
   spot.surface = surface_of(frame, hit.material);
   return spot;
 }

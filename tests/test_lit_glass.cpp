@@ -373,6 +373,34 @@ TEST_CASE("coplanar glass and water: solid goes before water, and neither is cou
   }
 }
 
+TEST_CASE("water: the floor, seen by total reflection at the water's open sides, is lit up to its edge") {
+  // A ray that is reflected within 1/256 voxel above the floor starts on the floor's edge. It is the floor's
+  // top that it sees, which the sun lights, not the side behind it.
+  LitWorld world;
+  build_basin(&world, 12 * 256);
+  set_ambient(&world.scene, 0);
+  world.lights = {sun({0, 0, 1}, 256)};
+  world.scene.water_material.albedo = kWhite;
+  world.finish();
+  std::uint64_t sent = 0;
+  for (int i = 0; i < 6; ++i) {
+    world.look({48 * 256 + 40 * i, -31 * 256 - 17 * i, 25 * 256}, {16 * 256, 0, 10 * 256 + 9 * i}, 11, 160,
+               120);
+    LitCounts counts;
+    const std::vector<Rgb8> picture = world.draw(kDirectLight | kWater | kSky, &counts);
+    for (int pixel = 0; pixel < 160 * 120; ++pixel) {
+      Hit hit;
+      REQUIRE(closest_hit(world.tree, world.camera.ray(pixel % 160, pixel / 160), &hit) == Status::kOk);
+      // Seen past the water: a side.
+      if (hit.kind != HitKind::kHit || hit.axis == 2) {
+        CHECK(picture[static_cast<std::size_t>(pixel)].g > 200);
+      }
+    }
+    sent += counts.rays[static_cast<int>(LitRayKind::kWaterRay)];
+  }
+  CHECK(sent > 6 * 2 * 160 * 120);
+}
+
 TEST_CASE("light under water: dimmed by the way through it") {
   LitWorld world;
   build_basin(&world, 8 * 256);

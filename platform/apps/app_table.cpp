@@ -10,6 +10,7 @@ constexpr Application kApplications[] = {
     {"demo", demo, true, true},
     {"selftest", selftest, false, false},
     {"golden", golden, false, false},
+    {"lit", lit, false, false},
     {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},

@@ -16,6 +16,8 @@ int selftest();
 /// Baked scenes and the golden frames on the target; closes in the same way. An application of its own,
 /// because both together do not fit in 128 KiB of flash.
 int golden();
+/// Lit pictures on the target, likewise.
+int lit();
 /// Instructions a frame and a ray, nodes visited, RAM and stack used.
 int bench();
 /// The paper's particle world.

@@ -31,14 +31,14 @@ struct BallSize {
   int32_t half_q8 = 0;
   int32_t gravity_q8 = 0;  ///< a frame and frame
   int32_t height_q8 = 0;   ///< above the surface, where it begins
-  int32_t mass_q8 = 0;     ///< in voxels of water, as much as half its cube
+  int32_t mass_q8 = 0;     ///< in voxels of water: of a stone, twice its volume
 };
 constexpr BallSize ball_size(int level) {
   // 2 voxels of 64.
   const int32_t half = int32_t{8} << level;
   const int32_t side_q4 = half >> 3;  // (2 half) in 1/16 voxel
   // Beyond worlds of 2^9 the water takes no more.
-  const int64_t mass = int64_t{side_q4} * side_q4 * side_q4 >> 5;
+  const int64_t mass = int64_t{side_q4} * side_q4 * side_q4 >> 3;
   return {half, (int32_t{5} << level) >> 4, int32_t{80} << level,
           mass > (int32_t{1} << 20) ? int32_t{1} << 20 : static_cast<int32_t>(mass)};
 }

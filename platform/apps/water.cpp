@@ -6,6 +6,7 @@
 //   @X,Y.      over the UART: touches the water that pixel X, Y shows (the simulator sends it for the mouse)
 //   !X,Y.      drops a ball there
 //   x  b       the same in the middle of the picture
+//   +  -       nearer, farther
 //   m          rain: a ball now and then, or no more
 //   t          the camera turns by itself, or no more
 //   k          lays the water to rest
@@ -125,7 +126,7 @@ void touch(Pool* pool, int32_t px, int32_t py) {
   const int32_t half = pool->ball_size.half_q8;
   const auto within = [](int32_t value) { return value < (1 << 14) ? value : 1 << 14; };
   if (point_at(*pool, px, py, &x, &y) &&
-      pool->water.columns.touch(x, y, within(half * 5 / 4), within(half / 2)) == Status::kOk) {
+      pool->water.columns.touch(x, y, within(half * 5 / 4), within(half * 3 / 4)) == Status::kOk) {
     ++pool->touches;
     pool->rippled = true;
   }
@@ -301,8 +302,8 @@ void draw_balls(const Pool& pool, const Band& band) {
 
 /// With the scene's effects: those that it was compiled for, or whatever it was baked with.
 Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
-#ifdef THIMBLE_WATER_EFFECTS
-  return render_lit_band<THIMBLE_WATER_EFFECTS>(tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
+#ifdef THIMBLE_IMAGE_EFFECTS
+  return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
                                                 band, counts);
 #else
   return render_lit_band(pool.lighting.effects, tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
@@ -373,6 +374,14 @@ bool take_pointing(Pool* pool, int byte) {
   return true;
 }
 
+void zoom(Pool* pool, int32_t by) {
+  const int32_t zoom = pool->steering.zoom + by;
+  if (zoom >= kNearest && zoom <= kFarthest) {
+    pool->steering.zoom = zoom;
+    pool->moved = true;
+  }
+}
+
 [[gnu::noinline]] bool still(Pool* pool) {
   pool->rippled = true;
   return calm_water(tree_of(*pool), pool->rest, &pool->arena, &pool->water) == Status::kOk;
@@ -406,6 +415,12 @@ bool take_pointing(Pool* pool, int byte) {
         break;
       case 'b':
         drop(pool, screen.width_px / 2, screen.height_px / 2);
+        break;
+      case '+':
+        zoom(pool, -1);
+        break;
+      case '-':
+        zoom(pool, 1);
         break;
       case 'm':
         pool->raining = pool->raining == 0 ? 1 : 0;
@@ -447,6 +462,11 @@ bool take_pointing(Pool* pool, int byte) {
       (pool->lighting.effects & kWater) == 0 || !pool->lighting.scene.has_water) {
     return "the scene holds no water";
   }
+#ifdef THIMBLE_IMAGE_EFFECTS
+  if (pool->lighting.effects != THIMBLE_IMAGE_EFFECTS) {
+    return "the image was built for other effects than the scene's";
+  }
+#endif
   pool->rest = pool->lighting.scene.water;
   const port::Display& screen = display();
   pool->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;

@@ -39,7 +39,7 @@ emulate() {
 
 # The applications that there are; faults is judged by itself below.
 apps=
-for app in ${THIMBLE_TEST_APPS:-selftest golden demo bench particles}; do
+for app in ${THIMBLE_TEST_APPS:-selftest golden lit demo bench particles}; do
   [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
 done
 list=faults
@@ -61,7 +61,7 @@ for app in $apps; do
   if [ "$status" != 0 ]; then
     tail -n 5 "$log" >&2
     fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
-  elif [ "$app" = selftest ] || [ "$app" = golden ]; then
+  elif [ "$app" = selftest ] || [ "$app" = golden ] || [ "$app" = lit ]; then
     said=$(grep -E '^[1-9][0-9]* passed, 0 failed' "$log" | head -n 1)
     [ -n "$said" ] || fail "$app" "did not say how many passed"
     said="$said, $(sed -n 's/^\([0-9]* skipped\).*/\1/p' "$log" | head -n 1); "

@@ -258,7 +258,8 @@ void EngineOptions::add_to(CLI::App& app) {
       ->default_str("auto");
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
-      [this](std::int64_t number) { threads = static_cast<int>(number); }, "threads that build and that draw with the wide engine")
+      [this](std::int64_t number) { threads = static_cast<int>(number); },
+      "threads that build and that draw with the wide engine")
       ->default_str("1");
 }
 

@@ -20,9 +20,21 @@ $thimble render "$data/cloud/building.ply" $size --shade depth --fov 32 -o "$out
 $thimble render "$data/nbody/galaxy_littleendian.dat" $size --shade color --eye 100,60,700 --target 256,256,256 \
   -o "$out/galaxy.png"
 $thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --target 512,512,512 --fov 44 -o "$out/stars.png"
+# Lit by what their texts say.
+scenes="$out/scenes"
+for scene in lagoon glass room; do
+  $thimble render "$scenes/$scene.scene" $size --samples 9 -o "$out/$scene.png"
+done
+$thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-light,shadows,ambient-occlusion,sky,glass,media \
+  --eye 141.3,-22.7,66.4 --target 25.6,59.2,9.3 --fov 36 -o "$out/bevy-test.png"
 $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
+$thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 100 --fps 25 --keys "$out/waves.keys" --quiet \
+  --record "$out/waves.y4m" >/dev/null
+ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
+[b][p]paletteuse=dither=none:diff_mode=rectangle" "$out/waves.gif"
+rm "$out/waves.y4m"
 # simulator.png is the window of: thimble sim demo
 
 # The studies of the README. Their titles are the names of the files, so they run where these lie.

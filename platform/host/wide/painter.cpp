@@ -121,9 +121,14 @@ uint64_t Painter::paint_tile(const Frame& frame, const Depths& depths) const {
     const uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
     fill_background(line(y), y, covered);
     for (int32_t word = 0; word < words; ++word) {
+      uint32_t bits = covered[word];
+      // Sparse pictures: two empty words at once. Rows hold an even number.
+      if ((word & 1) == 0 && (bits | covered[word + 1]) == 0) {
+        ++word;
+        continue;
+      }
       // Four at a time, without a look at how many there are: most words hold no more, and the next word
       // writes over what was none.
-      uint32_t bits = covered[word];
       const uint32_t end = count + static_cast<uint32_t>(__builtin_popcount(bits));
       do {
         for (uint32_t i = 0; i < 4; ++i) {

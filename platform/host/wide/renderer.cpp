@@ -178,7 +178,7 @@ class TileDrawer {
   }
 
  private:
-  static constexpr uint32_t kAhead = 4;
+  static constexpr uint32_t kAhead = 8;
 
   void draw_oldest() {
     const Block block = ahead_[ahead_first_];

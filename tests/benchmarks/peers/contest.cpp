@@ -18,10 +18,15 @@ namespace {
 // Who takes longer draws a single frame.
 constexpr double kSlowSeconds = 0.2;
 
+// Of this thread: libraries keep idle ones.
 double processor_seconds() {
   timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Voxel voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) {
+  return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
 }
 
 double median(std::vector<double> values) {
@@ -89,16 +94,16 @@ Contest::Contest(const std::string& kind, std::uint64_t points, std::uint64_t mo
   tools::for_each_block(built_->compact(), [&](const Vec3i& at, int level, std::uint8_t) {
     const std::int32_t side = std::int32_t{1} << level;
     for (std::int32_t i = 0; i < side * side * side; ++i) {
-      voxels_.push_back(packed(at.x + i % side, at.y + i / side % side, at.z + i / side / side));
+      voxels_.push_back(voxel_at(at.x + i % side, at.y + i / side % side, at.z + i / side / side));
     }
   });
   // What they keep a voxel, about, while they build; and what a grid of bits takes in any case.
   struct Maker {
-    std::unique_ptr<Peer> (*make)(const std::vector<std::uint32_t>&);
+    std::unique_ptr<Peer> (*make)(const std::vector<Voxel>&);
     std::uint64_t bytes;
   };
   for (const Maker& maker :
-       {Maker{make_raster, voxels_.size() * 4}, Maker{make_embree, voxels_.size() * 200},
+       {Maker{make_raster, voxels_.size() * sizeof(Voxel)}, Maker{make_embree, voxels_.size() * 200},
         Maker{make_nanovdb, std::min<std::uint64_t>(voxels_.size() * 3000, 5'000'000'000)}}) {
     if (maker.bytes > most_bytes) {
       continue;
@@ -147,8 +152,8 @@ Result Contest::run(bool orthographic, int frames) {
   result.orthographic = orthographic;
   std::vector<std::vector<double>> seconds(2 + rivals_.size());
   std::vector<std::uint64_t> differing(rivals_.size(), 0);
-  std::vector<std::uint32_t> wanted(kPixels);
-  std::vector<std::uint32_t> shown(kPixels);
+  std::vector<Voxel> wanted(kPixels);
+  std::vector<Voxel> shown(kPixels);
   std::vector<std::uint8_t> core_pixels;
   std::uint64_t wide_differing = 0;
   for (int frame = 0; frame < frames; ++frame) {
@@ -180,7 +185,7 @@ Result Contest::run(bool orthographic, int frames) {
         throw std::runtime_error("the core does not take the rays of this view");
       }
       wanted[static_cast<std::size_t>(y) * kWidthPx + static_cast<std::size_t>(x)] =
-          hit.kind == HitKind::kHit ? packed(hit.voxel.x, hit.voxel.y, hit.voxel.z) : kNoVoxel;
+          hit.kind == HitKind::kHit ? voxel_at(hit.voxel.x, hit.voxel.y, hit.voxel.z) : kNoVoxel;
     }
   }
   draw_core(camera);
@@ -193,7 +198,7 @@ Result Contest::run(bool orthographic, int frames) {
   for (std::size_t i = 0; i < rivals_.size(); ++i) {
     rivals_[i].peer->draw(View(camera, shading.near_q8, shading.far_q8), pixels_.data(), shown.data());
     for (std::size_t pixel = 0; pixel < kPixels; ++pixel) {
-      differing[i] += shown[pixel] != wanted[pixel] ? 1U : 0U;
+      differing[i] += shown[pixel] == wanted[pixel] ? 0U : 1U;
     }
   }
   const std::uint64_t list_bytes = wide::VoxelLists::bytes(built_->compact());

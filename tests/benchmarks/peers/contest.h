@@ -59,7 +59,7 @@ class Contest {
   std::string kind_;
   std::uint64_t points_;
   std::unique_ptr<tools::BuiltScene> built_;
-  std::vector<std::uint32_t> voxels_;  // in the tree's order
+  std::vector<Voxel> voxels_;  // in the tree's order
   struct Rival {
     std::unique_ptr<Peer> peer;
     double build_seconds;

@@ -12,15 +12,17 @@ namespace thimble::benchmarks {
 namespace {
 
 void bounds_of(const RTCBoundsFunctionArguments* given) {
-  const auto& voxels = *static_cast<const std::vector<std::uint32_t>*>(given->geometryUserPtr);
-  const std::uint32_t voxel = voxels[given->primID];
+  const auto& voxels = *static_cast<const std::vector<Voxel>*>(given->geometryUserPtr);
+  const Voxel voxel = voxels[given->primID];
   RTCBounds& box = *given->bounds_o;
-  box.lower_x = static_cast<float>(voxel & 1023U);
-  box.lower_y = static_cast<float>(voxel >> 10 & 1023U);
-  box.lower_z = static_cast<float>(voxel >> 20);
-  box.upper_x = box.lower_x + 1;
-  box.upper_y = box.lower_y + 1;
-  box.upper_z = box.lower_z + 1;
+  // A little more than the box: rays in its faces are lost otherwise. The test below decides.
+  constexpr float kMore = 1.0F / 512;
+  box.lower_x = static_cast<float>(voxel.x) - kMore;
+  box.lower_y = static_cast<float>(voxel.y) - kMore;
+  box.lower_z = static_cast<float>(voxel.z) - kMore;
+  box.upper_x = static_cast<float>(voxel.x) + 1 + kMore;
+  box.upper_y = static_cast<float>(voxel.y) + 1 + kMore;
+  box.upper_z = static_cast<float>(voxel.z) + 1 + kMore;
 }
 
 // The loop below for the machine at hand; without branches, so that it becomes vectors.
@@ -56,39 +58,52 @@ meet_box(const int* valid, RTCRayHit16* rays, const float* low, unsigned primiti
 }
 
 void meet(const RTCIntersectFunctionNArguments* given) {
-  const auto& voxels = *static_cast<const std::vector<std::uint32_t>*>(given->geometryUserPtr);
-  const std::uint32_t voxel = voxels[given->primID];
-  const float low[3] = {static_cast<float>(voxel & 1023U), static_cast<float>(voxel >> 10 & 1023U),
-                        static_cast<float>(voxel >> 20)};
+  const auto& voxels = *static_cast<const std::vector<Voxel>*>(given->geometryUserPtr);
+  const Voxel voxel = voxels[given->primID];
+  const float low[3] = {static_cast<float>(voxel.x), static_cast<float>(voxel.y),
+                        static_cast<float>(voxel.z)};
   meet_box(given->valid, reinterpret_cast<RTCRayHit16*>(given->rayhit), low, given->primID, given->geomID);
+}
+
+void meet_any(const RTCOccludedFunctionNArguments* given) {
+  const auto& voxels = *static_cast<const std::vector<Voxel>*>(given->geometryUserPtr);
+  const Voxel voxel = voxels[given->primID];
+  const float low[3] = {static_cast<float>(voxel.x), static_cast<float>(voxel.y),
+                        static_cast<float>(voxel.z)};
+  // Rays come without hits here: the loop gets some of its own.
+  RTCRayHit16 rays;
+  rays.ray = *reinterpret_cast<RTCRay16*>(given->ray);
+  std::fill(std::begin(rays.hit.primID), std::end(rays.hit.primID), RTC_INVALID_GEOMETRY_ID);
+  meet_box(given->valid, &rays, low, given->primID, given->geomID);
+  auto* const ray = reinterpret_cast<RTCRay16*>(given->ray);
+  for (int i = 0; i < 16; ++i) {
+    ray->tfar[i] = rays.hit.primID[i] != RTC_INVALID_GEOMETRY_ID ? -std::numeric_limits<float>::infinity()
+                                                                 : ray->tfar[i];
+  }
 }
 
 class Embree : public Peer {
  public:
-  explicit Embree(const std::vector<std::uint32_t>& voxels)
-      : voxels_(voxels), device_(rtcNewDevice("threads=1")) {
-    if (device_ == nullptr) {
-      throw std::runtime_error("Embree gives no device");
-    }
-    rtcSetDeviceMemoryMonitorFunction(
-        device_,
-        [](void* self, ssize_t more, bool) {
-          static_cast<Embree*>(self)->bytes_ += more;
-          return true;
-        },
-        this);
-    scene_ = rtcNewScene(device_);
-    // Without it, rays along an axis lose too many pixels to count.
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  explicit Embree(const std::vector<Voxel>& voxels) : Embree("Embree", &voxels) {
     RTCGeometry boxes = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(boxes, static_cast<unsigned>(voxels.size()));
-    rtcSetGeometryUserData(boxes, const_cast<std::vector<std::uint32_t>*>(&voxels_));
+    rtcSetGeometryUserData(boxes, const_cast<std::vector<Voxel>*>(voxels_));
     rtcSetGeometryBoundsFunction(boxes, bounds_of, nullptr);
     rtcSetGeometryIntersectFunction(boxes, meet);
-    rtcCommitGeometry(boxes);
-    rtcAttachGeometry(scene_, boxes);
-    rtcReleaseGeometry(boxes);
-    rtcCommitScene(scene_);
+    rtcSetGeometryOccludedFunction(boxes, meet_any);
+    build(boxes);
+  }
+  explicit Embree(const std::vector<float>& corners) : Embree("Embree, triangles", nullptr) {
+    RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* const places = static_cast<float*>(
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, corners.size() / 3));
+    std::copy(corners.begin(), corners.end(), places);
+    auto* const numbers = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, corners.size() / 9));
+    for (unsigned i = 0; i < corners.size() / 3; ++i) {
+      numbers[i] = i;
+    }
+    build(mesh);
   }
   Embree(const Embree&) = delete;
   Embree& operator=(const Embree&) = delete;
@@ -96,12 +111,12 @@ class Embree : public Peer {
     rtcReleaseScene(scene_);
     rtcReleaseDevice(device_);
   }
-  std::string name() const override { return "Embree"; }
+  std::string name() const override { return name_; }
   std::size_t bytes() const override {
-    return static_cast<std::size_t>(bytes_) + voxels_.size() * sizeof(std::uint32_t);
+    return static_cast<std::size_t>(bytes_) + (voxels_ == nullptr ? 0 : voxels_->size() * sizeof(Voxel));
   }
 
-  void draw(const View& view, std::uint8_t* gray, std::uint32_t* voxels) override {
+  void draw(const View& view, std::uint8_t* gray, Voxel* voxels) override {
     alignas(64) int valid[16];
     alignas(64) RTCRayHit16 rays;
     RTCIntersectContext context;
@@ -110,19 +125,8 @@ class Embree : public Peer {
     for (std::int32_t y = 0; y < view.height_px; y += 4) {
       for (std::int32_t x = 0; x < view.width_px; x += 4) {
         for (int i = 0; i < 16; ++i) {
-          const FloatRay ray = ray_of(view, x + i % 4, y + i / 4);
+          set(ray_of(view, x + i % 4, y + i / 4), i, &rays.ray);
           valid[i] = x + i % 4 < view.width_px && y + i / 4 < view.height_px ? -1 : 0;
-          rays.ray.org_x[i] = ray.origin[0];
-          rays.ray.org_y[i] = ray.origin[1];
-          rays.ray.org_z[i] = ray.origin[2];
-          rays.ray.dir_x[i] = ray.direction[0];
-          rays.ray.dir_y[i] = ray.direction[1];
-          rays.ray.dir_z[i] = ray.direction[2];
-          rays.ray.tnear[i] = 0;
-          rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
-          rays.ray.mask[i] = UINT32_MAX;
-          rays.ray.flags[i] = 0;
-          rays.ray.time[i] = 0;
           rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
           rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
@@ -137,15 +141,80 @@ class Embree : public Peer {
           const bool met = rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
           gray[pixel] = met ? view.gray(rays.ray.tfar[i]) : 0;
           if (voxels != nullptr) {
-            voxels[pixel] = met ? voxels_[rays.hit.primID[i]] : kNoVoxel;
+            voxels[pixel] = met ? (*voxels_)[rays.hit.primID[i]] : kNoVoxel;
           }
         }
       }
     }
   }
 
+  bool trace(const std::vector<FloatRay>& rays, bool any, float* t) override {
+    alignas(64) int valid[16];
+    alignas(64) RTCRayHit16 packet;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (std::size_t first = 0; first < rays.size(); first += 16) {
+      const std::size_t count = std::min<std::size_t>(16, rays.size() - first);
+      for (std::size_t i = 0; i < 16; ++i) {
+        const int lane = static_cast<int>(i);
+        set(rays[first + std::min(i, count - 1)], lane, &packet.ray);
+        valid[i] = i < count ? -1 : 0;
+        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      }
+      if (any) {
+        rtcOccluded16(valid, scene_, &context, &packet.ray);
+      } else {
+        rtcIntersect16(valid, scene_, &context, &packet);
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        // What is occluded has its end at minus infinity.
+        t[first + i] = any && packet.ray.tfar[i] < 0 ? 0 : packet.ray.tfar[i];
+      }
+    }
+    return true;
+  }
+
  private:
-  const std::vector<std::uint32_t>& voxels_;
+  Embree(const char* name, const std::vector<Voxel>* voxels)
+      : name_(name), voxels_(voxels), device_(rtcNewDevice("threads=1")) {
+    if (device_ == nullptr) {
+      throw std::runtime_error("Embree gives no device");
+    }
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* self, ssize_t more, bool) {
+          static_cast<Embree*>(self)->bytes_ += more;
+          return true;
+        },
+        this);
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  }
+
+  void build(RTCGeometry geometry) {
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+
+  static void set(const FloatRay& ray, int i, RTCRay16* rays) {
+    rays->org_x[i] = ray.origin[0];
+    rays->org_y[i] = ray.origin[1];
+    rays->org_z[i] = ray.origin[2];
+    rays->dir_x[i] = ray.direction[0];
+    rays->dir_y[i] = ray.direction[1];
+    rays->dir_z[i] = ray.direction[2];
+    rays->tnear[i] = 0;
+    rays->tfar[i] = std::numeric_limits<float>::infinity();
+    rays->mask[i] = UINT32_MAX;
+    rays->flags[i] = 0;
+    rays->time[i] = 0;
+  }
+
+  const char* name_;
+  const std::vector<Voxel>* voxels_;
   RTCDevice device_;
   RTCScene scene_ = nullptr;
   std::int64_t bytes_ = 0;
@@ -153,11 +222,17 @@ class Embree : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_embree(const std::vector<std::uint32_t>& voxels) {
+std::unique_ptr<Peer> make_embree(const std::vector<Voxel>& voxels) {
   return std::make_unique<Embree>(voxels);
 }
+std::unique_ptr<Peer> make_embree_triangles(const std::vector<float>& corners) {
+  return std::make_unique<Embree>(corners);
+}
 #else
-std::unique_ptr<Peer> make_embree(const std::vector<std::uint32_t>&) {
+std::unique_ptr<Peer> make_embree_triangles(const std::vector<float>&) {
+  return nullptr;
+}
+std::unique_ptr<Peer> make_embree(const std::vector<Voxel>&) {
   return nullptr;
 }
 #endif

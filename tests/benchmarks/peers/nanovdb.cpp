@@ -49,17 +49,14 @@ bool first_voxel(RealRay ray, const nanovdb::CoordBBox& box, Accessor& accessor,
 
 class Nano : public Peer {
  public:
-  explicit Nano(const std::vector<std::uint32_t>& voxels) {
+  explicit Nano(const std::vector<Voxel>& voxels) {
     nanovdb::GridBuilder<float, Build> builder(0);
     builder.setStats(nanovdb::StatsMode::BBox);
     builder.setChecksum(nanovdb::ChecksumMode::Disable);
     {
       auto accessor = builder.getAccessor();
-      for (const std::uint32_t voxel : voxels) {
-        accessor.setValue(
-            nanovdb::Coord(static_cast<int>(voxel & 1023U), static_cast<int>(voxel >> 10 & 1023U),
-                           static_cast<int>(voxel >> 20)),
-            1);
+      for (const Voxel voxel : voxels) {
+        accessor.setValue(nanovdb::Coord(voxel.x, voxel.y, voxel.z), 1);
       }
     }
     handle_ = builder.getHandle<>();
@@ -67,40 +64,64 @@ class Nano : public Peer {
   std::string name() const override { return "NanoVDB"; }
   std::size_t bytes() const override { return handle_.size(); }
 
-  void draw(const View& view, std::uint8_t* gray, std::uint32_t* voxels) override {
+  void draw(const View& view, std::uint8_t* gray, Voxel* voxels) override {
     const Grid* const grid = handle_.grid<Build>();
     auto accessor = grid->getAccessor();
     const nanovdb::CoordBBox box = grid->tree().bbox();
     std::size_t pixel = 0;
     for (std::int32_t y = 0; y < view.height_px; ++y) {
       for (std::int32_t x = 0; x < view.width_px; ++x, ++pixel) {
-        const FloatRay ray = ray_of(view, x, y);
-        const nanovdb::Vec3d origin(ray.origin[0], ray.origin[1], ray.origin[2]);
-        nanovdb::Vec3d direction(ray.direction[0], ray.direction[1], ray.direction[2]);
-        const double per_length = 1 / direction.length();
-        direction *= per_length;
         nanovdb::Coord voxel;
-        double t = 0;
-        const bool met = first_voxel(RealRay(origin, direction), box, accessor, &voxel, &t);
-        gray[pixel] = met ? view.gray(static_cast<float>(t * per_length)) : 0;
+        float t = 0;
+        const bool met = meet(ray_of(view, x, y), box, accessor, &voxel, &t);
+        gray[pixel] = met ? view.gray(t) : 0;
         if (voxels != nullptr) {
-          voxels[pixel] = met ? packed(voxel[0], voxel[1], voxel[2]) : kNoVoxel;
+          voxels[pixel] =
+              met ? Voxel{static_cast<std::uint16_t>(voxel[0]), static_cast<std::uint16_t>(voxel[1]),
+                          static_cast<std::uint16_t>(voxel[2])}
+                  : kNoVoxel;
         }
       }
     }
   }
 
+  bool trace(const std::vector<FloatRay>& rays, bool, float* t) override {
+    const Grid* const grid = handle_.grid<Build>();
+    auto accessor = grid->getAccessor();
+    const nanovdb::CoordBBox box = grid->tree().bbox();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      nanovdb::Coord voxel;
+      if (!meet(rays[i], box, accessor, &voxel, t + i)) {
+        t[i] = std::numeric_limits<float>::infinity();
+      }
+    }
+    return true;
+  }
+
  private:
+  template <class Accessor>
+  static bool meet(const FloatRay& ray, const nanovdb::CoordBBox& box, Accessor& accessor,
+                   nanovdb::Coord* voxel, float* t) {
+    const nanovdb::Vec3d origin(ray.origin[0], ray.origin[1], ray.origin[2]);
+    nanovdb::Vec3d direction(ray.direction[0], ray.direction[1], ray.direction[2]);
+    const double per_length = 1 / direction.length();
+    direction *= per_length;
+    double way = 0;
+    const bool met = first_voxel(RealRay(origin, direction), box, accessor, voxel, &way);
+    *t = static_cast<float>(way * per_length);
+    return met;
+  }
+
   nanovdb::GridHandle<> handle_;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> make_nanovdb(const std::vector<std::uint32_t>& voxels) {
+std::unique_ptr<Peer> make_nanovdb(const std::vector<Voxel>& voxels) {
   return std::make_unique<Nano>(voxels);
 }
 #else
-std::unique_ptr<Peer> make_nanovdb(const std::vector<std::uint32_t>&) {
+std::unique_ptr<Peer> make_nanovdb(const std::vector<Voxel>&) {
   return nullptr;
 }
 #endif

@@ -20,12 +20,11 @@
 
 namespace thimble::benchmarks {
 
-/// Voxels of a world of at most 1024 a side: x, y and z in 10 bits each.
-constexpr std::uint32_t packed(std::int32_t x, std::int32_t y, std::int32_t z) {
-  return static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 10 |
-         static_cast<std::uint32_t>(z) << 20;
-}
-constexpr std::uint32_t kNoVoxel = UINT32_MAX;
+struct Voxel {
+  std::uint16_t x, y, z;
+  friend bool operator==(const Voxel&, const Voxel&) = default;
+};
+inline constexpr Voxel kNoVoxel{UINT16_MAX, UINT16_MAX, UINT16_MAX};
 
 /// A camera, and where its greys begin and end.
 struct View {
@@ -77,15 +76,25 @@ class Peer {
   /// Of all that it keeps between frames.
   virtual std::size_t bytes() const = 0;
   /// `gray`: a byte a pixel. `voxels` (may be null): the voxel that each shows, or kNoVoxel.
-  virtual void draw(const View& view, std::uint8_t* gray, std::uint32_t* voxels) = 0;
+  virtual void draw(const View& view, std::uint8_t* gray, Voxel* voxels) = 0;
+  /// What some rays meet first, as t, infinity where nothing; with `any`, what they meet at all, any t. False
+  /// where it is not for single rays.
+  virtual bool trace(const std::vector<FloatRay>& rays, bool any, float* t) {
+    static_cast<void>(rays);
+    static_cast<void>(any);
+    static_cast<void>(t);
+    return false;
+  }
 };
 
 /// Every point's box, tested at each pixel centre that it can cover, into a depth buffer.
-std::unique_ptr<Peer> make_raster(const std::vector<std::uint32_t>& voxels);
+std::unique_ptr<Peer> make_raster(const std::vector<Voxel>& voxels);
 /// Packets of 16 rays through Embree's hierarchy over unit boxes; null where it is not installed.
-std::unique_ptr<Peer> make_embree(const std::vector<std::uint32_t>& voxels);
+std::unique_ptr<Peer> make_embree(const std::vector<Voxel>& voxels);
+/// The same through Embree's own triangles: nine numbers each, in voxels.
+std::unique_ptr<Peer> make_embree_triangles(const std::vector<float>& corners);
 /// A hierarchical DDA over NanoVDB's active voxels; null where it is not installed.
-std::unique_ptr<Peer> make_nanovdb(const std::vector<std::uint32_t>& voxels);
+std::unique_ptr<Peer> make_nanovdb(const std::vector<Voxel>& voxels);
 
 }  // namespace thimble::benchmarks
 

@@ -6,11 +6,11 @@ namespace {
 
 class Raster : public Peer {
  public:
-  explicit Raster(const std::vector<std::uint32_t>& voxels) : voxels_(voxels) {}
+  explicit Raster(const std::vector<Voxel>& voxels) : voxels_(voxels) {}
   std::string name() const override { return "exact raster"; }
-  std::size_t bytes() const override { return voxels_.size() * sizeof(std::uint32_t); }
+  std::size_t bytes() const override { return voxels_.size() * sizeof(Voxel); }
 
-  void draw(const View& view, std::uint8_t* gray, std::uint32_t* voxels) override {
+  void draw(const View& view, std::uint8_t* gray, Voxel* voxels) override {
     const std::size_t pixels =
         static_cast<std::size_t>(view.width_px) * static_cast<std::size_t>(view.height_px);
     nearest_.assign(pixels, kNothing);
@@ -47,13 +47,13 @@ class Raster : public Peer {
   }
 
   template <bool kPerspective>
-  void draw_boxes(const View& view, std::uint8_t* gray, std::uint32_t* ids) {
+  void draw_boxes(const View& view, std::uint8_t* gray, Voxel* ids) {
     const wide::Frame& frame = view.frame;
     const auto last_x = static_cast<float>(view.width_px - 1);
     const auto last_y = static_cast<float>(view.height_px - 1);
-    for (const std::uint32_t voxel : voxels_) {
-      const float low[3] = {static_cast<float>(voxel & 1023U), static_cast<float>(voxel >> 10 & 1023U),
-                            static_cast<float>(voxel >> 20)};
+    for (const Voxel voxel : voxels_) {
+      const float low[3] = {static_cast<float>(voxel.x), static_cast<float>(voxel.y),
+                            static_cast<float>(voxel.z)};
       const auto apply = [&](const float(&of)[4]) {
         return of[0] * (low[0] + 0.5F) + of[1] * (low[1] + 0.5F) + of[2] * (low[2] + 0.5F) + of[3];
       };
@@ -86,8 +86,8 @@ class Raster : public Peer {
   }
 
   template <bool kPerspective>
-  void test(const View& view, const float (&low)[3], std::uint32_t voxel, std::int32_t x, std::int32_t y,
-            std::uint8_t* gray, std::uint32_t* ids) {
+  void test(const View& view, const float (&low)[3], Voxel voxel, std::int32_t x, std::int32_t y,
+            std::uint8_t* gray, Voxel* ids) {
     const FloatRay ray = ray_of(view, x, y);
     float enter = 0;
     float leave = kNothing;
@@ -114,7 +114,7 @@ class Raster : public Peer {
     }
   }
 
-  const std::vector<std::uint32_t>& voxels_;
+  const std::vector<Voxel>& voxels_;
   std::vector<float> nearest_;
 };
 
@@ -129,7 +129,7 @@ View::View(const Camera& camera, std::int32_t near_plane_q8, std::int32_t far_pl
   (void)wide::make_frame(camera, {0, 0, width_px, height_px}, &frame);
 }
 
-std::unique_ptr<Peer> make_raster(const std::vector<std::uint32_t>& voxels) {
+std::unique_ptr<Peer> make_raster(const std::vector<Voxel>& voxels) {
   return std::make_unique<Raster>(voxels);
 }
 
