@@ -416,6 +416,11 @@ TEST_CASE(
   CHECK(groups["together"] >= 20);
   CHECK(front >= 2);
   CHECK(has_error);
+  std::string out;
+  rows_of(folder, with(view, {"--for-error", "0"}), &out);
+  CHECK(out.find("light: occlusion rays 32, roughness rays 4, bounces 8\n") != std::string::npos);
+  CHECK(out.find("with --shade as given here") != std::string::npos);
+  CHECK(out.find("--bounces 8 of thimble render") != std::string::npos);
   // No light asked for, none measured.
   for (const Json& row : rows_of(folder, with(view, {"--effects", "none"}))) {
     CHECK(row["row"] != "light");
@@ -425,7 +430,9 @@ TEST_CASE(
 
 TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near what was counted there") {
   const TemporaryFolder folder;
-  const Json rows = rows_of(folder, {"demo", "--size", "128x64", "--shade", "color"});
+  accuracy(
+      {"demo", "--size", "128x64", "--shade", "color", "--rounds", "1", "--json", folder.path("d.json")});
+  const Json rows = Json::parse(read_text(folder.path("d.json")));
   // Ray by ray, setting the camera up included (src/DESIGN.md, "Frames on a chip").
   const double counted = 40.5e6;
   CHECK(rows[0]["lm3s6965evb_instructions"].get<double>() ==

@@ -194,8 +194,22 @@ std::string answer(const std::string& question, const AccuracyRow& row) {
          " of 255, PSNR " + decibels(row.psnr_db) + (std::isfinite(row.psnr_db) ? " dB\n" : "\n");
 }
 
+// Rendering draws a scene's light unless it is told what to shade.
+std::string unlit_advice(const AccuracyStudy& study) {
+  return study.effects == kNoEffects
+             ? ""
+             : "  with --shade as given here; without it thimble render draws light\n";
+}
+
 std::string light_answer(const AccuracyRow* row) {
-  return row == nullptr ? "" : answer("lit pictures, against the best light", *row);
+  if (row == nullptr) {
+    return {};
+  }
+  const int bounces = row->light.bounces;
+  return answer("lit pictures, against the best light", *row) +
+         (bounces < 0 ? ""
+                      : "  --bounces " + std::to_string(bounces) +
+                            " of thimble render; all else of it stands in the scene\n");
 }
 
 }  // namespace
@@ -337,7 +351,7 @@ std::string answer_for_ms(const AccuracyStudy& study, double ms) {
                      options_of(*fastest) + ", takes " + brief(fastest->ms_median) +
                      " ms (--size makes frames smaller)");
   }
-  std::string text = answer(question, *best);
+  std::string text = answer(question, *best) + unlit_advice(study);
   const WorkRow* early = nullptr;
   for (const WorkRow& row : study.work) {
     early = row.picture.ms_median <= ms ? &row : early;
@@ -362,7 +376,7 @@ std::string answer_for_error(const AccuracyStudy& study, double rms) {
                      fixed(rms_of(nearest->psnr_db), 2));
   }
   return answer("fastest with an RMS error of " + shortest(rms) + " of 255 at most", *fastest) +
-         light_answer(fastest_with(study.light, psnr_of(rms)));
+         unlit_advice(study) + light_answer(fastest_with(study.light, psnr_of(rms)));
 }
 
 }  // namespace thimble::tools
