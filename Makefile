@@ -52,11 +52,11 @@ bench: deps-bench ## Build and run the benchmarks
 	@cmake --build build/release -- --quiet
 	@build/release/thimble_benchmarks $(BENCH_ARGS)
 
-# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes.
+# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes, EFFECTS its --effects.
 BOARD ?= lm3s6965evb
 APP ?= demo
 SCENE ?= demo
-export FRAMES
+export FRAMES EFFECTS
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
 	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"

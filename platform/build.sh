@@ -2,7 +2,9 @@
 # Builds firmware for a board into build/firmware/BOARD and says what each image takes of it.
 #   build.sh BOARD|all APP[;APP...] [SCENE]     SCENE: what `thimble bake` takes, or a header (.h) that it made;
 #                                               without it there is no scene in the image
-# In the environment: FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then; HOLD_FPS=N holds a rate of frames; THIMBLE_FIRMWARE is another place than build/firmware.
+# In the environment: EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
+# SCENE=demo for the board's BOARD_DEMO_EFFECTS); FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then;
+# HOLD_FPS=N holds a rate of frames; THIMBLE_FIRMWARE is another place than build/firmware.
 set -eu
 cd "$(dirname "$0")/.."
 if [ "$1" = all ]; then
@@ -23,7 +25,11 @@ case $scene in
   *.h) header=$PWD/$scene ;;
   *)
     header=$PWD/$work/scene.h
-    build/release/thimble bake "$scene" --board "$board" -o "$header" --quiet
+    effects=${EFFECTS:-}
+    if [ -z "$effects" ] && [ "$scene" = demo ]; then
+      effects=$(fact DEMO_EFFECTS)
+    fi
+    build/release/thimble bake "$scene" --board "$board" --effects "${effects:-auto}" -o "$header" --quiet
     ;;
 esac
 # A compiler cache would hand out objects without their call graphs.

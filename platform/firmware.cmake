@@ -42,6 +42,15 @@ else()
   set(THIMBLE_SCENE_INCLUDE "")
   set(THIMBLE_SCENE_BYTES "{}")
 endif()
+# The effects that the scene was baked for: the applications hold these and no others.
+set(THIMBLE_IMAGE_EFFECTS 0)
+if(THIMBLE_SCENE_HEADER)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${THIMBLE_SCENE_HEADER})
+  file(STRINGS ${THIMBLE_SCENE_HEADER} line REGEX "^#define THIMBLE_SCENE_EFFECTS ")
+  if(line MATCHES "EFFECTS (0x[0-9a-f]+)u?")
+    set(THIMBLE_IMAGE_EFFECTS ${CMAKE_MATCH_1})
+  endif()
+endif()
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/scene.cpp.in ${generated}/scene.cpp @ONLY)
 
 # One set of flags for the core, the port and the applications.
@@ -88,14 +97,18 @@ endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
 target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+# Those that draw a scene with light (apps/scene_light.h).
+set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp
+  ${THIMBLE_PLATFORM_DIR}/apps/water.cpp PROPERTIES
+  COMPILE_DEFINITIONS THIMBLE_IMAGE_EFFECTS=${THIMBLE_IMAGE_EFFECTS})
 target_link_libraries(thimble_apps PRIVATE thimble_app_warnings)
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPERTIES
   COMPILE_OPTIONS -fno-tree-loop-distribute-patterns)
 
-foreach(app IN LISTS THIMBLE_APP)
-  add_executable(${app} ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
+# An image: APP.elf, APP.bin, APP.hex from `ARGN`, with whatever of the libraries that needs.
+function(thimble_add_image app)
+  add_executable(${app} ${ARGN})
   set_target_properties(${app} PROPERTIES SUFFIX .elf LINK_DEPENDS ${generated}/firmware.ld)
-  target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
   target_include_directories(${app} PRIVATE ${THIMBLE_PLATFORM_DIR})
   set(stack ${BOARD_STACK_BYTES})
   if(DEFINED BOARD_STACK_BYTES_${app})
@@ -112,4 +125,28 @@ foreach(app IN LISTS THIMBLE_APP)
     COMMAND ${CMAKE_COMMAND} -DPREFIX=${THIMBLE_BINUTILS_PREFIX} -DBOARD=${BOARD_NAME} -DAPP=${app}
       -DFLASH_BYTES=${BOARD_FLASH_BYTES} -DRAM_BYTES=${BOARD_RAM_BYTES} -P ${THIMBLE_PLATFORM_DIR}/memory_table.cmake
     BYPRODUCTS ${app}.bin ${app}.hex VERBATIM)
+endfunction()
+
+foreach(app IN LISTS THIMBLE_APP)
+  thimble_add_image(${app} ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
+  target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
 endforeach()
+
+# What effects take of the flash: one source, an image a set (tests/boards/effects.sh). Built by --target effect_images.
+set(sets plain base 0x000 0x001 0x002 0x004 0x008 0x010 0x020 0x040 0x080 0x100 0x200 0x400 0x003 0x0b3 0x7ff)
+foreach(set IN LISTS sets)
+  set(image effects_${set})
+  thimble_add_image(${image} ${PROJECT_SOURCE_DIR}/tests/boards/effect_image.cpp)
+  set_target_properties(${image} PROPERTIES EXCLUDE_FROM_ALL ON)
+  target_compile_options(${image} PRIVATE -Os)
+  target_link_libraries(${image} PRIVATE thimble_app_warnings)
+  if(set STREQUAL "plain")
+    target_compile_definitions(${image} PRIVATE THIMBLE_IMAGE_PLAIN)
+  elseif(set STREQUAL "base")
+    target_compile_definitions(${image} PRIVATE THIMBLE_IMAGE_BASE)
+  else()
+    target_compile_definitions(${image} PRIVATE THIMBLE_IMAGE_EFFECTS=${set})
+  endif()
+  list(APPEND images ${image})
+endforeach()
+add_custom_target(effect_images DEPENDS ${images})

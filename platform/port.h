@@ -58,6 +58,9 @@ ConstBytes scene();
 /// Sends rows to the display, in its format and width; `stride_bytes` 0. Every row of a frame is flushed
 /// once, in any order of bands. Without a display it does nothing. The bytes may be used again when it
 /// returns.
+///
+/// A band without bytes (`pixels` empty, format, first row and rows as ever) says that these rows are as in
+/// the frame before: nothing is sent, and a display shows what it has. Not before a whole frame was flushed.
 void flush(const Band& band);
 
 /// What the hand holds down: buttons of the board, or keys.

@@ -104,8 +104,10 @@ struct KeySource {
   int world_level;
   uint8_t material_of_all;
   // Found by `count`.
-  uint32_t level_nodes[kMaxLevel + 1] = {};
-  uint32_t level_blocks[kMaxLevel + 1] = {};
+  // Where the nodes and solid blocks of each level end, levels one after another from the highest down; while
+  // they are counted, how many there are.
+  uint32_t node_ends[kMaxLevel + 1] = {};
+  uint32_t block_ends[kMaxLevel + 1] = {};
   uint32_t voxels = 0;
 
   int level() const { return world_level; }
@@ -150,8 +152,9 @@ struct KeySource {
   void write_nodes(Writer* writer) const;
 };
 
+// Apart from its caller, so that its tables do not lie on the stack beside those of `write_nodes`.
 template <class Key>
-Counter KeySource<Key>::count() {
+[[gnu::noinline]] Counter KeySource<Key>::count() {
   Counter counter;
   counter.shape.level = world_level;
   if (keys.size == 0) {
@@ -185,7 +188,7 @@ Counter KeySource<Key>::count() {
     }
     const int filled = block_filled(i, run);
     for (int level = 1; level <= filled; ++level) {
-      ++level_blocks[level];
+      ++block_ends[level];
     }
   }
   uint64_t nodes = 0;
@@ -194,18 +197,22 @@ Counter KeySource<Key>::count() {
   for (int level = world_level; level >= 1; --level) {
     begun += apart[level];
     nodes += begun;
-    level_nodes[level] = static_cast<uint32_t>(begun);
+    node_ends[level] = static_cast<uint32_t>(begun);
   }
   // Blocks within larger ones are taken back.
   for (int level = 1; level <= world_level; ++level) {
-    const uint32_t within = level < world_level ? 8 * level_blocks[level + 1] : 0;
+    const uint32_t within = level < world_level ? 8 * block_ends[level + 1] : 0;
     if (level == 1) {
-      left -= uint64_t{8} * level_blocks[1];
+      left -= uint64_t{8} * block_ends[1];
     }
-    level_blocks[level] -= within;
-    level_nodes[level] -= within;
+    block_ends[level] -= within;
+    node_ends[level] -= within;
     nodes -= within;
-    blocks += level_blocks[level];
+    blocks += block_ends[level];
+  }
+  for (int level = world_level - 1; level >= 1; --level) {
+    node_ends[level] += node_ends[level + 1];
+    block_ends[level] += block_ends[level + 1];
   }
   counter.overflow = nodes > UINT32_MAX || left > UINT32_MAX;
   voxels = static_cast<uint32_t>(left);
@@ -221,25 +228,19 @@ Counter KeySource<Key>::count() {
 }
 
 template <class Key>
-void KeySource<Key>::write_nodes(Writer* writer) const {
+[[gnu::noinline]] void KeySource<Key>::write_nodes(Writer* writer) const {
   if (keys.size == 0) {
     return;
   }
   // Of each level: the node being written, its mask so far, and where the next solid block's material goes.
   // What is going to be taken back may lie beyond a level's end, where another level begins: it is left out.
   struct Place {
-    uint8_t* node;
-    const uint8_t* nodes_end;
+    uint32_t node;
     uint32_t block;
-    uint32_t blocks_end;
     unsigned mask;
   } places[kMaxLevel + 1] = {};
-  uint8_t* nodes = writer->masks;
-  uint32_t blocks = 0;
-  for (int level = world_level; level >= 1; --level) {
-    places[level] = {nodes, nodes + level_nodes[level], blocks, blocks + level_blocks[level], 0};
-    nodes += level_nodes[level];
-    blocks += level_blocks[level];
+  for (int level = world_level - 1; level >= 1; --level) {
+    places[level] = {node_ends[level + 1], block_ends[level + 1], 0};
   }
   uint32_t voxel = 0;  // number of the next one's material
   size_t run = 0;
@@ -252,8 +253,8 @@ void KeySource<Key>::write_nodes(Writer* writer) const {
       const bool is_new = level <= apart;
       place.node += is_new ? 1 : 0;
       place.mask = (is_new ? 0U : place.mask) | 1U << ((here >> (3 * (level - 1))) & 7U);
-      if (place.node < place.nodes_end) {
-        *place.node = static_cast<uint8_t>(place.mask);
+      if (place.node < node_ends[level]) {
+        writer->masks[place.node] = static_cast<uint8_t>(place.mask);
       }
     };
     // Neighbours in random order differ on any of the lowest levels: to write those always costs less than to
@@ -282,8 +283,8 @@ void KeySource<Key>::write_nodes(Writer* writer) const {
     const int filled = block_filled(i, run);
     for (int full = 1; full <= filled; ++full) {
       Place& place = places[full];
-      if (place.node < place.nodes_end) {
-        *place.node = 0;
+      if (place.node < node_ends[full]) {
+        writer->masks[place.node] = 0;
       }
       if (full > 1) {
         places[full - 1].node -= 8;
@@ -291,7 +292,7 @@ void KeySource<Key>::write_nodes(Writer* writer) const {
       } else {
         voxel -= 8;
       }
-      if (writer->block_materials != nullptr && place.block < place.blocks_end) {
+      if (writer->block_materials != nullptr && place.block < block_ends[full]) {
         writer->block_materials[place.block] = material(i);
       }
       ++place.block;

@@ -113,6 +113,7 @@ void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
   if ((frame.effects & kWater) != 0) {
     // The water is asked from the beginning of a ray only: a new one, from the face on.
     now->ray.origin = meeting.at_water ? meeting.at : start_on_face(now->ray, meeting.hit);
+    now->axis = meeting.hit.axis;
     leg->from = {};
   }
 }

@@ -38,12 +38,36 @@ Vec3i turned_to(Vec3i direction, int axis, bool upwards) {
   return direction;
 }
 
-void send(Frame& frame, const PendingRay& from, LitRayKind kind, const Vec3Q8& at, const Vec3i& direction,
-          uint32_t share_q16, PendingRay* pending, size_t* count) {
+// Where a ray that is sent from the surface of the water begins, so that it is on the side where it belongs,
+// also where it begins in the next column: what is reflected by a step of the wave runs towards it, and a
+// point rounded to 1/256 voxel may lie on a column's edge. It is moved up or down to that column's top.
+Vec3Q8 on_its_side(const Frame& frame, const Meeting& meeting, const Vec3Q8& at, const Vec3i& direction,
+                   bool in_water) {
+  const WaterSurface& water = frame.scene.water;
+  if (!meeting.at_surface) {
+    return at;
+  }
+  const Vec3i voxel = starting_voxel({at, direction});
+  const int32_t x = voxel.x - water.corner.x;
+  const int32_t y = voxel.y - water.corner.y;
+  if (x < 0 || y < 0 || x >= water.width || y >= water.depth || water.height_q16(x, y) < 0) {
+    return at;
+  }
+  const int32_t top = water.corner.z * Q8::kOne + water.height_q8(x, y);
+  Vec3Q8 moved = at;
+  if (in_water ? at.z.raw > top : at.z.raw < top) {
+    moved.z = Q8::from_raw(top);
+  }
+  return moved;
+}
+
+void send(Frame& frame, const PendingRay& from, LitRayKind kind, int8_t axis, const Vec3Q8& at,
+          const Vec3i& direction, uint32_t share_q16, PendingRay* pending, size_t* count) {
   PendingRay out;
   out.ray = {at, direction};
   out.bounces = static_cast<uint8_t>(from.bounces + 1);
   out.kind = kind;
+  out.axis = axis;
   for (int i = 0; i < 3; ++i) {
     out.weight.c[i] = weighed(from.weight.c[i], share_q16);
   }
@@ -75,7 +99,7 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
            size_t* count) {
   const uint32_t here = index_q12(frame, leg->medium);
   const uint32_t there = index_q12(frame, meeting.beyond);
-  const int axis = meeting.hit.axis;
+  const int8_t axis = meeting.hit.axis;
   if (here == there || axis < 0 || now->bounces >= frame.scene.bounces) {
     go_straight(frame, now, leg, meeting);
     return true;
@@ -84,11 +108,14 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   const Vec3i unit = unit_q14(now->ray.direction);
   const uint32_t eta = eta_q12(here, there);
   // Which way what is reflected goes. At a step of a wave a ray may come to the surface from the wrong side;
-  // it then goes straight on.
+  // it then goes straight on: into a crest where it is; out of one that it has entered from above not at all,
+  // but on below the next column's top, or it would be bent twice.
   const bool upwards =
       meeting.at_surface ? leg->medium.kind != Medium::kWaterBody : now->ray.direction[axis] < 0;
   if (meeting.at_surface && upwards != (now->ray.direction[axis] < 0)) {
     go_straight(frame, now, leg, meeting);
+    // Out of the water downwards: on in it.
+    now->ray.origin = on_its_side(frame, meeting, at, now->ray.direction, true);
     return true;
   }
   Vec3i reflected = reflect(now->ray.direction, axis);
@@ -119,9 +146,12 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   const int32_t cosine = here < there ? cosine_in : cosine_out;
   const uint32_t back = passes ? fresnel_q16(cosine, r0_q16(here, there)) : kOneQ16;
   const LitRayKind kind = meeting.at_water ? LitRayKind::kWaterRay : LitRayKind::kGlassRay;
-  send(frame, *now, kind, at, reflected, back, pending, count);
+  const bool is_wet = leg->medium.kind == Medium::kWaterBody;
+  send(frame, *now, kind, meeting.hit.axis, on_its_side(frame, meeting, at, reflected, is_wet), reflected,
+       back, pending, count);
   if (passes) {
-    send(frame, *now, kind, at, refracted, kOneQ16 - back, pending, count);
+    send(frame, *now, kind, meeting.hit.axis, on_its_side(frame, meeting, at, refracted, !is_wet), refracted,
+         kOneQ16 - back, pending, count);
   }
   return false;
 }

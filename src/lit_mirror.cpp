@@ -23,6 +23,7 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, PendingRay* 
   PendingRay out;
   out.bounces = static_cast<uint8_t>(now->bounces + 1);
   out.kind = LitRayKind::kMirrorRay;
+  out.axis = static_cast<int8_t>(axis);
   const bool rough = metal.roughness != 0 && now->bounces == 0;
   for (int i = 0; i < (rough ? kRoughnessRays : 1); ++i) {
     out.ray = {spot.at, reflect(spot.arriving, axis)};

@@ -13,12 +13,18 @@ constexpr uint16_t kAmbientShare[6] = {222, 222, 200, 200, 160, 256};
 // entered by the lowest of the faces there, which may be one that another voxel hides: then light would not
 // reach what the eye sees. So it is the lowest that is not hidden; and where all are, in a crease, the point
 // on the edge itself, from where rays go out of the crease as from both of its sides.
-Vec3Q8 choose_face(const Frame& frame, const Ray& ray, Hit* hit) {
+//
+// A ray that starts in something solid (axis -1) but on a face of it, and goes in there, has come to that
+// face: what is reflected within 1/256 voxel of a crease starts on the other side's face. Not on its own:
+// that is behind it.
+Vec3Q8 choose_face(const Frame& frame, const PendingRay& now, Hit* hit) {
+  const Ray& ray = now.ray;
   const int32_t side = int32_t{1} << hit->block_level;
   Hit entered[3];  // through each of the faces crossed at that t
   int count = 0;
   Vec3Q8 edge = start_on_face(ray, *hit);
-  for (int axis = hit->axis < 0 ? 3 : hit->axis; axis < 3; ++axis) {
+  const bool starts_inside = hit->axis < 0;
+  for (int axis = starts_inside ? 0 : hit->axis; axis < 3; ++axis) {
     const int32_t direction = ray.direction[axis];
     const int32_t plane = (hit->voxel[axis] + (direction > 0 ? 0 : side)) * Q8::kOne;
     const int32_t distance = plane - ray.origin[axis].raw;
@@ -26,16 +32,18 @@ Vec3Q8 choose_face(const Frame& frame, const Ray& ray, Hit* hit) {
     one.axis = static_cast<int8_t>(axis);
     one.t_numerator = direction > 0 ? distance : -distance;
     one.t_denominator = static_cast<int32_t>(absolute(direction)) * Q8::kOne;
-    if (direction != 0 && one.t_numerator >= 0 && !is_before(point_of(one), point_of(*hit))) {
+    if (direction != 0 &&
+        (starts_inside ? distance == 0 && axis != now.axis
+                       : one.t_numerator >= 0 && !is_before(point_of(one), point_of(*hit)))) {
       entered[count++] = one;
       edge[axis] = Q8::from_raw(plane);
     }
   }
-  if (count < 2) {
+  if (count == 0 || (count == 1 && !starts_inside)) {
     return edge;
   }
   for (int i = 0; i < count; ++i) {
-    const int axis = entered[i].axis;
+    const int8_t axis = entered[i].axis;
     const Vec3Q8 at = start_on_face(ray, entered[i]);
     Vec3i before{at.x.floor(), at.y.floor(), at.z.floor()};
     before[axis] = hit->voxel[axis] + (ray.direction[axis] > 0 ? -1 : side);
@@ -84,13 +92,13 @@ void meet_solid(Frame& frame, const PendingRay& now, Meeting* meeting) {
   meeting->opaque = meeting->found;
 }
 
-Spot spot_of(const Frame& frame, const Ray& ray, const Meeting& meeting) {
+Spot spot_of(const Frame& frame, const PendingRay& now, const Meeting& meeting) {
   Hit hit = meeting.hit;
   Spot spot;
-  spot.at = choose_face(frame, ray, &hit);
-  spot.face = face_of(hit, ray.direction);
+  spot.at = choose_face(frame, now, &hit);
+  spot.face = face_of(hit, now.ray.direction);
   spot.inside = hit.axis < 0;
-  spot.arriving = ray.direction;
+  spot.arriving = now.ray.direction;
   spot.surface = surface_of(frame, hit.material);
   return spot;
 }

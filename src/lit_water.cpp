@@ -9,18 +9,26 @@ RayPoint point_of_water(const WaterHit& hit) {
   return {hit.t_numerator, hit.t_denominator};
 }
 
-// Height of the column beyond the face that was crossed; 0 where there is no water.
-int32_t height_beyond_q8(const WaterSurface& water, const WaterHit& hit) {
+// Whether there is water in the column beyond the side that was crossed.
+bool has_water_beyond(const WaterSurface& water, const WaterHit& hit) {
   const int32_t x = hit.column_x + (hit.axis == 0 ? hit.side : 0);
   const int32_t y = hit.column_y + (hit.axis == 1 ? hit.side : 0);
-  if (x < 0 || y < 0 || x >= water.width || y >= water.depth || water.height_q16(x, y) < 0) {
-    return 0;
-  }
-  return water.height_q8(x, y);
+  return x >= 0 && y >= 0 && x < water.width && y < water.depth && water.height_q16(x, y) >= 128;
+}
+
+// Whether a point lies in the box that no column leaves, or on its faces.
+bool is_in_box(const WaterSurface& water, const Vec3Q8& at) {
+  const auto within = [](Q8 value, int32_t low, int32_t size_q8) {
+    const int32_t from_low = value.raw - low * Q8::kOne;
+    return from_low >= 0 && from_low <= size_q8;
+  };
+  return within(at.x, water.corner.x, water.width * Q8::kOne) &&
+         within(at.y, water.corner.y, water.depth * Q8::kOne) &&
+         within(at.z, water.corner.z, water.highest_q8);
 }
 
 // Makes the meeting one with a face of the water. A side between two columns is no wall but a step of the
-// wave: the ray goes on from the top of the column that it enters, or over which it leaves, at its edge.
+// wave, which the wave's own slope bends.
 void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::Kind beyond,
                Meeting* meeting) {
   const WaterSurface& water = frame.scene.water;
@@ -37,11 +45,9 @@ void meet_face(const Frame& frame, const Ray& ray, const WaterHit& hit, Medium::
   meeting->hit.t_numerator = hit.t_numerator;
   meeting->hit.t_denominator = hit.t_denominator;
   meeting->at = start_on_plane(ray, hit.axis, hit.side < 0 ? low[hit.axis] : high[hit.axis], low, high);
-  const int32_t step = hit.axis == 2 ? 0 : height_beyond_q8(water, hit);
-  if (step > 0) {
+  if (hit.axis != 2 && has_water_beyond(water, hit)) {
     meeting->at_surface = true;
     meeting->hit.axis = 2;
-    meeting->at.z = Q8::from_raw(low.z + (beyond == Medium::kAir ? step : height));
   }
 }
 
@@ -57,9 +63,13 @@ void begin_in_water(const Frame& frame, const PendingRay& now, Leg* leg) {
 void meet_water(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting) {
   const WaterSurface& water = frame.scene.water;
   if (leg.medium.kind == Medium::kSolid) {
-    if (meeting->found && !meeting->opaque && meeting->beyond.kind == Medium::kAir &&
-        water_holds(water, start_on_face(now.ray, meeting->hit), now.ray.direction)) {
-      meeting->beyond = {Medium::kWaterBody, 0};
+    if (meeting->found && !meeting->opaque && meeting->beyond.kind == Medium::kAir) {
+      const Vec3Q8 at = start_on_face(now.ray, meeting->hit);
+      // A column is looked at, and counted, wherever one may reach: also above those of now.
+      frame.counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] += is_in_box(water, at) ? 1U : 0U;
+      if (water_holds(water, at, now.ray.direction)) {
+        meeting->beyond = {Medium::kWaterBody, 0};
+      }
     }
     return;
   }
@@ -76,10 +86,11 @@ void meet_water(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* me
 void filter_by_water(Frame& frame, LightRay* light) {
   const WaterSurface& water = frame.scene.water;
   WaterHit hit;
-  if (!water_leave(water, light->ray, &hit)) {
+  const bool starts_in_water = water_leave(water, light->ray, &hit);
+  frame.counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] += hit.visits;
+  if (!starts_in_water) {
     return;
   }
-  frame.counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] += hit.visits;
   RayPoint end = point_of_water(hit);
   if (light->is_point && is_before(light->place, end)) {
     end = light->place;

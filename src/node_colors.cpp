@@ -73,7 +73,7 @@ Status NodeColors::make(const CompactTree& tree, Span<const Rgb8> palette, Rgb8 
   uint32_t next_voxel = first;
 
   // Each turn opens a node, and every cursor ends at the last one.
-  for (int level = top;;) {
+  for (int level = top; level > 0;) {
     Level& here = levels[level];
     const uint32_t index = here.next_node++;
     if (index >= nodes) {
@@ -107,6 +107,7 @@ Status NodeColors::make(const CompactTree& tree, Span<const Rgb8> palette, Rgb8 
     }
     --level;
   }
+  return Status::kDamaged;
 }
 
 Rgb8 NodeColors::color(uint32_t index) const {

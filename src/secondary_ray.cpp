@@ -224,7 +224,7 @@ bool Walk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
       if (step.rest == 0) {
         pending &= ~(1U << level);
       }
-      const bool filled = (step.mask >> (octant ^ ray_.flip) & 1U) != 0;
+      const bool filled = ((uint32_t{step.mask} >> (octant ^ ray_.flip)) & 1U) != 0;
       if (level == 1 && filled) {
         const uint8_t material = voxel_material(step, octant ^ ray_.flip);
         if (search.medium && material == search.material) {

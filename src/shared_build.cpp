@@ -118,7 +118,7 @@ class NodeTable {
     if (words <= kWayWords) {
       return false;
     }
-    way_ = reinterpret_cast<uint32_t*>(work.data);
+    way_ = static_cast<uint32_t*>(static_cast<void*>(work.data));  // aligned just now
     heads_ = way_ + kWayWords;
     const uint32_t left = static_cast<uint32_t>(words) - kWayWords;
     head_count_ = left / 8 + 1;

@@ -1,4 +1,6 @@
 // --samples, --cutoff and --max-depth of `thimble render`: what they draw, what they count, what they refuse.
+// Plain pictures are drawn by single rays here: the wide renderer counts other visits and has memory of its
+// own.
 #include <doctest/doctest.h>
 
 #include <algorithm>

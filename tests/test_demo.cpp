@@ -10,6 +10,7 @@
 
 #include "apps/apps.h"
 #include "apps/demo_view.h"
+#include "apps/scene_light.h"
 #include "boards/board_table.h"
 #include "golden/demo_table.h"
 #include "host/simulation.h"
@@ -31,14 +32,20 @@ constexpr std::uint32_t kFrameStep = 1;
 constexpr int kWandering = 2000;
 #endif
 
+tools::Baked bake_demo(EffectSet effects) {
+  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
+  tools::BakingOptions options;
+  options.effects = {effects == kNoEffects, effects};
+  options.name = "demo";
+  options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+  return tools::bake_scene(*source, options);
+}
 const tools::Baked& demo_scene() {
-  static const tools::Baked baked = [] {
-    const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
-    tools::BakingOptions options;
-    options.name = "demo";
-    options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
-    return tools::bake_scene(*source, options);
-  }();
+  static const tools::Baked baked = bake_demo(kNoEffects);
+  return baked;
+}
+const tools::Baked& lit_scene() {
+  static const tools::Baked baked = bake_demo(kDirectLight | kShadows);
   return baked;
 }
 
@@ -241,6 +248,85 @@ TEST_CASE("demo view: the golden frames -> the table") {
       CHECK(crc32(bytes_of(picture)) == golden::kDemoFrameCrc32[i]);
     }
   }
+}
+
+TEST_CASE("demo light: the golden frames -> the table, by the image's renderer and by the library's") {
+  constexpr EffectSet kSet = kDirectLight | kShadows;
+  const BakedScene& scene = lit_scene().scene;
+  CHECK(demo_scene().effects == kNoEffects);  // for those who ask for it only
+  CHECK(lit_scene().effects == kSet);
+  CHECK(crc32({scene.tree().bytes(), scene.tree().size_bytes()}) == golden::kDemoTreeCrc32);
+  apps::SceneLight light;
+  REQUIRE(apps::open_light(scene, &light) == nullptr);
+  const apps::Orbit orbit = apps::orbit_of(scene);
+  std::vector<std::uint8_t> picture(64 * 64);
+  const Band band{Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64};
+  static_assert(std::size(golden::kDemoLitFrameCrc32) == apps::kGoldenFrames);
+  for (std::uint32_t i = 0; i < apps::kGoldenFrames; ++i) {
+    CAPTURE(i);
+    Camera camera;
+    REQUIRE(apps::view_at(orbit, scene.tree(), i * apps::kGoldenStep, {}, 128, 64, &camera) == Status::kOk);
+    const Shading shading = apps::demo_shading(scene.palette());
+    LitCounts counts;
+    REQUIRE(apps::draw_lit(scene, camera, shading, light, band, &counts) == Status::kOk);
+    CHECK(crc32(bytes_of(picture)) == golden::kDemoLitFrameCrc32[i]);
+    CHECK(counts.rays[static_cast<int>(LitRayKind::kShadow)] > 1000);
+    std::fill(picture.begin(), picture.end(), std::uint8_t{0});
+    REQUIRE(render_lit_band<kSet>(scene.tree(), camera, shading, light.baked.scene, band) == Status::kOk);
+    CHECK(crc32(bytes_of(picture)) == golden::kDemoLitFrameCrc32[i]);
+    // Sensible exposure: neither murk nor glare.
+    double sum = 0;
+    for (const std::uint8_t pair : picture) {
+      sum += (pair >> 4) + (pair & 15);
+    }
+    CHECK(sum / 8192 > 4);
+    CHECK(sum / 8192 < 9);
+  }
+}
+
+TEST_CASE("demo light: a scene baked for it -> a fast frame, a lit one, and none until it moves") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const ConstBytes scene = bytes_of(lit_scene().bytes);
+  const auto crc = [](const host::PackedPicture& picture) { return crc32(bytes_of(picture.bytes)); };
+  const Run run = run_demo(board, scene, 40, {{10, "t"}, {11, "t"}, {20, "l"}, {30, "l"}});
+  CHECK(run.status == 0);
+  CHECK(run.fault == "");
+  REQUIRE(run.pictures.size() == 40);
+  CHECK(crc(run.pictures[0]) == golden::kDemoFrameCrc32[0]);
+  for (std::size_t i = 1; i < 10; ++i) {
+    CHECK(crc(run.pictures[i]) == golden::kDemoLitFrameCrc32[0]);
+  }
+  // Drawn: the fast one, the lit one, one at the same place as it begins to turn, one as it stops, a lit one
+  // there, ten without light, turning, one without and one with light as it stands still again.
+  const auto crcs = crcs_of(run.out, "frame");
+  REQUIRE(crcs.size() == 17);
+  CHECK(crcs.at(2) == golden::kDemoFrameCrc32[0]);
+  CHECK(crcs.at(3) != crcs.at(2));
+  std::size_t lit = 0;
+  for (std::size_t at = 0; (at = run.out.find(" lit\n", at)) != std::string::npos; ++at) {
+    ++lit;
+  }
+  CHECK(lit == 3);
+  // A scene without effects has no light to switch on.
+  const Run plain = run_demo(board, bytes_of(demo_scene().bytes), 3, {{1, "l"}});
+  CHECK(plain.out.find("the scene was baked for no effects") != std::string::npos);
+  CHECK(crcs_of(plain.out, "frame").size() == 3);
+}
+
+TEST_CASE("demo light: p on a lit picture -> sends what is shown") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const Run run = run_demo(board, bytes_of(lit_scene().bytes), 5, {{2, "p"}}, true);
+  const std::string header = "P5\n128 64\n255\n";
+  const std::size_t start = run.out.find(header);
+  REQUIRE(start != std::string::npos);
+  REQUIRE(run.out.size() >= start + header.size() + 128 * 64);
+  const auto& shown = run.pictures[2].bytes;
+  int differ = 0;
+  for (std::size_t i = 0; i < 128 * 64; ++i) {
+    const int level = i % 2 == 0 ? shown[i / 2] >> 4 : shown[i / 2] & 15;
+    differ += static_cast<unsigned char>(run.out[start + header.size() + i]) == level * 17 ? 0 : 1;
+  }
+  CHECK(differ == 0);
 }
 
 TEST_CASE("demo view: any buttons for any time -> a camera, and never one in something solid") {

@@ -322,11 +322,15 @@ TEST_CASE("water: a camera under it sees its floor near by, and up through the s
   CHECK(near(world.middle(effects).r, absorbed(40, 0, 4), 1));
   world.look({16 * 256, 16 * 256, 8 * 256}, {16 * 256, 16 * 256, 40 * 256}, 4, 9, 9);
   CHECK(near(world.middle(effects).r, 0.98 * absorbed(40, 0, 8), 4));
-  // Flat up, beyond 48.6 degrees from straight: total reflection, so the floor's light comes mirrored and no
-  // sky. The floor is white too; made black it is dark.
+  // 56 degrees from straight up, beyond the critical 48.6: total reflection, so the floor's light comes
+  // mirrored and no sky. The floor is white too; made black it is dark. (It comes down at x = 23: flatter,
+  // and it would leave through the open side of the water, into the sky.)
   world.surfaces[0].albedo = {0, 0, 0};
-  world.look({2 * 256, 16 * 256, 14 * 256}, {14 * 256, 16 * 256, 17 * 256}, 4, 9, 9);
-  CHECK(world.middle(effects).b == 0);
+  world.look({2 * 256, 16 * 256, 14 * 256}, {17 * 256, 16 * 256, 24 * 256}, 4, 9, 9);
+  CHECK(world.middle(effects) == Rgb8{0, 0, 0});
+  // 41 degrees: most of it goes out.
+  world.look({2 * 256, 16 * 256, 10 * 256}, {9 * 256, 16 * 256, 18 * 256}, 4, 9, 9);
+  CHECK(world.middle(effects).b > 200);
 }
 
 TEST_CASE("water: a camera exactly on the surface is above it looking up, in it looking down") {
@@ -367,6 +371,34 @@ TEST_CASE("coplanar glass and water: solid goes before water, and neither is cou
   for (std::size_t i = 0; i < with.size(); ++i) {
     CHECK(distance(with[i], without[i]) <= 3);
   }
+}
+
+TEST_CASE("water: the floor, seen by total reflection at the water's open sides, is lit up to its edge") {
+  // A ray that is reflected within 1/256 voxel above the floor starts on the floor's edge. It is the floor's
+  // top that it sees, which the sun lights, not the side behind it.
+  LitWorld world;
+  build_basin(&world, 12 * 256);
+  set_ambient(&world.scene, 0);
+  world.lights = {sun({0, 0, 1}, 256)};
+  world.scene.water_material.albedo = kWhite;
+  world.finish();
+  std::uint64_t sent = 0;
+  for (int i = 0; i < 6; ++i) {
+    world.look({48 * 256 + 40 * i, -31 * 256 - 17 * i, 25 * 256}, {16 * 256, 0, 10 * 256 + 9 * i}, 11, 160,
+               120);
+    LitCounts counts;
+    const std::vector<Rgb8> picture = world.draw(kDirectLight | kWater | kSky, &counts);
+    for (int pixel = 0; pixel < 160 * 120; ++pixel) {
+      Hit hit;
+      REQUIRE(closest_hit(world.tree, world.camera.ray(pixel % 160, pixel / 160), &hit) == Status::kOk);
+      // Seen past the water: a side.
+      if (hit.kind != HitKind::kHit || hit.axis == 2) {
+        CHECK(picture[static_cast<std::size_t>(pixel)].g > 200);
+      }
+    }
+    sent += counts.rays[static_cast<int>(LitRayKind::kWaterRay)];
+  }
+  CHECK(sent > 6 * 2 * 160 * 120);
 }
 
 TEST_CASE("light under water: dimmed by the way through it") {

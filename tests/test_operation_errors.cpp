@@ -33,7 +33,7 @@ TEST_CASE("operation errors: sweep -> none above its bound, and no bound above f
     CHECK(names.insert(found.operation).second);
   }
   CHECK(last == 1);
-  CHECK(names.size() >= 14);
+  CHECK(names.size() >= 24);
 }
 
 }  // namespace

@@ -361,6 +361,27 @@ TEST_CASE(
   CHECK(display.end_frame());
 }
 
+TEST_CASE(
+    "strict display: rows that are kept -> as they were shown last; not before there is a whole picture") {
+  StrictDisplay display(2, 3, PixelFormat::kGray8);
+  const Band kept{{}, PixelFormat::kGray8, 0, 0, 1};
+  CHECK(display.flush(kept));
+  for (const std::uint8_t level : {std::uint8_t{1}, std::uint8_t{2}}) {
+    std::vector<std::uint8_t> pixels(6, level);
+    CHECK_FALSE(display.flush({{pixels.data(), 6}, PixelFormat::kGray8, 0, 0, 3}));
+  }
+  std::vector<std::uint8_t> pixels(4, 9);
+  CHECK_FALSE(display.flush(kept));
+  CHECK(display.end_frame());  // the others are missing still
+  CHECK(display.flush(kept));  // twice
+  CHECK_FALSE(display.flush({{pixels.data(), 4}, PixelFormat::kGray8, 0, 1, 2}));
+  CHECK_FALSE(display.end_frame());
+  CHECK(display.pictures() == 3);
+  CHECK(display.picture().bytes == std::vector<std::uint8_t>{2, 2, 9, 9, 9, 9});
+  CHECK(display.rows_sent() == 8);
+  CHECK(display.rows_kept() == 1);
+}
+
 TEST_CASE("guarded bytes: any size -> exact bounds, offsets that name them, a front that is looked after") {
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{1}, std::size_t{4095}, std::size_t{4096}, std::size_t{61440}}) {

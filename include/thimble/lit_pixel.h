@@ -82,6 +82,7 @@ struct PendingRay {
   Weight weight{{kFullWeight, kFullWeight, kFullWeight}};
   uint8_t bounces = 0;  ///< before it
   LitRayKind kind = LitRayKind::kPrimary;
+  int8_t axis = -1;  ///< of the face that it starts on
 };
 
 /// The most rays that wait at once: two come out of one, so a bounce adds one; four out of the first rough
@@ -164,7 +165,7 @@ Surface surface_of(const Frame& frame, uint8_t material);
 void find_solid(Frame& frame, LitRayKind kind, const Ray& ray, Hit* hit);
 /// As above; opaque whatever the material.
 void meet_solid(Frame& frame, const PendingRay& now, Meeting* meeting);
-Spot spot_of(const Frame& frame, const Ray& ray, const Meeting& meeting);
+Spot spot_of(const Frame& frame, const PendingRay& now, const Meeting& meeting);
 /// Light of a scene without kDirectLight: `Shading::face_light`.
 void plain_light(const Frame& frame, const Spot& spot, Color* light);
 void ambient_light(const Frame& frame, const Spot& spot, Color* light);
@@ -319,7 +320,7 @@ void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Co
       return;
     }
     if (meeting.opaque) {
-      const Spot spot = spot_of(frame, now.ray, meeting);
+      const Spot spot = spot_of(frame, now, meeting);
       if constexpr ((kSet & kMirror) != 0) {
         send_mirrored(frame, &now, spot, pending, count);
       }

@@ -20,7 +20,8 @@
 ///   - a mirror or a clear boundary splits the ray in at most two, four at the first rough metal; what weighs
 ///     less than 1/256 is dropped; after `LitScene::bounces` a metal shows its plain lit colour, and a clear
 ///     boundary lets the ray go straight on;
-///   - what is clear on both sides with one index, and all media, are passed by the very same ray.
+///   - what is clear on both sides with one index, and all media, are passed by the very same ray; where
+///     there is water, by one that begins anew on the face, to 1/256 voxel.
 #ifndef THIMBLE_LIT_RENDER_H
 #define THIMBLE_LIT_RENDER_H
 
@@ -50,11 +51,16 @@ constexpr size_t lit_render_bytes(EffectSet effects) {
 /// Draws the band with exactly the effects of the set. `counts` (may be null) is added to.
 /// Errors, with nothing drawn: those of `render_band`; kOutOfRange for more than kMaxLights lights or
 /// kMaxSurfaces surfaces.
+/// Inlined always: with kNoEffects and no counts it is the call of `render_band`, to the byte.
 template <EffectSet kEffects>
-Status render_lit_band(const CompactTree& tree, const Camera& camera, const Shading& shading,
-                       const LitScene& scene, const Band& band, LitCounts* counts = nullptr,
-                       const LitOptions& options = {}) {
+[[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const Camera& camera,
+                                                     const Shading& shading, const LitScene& scene,
+                                                     const Band& band, LitCounts* counts = nullptr,
+                                                     const LitOptions& options = {}) {
   if constexpr (kEffects == kNoEffects) {
+    if (counts == nullptr) {
+      return render_band(tree, camera, shading, band, nullptr, {options.max_visits, Width::kAuto});
+    }
     return lit::draw_plain(tree, camera, shading, band, counts, options);
   } else {
     return lit::draw<kEffects>({tree, camera, shading, scene, options, kEffects}, band, counts);

@@ -43,10 +43,10 @@ constexpr Vec3i morton_voxel(uint64_t code) {
   return voxel;
 }
 
-/// Sorts `keys` (fewer than 2^32) in place, ascending, by their lowest `key_bits` bits (the others are equal).
-/// American flag sort, the most significant 6 bits first, 512 bytes of stack, no recursion: the runs of one
-/// pass are found again by their common prefix in the next. Cost: at most key_bits / 6 + 1 passes, linear.
-/// Source: McIlroy, Bostic, McIlroy, "Engineering Radix Sort", Computing Systems 6(1), 1993.
+/// Sorts `keys` (fewer than 2^32) in place, ascending, by their lowest `key_bits` bits (the others are
+/// equal). American flag sort, the most significant 6 bits first, 512 bytes of stack, no recursion: the runs
+/// of one pass are found again by their common prefix in the next. Cost: at most key_bits / 6 + 1 passes,
+/// linear. Source: McIlroy, Bostic, McIlroy, "Engineering Radix Sort", Computing Systems 6(1), 1993.
 void sort_keys(Span<uint32_t> keys, int key_bits);
 void sort_keys(Span<uint64_t> keys, int key_bits);
 

@@ -10,10 +10,12 @@ constexpr Application kApplications[] = {
     {"demo", demo, true, true},
     {"selftest", selftest, false, false},
     {"golden", golden, false, false},
+    {"lit", lit, false, false},
     {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},
 #endif
+    {"water", water, true, true, true},
     {"faults", faults, false, false},
     {nullptr, nullptr, false, false},  // so that the array is never empty
 };

@@ -12,6 +12,9 @@ struct Application {
   int (*run)();
   bool wants_scene;  ///< whether it draws the scene in flash
   bool is_to_watch;  ///< whether it is made to be watched, rather than for what it writes over the UART
+  /// Whether it takes pixels by name over the UART: `@X,Y.` for one that is pressed on or moved over with the
+  /// first button of a mouse, `!X,Y.` for another button.
+  bool takes_pointer = false;
 };
 
 /// All of them; may be empty.

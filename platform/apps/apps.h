@@ -16,10 +16,14 @@ int selftest();
 /// Baked scenes and the golden frames on the target; closes in the same way. An application of its own,
 /// because both together do not fit in 128 KiB of flash.
 int golden();
+/// Lit pictures on the target, likewise.
+int lit();
 /// Instructions a frame and a ray, nodes visited, RAM and stack used.
 int bench();
 /// The paper's particle world.
 int particles();
+/// A lit scene whose water moves: touched, and by what falls in. Draws only what can have changed.
+int water();
 /// Overflows the stack, writes past the RAM and the like when a key asks for it; only on a board.
 int faults();
 

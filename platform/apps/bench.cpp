@@ -6,6 +6,8 @@
 //   ENGINE.instructions_a_ray                 the median over the pixels
 //   ENGINE.node_visits                        tree nodes a frame, on average
 //   ENGINE.crc.N                              of frame N: equal for all engines that are exact
+//   lit.instructions_median, ...              with the effects that the scene was baked for, if any
+//   lit.lit_crc.N                             of frame N with them
 //   brick_map.times_faster_than_dda           beside the textbook's tracer (dda_baseline.h), where the RAM
 //                                             holds its grid of bits; its pictures are nearly right
 //   ray32., ray64.                            closest_hit on a fixed set of rays, by arithmetic width
@@ -15,6 +17,7 @@
 #include "apps/dda_baseline.h"
 #include "apps/demo_view.h"
 #include "apps/place.h"
+#include "apps/scene_light.h"
 #include "apps/shown_scene.h"
 #include "apps/text.h"
 #include "port.h"
@@ -35,6 +38,7 @@ constexpr int32_t kRayStep = 8;
 struct Bench : Placed {
   Arena arena;
   ShownScene shown;
+  SceneLight light;
   Orbit orbit;
   Shading shading;
   Camera camera;
@@ -48,10 +52,11 @@ struct Bench : Placed {
   RenderCounts counts;
 };
 
-enum class Engine : uint8_t { kTree, kBrickMap, kDda };
+enum class Engine : uint8_t { kTree, kBrickMap, kDda, kLit };
 
 const char* name_of(Engine engine) {
-  return engine == Engine::kTree ? "tree" : engine == Engine::kBrickMap ? "brick_map" : "dda";
+  constexpr const char* kNames[] = {"tree", "brick_map", "dda", "lit"};
+  return kNames[static_cast<int>(engine)];
 }
 
 uint32_t now(const Bench& bench) {
@@ -76,6 +81,11 @@ void tell(const char* name, uint64_t value) {
 Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* counts) {
   if (engine == Engine::kTree) {
     return render_band(bench.shown.scene.tree(), bench.camera, bench.shading, band, counts);
+  }
+  if constexpr (kCanLight) {
+    if (engine == Engine::kLit) {
+      return draw_lit(bench.shown.scene, bench.camera, bench.shading, bench.light, band);
+    }
   }
   if (engine == Engine::kDda) {
     const uint32_t hits =
@@ -142,10 +152,11 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
     if (engine == Engine::kTree) {
       bench->crcs[i] = crc;
     }
-    *exact = *exact && (crc == bench->crcs[i] || engine == Engine::kDda);
+    const bool is_lit = engine == Engine::kLit;
+    *exact = *exact && (crc == bench->crcs[i] || engine == Engine::kDda || is_lit);
     if (engine != Engine::kDda) {
       put(name);
-      put(".crc.");
+      put(is_lit ? ".lit_crc." : ".crc.");
       put_number(frame);
       put(",");
       put_hex(crc);
@@ -161,6 +172,9 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
   tell(name, "instructions_min", bench->costs[0]);
   tell(name, "instructions_max", bench->costs[kGoldenFrames - 1]);
   tell(name, "instructions_a_ray", *median / pixels);
+  if (engine == Engine::kLit) {
+    return Status::kOk;
+  }
   // Counts of eight small pictures fit in 32 bits.
   const auto hits = static_cast<uint32_t>(counts.hits);
   tell(name, "node_visits", static_cast<uint32_t>(counts.node_visits) / kGoldenFrames);
@@ -286,6 +300,9 @@ int bench() {
   if (bench->band.empty()) {
     return refuse("the arena does not hold a row of the picture");
   }
+  if (const char* wrong = open_light(bench->shown.scene, &bench->light)) {
+    return refuse(wrong);
+  }
   const size_t without_map = bench->arena.used_bytes();
   open_map(&bench->shown, &bench->arena);
   tell_board_and_scene("bench", bench->shown);
@@ -315,6 +332,12 @@ int bench() {
       uint32_t dda_cost = 0;
       status = measure(bench, Engine::kDda, &exact, &dda_cost);
       tell_ratio("brick_map.times_faster_than_dda,", dda_cost, cost);
+    }
+  }
+  if constexpr (kCanLight) {
+    if (status == Status::kOk && bench->light.effects() != kNoEffects) {
+      uint32_t cost = 0;
+      status = measure(bench, Engine::kLit, &exact, &cost);
     }
   }
   if (status != Status::kOk) {

@@ -150,13 +150,14 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
 
 }  // namespace
 
-int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_crc32, uint32_t common_crc32) {
+int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_crc32, uint32_t common_crc32,
+              uint32_t common_arena_bytes) {
   put(title);
   put(" on ");
   put(port::facts().name);
   put("\n");
   Runner* runner = Runner::make(port::arena());
-  if (runner == nullptr || runner->case_bytes() < portable::kCommonArenaBytes) {
+  if (runner == nullptr || runner->case_bytes() < common_arena_bytes) {
     put("this board lacks the memory that every board has for a case\n0 passed, 1 failed\n");
     return 1;
   }

@@ -17,9 +17,10 @@
 namespace thimble::apps {
 
 /// Runs the groups. The CRC-32s are those of tests/portable/result_crc.h: of all cases, which is compared
-/// where none was skipped, and of those that every board runs. Returns the exit status.
+/// where none was skipped, and of those that every board runs; a board has `common_arena_bytes` for a case or
+/// more. Returns the exit status.
 int run_cases(const char* title, Span<const portable::Group* const> groups, uint32_t all_crc32,
-              uint32_t common_crc32);
+              uint32_t common_crc32, uint32_t common_arena_bytes = portable::kCommonArenaBytes);
 
 }  // namespace thimble::apps
 

@@ -5,8 +5,12 @@
 //   s   back to the baked scene
 //   h   holds a rate of frames (held_frame.h), or draws exact ones as fast as it can
 //   t   stops turning, or turns again
+//   l   light off, or on again, where the scene was baked for effects
 //   c   CRC-32 of every frame on or off; on from the start where there is no display
 //   q   ends, with status 0
+//
+// A scene that was baked for effects (scene_light.h) stands still at first. While it moves, frames are fast
+// and without them; as soon as it does not, one is drawn with them, and then nothing until it moves again.
 //
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
 // is held, and nothing but the arena is used.
@@ -14,6 +18,7 @@
 #include "apps/demo_view.h"
 #include "apps/held_frame.h"
 #include "apps/place.h"
+#include "apps/scene_light.h"
 #include "apps/shown_scene.h"
 #include "apps/spheres.h"
 #include "apps/text.h"
@@ -61,6 +66,12 @@ struct Demo : Placed {
   uint32_t inexact = 0;            ///< pixels of the last frame that may not be exact
   uint32_t most_instructions = 0;  ///< of a frame that was held, where they are counted
 
+  // Light.
+  SceneLight light;
+  bool lights = false;            ///< when it stands still
+  bool is_lit = false;            ///< the picture that is shown
+  uint32_t lit_instructions = 0;  ///< of the last lit frame, where they are counted
+
   // The scene that is built here.
   bool builds = false;
   bool is_full = false;  ///< the pool was full once: it coarsens
@@ -106,6 +117,11 @@ Status draw(const Demo& demo, const Band& band) {
   if (demo.builds) {
     return render_band(demo.pool, demo.camera, demo.shading, band);
   }
+  if constexpr (kCanLight) {
+    if (demo.is_lit) {
+      return draw_lit(demo.shown.scene, demo.camera, demo.shading, demo.light, band);
+    }
+  }
   return draw_scene(demo.shown, demo.camera, demo.shading, band);
 }
 
@@ -126,6 +142,30 @@ Status draw(const Demo& demo, const Band& band) {
       *crc = crc32(band.pixels, *crc);
     }
   }
+  return Status::kOk;
+}
+
+/// A frame with light. A hand on the buttons need not wait for it: the rest of it is then a fast one.
+[[gnu::noinline]] Status draw_lit_frame(Demo* demo, uint32_t* crc) {
+  const port::Display& screen = display();
+  const uint32_t start = port::instructions();
+  demo->is_lit = true;
+  *crc = 0;
+  for (int32_t y = 0; y < screen.height_px; y += demo->band_rows) {
+    const int32_t left = screen.height_px - y;
+    Band band{demo->band, screen.format, 0, y, left < demo->band_rows ? left : demo->band_rows};
+    band.pixels = demo->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+    demo->is_lit = demo->is_lit && port::buttons() == 0;
+    const Status status = draw(*demo, band);
+    if (status != Status::kOk) {
+      return status;
+    }
+    port::flush(band);
+    if (demo->tells_crc) {
+      *crc = crc32(band.pixels, *crc);
+    }
+  }
+  demo->lit_instructions = port::instructions() - start;
   return Status::kOk;
 }
 
@@ -253,6 +293,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   demo->turned = 0;
   demo->orbit = orbit_of(demo->shown.scene);
   demo->shading = demo_shading(demo->shown.scene.palette());
+  demo->is_lit = false;
 }
 
 [[gnu::noinline]] void begin_build(Demo* demo) {
@@ -263,6 +304,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
     return;
   }
   demo->builds = true;
+  demo->is_lit = false;
   demo->is_full = false;
   demo->changed = true;
   demo->frame = 0;
@@ -324,6 +366,16 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   put(" visits a frame\n");
 }
 
+[[gnu::noinline]] void switch_light(Demo* demo) {
+  if (demo->light.effects() == kNoEffects) {
+    put("the scene was baked for no effects\n");
+    return;
+  }
+  demo->lights = !demo->lights;
+  demo->turns = !demo->lights;
+  demo->changed = true;
+}
+
 /// Whether to go on.
 [[gnu::noinline]] bool obey(Demo* demo) {
   const uint32_t buttons = port::buttons();
@@ -349,11 +401,18 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
       case 'h':
         switch_hold(demo);
         break;
+      case 'l':
+        if constexpr (kCanLight) {
+          switch_light(demo);
+        }
+        break;
       case 't':
         demo->turns = !demo->turns;
+        demo->changed = demo->changed || (demo->lights && demo->turns);
         break;
       case 'c':
         demo->tells_crc = !demo->tells_crc;
+        demo->is_lit = false;  // draws it again
         break;
       default:
         break;
@@ -372,6 +431,16 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
                  screen.height_px, &demo->camera);
 }
 
+[[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
+  if constexpr (kCanLight) {
+    if (lights) {
+      return draw_lit_frame(demo, crc);
+    }
+  }
+  demo->is_lit = false;
+  return kCanHold && demo->holds ? draw_held(demo, crc) : draw_frame(*demo, crc);
+}
+
 void tell_frame(const Demo& demo, uint32_t crc) {
   put(demo.builds ? "build " : "frame ");
   put_number(demo.frame);
@@ -385,6 +454,9 @@ void tell_frame(const Demo& demo, uint32_t crc) {
     put(" added ");
     put_number(demo.pool.solid_added());
     put(demo.spheres.is_done() ? " done" : "");
+  }
+  if (kCanLight && demo.is_lit) {
+    put(" lit");
   }
   if (demo.holds) {
     put(" inexact ");
@@ -405,6 +477,9 @@ int demo() {
   if (const char* wrong = open_scene(&demo->shown)) {
     return refuse(&demo->arena, wrong);
   }
+  if (const char* wrong = open_light(demo->shown.scene, &demo->light)) {
+    return refuse(&demo->arena, wrong);
+  }
   open_map(&demo->shown, &demo->arena);
   tell_board_and_scene("demo", demo->shown);
   const port::Display& screen = display();
@@ -421,6 +496,8 @@ int demo() {
     return refuse(&demo->arena, "the arena does not hold a row of the picture");
   }
   show_baked(demo);
+  demo->lights = demo->light.effects() != kNoEffects;
+  demo->turns = !demo->lights;
   if (port::facts().hold_fps != 0) {
     demo->fps = port::facts().hold_fps;
     switch_hold(demo);
@@ -429,6 +506,10 @@ int demo() {
     if (demo->builds && !demo->spheres.is_done()) {
       build_more(demo);
       demo->changed = true;
+    }
+    const bool lights = kCanLight && demo->lights && !demo->builds && !demo->changed;
+    if (lights && demo->is_lit) {
+      continue;  // it is there already
     }
     const uint32_t start = port::instructions();
     Status status = place_camera(demo);
@@ -439,7 +520,7 @@ int demo() {
     }
     uint32_t crc = 0;
     if (status == Status::kOk) {
-      status = kCanHold && demo->holds ? draw_held(demo, &crc) : draw_frame(*demo, &crc);
+      status = draw_picture(demo, lights, &crc);
     }
     if (demo->holds && demo->changed) {
       const uint32_t taken = port::instructions() - start;
@@ -458,6 +539,11 @@ int demo() {
   if (demo->most_instructions != 0) {
     put("most instructions of a held frame: ");
     put_number(demo->most_instructions);
+    put("\n");
+  }
+  if (kCanLight && demo->lit_instructions != 0) {
+    put("instructions of a lit frame: ");
+    put_number(demo->lit_instructions);
     put("\n");
   }
   return 0;

@@ -295,6 +295,12 @@ std::uint32_t Simulation::frames_asked() const {
 std::uint32_t Simulation::pictures() const {
   return state_->display.pictures();
 }
+std::uint64_t Simulation::rows_sent() const {
+  return state_->display.rows_sent();
+}
+std::uint64_t Simulation::rows_kept() const {
+  return state_->display.rows_kept();
+}
 const PackedPicture& Simulation::picture() const {
   return state_->display.picture();
 }

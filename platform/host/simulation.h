@@ -83,6 +83,9 @@ class Simulation {
   /// Whole pictures flushed, and the last one.
   std::uint32_t pictures() const;
   const PackedPicture& picture() const;
+  /// Rows sent to the display so far, and rows of which the application said that they stay as they were.
+  std::uint64_t rows_sent() const;
+  std::uint64_t rows_kept() const;
   /// Looks at every byte that was never used: some tenths of a millisecond.
   MemoryUse use() const;
   /// Seconds from the last answer to this question: the frame's time on this host.

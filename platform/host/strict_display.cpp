@@ -39,7 +39,11 @@ std::optional<std::string> StrictDisplay::flush(const Band& band) {
   }
   const std::size_t stride = row_bytes(shown_.format, shown_.width_px);
   const std::size_t bytes = stride * static_cast<std::size_t>(band.rows);
-  if (band.pixels.size < bytes) {
+  const bool is_kept = band.pixels.empty();
+  if (is_kept && pictures_ == 0) {
+    return rows_text(band.first_row, band.rows) + " were kept before there was a whole picture";
+  }
+  if (!is_kept && band.pixels.size < bytes) {
     return "a band of " + std::to_string(band.pixels.size) + " bytes was flushed; " +
            rows_text(band.first_row, band.rows) + " take " + std::to_string(bytes);
   }
@@ -48,8 +52,9 @@ std::optional<std::string> StrictDisplay::flush(const Band& band) {
     return "row " + std::to_string(twice - has_row_.begin()) + " was flushed twice in one frame";
   }
   std::fill(first, first + band.rows, std::uint8_t{1});
-  std::copy_n(band.pixels.data, bytes,
-              coming_.bytes.data() + stride * static_cast<std::size_t>(band.first_row));
+  const std::size_t place = stride * static_cast<std::size_t>(band.first_row);
+  std::copy_n(is_kept ? shown_.bytes.data() + place : band.pixels.data, bytes, coming_.bytes.data() + place);
+  (is_kept ? rows_kept_ : rows_sent_) += static_cast<std::uint64_t>(band.rows);
   rows_ += band.rows;
   if (rows_ == height) {
     shown_.bytes.swap(coming_.bytes);

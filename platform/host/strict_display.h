@@ -2,7 +2,8 @@
 /// A display that is stricter than any hardware: what a board would show somehow is an error here.
 ///
 /// Every row of a frame comes once, in any order of bands, in the display's format, without gaps, and no
-/// frame is left half sent.
+/// frame is left half sent. A row that stays as it was is said to (a band without bytes), which the first
+/// frame cannot.
 #ifndef THIMBLE_PLATFORM_HOST_STRICT_DISPLAY_H
 #define THIMBLE_PLATFORM_HOST_STRICT_DISPLAY_H
 
@@ -28,12 +29,17 @@ class StrictDisplay {
   /// Whole pictures so far, and the last of them (all 0 before the first).
   std::uint32_t pictures() const { return pictures_; }
   const PackedPicture& picture() const { return shown_; }
+  /// Rows that were sent so far, and rows that were kept.
+  std::uint64_t rows_sent() const { return rows_sent_; }
+  std::uint64_t rows_kept() const { return rows_kept_; }
 
  private:
   PackedPicture shown_;
   PackedPicture coming_;
   std::vector<std::uint8_t> has_row_;
   std::int32_t rows_ = 0;
+  std::uint64_t rows_sent_ = 0;
+  std::uint64_t rows_kept_ = 0;
   std::uint32_t pictures_ = 0;
 };
 

@@ -73,6 +73,9 @@ ConstBytes scene() {
 }
 
 void flush(const Band& band) {
+  if (band.pixels.empty()) {
+    return;  // the framebuffer holds what it was sent
+  }
   linux_port::put_band(band, session.facts.display.width_px, session.framebuffer->layout(), session.placement,
                        session.framebuffer->bytes());
 }

@@ -39,7 +39,7 @@ emulate() {
 
 # The applications that there are; faults is judged by itself below.
 apps=
-for app in ${THIMBLE_TEST_APPS:-selftest golden demo bench particles}; do
+for app in ${THIMBLE_TEST_APPS:-selftest golden lit demo bench particles}; do
   [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
 done
 list=faults
@@ -61,7 +61,7 @@ for app in $apps; do
   if [ "$status" != 0 ]; then
     tail -n 5 "$log" >&2
     fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
-  elif [ "$app" = selftest ] || [ "$app" = golden ]; then
+  elif [ "$app" = selftest ] || [ "$app" = golden ] || [ "$app" = lit ]; then
     said=$(grep -E '^[1-9][0-9]* passed, 0 failed' "$log" | head -n 1)
     [ -n "$said" ] || fail "$app" "did not say how many passed"
     said="$said, $(sed -n 's/^\([0-9]* skipped\).*/\1/p' "$log" | head -n 1); "
@@ -78,6 +78,16 @@ for app in $apps; do
         fail bench "${times:-not} times faster than the textbook's tracer, at least $least"
       fi
     done <tests/budgets/frames.csv
+    # With light, the host's pictures.
+    sed -n 's/^lit\.lit_crc\.[0-9]*,//p' "$log" | tr '[:lower:]' '[:upper:]' | tr -d '\r' >"$work/lit_crcs"
+    if [ -n "$(fact DEMO_EFFECTS)" ]; then
+      sed -n '/kDemoLitFrameCrc32/,/};/s/0x\([0-9A-F]*\),/\1\n/gp' tests/golden/demo_table.h | tr -d ' ' | grep -x '[0-9A-F]\{8\}' >"$work/lit_golden"
+      if cmp -s "$work/lit_crcs" "$work/lit_golden"; then
+        said="${said}lit frames are the host's; "
+      else
+        fail bench "lit frames are $(tr '\n' ' ' <"$work/lit_crcs"), not those of tests/golden/demo_table.h"
+      fi
+    fi
   elif [ "$app" = particles ]; then
     crc=$(sed -n 's/^steps 400 crc \([0-9a-f]*\)$/\1/p' "$log" | head -n 1)
     if [ -z "$crc" ] || ! grep -qi "0x$crc" tests/golden/particles_table.h; then

@@ -41,8 +41,10 @@ stop() {
   machine=
 }
 scene=$(sh tests/boards/scene.sh "$board")
+effects=$(fact DEMO_EFFECTS)
+effects=${effects:-none}
 
-HOLD=true FRAMES=$frames sh platform/build.sh "$board" "demo;faults" "$scene" >"$work/display.build.log" 2>&1 || {
+EFFECTS=$effects HOLD=true FRAMES=$frames sh platform/build.sh "$board" "demo;faults" "$scene" >"$work/display.build.log" 2>&1 || {
   tail -n 5 "$work/display.build.log" >&2
   exit 1
 }
@@ -52,9 +54,9 @@ scale=1
 start demo ""
 if wait_for '^holding'; then
   "$tool" "$socket" shot "$work/display.ppm" $scale
-  if "$thimble" sim "$scene" --board "$board" --display none --frames $frames --check "$work/display.ppm" --quiet \
+  if "$thimble" sim "$scene" --effects "$effects" --board "$board" --display none --frames $frames --check "$work/display.ppm" --quiet \
     >"$work/display.check.log" 2>&1; then
-    echo "the display shows the simulator's picture, pixel by pixel"
+    echo "the display shows the simulator's picture, pixel by pixel (effects: $effects)"
   else
     echo "FAILED: the display does not show the simulator's picture ($(grep -v '^thimble demo\|^scene' "$work/display.check.log" | head -n 1))"
     failed=1
@@ -93,7 +95,8 @@ fi
 # A held rate: the simulator's pictures, and no more instructions than the clock has cycles for.
 fps=30
 if [ "$(fact VISITS_A_SECOND)" != 0 ]; then
-  HOLD_FPS=$fps HOLD=true FRAMES=20 sh platform/build.sh "$board" demo "$scene" >"$work/display.build.log" 2>&1 || {
+  # One that turns: a scene with light stands still.
+  EFFECTS=none HOLD_FPS=$fps HOLD=true FRAMES=20 sh platform/build.sh "$board" demo "$scene" >"$work/display.build.log" 2>&1 || {
     tail -n 5 "$work/display.build.log" >&2
     exit 1
   }
@@ -101,7 +104,7 @@ if [ "$(fact VISITS_A_SECOND)" != 0 ]; then
   if wait_for '^holding$'; then
     "$tool" "$socket" shot "$work/held.ppm" $scale
     most=$(sed -n 's/^most instructions of a held frame: \([0-9]*\).*/\1/p' "$work/screen.log")
-    if ! "$thimble" sim "$scene" --board "$board" --display none --hold $fps --frames 20 --check "$work/held.ppm" --quiet \
+    if ! "$thimble" sim "$scene" --effects none --board "$board" --display none --hold $fps --frames 20 --check "$work/held.ppm" --quiet \
       >"$work/held.check.log" 2>&1; then
       echo "FAILED: held at $fps frames a second, the display does not show the simulator's picture ($(tail -n 1 "$work/held.check.log"))"
       failed=1

@@ -30,6 +30,12 @@ for board in $boards; do
 done | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/board.sh" || failed=1
 
 sh "$here/example.sh" "$work/example" || failed=1
+case " $boards " in
+  *lm3s6965evb*)
+    sh "$here/effects.sh" || failed=1
+    sh "$here/own_scene.sh" || failed=1
+    ;;
+esac
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1
 

@@ -42,8 +42,8 @@ for name in $(echo "$own" | tr '|' ' '); do
       "$(includes tools platform | grep -E "[\"/]$name\\.h\"" || true)"
   fi
 done
-tests_on_boards='^platform/apps/(selftest|golden|cases)\.(cpp|h):'
-complain "platform sees no test; only the applications selftest and golden run those of tests/portable" \
+tests_on_boards='^platform/apps/(selftest|golden|lit|cases)\.(cpp|h):'
+complain "platform sees no test; only the applications selftest, golden and lit run those of tests/portable" \
   "$({
     includes platform | grep -E '["/](golden|portable|support|reference|tests)/' | grep -vE "$tests_on_boards"
     includes platform | grep -E "$tests_on_boards" | grep -E '["/](golden|support|reference|tests)/'

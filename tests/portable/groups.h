@@ -11,6 +11,9 @@ namespace thimble::portable {
 /// cases that need no more are run everywhere, and their CRC is one number everywhere.
 inline constexpr uint32_t kCommonArenaBytes = 4608;
 
+/// The same for lit pictures, which want a stack of up to 3,700 bytes.
+inline constexpr uint32_t kLitArenaBytes = 2560;
+
 /// Cases of the golden group that draw a frame, and the same counted: the host's runner compares them.
 inline constexpr int kGoldenFrameCases = 324;
 int count_golden_frame_cases();
@@ -29,6 +32,7 @@ extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
 extern const Group kGoldenGroup;       ///< golden frames
 extern const Group kAnytimeGroup;      ///< golden frames, from coarse to fine
 extern const Group kWaterGroup;        ///< moving water and its rays
+extern const Group kLitGroup;          ///< light, mirrors, glass, water in pictures
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
 inline constexpr const Group* kCoreGroups[] = {
@@ -39,6 +43,8 @@ inline constexpr const Group* kCoreGroups[] = {
 /// `selftest` has no room left on the smallest chip.
 inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kAnytimeGroup,
                                                  &kWaterGroup};
+/// Lit pictures (the application `lit`).
+inline constexpr const Group* kLitGroups[] = {&kLitGroup};
 
 }  // namespace thimble::portable
 

@@ -1,4 +1,292 @@
+// thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
+// error calls for.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "commands/arguments.h"
 #include "commands/commands.h"
+#include "commands/options.h"
+#include "instruments/accuracy_report.h"
+#include "instruments/accuracy_study.h"
+#include "instruments/hard_case_report.h"
+#include "instruments/simulation_study.h"
+#include "output/output_file.h"
+#include "output/progress.h"
+#include "output/tables.h"
+#include "output/units.h"
+
 namespace thimble::tools {
-void add_accuracy(CLI::App&) {}
+namespace {
+
+// Of each operation, however few rays are asked for.
+constexpr std::uint64_t kLeastCases = 1000;
+
+struct AccuracyCommand {
+  SceneOptions scene;
+  AccuracyOptions study;
+  std::optional<SimulationWorld> simulation;
+  bool hard_cases = false;
+  std::uint64_t hard_rays = 1000000;
+  std::uint64_t seed = 1;
+  std::optional<double> for_ms;
+  std::optional<double> for_error;
+  std::string csv_path;
+  std::string json_path;
+  std::string plot_path;
+};
+
+// The files of --csv, --json and --plot: opened before the work begins, so that a folder that is not there is
+// known at once, and named when all of them are whole.
+class Outputs {
+ public:
+  explicit Outputs(const AccuracyCommand& command)
+      : paths_{command.csv_path, command.json_path, command.plot_path} {
+    check_distinct(paths_, {&command.scene.arguments.scene, 1});
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      files_[i] = paths_[i].empty() ? nullptr : std::make_unique<OutputFile>(paths_[i]);
+    }
+  }
+  void write(const JsonRow& rows, const std::string& plot) {
+    const std::array<std::string, 3> texts{csv_of(rows), rows.dump(2) + "\n", plot};
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (files_[i] != nullptr) {
+        files_[i]->write(texts[i]);
+        files_[i]->flush();
+      }
+    }
+    for (const auto& file : files_) {
+      if (file != nullptr) {
+        file->commit();
+      }
+    }
+  }
+  // For people, unless data go to standard output, which want no table between them.
+  void print(const std::string& text) const {
+    if (std::find(paths_.begin(), paths_.end(), "-") == paths_.end()) {
+      OutputFile output("-");
+      output.write(text);
+      output.commit();
+    }
+  }
+
+ private:
+  std::array<std::string, 3> paths_;
+  std::array<std::unique_ptr<OutputFile>, 3> files_;
+};
+
+void run_scene(const AccuracyCommand& command) {
+  Outputs outputs(command);
+  const auto source = command.scene.open();
+  BuiltScene built = command.scene.build(*source, 0, 0);
+  AccuracyStudy study;
+  {
+    ProgressBar bar("measuring", command.scene.quiet);
+    study = study_accuracy(*source, &built, command.study, [&](double done) { bar.update(done); });
+  }
+  // Before anything is written: no answer is an error.
+  const std::string answer = command.for_ms      ? answer_for_ms(study, *command.for_ms)
+                             : command.for_error ? answer_for_error(study, *command.for_error)
+                                                 : std::string();
+  const std::string& scene = command.scene.arguments.scene;
+  outputs.write(accuracy_objects(study),
+                command.plot_path.empty() ? "" : accuracy_plot(study, command.study.axis, scene));
+  if (!command.scene.quiet) {
+    for (const std::string& note : study.notes) {
+      std::fprintf(stderr, "note: %s\n", note.c_str());
+    }
+  }
+  outputs.print(printable(scene) + "\n" + std::to_string(command.study.view.width_px) + "x" +
+                std::to_string(command.study.view.height_px) + ", median of " +
+                std::to_string(command.study.rounds) + " frames each, by turns\n" +
+                accuracy_tables(study, command.study.axis) + answer);
+}
+
+void run_hard(const AccuracyCommand& command) {
+  Outputs outputs(command);
+  HardCaseStudy study;
+  {
+    ProgressBar bar("tracing", command.scene.quiet);
+    study.cases =
+        run_hard_cases(command.hard_rays, command.seed, [&](double done) { bar.update(0.8 * done); });
+    study.operations = sweep_operations(std::max(command.hard_rays / 5, kLeastCases), command.seed,
+                                        [&](double done) { bar.update(0.8 + 0.2 * done); });
+  }
+  outputs.write(hard_case_objects(study), "");
+  outputs.print(hard_case_tables(study));
+  if (const std::string fault = hard_case_fault(study); !fault.empty()) {
+    throw InputError(fault);
+  }
+}
+
+void run_simulation(const AccuracyCommand& command) {
+  Outputs outputs(command);
+  std::vector<SimulationRow> rows;
+  {
+    ProgressBar bar("measuring", command.scene.quiet);
+    rows =
+        study_simulation(*command.simulation, command.study.rounds, [&](double done) { bar.update(done); });
+  }
+  outputs.write(simulation_objects(*command.simulation, rows), simulation_plot(*command.simulation, rows));
+  outputs.print(simulation_table(*command.simulation, rows));
+}
+
+// Options that say what is measured go with few of the others.
+void check_alone(const CLI::App& sub, const std::string& what, const std::vector<std::string>& allowed) {
+  for (const CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() != 0 && name != what &&
+        std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
+      throw CLI::ValidationError(what, "takes no " + (name == "scene" ? "SCENE" : name));
+    }
+  }
+}
+
+void run(const AccuracyCommand& command, const CLI::App& sub) {
+  if (command.hard_cases) {
+    check_alone(sub, "--hard-cases", {"--rays", "--seed", "--csv", "--json", "--quiet"});
+    run_hard(command);
+    return;
+  }
+  for (const char* name : {"--rays", "--seed"}) {
+    if (sub.count(name) != 0) {
+      throw CLI::ValidationError(name, "goes with --hard-cases only");
+    }
+  }
+  if (command.simulation) {
+    check_alone(sub, "--simulation", {"--rounds", "--csv", "--json", "--plot", "--quiet"});
+    run_simulation(command);
+    return;
+  }
+  if (command.scene.arguments.scene.empty()) {
+    throw CLI::RequiredError("SCENE");
+  }
+  run_scene(command);
+}
+
+void add_positive(CLI::App& app, const std::string& name, const std::string& type_name, double least,
+                  std::optional<double>* value, const std::string& help) {
+  add_text_option(
+      app, name, type_name,
+      [value, least](const std::string& text) -> std::string {
+        const auto number = parse_real(text);
+        if (!number || *number < least || *number > 1e9) {
+          return least > 0 ? "is not a number above 0" : "is not a number from 0 on";
+        }
+        *value = number;
+        return {};
+      },
+      help);
+}
+
+}  // namespace
+
+void add_accuracy(CLI::App& app) {
+  auto command = std::make_shared<AccuracyCommand>();
+  command->study.view.width_px = 200;
+  command->study.view.height_px = 150;
+  CLI::App* sub = app.add_subcommand(
+      "accuracy",
+      "Time against error: one view of a scene with every knob that trades them turned alone and together "
+      "(depth, cut-off, bits of a ray's direction, samples a pixel), and frames stopped early, each compared "
+      "with a reference that has all knobs at their best.");
+  command->scene.add_scene(*sub, false);
+  sub->add_flag(
+         "--hard-cases", command->hard_cases,
+         "instead of a scene: near-degenerate rays through this tracer and through textbook traversals in "
+         "floating point, and every fixed-point operation against exact arithmetic; the exit status is "
+         "1 when this tracer gets one wrong")
+      ->disable_flag_override();
+  add_choice_option(
+      *sub, "--simulation", {"particles", "water"},
+      [command](std::size_t index) {
+        constexpr std::array kWorlds{SimulationWorld::kParticles, SimulationWorld::kWater};
+        command->simulation = kWorlds[index];
+      },
+      "instead of a scene: substeps and bits of positions of the particle world, or columns and steps of a "
+      "basin of water, against the finest");
+  add_whole_option(
+      *sub, "--rays", "N", 1, 1000000000,
+      [command](std::int64_t number) { command->hard_rays = static_cast<std::uint64_t>(number); },
+      "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
+      ->default_str("1000000");
+  add_whole_option(
+      *sub, "--seed", "S", 0, INT64_MAX / 2000003,
+      [command](std::int64_t number) { command->seed = static_cast<std::uint64_t>(number); },
+      "--hard-cases: of the random rays")
+      ->default_str("1");
+  add_positive(*sub, "--for-ms", "T", 1e-9, &command->for_ms,
+               "answer with the options that come nearest to the reference in T milliseconds of the "
+               "processor a frame, median on this machine at this --size");
+  add_positive(*sub, "--for-error", "E", 0, &command->for_error,
+               "answer with the fastest options whose picture is off by at most E: the root mean square of "
+               "all channels' differences from the reference, in steps of 1/255 (column rms_error; 0: equal; "
+               "PSNR is 20 log10(255/E) dB)");
+  sub->get_option("--for-ms")->excludes(sub->get_option("--for-error"));
+  add_whole_option(
+      *sub, "--rounds", "N", 1, 999,
+      [command](std::int64_t number) { command->study.rounds = static_cast<int>(number); },
+      "frames timed of each setting, by turns, one of each a round")
+      ->default_str("5");
+  add_choice_option(
+      *sub, "--against", {"time", "visits", "instructions"},
+      [command](std::size_t index) {
+        constexpr std::array kAxes{CostAxis::kTime, CostAxis::kVisits, CostAxis::kInstructions};
+        command->study.axis = kAxes[index];
+      },
+      "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
+      "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
+      ->default_str("time");
+  command->study.view.add_to(*sub, false);
+  add_choice_option(
+      *sub, "--shade", {"depth", "normal", "color", "mono"},
+      [command](std::size_t index) {
+        constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
+                                    ShadeMode::kMono};
+        command->study.shade = kModes[index];
+      },
+      "what is compared: brightness by distance, by the face's direction, palette colours, or hit or not")
+      ->default_str("depth");
+  add_text_option(
+      *sub, "--effects", "LIST",
+      [command](const std::string& text) {
+        const auto choice = parse_effects(text);
+        command->study.effects = choice.value_or(EffectChoice{});
+        return choice ? "" : "is not auto, none or a list of " + effect_names();
+      },
+      "light whose knobs are turned too (rays of occlusion, rays of rough metal, bounces): auto (what the "
+      "scene's materials and lights call for), none, or effects with commas between them: " +
+          effect_names())
+      ->default_str("auto");
+  add_path_option(
+      *sub, "--csv", "FILE.csv", &command->csv_path,
+      "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
+      "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
+      "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
+      "per cent being equal), max_depth (0: all), cutoff_px, direction_bits (0: automatic), samples; against "
+      "the reference: wrong_px (of another colour), visible_px (a channel off by more than "
+      "8 of 255), rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; "
+      "rays, "
+      "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
+      "depth_error_max_voxels (of centres' rays that hit in both); lm3s6965evb_instructions (an estimate, "
+      "off by 5 per cent on average on the demonstration); anytime: visits_given, inexact_px, "
+      "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays; light: "
+      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
+      "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
+      "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
+      "(of the others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: "
+      "row (particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), "
+      "steps, work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of "
+      "all steps), unit (of the errors), error_rms, error_median, error_most, front");
+  add_path_option(*sub, "--json", "FILE.json", &command->json_path,
+                  "the same, an array of objects; null where the CSV is empty");
+  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,
+                  "PSNR against what --against says, the front marked and named");
+  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no notes")->disable_flag_override();
+  sub->callback([command, sub] { run(*command, *sub); });
+}
+
 }  // namespace thimble::tools

@@ -28,27 +28,32 @@ struct BakeCommand {
   bool as_header = false;
   bool brick_map = false;
   EffectChoice effects;
+  EffectSet effects_found = kNoEffects;  // once it was baked: their code takes flash too
 };
 
 // --memory or what the board's flash has for a scene, the smaller of both.
-std::optional<std::uint64_t> limit_bytes(const SceneOptions& scene) {
+std::optional<std::uint64_t> limit_bytes(const BakeCommand& command) {
+  const SceneOptions& scene = command.scene;
   if (scene.board == nullptr) {
     return scene.memory_bytes;
   }
-  return std::min(scene_flash_bytes(*scene.board), scene.memory_bytes.value_or(UINT64_MAX));
+  return std::min(scene_flash_bytes(*scene.board, command.effects_found),
+                  scene.memory_bytes.value_or(UINT64_MAX));
 }
 
-std::string limit_text(const SceneOptions& scene, std::uint64_t limit) {
-  if (scene.board != nullptr && limit == scene_flash_bytes(*scene.board)) {
-    return std::string(scene.board->name) + " has " + grouped(limit) + " bytes of flash for a scene (" +
-           grouped(scene.board->flash_bytes) + " less " + grouped(kCodeFlashBytes) + " for code)";
+std::string limit_text(const BakeCommand& command, std::uint64_t limit) {
+  const platform::BoardFacts* const board = command.scene.board;
+  if (board != nullptr && limit == scene_flash_bytes(*board, command.effects_found)) {
+    return std::string(board->name) + " has " + grouped(limit) + " bytes of flash for a scene (" +
+           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(command.effects_found)) +
+           " for code)";
   }
   return "the limit is " + grouped(limit) + " bytes (--memory)";
 }
 
 BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
   BakingOptions options;
-  options.limit_bytes = limit_bytes(command.scene);
+  options.limit_bytes = limit_bytes(command);
   options.name = scene_name(command.scene.arguments.scene);
   options.brick_map = command.brick_map || command.scene.board != nullptr;
   options.effects = command.effects;
@@ -106,13 +111,14 @@ void report(const BakeCommand& command, const Baked& baked, const std::string& n
             (tree.solid_added() == 1 ? " voxel" : " voxels") + " of solid volume added\n";
   }
   if (const platform::BoardFacts* board = command.scene.board) {
-    const std::uint64_t flash = scene_flash_bytes(*board);
-    const std::uint64_t ram = drawing_ram_bytes(*board);
+    const std::uint64_t flash = scene_flash_bytes(*board, baked.effects);
+    const std::uint64_t ram = drawing_ram_bytes(*board, baked.effects);
     text += std::string(board->name) + ": flash " + grouped(bytes) + " of the " + grouped(flash) +
-            " bytes beside the code's " + grouped(kCodeFlashBytes) + "; RAM " + grouped(ram) + " of " +
-            grouped(board->ram_bytes) + " bytes (renderer " + grouped(render_bytes()) + ", band of " +
-            std::to_string(kBoardBandRows) + " rows " + grouped(board_band_bytes(*board)) + ", stack " +
-            grouped(board->stack_bytes) + ")" + (ram > board->ram_bytes ? ": too much" : "") + "\n";
+            " bytes beside the code's " + grouped(code_flash_bytes(baked.effects)) + "; RAM " + grouped(ram) +
+            " of " + grouped(board->ram_bytes) + " bytes (renderer " +
+            grouped(lit_render_bytes(baked.effects)) + ", band of " + std::to_string(kBoardBandRows) +
+            " rows " + grouped(board_band_bytes(*board)) + ", stack " + grouped(board->stack_bytes) + ")" +
+            (ram > board->ram_bytes ? ": too much" : "") + "\n";
   }
   std::fputs(text.c_str(), stderr);
 }
@@ -136,13 +142,20 @@ void run(const BakeCommand& given) {
   {
     ProgressBar bar("baking", command.scene.quiet);
     baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
+    command.effects_found = baked.effects;
+    const std::optional<std::uint64_t> left = limit_bytes(command);
+    if (left < options.limit_bytes && (!baked.fits || baked.bytes.size() > *left)) {
+      // With the code of its effects it does not fit: smaller, without a brick map, or not at all.
+      options.limit_bytes = left;
+      baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
+    }
   }
   if (!baked.fits) {
     const std::uint64_t limit = *options.limit_bytes;
     const std::uint64_t over = baked.bytes.size() - limit;
     throw InputError((options.coarsen ? "even the coarsest tree takes " : "takes ") +
                      grouped(baked.bytes.size()) + " bytes at depth " + std::to_string(source->level()) +
-                     ", " + limit_text(command.scene, limit) + ": " + grouped(over) +
+                     ", " + limit_text(command, limit) + ": " + grouped(over) +
                      (over == 1 ? " byte" : " bytes") + " too many" +
                      (options.coarsen ? "" : advice(command, *source, limit)));
   }

@@ -20,6 +20,7 @@ void add_memory(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
 void add_accuracy(CLI::App& app);
+void add_effects(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
   add_render(app);
@@ -32,6 +33,7 @@ inline void add_all_commands(CLI::App& app) {
   add_sim(app);
   add_particles(app);
   add_accuracy(app);
+  add_effects(app);
 }
 
 }  // namespace thimble::tools

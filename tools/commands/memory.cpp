@@ -126,6 +126,7 @@ JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     object[name(i) + "_build_bytes"] = row.structures[i].build_bytes;
   }
+  object["dag_table_bytes"] = row.dag_table_bytes;
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     object[name(i) + "_frame_ms"] = optional_of(row.structures[i].frame_ms);
   }
@@ -286,7 +287,8 @@ std::string frame_table(const MemoryStudy& study) {
     }
     rows.push_back(cells);
   }
-  return "\ntime of a frame (median, structures by turns) and nodes visited a ray (dense: cells)\n" +
+  return "\nprocessor time of a frame (median, structures by turns) and nodes visited a ray (dense: "
+         "cells)\n" +
          columns_of(rows, 0);
 }
 
@@ -366,7 +368,7 @@ std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
   Plot plot;
   plot.title = "Memory against depth: " + printable(command.scene.arguments.scene);
   plot.x_label = "depth (a world of 2^depth voxels a side)";
-  plot.y_label = "bytes";
+  plot.y_label = "bytes (log scale)";
   plot.whole_x = true;
   constexpr std::array<const char*, kMemoryStructures> kNames{
       "dense grid, a bit a unit", "pool, 8 bytes a node", "compact tree, no pointers",
@@ -405,8 +407,8 @@ std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
 std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) {
   Plot plot;
   plot.title = "Picture error against budget: " + printable(command.scene.arguments.scene);
-  plot.x_label = "budget for the structure, bytes";
-  plot.y_label = "mean depth error, voxels of the deepest (0 not shown)";
+  plot.x_label = "budget for the structure, bytes (log scale)";
+  plot.y_label = "mean depth error, voxels of the deepest (log; 0 not shown)";
   Series compact{"compact tree, the depth that fits", false, {}};
   Series dag{"DAG, the depth that fits", false, {}};
   Series coarsened{"compact tree, coarsened to fit", false, {}};
@@ -522,8 +524,10 @@ void add_memory(CLI::App& app) {
       "(solid), leaves (solid blocks and voxels of a tree), pool_nodes, compact_nodes, dag_nodes; for S of "
       "dense, pool, compact, dag: S_bytes, S_bit_bytes_per_voxel, S_color_bytes_per_voxel (palette index), "
       "S_normal_bytes_per_voxel (and 2 bytes), S_opacity_bytes_per_voxel (and 1 byte), S_build_bytes (most "
-      "in use while building), S_frame_ms (median), S_visits_per_ray (nodes; dense: cells), S_boards "
-      "(compact, dag: in flash; dense, pool: in RAM); wrong_px (another colour than the deepest depth's), "
+      "in use while building), dag_table_bytes (of that, the hash table that the DAG is built in), "
+      "S_frame_ms (processor time, median), S_visits_per_ray (nodes; dense: cells), "
+      "S_boards (compact, dag: in flash; dense, pool: in RAM); wrong_px (another colour than the deepest "
+      "depth's), "
       "silhouette_px (hit in one only), depth_error_mean_voxels, depth_error_max_voxels (in voxels of the "
       "deepest). With --budget-sweep a line a budget: budget_bytes, S_depth (deepest that fits, 0: none), "
       "compact_... and dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, "

@@ -223,7 +223,7 @@ std::unique_ptr<SceneSource> SceneOptions::open() const {
 }
 
 BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_bytes,
-                               std::uint64_t least_band_bytes) const {
+                               std::uint64_t least_band_bytes, std::uint64_t render_state_bytes) const {
   ProgressBar bar("building", quiet);
   BuildOptions options;
   options.structure = structure;
@@ -244,6 +244,7 @@ BuiltScene SceneOptions::build(const SceneSource& source, std::uint64_t band_byt
   options.band_bytes = band_bytes;
   options.least_band_bytes = least_band_bytes;
   options.threads = build_threads;
+  options.render_state_bytes = render_state_bytes;
   return BuiltScene(source, options, [&](double done) { bar.update(done); });
 }
 
@@ -257,7 +258,8 @@ void EngineOptions::add_to(CLI::App& app) {
       ->default_str("auto");
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
-      [this](std::int64_t number) { threads = static_cast<int>(number); }, "threads that build and that draw with the wide engine")
+      [this](std::int64_t number) { threads = static_cast<int>(number); },
+      "threads that build and that draw with the wide engine")
       ->default_str("1");
 }
 

@@ -46,10 +46,11 @@ struct SceneOptions {
   std::optional<std::uint64_t> budget_bytes() const;
   std::unique_ptr<SceneSource> open() const;
   /// Builds inside the budget, with `band_bytes` for pixels (0: none are drawn), or at least
-  /// `least_band_bytes` when the budget is short.
+  /// `least_band_bytes` when the budget is short, and the state of what draws.
   /// With --board a baked scene stays outside the budget, in the board's flash, where it must fit; the source
   /// must then outlive what is built.
-  BuiltScene build(const SceneSource& source, std::uint64_t band_bytes, std::uint64_t least_band_bytes) const;
+  BuiltScene build(const SceneSource& source, std::uint64_t band_bytes, std::uint64_t least_band_bytes,
+                   std::uint64_t render_state_bytes = render_bytes()) const;
 };
 
 /// An option --board, whose `help` says what of the board counts.

@@ -2,15 +2,14 @@
 #include <zlib.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <memory>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "commands/effect_options.h"
 #include "commands/options.h"
 #include "commands/stats.h"
 #include "output/hit_csv.h"
@@ -18,6 +17,9 @@
 #include "output/output_file.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "scene/lit_setup.h"
+#include "scene/painter.h"
+#include "scene/painting.h"
 
 namespace thimble::tools {
 namespace {
@@ -27,7 +29,9 @@ struct RenderCommand {
   EngineOptions engine;
   ViewOptions view;
   Quality quality;
+  EffectOptions effects;
   ShadeMode shade = ShadeMode::kDepth;
+  std::string shade_name;  ///< empty unless given
   std::string output;
   std::string hits_path;
   std::string depth_path;
@@ -87,8 +91,137 @@ std::unique_ptr<OutputFile> open_output(const std::string& path) {
   return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
 }
 
+[[noreturn]] void fail_camera(const RenderCommand& command) {
+  throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
+}
+
+// What contradicts itself whatever the scene is.
+void check_usage(const RenderCommand& command) {
+  const bool wide = command.engine.name == "wide";
+  if (wide && !command.quality.plain()) {
+    throw CLI::ValidationError(
+        "--engine wide draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
+  }
+  if (wide && (command.effects.named() || command.effects.bounces)) {
+    throw CLI::ValidationError("--engine wide draws without --effects and --bounces");
+  }
+  if (command.effects.named() && !command.shade_name.empty() && command.shade != ShadeMode::kColor) {
+    throw CLI::ValidationError("--shade " + command.shade_name + " shows no light, and so no --effects");
+  }
+}
+
+// An explicit --shade is drawn as such, unless effects are asked for beside it.
+EffectChoice effect_choice(const RenderCommand& command) {
+  constexpr EffectChoice kNone{false, kNoEffects};
+  if (command.shade_name.empty() || command.effects.named()) {
+    return command.effects.choice;
+  }
+  return command.effects.given && command.shade == ShadeMode::kColor ? command.effects.choice : kNone;
+}
+
+// What a lit picture cannot honour.
+void check_lit(const RenderCommand& command, EffectSet effects) {
+  const auto refuse = [&](const std::string& what) {
+    throw CLI::ValidationError("a picture with the effects " + effects_text(effects) + " " + what +
+                               " (--effects none draws the scene without)");
+  };
+  if (command.scene.structure != StructureKind::kCompact) {
+    refuse("wants --structure compact");
+  }
+  if (command.engine.name != "auto") {
+    refuse("takes no --engine but auto");
+  }
+  if (command.quality.cuts()) {
+    refuse("takes no --cutoff and no --max-depth");
+  }
+}
+
+// What a picture is drawn with, whoever draws it.
+struct Subject {
+  const RenderCommand& command;
+  BuiltScene& built;
+  const QualityFrame& frame;
+  const Camera& camera;
+  const Camera& fine;  ///< `camera` with so many times the pixels as there are samples across one
+  const Shading& shading;
+  PixelFormat format;
+};
+
+// Throws InputError for a camera whose rays it does not take.
+Painting paint_without_effects(const Subject& subject, const Progress& progress) {
+  const RenderCommand& command = subject.command;
+  const std::int32_t width = subject.camera.width_px();
+  const std::int32_t height = subject.camera.height_px();
+  Painting painting;
+  const auto painted = [&](const std::unique_ptr<Painter>& painter) {
+    return paint(*painter, width, height, subject.format, progress, &painting);
+  };
+  const TraceOptions options = command.engine.trace_options();
+  if (!command.quality.plain()) {
+    if (painted(make_quality_painter(subject.built, subject.frame, options)) != Status::kOk) {
+      fail_camera(command);
+    }
+    return painting;
+  }
+  // With --board the budget is the board's RAM, in which nothing of the host's is to stand unasked.
+  const bool may_be_wide = command.scene.board == nullptr || command.engine.name == "wide";
+  if (may_be_wide && command.engine.prepare(&subject.built, width, height)) {
+    const Status status =
+        painted(make_wide_painter(subject.built, subject.camera, subject.shading, command.engine.threads));
+    if (status == Status::kOk) {
+      return painting;
+    }
+    if (status != Status::kTooFine || command.engine.name != "auto") {
+      fail_camera(command);
+    }
+  }
+  if (painted(make_ray_painter(subject.built, subject.camera, subject.shading, subject.format, options)) !=
+      Status::kOk) {
+    fail_camera(command);
+  }
+  return painting;
+}
+
+Painting paint_lit(const Subject& subject, const LitPicture& picture, const Progress& progress) {
+  Painting painting;
+  const auto painter =
+      make_lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
+  if (paint(*painter, subject.camera.width_px(), subject.camera.height_px(), subject.format, progress,
+            &painting) != Status::kOk) {
+    throw InputError("its lights or surfaces are beyond the limits of a lit picture");
+  }
+  return painting;
+}
+
+// For a person: what the scene takes, and what came of it.
+void print_summary(const Stats& stats, const std::string& note) {
+  if (!note.empty()) {
+    std::fprintf(stderr, "note: %s\n", note.c_str());
+  }
+  std::fprintf(stderr,
+               "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
+               grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
+               grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
+               stats.frame_seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
+  if (stats.lit_counts) {
+    std::string rays;
+    for (int kind = 0; kind < kLitRayKinds; ++kind) {
+      if (stats.lit_counts->rays[kind] != 0) {
+        rays += (rays.empty() ? "" : ", ") + grouped(stats.lit_counts->rays[kind]) + " " +
+                ray_kind_name(static_cast<LitRayKind>(kind));
+      }
+    }
+    std::fprintf(stderr, "lit: %s; rays: %s\n", effects_text(*stats.effects).c_str(), rays.c_str());
+  }
+  if (stats.solid_added != 0) {
+    std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
+                 grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
+  }
+}
+
 void run(const RenderCommand& given) {
   RenderCommand command = given;
+  check_usage(command);
   command.view.use_display(command.scene.board);
   const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
   const std::array<std::string, 4> outputs{command.output, command.hits_path, command.depth_path,
@@ -102,16 +235,24 @@ void run(const RenderCommand& given) {
   const PixelFormat format =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
   const std::int32_t width = command.view.width_px;
-  const std::int32_t height = command.view.height_px;
   const auto source = command.scene.open();
   const bool plain = command.quality.plain();
+
+  const LitDescription lighting = command.effects.lighting(*source);
+  const EffectChoice choice = effect_choice(command);
+  UsedMaterials used;
+  EffectSet effects = expected_effects(*source, lighting, choice, &used);
+  if (effects != kNoEffects) {
+    check_lit(command, effects);
+  }
+  const bool in_flash = command.scene.board != nullptr && source->baked() != nullptr;
+  const std::uint64_t state_bytes =
+      in_flash ? lit_render_bytes(effects) : lit_state_bytes(lit_scene_for(lighting, used, effects), effects);
+
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
   BuiltScene built = command.scene.build(
       *source, plain ? band_bytes(format, width, band_rows(command, format)) : quality_bytes,
-      plain ? band_bytes(format, width, 1) : quality_bytes);
-  // At least a byte a row: a picture is at least a pixel wide.
-  const std::size_t one_row = std::max<std::size_t>(1, row_bytes(format, width));
-  const auto rows = static_cast<std::int32_t>(built.band().size / one_row);
+      plain ? band_bytes(format, width, 1) : quality_bytes, state_bytes);
   std::string note;
   const Camera camera = command.view.camera(*source, built.level(), built.bounds(), &note);
 
@@ -123,84 +264,47 @@ void run(const RenderCommand& given) {
   shading.far_q8 = range.far_q8;
 
   const NodeColors colors = take_node_colors(&built, command.quality, shading);
-  // With --board the budget is the board's RAM, in which nothing of the host's is to stand unasked.
-  const bool may_be_wide = command.scene.board == nullptr || command.engine.name == "wide";
-  bool is_wide = plain && may_be_wide && command.engine.prepare(&built, width, height);
-
-  Image image{width, height, format, std::vector<std::uint8_t>(band_bytes(format, width, height))};
-  RenderCounts counts;
-  wide::Counts work;
-  ProgressBar bar("tracing", command.scene.quiet);
-  double seconds = 0;
-  const std::size_t line = row_bytes(format, width);
   const Camera fine =
       command.quality.across == 1
           ? camera
           : command.view.finer(command.quality.across).camera(*source, built.level(), built.bounds());
   const QualityFrame frame(built, command.quality, camera, fine, shading, colors);
-  for (std::int32_t y = 0; !plain && y < height; ++y) {
-    const auto start = std::chrono::steady_clock::now();
-    if (frame.draw_row(y, format, built.band(), &counts, command.engine.trace_options()) != Status::kOk) {
-      throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
-    }
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::memcpy(image.pixels.data() + line * static_cast<std::size_t>(y), built.band().data, line);
-    bar.update(static_cast<double>(y) / height);
+  const Subject subject{command, built, frame, camera, fine, shading, format};
+  LitPicture lit;
+  if (effects != kNoEffects) {
+    used = used_materials(built.compact());
+    lit.effects = effects = chosen_effects(lighting, used, choice);
+    lit.scene = lit_scene_for(lighting, used, effects);
+    lit.across = command.quality.across;
   }
-  for (std::int32_t y = 0; is_wide && y < height; y += built.wide_rows()) {
-    Band band;
-    band.rows = std::min(built.wide_rows(), height - y);
-    band.pixels =
-        Bytes(image.pixels.data(), image.pixels.size())
-            .subspan(line * static_cast<std::size_t>(y), line * static_cast<std::size_t>(band.rows));
-    band.format = format;
-    band.first_row = y;
-    const auto start = std::chrono::steady_clock::now();
-    const Status status = built.render_wide(camera, shading, band, &counts, &work);
-    if (status == Status::kTooFine && command.engine.name == "auto") {
-      is_wide = false;  // rays draw it all
-      counts = {};
-      work = {};
-    } else if (status != Status::kOk) {
-      throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
-    }
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    bar.update(static_cast<double>(y) / height);
-  }
-  for (std::int32_t y = 0; plain && !is_wide && y < height; y += rows) {
-    Band band;
-    band.pixels = built.band();
-    band.format = format;
-    band.first_row = y;
-    band.rows = std::min(rows, height - y);
-    const auto start = std::chrono::steady_clock::now();
-    if (built.render_band(camera, shading, band, &counts, command.engine.trace_options()) != Status::kOk) {
-      throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
-    }
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::memcpy(image.pixels.data() + line * static_cast<std::size_t>(y), band.pixels.data,
-                line * static_cast<std::size_t>(band.rows));
-    bar.update(static_cast<double>(y) / height);
-  }
-
+  ProgressBar bar("tracing", command.scene.quiet);
+  const auto update = [&](double done) { bar.update(done); };
+  const Painting painting =
+      effects == kNoEffects ? paint_without_effects(subject, update) : paint_lit(subject, lit, update);
   bar.clear();
-  const Image shown = converted(image, pixel_format(kind));
+
+  const Image shown = converted(painting.image, pixel_format(kind));
   write_image(picture.get(), kind, shown);
   if (hits_file != nullptr || depth_file != nullptr) {
     write_hits(command, frame, camera, hits_file.get(), depth_file.get());
   }
 
   Stats stats(command.scene.arguments.scene, *source, built);
-  stats.frame_seconds = seconds;
-  stats.rays = counts.rays;
-  stats.hits = counts.hits;
-  stats.node_visits = counts.node_visits;
-  stats.engine = command.engine.resolved(is_wide);
-  stats.threads = is_wide ? command.engine.threads : 1;
-  stats.box_tests = work.candidates;
-  stats.exact_tests = work.exact;
+  stats.frame_seconds = painting.seconds;
+  stats.rays = painting.counts.all.rays;
+  stats.hits = painting.counts.all.hits;
+  stats.node_visits = painting.counts.all.node_visits;
+  stats.engine = painting.engine;
+  stats.threads = painting.threads;
+  stats.box_tests = painting.counts.wide.candidates;
+  stats.exact_tests = painting.counts.wide.exact;
   const std::vector<std::uint8_t> pixels = file_pixels(shown, kind);
   stats.frame_crc32 = crc_text(static_cast<std::uint32_t>(crc32_z(0, pixels.data(), pixels.size())));
+  stats.effects = effects;
+  if (effects != kNoEffects) {
+    stats.bounces = lit.scene.bounces;
+    stats.lit_counts = painting.counts.lit;
+  }
   if (!plain) {
     stats.samples = command.quality.samples();
     stats.cutoff_px = static_cast<double>(command.quality.cutoff.raw) / Q16::kOne;
@@ -210,8 +314,8 @@ void run(const RenderCommand& given) {
   }
   if (command.scene.board != nullptr) {
     stats.board = command.scene.board->name;
-    stats.display_crc32 =
-        crc_text(static_cast<std::uint32_t>(crc32_z(0, image.pixels.data(), image.pixels.size())));
+    stats.display_crc32 = crc_text(
+        static_cast<std::uint32_t>(crc32_z(0, painting.image.pixels.data(), painting.image.pixels.size())));
   }
   if (stats_file != nullptr) {
     stats_file->write(stats_text(stats));
@@ -227,18 +331,7 @@ void run(const RenderCommand& given) {
     }
   }
   if (!command.scene.quiet) {
-    if (!note.empty()) {
-      std::fprintf(stderr, "note: %s\n", note.c_str());
-    }
-    std::fprintf(stderr,
-                 "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
-                 grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
-                 grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
-                 seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
-    if (stats.solid_added != 0) {
-      std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
-                   grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
-    }
+    print_summary(stats, note);
   }
 }
 
@@ -262,9 +355,12 @@ void add_render(CLI::App& app) {
       [command](std::size_t index) {
         constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
                                     ShadeMode::kMono};
+        constexpr std::array kNames{"depth", "normal", "color", "mono"};
         command->shade = kModes[index];
+        command->shade_name = kNames[index];
       },
-      "brightness by distance, the face's direction, the palette in one light, or white where anything is")
+      "brightness by distance, the face's direction, the palette in one light, or white where anything is; "
+      "given without --effects it draws none")
       ->default_str("depth");
   add_path_option(
       *sub, "--hits", "FILE.csv", &command->hits_path,
@@ -273,6 +369,9 @@ void add_render(CLI::App& app) {
           kHitColumns + ", as trace writes them");
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
+  command->effects.add_to(*sub,
+                          "; what calls for none is drawn by --shade; --structure compact and --engine auto "
+                          "only");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
   sub->callback([command] { run(*command); });

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 #include "apps/app_table.h"
@@ -18,21 +19,45 @@
 #include "readers/picture.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "thimble/baked_lighting.h"
+#include "thimble/baked_scene.h"
 
 namespace thimble::tools {
 namespace {
 
 constexpr const char* kDefaultBoard = "lm3s6965evb";
 constexpr const char* kDefaultScene = "demo";
+constexpr const char* kDefaultWaterScene = "water";
 
 struct SimCommand {
   SceneOptions scene;
   SessionOptions session;
+  EffectChoice effects;
   std::string shot_path;
   std::string check_path;
   std::string keys_path;
   std::string record_path;
+  bool chooses_application = true;  ///< by the scene
 };
+
+const apps::Application* application(const char* name) {
+  for (const apps::Application& one : apps::applications()) {
+    if (std::strcmp(one.name, name) == 0) {
+      return &one;
+    }
+  }
+  return nullptr;
+}
+
+// Whether a baked scene was baked with water that can move.
+bool has_water(const std::vector<std::uint8_t>& bytes) {
+  BakedScene scene;
+  BakedLighting lighting;
+  return BakedScene::open({bytes.data(), bytes.size()}, &scene) == Status::kOk &&
+         open_lighting(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
+             Status::kOk &&
+         (lighting.effects & kWater) != 0;
+}
 
 // The scene as it lies in the board's flash: baked for its display, or a baked file as it is.
 std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
@@ -49,6 +74,7 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.limit_bytes = limit;
     options.coarsen = command.scene.coarsen;
     options.brick_map = true;
+    options.effects = command.effects;
     options.name = scene_name(command.scene.arguments.scene);
     options.camera = [&](int level, const VoxelBox& bounds) {
       SceneCamera chosen;
@@ -117,9 +143,14 @@ void report(const SimCommand& command, const SessionResult& result) {
     std::snprintf(time.data(), time.size(), ", %.2f ms each on this machine",
                   1000 * result.mean_frame_seconds);
   }
-  std::fprintf(stderr, "%s on %s: %s %s%s\n%s\n", command.session.application->name,
+  // Where something was left as it was.
+  const std::string rows = result.rows_kept == 0 ? std::string()
+                                                 : "rows drawn " + grouped(result.rows_sent) +
+                                                       ", unchanged " + grouped(result.rows_kept) + "\n";
+  std::fprintf(stderr, "%s on %s: %s %s%s\n%s%s\n", command.session.application->name,
                command.session.board->name, grouped(result.pictures).c_str(),
-               result.pictures == 1 ? "frame" : "frames", time.data(), memory_text(result.use, "\n").c_str());
+               result.pictures == 1 ? "frame" : "frames", time.data(), rows.c_str(),
+               memory_text(result.use, "\n").c_str());
 }
 
 // The application's own status is the command's.
@@ -140,7 +171,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   const auto recording = open(command->record_path);
   SessionOptions& session = command->session;
   session.recording = recording.get();
-  const platform::BoardFacts& board = *session.board;
+  platform::BoardFacts board = *session.board;
   std::optional<Image> wanted;
   if (!command->check_path.empty()) {
     wanted = about(command->check_path,
@@ -154,8 +185,14 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   std::vector<std::uint8_t> scene;
   if (session.application->wants_scene) {
     scene = flash_bytes(*command);
+    // Only the demonstration holds a rate of frames.
+    if (command->chooses_application && session.hold_fps == 0 && has_water(scene)) {
+      session.application = application("water");
+    }
   }
   session.scene = {scene.data(), scene.size()};
+  board = platform::board_for(*session.board, session.application->name);
+  session.board = &board;
 
   const SessionResult result = run_session(session);
   const std::string who = std::string(session.application->name) + " on " + board.name;
@@ -203,20 +240,19 @@ int run_and_write(SimCommand* command, std::string* sentence) {
 void run(const SimCommand& given) {
   SimCommand command = given;
   SessionOptions& session = command.session;
-  const platform::BoardFacts board = platform::board_for(*session.board, session.application->name);
-  session.board = &board;
   if (!session.application->wants_scene && !command.scene.arguments.scene.empty()) {
     throw CLI::ValidationError("SCENE", in_quotes(command.scene.arguments.scene) +
                                             " is not for the application " + session.application->name +
                                             ", which draws no scene");
   }
   if (session.hold_fps != 0 &&
-      (std::string(session.application->name) != "demo" || board.visits_a_second == 0)) {
-    throw CLI::ValidationError(
-        "--hold", std::string(session.application->name) + " on " + board.name + " holds no rate of frames");
+      (std::strcmp(session.application->name, "demo") != 0 || session.board->visits_a_second == 0)) {
+    throw CLI::ValidationError("--hold", std::string(session.application->name) + " on " +
+                                             session.board->name + " holds no rate of frames");
   }
   if (command.scene.arguments.scene.empty()) {
-    command.scene.arguments.scene = kDefaultScene;
+    const bool is_water = std::strcmp(session.application->name, "water") == 0;
+    command.scene.arguments.scene = is_water ? kDefaultWaterScene : kDefaultScene;
   }
   std::string sentence;
   int status = 0;
@@ -326,12 +362,23 @@ void add_sim(CLI::App& app) {
   }
   add_choice_option(
       *sub, "--app", names,
-      [command](std::size_t index) { command->session.application = &apps::applications()[index]; },
-      "the application")
-      ->default_str(names.front());
+      [command](std::size_t index) {
+        command->session.application = &apps::applications()[index];
+        command->chooses_application = false;
+      },
+      "the application (default: water for a scene with water, else " + names.front() + ")");
   sub->add_flag("--coarsen", command->scene.coarsen,
                 "when the scene does not fit the flash, merge blocks of voxels until it just does")
       ->disable_flag_override();
+  add_text_option(
+      *sub, "--effects", "LIST",
+      [command](const std::string& text) {
+        const auto choice = parse_effects(text);
+        command->effects = choice.value_or(EffectChoice{});
+        return choice ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+      },
+      "what the scene is baked for: auto (what it calls for), none, or effects with commas between them")
+      ->default_str("auto");
   add_display_options(*sub, command);
   add_file_options(*sub, command);
   sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no summary on standard error")

@@ -100,6 +100,7 @@ class Session {
   bool watched() const { return screen_->width_px() != 0; }
 
   void take(const host::Event& event);
+  void point(char what, const host::Event& event);
   void take_events(int timeout_ms);
   void take_input();
   void pass_output();
@@ -113,6 +114,7 @@ class Session {
   bool uart_in_pane_ = false;
   bool input_is_open_ = true;
   std::string typed_;           // not taken by the application yet
+  std::string pointed_;         // where the mouse was since the last frame, as the application takes it
   std::string output_;          // the end of what came over the UART
   std::uint32_t held_ = 0;      // by hand
   std::uint32_t scripted_ = 0;  // by the script
@@ -181,10 +183,27 @@ void Session::take(const host::Event& event) {
     case host::EventKind::kClose:
       closing_at_ = closing_at_.value_or(Clock::now());
       break;
+    case host::EventKind::kMouseDown:
+      point(event.button == 1 ? '@' : '!', event);
+      break;
+    case host::EventKind::kMouseMove:
+      if ((event.buttons & 1U) != 0) {
+        point('@', event);
+      }
+      break;
     default:
       break;
   }
   simulation_.set_buttons(held_ | scripted_);
+}
+
+// A pixel of the picture. One a frame: the last that was pressed on or moved over.
+void Session::point(char what, const host::Event& event) {
+  const platform::BoardFacts& board = *options_.board;
+  if (options_.application->takes_pointer && event.x_px >= 0 && event.y_px >= 0 &&
+      event.x_px < board.width_px && event.y_px < board.height_px) {
+    pointed_ = what + std::to_string(event.x_px) + "," + std::to_string(event.y_px) + ".";
+  }
 }
 
 void Session::take_events(int timeout_ms) {
@@ -256,7 +275,10 @@ void Session::update_status() {
       std::string(options_.board->name) + "  " + options_.application->name + "  frame " +
       grouped(pictures_) + "  " + time.data() + " ms a frame on this machine\n" +
       memory_text(simulation_.use(), "\n") + "\n" +
-      (line.empty() || !uart_in_pane_ ? "buttons: arrows or WASD, space   Esc ends" : "UART: " + line));
+      (line.empty() || !uart_in_pane_
+           ? (options_.application->takes_pointer ? "mouse: touch, drop   arrows or WASD, space   Esc ends"
+                                                  : "buttons: arrows or WASD, space   Esc ends")
+           : "UART: " + line));
 }
 
 void Session::take_picture() {
@@ -302,6 +324,8 @@ SessionResult Session::run() {
       }
       due = std::max(due + frame_time, Clock::now());
       take_script();
+      typed_ += pointed_;
+      pointed_.clear();
       take_input();
       const bool enough = options_.frames != 0 && simulation_.frames_asked() >= options_.frames;
       simulation_.answer(!enough && !closing_at_);
@@ -317,6 +341,8 @@ SessionResult Session::run() {
     result.status = simulation_.status();
     result.fault = simulation_.fault();
     result.pictures = simulation_.pictures();
+    result.rows_sent = simulation_.rows_sent();
+    result.rows_kept = simulation_.rows_kept();
     result.picture = simulation_.picture();
     result.use = simulation_.use();
   } else {

@@ -36,6 +36,8 @@ struct SessionResult {
   int status = 0;
   std::string fault;  ///< a sentence where the application was stopped
   std::uint32_t pictures = 0;
+  std::uint64_t rows_sent = 0;  ///< to the display
+  std::uint64_t rows_kept = 0;  ///< left there, unchanged
   host::PackedPicture picture;  ///< the last one
   host::MemoryUse use;
   double mean_frame_seconds = 0;  ///< of the application on this machine

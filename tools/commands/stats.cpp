@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scene/lit_setup.h"
+
 namespace thimble::tools {
 
 Stats::Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built)
@@ -58,6 +60,21 @@ std::string stats_text(const Stats& stats) {
   add("samples", stats.samples);
   add("cutoff_px", stats.cutoff_px);
   add("max_depth", stats.max_depth);
+  if (stats.effects) {
+    json["effects"] = nlohmann::ordered_json::array();
+    for (int bit = 0; bit < kEffectCount; ++bit) {
+      const EffectSet effect = EffectSet{1} << bit;
+      if ((*stats.effects & effect) != 0) {
+        json["effects"].push_back(effect_name(effect));
+      }
+    }
+  }
+  add("bounces", stats.bounces);
+  for (int kind = 0; stats.lit_counts && kind < kLitRayKinds; ++kind) {
+    const char* name = ray_kind_name(static_cast<LitRayKind>(kind));
+    json["rays_by_kind"][name] = stats.lit_counts->rays[kind];
+    json["node_visits_by_kind"][name] = stats.lit_counts->node_visits[kind];
+  }
   // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -9,6 +9,7 @@
 
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
+#include "thimble/lit_pixel.h"
 
 namespace thimble::tools {
 
@@ -41,6 +42,9 @@ struct Stats {
   std::optional<int> samples;
   std::optional<double> cutoff_px;
   std::optional<int> max_depth;
+  std::optional<EffectSet> effects;     ///< an array of names
+  std::optional<int> bounces;           ///< of a lit picture
+  std::optional<LitCounts> lit_counts;  ///< of a lit picture: rays and visits by kind of ray
 
   Stats() = default;
   Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);

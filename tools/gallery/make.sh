@@ -20,7 +20,41 @@ $thimble render "$data/cloud/building.ply" $size --shade depth --fov 32 -o "$out
 $thimble render "$data/nbody/galaxy_littleendian.dat" $size --shade color --eye 100,60,700 --target 256,256,256 \
   -o "$out/galaxy.png"
 $thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --target 512,512,512 --fov 44 -o "$out/stars.png"
+# Lit by what their texts say.
+scenes="$out/scenes"
+for scene in lagoon glass room; do
+  $thimble render "$scenes/$scene.scene" $size --samples 9 -o "$out/$scene.png"
+done
+$thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-light,shadows,ambient-occlusion,sky,glass,media \
+  --eye 141.3,-22.7,66.4 --target 25.6,59.2,9.3 --fov 36 -o "$out/bevy-test.png"
 $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
+# What the OLED shows with light, magnified (ImageMagick).
+for picture in demo room; do
+  scene=demo
+  [ $picture = demo ] || scene=$out/scenes/$picture.scene
+  effects=auto
+  [ $picture != demo ] || effects=direct-light,shadows
+  $thimble sim "$scene" --effects $effects --board lm3s6965evb --display none --frames 2 --quiet --shot "$out/oled-$picture.png" >/dev/null
+  convert "$out/oled-$picture.png" -filter point -resize 300% "$out/oled-$picture.png"
+done
+$thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 100 --fps 25 --keys "$out/waves.keys" --quiet \
+  --record "$out/waves.y4m" >/dev/null
+ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
+[b][p]paletteuse=dither=none:diff_mode=rectangle" "$out/waves.gif"
+rm "$out/waves.y4m"
 # simulator.png is the window of: thimble sim demo
+
+# The studies of the README. Their titles are the names of the files, so they run where these lie.
+plots=$(cd "$out" && pwd)
+case $thimble in */*) thimble=$(cd "$(dirname "$thimble")" && pwd)/$(basename "$thimble") ;; esac
+(
+  cd "$data/mesh"
+  "$thimble" memory dragon_vrip_res2.ply.gz --depth 10 --quiet --plot "$plots/memory-dragon.svg" >/dev/null
+  "$thimble" accuracy dragon_vrip_res2.ply.gz --shade normal --quiet --plot "$plots/accuracy-dragon.svg" >/dev/null
+  cd ../vox/ephtracy
+  "$thimble" memory monu10.vox --shade color --fov 30 --quiet --plot "$plots/memory-monu10.svg" >/dev/null
+  "$thimble" accuracy monu10.vox --shade color --fov 30 --quiet --plot "$plots/accuracy-monu10.svg" >/dev/null
+)
+"$thimble" memory points:1000000 --quiet --plot "$plots/memory-points.svg" >/dev/null

@@ -1,14 +1,16 @@
 #include "instruments/accuracy_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "instruments/chip_cost.h"
+#include "instruments/stopwatch.h"
 #include "output/hit_csv.h"
+#include "output/units.h"
 #include "readers/source.h"
+#include "thimble/anytime.h"
 
 namespace thimble::tools {
 namespace {
@@ -43,6 +45,16 @@ class Studio {
     return {camera, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
   }
 
+  LightStudio light(const EffectChoice& choice) const { return {source_, built_, choice, camera_, shading_}; }
+
+  // Draws a lit picture; milliseconds.
+  static double draw(const LightStudio& light, const LightSetting& setting, std::vector<std::uint8_t>* pixels,
+                     RenderCounts* counts) {
+    const Stopwatch watch;
+    light.draw(setting, pixels, counts);
+    return watch.ms();
+  }
+
   std::size_t row_bytes_of() const { return row_bytes(PixelFormat::kRgb888, camera_.width_px()); }
 
   // Draws the whole picture into `pixels`; milliseconds.
@@ -52,7 +64,7 @@ class Studio {
     pixels->resize(row * static_cast<std::size_t>(camera_.height_px()));
     work_.resize(
         static_cast<std::size_t>(quality_band_bytes(quality, PixelFormat::kRgb888, camera_.width_px())));
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     for (std::int32_t y = 0; y < camera_.height_px(); ++y) {
       // A plain picture needs no copy: its rows are drawn where they belong.
       std::uint8_t* target = pixels->data() + row * static_cast<std::size_t>(y);
@@ -64,7 +76,20 @@ class Studio {
         std::copy_n(work_.data(), row, target);
       }
     }
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return watch.ms();
+  }
+
+  // Refines a frame with so many visits, in memory of its own; milliseconds.
+  double refine(const Camera& camera, std::uint32_t visits, std::vector<std::uint8_t>* memory,
+                AnytimeFrame* frame) const {
+    memory->resize(anytime_bytes(camera.width_px(), camera.height_px(), PixelFormat::kRgb888));
+    const Stopwatch watch;
+    if (frame->begin(built_.compact(), camera, shading_, PixelFormat::kRgb888,
+                     {memory->data(), memory->size()}) != Status::kOk ||
+        frame->refine(built_.compact(), visits, Width::k64) != Status::kOk) {
+      throw InputError("internal error: a frame cannot be refined");
+    }
+    return watch.ms();
   }
 
   // Distances along the unit rays of the pixels' centres, negative for a miss.
@@ -128,14 +153,30 @@ void compare_distances(const std::vector<double>& distances, const std::vector<d
   row->depth_mean_voxels = both == 0 ? 0 : sum / static_cast<double>(both);
 }
 
-// The value below which `part` of them lie, between neighbours in proportion.
-double quantile(std::vector<double> values, double part) {
-  std::sort(values.begin(), values.end());
-  const double at = part * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
+// The mean absolute difference of what a display shows in greys.
+double mean_gray_error(const std::uint8_t* picture, const std::vector<std::uint8_t>& exact) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < exact.size(); i += 3) {
+    const int gray = gray_of({picture[i], picture[i + 1], picture[i + 2]});
+    sum += static_cast<std::uint64_t>(std::abs(gray - gray_of({exact[i], exact[i + 1], exact[i + 2]})));
+  }
+  return static_cast<double>(sum) * 3 / static_cast<double>(exact.size());
 }
+
+// All rows one after the other.
+AccuracyRow& row_of(AccuracyStudy* study, std::size_t index) {
+  if (index < study->rows.size()) {
+    return study->rows[index];
+  }
+  index -= study->rows.size();
+  return index < study->work.size() ? study->work[index].picture : study->light[index - study->work.size()];
+}
+
+// A lit picture's work in plain ones, roughly: for the progress bar.
+constexpr double kLitPicture = 4;
+
+// The first step of any-time work: so many visits, and twice as many each time.
+constexpr std::uint32_t kFirstVisits = 256;
 
 }  // namespace
 
@@ -151,11 +192,27 @@ double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::
   return 10 * std::log10(255.0 * 255.0 * static_cast<double>(picture.size()) / static_cast<double>(squares));
 }
 
-void mark_front(std::vector<AccuracyRow>* rows) {
+double rms_of(double psnr_db) {
+  return 255 * std::pow(10, -psnr_db / 20);
+}
+
+double psnr_of(double rms) {
+  return rms == 0 ? std::numeric_limits<double>::infinity() : 20 * std::log10(255 / rms);
+}
+
+double cost_of(const AccuracyRow& row, CostAxis axis) {
+  return axis == CostAxis::kTime     ? row.ms_median
+         : axis == CostAxis::kVisits ? static_cast<double>(row.counts.node_visits)
+                                     : row.lm3s_instructions;
+}
+
+void mark_front(std::vector<AccuracyRow>* rows, CostAxis axis) {
+  const double as_cheap = axis == CostAxis::kTime ? 1 + kTimeNoise : 1;
   for (AccuracyRow& row : *rows) {
+    const double cost = cost_of(row, axis);
     row.front = std::none_of(rows->begin(), rows->end(), [&](const AccuracyRow& other) {
-      return other.ms_median <= row.ms_median && other.psnr_db >= row.psnr_db &&
-             (other.ms_median < row.ms_median || other.psnr_db > row.psnr_db);
+      return (other.psnr_db > row.psnr_db && cost_of(other, axis) <= cost * as_cheap) ||
+             (other.psnr_db == row.psnr_db && cost_of(other, axis) < cost);
     });
   }
 }
@@ -208,11 +265,14 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
 
   std::vector<Prepared> prepared;
   double rays = 0;  // of a round, in pictures of one sample
+  std::vector<std::string> left_out;
+  std::string reason;
   for (const Trial& trial : trials(built->level(), most_across)) {
     try {
       prepared.push_back(studio.prepare(trial.setting));
     } catch (const InputError& error) {
-      study.notes.push_back(trial.setting.options() + " is left out: " + error.what());
+      left_out.push_back(trial.setting.options());
+      reason = error.what();
       continue;
     }
     AccuracyRow row;
@@ -220,8 +280,56 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
     study.rows.push_back(row);
     rays += trial.setting.quality.samples();
   }
+  if (!left_out.empty()) {
+    study.notes.push_back(
+        left_out.front() +
+        (left_out.size() == 1 ? " is" : " and " + std::to_string(left_out.size() - 1) + " more are") +
+        " left out: " + reason);
+  }
+
+  // The picture of the defaults, and what it is worked out in.
+  Setting defaults;
+  const Prepared plain = studio.prepare(defaults);
+  std::vector<std::uint8_t> exact;
+  RenderCounts unused;
+  studio.draw(plain, defaults.quality, &exact, &unused);
+  std::vector<std::uint8_t> memory;
+  for (std::uint32_t visits = kFirstVisits; study.work.empty() || study.work.back().inexact_px != 0;
+       visits *= 2) {
+    AnytimeFrame frame;
+    studio.refine(plain.camera, visits, &memory, &frame);
+    WorkRow row;
+    row.given_visits = visits;
+    row.inexact_px = frame.inexact();
+    row.error_bound_grays = frame.mean_error_bound_q8() / 256.0;
+    row.mean_error_grays = mean_gray_error(memory.data(), exact);
+    row.picture.trial.group = "anytime";
+    row.picture.counts = frame.counts();
+    study.work.push_back(row);
+    if (visits > UINT32_MAX / 2) {
+      study.notes.emplace_back("any-time frames end at " + grouped(visits) + " node visits here");
+      break;
+    }
+  }
+
+  const LightStudio light = studio.light(options.effects);
+  study.effects = light.effects();
+  study.light_reference = light.best();
+  std::vector<std::uint8_t> light_reference(exact.size());
+  for (const LightTrial& trial : light.trials()) {
+    AccuracyRow row;
+    row.trial.group = trial.group;
+    row.light = trial.setting;
+    study.light.push_back(row);
+  }
+  if (!study.light.empty()) {
+    light.draw(study.light_reference, &light_reference, &unused);
+  }
+
   const double reference_rays = study.reference.quality.samples();
-  const double all = reference_rays + rays * options.rounds;
+  const double all = reference_rays + (rays + static_cast<double>(study.work.size()) +
+                                       kLitPicture * static_cast<double>(study.light.size())) *
+                                          options.rounds;
   double done = 0;
   const auto advance = [&](double more) {
     done += more;
@@ -231,12 +339,11 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   };
 
   std::vector<std::uint8_t> reference;
-  RenderCounts unused;
   studio.draw(*best, study.reference.quality, &reference, &unused);
   const std::vector<double> reference_distances = studio.distances(*best);
   advance(reference_rays);
 
-  std::vector<std::vector<double>> milliseconds(study.rows.size());
+  std::vector<std::vector<double>> milliseconds(study.rows.size() + study.work.size() + study.light.size());
   std::vector<std::uint8_t> picture;
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t i = 0; i < study.rows.size(); ++i) {
@@ -252,13 +359,39 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
       }
       advance(quality.samples());
     }
+    for (std::size_t i = 0; i < study.work.size(); ++i) {
+      WorkRow& row = study.work[i];
+      AnytimeFrame frame;
+      milliseconds[study.rows.size() + i].push_back(
+          studio.refine(plain.camera, static_cast<std::uint32_t>(row.given_visits), &memory, &frame));
+      if (round == 0) {
+        picture.assign(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(exact.size()));
+        compare_pictures(picture, reference, &row.picture);
+      }
+      advance(1);
+    }
+    for (std::size_t i = 0; i < study.light.size(); ++i) {
+      AccuracyRow& row = study.light[i];
+      RenderCounts counts;
+      picture.resize(exact.size());
+      milliseconds[study.rows.size() + study.work.size() + i].push_back(
+          Studio::draw(light, row.light, &picture, &counts));
+      if (round == 0) {
+        row.counts = counts;
+        compare_pictures(picture, light_reference, &row);
+      }
+      advance(kLitPicture);
+    }
   }
-  for (std::size_t i = 0; i < study.rows.size(); ++i) {
-    study.rows[i].ms_median = quantile(milliseconds[i], 0.5);
-    study.rows[i].ms_quarter = quantile(milliseconds[i], 0.25);
-    study.rows[i].ms_three_quarters = quantile(milliseconds[i], 0.75);
+  for (std::size_t i = 0; i < milliseconds.size(); ++i) {
+    AccuracyRow& row = row_of(&study, i);
+    row.ms_median = quantile(milliseconds[i], 0.5);
+    row.ms_quarter = quantile(milliseconds[i], 0.25);
+    row.ms_three_quarters = quantile(milliseconds[i], 0.75);
   }
-  mark_front(&study.rows);
+  mark_front(&study.rows, options.axis);
+  // Instructions are not estimated for light.
+  mark_front(&study.light, options.axis == CostAxis::kInstructions ? CostAxis::kVisits : options.axis);
   return study;
 }
 

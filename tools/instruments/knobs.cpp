@@ -114,6 +114,7 @@ std::vector<Trial> trials(int depth, int most_across) {
   for (const Setting& setting : together) {
     add("together", setting);
   }
+  add("best", best_setting(most_across));
   return result;
 }
 

@@ -39,7 +39,8 @@ const std::vector<Knob>& knobs();
 /// Every knob at its best for a scene of `depth`, with at most `most_across`^2 samples a pixel.
 Setting best_setting(int most_across);
 
-/// A setting and why it is tried: the key of the knob that is turned alone, "default" or "together".
+/// A setting and why it is tried: the key of the knob that is turned alone, "default", "together", or "best":
+/// the reference itself.
 struct Trial {
   std::string group;
   Setting setting;

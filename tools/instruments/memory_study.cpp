@@ -1,9 +1,9 @@
 #include "instruments/memory_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
+#include "instruments/stopwatch.h"
 #include "scene/baking.h"
 #include "scene/built_scene.h"
 
@@ -42,12 +42,11 @@ void draw(const DepthScene& scene, const Camera& camera, Shading shading, int fr
         continue;
       }
       RenderCounts counts;
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       if (scene.render(static_cast<MemoryStructure>(i), camera, shading, band, &counts) != Status::kOk) {
         throw InputError("the rays of this camera cannot be traced");
       }
-      times_ms[i].push_back(
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+      times_ms[i].push_back(watch.ms());
       row->structures[i].visits_per_ray =
           static_cast<double>(counts.node_visits) / static_cast<double>(counts.rays);
     }
@@ -71,6 +70,7 @@ void count_bytes(const SceneSource& source, const DepthScene& scene, const Depth
   row->pool_nodes = scene.pool().nodes_used();
   row->compact_nodes = scene.compact().node_count();
   row->dag_nodes = scene.shared().node_count();
+  row->dag_table_bytes = scene.shared_work_bytes();
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     StructureFigures& figures = row->structures[i];
     const auto structure = static_cast<MemoryStructure>(i);

@@ -29,7 +29,7 @@ struct StructureFigures {
   std::uint64_t build_bytes = 0;  ///< the most in use while it is made
   /// With so much stored at each place: all cells of a dense grid, all solid blocks and voxels of a tree.
   std::array<std::uint64_t, kStoredKinds> stored_bytes{};
-  std::optional<double> frame_ms;  ///< the median; nothing where it was not drawn
+  std::optional<double> frame_ms;  ///< processor time, the median; nothing where it was not drawn
   std::optional<double> visits_per_ray;
 };
 
@@ -42,6 +42,7 @@ struct DepthRow {
   std::uint64_t pool_nodes = 0;
   std::uint64_t compact_nodes = 0;
   std::uint64_t dag_nodes = 0;
+  std::uint64_t dag_table_bytes = 0;  ///< the hash table that the DAG was built in
   std::array<StructureFigures, kMemoryStructures> structures;
   PictureError error;
 };

@@ -1,5 +1,7 @@
 #include "instruments/operation_errors.h"
 
+#include "instruments/operation_sweep.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,70 +20,7 @@
 namespace thimble::tools {
 namespace {
 
-using Real = long double;
-using Real3 = std::array<Real, 3>;
-
-constexpr Real kPi = 3.14159265358979323846264338327950288L;
-
-// Random integers that are the same in every library.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {}
-  std::int64_t from(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(random_() % (static_cast<std::uint64_t>(high - low) + 1));
-  }
-  std::int32_t from32(std::int64_t low, std::int64_t high) {
-    return static_cast<std::int32_t>(from(low, high));
-  }
-  // With as many large as small ones: 1 .. 2^bits - 1.
-  std::int32_t any_size(int bits) { return from32(1, (std::int64_t{1} << from(1, bits)) - 1); }
-  std::uint8_t byte() { return static_cast<std::uint8_t>(random_()); }
-
- private:
-  std::mt19937_64 random_;
-};
-
-// What one sweep found.
-struct Found {
-  Real error = 0;
-  std::uint64_t cases = 0;
-
-  void see(Real error_seen) {
-    error = std::max(error, std::abs(error_seen));
-    ++cases;
-  }
-};
-
-Real3 real(const Vec3i& v) {
-  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
-}
-Real dot(const Real3& a, const Real3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Real3 cross(const Real3& a, const Real3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Real3 unit(const Real3& a) {
-  const Real length = std::sqrt(dot(a, a));
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
-// a + b * factor
-Real3 along(const Real3& a, const Real3& b, Real factor) {
-  return {a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor};
-}
-Real length(const Real3& a) {
-  return std::sqrt(dot(a, a));
-}
-
-Vec3i any_vector(Draw& draw, int bits) {
-  Vec3i vector;
-  while (vector == Vec3i{}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      vector[axis] = draw.from(0, 7) == 0 ? 0 : (draw.from(0, 1) == 0 ? -1 : 1) * draw.any_size(bits);
-    }
-  }
-  return vector;
-}
+using namespace sweep;
 
 // --- Cameras.
 
@@ -449,28 +388,20 @@ Found sample_means(Draw& draw, std::uint64_t cases) {
   return found;
 }
 
-struct Operation {
-  const char* name;
-  const char* bound_name;
-  const char* unit;
-  double bound;
-  Found (*sweep)(Draw& draw, std::uint64_t cases);
-};
-
 const Operation kOperations[] = {
     {"camera: perspective ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, perspective_rays},
     {"camera: orthographic ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, parallel_rays},
-    {"camera: depth per t, perspective", "kDepthPerTErrorQ8", "1/256 direction unit", kDepthPerTErrorQ8,
+    {"depth per t, perspective", "kDepthPerTErrorQ8", "1/256 direction unit", kDepthPerTErrorQ8,
      perspective_depth_per_t},
-    {"camera: depth per t, orthographic", "kDepthPerTErrorParallelQ8", "1/256 direction unit",
+    {"depth per t, orthographic", "kDepthPerTErrorParallelQ8", "1/256 direction unit",
      kDepthPerTErrorParallelQ8, parallel_depth_per_t},
-    {"planar_depth_q8", "kPlanarDepthError{Shift,Q8}", "depth / 2^11 + 1/256 voxel", 1, planar_depths},
+    {"planar_depth_q8", "kPlanarDepthError{Shift,Q8}", "of its bound", 1, planar_depths},
     {"shade: depth", "kDepthShadeErrorQ8", "1/256 of 1/255", kDepthShadeErrorQ8, depth_shades},
     {"light_from: face light", "kFaceLightError", "1/256", kFaceLightError, face_lights},
     {"shade: lit channel", "kLitChannelError", "1/255", kLitChannelError, lit_channels},
     {"gray_of", "kGrayError", "1/255", kGrayError, grays},
-    {"store_pixel: 5 bits of kRgb565", "kRgb565Error", "1/255", kRgb565Error, rgb565},
-    {"Fixed: from and to whole numbers", "exact", "1", 0, fixed_numbers},
+    {"store_pixel: kRgb565, 5 bits", "kRgb565Error", "1/255", kRgb565Error, rgb565},
+    {"Fixed: whole numbers", "exact", "1", 0, fixed_numbers},
     {"Cutoff: reach", "kReachErrorQ8", "1/256 node side", kReachErrorQ8, cutoff_reaches},
     {"NodeColors: mean", "kNodeColorError", "1/255", kNodeColorError, node_colors},
     {"average_samples: mean", "kSampleMeanErrorQ8", "1/256 of 1/255", kSampleMeanErrorQ8, sample_means},
@@ -480,14 +411,17 @@ const Operation kOperations[] = {
 
 std::vector<OperationError> sweep_operations(std::uint64_t cases, std::uint64_t seed,
                                              const std::function<void(double)>& progress) {
+  std::vector<Operation> operations(std::begin(kOperations), std::end(kOperations));
+  const std::vector<Operation> optics = sweep::optics_operations();
+  operations.insert(operations.end(), optics.begin(), optics.end());
   std::vector<OperationError> errors;
-  for (const Operation& operation : kOperations) {
+  for (const Operation& operation : operations) {
     Draw draw(seed);
     const Found found = operation.sweep(draw, cases);
     errors.push_back({operation.name, operation.bound_name, operation.unit, static_cast<double>(found.error),
                       operation.bound, found.cases});
     if (progress) {
-      progress(static_cast<double>(errors.size()) / static_cast<double>(std::size(kOperations)));
+      progress(static_cast<double>(errors.size()) / static_cast<double>(operations.size()));
     }
   }
   return errors;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "output/units.h"
 
@@ -111,6 +112,46 @@ struct Frame {
   double y_at(double y) const { return kPlotBottom - (std::min(y, high) - low) / (high - low) * kPlotHeight; }
 };
 
+// Numbers at points, each in the nearest place round its point that neither another number nor another point
+// has.
+class Numbers {
+ public:
+  explicit Numbers(std::vector<std::pair<double, double>> points) : points_(std::move(points)) {}
+
+  std::string label_at(double x, double y, const std::string& text) {
+    const double half = 3.5 * static_cast<double>(text.size());
+    constexpr double kHalfLine = 4;  // of the height of digits of 11 px
+    std::pair<double, double> middle{x, y};
+    bool found = false;
+    for (double away = 12; !found && away <= 48; away += 6) {
+      // From above left round the point.
+      for (int turn = 0; !found && turn < 12; ++turn) {
+        const double angle = (225 + 30 * turn) * kDegree;
+        middle = {x + (away + half - 3.5) * std::cos(angle), y + away * std::sin(angle)};
+        const bool is_apart = std::none_of(numbers_.begin(), numbers_.end(), [&](const Number& other) {
+          return std::abs(other.x - middle.first) < half + other.half + 2 &&
+                 std::abs(other.y - middle.second) < 2 * kHalfLine + 2;
+        });
+        const bool is_beside = std::none_of(points_.begin(), points_.end(), [&](const auto& point) {
+          return std::abs(point.first - middle.first) < half + 6 &&
+                 std::abs(point.second - middle.second) < kHalfLine + 6;
+        });
+        found = is_apart && is_beside;
+      }
+    }
+    numbers_.push_back({middle.first, middle.second, half});
+    return label(middle.first, middle.second + kHalfLine, "middle", text, " font-size=\"11\"");
+  }
+
+ private:
+  struct Number {
+    double x, y, half;
+  };
+  static constexpr double kDegree = 3.14159265358979 / 180;
+  std::vector<std::pair<double, double>> points_;
+  std::vector<Number> numbers_;
+};
+
 }  // namespace
 
 std::string scatter_text(const Scatter& scatter) {
@@ -170,27 +211,56 @@ std::string scatter_text(const Scatter& scatter) {
   }
   for (std::size_t i = 0; i < scatter.clouds.size(); ++i) {
     const std::string fill = std::string("fill=\"") + kColors[i % kColors.size()] + "\"";
+    if (scatter.clouds[i].joined) {
+      svg += "<polyline fill=\"none\" stroke=\"" + std::string(kColors[i % kColors.size()]) + "\" points=\"";
+      for (const auto& [x, y] : scatter.clouds[i].points) {
+        svg += number(frame.x_at(x)) + "," + number(frame.y_at(y)) + " ";
+      }
+      svg += "\"/>\n";
+    }
     for (const auto& [x, y] : scatter.clouds[i].points) {
       svg += dot(frame.x_at(x), frame.y_at(y), 4, fill);
     }
     const double column = kLeft + static_cast<double>(i % 4) * (kWidth - kLeft - kRight) / 4;
-    const double row = legend + kLineHeight * static_cast<double>(i / 4);
+    const std::size_t legend_row = i / 4;
+    const double row = legend + kLineHeight * static_cast<double>(legend_row);
     svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
   }
   if (!scatter.front.empty()) {
     svg += label(kLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
   }
+  std::vector<std::pair<double, double>> rings;
+  for (const FrontPoint& point : scatter.front) {
+    rings.emplace_back(frame.x_at(point.x), frame.y_at(point.y));
+  }
+  Numbers numbers(rings);
   for (std::size_t i = 0; i < scatter.front.size(); ++i) {
     const FrontPoint& point = scatter.front[i];
     const double x = frame.x_at(point.x);
     const double y = frame.y_at(point.y);
     svg += dot(x, y, 6, "class=\"ring\"");
-    svg += label(x - 8, y - 8, "end", std::to_string(i + 1), " font-size=\"11\"");
-    const double column = kLeft + static_cast<double>(i / name_rows) * (kWidth - kLeft - kRight) / 2;
+    svg += numbers.label_at(x, y, std::to_string(i + 1));
+    const std::size_t name_column = i / name_rows;
+    const double column = kLeft + static_cast<double>(name_column) * (kWidth - kLeft - kRight) / 2;
     svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
                  std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
   }
   return svg + "</svg>\n";
+}
+
+std::string stacked(const std::vector<std::string>& plots) {
+  std::string inner;
+  double height = 0;
+  for (const std::string& plot : plots) {
+    const std::string box = "viewBox=\"0 0 " + number(kWidth) + " ";
+    const std::size_t at = plot.find(box);
+    const double own = std::strtod(plot.c_str() + at + box.size(), nullptr);
+    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kWidth) + "\" height=\"" + number(own) +
+             "\" " + plot.substr(at);
+    height += own;
+  }
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+         "\">\n" + inner + "</svg>\n";
 }
 
 }  // namespace thimble::tools

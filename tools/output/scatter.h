@@ -13,6 +13,7 @@ namespace thimble::tools {
 struct Cloud {
   std::string name;
   std::vector<std::pair<double, double>> points;  ///< x above 0, y any; an infinite y lies on the upper edge
+  bool joined = false;                            ///< by a line, in their order
 };
 
 struct FrontPoint {
@@ -33,6 +34,9 @@ struct Scatter {
 
 /// The plot as SVG text: x logarithmic, y linear. At most eight clouds keep colours of their own.
 std::string scatter_text(const Scatter& scatter);
+
+/// Such plots one below the other in one file.
+std::string stacked(const std::vector<std::string>& plots);
 
 }  // namespace thimble::tools
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "boards/board_table.h"
+#include "boards/effect_flash.h"
+#include "thimble/lit_render.h"
 #include "thimble/render.h"
 
 namespace thimble::tools {
@@ -18,9 +20,22 @@ inline constexpr std::uint32_t kCodeFlashBytes = 40 * 1024;
 /// Rows of the band that the figures below are for; an application may choose another number.
 inline constexpr std::int32_t kBoardBandRows = 8;
 
+/// Flash kept for the program that draws with these effects: what they take as measured on a Cortex-M3
+/// (boards/effect_flash.h), one by one or all together, whichever is less.
+inline std::uint32_t code_flash_bytes(EffectSet effects) {
+  if (effects == kNoEffects) {
+    return kCodeFlashBytes;
+  }
+  std::uint32_t bytes = kLitBaseFlashBytes;
+  for (const EffectFlash& one : kEffectFlash) {
+    bytes += (effects & one.effect) != 0 ? one.bytes : 0;
+  }
+  return kCodeFlashBytes + (bytes < kAllEffectsFlashBytes ? bytes : kAllEffectsFlashBytes);
+}
 /// Bytes of flash that a baked scene may take.
-inline std::uint64_t scene_flash_bytes(const platform::BoardFacts& board) {
-  return board.flash_bytes > kCodeFlashBytes ? board.flash_bytes - kCodeFlashBytes : 0;
+inline std::uint64_t scene_flash_bytes(const platform::BoardFacts& board, EffectSet effects = kNoEffects) {
+  const std::uint32_t code = code_flash_bytes(effects);
+  return board.flash_bytes > code ? board.flash_bytes - code : 0;
 }
 /// Bytes of RAM that the stack leaves.
 inline std::uint64_t free_ram_bytes(const platform::BoardFacts& board) {
@@ -32,8 +47,8 @@ inline std::uint64_t board_band_bytes(const platform::BoardFacts& board) {
 }
 /// RAM to draw a scene that lies in flash: camera, shading and counters (as large as on this machine; a
 /// 32-bit chip takes less), one band, and the stack.
-inline std::uint64_t drawing_ram_bytes(const platform::BoardFacts& board) {
-  return render_bytes() + board_band_bytes(board) + board.stack_bytes;
+inline std::uint64_t drawing_ram_bytes(const platform::BoardFacts& board, EffectSet effects = kNoEffects) {
+  return lit_render_bytes(effects) + board_band_bytes(board) + board.stack_bytes;
 }
 
 /// "gray4", as board.cmake has it.

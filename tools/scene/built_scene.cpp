@@ -33,10 +33,10 @@ Vec3i dense_size(const SceneSource& source) {
 }
 
 // Bytes of an arena that a renderer with such a band takes first.
-std::uint64_t used_before_structure(std::uint64_t band_bytes) {
+std::uint64_t used_before_structure(std::uint64_t state_bytes, std::uint64_t band_bytes) {
   constexpr std::uint64_t kAlign = alignof(std::uint64_t);
   const auto up = [](std::uint64_t bytes) { return (bytes + kAlign - 1) / kAlign * kAlign; };
-  return band_bytes == 0 ? 0 : up(up(render_bytes()) + band_bytes);
+  return band_bytes == 0 ? 0 : up(up(state_bytes) + band_bytes);
 }
 
 // How many keys a full list may keep after its repeats are gone: one that stays nearly full would be sorted
@@ -109,7 +109,8 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
     if (options.structure == StructureKind::kDense) {
       // Known without building it.
       const Vec3i size = dense_size(source);
-      needed = used_before_structure(options.least_band_bytes) + dense_grid_bytes(size);
+      needed = used_before_structure(options.render_state_bytes, options.least_band_bytes) +
+               dense_grid_bytes(size);
       part = " (" + grouped(dense_grid_bytes(size)) + " of them the grid of " + std::to_string(size.x) +
              " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels)";
     } else {
@@ -164,7 +165,7 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
   arena_ = Arena(memory_.bytes());
   band_ = {};
   if (band_bytes != 0) {
-    if (arena_.take(render_bytes()).empty()) {
+    if (arena_.take(static_cast<std::size_t>(options_.render_state_bytes)).empty()) {
       throw Shortage{};
     }
     band_ = arena_.take(static_cast<std::size_t>(band_bytes));

@@ -25,12 +25,13 @@ enum class StructureKind : std::uint8_t { kDense, kPool, kCompact };
 
 struct BuildOptions {
   StructureKind structure = StructureKind::kCompact;
-  std::optional<std::uint64_t> memory_bytes;  ///< --memory: everything between reader and display
-  bool coarsen = false;                       ///< --coarsen
-  std::uint64_t band_bytes = 0;               ///< one band of pixels; 0: nothing is rendered
-  std::uint64_t least_band_bytes = 0;         ///< what will do for a band when the budget is short
-  int threads = 1;                            ///< that may sort voxels
-  std::string budget_name = "--memory";       ///< who set the budget, for errors
+  std::optional<std::uint64_t> memory_bytes;          ///< --memory: everything between reader and display
+  bool coarsen = false;                               ///< --coarsen
+  std::uint64_t band_bytes = 0;                       ///< one band of pixels; 0: nothing is rendered
+  std::uint64_t render_state_bytes = render_bytes();  ///< what draws keeps beside the band
+  std::uint64_t least_band_bytes = 0;                 ///< what will do for a band when the budget is short
+  int threads = 1;                                    ///< that may sort voxels
+  std::string budget_name = "--memory";               ///< who set the budget, for errors
   /// A baked scene is traced where the source has it, as a board does in flash: not part of the budget, and
   /// the source must outlive the result. Otherwise its tree is copied into the arena. Compact trees only.
   bool baked_in_flash = false;

@@ -501,4 +501,20 @@ SceneCamera demo_world_camera(int depth) {
   return camera;
 }
 
+void demo_world_light(LitDescription* lit) {
+  // Over the viewer's left shoulder: the castle is bright, and the mountains' shadows lie on the lake. Bright
+  // shadows, since half of a valley lies in them and a display has 16 greys.
+  Light sun;
+  sun.place = {8, -6, 17};
+  sun.color_q8[0] = 316;
+  sun.color_q8[1] = 304;
+  sun.color_q8[2] = 282;
+  lit->lights.push_back(sun);
+  lit->rest.ambient_q8[0] = 114;
+  lit->rest.ambient_q8[1] = 122;
+  lit->rest.ambient_q8[2] = 132;
+  // For those who ask for light: the scene's own look is that of its faces.
+  lit->off = kDirectLight;
+}
+
 }  // namespace thimble::tools

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "readers/source.h"
+#include "scene/lit_description.h"
 #include "scene/voxel_sink.h"
 #include "thimble/baked_scene.h"
 
@@ -25,6 +26,9 @@ Palette demo_world_palette();
 
 /// Where the demonstration's orbit begins: inside the valley, above the lake, looking at the castle.
 SceneCamera demo_world_camera(int depth);
+
+/// The sun and the light from everywhere, for whoever asks for effects; of itself the scene calls for none.
+void demo_world_light(LitDescription* lit);
 
 }  // namespace thimble::tools
 

@@ -530,6 +530,9 @@ Palette generator_palette(GeneratorKind kind) {
 
 LitDescription generator_lighting(const GeneratorSpec& spec) {
   LitDescription lit = describe_palette(generator_palette(spec.kind));
+  if (spec.kind == GeneratorKind::kDemo) {
+    demo_world_light(&lit);
+  }
   if (spec.kind != GeneratorKind::kWater) {
     return lit;
   }

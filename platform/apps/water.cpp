@@ -1,0 +1,527 @@
+// A lit scene whose water moves. Touch it, drop things into it, walk round it; leave it alone and it comes to
+// rest, and then nothing is computed any more.
+//
+//   buttons    left, right, up and down move the camera, as in the demonstration; select drops a ball where
+//              the middle of the picture is, and while it is held up and down come nearer and go away
+//   @X,Y.      over the UART: touches the water that pixel X, Y shows (the simulator sends it for the mouse)
+//   !X,Y.      drops a ball there
+//   x  b       the same in the middle of the picture
+//   +  -       nearer, farther
+//   m          rain: a ball now and then, or no more
+//   t          the camera turns by itself, or no more
+//   k          lays the water to rest
+//   o          draws every band of every frame, or only what can have changed
+//   i          the line with the counters, now; it comes at the end, too
+//   q          ends, with status 0
+//
+// A frame is drawn in bands, and only those bands that can show something else than in the frame before
+// (dirty_bands.h). The water is stepped only while it moves. The work a frame hangs on no clock.
+#include "thimble/water.h"
+
+#include "apps/apps.h"
+#include "apps/demo_view.h"
+#include "apps/dirty_bands.h"
+#include "apps/falling_ball.h"
+#include "apps/moving_water.h"
+#include "apps/place.h"
+#include "apps/shown_scene.h"
+#include "apps/text.h"
+#include "port.h"
+#include "thimble/arena.h"
+#include "thimble/baked_lighting.h"
+#include "thimble/lit_render.h"
+
+namespace thimble::apps {
+namespace {
+
+constexpr int32_t kBandRows = 8;
+constexpr int kKeysAFrame = 64;
+constexpr int kBalls = 4;
+/// Frames from one ball of the rain to the next.
+constexpr uint32_t kRainFrames = 24;
+
+/// A pixel that is being named over the UART.
+struct Pointing {
+  char what = 0;  ///< '@' or '!'; 0: nothing is
+  bool has_x = false;
+  int32_t x = 0;
+  int32_t y = 0;
+};
+
+struct Pool : Placed {
+  Arena arena{port::arena()};
+  ShownScene shown;
+  BakedLighting lighting;
+  WaterSurface rest;  ///< the water as the scene has it
+  MovingWater water;
+  BallSize ball_size;
+  FallingBall balls[kBalls];
+  Orbit orbit;
+  Steering steering;
+  Camera camera;
+  Shading shading;
+  Bytes band;
+  int32_t band_rows = 0;
+  DirtyBands dirty;
+  Pointing pointing;
+  uint32_t buttons = 0;  ///< of the frame before
+  uint32_t frames = 0;
+  uint32_t turned = 0;
+  uint32_t raining = 0;  ///< frames since it began, and one; 0: it does not
+  uint32_t drops = 0;    ///< of the rain
+  uint32_t touches = 0;
+  uint32_t splashes = 0;
+  bool turns = false;
+  bool redraws = false;  ///< every band of every frame
+  bool moved = true;     ///< the camera
+  bool rippled = false;  ///< the water
+};
+
+const port::Display& display() {
+  return port::facts().display;
+}
+
+const CompactTree& tree_of(const Pool& pool) {
+  return pool.shown.scene.tree();
+}
+
+[[gnu::noinline]] int refuse(const char* why) {
+  put("error: ");
+  put(why);
+  put("\n");
+  return 1;
+}
+
+void put_fact(const char* name, uint64_t number) {
+  put(name);
+  put_number(number);
+}
+
+[[gnu::noinline]] void tell_counters(const Pool& pool) {
+  put_fact("frames ", pool.frames);
+  put_fact(" bands drawn ", pool.dirty.bands_drawn());
+  put_fact(" bands skipped ", pool.dirty.bands_skipped());
+  put_fact(" steps ", pool.water.columns.steps_done());
+  put_fact(" columns stepped ", pool.water.columns.columns_updated());
+  put_fact(" touches ", pool.touches);
+  put_fact(" splashes ", pool.splashes);
+  put(" water ");
+  put_hex(pool.water.columns.state_crc32());
+  put(pool.water.columns.is_still() ? " still\n" : " moving\n");
+}
+
+// ---- what happens
+
+/// The place of the water that a pixel shows.
+[[gnu::noinline]] bool point_at(const Pool& pool, int32_t px, int32_t py, int32_t* x_q8, int32_t* y_q8) {
+  const port::Display& screen = display();
+  return px >= 0 && py >= 0 && px < screen.width_px && py < screen.height_px &&
+         find_surface(tree_of(pool), pool.water, pool.camera.ray(px, py), x_q8, y_q8);
+}
+
+/// A fingertip: a bowl with a rim.
+void touch(Pool* pool, int32_t px, int32_t py) {
+  int32_t x = 0;
+  int32_t y = 0;
+  const int32_t half = pool->ball_size.half_q8;
+  const auto within = [](int32_t value) { return value < (1 << 14) ? value : 1 << 14; };
+  if (point_at(*pool, px, py, &x, &y) &&
+      pool->water.columns.touch(x, y, within(half * 5 / 4), within(half * 3 / 4)) == Status::kOk) {
+    ++pool->touches;
+    pool->rippled = true;
+  }
+}
+
+/// A ball above a place of the water.
+void drop_above(Pool* pool, int32_t x_q8, int32_t y_q8) {
+  const MovingWater& water = pool->water;
+  for (FallingBall& ball : pool->balls) {
+    if (!ball.is_there) {
+      ball = FallingBall{};
+      ball.is_there = true;
+      ball.center = {water.corner.x * Q8::kOne + x_q8, water.corner.y * Q8::kOne + y_q8,
+                     water.corner.z * Q8::kOne + water.columns.rest_q8() + pool->ball_size.height_q8};
+      return;
+    }
+  }
+}
+void drop(Pool* pool, int32_t px, int32_t py) {
+  int32_t x = 0;
+  int32_t y = 0;
+  if (point_at(*pool, px, py, &x, &y)) {
+    drop_above(pool, x, y);
+  }
+}
+
+/// One drop of the rain: places that follow one another evenly and never in the same way (Roberts, "The
+/// unreasonable effectiveness of quasirandom sequences", 2018: multiples of 1/g and 1/g^2, g^3 = g + 1).
+void rain(Pool* pool) {
+  const auto place = [&](uint32_t step, int32_t columns) {
+    const uint32_t share = (pool->drops * step + 0x8000U) & 0xFFFFU;
+    return static_cast<int32_t>(share * static_cast<uint32_t>(columns) >> 8);
+  };
+  const int32_t x = place(49472, pool->water.columns.width());
+  const int32_t y = place(37345, pool->water.columns.depth());
+  ++pool->drops;
+  drop_above(pool, x, y);
+}
+
+/// A frame of a ball's fall. Into the water it goes with its momentum, once, and on below at half its speed,
+/// where nobody sees it any more; on something solid it ends.
+[[gnu::noinline]] void fall(Pool* pool, FallingBall* ball) {
+  const BallSize& size = pool->ball_size;
+  MovingWater& water = pool->water;
+  ball->speed += ball->is_wet ? 0 : size.gravity_q8;
+  ball->center.z -= ball->speed;
+  const int32_t x = ball->center.x - water.corner.x * Q8::kOne;
+  const int32_t y = ball->center.y - water.corner.y * Q8::kOne;
+  const int32_t column_x = x >> Q8::kBits;
+  const int32_t column_y = y >> Q8::kBits;
+  const Vec3i below{ball->center.x >> Q8::kBits, ball->center.y >> Q8::kBits,
+                    (ball->center.z - size.half_q8) >> Q8::kBits};
+  const bool is_over_water = column_x >= 0 && column_y >= 0 && column_x < water.columns.width() &&
+                             column_y < water.columns.depth() &&
+                             !water.columns.is_blocked(column_x, column_y);
+  const int32_t surface =
+      is_over_water ? water.corner.z * Q8::kOne + water.columns.height_q8(column_x, column_y) : -Q8::kOne;
+  if (!ball->is_wet && ball->center.z - size.half_q8 <= surface) {
+    const int32_t speed = ball->speed / kStepsAFrame;
+    const int32_t radius = size.half_q8 < (1 << 14) ? size.half_q8 : 1 << 14;
+    if (water.columns.drop(x, y, radius, size.mass_q8, speed < 65536 ? speed : 65536) == Status::kOk) {
+      ++pool->splashes;
+      pool->rippled = true;
+    }
+    ball->is_wet = true;
+    ball->speed /= 2;
+  }
+  if (ball->center.z + size.half_q8 < surface || below.z < 0 || material_at(tree_of(*pool), below, nullptr)) {
+    ball->is_there = false;
+  }
+}
+
+void mark_ball(Pool* pool, const FallingBall& ball) {
+  DirtyBands& dirty = pool->dirty;
+  for (int32_t i = 0; ball.is_there && i < dirty.count(); ++i) {
+    if (!dirty.is_dirty(i) &&
+        band_may_see(pool->camera, dirty.first_row(i), dirty.first_row(i) + dirty.rows(i),
+                     box_of(ball, pool->ball_size))) {
+      dirty.mark(i);
+    }
+  }
+}
+
+/// A frame's time. Balls are marked where they are no more and where they are.
+[[gnu::noinline]] void move(Pool* pool) {
+  if (pool->raining != 0 && pool->raining++ % kRainFrames == 1) {
+    rain(pool);
+  }
+  for (FallingBall& ball : pool->balls) {
+    if (ball.is_there) {
+      mark_ball(pool, ball);
+      fall(pool, &ball);
+      mark_ball(pool, ball);
+    }
+  }
+  for (int i = 0; i < kStepsAFrame && !pool->water.columns.is_still(); ++i) {
+    pool->water.columns.step();
+    pool->rippled = true;
+  }
+}
+
+// ---- the picture
+
+/// Stores a pixel over another one.
+void store_over(uint8_t* row, int32_t x, int32_t y, PixelFormat format, const Rgb8& color) {
+  const auto column = static_cast<uint32_t>(x);
+  if (format == PixelFormat::kMono1) {
+    row[column >> 3] = static_cast<uint8_t>(row[column >> 3] & ~(0x80U >> (column & 7U)));
+  } else if (format == PixelFormat::kGray4) {
+    row[column >> 1] = static_cast<uint8_t>(row[column >> 1] & ((column & 1U) != 0 ? 0xF0U : 0x0FU));
+  }
+  store_pixel(row, x, y, format, color);
+}
+
+/// Whether nothing of the scene is met before the ball.
+bool is_in_front(const Pool& pool, const WaterSurface& surface, const Ray& ray, const BallHit& hit) {
+  Hit solid;
+  WaterHit wet;
+  if (closest_hit(tree_of(pool), ray, &solid) != Status::kOk) {
+    return false;
+  }
+  if (solid.kind == HitKind::kHit && !is_before(hit, solid.t_numerator, solid.t_denominator)) {
+    return false;
+  }
+  return !water_enter(surface, ray, &wet) || is_before(hit, wet.t_numerator, wet.t_denominator);
+}
+
+/// Draws a ball over the rows of a band.
+[[gnu::noinline]] void draw_ball(const Pool& pool, const FallingBall& ball, const Band& band) {
+  const port::Display& screen = display();
+  const size_t stride = row_bytes(screen.format, screen.width_px);
+  const WaterSurface surface = surface_of(pool.water, false);
+  for (int32_t row = 0; row < band.rows; ++row) {
+    const int32_t y = band.first_row + row;
+    uint8_t* const line = band.pixels.data + stride * static_cast<size_t>(row);
+    RowRays rays(pool.camera, 0, y);
+    for (int32_t x = 0; x < screen.width_px; ++x, rays.next()) {
+      BallHit hit;
+      const Ray ray = rays.ray();
+      if (enter_ball(ray, ball, pool.ball_size, &hit) && is_in_front(pool, surface, ray, hit)) {
+        store_over(line, x, y, screen.format, falling_ball_color(ray, hit, pool.shading));
+      }
+    }
+  }
+}
+
+/// The balls, those farther away first: by the distance of their middles, which never touch.
+void draw_balls(const Pool& pool, const Band& band) {
+  const auto distance = [&pool](const FallingBall& ball) {
+    const Vec3Q8& eye = pool.camera.eye();
+    return length_of(int64_t{ball.center.x} - eye.x.raw, int64_t{ball.center.y} - eye.y.raw,
+                     int64_t{ball.center.z} - eye.z.raw);
+  };
+  bool is_drawn[kBalls] = {};
+  for (int count = 0; count < kBalls; ++count) {
+    int farthest = -1;
+    for (int i = 0; i < kBalls; ++i) {
+      if (pool.balls[i].is_there && !is_drawn[i] &&
+          (farthest < 0 || distance(pool.balls[i]) > distance(pool.balls[farthest]))) {
+        farthest = i;
+      }
+    }
+    if (farthest < 0) {
+      return;
+    }
+    is_drawn[farthest] = true;
+    if (band_may_see(pool.camera, band.first_row, band.first_row + band.rows,
+                     box_of(pool.balls[farthest], pool.ball_size))) {
+      draw_ball(pool, pool.balls[farthest], band);
+    }
+  }
+}
+
+/// With the scene's effects: those that it was compiled for, or whatever it was baked with.
+Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
+#ifdef THIMBLE_IMAGE_EFFECTS
+  return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
+                                                band, counts);
+#else
+  return render_lit_band(pool.lighting.effects, tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
+                         band, counts);
+#endif
+}
+
+/// Draws and flushes what can have changed.
+[[gnu::noinline]] Status draw_frame(Pool* pool) {
+  const port::Display& screen = display();
+  DirtyBands& dirty = pool->dirty;
+  // With a new camera: which bands waves can change, from now on.
+  const bool looks = pool->moved;
+  if (pool->moved || pool->redraws) {
+    dirty.mark_all();
+  } else if (pool->rippled) {
+    dirty.mark_seeing();
+  }
+  pool->moved = false;
+  pool->rippled = false;
+  pool->lighting.scene.water = surface_of(pool->water, looks);
+  for (int32_t i = 0; i < dirty.count(); ++i) {
+    if (!dirty.is_dirty(i)) {
+      dirty.skip(i, screen.format);
+      continue;
+    }
+    Band band{pool->band, screen.format, 0, dirty.first_row(i), dirty.rows(i)};
+    band.pixels = pool->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+    LitCounts counts;
+    const Status status = draw_band(*pool, band, &counts);
+    if (status != Status::kOk) {
+      return status;
+    }
+    if (looks) {
+      dirty.note_sees(i, counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0);
+    }
+    draw_balls(*pool, band);
+    port::flush(band);
+    dirty.drawn(i);
+  }
+  return Status::kOk;
+}
+
+// ---- the hand
+
+/// One byte of a pixel's name; false where it belongs to none.
+bool take_pointing(Pool* pool, int byte) {
+  Pointing& pointing = pool->pointing;
+  if (byte == '@' || byte == '!') {
+    pointing = Pointing{};
+    pointing.what = static_cast<char>(byte);
+    return true;
+  }
+  if (pointing.what == 0) {
+    return false;
+  }
+  int32_t& number = pointing.has_x ? pointing.y : pointing.x;
+  if (byte >= '0' && byte <= '9' && number < 10000) {
+    number = 10 * number + (byte - '0');
+  } else if (byte == ',' && !pointing.has_x) {
+    pointing.has_x = true;
+  } else {
+    if (byte == '.' && pointing.has_x) {
+      (pointing.what == '@' ? touch : drop)(pool, pointing.x, pointing.y);
+    }
+    pointing.what = 0;
+  }
+  return true;
+}
+
+void zoom(Pool* pool, int32_t by) {
+  const int32_t zoom = pool->steering.zoom + by;
+  if (zoom >= kNearest && zoom <= kFarthest) {
+    pool->steering.zoom = zoom;
+    pool->moved = true;
+  }
+}
+
+[[gnu::noinline]] bool still(Pool* pool) {
+  pool->rippled = true;
+  return calm_water(tree_of(*pool), pool->rest, &pool->arena, &pool->water) == Status::kOk;
+}
+
+/// Whether to go on.
+[[gnu::noinline]] bool obey(Pool* pool) {
+  const port::Display& screen = display();
+  const uint32_t buttons = port::buttons();
+  const Steering before = pool->steering;
+  steer(buttons, &pool->steering);
+  pool->moved = pool->moved || before.yaw != pool->steering.yaw || before.pitch != pool->steering.pitch ||
+                before.zoom != pool->steering.zoom;
+  if ((buttons & ~pool->buttons & port::kSelect) != 0) {
+    drop(pool, screen.width_px / 2, screen.height_px / 2);
+  }
+  pool->buttons = buttons;
+  for (int i = 0; i < kKeysAFrame; ++i) {
+    const int byte = port::read();
+    if (byte < 0) {
+      return true;
+    }
+    if (take_pointing(pool, byte)) {
+      continue;
+    }
+    switch (byte) {
+      case 'q':
+        return false;
+      case 'x':
+        touch(pool, screen.width_px / 2, screen.height_px / 2);
+        break;
+      case 'b':
+        drop(pool, screen.width_px / 2, screen.height_px / 2);
+        break;
+      case '+':
+        zoom(pool, -1);
+        break;
+      case '-':
+        zoom(pool, 1);
+        break;
+      case 'm':
+        pool->raining = pool->raining == 0 ? 1 : 0;
+        break;
+      case 't':
+        pool->turns = !pool->turns;
+        break;
+      case 'k':
+        static_cast<void>(still(pool));
+        break;
+      case 'o':
+        pool->redraws = !pool->redraws;
+        break;
+      case 'i':
+        tell_counters(*pool);
+        break;
+      default:
+        break;
+    }
+  }
+  return true;
+}
+
+[[gnu::noinline]] Status place_camera(Pool* pool) {
+  const port::Display& screen = display();
+  return view_at(pool->orbit, tree_of(*pool), pool->turned, pool->steering, screen.width_px, screen.height_px,
+                 &pool->camera);
+}
+
+/// Opens the scene, takes all memory. Null, or what is wrong.
+[[gnu::noinline]] const char* begin(Pool* pool) {
+  if (const char* wrong = open_scene(&pool->shown)) {
+    return wrong;
+  }
+  tell_board_and_scene("water", pool->shown);
+  const BakedScene& scene = pool->shown.scene;
+  if (open_lighting(scene.section(SectionKind::kLighting), tree_of(*pool).level(), &pool->lighting) !=
+          Status::kOk ||
+      (pool->lighting.effects & kWater) == 0 || !pool->lighting.scene.has_water) {
+    return "the scene holds no water";
+  }
+#ifdef THIMBLE_IMAGE_EFFECTS
+  if (pool->lighting.effects != THIMBLE_IMAGE_EFFECTS) {
+    return "the image was built for other effects than the scene's";
+  }
+#endif
+  pool->rest = pool->lighting.scene.water;
+  const port::Display& screen = display();
+  pool->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
+  const size_t row = row_bytes(screen.format, screen.width_px);
+  pool->band = pool->arena.take(row * static_cast<size_t>(pool->band_rows));
+  const Bytes flags = pool->arena.take(DirtyBands::bytes_for(screen.height_px, pool->band_rows), 1);
+  if (pool->band.empty() || flags.empty()) {
+    return "the arena does not hold a band of the picture";
+  }
+  pool->dirty.begin(flags, screen.height_px, pool->band_rows);
+  if (!still(pool)) {
+    return "the arena does not hold the water's columns";
+  }
+  pool->ball_size = ball_size(tree_of(*pool).level());
+  pool->orbit = orbit_of(scene);
+  pool->shading = demo_shading(scene.palette());
+  if (place_camera(pool) != Status::kOk) {
+    // A camera that this display cannot have: round what is solid then.
+    pool->orbit = orbit_of(tree_of(*pool).bounds());
+    if (place_camera(pool) != Status::kOk) {
+      return "the display cannot show the scene";
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+int water() {
+  Arena whole(port::arena());
+  Pool* const pool = place<Pool>(&whole);
+  if (pool == nullptr) {
+    return refuse("the arena is too small");
+  }
+  pool->arena = whole;
+  if (const char* wrong = begin(pool)) {
+    return refuse(wrong);
+  }
+  for (; port::running(pool->frames) && obey(pool); ++pool->frames) {
+    pool->turned += pool->turns ? 1 : 0;
+    pool->moved = pool->moved || pool->turns;
+    Status status = Status::kOk;
+    if (pool->moved) {
+      status = place_camera(pool);
+    }
+    move(pool);
+    if (status == Status::kOk) {
+      status = draw_frame(pool);
+    }
+    if (status != Status::kOk) {
+      return refuse(status_text(status));
+    }
+  }
+  tell_counters(*pool);
+  return 0;
+}
+
+}  // namespace thimble::apps

@@ -1,0 +1,53 @@
+/// @file effect_flash.h
+/// What each effect takes of the flash of a firmware image, measured by linking: lm3s6965evb (Cortex-M3),
+/// with the compiler flags of every image, code and constants. Written by
+/// `sh tests/boards/effects.sh --write`, and held to the byte by `make test-boards`, with Debian 12's
+/// gcc-arm-none-eabi 12.2.
+///
+/// An image that draws with `render_lit_band<SET>` takes, beyond the one that calls `render_band`,
+///
+///     kLitBaseFlashBytes + the bytes of each effect in SET
+///
+/// or less, since effects share parts: all eleven take kAllEffectsFlashBytes. An effect that SET does not
+/// name takes nothing; with kNoEffects the image is the other one, byte for byte (the same test compares
+/// them).
+#ifndef THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
+#define THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
+
+#include <stdint.h>
+
+#include "thimble/lit_scene.h"
+
+namespace thimble {
+
+/// The loop of a lit picture with no effect in it, its dither and what opens the lighting of a baked scene.
+inline constexpr uint32_t kLitBaseFlashBytes = 1424;
+
+struct EffectFlash {
+  EffectSet effect;  ///< one
+  /// The image with this effect alone less the one with the base alone. kShadows, which need kDirectLight:
+  /// with both, less the one with kDirectLight.
+  uint32_t bytes;
+};
+// clang-format off
+inline constexpr EffectFlash kEffectFlash[] = {
+    {kDirectLight, 1852},
+    {kShadows, 456},
+    {kAmbientOcclusion, 576},
+    {kEmission, 84},
+    {kMirror, 1788},
+    {kGlass, 16248},
+    {kMedia, 11660},
+    {kWater, 11108},
+    {kFog, 1156},
+    {kSky, 720},
+    {kDepthCue, 656},
+};
+// clang-format on
+
+/// All of them together, the base included: what the most general image takes beyond one without light.
+inline constexpr uint32_t kAllEffectsFlashBytes = 28384;
+
+}  // namespace thimble
+
+#endif

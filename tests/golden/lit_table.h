@@ -1,0 +1,26 @@
+/// @file lit_table.h
+/// CRC-32s of the lit pictures of tests/portable/cases_lit.cpp, one on every machine. They change with the
+/// picture that the effects define, and only then.
+#ifndef THIMBLE_TESTS_GOLDEN_LIT_TABLE_H
+#define THIMBLE_TESTS_GOLDEN_LIT_TABLE_H
+
+#include <stdint.h>
+
+#include "thimble/pixel.h"
+
+namespace thimble::golden {
+
+struct LitEntry {
+  PixelFormat format;
+  uint32_t crc32;
+};
+inline constexpr LitEntry kLitTable[] = {
+    {PixelFormat::kGray4, 0x38736972},
+    {PixelFormat::kMono1, 0x64719B2F},
+    {PixelFormat::kRgb565, 0xC5BCED4C},
+    {PixelFormat::kRgb888, 0x40498B68},
+};
+
+}  // namespace thimble::golden
+
+#endif

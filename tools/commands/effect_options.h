@@ -1,0 +1,34 @@
+/// @file effect_options.h
+/// --effects and --bounces: what light does in a picture.
+#ifndef THIMBLE_TOOLS_COMMANDS_EFFECT_OPTIONS_H
+#define THIMBLE_TOOLS_COMMANDS_EFFECT_OPTIONS_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "scene/lit_description.h"
+#include "scene/scene_source.h"
+
+namespace CLI {
+class App;
+}
+
+namespace thimble::tools {
+
+struct EffectOptions {
+  EffectChoice choice;
+  bool given = false;  ///< --effects
+  std::optional<std::uint8_t> bounces;
+
+  /// `more` ends the help of --effects.
+  void add_to(CLI::App& app, const std::string& more = {});
+  /// Whether effects were asked for by name.
+  bool named() const { return !choice.automatic && choice.effects != kNoEffects; }
+  /// The scene's lighting with --bounces for its own.
+  LitDescription lighting(const SceneSource& source) const;
+};
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,243 @@
+// thimble effects: which effects a scene calls for, why, and what each costs.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "instruments/effects_study.h"
+#include "output/bars.h"
+#include "output/output_file.h"
+#include "output/progress.h"
+#include "output/tables.h"
+#include "output/units.h"
+#include "scene/lit_setup.h"
+
+namespace thimble::tools {
+namespace {
+
+struct EffectsCommand {
+  SceneOptions scene;
+  EffectsOptions study;
+  std::string csv_path;
+  std::string json_path;
+  std::string plot_path;
+};
+
+std::string fixed(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+// "-1,234"
+std::string signed_count(std::int64_t number) {
+  return (number < 0 ? "-" : "") + grouped(static_cast<std::uint64_t>(std::abs(number)));
+}
+
+// --- rows for machines -------------------------------------------------------------------------------------
+
+JsonRow row_object(const EffectRow& row) {
+  JsonRow object;
+  object["effect"] = effect_name(row.effect);
+  object["called_for"] = row.called_for ? 1 : 0;
+  object["why"] = row.why;
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    object[std::string(ray_kind_name(static_cast<LitRayKind>(kind))) + "_rays"] =
+        row.rays[static_cast<std::size_t>(kind)];
+  }
+  object["rays"] = row.all_rays();
+  object["node_visits"] = row.node_visits;
+  object["ms"] = row.ms;
+  object["q25_ms"] = row.ms_q25;
+  object["q75_ms"] = row.ms_q75;
+  object["with_ms"] = row.called_for ? JsonRow(row.with_ms) : JsonRow(nullptr);
+  object["without_ms"] = row.called_for ? JsonRow(row.without_ms) : JsonRow(nullptr);
+  object["ram_bytes"] = row.ram_bytes;
+  object["flash_bytes"] = row.flash_bytes;
+  return object;
+}
+
+JsonRow objects(const EffectsStudy& study) {
+  JsonRow rows = JsonRow::array();
+  for (const EffectRow& row : study.rows) {
+    rows.push_back(row_object(row));
+  }
+  return rows;
+}
+
+// --- tables for people -------------------------------------------------------------------------------------
+
+std::string cost_table(const EffectsStudy& study) {
+  std::vector<Cells> rows{{"effect", "rays", "nodes", "ms", "quartiles", "RAM", "flash"}};
+  for (const EffectRow& row : study.rows) {
+    if (!row.called_for) {
+      rows.push_back({effect_name(row.effect), "0", "0", "0", "", "0", "0"});
+      continue;
+    }
+    rows.push_back({effect_name(row.effect), signed_count(row.all_rays()), signed_count(row.node_visits),
+                    fixed(row.ms, 2), fixed(row.ms_q25, 2) + " .. " + fixed(row.ms_q75, 2),
+                    grouped(row.ram_bytes), grouped(row.flash_bytes)});
+  }
+  return "more with the effect than without it: rays, nodes visited, milliseconds a frame, bytes of RAM\n"
+         "and, on lm3s6965evb, of flash\n" +
+         columns_of(rows, 1);
+}
+
+std::string why_table(const EffectsStudy& study) {
+  std::vector<Cells> rows;
+  for (const EffectRow& row : study.rows) {
+    if (row.called_for) {
+      rows.push_back({effect_name(row.effect), printable(row.why)});
+    }
+  }
+  return rows.empty() ? "\nit calls for no effects\n"
+                      : "\nwhy the scene is drawn with it\n" + columns_of(rows, 2);
+}
+
+std::string rays_table(const EffectsStudy& study) {
+  Cells head{"rays of each kind"};
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    head.push_back(ray_kind_name(static_cast<LitRayKind>(kind)));
+  }
+  std::vector<Cells> rows{head};
+  const auto frame = [&](const char* name, const LitCounts& counts) {
+    Cells cells{name};
+    for (const std::uint64_t number : counts.rays) {
+      cells.push_back(grouped(number));
+    }
+    rows.push_back(cells);
+  };
+  frame("frame without any", study.plain);
+  if (study.effects == kNoEffects) {
+    return "\n" + columns_of(rows, 1);
+  }
+  frame("frame with all", study.lit);
+  for (const EffectRow& row : study.rows) {
+    if (row.called_for) {
+      Cells cells{effect_name(row.effect)};
+      for (const std::int64_t number : row.rays) {
+        cells.push_back(signed_count(number));
+      }
+      rows.push_back(cells);
+    }
+  }
+  return "\n" + columns_of(rows, 1);
+}
+
+std::string frame_lines(const EffectsStudy& study) {
+  std::string text = "\na frame without effects takes " + fixed(study.plain_ms, 2) + " ms";
+  if (study.effects != kNoEffects) {
+    text += ", with these " + fixed(study.lit_ms, 2) + " ms and " + grouped(study.state_bytes) +
+            " bytes beside\ntree and band; a lit picture takes " + grouped(study.base_ram_bytes) +
+            " bytes of RAM and " + grouped(study.base_flash_bytes) +
+            " of flash before its first effect; what\neffects share is counted with each (flash) or with "
+            "none (RAM)";
+  }
+  return text + "\n";
+}
+
+std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
+  BarChart chart;
+  chart.title = "What effects cost: " + printable(command.scene.arguments.scene);
+  chart.x_label = "milliseconds a frame of " + std::to_string(command.study.view.width_px) + " x " +
+                  std::to_string(command.study.view.height_px) + ", with quartiles";
+  for (const EffectRow& row : study.rows) {
+    Bar bar;
+    bar.name = effect_name(row.effect);
+    bar.value = row.ms;
+    bar.low = row.ms_q25;
+    bar.high = row.ms_q75;
+    bar.text = row.called_for ? fixed(row.ms, 2) + " ms, " + signed_count(row.all_rays()) + " rays"
+                              : "not called for";
+    chart.bars.push_back(bar);
+  }
+  return bar_chart_text(chart);
+}
+
+void run(const EffectsCommand& command) {
+  const std::array<std::string, 3> outputs{command.csv_path, command.json_path, command.plot_path};
+  check_distinct(outputs, {&command.scene.arguments.scene, 1});
+  // Opened before the work begins, so that a folder that is not there is known at once.
+  std::array<std::unique_ptr<OutputFile>, 3> files;
+  std::transform(outputs.begin(), outputs.end(), files.begin(), [](const std::string& path) {
+    return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
+  });
+  const auto source = command.scene.open();
+  EffectsStudy study;
+  {
+    ProgressBar bar("measuring", command.scene.quiet);
+    study = study_effects(*source, command.study, [&](double done) { bar.update(done); });
+  }
+  const JsonRow rows = objects(study);
+  if (files[0] != nullptr) {
+    files[0]->write(csv_of(rows));
+  }
+  if (files[1] != nullptr) {
+    files[1]->write(rows.dump(2) + "\n");
+  }
+  if (files[2] != nullptr) {
+    files[2]->write(plot(command, study));
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->flush();
+    }
+  }
+  for (const auto& file : files) {
+    if (file != nullptr) {
+      file->commit();
+    }
+  }
+  if (!command.scene.quiet && !study.note.empty()) {
+    std::fprintf(stderr, "note: %s\n", study.note.c_str());
+  }
+  // Whoever has the data go to standard output wants no table between them.
+  if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
+    OutputFile output("-");
+    output.write(printable(command.scene.arguments.scene) + "\n\n" + cost_table(study) + frame_lines(study) +
+                 why_table(study) + rays_table(study));
+    output.commit();
+  }
+}
+
+}  // namespace
+
+void add_effects(CLI::App& app) {
+  auto command = std::make_shared<EffectsCommand>();
+  command->study.view.width_px = 320;
+  command->study.view.height_px = 240;
+  CLI::App* sub = app.add_subcommand(
+      "effects",
+      "Which effects a scene calls for, why, and what each costs: rays, nodes visited and time of the frame "
+      "with it less those of the frame without it, bytes of RAM and of flash. What the scene does not call "
+      "for costs 0. Direct light is judged between two frames without shadows, which need it.");
+  command->scene.add_scene(*sub);
+  command->study.effects.add_to(*sub);
+  command->study.view.add_to(*sub);
+  add_whole_option(
+      *sub, "--frames", "N", 1, 99,
+      [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
+      "frames timed of each set of effects, by turns")
+      ->default_str("5");
+  add_path_option(
+      *sub, "--csv", "FILE.csv", &command->csv_path,
+      "a line an effect, all eleven: effect, called_for (1 or 0), why (in words), K_rays for K of primary, "
+      "shadow, occlusion, mirror, glass, media, water (rays of that kind in a frame with the effect less "
+      "those in one without, so below 0 where the effect saves some), rays (of all kinds), node_visits (the "
+      "same of nodes), ms (median over the frames of the time with less the time without), q25_ms, q75_ms "
+      "(its quartiles), with_ms, without_ms (medians of the frames; empty where not called for), ram_bytes "
+      "(state and tables of a lit picture, as render --memory counts them), flash_bytes (on lm3s6965evb, the "
+      "image with this effect alone less one with none)");
+  add_path_option(*sub, "--json", "FILE.json", &command->json_path,
+                  "the same, an array of objects; null where the CSV is empty");
+  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "milliseconds a frame, a bar an effect");
+  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no notes")->disable_flag_override();
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,382 @@
+#include "instruments/accuracy_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "output/scatter.h"
+#include "output/units.h"
+#include "readers/source.h"
+
+namespace thimble::tools {
+namespace {
+
+std::string fixed(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+// Three digits that count.
+std::string brief(double value) {
+  return fixed(value, value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3);
+}
+
+std::string decibels(double psnr_db) {
+  return std::isfinite(psnr_db) ? fixed(psnr_db, 2) : "equal";
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
+}
+
+// Half the distance of the quartiles, of the median.
+std::string spread(const AccuracyRow& row) {
+  return row.ms_median <= 0 ? "-" : fixed(50 * (row.ms_three_quarters - row.ms_quarter) / row.ms_median, 0);
+}
+
+// Columns that a row of settings has nothing for.
+constexpr std::array kEarlyAndLight{"visits_given",     "inexact_px",     "error_bound_grays",
+                                    "mean_error_grays", "occlusion_rays", "roughness_rays",
+                                    "bounces"};
+
+JsonRow finite(double value) {
+  return std::isfinite(value) ? JsonRow(value) : JsonRow(nullptr);
+}
+
+std::string options_of(const AccuracyRow& row) {
+  if (row.light != LightSetting{}) {
+    return row.light.text();
+  }
+  const std::string text = row.trial.setting.options();
+  return text.empty() ? "(none: the defaults)" : text;
+}
+
+JsonRow known(int value) {
+  return value < 0 ? JsonRow(nullptr) : JsonRow(value);
+}
+
+// What all rows have.
+void add_measured(const AccuracyRow& row, JsonRow* object) {
+  (*object)["wrong_px"] = row.wrong_px;
+  (*object)["visible_px"] = row.visible_px;
+  (*object)["rms_error"] = rms_of(row.psnr_db);
+  (*object)["psnr_db"] = finite(row.psnr_db);
+  (*object)["ms_median"] = row.ms_median;
+  (*object)["ms_quarter"] = row.ms_quarter;
+  (*object)["ms_three_quarters"] = row.ms_three_quarters;
+  (*object)["rays"] = row.counts.rays;
+  (*object)["hits"] = row.counts.hits;
+  (*object)["node_visits"] = row.counts.node_visits;
+}
+
+std::string settings_table(const AccuracyStudy& study) {
+  std::vector<Cells> rows{{"", "depth", "cut px", "bits", "samples", "ms", "+-%", "PSNR", "RMS", "wrong %",
+                           "depth off", "visits", "M instr"}};
+  std::size_t together = 0;
+  for (const AccuracyRow& row : study.rows) {
+    together += row.trial.group == "together" ? 1U : 0U;
+    if (row.trial.group == "together" && !row.front) {
+      continue;
+    }
+    Cells cells{row.front ? "*" : ""};
+    for (const Knob& knob : knobs()) {
+      const double value = knob.get(row.trial.setting);
+      cells.push_back(value == 0 ? "-" : shortest(value));
+    }
+    const std::array measured{
+        brief(row.ms_median),
+        spread(row),
+        decibels(row.psnr_db),
+        fixed(rms_of(row.psnr_db), 2),
+        percent(row.wrong_px, study.pixels),
+        fixed(row.depth_mean_voxels, 3),
+        fixed(static_cast<double>(row.counts.node_visits) / static_cast<double>(study.pixels), 2),
+        fixed(row.lm3s_instructions / 1e6, 1)};
+    cells.insert(cells.end(), measured.begin(), measured.end());
+    rows.push_back(cells);
+  }
+  return "each knob alone, then those of " + grouped(together) +
+         " combinations that are on the front, last the reference\n"
+         "(*: nothing nearer to the reference is as cheap, give or take 3 per cent of time; -: default)\n" +
+         columns_of(rows, 1);
+}
+
+std::string work_table(const AccuracyStudy& study) {
+  std::vector<Cells> rows{
+      {"visits given", "ms", "+-%", "exact %", "bound", "error", "PSNR", "RMS", "wrong %"}};
+  for (const WorkRow& row : study.work) {
+    rows.push_back({grouped(row.given_visits), brief(row.picture.ms_median), spread(row.picture),
+                    percent(study.pixels - row.inexact_px, study.pixels), fixed(row.error_bound_grays, 2),
+                    fixed(row.mean_error_grays, 2), decibels(row.picture.psnr_db),
+                    fixed(rms_of(row.picture.psnr_db), 2), percent(row.picture.wrong_px, study.pixels)});
+  }
+  return "\na frame of the default setting stopped early; bound, error: how far it can be and how far it is\n"
+         "from the finished one, mean absolute greys; PSNR, RMS, wrong: against the reference\n" +
+         columns_of(rows, 0);
+}
+
+std::string light_table(const AccuracyStudy& study) {
+  std::vector<Cells> rows{
+      {"", "occlusion", "roughness", "bounces", "ms", "+-%", "PSNR", "RMS", "wrong %", "rays", "visits"}};
+  const auto rays_of = [](int value) { return value < 0 ? std::string("-") : std::to_string(value); };
+  for (const AccuracyRow& row : study.light) {
+    if (row.trial.group == "together" && !row.front) {
+      continue;
+    }
+    const double pixels = static_cast<double>(study.pixels);
+    rows.push_back({row.front ? "*" : "", rays_of(row.light.occlusion_rays),
+                    rays_of(row.light.roughness_rays), rays_of(row.light.bounces), brief(row.ms_median),
+                    spread(row), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
+                    percent(row.wrong_px, study.pixels),
+                    fixed(static_cast<double>(row.counts.rays) / pixels, 2),
+                    fixed(static_cast<double>(row.counts.node_visits) / pixels, 2)});
+  }
+  return "\nlight: " + effects_text(study.effects) + "\nagainst " + study.light_reference.text() +
+         ", one sample a pixel\nfirst what the scene asks for, each knob alone, then combinations on the "
+         "front; rays and "
+         "visits\na pixel\n" +
+         columns_of(rows, 1);
+}
+
+// Error against cost of lit pictures; a knob alone a colour.
+Scatter light_scatter(const AccuracyStudy& study, CostAxis axis) {
+  Scatter scatter;
+  scatter.title = "Light: error against ";
+  scatter.y_label = "PSNR against the best light, dB";
+  scatter.infinite_name = "upper edge: equal to the best light";
+  scatter.front_name = "The front: no other light that is as cheap comes nearer";
+  for (const auto& [group, name] : {std::pair<const char*, const char*>{"together", "knobs together"},
+                                    {"occlusion_rays", "occlusion rays alone"},
+                                    {"roughness_rays", "roughness rays alone"},
+                                    {"bounces", "bounces alone"},
+                                    {"best", "the reference"},
+                                    {"default", "as the scene asks"}}) {
+    Cloud cloud{name, {}, false};
+    for (const AccuracyRow& row : study.light) {
+      if (row.trial.group == group && cost_of(row, axis) > 0) {
+        cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
+      }
+    }
+    if (!cloud.points.empty()) {
+      scatter.clouds.push_back(cloud);
+    }
+  }
+  return scatter;
+}
+
+// The front's points of those rows, by cost.
+std::vector<FrontPoint> front_of(const std::vector<AccuracyRow>& rows, CostAxis axis) {
+  std::vector<FrontPoint> front;
+  for (const AccuracyRow& row : rows) {
+    if (row.front && cost_of(row, axis) > 0) {
+      front.push_back({cost_of(row, axis), row.psnr_db, options_of(row)});
+    }
+  }
+  std::sort(front.begin(), front.end(), [](const FrontPoint& a, const FrontPoint& b) { return a.x < b.x; });
+  return front;
+}
+
+const char* axis_label(CostAxis axis) {
+  return axis == CostAxis::kTime     ? "processor time of a frame, ms (median, this machine; log scale)"
+         : axis == CostAxis::kVisits ? "nodes visited a frame (the same on every machine; log scale)"
+                                     : "instructions a frame, lm3s6965evb (estimate; log scale)";
+}
+
+const char* axis_title(CostAxis axis) {
+  return axis == CostAxis::kTime ? "time" : axis == CostAxis::kVisits ? "work" : "instructions";
+}
+
+std::string answer(const std::string& question, const AccuracyRow& row) {
+  return "\n" + question + (row.light != LightSetting{} ? "\nlight: " : "\noptions: ") + options_of(row) +
+         "\n  " + brief(row.ms_median) + " ms, RMS error " + fixed(rms_of(row.psnr_db), 2) +
+         " of 255, PSNR " + decibels(row.psnr_db) + (std::isfinite(row.psnr_db) ? " dB\n" : "\n");
+}
+
+// Rendering draws a scene's light unless it is told what to shade.
+std::string unlit_advice(const AccuracyStudy& study) {
+  return study.effects == kNoEffects
+             ? ""
+             : "  with --shade as given here; without it thimble render draws light\n";
+}
+
+std::string light_answer(const AccuracyRow* row) {
+  if (row == nullptr) {
+    return {};
+  }
+  const int bounces = row->light.bounces;
+  return answer("lit pictures, against the best light", *row) +
+         (bounces < 0 ? ""
+                      : "  --bounces " + std::to_string(bounces) +
+                            " of thimble render; all else of it stands in the scene\n");
+}
+
+}  // namespace
+
+JsonRow accuracy_objects(const AccuracyStudy& study) {
+  JsonRow rows = JsonRow::array();
+  for (const AccuracyRow& row : study.rows) {
+    JsonRow object;
+    object["row"] = "setting";
+    object["group"] = row.trial.group;
+    object["options"] = row.trial.setting.options();
+    object["front"] = row.front ? 1 : 0;
+    object["max_depth"] = row.trial.setting.quality.max_depth;
+    object["cutoff_px"] = static_cast<double>(row.trial.setting.quality.cutoff.raw) / Q16::kOne;
+    object["direction_bits"] = row.trial.setting.direction_bits;
+    object["samples"] = row.trial.setting.quality.samples();
+    add_measured(row, &object);
+    object["silhouette_px"] = row.silhouette_px;
+    object["depth_error_mean_voxels"] = row.depth_mean_voxels;
+    object["depth_error_max_voxels"] = row.depth_max_voxels;
+    object["lm3s6965evb_instructions"] = row.lm3s_instructions;
+    for (const char* name : kEarlyAndLight) {
+      object[name] = nullptr;
+    }
+    rows.push_back(object);
+  }
+  for (const WorkRow& row : study.work) {
+    JsonRow object;
+    object["row"] = "anytime";
+    object["group"] = "anytime";
+    object["options"] = nullptr;
+    object["front"] = 0;
+    object["max_depth"] = 0;
+    object["cutoff_px"] = 0.0;
+    object["direction_bits"] = 0;
+    object["samples"] = 1;
+    add_measured(row.picture, &object);
+    object["silhouette_px"] = nullptr;
+    object["depth_error_mean_voxels"] = nullptr;
+    object["depth_error_max_voxels"] = nullptr;
+    object["lm3s6965evb_instructions"] = nullptr;
+    object["visits_given"] = row.given_visits;
+    object["inexact_px"] = row.inexact_px;
+    object["error_bound_grays"] = row.error_bound_grays;
+    object["mean_error_grays"] = row.mean_error_grays;
+    object["occlusion_rays"] = nullptr;
+    object["roughness_rays"] = nullptr;
+    object["bounces"] = nullptr;
+    rows.push_back(object);
+  }
+  for (const AccuracyRow& row : study.light) {
+    JsonRow object = rows.front();
+    object["row"] = "light";
+    object["group"] = row.trial.group;
+    object["options"] = nullptr;
+    object["front"] = row.front ? 1 : 0;
+    object["max_depth"] = 0;
+    object["cutoff_px"] = 0.0;
+    object["direction_bits"] = 0;
+    object["samples"] = 1;
+    add_measured(row, &object);
+    for (const char* name :
+         {"silhouette_px", "depth_error_mean_voxels", "depth_error_max_voxels", "lm3s6965evb_instructions"}) {
+      object[name] = nullptr;
+    }
+    object["occlusion_rays"] = known(row.light.occlusion_rays);
+    object["roughness_rays"] = known(row.light.roughness_rays);
+    object["bounces"] = known(row.light.bounces);
+    rows.push_back(object);
+  }
+  return rows;
+}
+
+std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis) {
+  return "reference: " + study.reference.options() +
+         "\nPSNR in dB, RMS in 1/255: channels against the reference; wrong: of another colour; depth off:\n"
+         "mean error of distance in voxels; +-%: half the quartiles' distance; visits: nodes a pixel;\n"
+         "M instr: millions of instructions on lm3s6965evb, estimated; front by " +
+         axis_title(axis) + "\n\n" + settings_table(study) + (study.work.empty() ? "" : work_table(study)) +
+         (study.light.empty() ? "" : light_table(study));
+}
+
+std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::string& scene) {
+  Scatter scatter;
+  scatter.title = std::string("Error against ") + axis_title(axis) + ": " + printable(scene);
+  scatter.x_label = axis_label(axis);
+  scatter.y_label = "PSNR against the reference, dB";
+  scatter.infinite_name = "upper edge: equal to the reference";
+  scatter.front_name =
+      axis == CostAxis::kTime
+          ? "The front: no options of thimble render in at most 3 per cent more time come nearer"
+          : "The front: no other options of thimble render are both cheaper and nearer";
+  // The defaults last, over all others.
+  for (const auto& [group, name] : {std::pair<const char*, const char*>{"together", "knobs together"},
+                                    {"depth", "depth alone"},
+                                    {"cutoff", "cut-off alone"},
+                                    {"direction_bits", "direction bits alone"},
+                                    {"samples", "samples alone"},
+                                    {"best", "the reference"},
+                                    {"default", "defaults"}}) {
+    Cloud cloud{name, {}, false};
+    for (const AccuracyRow& row : study.rows) {
+      if (row.trial.group == group && cost_of(row, axis) > 0) {
+        cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
+      }
+    }
+    if (!cloud.points.empty()) {
+      scatter.clouds.push_back(cloud);
+    }
+  }
+  // No estimate of instructions is made for frames that stop early.
+  if (axis != CostAxis::kInstructions && !study.work.empty()) {
+    Cloud cloud{"defaults, stopped early", {}, true};
+    for (const WorkRow& row : study.work) {
+      if (cost_of(row.picture, axis) > 0) {
+        cloud.points.emplace_back(cost_of(row.picture, axis), row.picture.psnr_db);
+      }
+    }
+    scatter.clouds.push_back(cloud);
+  }
+  scatter.front = front_of(study.rows, axis);
+  if (study.light.empty()) {
+    return scatter_text(scatter);
+  }
+  const CostAxis light_axis = axis == CostAxis::kInstructions ? CostAxis::kVisits : axis;
+  Scatter light = light_scatter(study, light_axis);
+  light.title += std::string(axis_title(light_axis)) + ": " + printable(scene);
+  light.x_label = axis_label(light_axis);
+  light.front = front_of(study.light, light_axis);
+  return stacked({scatter_text(scatter), scatter_text(light)});
+}
+
+std::string answer_for_ms(const AccuracyStudy& study, double ms) {
+  const std::string question = "nearest to the reference in " + shortest(ms) + " ms a frame";
+  const AccuracyRow* best = best_within(study.rows, ms);
+  if (best == nullptr) {
+    const AccuracyRow* fastest = fastest_with(study.rows, 0);
+    throw InputError("no setting draws a frame in " + shortest(ms) + " ms here; the fastest, " +
+                     options_of(*fastest) + ", takes " + brief(fastest->ms_median) +
+                     " ms (--size makes frames smaller)");
+  }
+  std::string text = answer(question, *best) + unlit_advice(study);
+  const WorkRow* early = nullptr;
+  for (const WorkRow& row : study.work) {
+    early = row.picture.ms_median <= ms ? &row : early;
+  }
+  if (early != nullptr && early->picture.psnr_db > best->psnr_db) {
+    text += "or a frame of the default setting stopped after " + grouped(early->given_visits) +
+            " node visits (AnytimeFrame::refine):\n  " + brief(early->picture.ms_median) + " ms, RMS error " +
+            fixed(rms_of(early->picture.psnr_db), 2) + " of 255\n";
+  }
+  return text + light_answer(best_within(study.light, ms));
+}
+
+std::string answer_for_error(const AccuracyStudy& study, double rms) {
+  const AccuracyRow* fastest = fastest_with(study.rows, psnr_of(rms));
+  if (fastest == nullptr) {
+    const AccuracyRow* nearest = &study.rows.front();
+    for (const AccuracyRow& row : study.rows) {
+      nearest = row.psnr_db > nearest->psnr_db ? &row : nearest;
+    }
+    throw InputError("no setting that was tried has an RMS error of " + shortest(rms) +
+                     " of 255 or less; the nearest, " + options_of(*nearest) + ", has " +
+                     fixed(rms_of(nearest->psnr_db), 2));
+  }
+  return answer("fastest with an RMS error of " + shortest(rms) + " of 255 at most", *fastest) +
+         unlit_advice(study) + light_answer(fastest_with(study.light, psnr_of(rms)));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,255 @@
+#include "instruments/effects_study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <vector>
+
+#include "boards/effect_flash.h"
+#include "scene/built_scene.h"
+#include "scene/lit_setup.h"
+
+namespace thimble::tools {
+namespace {
+
+std::string fixed(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+// "material 3 is metal", "materials 3, 4, 7 are glass"; at most four numbers.
+std::string materials(const LitDescription& lit, const UsedMaterials& used, SurfaceKind kind,
+                      const std::string& what, const std::string& none) {
+  constexpr std::size_t kMostNamed = 4;
+  std::size_t count = 0;
+  std::string names;
+  for (std::size_t i = 0; i < lit.surfaces.size(); ++i) {
+    if (!used.is[i] || lit.surfaces[i].kind != kind) {
+      continue;
+    }
+    if (++count <= kMostNamed) {
+      names += (names.empty() ? "" : ", ") + std::to_string(i);
+    }
+  }
+  if (count == 0) {
+    return none;
+  }
+  if (count > kMostNamed) {
+    names += " and " + std::to_string(count - kMostNamed) + " more";
+  }
+  return (count == 1 ? "material " : "materials ") + names + (count == 1 ? " is " : " are ") + what;
+}
+
+std::string lights(const LitDescription& lit) {
+  const auto points = static_cast<std::size_t>(
+      std::count_if(lit.lights.begin(), lit.lights.end(), [](const Light& light) { return light.is_point; }));
+  const std::size_t distant = lit.lights.size() - points;
+  const auto counted = [](std::size_t number, const std::string& name) {
+    return number == 0 ? std::string() : std::to_string(number) + " " + name + (number == 1 ? "" : "s");
+  };
+  const std::string suns = counted(distant, "distant light");
+  const std::string lamps = counted(points, "lamp");
+  return suns + (suns.empty() || lamps.empty() ? "" : ", ") + lamps;
+}
+
+// Milliseconds and counts of frames with one set of effects.
+struct Variant {
+  LitScene scene;
+  LitCounts counts;
+  std::vector<double> ms;
+};
+
+class Studio {
+ public:
+  Studio(const SceneSource& source, const BuiltScene& built, const EffectsOptions& options, std::string* note)
+      : built_(built),
+        lit_(options.effects.lighting(source)),
+        used_(used_materials(built.compact())),
+        camera_(options.view.camera(source, built.level(), built.bounds(), note)) {
+    shading_.mode = ShadeMode::kColor;
+    shading_.palette = Span<const Rgb8>(built.palette().data(), built.palette().size());
+    const DepthRange range = depth_range(camera_, built.bounds());
+    shading_.near_q8 = range.near_q8;
+    shading_.far_q8 = range.far_q8;
+    pixels_.resize(band_bytes(PixelFormat::kRgb888, camera_.width_px(), camera_.height_px()));
+  }
+
+  const LitDescription& lit() const { return lit_; }
+  const UsedMaterials& used() const { return used_; }
+
+  void add(EffectSet effects) { variants_[effects].scene = lit_scene_for(lit_, used_, effects); }
+  const Variant& of(EffectSet effects) const { return variants_.at(effects); }
+
+  // Every set once a round, so that what else the machine does meets all alike.
+  void draw(int frames, const Progress& progress) {
+    const auto steps = static_cast<double>(variants_.size()) * frames;
+    double done = 0;
+    for (int frame = 0; frame < frames; ++frame) {
+      for (auto& [effects, variant] : variants_) {
+        draw_frame(effects, &variant);
+        if (progress) {
+          progress(++done / steps);
+        }
+      }
+    }
+  }
+
+ private:
+  void draw_frame(EffectSet effects, Variant* variant) {
+    Band band;
+    band.pixels = {pixels_.data(), pixels_.size()};
+    band.rows = camera_.height_px();
+    variant->counts = {};
+    const auto start = std::chrono::steady_clock::now();
+    const Status status =
+        render_lit_band(effects, built_.compact(), camera_, shading_, variant->scene, band, &variant->counts);
+    variant->ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    if (status != Status::kOk) {
+      throw InputError("its lights or surfaces are beyond the limits of a lit picture");
+    }
+  }
+
+  const BuiltScene& built_;
+  LitDescription lit_;
+  UsedMaterials used_;
+  Camera camera_;
+  Shading shading_;
+  std::vector<std::uint8_t> pixels_;
+  std::map<EffectSet, Variant> variants_;
+};
+
+// The value below which `part` of them lie, between neighbours in proportion.
+double quantile(std::vector<double> values, double part) {
+  std::sort(values.begin(), values.end());
+  const double at = part * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
+}
+
+std::int64_t difference(std::uint64_t with, std::uint64_t without) {
+  return static_cast<std::int64_t>(with) - static_cast<std::int64_t>(without);
+}
+
+// A set without effects that trace on: nothing but what every lit picture keeps.
+constexpr std::size_t kBaseRamBytes = lit_render_bytes(kSky) - render_bytes();
+
+void fill(const Studio& studio, EffectRow* row) {
+  const Variant& with = studio.of(row->with);
+  const Variant& without = studio.of(row->without);
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    row->rays[static_cast<std::size_t>(kind)] = difference(with.counts.rays[kind], without.counts.rays[kind]);
+    row->node_visits += difference(with.counts.node_visits[kind], without.counts.node_visits[kind]);
+  }
+  std::vector<double> more;
+  for (std::size_t frame = 0; frame < with.ms.size(); ++frame) {
+    more.push_back(with.ms[frame] - without.ms[frame]);
+  }
+  row->with_ms = quantile(with.ms, 0.5);
+  row->without_ms = quantile(without.ms, 0.5);
+  row->ms = quantile(more, 0.5);
+  row->ms_q25 = quantile(more, 0.25);
+  row->ms_q75 = quantile(more, 0.75);
+  row->ram_bytes = lit_state_bytes(with.scene, row->with) - lit_state_bytes(without.scene, row->without) -
+                   (row->without == kNoEffects ? kBaseRamBytes : 0);
+  for (const EffectFlash& flash : kEffectFlash) {
+    row->flash_bytes += flash.effect == row->effect ? flash.bytes : 0;
+  }
+}
+
+}  // namespace
+
+std::int64_t EffectRow::all_rays() const {
+  std::int64_t sum = 0;
+  for (const std::int64_t number : rays) {
+    sum += number;
+  }
+  return sum;
+}
+
+std::string why_effect(const LitDescription& lit, const UsedMaterials& used, EffectSet effect) {
+  if ((called_for(lit, used) & effect) == 0) {
+    return "asked for";
+  }
+  const std::string named = "the scene names it";
+  const LitScene& rest = lit.rest;
+  switch (effect) {
+    case kDirectLight:
+      return lit.lights.empty() ? named : lights(lit);
+    case kShadows:
+      return rest.has_shadows ? "its lights cast shadows" : named;
+    case kAmbientOcclusion:
+      return rest.occlusion.rays == 0 ? named
+                                      : std::to_string(rest.occlusion.rays) + " rays a face, " +
+                                            std::to_string(rest.occlusion.reach) + " voxels far";
+    case kEmission:
+      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
+    case kMirror:
+      return materials(lit, used, SurfaceKind::kMetal, "metal", named);
+    case thimble::kGlass:
+      return materials(lit, used, SurfaceKind::kGlass, "clear", named);
+    case thimble::kMedia:
+      return materials(lit, used, SurfaceKind::kMedia, "cloud", named);
+    case thimble::kWater:
+      return rest.has_water ? "water of " + std::to_string(rest.water.width) + " x " +
+                                  std::to_string(rest.water.depth) + " columns"
+                            : named;
+    case kFog:
+      return rest.fog.density_q16 == 0
+                 ? named
+                 : "air that halves light in " + fixed(65536.0 / rest.fog.density_q16, 0) + " voxels";
+    case kSky:
+      return rest.has_sky ? "a sky behind it" : named;
+    case kDepthCue:
+      return rest.has_depth_cue ? "far is darker" : named;
+    default:
+      return {};
+  }
+}
+
+EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& options,
+                           const Progress& progress) {
+  const BuiltScene built(source, {});
+  EffectsStudy study;
+  Studio studio(source, built, options, &study.note);
+  study.effects = chosen_effects(studio.lit(), studio.used(), options.effects.choice);
+  studio.add(study.effects);
+  studio.add(kNoEffects);
+  for (int bit = 0; bit < kEffectCount; ++bit) {
+    EffectRow& row = study.rows[static_cast<std::size_t>(bit)];
+    row.effect = EffectSet{1} << bit;
+    row.called_for = (study.effects & row.effect) != 0;
+    if (!row.called_for) {
+      continue;
+    }
+    row.why = why_effect(studio.lit(), studio.used(), row.effect);
+    row.with = row.effect == kDirectLight ? study.effects & ~kShadows : study.effects;
+    row.without = row.with & ~row.effect;
+    studio.add(row.with);
+    studio.add(row.without);
+  }
+  studio.draw(options.frames, progress);
+  for (EffectRow& row : study.rows) {
+    if (row.called_for) {
+      fill(studio, &row);
+    }
+  }
+  const Variant& whole = studio.of(study.effects);
+  const Variant& plain = studio.of(kNoEffects);
+  study.lit = whole.counts;
+  study.plain = plain.counts;
+  study.lit_ms = quantile(whole.ms, 0.5);
+  study.plain_ms = quantile(plain.ms, 0.5);
+  study.state_bytes = lit_state_bytes(whole.scene, study.effects);
+  if (study.effects != kNoEffects) {
+    study.base_ram_bytes = kBaseRamBytes;
+    study.base_flash_bytes = kLitBaseFlashBytes;
+  }
+  return study;
+}
+
+}  // namespace thimble::tools

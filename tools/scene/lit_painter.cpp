@@ -1,0 +1,68 @@
+// Lit pictures in bands of the scene's memory. Several samples a pixel are rows of the finer camera,
+// averaged.
+#include <algorithm>
+
+#include "scene/lit_setup.h"
+#include "scene/painter.h"
+#include "thimble/samples.h"
+
+namespace thimble::tools {
+namespace {
+
+class LitPainter final : public Painter {
+ public:
+  LitPainter(const BuiltScene& built, const Camera& camera, const Shading& shading, PixelFormat format,
+             const LitPicture& picture)
+      : built_(built),
+        camera_(camera),
+        shading_(shading),
+        picture_(picture),
+        width_px_(camera.width_px() / picture.across),
+        row_bytes_(std::max<std::size_t>(1, row_bytes(format, width_px_))) {}
+
+  const char* engine() const override { return "lit"; }
+  std::int32_t most_rows() const override {
+    return picture_.across == 1 ? static_cast<std::int32_t>(built_.band().size / row_bytes_) : 1;
+  }
+  Bytes work() const override { return built_.band(); }
+  Status draw(const Band& band, PaintCounts* counts) override {
+    const Status status =
+        picture_.across == 1 ? draw_band(band, &counts->lit) : draw_samples(band, &counts->lit);
+    counts->all = totals_of(counts->lit);
+    return status;
+  }
+
+ private:
+  Status draw_band(const Band& band, LitCounts* counts) const {
+    return render_lit_band(picture_.effects, built_.compact(), camera_, shading_, picture_.scene, band,
+                           counts);
+  }
+  Status draw_samples(const Band& band, LitCounts* counts) const {
+    Band fine;
+    fine.first_row = band.first_row * picture_.across;
+    fine.rows = picture_.across;
+    fine.format = PixelFormat::kRgb888;
+    fine.pixels = band.pixels.subspan(row_bytes_);
+    const Status status = draw_band(fine, counts);
+    return status != Status::kOk ? status
+                                 : average_samples(fine.pixels, picture_.across, width_px_, band.first_row,
+                                                   band.format, band.pixels.subspan(0, row_bytes_));
+  }
+
+  const BuiltScene& built_;
+  const Camera& camera_;
+  const Shading& shading_;
+  LitPicture picture_;
+  std::int32_t width_px_;
+  std::size_t row_bytes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Painter> make_lit_painter(const BuiltScene& built, const Camera& camera,
+                                          const Shading& shading, PixelFormat format,
+                                          const LitPicture& picture) {
+  return std::make_unique<LitPainter>(built, camera, shading, format, picture);
+}
+
+}  // namespace thimble::tools

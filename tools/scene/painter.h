@@ -1,0 +1,79 @@
+/// @file painter.h
+/// Ways to draw a scene's picture. `thimble render` picks one and asks it for bands, row by row from the top.
+///
+///   ray painter      the core, ray by ray
+///   quality painter  the same with several samples a pixel, a cut-off or a depth
+///   wide painter     object order, with vectors and threads (platform/host/wide)
+///   lit painter      light, shadows, glass, water: the core's lit_render.h
+///
+/// The first three give the same picture where their options are the same.
+#ifndef THIMBLE_TOOLS_SCENE_PAINTER_H
+#define THIMBLE_TOOLS_SCENE_PAINTER_H
+
+#include <cstdint>
+#include <memory>
+
+#include "host/wide/renderer.h"
+#include "scene/built_scene.h"
+#include "scene/quality.h"
+#include "thimble/camera.h"
+#include "thimble/lit_render.h"
+#include "thimble/render.h"
+#include "thimble/shading.h"
+
+namespace thimble::tools {
+
+struct PaintCounts {
+  RenderCounts all;   ///< rays of every kind
+  wide::Counts wide;  ///< of the wide painter, else 0
+  LitCounts lit;      ///< of the lit painter by kind of ray, else 0
+};
+
+class Painter {
+ public:
+  virtual ~Painter() = default;
+  /// What draws, as --stats names it.
+  virtual const char* engine() const = 0;
+  virtual int threads() const { return 1; }
+  /// Most rows of a band.
+  virtual std::int32_t most_rows() const = 0;
+  /// Where bands are drawn: in the scene's budget. Empty: straight into the picture.
+  virtual Bytes work() const = 0;
+  /// Draws `band`, whose pixels are the front of `work()` if there is one; `counts` is added to. Errors, with
+  /// nothing counted: kBadArgument for a camera that it does not take, kTooFine for one that it leaves to the
+  /// ray painter.
+  virtual Status draw(const Band& band, PaintCounts* counts) = 0;
+};
+
+// What a painter is made with must live as long as it does.
+
+/// Bands as high as the scene's own has room for.
+std::unique_ptr<Painter> make_ray_painter(const BuiltScene& built, const Camera& camera,
+                                          const Shading& shading, PixelFormat format,
+                                          const TraceOptions& options);
+
+/// A row at a time.
+std::unique_ptr<Painter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
+                                              const TraceOptions& options);
+
+/// After `built.prepare_wide`.
+std::unique_ptr<Painter> make_wide_painter(const BuiltScene& built, const Camera& camera,
+                                           const Shading& shading, int threads);
+
+/// What a lit picture is made of beside tree, camera and shading.
+struct LitPicture {
+  LitScene scene;
+  EffectSet effects = kNoEffects;
+  /// Samples a pixel are its square; the band then has room for them (quality_band_bytes), and the camera is
+  /// that of a picture so many times as wide and high.
+  int across = 1;
+};
+
+/// For compact trees. Formats with fewer than 8 bits a channel are dithered.
+std::unique_ptr<Painter> make_lit_painter(const BuiltScene& built, const Camera& camera,
+                                          const Shading& shading, PixelFormat format,
+                                          const LitPicture& picture);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,30 @@
+/// @file painting.h
+/// A whole picture by a painter, band by band.
+#ifndef THIMBLE_TOOLS_SCENE_PAINTING_H
+#define THIMBLE_TOOLS_SCENE_PAINTING_H
+
+#include <cstdint>
+#include <string>
+
+#include "output/image.h"
+#include "readers/source.h"
+#include "scene/painter.h"
+
+namespace thimble::tools {
+
+struct Painting {
+  Image image;
+  PaintCounts counts;
+  double seconds = 0;  ///< of drawing alone
+  std::string engine;
+  int threads = 1;
+};
+
+/// Draws a picture of that size from top to bottom into `painting`, whatever it held. The painter's first
+/// error ends it.
+Status paint(Painter& painter, std::int32_t width_px, std::int32_t height_px, PixelFormat format,
+             const Progress& progress, Painting* painting);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,32 @@
+// Several samples a pixel, a cut-off or a depth: the rows of a QualityFrame.
+#include "scene/painter.h"
+
+namespace thimble::tools {
+namespace {
+
+class QualityPainter final : public Painter {
+ public:
+  QualityPainter(const BuiltScene& built, const QualityFrame& frame, const TraceOptions& options)
+      : built_(built), frame_(frame), options_(options) {}
+
+  const char* engine() const override { return options_.width == Width::k32 ? "ray32" : "ray64"; }
+  std::int32_t most_rows() const override { return 1; }
+  Bytes work() const override { return built_.band(); }
+  Status draw(const Band& band, PaintCounts* counts) override {
+    return frame_.draw_row(band.first_row, band.format, band.pixels, &counts->all, options_);
+  }
+
+ private:
+  const BuiltScene& built_;
+  const QualityFrame& frame_;
+  TraceOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Painter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
+                                              const TraceOptions& options) {
+  return std::make_unique<QualityPainter>(built, frame, options);
+}
+
+}  // namespace thimble::tools
