@@ -31,7 +31,7 @@ void peers(benchmark::State& state, const std::string& scene, std::uint64_t poin
 
 const bool kRegistered = [] {
   for (const std::string scene : {"points", "cluster"}) {
-    for (const std::uint64_t points : {1'000, 100'000, 1'000'000, 10'000'000}) {
+    for (const std::uint64_t points : {1'000ULL, 100'000ULL, 1'000'000ULL, 10'000'000ULL}) {
       for (const bool orthographic : {false, true}) {
         const std::string name = "peers/" + scene + ":" + std::to_string(points) +
                                  (orthographic ? "/orthographic" : "/perspective");
