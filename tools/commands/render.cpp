@@ -250,6 +250,7 @@ void run(const RenderCommand& given) {
       in_flash ? lit_render_bytes(effects) : lit_state_bytes(lit_scene_for(lighting, used, effects), effects);
 
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
+  command.scene.build_threads = command.engine.threads;
   BuiltScene built = command.scene.build(
       *source, plain ? band_bytes(format, width, band_rows(command, format)) : quality_bytes,
       plain ? band_bytes(format, width, 1) : quality_bytes, state_bytes);
