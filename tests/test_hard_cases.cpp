@@ -14,7 +14,7 @@ namespace thimble::tools {
 namespace {
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr std::uint64_t kRays = 1400;
+constexpr std::uint64_t kRays = 4200;
 #else
 constexpr std::uint64_t kRays = 28000;
 #endif
@@ -69,7 +69,7 @@ TEST_CASE(
     for (const HardCaseRow& row : rows()) {
       wrong += row.wrong[tracer];
     }
-    INFO(tracer_names()[tracer].key);
+    INFO(std::string(tracer_names()[tracer].key));
     CHECK(wrong > 0);
   }
 }

@@ -207,7 +207,7 @@ TEST_CASE("key sort: any voxels, repeats, materials and threads -> the tree that
 
 TEST_CASE("key sort: many points -> built within twice the bytes of their keys, whatever the threads") {
 #ifdef __SANITIZE_ADDRESS__
-  constexpr std::uint64_t kPoints = 200'000;
+  constexpr std::uint64_t kPoints = 500'000;
 #else
   constexpr std::uint64_t kPoints = 2'000'000;
 #endif

@@ -204,6 +204,7 @@ TEST_CASE("water app: touches, drops, rain and a moving camera -> every frame as
     for (std::uint32_t frame = 3; frame < frames; frame += 5) {
       hand.keys[frame] = pixel(frame % 10 == 3 ? '@' : '!') + pixel('!');
     }
+    hand.keys[4] = at_pixel('@', each.width / 2, each.height * 34 / 48);  // water, whatever the others hit
     hand.keys[frames / 2] += "m";
     hand.keys[frames * 3 / 4] += "k";
     hand.buttons[frames / 4] = port::kLeft;
