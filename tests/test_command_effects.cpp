@@ -105,6 +105,27 @@ Direct draw_directly(const std::string& scene, thimble::PixelFormat format) {
   return direct;
 }
 
+TEST_CASE("render effects: any number of threads -> the same picture and counts, dithered and sampled too") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  for (const Words& more : {Words{}, {"--samples", "4"}, {"--memory", "64K"}}) {
+    for (const char* ending : {".ppm", ".pbm"}) {
+      const Picture one = render(scene, more, ending, "50x37");
+      CHECK(one.stats["threads"] == 1);
+      for (const char* threads : {"2", "5"}) {
+        CAPTURE(threads);
+        Words words = more;
+        words.insert(words.end(), {"--threads", threads});
+        const Picture many = render(scene, words, ending, "50x37");
+        CHECK(many.bytes == one.bytes);
+        CHECK(many.stats["rays_by_kind"] == one.stats["rays_by_kind"]);
+        CHECK(many.stats["node_visits_by_kind"] == one.stats["node_visits_by_kind"]);
+        CHECK(many.stats["threads"] == std::stoi(threads));
+      }
+    }
+  }
+}
+
 TEST_CASE("render effects: a plain scene -> the very picture of --effects none, and none in --stats") {
   const Picture plain = render("spheres", {});
   CHECK(plain.stats["effects"] == json::array());

@@ -32,8 +32,8 @@ struct BoardFacts {
   int32_t height_px;
   PixelFormat format;
   int32_t buttons;
-  AppStack app_stacks[5];        ///< those that there are, then empty ones
-  uint32_t visits_a_second = 0;  ///< port::Facts::visits_a_second
+  uint32_t visits_a_second;  ///< port::Facts::visits_a_second
+  AppStack app_stacks[5];    ///< those that there are, then empty ones
 };
 
 /// All boards, by name in alphabetical order.

@@ -259,7 +259,7 @@ void EngineOptions::add_to(CLI::App& app) {
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
       [this](std::int64_t number) { threads = static_cast<int>(number); },
-      "threads that build and that draw with the wide engine")
+      "threads that build, and that draw with the wide engine or with effects")
       ->default_str("1");
 }
 

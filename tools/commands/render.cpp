@@ -246,8 +246,12 @@ void run(const RenderCommand& given) {
     check_lit(command, effects);
   }
   const bool in_flash = command.scene.board != nullptr && source->baked() != nullptr;
+  // Each thread that draws with effects keeps rays of its own.
+  const auto more_threads = static_cast<std::uint64_t>(command.engine.threads - 1);
   const std::uint64_t state_bytes =
-      in_flash ? lit_render_bytes(effects) : lit_state_bytes(lit_scene_for(lighting, used, effects), effects);
+      (effects != kNoEffects ? more_threads * lit_render_bytes(effects) : 0) +
+      (in_flash ? lit_render_bytes(effects)
+                : lit_state_bytes(lit_scene_for(lighting, used, effects), effects));
 
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
   command.scene.build_threads = command.engine.threads;
@@ -277,6 +281,7 @@ void run(const RenderCommand& given) {
     lit.effects = effects = chosen_effects(lighting, used, choice);
     lit.scene = lit_scene_for(lighting, used, effects);
     lit.across = command.quality.across;
+    lit.threads = command.engine.threads;
   }
   ProgressBar bar("tracing", command.scene.quiet);
   const auto update = [&](double done) { bar.update(done); };

@@ -38,6 +38,8 @@ struct SimCommand {
   std::string keys_path;
   std::string record_path;
   bool chooses_application = true;  ///< by the scene
+  /// As the application wants it, once that is known; `session.board` points to it then.
+  platform::BoardFacts board{};
 };
 
 const apps::Application* application(const char* name) {
@@ -171,7 +173,8 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   const auto recording = open(command->record_path);
   SessionOptions& session = command->session;
   session.recording = recording.get();
-  platform::BoardFacts board = *session.board;
+  platform::BoardFacts& board = command->board;
+  board = *session.board;
   std::optional<Image> wanted;
   if (!command->check_path.empty()) {
     wanted = about(command->check_path,

@@ -1,13 +1,14 @@
 #include "instruments/effects_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "boards/effect_flash.h"
+#include "instruments/stopwatch.h"
 #include "scene/built_scene.h"
 #include "scene/lit_setup.h"
 
@@ -83,17 +84,26 @@ class Studio {
   void add(EffectSet effects) { variants_[effects].scene = lit_scene_for(lit_, used_, effects); }
   const Variant& of(EffectSet effects) const { return variants_.at(effects); }
 
-  // Every set once a round, so that what else the machine does meets all alike.
+  // Every set once a round, each round beginning with another, so that what else the machine does, and what
+  // the frame before left in its caches, meets all alike. The first round only warms up.
   void draw(int frames, const Progress& progress) {
-    const auto steps = static_cast<double>(variants_.size()) * frames;
+    std::vector<std::pair<const EffectSet, Variant>*> order;
+    for (auto& variant : variants_) {
+      order.push_back(&variant);
+    }
+    const auto steps = static_cast<double>(order.size()) * (frames + 1);
     double done = 0;
-    for (int frame = 0; frame < frames; ++frame) {
-      for (auto& [effects, variant] : variants_) {
-        draw_frame(effects, &variant);
+    for (int round = 0; round <= frames; ++round) {
+      for (auto* const variant : order) {
+        draw_frame(variant->first, &variant->second);
+        if (round == 0) {
+          variant->second.ms.clear();
+        }
         if (progress) {
           progress(++done / steps);
         }
       }
+      std::rotate(order.begin(), order.begin() + 1, order.end());
     }
   }
 
@@ -103,11 +113,10 @@ class Studio {
     band.pixels = {pixels_.data(), pixels_.size()};
     band.rows = camera_.height_px();
     variant->counts = {};
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const Status status =
         render_lit_band(effects, built_.compact(), camera_, shading_, variant->scene, band, &variant->counts);
-    variant->ms.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    variant->ms.push_back(watch.ms());
     if (status != Status::kOk) {
       throw InputError("its lights or surfaces are beyond the limits of a lit picture");
     }
@@ -121,15 +130,6 @@ class Studio {
   std::vector<std::uint8_t> pixels_;
   std::map<EffectSet, Variant> variants_;
 };
-
-// The value below which `part` of them lie, between neighbours in proportion.
-double quantile(std::vector<double> values, double part) {
-  std::sort(values.begin(), values.end());
-  const double at = part * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
-}
 
 std::int64_t difference(std::uint64_t with, std::uint64_t without) {
   return static_cast<std::int64_t>(with) - static_cast<std::int64_t>(without);

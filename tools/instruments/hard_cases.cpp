@@ -101,7 +101,7 @@ Components any_direction(Draw& draw) {
 // Back from a point along a direction, so that the ray goes exactly through the point: as far as keeps it
 // near the world.
 Components before(Draw& draw, const Components& point, const Components& direction, std::int64_t side) {
-  std::int64_t most = 0;
+  std::int64_t most = 1;  // a direction is not zero
   for (const std::int64_t component : direction) {
     most = std::max(most, component < 0 ? -component : component);
   }
@@ -306,7 +306,7 @@ reference::TextbookHit core_hit(const CompactTree& tree, const Ray& ray, Width w
   reference::TextbookHit result;
   result.hit = hit.kind == HitKind::kHit;
   result.voxel = {hit.voxel.x, hit.voxel.y, hit.voxel.z};
-  result.axis = hit.axis;
+  result.axis = int{hit.axis};
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "output/svg.h"
+
 namespace thimble::tools {
 namespace {
 
@@ -14,30 +16,6 @@ constexpr double kRight = 190;
 constexpr double kTop = 48;
 constexpr double kStep = 26;
 constexpr double kThickness = 16;
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
-
-std::string escaped(const std::string& plain) {
-  std::string text;
-  for (const char c : plain) {
-    text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  }
-  return text;
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* kind) {
-  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
-         number(y2) + "\" class=\"" + kind + "\"/>\n";
-}
-
-std::string label(double x, double y, const char* anchor, const std::string& text, const char* more = "") {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
-         escaped(text) + "</text>\n";
-}
 
 // 1, 2 or 5 times a power of ten, so that a range has four to ten of them.
 double tick_of(double range) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "output/svg.h"
+
 namespace thimble::tools {
 namespace {
 
@@ -37,31 +39,6 @@ std::string decade_text(int decade) {
     return "0.1";
   }
   return "10<tspan dy=\"-5\" font-size=\"9\">" + std::to_string(decade) + "</tspan>";
-}
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* kind) {
-  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
-         number(y2) + "\" class=\"" + kind + "\"/>\n";
-}
-
-std::string escaped(const std::string& plain) {
-  std::string text;
-  for (const char c : plain) {
-    text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  }
-  return text;
-}
-
-std::string label(double x, double y, const char* anchor, const std::string& text,
-                  const std::string& more = {}) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
-         text + "</text>\n";
 }
 
 }  // namespace
@@ -112,7 +89,7 @@ std::string log_plot_text(const Plot& plot) {
       ".ground { fill: #15181c } text { fill: #e6e6e6 "
       "} .grid { stroke: #3a3f45 } .axis { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" "
       "height=\"100%\" class=\"ground\"/>\n";
-  svg += label(kWidth / 2, 24, "middle", escaped(plot.title), " font-size=\"15\"");
+  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
   for (double whole = least; plot.whole_x && whole <= greatest; whole += 1) {
     svg += line(x_at(whole), kTop, x_at(whole), kHeight - kBottom, "grid") +
            label(x_at(whole), kHeight - kBottom + 18, "middle", std::to_string(std::lround(whole)));
@@ -128,15 +105,14 @@ std::string log_plot_text(const Plot& plot) {
   }
   svg += line(kLeft, kTop, kLeft, kHeight - kBottom, "axis") +
          line(kLeft, kHeight - kBottom, kWidth - kRight, kHeight - kBottom, "axis");
-  svg += label((kLeft + kWidth - kRight) / 2, kHeight - kBottom + 40, "middle", escaped(plot.x_label));
+  svg += label((kLeft + kWidth - kRight) / 2, kHeight - kBottom + 40, "middle", plot.x_label);
   const double middle = (kTop + kHeight - kBottom) / 2;
-  svg += label(20, middle, "middle", escaped(plot.y_label),
-               " transform=\"rotate(-90 20 " + number(middle) + ")\"");
+  svg += label(20, middle, "middle", plot.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
 
   for (const Mark& mark : plot.marks) {
     const double y = y_at(mark.y);
     svg += line(kLeft, y, kWidth - kRight, y, "mark") +
-           label(kLeft + 6, y - 4, "start", escaped(mark.name), " font-size=\"11\"");
+           label(kLeft + 6, y - 4, "start", mark.name, " font-size=\"11\"");
   }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
@@ -156,7 +132,7 @@ std::string log_plot_text(const Plot& plot) {
     const double row = kHeight - kBottom + 62 + 18 * static_cast<double>(legend_row);
     svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
            "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
-    svg += label(column + 36, row, "start", escaped(series.name));
+    svg += label(column + 36, row, "start", series.name);
   }
   svg += "</svg>\n";
   return svg;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "output/svg.h"
 #include "output/units.h"
 
 namespace thimble::tools {
@@ -21,34 +22,9 @@ constexpr double kPlotBottom = kTop + kPlotHeight;
 // Names in two columns where there are many.
 constexpr std::size_t kManyNames = 8;
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
-
 // A tick's value without what powers of ten leave behind.
 std::string rounded(double value) {
   return shortest(std::round(value * 1e6) / 1e6);
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  }
-  return result;
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* kind) {
-  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
-         number(y2) + "\" class=\"" + kind + "\"/>\n";
-}
-
-std::string label(double x, double y, const char* anchor, const std::string& text,
-                  const std::string& more = {}) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
-         escaped(text) + "</text>\n";
 }
 
 std::string dot(double x, double y, double radius, const std::string& style) {

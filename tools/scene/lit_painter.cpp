@@ -1,6 +1,14 @@
 // Lit pictures in bands of the scene's memory. Several samples a pixel are rows of the finer camera,
-// averaged.
+// averaged. A pixel is a function of the scene alone, so threads take rows as they come.
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <vector>
 
 #include "scene/lit_setup.h"
 #include "scene/painter.h"
@@ -21,6 +29,7 @@ class LitPainter final : public Painter {
         row_bytes_(std::max<std::size_t>(1, row_bytes(format, width_px_))) {}
 
   const char* engine() const override { return "lit"; }
+  int threads() const override { return picture_.threads; }
   std::int32_t most_rows() const override {
     return picture_.across == 1 ? static_cast<std::int32_t>(built_.band().size / row_bytes_) : 1;
   }
@@ -33,9 +42,41 @@ class LitPainter final : public Painter {
   }
 
  private:
-  Status draw_band(const Band& band, LitCounts* counts) const {
+  Status draw_rows(const Band& band, LitCounts* counts) const {
     return render_lit_band(picture_.effects, built_.compact(), camera_, shading_, picture_.scene, band,
                            counts);
+  }
+  Status draw_band(const Band& band, LitCounts* counts) const {
+    if (picture_.threads == 1) {
+      return draw_rows(band, counts);
+    }
+    const std::size_t line = row_bytes(band.format, camera_.width_px());
+    const auto threads = static_cast<std::size_t>(picture_.threads);
+    std::vector<LitCounts> of_threads(threads);
+    std::atomic<Status> worst{Status::kOk};
+    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    oneapi::tbb::task_arena workers(picture_.threads);
+    workers.execute([&] {
+      oneapi::tbb::parallel_for(
+          oneapi::tbb::blocked_range<std::int32_t>(0, band.rows, 1),
+          [&](const oneapi::tbb::blocked_range<std::int32_t>& rows) {
+            const auto thread =
+                static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index());
+            Band part = band;
+            part.first_row += rows.begin();
+            part.rows = static_cast<std::int32_t>(rows.size());
+            part.pixels = band.pixels.subspan(line * static_cast<std::size_t>(rows.begin()));
+            const Status status = draw_rows(part, &of_threads[thread]);
+            if (status != Status::kOk) {
+              worst.store(status);
+            }
+          },
+          oneapi::tbb::simple_partitioner());
+    });
+    for (const LitCounts& part : of_threads) {
+      add_counts(part, counts);
+    }
+    return worst;
   }
   Status draw_samples(const Band& band, LitCounts* counts) const {
     Band fine;

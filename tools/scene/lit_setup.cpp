@@ -41,6 +41,16 @@ std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects) {
   return lit_render_bytes(effects) + (effects == kNoEffects ? 0 : lit_table_bytes(scene));
 }
 
+void add_counts(const LitCounts& more, LitCounts* counts) {
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    counts->rays[kind] += more.rays[kind];
+    counts->hits[kind] += more.hits[kind];
+    counts->node_visits[kind] += more.node_visits[kind];
+  }
+  counts->step_limited += more.step_limited;
+  counts->pending_high_water = std::max(counts->pending_high_water, more.pending_high_water);
+}
+
 RenderCounts totals_of(const LitCounts& counts) {
   RenderCounts all;
   for (int kind = 0; kind < kLitRayKinds; ++kind) {

@@ -39,6 +39,9 @@ std::size_t lit_table_bytes(const LitScene& scene);
 /// without effects.
 std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects);
 
+/// Adds what another thread counted.
+void add_counts(const LitCounts& more, LitCounts* counts);
+
 /// Of rays of every kind together.
 RenderCounts totals_of(const LitCounts& counts);
 

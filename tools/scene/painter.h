@@ -67,6 +67,7 @@ struct LitPicture {
   /// Samples a pixel are its square; the band then has room for them (quality_band_bytes), and the camera is
   /// that of a picture so many times as wide and high.
   int across = 1;
+  int threads = 1;  ///< that draw rows of a band, each with a state of its own (lit_render_bytes)
 };
 
 /// For compact trees. Formats with fewer than 8 bits a channel are dithered.

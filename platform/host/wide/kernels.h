@@ -80,9 +80,7 @@ struct Boxes {
 
 /// What one thread has under way, from run to run. Less than 28 KiB.
 struct Batch {
-  Boxes boxes;  ///< not yet paired with their pixels
-  /// Whether all of the picture lies in front of them: of whole runs that said so.
-  bool all_behind = true;
+  Boxes boxes;    ///< not yet paired with their pixels
   Pairs waiting;  ///< for the test in floats
   Pairs unclear;  ///< for the exact one
   // `met` of them were met and are on the way into the picture.
@@ -96,6 +94,8 @@ struct Batch {
   float constant[3];               ///< of u, v and w, for corners within the cube
   size_t met = 0;
   Counts counts;
+  /// Whether all of the picture lies in front of `boxes`: of whole runs that said so.
+  bool all_behind = true;
 };
 static_assert(sizeof(Batch) < 28 * 1024);
 

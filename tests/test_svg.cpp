@@ -1,0 +1,27 @@
+// What plots write for words that may be anything: a scene's name is a file's name.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "output/svg.h"
+
+namespace thimble::tools {
+namespace {
+
+TEST_CASE("svg words: markup is written otherwise, UTF-8 stays, what is neither becomes U+FFFD") {
+  CHECK(xml_text("a<b & c>d") == "a&lt;b &amp; c&gt;d");
+  CHECK(xml_text("H\xC3\xB6he \xE2\x82\xAC \xF0\x9F\x98\x80") == "H\xC3\xB6he \xE2\x82\xAC \xF0\x9F\x98\x80");
+  const std::string other = "\xEF\xBF\xBD";
+  CHECK(xml_text("\xFF.scene") == other + ".scene");
+  CHECK(xml_text("\xC3") == other);              // cut short
+  CHECK(xml_text("\xC3(") == other + "(");       // not continued
+  CHECK(xml_text("\xC0\xAF") == other + other);  // a longer form than needed
+  CHECK(xml_text("\xE0\x80\xAF") == other + other + other);
+  CHECK(xml_text("\xED\xA0\x80") == other + other + other);  // half of a pair of UTF-16
+  CHECK(xml_text("\xF4\x90\x80\x80") == other + other + other + other);
+  CHECK(xml_text(std::string("a\x01\0b", 4)) == "a" + other + other + "b");
+  CHECK(label(1, 2, "middle", "<") == "<text x=\"1.0\" y=\"2.0\" text-anchor=\"middle\">&lt;</text>\n");
+}
+
+}  // namespace
+}  // namespace thimble::tools
