@@ -46,7 +46,7 @@ function(thimble_write_board_table file)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
       ${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
     set(app_stacks)
-    foreach(app selftest golden lit demo bench particles)
+    foreach(app selftest golden lit demo water bench particles)
       if(DEFINED BOARD_STACK_BYTES_${app})
         string(APPEND app_stacks "{\"${app}\", ${BOARD_STACK_BYTES_${app}}}, ")
       endif()
@@ -56,7 +56,7 @@ function(thimble_write_board_table file)
     thimble_capitalise(screen ${BOARD_DISPLAY})
     string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, ${BOARD_FLASH_BYTES}, "
       "${BOARD_STACK_BYTES}, Screen::k${screen}, ${BOARD_WIDTH_PX}, ${BOARD_HEIGHT_PX}, "
-      "PixelFormat::k${format}, ${BOARD_BUTTONS}, {${app_stacks}}, ${BOARD_VISITS_A_SECOND}},\n")
+      "PixelFormat::k${format}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, {${app_stacks}}},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
 endfunction()
