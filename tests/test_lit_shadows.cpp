@@ -8,6 +8,7 @@
 #include "reference/reference.h"
 #include "scene/random.h"
 #include "support/lit_world.h"
+#include "thimble/secondary_ray.h"
 
 namespace {
 
@@ -142,6 +143,83 @@ TEST_CASE("shadows: in every pixel what the exact reference says of the ray to t
   }
   CHECK(shadowed > 42 * kWorlds);
   CHECK(lit > 417 * kWorlds);
+}
+
+TEST_CASE("shadows of lamps: in every pixel what the exact reference says of the ray as far as the lamp") {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kWorlds = 3;
+#else
+  constexpr int kWorlds = 12;
+#endif
+  int shadowed = 0;
+  int lit = 0;
+  int behind = 0;  // something solid, beyond the lamp
+  for (int seed = 0; seed < kWorlds; ++seed) {
+    CAPTURE(seed);
+    SplitMix64 random(static_cast<std::uint64_t>(seed) + 1977);
+    const auto below = [&](int bound) {
+      return static_cast<int>(random.below(static_cast<std::uint64_t>(bound)));
+    };
+    Place place;
+    place.box({0, 0, 0}, {kSide, kSide, 2});
+    for (int i = 0; i < 30; ++i) {
+      const Vec3i low{below(28), below(28), below(20)};
+      const int size = i < 10 ? 4 : 1;
+      place.box(low, {low.x + size, low.y + size, low.z + size});
+    }
+    LitWorld& world = place.world;
+    world.surfaces[0].albedo = {255, 255, 255};
+    set_ambient(&world.scene, 0);
+    const Vec3i at{256 * 4 + below(256 * 24), 256 * 4 + below(256 * 24), 256 * (6 + below(20)) + below(256)};
+    world.lights = {lamp(at, 60000, 100)};
+    world.finish();
+    world.look({-20 * 256 - 256 * below(5), -20 * 256, (10 + below(30)) * 256}, {16 * 256, 16 * 256, 8 * 256},
+               50, 80, 60);
+    const std::vector<Rgb8> picture = world.draw(kDirectLight | kShadows);
+    int wrong = 0;
+    for (int y = 0; y < 60; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        const ref::Ray ray = ref_ray(world.camera.ray(x, y));
+        const ref::Hit hit = ref::walk(place.grid, ray);
+        const bool is_bright = picture[static_cast<std::size_t>(y * 80 + x)].r != 0;
+        if (!hit.hit) {
+          wrong += is_bright ? 1 : 0;
+          continue;
+        }
+        int face = -1;
+        ref::Ray shadow = start_of(place.grid, ray, hit, &face);
+        Ray towards;
+        RayPoint end;
+        REQUIRE(ray_towards({Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[0])),
+                             Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[1])),
+                             Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[2]))},
+                            {Q8::from_raw(at.x), Q8::from_raw(at.y), Q8::from_raw(at.z)}, 15, &towards,
+                            &end));
+        shadow.direction = ref_ray(towards).direction;
+        const auto f = static_cast<std::size_t>(face);
+        const std::int64_t away = ray.direction[f] > 0 ? -shadow.direction[f] : shadow.direction[f];
+        if (away <= 0) {
+          wrong += is_bright ? 1 : 0;
+          continue;
+        }
+        const ref::Hit met = ref::walk(place.grid, shadow);
+        const bool is_before =
+            met.hit && met.t_numerator * end.t_denominator < end.t_numerator * met.t_denominator;
+        behind += met.hit && !is_before ? 1 : 0;
+        shadowed += is_before ? 1 : 0;
+        if (is_before) {
+          wrong += is_bright ? 1 : 0;
+        } else if (away > 1 << 9) {  // else light so slanting that it may round to black
+          ++lit;
+          wrong += is_bright ? 0 : 1;
+        }
+      }
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(shadowed > 42 * kWorlds);
+  CHECK(lit > 200 * kWorlds);
+  CHECK(behind > 20 * kWorlds);
 }
 
 TEST_CASE("shadows: what is behind a point light casts none, what is before it does") {
