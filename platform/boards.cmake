@@ -55,8 +55,8 @@ function(thimble_write_board_table file)
     thimble_capitalise(format ${BOARD_FORMAT})
     thimble_capitalise(screen ${BOARD_DISPLAY})
     string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, ${BOARD_FLASH_BYTES}, "
-      "${BOARD_STACK_BYTES}, Screen::k${screen}, ${BOARD_WIDTH_PX}, ${BOARD_HEIGHT_PX}, "
-      "PixelFormat::k${format}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, {${app_stacks}}},\n")
+      "${BOARD_STACK_BYTES}, Screen::k${screen}, PixelFormat::k${format}, ${BOARD_WIDTH_PX}, "
+      "${BOARD_HEIGHT_PX}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, {${app_stacks}}},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
 endfunction()

@@ -28,9 +28,9 @@ struct BoardFacts {
   uint32_t flash_bytes;
   uint32_t stack_bytes;  ///< part of the RAM that is kept for the stack
   Screen screen;
+  PixelFormat format;
   int32_t width_px;
   int32_t height_px;
-  PixelFormat format;
   int32_t buttons;
   uint32_t visits_a_second;  ///< port::Facts::visits_a_second
   AppStack app_stacks[5];    ///< those that there are, then empty ones
