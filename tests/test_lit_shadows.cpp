@@ -162,6 +162,7 @@ TEST_CASE("shadows of lamps: in every pixel what the exact reference says of the
     };
     Place place;
     place.box({0, 0, 0}, {kSide, kSide, 2});
+    place.box({kSide - 1, 0, 2}, {kSide, kSide, kSide});  // what stands beyond the lamp, seen from the floor
     for (int i = 0; i < 30; ++i) {
       const Vec3i low{below(28), below(28), below(20)};
       const int size = i < 10 ? 4 : 1;
