@@ -3,7 +3,8 @@
 ///
 /// An application (platform/apps) is one source for every board and for the host simulator. It calls the
 /// functions below and the core, and nothing else. A port (platform/boards/NAME with platform/arch/ARCH; on a
-/// desktop platform/host; on Linux without a window system platform/linux) defines every one of them.
+/// desktop platform/host; on Linux without a window system platform/linux) defines every one of them but
+/// `draw`.
 ///
 /// What the port has done before it calls the application: clocks and UART run, the display is on and black,
 /// .data and .bss are set up, the stack is painted (`kStackPaint`) and fenced as well as the chip can, and a
@@ -62,6 +63,20 @@ ConstBytes scene();
 /// A band without bytes (`pixels` empty, format, first row and rows as ever) says that these rows are as in
 /// the frame before: nothing is sent, and a display shows what it has. Not before a whole frame was flushed.
 void flush(const Band& band);
+
+/// Draws a band of a frame without light in the core's place, with the pixels of `render_band`; false, and
+/// the band untouched, where the core is to draw it. Asked for the scene in flash, before the core; the band
+/// is then flushed, or written, as it is. Only a host that simulates a board has something faster
+/// (simulation.h): there THIMBLE_PORT_DRAWS is defined. A board does not, and its compiler removes the
+/// question.
+#ifdef THIMBLE_PORT_DRAWS
+bool draw(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band);
+#else
+constexpr bool draw(const CompactTree& /*tree*/, const Camera& /*camera*/, const Shading& /*shading*/,
+                    const Band& /*band*/) {
+  return false;
+}
+#endif
 
 /// What the hand holds down: buttons of the board, or keys.
 enum Button : uint32_t { kUp = 1, kDown = 2, kLeft = 4, kRight = 8, kSelect = 16 };

@@ -7,16 +7,13 @@ namespace {
 
 // One line each.
 constexpr Application kApplications[] = {
-    {"demo", demo, true, true},
-    {"selftest", selftest, false, false},
-    {"golden", golden, false, false},
-    {"lit", lit, false, false},
+    {"demo", demo, true, true, false, true}, {"selftest", selftest, false, false},
+    {"golden", golden, false, false},        {"lit", lit, false, false},
     {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},
 #endif
-    {"water", water, true, true, true},
-    {"faults", faults, false, false},
+    {"water", water, true, true, true},      {"faults", faults, false, false},
     {nullptr, nullptr, false, false},  // so that the array is never empty
 };
 

@@ -15,6 +15,8 @@ struct Application {
   /// Whether it takes pixels by name over the UART: `@X,Y.` for one that is pressed on or moved over with the
   /// first button of a mouse, `!X,Y.` for another button.
   bool takes_pointer = false;
+  bool asks_port =
+      false;  ///< whether it draws frames that the port may draw in the core's place (port::draw)
 };
 
 /// All of them; may be empty.

@@ -55,9 +55,12 @@ struct ShownScene {
   }
 }
 
-/// Draws a band of it.
+/// Draws a band of it: the port, if it can, else the core, which alone counts.
 inline Status draw_scene(const ShownScene& shown, const Camera& camera, const Shading& shading,
                          const Band& band, RenderCounts* counts = nullptr) {
+  if (counts == nullptr && port::draw(shown.scene.tree(), camera, shading, band)) {
+    return Status::kOk;
+  }
   return shown.has_map ? render_band(shown.scene.tree(), shown.map, camera, shading, band, counts)
                        : render_band(shown.scene.tree(), camera, shading, band, counts);
 }

@@ -205,6 +205,7 @@ Simulation::State::State(const SimulationOptions& options)
       arena(options.board->ram_bytes - options.board->stack_bytes, kRamPaint),
       flash((options.scene.size + kFlashAlignment - 1) / kFlashAlignment * kFlashAlignment, 0),
       scene(flash.bytes().subspan(0, options.scene.size)),
+      frame(options.painter, scene),
       stack(host_stack_bytes(options.board->stack_bytes), port::kStackPaint),
       signal_stack(kSignalStackBytes, 0),
       display(options.board->width_px, options.board->height_px, options.board->format) {
@@ -265,6 +266,11 @@ Simulation::~Simulation() {
 Moment Simulation::wait(int timeout_ms) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
   while (true) {
+    if (state_->wants_frame) {
+      state_->frame.draw();
+      state_->wants_frame = false;
+      state_->frame_is_there.post();
+    }
     const bool fell = state_->stopped;
     if (fell || state_->ended || state_->asks) {
       if (fell && state_->fault.empty()) {

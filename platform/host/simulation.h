@@ -7,6 +7,10 @@
 /// frames on the stack. The stack is therefore larger than the board's; how much of it was used is measured
 /// by its paint, as on the board, but says nothing exact about the chip.
 ///
+/// Frames may be drawn by something faster than the core (FramePainter), beside the board's memory and on the
+/// other thread. The first one is drawn by the core as well, so that the stack is the core's (drawn_frame.h);
+/// if the two differ in a bit, that stops the application.
+///
 /// The application has a thread and a stack of its own, on which nothing else runs. It waits whenever it asks
 /// `running()`, until it is answered; then the thread that made the simulation may look at everything. There
 /// is one simulation at a time, since it takes the signals of a fault.
@@ -25,6 +29,10 @@
 
 #include "boards/board_table.h"
 #include "host/packed_picture.h"
+#include "thimble/camera.h"
+#include "thimble/compact_tree.h"
+#include "thimble/pixel.h"
+#include "thimble/shading.h"
 #include "thimble/span.h"
 
 namespace thimble::host {
@@ -33,6 +41,17 @@ namespace thimble::host {
 class SimulationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// What draws frames in the core's place: an application asks for them by port::draw.
+class FramePainter {
+ public:
+  virtual ~FramePainter() = default;
+  /// Draws the whole picture into `pixels`, row after row without gaps, with the bytes of `render_band`;
+  /// false where the core is to draw this frame. Called by Simulation::wait, which lets pass what it throws;
+  /// the application then waits for ever. Tree and palette lie in flash and stay what they are.
+  virtual bool draw(const CompactTree& tree, const Camera& camera, const Shading& shading, PixelFormat format,
+                    Bytes pixels) = 0;
 };
 
 struct SimulationOptions {
@@ -44,6 +63,8 @@ struct SimulationOptions {
   int (*application)() = nullptr;
   /// port::Facts::hold_fps.
   std::uint32_t hold_fps = 0;
+  /// May be null: the core draws everything. It lives as long as the simulation is asked anything.
+  FramePainter* painter = nullptr;
 };
 
 enum class Moment : std::uint8_t {

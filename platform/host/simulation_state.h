@@ -13,6 +13,7 @@
 #include <string>
 
 #include "host/byte_queue.h"
+#include "host/drawn_frame.h"
 #include "host/guarded_bytes.h"
 #include "host/simulation.h"
 #include "host/strict_display.h"
@@ -46,6 +47,7 @@ struct Simulation::State {
   GuardedBytes arena;
   GuardedBytes flash;
   ConstBytes scene;  ///< in it; aligned as on the board, so up to 7 bytes lie behind it
+  DrawnFrame frame;  ///< drawn by the other thread while the application waits
   GuardedBytes stack;
   GuardedBytes signal_stack;
   StrictDisplay display;
@@ -58,10 +60,12 @@ struct Simulation::State {
   Semaphore to_host;
   Semaphore answered;
   Semaphore room;
+  Semaphore frame_is_there;
   std::atomic<bool> asks{false};
   std::atomic<bool> ended{false};
   std::atomic<bool> stopped{false};  ///< by a fault or by the display: the thread waits for ever
   std::atomic<bool> wants_room{false};
+  std::atomic<bool> wants_frame{false};
   bool go_on = true;
   std::uint32_t frames_asked = 0;
   std::chrono::steady_clock::time_point answered_at = start;

@@ -284,6 +284,24 @@ bool EngineOptions::prepare(BuiltScene* built, std::int32_t width_px, std::int32
   return ready;
 }
 
+void EngineOptions::add_board_engines_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "wide", "ray64"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      "what draws demo's frames without light; the pictures are the same. wide: object order, with vectors "
+      "and "
+      "threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "
+      "compared; ray64: the core, as on the board (by bricks where the scene has a brick map); auto: wide "
+      "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
+      "applications are always the core's")
+      ->default_str("auto");
+  add_whole_option(
+      app, "--threads", "N", 1, wide::kMaxThreads,
+      [this](std::int64_t number) { threads = static_cast<int>(number); },
+      "threads that draw with the wide engine")
+      ->default_str("1");
+}
+
 TraceOptions EngineOptions::trace_options() const {
   TraceOptions options;
   options.width = name == "ray32" ? Width::k32 : Width::k64;

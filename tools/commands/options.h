@@ -67,6 +67,8 @@ struct EngineOptions {
   void add_to(CLI::App& app);
   /// --engine alone, for subcommands that draw nothing.
   void add_ray_engines_to(CLI::App& app);
+  /// For applications on a simulated board, where the core draws as the board has it draw.
+  void add_board_engines_to(CLI::App& app);
   /// For single rays, whatever the engine.
   TraceOptions trace_options() const;
   /// Makes ready what this engine wants for pictures of that size; whether the wide renderer is to draw.

@@ -1,4 +1,5 @@
 // thimble sim: the firmware's own application in the host simulator.
+#include <zlib.h>
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
@@ -6,11 +7,14 @@
 #include <cstring>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "apps/app_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "commands/sim_session.h"
+#include "commands/stats.h"
 #include "output/image.h"
 #include "output/output_file.h"
 #include "output/progress.h"
@@ -19,6 +23,7 @@
 #include "readers/picture.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/wide_frames.h"
 #include "thimble/baked_lighting.h"
 #include "thimble/baked_scene.h"
 
@@ -33,6 +38,7 @@ struct SimCommand {
   SceneOptions scene;
   SessionOptions session;
   EffectChoice effects;
+  EngineOptions engine;
   std::string shot_path;
   std::string check_path;
   std::string keys_path;
@@ -136,7 +142,46 @@ std::string difference(const Image& picture, const Image& wanted) {
          color(picture) + " where " + color(wanted) + " should be";
 }
 
-void report(const SimCommand& command, const SessionResult& result) {
+// What drew the frames that the port may draw; with both words where it could not draw all of them.
+std::string engine_text(const WideFrames& wide) {
+  return wide.drawn() == 0 ? "ray64" : wide.left() == 0 ? "wide" : "wide, ray64";
+}
+
+// As the other subcommands name things; without what is not counted here.
+std::string stats_text(const SimCommand& command, const SessionResult& result, const std::string& engine) {
+  const SessionOptions& session = command.session;
+  const auto crc = [](const std::vector<std::uint8_t>& bytes) {
+    return crc_text(static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size())));
+  };
+  nlohmann::ordered_json json;
+  json["scene"] = session.application->wants_scene ? command.scene.arguments.scene : "";
+  json["board"] = session.board->name;
+  json["application"] = session.application->name;
+  BakedScene scene;
+  if (session.application->wants_scene && BakedScene::open(session.scene, &scene) == Status::kOk) {
+    json["depth"] = scene.tree().level();
+    json["voxels"] = scene.tree().voxel_count();
+    json["tree_bytes"] = scene.tree().size_bytes();
+    json["baked_bytes"] = session.scene.size;
+    json["baked_crc32"] = crc_text(scene.crc32());
+  }
+  json["budget_bytes"] = result.use.ram_limit_bytes;
+  json["high_water_bytes"] = result.use.ram_bytes;
+  json["stack_bytes"] = result.use.stack_bytes;
+  json["frames"] = result.pictures;
+  json["frame_seconds"] = result.mean_frame_seconds;
+  json["rows_sent"] = result.rows_sent;
+  json["rows_kept"] = result.rows_kept;
+  if (!engine.empty()) {
+    json["threads"] = command.engine.threads;
+    json["engine"] = engine;
+  }
+  json["frame_crc32"] = result.pictures == 0 ? "" : crc(host::expand_rgb(result.picture));
+  json["display_crc32"] = result.pictures == 0 ? "" : crc(result.picture.bytes);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void report(const SimCommand& command, const SessionResult& result, const std::string& engine) {
   if (command.scene.quiet) {
     return;
   }
@@ -149,9 +194,10 @@ void report(const SimCommand& command, const SessionResult& result) {
   const std::string rows = result.rows_kept == 0 ? std::string()
                                                  : "rows drawn " + grouped(result.rows_sent) +
                                                        ", unchanged " + grouped(result.rows_kept) + "\n";
-  std::fprintf(stderr, "%s on %s: %s %s%s\n%s%s\n", command.session.application->name,
+  const std::string by = engine.empty() ? std::string() : ", engine " + engine;
+  std::fprintf(stderr, "%s on %s: %s %s%s%s\n%s%s\n", command.session.application->name,
                command.session.board->name, grouped(result.pictures).c_str(),
-               result.pictures == 1 ? "frame" : "frames", time.data(), rows.c_str(),
+               result.pictures == 1 ? "frame" : "frames", time.data(), by.c_str(), rows.c_str(),
                memory_text(result.use, "\n").c_str());
 }
 
@@ -162,7 +208,8 @@ void report(const SimCommand& command, const SessionResult& result) {
 }
 
 int run_and_write(SimCommand* command, std::string* sentence) {
-  const std::array<std::string, 2> outputs{command->shot_path, command->record_path};
+  const std::array<std::string, 3> outputs{command->shot_path, command->record_path,
+                                           command->scene.stats_path};
   const std::array<std::string, 3> inputs{command->scene.arguments.scene, command->check_path,
                                           command->keys_path};
   check_distinct(outputs, inputs);
@@ -171,6 +218,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   };
   const auto shot_file = open(command->shot_path);
   const auto recording = open(command->record_path);
+  const auto stats_file = open(command->scene.stats_path);
   SessionOptions& session = command->session;
   session.recording = recording.get();
   platform::BoardFacts& board = command->board;
@@ -188,8 +236,9 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   std::vector<std::uint8_t> scene;
   if (session.application->wants_scene) {
     scene = flash_bytes(*command);
-    // Only the demonstration holds a rate of frames.
-    if (command->chooses_application && session.hold_fps == 0 && has_water(scene)) {
+    // Only the demonstration holds a rate of frames, or has them drawn by another engine.
+    if (command->chooses_application && session.hold_fps == 0 && command->engine.name != "wide" &&
+        has_water(scene)) {
       session.application = application("water");
     }
   }
@@ -197,13 +246,18 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   board = platform::board_for(*session.board, session.application->name);
   session.board = &board;
 
+  WideFrames wide(command->engine.name == "wide", command->engine.threads);
+  const bool asks_port = session.application->asks_port;
+  session.painter = asks_port && command->engine.name != "ray64" ? &wide : nullptr;
+
   const SessionResult result = run_session(session);
+  const std::string engine = asks_port ? engine_text(wide) : "";
   const std::string who = std::string(session.application->name) + " on " + board.name;
   if (!result.fault.empty()) {
     *sentence = who + " was stopped: " + result.fault;
     return result.status;
   }
-  report(*command, result);
+  report(*command, result, engine);
   if (result.status != 0) {
     *sentence = who + " ended with status " + std::to_string(result.status);
     return result.status;
@@ -222,7 +276,11 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   if (recording != nullptr) {
     recording->flush();
   }
-  for (OutputFile* file : {shot_file.get(), recording.get()}) {
+  if (stats_file != nullptr) {
+    stats_file->write(stats_text(*command, result, engine));
+    stats_file->flush();
+  }
+  for (OutputFile* file : {shot_file.get(), recording.get(), stats_file.get()}) {
     if (file != nullptr) {
       file->commit();
     }
@@ -252,6 +310,10 @@ void run(const SimCommand& given) {
       (std::strcmp(session.application->name, "demo") != 0 || session.board->visits_a_second == 0)) {
     throw CLI::ValidationError("--hold", std::string(session.application->name) + " on " +
                                              session.board->name + " holds no rate of frames");
+  }
+  if (command.engine.name == "wide" && !session.application->asks_port) {
+    throw CLI::ValidationError("--engine", std::string("wide draws for the application demo only, not for ") +
+                                               session.application->name);
   }
   if (command.scene.arguments.scene.empty()) {
     const bool is_water = std::strcmp(session.application->name, "water") == 0;
@@ -384,8 +446,8 @@ void add_sim(CLI::App& app) {
       ->default_str("auto");
   add_display_options(*sub, command);
   add_file_options(*sub, command);
-  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no summary on standard error")
-      ->disable_flag_override();
+  command->engine.add_board_engines_to(*sub);
+  command->scene.add_report(*sub);
   sub->callback([command] { run(*command); });
 }
 

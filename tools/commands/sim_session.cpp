@@ -149,7 +149,8 @@ std::unique_ptr<host::Screen> open(const SessionOptions& options, host::ScreenKi
 Session::Session(const SessionOptions& options)
     : options_(options),
       screen_(open(options, screen_kind())),
-      simulation_({options.board, connected(), options.scene, options.application->run, options.hold_fps}) {
+      simulation_({options.board, connected(), options.scene, options.application->run, options.hold_fps,
+                   options.painter}) {
   uart_in_pane_ = screen_->name() == std::string("terminal") && ::isatty(STDOUT_FILENO) != 0;
   if (uart_in_pane_ && ::isatty(STDIN_FILENO) != 0) {
     input_is_open_ = false;  // it is the screen that reads there

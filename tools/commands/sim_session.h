@@ -30,6 +30,7 @@ struct SessionOptions {
   std::uint32_t hold_fps = 0;  ///< what the application is told to hold (port::Facts)
   host::KeyScript keys;
   OutputFile* recording = nullptr;
+  host::FramePainter* painter = nullptr;  ///< what draws in the core's place; may be null
 };
 
 struct SessionResult {
