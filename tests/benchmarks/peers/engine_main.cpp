@@ -1,0 +1,301 @@
+// Whether the right engine draws: the wide renderer as it chooses, in either of its orders, and the core ray
+// by ray, on many worlds and from many cameras.
+//
+//   thimble_engine_table                          all rows, some minutes
+//   thimble_engine_table --filter cluster         those with the word in world or camera
+//   thimble_engine_table --most 1000000 --csv F   clouds of at most so many points; for machines
+//
+// A frame is 800 x 600 pixels with depth shading, processor time on one thread, all by turns, the median of
+// the frames. The core draws once where that takes longer than 0.2 s. Every picture is compared with the
+// core's. `choice`: the time as chosen over the better order's; `core`: the same over the core's. Files take
+// part where THIMBLE_DATA names their folder.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+#include <stdexcept>
+
+#include "host/wide/renderer.h"
+#include "output/output_file.h"
+#include "support/trial_worlds.h"
+
+namespace thimble::benchmarks {
+namespace {
+
+constexpr std::int32_t kWidthPx = 800;
+constexpr std::int32_t kHeightPx = 600;
+constexpr double kSlowSeconds = 0.2;
+constexpr double kMost = 1.3;
+constexpr std::size_t kWorstRows = 12;
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+enum Engine : std::size_t { kAuto, kFlat, kBlocks, kCore, kEngines };
+
+struct Row {
+  std::string world;
+  std::string camera;
+  std::uint64_t voxels = 0;
+  std::uint64_t boxes = 0;
+  double ms[kEngines] = {};
+  wide::Stats stats[3];
+  std::uint64_t hits = 0;
+  bool left_to_core = false;
+  bool wrong = false;
+
+  double choice() const { return left_to_core ? 1 : ms[kAuto] / std::min(ms[kFlat], ms[kBlocks]); }
+  double against_core() const { return left_to_core ? 1 : ms[kAuto] / ms[kCore]; }
+  const char* chosen() const {
+    return left_to_core ? "core" : stats[kAuto].order == wide::Order::kFlat ? "flat" : "blocks";
+  }
+};
+
+class Table {
+ public:
+  Row draw(const tests::TrialWorld& world, const tests::TrialView& view, int frames) {
+    Row row;
+    row.world = world.name();
+    row.camera = view.name;
+    row.voxels = world.tree().voxel_count();
+    row.boxes = world.lists().entries().size;
+    const DepthRange range = depth_range(view.camera, world.tree().bounds());
+    shading_.near_q8 = range.near_q8;
+    shading_.far_q8 = range.far_q8;
+    std::vector<double> seconds[kEngines];
+    // What takes a millisecond is drawn more often: a median of few would be the clock's.
+    int turns = frames;
+    for (int turn = 0; turn < turns; ++turn) {
+      for (std::size_t i = 0; i < kCore && !row.left_to_core; ++i) {
+        // Who comes first finds other caches than who comes last.
+        const std::size_t engine = (i + static_cast<std::size_t>(turn)) % kCore;
+        double taken = 0;
+        const Status status = draw_wide(world, view.camera, static_cast<wide::Order>(engine), &taken,
+                                        &row.stats[engine], &pictures_[engine]);
+        if (status != Status::kOk && status != Status::kTooFine) {
+          throw std::runtime_error("the wide renderer refuses a view");
+        }
+        row.left_to_core = status == Status::kTooFine;
+        seconds[engine].push_back(taken);
+      }
+      if (turn < 2 && (turn == 0 || seconds[kCore].front() < kSlowSeconds)) {
+        seconds[kCore].push_back(draw_core(world, view.camera, &row.hits));
+      }
+      if (turn == 0 && !row.left_to_core) {
+        for (std::size_t engine = 0; engine < kCore; ++engine) {
+          row.wrong = row.wrong || pictures_[engine] != pictures_[kCore];
+        }
+        const double wide = seconds[kAuto][0] + seconds[kFlat][0] + seconds[kBlocks][0];
+        turns = wide < 0.006 ? 3 * frames : wide > 1 ? 1 : frames;
+      }
+    }
+    for (std::size_t engine = row.left_to_core ? kCore : kAuto; engine < kEngines; ++engine) {
+      row.ms[engine] = 1e3 * median(seconds[engine]);
+    }
+    if (row.left_to_core) {
+      row.ms[kAuto] = row.ms[kCore];
+    }
+    return row;
+  }
+
+ private:
+  Band band_of(std::vector<std::uint8_t>* pixels) const {
+    Band band;
+    band.pixels = Bytes(pixels->data(), pixels->size());
+    band.format = PixelFormat::kGray8;
+    band.rows = kHeightPx;
+    return band;
+  }
+
+  Status draw_wide(const tests::TrialWorld& world, const Camera& camera, wide::Order order, double* seconds,
+                   wide::Stats* stats, std::vector<std::uint8_t>* pixels) {
+    wide::Options options;
+    options.order = order;
+    const double start = processor_seconds();
+    const Status status = wide::render(world.lists(), camera, shading_, band_of(pixels),
+                                       Bytes(workspace_.data(), workspace_.size()), nullptr, options, stats);
+    *seconds = processor_seconds() - start;
+    return status;
+  }
+
+  double draw_core(const tests::TrialWorld& world, const Camera& camera, std::uint64_t* hits) {
+    RenderCounts counts;
+    const double start = processor_seconds();
+    if (render_band(world.tree(), camera, shading_, band_of(&pictures_[kCore]), &counts) != Status::kOk) {
+      throw std::runtime_error("the core does not take the rays of a view");
+    }
+    *hits = counts.hits;
+    return processor_seconds() - start;
+  }
+
+  Shading shading_;
+  std::vector<std::uint8_t> workspace_ =
+      std::vector<std::uint8_t>(wide::workspace_bytes(kWidthPx, kHeightPx));
+  std::vector<std::uint8_t> pictures_[kEngines] = {
+      std::vector<std::uint8_t>(kWidthPx * kHeightPx), std::vector<std::uint8_t>(kWidthPx* kHeightPx),
+      std::vector<std::uint8_t>(kWidthPx* kHeightPx), std::vector<std::uint8_t>(kWidthPx* kHeightPx)};
+};
+
+std::vector<std::string> world_names(std::uint64_t most_points) {
+  std::vector<std::string> names;
+  for (const char* kind : {"points:", "cluster:"}) {
+    for (const std::uint64_t count : std::initializer_list<std::uint64_t>{1, 10, 100, 1'000, 10'000, 100'000,
+                                                                          1'000'000, 3'000'000, 10'000'000}) {
+      if (count <= most_points) {
+        names.push_back(kind + std::to_string(count));
+      }
+    }
+  }
+  for (const char* name :
+       {"spheres",   "spheres,depth=8", "spheres,depth=10", "demo",     "water",     "water,depth=9",
+        "solid:6",   "solid:8",         "solid:10",         "inset:7",  "inset:9",   "noise:5",
+        "noise:7",   "checker:6",       "sponge:5",         "sponge:7", "voxel:3",   "voxel:9",
+        "wall:6",    "wall:9",          "slant:6",          "slant:9",  "columns:6", "columns:9",
+        "islands:8", "islands:10",      "screen:7",         "screen:9", "ball:6",    "ball:9"}) {
+    names.emplace_back(name);
+  }
+  if (const char* data = std::getenv("THIMBLE_DATA")) {
+    for (const char* file :
+         {"vox/ephtracy/menger.vox", "vox/ephtracy/monu10.vox", "vox/ephtracy/nature.vox",
+          "vox/ephtracy/teapot.vox", "vox/mmmm/scene_hazmat.vox", "mesh/dragon_vrip_res3.ply.gz@7",
+          "mesh/dragon_vrip_res3.ply.gz@9", "mesh/dragon_vrip_res2.ply.gz@11", "cloud/building.ply",
+          "cloud/building.ply@8", "cloud/b9_training.ply"}) {
+      names.push_back(std::string(data) + "/" + file);
+    }
+  }
+  return names;
+}
+
+std::string short_name(const std::string& world) {
+  return world.substr(world.rfind('/') + 1);
+}
+
+void print(const Row& row) {
+  std::printf("%-28s %-16s %10llu %9.3f %9.3f %9.3f %10.3f  %-6s %6.2f %6.2f%s%s\n",
+              short_name(row.world).c_str(), row.camera.c_str(), static_cast<unsigned long long>(row.voxels),
+              row.ms[kAuto], row.ms[kFlat], row.ms[kBlocks], row.ms[kCore], row.chosen(), row.choice(),
+              row.against_core(), row.choice() > kMost || row.against_core() > kMost ? "  above" : "",
+              row.wrong ? "  OTHER PICTURE" : "");
+  std::fflush(stdout);
+}
+
+void print_head() {
+  std::printf("%-28s %-16s %10s %9s %9s %9s %10s  %-6s %6s %6s\n", "world", "camera", "voxels", "auto ms",
+              "flat ms", "blocks ms", "core ms", "chosen", "choice", "core");
+}
+
+void print_worst(const char* title, std::vector<Row> rows, double (Row::*ratio)() const) {
+  std::sort(rows.begin(), rows.end(),
+            [&](const Row& a, const Row& b) { return (a.*ratio)() > (b.*ratio)(); });
+  const auto above =
+      std::count_if(rows.begin(), rows.end(), [&](const Row& row) { return (row.*ratio)() > kMost; });
+  std::printf("\n%s: %zu rows, %zu above %.1f, worst %.2f\n", title, rows.size(),
+              static_cast<std::size_t>(above), kMost, (rows.front().*ratio)());
+  print_head();
+  rows.resize(std::min(rows.size(), kWorstRows));
+  for (const Row& row : rows) {
+    print(row);
+  }
+}
+
+std::string csv_text(const std::vector<Row>& rows) {
+  std::string text =
+      "world,camera,voxels,boxes,hits,auto_ms,flat_ms,blocks_ms,core_ms,chosen,choice,core,equal";
+  for (const char* order : {"flat", "blocks"}) {
+    for (const char* what : {"boxes", "candidates", "exact", "hits", "nodes", "crossing"}) {
+      text += std::string(",") + order + "_" + what;
+    }
+  }
+  text += "\n";
+  for (const Row& row : rows) {
+    char line[640];
+    std::snprintf(line, sizeof(line), "\"%s\",%s,%llu,%llu,%llu,%.4f,%.4f,%.4f,%.4f,%s,%.3f,%.3f,%d",
+                  short_name(row.world).c_str(), row.camera.c_str(),
+                  static_cast<unsigned long long>(row.voxels), static_cast<unsigned long long>(row.boxes),
+                  static_cast<unsigned long long>(row.hits), row.ms[kAuto], row.ms[kFlat], row.ms[kBlocks],
+                  row.ms[kCore], row.chosen(), row.choice(), row.against_core(), row.wrong ? 0 : 1);
+    text += line;
+    for (const Engine engine : {kFlat, kBlocks}) {
+      const wide::Counts& counts = row.stats[engine].counts;
+      for (const std::uint64_t count :
+           {counts.boxes, counts.candidates, counts.exact, counts.hits, counts.nodes, counts.crossing}) {
+        text += "," + std::to_string(count);
+      }
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+int run(int count, char** words) {
+  CLI::App app("The wide renderer's choice of an engine, judged by time");
+  int frames = 5;
+  std::uint64_t most_points = 10'000'000;
+  std::string filter;
+  std::string csv_path;
+  std::vector<std::string> worlds;
+  app.add_option("--frames", frames, "frames of each engine and view; the median counts")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--most", most_points, "points of the largest cloud");
+  app.add_option("--filter", filter, "only rows that hold this text in `world camera`");
+  app.add_option("--world", worlds, "these worlds (tests/support/trial_worlds.h) or scenes instead");
+  app.add_option("--csv", csv_path, "write the rows there too");
+  CLI11_PARSE(app, count, words);
+
+  Table table;
+  std::vector<Row> rows;
+  print_head();
+  for (const std::string& name : worlds.empty() ? world_names(most_points) : worlds) {
+    const auto wanted = [&](const std::string& view) {
+      return (short_name(name) + " " + view).find(filter) != std::string::npos;
+    };
+    const std::vector<std::string> all_views = tests::trial_view_names();
+    if (std::none_of(all_views.begin(), all_views.end(), wanted)) {
+      continue;
+    }
+    const tests::TrialWorld world(name);
+    for (const tests::TrialView& view : tests::trial_views(world.tree(), kWidthPx, kHeightPx)) {
+      if (wanted(view.name)) {
+        rows.push_back(table.draw(world, view, frames));
+        print(rows.back());
+      }
+    }
+  }
+  if (rows.empty()) {
+    std::printf("no row holds \"%s\"\n", filter.c_str());
+    return 1;
+  }
+  print_worst("auto over the better order", rows, &Row::choice);
+  print_worst("auto over the core", rows, &Row::against_core);
+  if (!csv_path.empty()) {
+    tools::OutputFile file(csv_path);
+    file.write(csv_text(rows));
+    file.commit();
+  }
+  const bool equal = std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.wrong; });
+  std::printf("\n%s\n", equal ? "all pictures are the core's" : "PICTURES DIFFER from the core's");
+  return equal ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace thimble::benchmarks
+
+int main(int count, char** words) {
+  try {
+    return thimble::benchmarks::run(count, words);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "thimble_engine_table: %s\n", error.what());
+    return 1;
+  }
+}
