@@ -248,7 +248,8 @@ std::size_t band_size(const Frame& frame) {
 // The band by this renderer; nothing where it leaves the frame to the core.
 std::optional<std::vector<std::uint8_t>> draw_wide(const Scene& scene, const Frame& frame,
                                                    const wide::Options& options,
-                                                   std::uint64_t* hits = nullptr) {
+                                                   std::uint64_t* hits = nullptr,
+                                                   wide::Stats* stats = nullptr) {
   const HeapBytes pixels(band_size(frame));
   std::memset(pixels.span().data, 0xA5, pixels.span().size);
   const HeapBytes workspace(wide::workspace_bytes(frame.camera.width_px(), frame.band.rows, options.threads));
@@ -256,7 +257,7 @@ std::optional<std::vector<std::uint8_t>> draw_wide(const Scene& scene, const Fra
   band.pixels = pixels.span();
   RenderCounts counts;
   const Status status =
-      wide::render(scene.lists, frame.camera, frame.shading, band, workspace.span(), &counts, options);
+      wide::render(scene.lists, frame.camera, frame.shading, band, workspace.span(), &counts, options, stats);
   if (hits != nullptr) {
     *hits = counts.hits;
   }
@@ -409,6 +410,116 @@ TEST_CASE("wide: thick surfaces, voxels of about a pixel to many -> every pixel 
       CHECK(*ours == expected);
     }
   }
+}
+
+TEST_CASE("wide: clouds of voxels of a part of a pixel to some -> every pixel is the core's") {
+  const BestInstructionSet after;
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kClouds = 2;
+  constexpr int kViews = 3;
+#else
+  constexpr int kClouds = 8;
+  constexpr int kViews = 12;
+#endif
+  std::uint64_t boxes = 0;
+  std::uint64_t candidates = 0;
+  for (int i = 0; i < kClouds; ++i) {
+    const std::uint64_t seed = 9100 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    CAPTURE(seed);
+    // Single voxels: so many that they hide one another, here more of them, there fewer.
+    Scene scene;
+    scene.level = static_cast<int>(pick(random, 6, 8));
+    const std::int32_t side = std::int32_t{1} << scene.level;
+    const HeapBytes pool(std::size_t{64} << 20);
+    Octree octree;
+    REQUIRE(octree.init(pool.span(), scene.level) == Status::kOk);
+    const std::int64_t per_thousand = pick(random, 5, 60);
+    const std::int64_t points = std::int64_t{side} * side * side * per_thousand / 1000;
+    for (std::int64_t n = 0; n < points; ++n) {
+      const std::int32_t most = n % 3 == 0 ? side / 2 : side;
+      REQUIRE(octree.insert({static_cast<std::int32_t>(pick(random, 0, most - 1)),
+                             static_cast<std::int32_t>(pick(random, 0, side - 1)),
+                             static_cast<std::int32_t>(pick(random, 0, most - 1))},
+                            1) == Status::kOk);
+    }
+    scene.bytes = std::make_unique<HeapBytes>(compact_of(octree));
+    make_lists(&scene);
+    REQUIRE_FALSE(scene.lists.has_blocks());
+    for (int v = 0; v < kViews; ++v) {
+      CAPTURE(v);
+      Frame frame;
+      const auto width = static_cast<std::int32_t>(pick(random, 60, 260));
+      const auto height = static_cast<std::int32_t>(pick(random, 40, 180));
+      const Vec3Q8 middle{Q8::from_raw(128 * side), Q8::from_raw(128 * side), Q8::from_raw(128 * side)};
+      // Voxels of `px` pixels at the middle of the world.
+      const double px = 0.2 * std::pow(15.0, static_cast<double>(pick(random, 0, 1000)) / 1000);
+      Vec3i away{static_cast<std::int32_t>(pick(random, -100, 100)),
+                 static_cast<std::int32_t>(pick(random, -100, 100)),
+                 static_cast<std::int32_t>(pick(random, -100, 100))};
+      if (v % 4 == 3) {  // along an axis
+        away = {0, 0, 0};
+        away[static_cast<int>(pick(random, 0, 2))] = pick(random, 0, 1) == 0 ? 100 : -100;
+      }
+      if (away == Vec3i{0, 0, 0}) {
+        away.x = 1;
+      }
+      const double length = std::sqrt(1.0 * away.x * away.x + 1.0 * away.y * away.y + 1.0 * away.z * away.z);
+      bool is_set = false;
+      if (v % 2 == 0) {
+        const double fov = static_cast<double>(pick(random, 20, 100));
+        const double focal_px = height / 2.0 / std::tan(fov / 360 * 3.14159265358979);
+        const double far = std::min(focal_px / px, 4.0 * side);  // in voxels; inside the cloud, now and then
+        PerspectiveView view;
+        for (int axis = 0; axis < 3; ++axis) {
+          view.eye[axis] =
+              Q8::from_raw(middle[axis].raw + static_cast<std::int32_t>(256 * far * away[axis] / length));
+        }
+        view.forward = look_at(view.eye, middle);
+        view.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(fov * 65536));
+        view.width_px = width;
+        view.height_px = height;
+        is_set = frame.camera.set(view, scene.level) == Status::kOk;
+      } else {
+        OrthographicView view;
+        for (int axis = 0; axis < 3; ++axis) {
+          view.eye[axis] =
+              Q8::from_raw(middle[axis].raw + static_cast<std::int32_t>(256.0 * side * away[axis] / length));
+        }
+        view.forward = look_at(view.eye, middle);
+        view.span = Q14::from_raw(static_cast<std::int32_t>(width / px * Q14::kOne));
+        view.width_px = width;
+        view.height_px = height;
+        is_set = frame.camera.set(view, scene.level) == Status::kOk;
+      }
+      if (!is_set) {
+        continue;
+      }
+      frame.shading.mode = v % 3 == 0 ? ShadeMode::kNormal : ShadeMode::kDepth;
+      const DepthRange range = depth_range(frame.camera, scene.tree.bounds());
+      frame.shading.near_q8 = range.near_q8;
+      frame.shading.far_q8 = range.far_q8;
+      frame.band.rows = height;
+      std::uint64_t expected_hits = 0;
+      const auto expected = draw_core(scene, frame, &expected_hits);
+      for (int set = 0; set < wide::instruction_set_count(); ++set) {
+        wide::use_instruction_set(set);
+        CAPTURE(wide::instruction_set());
+        wide::Options options;
+        options.threads = v % 3 == 1 ? 2 : 1;
+        options.order = wide::Order::kBlocks;
+        std::uint64_t hits = 0;
+        wide::Stats stats;
+        const auto ours = draw_wide(scene, frame, options, &hits, &stats);
+        REQUIRE(ours.has_value());
+        CHECK(hits == expected_hits);
+        CHECK(*ours == expected);
+        boxes += stats.counts.boxes;
+        candidates += stats.counts.candidates;
+      }
+    }
+  }
+  CHECK(candidates < 2 * boxes);
 }
 
 TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the core's") {

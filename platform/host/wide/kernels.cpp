@@ -32,6 +32,24 @@ inline uint32_t bits_of(D d, hn::Mask<D> mask) {
 
 constexpr uint32_t kWithin = 1023;  // a coordinate within a cube of entries
 
+// The first `count` numbers from there, and zeros. Reads no others: they may be another thread's.
+HWY_INLINE hn::Vec<U32> load_some(const uint32_t* from, int32_t count) {
+  const U32 d;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+  if (count >= lanes) {
+    return hn::LoadU(d, from);
+  }
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX2
+  return hn::MaskedLoad(hn::FirstN(d, static_cast<size_t>(count)), d, from);
+#else
+  HWY_ALIGN uint32_t some[64] = {};
+  for (int32_t i = 0; i < count; ++i) {
+    some[i] = from[i];
+  }
+  return hn::Load(d, some);
+#endif
+}
+
 // The exact rays of some pixels: numbers that are integers, held in doubles.
 struct Rays {
   hn::Vec<F64> origin[3];
@@ -147,6 +165,7 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
   Verdict verdict;
   hn::Vec<F32> center[3];
   auto unclear = hn::Lt(zero, zero);
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const auto map = [&](const float(&of)[3][3]) {
       return hn::MulAdd(x, hn::Set(d, of[1][axis]),
@@ -169,6 +188,7 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
   const auto& direction = verdict.direction;
   hn::Vec<F32> size[3];
   bool still[3] = {false, false, false};
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = hn::Abs(direction[axis]);
     if (kPerspective) {
@@ -179,9 +199,10 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
   }
   auto met = hn::Eq(zero, zero);
   constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {2, 0}};
-  for (const auto& pair : kPairs) {
-    const int a = pair[0];
-    const int b = pair[1];
+#pragma GCC unroll 3
+  for (int pair = 0; pair < 3; ++pair) {
+    const int a = kPairs[pair][0];
+    const int b = kPairs[pair][1];
     if (still[a] || still[b]) {
       continue;
     }
@@ -202,6 +223,7 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
   }
   // The upper plane, as the ray goes, lies ahead.
   const auto minus_half = hn::Neg(half);
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     if (still[axis]) {
       met = hn::And(met, hn::And(hn::Le(center[axis], half), hn::Gt(center[axis], minus_half)));
@@ -252,10 +274,18 @@ void test_unclear(const Frame& frame, const Depths& depths, bool* kept, Batch* b
     batch->key[batch->met] = key;
     batch->down[batch->met] = down;
     batch->number[batch->met] = pairs.number[i];
-    batch->pixel[batch->met] = static_cast<uint32_t>((y - depths.first_row) * depths.width_px + x);
+    batch->pixel[batch->met] =
+        static_cast<uint32_t>(32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U));
     ++batch->met;
   }
   pairs.count = 0;
+}
+
+// Depths::word of some pixels.
+HWY_INLINE hn::Vec<U32> word_of(const Depths& depths, hn::Vec<U32> x, hn::Vec<U32> y) {
+  const U32 d;
+  const auto row = hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths.first_row)));
+  return hn::Add(hn::Mul(hn::ShiftRight<5>(x), hn::Set(d, static_cast<uint32_t>(depths.rows))), row);
 }
 
 // Tests what waits in floats where they can tell, and exactly where they cannot. `kept`: set when something
@@ -311,6 +341,7 @@ HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* k
     auto key = hn::Zero(du);
     auto down = hn::Zero(du);
     const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
+#pragma GCC unroll 3
     for (int axis = 2; axis >= 0; --axis) {
       const auto is_down = hn::RebindMask(du, hn::Lt(verdict.direction[axis], zero));
       auto mirrored = hn::Xor(low[axis], hn::IfThenElseZero(is_down, within));
@@ -320,8 +351,8 @@ HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* k
       key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
       down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
     }
-    const auto row = hn::Sub(int_y, hn::Set(du, static_cast<uint32_t>(depths.first_row)));
-    const auto pixel = hn::Add(hn::Mul(row, hn::Set(du, static_cast<uint32_t>(depths.width_px))), int_x);
+    const auto pixel =
+        hn::Or(hn::ShiftLeft<5>(word_of(depths, int_x, int_y)), hn::And(int_x, hn::Set(du, 31U)));
     const auto chosen = hn::RebindMask(du, met);
     hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
     hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
@@ -330,68 +361,151 @@ HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* k
     batch->met += hn::CountTrue(du, chosen);
   }
   pairs.count = 0;
+  for (size_t i = 0; i < batch->met; ++i) {
+    __builtin_prefetch(depths.nearest + batch->pixel[i], 1);
+  }
 }
 
-// Of the pixels (x .. x + 24, y), a bit each: whether they are not covered. Lanes outside `mask` get numbers
-// without meaning.
+// Of the pixels (x .. x + 31, y), a bit each: whether they are not covered. Of those right of the picture,
+// and of lanes outside `mask`, anything.
 HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) {
   const U32 d;
-  // Words need not be aligned: the byte that holds the first pixel begins one.
-  const auto byte = hn::Add(hn::Mul(hn::Sub(y, hn::Set(d, static_cast<uint32_t>(depths.first_row))),
-                                    hn::Set(d, static_cast<uint32_t>(depths.words) * 4)),
-                            hn::ShiftRight<3>(x));
-  const auto safe = hn::IfThenElseZero(hn::RebindMask(d, mask), byte);
+  const auto word = hn::IfThenElseZero(hn::RebindMask(d, mask), word_of(depths, x, y));
+  const auto column = hn::And(x, hn::Set(d, 31U));
 #if HWY_TARGET == HWY_SCALAR
-  uint32_t word = 0;
-  __builtin_memcpy(&word, reinterpret_cast<const uint8_t*>(depths.covered) + hn::GetLane(safe), sizeof(word));
-  const auto covered = hn::Set(d, word);
+  const auto covered = hn::Set(d, depths.covered[hn::GetLane(word)]);
+  const auto beside = hn::Set(d, depths.covered[hn::GetLane(word) + static_cast<uint32_t>(depths.rows)]);
 #else
-  const auto covered = hn::GatherOffset(d, depths.covered, hn::BitCast(I32(), safe));
+  const auto covered = hn::GatherIndex(d, depths.covered, hn::BitCast(I32(), word));
+  const auto beside = hn::GatherIndex(d, depths.covered + depths.rows, hn::BitCast(I32(), word));
 #endif
-  return hn::Not(hn::Shr(covered, hn::And(x, hn::Set(d, 7U))));
+  // Shifted by 32 in two steps where the column is 0.
+  const auto from_beside = hn::Shl(hn::Add(beside, beside), hn::Xor(column, hn::Set(d, 31U)));
+  return hn::Not(hn::Or(hn::Shr(covered, column), from_beside));
 }
 
-// Makes candidates of the boxes that wait: pairs with each of their pixels, but for covered ones, until
-// something goes into the picture (`kept`).
+// How far boxes of `side` voxels reach from their middles' places on the picture: frame.h.
+template <class D>
+struct Extent {
+  hn::Vec<D> x;
+  hn::Vec<D> y;
+};
+
+template <bool kPerspective, class D>
+HWY_INLINE Extent<D> extent(D d, const Frame& frame, hn::Vec<D> side, hn::Vec<D> column, hn::Vec<D> row,
+                            hn::Vec<D> per_depth) {
+  const auto one = hn::Set(d, 1.0F);
+  auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x));
+  auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y));
+  half_x = hn::MulAdd(half_x, per_depth, hn::Set(d, frame.slack_x));
+  half_y = hn::MulAdd(half_y, per_depth, hn::Set(d, frame.slack_y));
+  if (kPerspective) {
+    const auto nearness = hn::Mul(hn::Mul(hn::Set(d, frame.half_w), side), per_depth);
+    const auto k = hn::MulAdd(hn::Mul(hn::Set(d, 0.5F), side), per_depth,
+                              hn::Mul(hn::Set(d, frame.per_direction), hn::Add(one, nearness)));
+    const auto r = hn::Mul(k, hn::Set(d, frame.norm_w));
+    const auto factor = hn::Mul(k, hn::MulAdd(r, hn::Set(d, 1.152F), hn::Set(d, 1.001F)));
+    const auto reach = [&](const float(&of)[4], auto place) {
+      auto sum = hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[0]), hn::Set(d, of[0])));
+      sum = hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[1]), hn::Set(d, of[1]))));
+      return hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[2]), hn::Set(d, of[2]))));
+    };
+    const auto is_far = hn::Le(r, hn::Set(d, 0.125F));
+    const auto near_x = hn::MulAdd(hn::Set(d, frame.rounding_x), per_depth, hn::Set(d, frame.spread_x));
+    const auto near_y = hn::MulAdd(hn::Set(d, frame.rounding_y), per_depth, hn::Set(d, frame.spread_y));
+    half_x = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.u, column), factor, near_x), half_x);
+    half_y = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.v, row), factor, near_y), half_y);
+  }
+  return {half_x, half_y};
+}
+
+// Makes candidates of some boxes: pairs with each of their pixels, but for covered ones, until something goes
+// into the picture (`kept`).
+template <bool kPerspective, bool kUnit>
+HWY_INLINE void pair_vector(const Frame& frame, const Depths& depths, hn::Mask<F32> live, hn::Vec<U32> entry,
+                            hn::Vec<U32> number, hn::Vec<U32> place, hn::Vec<U32> wide_x, hn::Vec<U32> wide_y,
+                            bool* kept, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  Pairs& waiting = batch->waiting;
+  const auto x = hn::And(place, hn::Set(du, 0xFFFFU));
+  const auto y = hn::ShiftRight<16>(place);
+  auto in_row = live;
+  for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
+    auto in_column = in_row;
+    auto open = hn::Set(du, UINT32_MAX);
+    const bool rejects = batch->all_behind && !*kept;
+    if (rejects) {
+      open = open_at(depths, in_row, x, hn::Add(y, hn::Set(du, down)));
+    }
+    for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
+      auto chosen = in_column;
+      if (rejects) {
+        chosen = hn::And(chosen, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
+      }
+      append(chosen, entry, number, hn::Add(place, hn::Set(du, down << 16 | across)), &waiting);
+      if (waiting.count + lanes > Pairs::kSize) {
+        test_waiting<kPerspective, kUnit>(frame, depths, kept, batch);
+      }
+      in_column = hn::And(in_column, hn::RebindMask(d, hn::Gt(wide_x, hn::Set(du, across))));
+    }
+    in_row = hn::And(in_row, hn::RebindMask(d, hn::Gt(wide_y, hn::Set(du, down))));
+  }
+}
+
+// Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
+HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
+  const F32 d;
+  const U32 du;
+  return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
+}
+
+// Makes candidates of those that were picked.
+template <bool kPerspective>
+HWY_NOINLINE void pair_picked(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  Picked& picked = batch->picked;
+  Pairs& waiting = batch->waiting;
+  const auto fourteen = hn::Set(du, (1U << kPlaceBits) - 1);
+  for (size_t at = 0; at < picked.count; at += lanes) {
+    if (waiting.count + 4 * lanes > Pairs::kSize) {
+      test_waiting<kPerspective, true>(frame, depths, kept, batch);
+    }
+    const auto live = hn::FirstN(d, picked.count - at < lanes ? picked.count - at : lanes);
+    const auto entry = hn::Load(du, picked.entry + at);
+    const auto number = hn::Load(du, picked.number + at);
+    const auto packed = hn::Load(du, picked.place + at);
+    const auto y = hn::And(hn::ShiftRight<kPlaceBits>(packed), fourteen);
+    const auto place = hn::Or(hn::ShiftLeft<16>(y), hn::And(packed, fourteen));
+    for (uint32_t pixel = 0; pixel < 4; ++pixel) {
+      const auto open = hn::TestBit(packed, hn::Set(du, uint32_t{1} << (2 * kPlaceBits + pixel)));
+      append(hn::And(live, hn::RebindMask(d, open)), entry, number,
+             hn::Add(place, hn::Set(du, (pixel >> 1) << 16 | (pixel & 1U))), &waiting);
+    }
+  }
+  picked.count = 0;
+}
+
+// Makes candidates of the boxes that wait.
 template <bool kPerspective, bool kUnit>
 HWY_NOINLINE void pair_boxes(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
   const F32 d;
   const U32 du;
   const size_t lanes = hn::Lanes(d);
+  if (batch->picked.count != 0) {
+    pair_picked<kPerspective>(frame, depths, kept, batch);
+  }
   Boxes& boxes = batch->boxes;
-  Pairs& waiting = batch->waiting;
-  const auto low_half = hn::Set(du, 0xFFFFU);
   for (size_t at = 0; at < boxes.count; at += lanes) {
     const auto live = hn::FirstN(d, boxes.count - at < lanes ? boxes.count - at : lanes);
-    const auto entry = hn::Load(du, boxes.entry + at);
-    const auto number = hn::Load(du, boxes.number + at);
-    const auto place = hn::Load(du, boxes.place + at);
     const auto wide = hn::Load(du, boxes.wide + at);
-    const auto x = hn::And(place, low_half);
-    const auto y = hn::ShiftRight<16>(place);
-    const auto wide_x = hn::And(wide, low_half);
-    const auto wide_y = hn::ShiftRight<16>(wide);
-    auto in_row = live;
-    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
-      auto in_column = in_row;
-      auto open = hn::Set(du, UINT32_MAX);
-      const bool rejects = batch->all_behind && !*kept;
-      if (rejects) {
-        open = open_at(depths, in_row, x, hn::Add(y, hn::Set(du, down)));
-      }
-      for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
-        auto chosen = in_column;
-        if (rejects) {
-          chosen = hn::And(chosen, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
-        }
-        append(chosen, entry, number, hn::Add(place, hn::Set(du, down << 16 | across)), &waiting);
-        if (waiting.count + lanes > Pairs::kSize) {
-          test_waiting<kPerspective, kUnit>(frame, depths, kept, batch);
-        }
-        in_column = hn::And(in_column, hn::RebindMask(d, hn::Gt(wide_x, hn::Set(du, across))));
-      }
-      in_row = hn::And(in_row, hn::RebindMask(d, hn::Gt(wide_y, hn::Set(du, down))));
-    }
+    pair_vector<kPerspective, kUnit>(frame, depths, live, hn::Load(du, boxes.entry + at),
+                                     hn::Load(du, boxes.number + at), hn::Load(du, boxes.place + at),
+                                     hn::And(wide, hn::Set(du, 0xFFFFU)), hn::ShiftRight<16>(wide), kept,
+                                     batch);
   }
   boxes.count = 0;
   batch->all_behind = true;
@@ -421,14 +535,13 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
     return value_of(*batch, mirrored_key(corner, level, down), down, number);
   };
   for (int32_t y = where.y0; y < where.y1; ++y) {
-    uint32_t* const row = depths.covered + depths.first_word(y);
-    uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
     for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
       uint32_t wanted = all_lanes;
       wanted &= x < where.x0 ? UINT32_MAX << (where.x0 - x) : UINT32_MAX;
       wanted &= where.x1 - x < lanes ? (uint32_t{1} << (where.x1 - x)) - 1 : UINT32_MAX;
       const uint32_t shift = static_cast<uint32_t>(x) & 31U;
-      uint32_t* const word = row + (x >> 5);
+      uint32_t* const word = depths.covered + depths.word(x, y);
+      uint64_t* const nearest = depths.nearest + 32 * depths.word(x, y) + shift;
       if (reject) {
         wanted &= ~(*word >> shift);
       }
@@ -448,7 +561,7 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
         if (meets_exactly(frame.camera.ray(x + lane, y), entry, batch->corner, &key, &down)) {
           const uint64_t one = value_of(*batch, key, down, number);
           const uint32_t bit = uint32_t{1} << (shift + static_cast<uint32_t>(lane));
-          nearest[x + lane] = (*word & bit) != 0 && nearest[x + lane] < one ? nearest[x + lane] : one;
+          nearest[lane] = (*word & bit) != 0 && nearest[lane] < one ? nearest[lane] : one;
           *word |= bit;
           ++batch->counts.hits;
         }
@@ -476,7 +589,7 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
         const auto values = hn::Set(d64, value);
         for (int32_t part = 0; part < lanes; part += lanes64) {
           const uint8_t mask_bits[8] = {static_cast<uint8_t>(met >> part & ((1U << lanes64) - 1))};
-          hn::BlendedStore(values, hn::LoadMaskBits(d64, mask_bits), d64, nearest + x + part);
+          hn::BlendedStore(values, hn::LoadMaskBits(d64, mask_bits), d64, nearest + part);
         }
         continue;
       }
@@ -486,7 +599,7 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
             (axis_bits[0] >> lane & 1U) | (axis_bits[1] >> lane & 1U) << 1 | (axis_bits[2] >> lane & 1U) << 2;
         const uint64_t one = value_for(down);
         const uint32_t bit = uint32_t{1} << (shift + lane);
-        uint64_t* const at = nearest + x + static_cast<int32_t>(lane);
+        uint64_t* const at = nearest + lane;
         *at = (*word & bit) != 0 && *at < one ? *at : one;
         *word |= bit;
       }
@@ -560,41 +673,6 @@ void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch*
     }
     batch->cube_value[down] = key << kEntryBits;
   }
-}
-
-// How far boxes of `side` voxels reach from their middles' places on the picture: frame.h.
-template <class D>
-struct Extent {
-  hn::Vec<D> x;
-  hn::Vec<D> y;
-};
-
-template <bool kPerspective, class D>
-HWY_INLINE Extent<D> extent(D d, const Frame& frame, hn::Vec<D> side, hn::Vec<D> column, hn::Vec<D> row,
-                            hn::Vec<D> per_depth) {
-  const auto one = hn::Set(d, 1.0F);
-  auto half_x = hn::MulAdd(hn::Set(d, frame.reach_x), side, hn::Set(d, frame.rounding_x));
-  auto half_y = hn::MulAdd(hn::Set(d, frame.reach_y), side, hn::Set(d, frame.rounding_y));
-  half_x = hn::MulAdd(half_x, per_depth, hn::Set(d, frame.slack_x));
-  half_y = hn::MulAdd(half_y, per_depth, hn::Set(d, frame.slack_y));
-  if (kPerspective) {
-    const auto nearness = hn::Mul(hn::Mul(hn::Set(d, frame.half_w), side), per_depth);
-    const auto k = hn::MulAdd(hn::Mul(hn::Set(d, 0.5F), side), per_depth,
-                              hn::Mul(hn::Set(d, frame.per_direction), hn::Add(one, nearness)));
-    const auto r = hn::Mul(k, hn::Set(d, frame.norm_w));
-    const auto factor = hn::Mul(k, hn::MulAdd(r, hn::Set(d, 1.152F), hn::Set(d, 1.001F)));
-    const auto reach = [&](const float(&of)[4], auto place) {
-      auto sum = hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[0]), hn::Set(d, of[0])));
-      sum = hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[1]), hn::Set(d, of[1]))));
-      return hn::Add(sum, hn::Abs(hn::NegMulAdd(place, hn::Set(d, frame.w[2]), hn::Set(d, of[2]))));
-    };
-    const auto is_far = hn::Le(r, hn::Set(d, 0.125F));
-    const auto near_x = hn::MulAdd(hn::Set(d, frame.rounding_x), per_depth, hn::Set(d, frame.spread_x));
-    const auto near_y = hn::MulAdd(hn::Set(d, frame.rounding_y), per_depth, hn::Set(d, frame.spread_y));
-    half_x = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.u, column), factor, near_x), half_x);
-    half_y = hn::IfThenElse(is_far, hn::MulAdd(reach(frame.v, row), factor, near_y), half_y);
-  }
-  return {half_x, half_y};
 }
 
 // How far boxes reach from their middles' places: the tile's bound (frame.h) for the part of it in which the
@@ -700,13 +778,6 @@ HWY_INLINE Projected project(const Frame& frame, const Run& run, const Rectangle
   return boxes;
 }
 
-// Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
-HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
-  const F32 d;
-  const U32 du;
-  return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
-}
-
 // Which pixels of a run's rectangle are not covered, where that has at most 32 rows of 32 pixels: looked up
 // in registers (AVX-512) or in a table of its own, instead of all over the picture. The wide case reads the
 // picture.
@@ -720,16 +791,18 @@ class OpenPixels {
     }
     x0_ = static_cast<uint32_t>(where.x0);
     y0_ = static_cast<uint32_t>(where.y0);
-    const uint8_t* at =
-        reinterpret_cast<const uint8_t*>(depths.covered) + 4 * depths.first_word(where.y0) + (x0_ >> 3);
+    const size_t first = depths.word(where.x0, where.y0);
+    const uint32_t* const left = depths.covered + first;
+    // The same word twice where there is no second one.
+    const bool is_cut = (x0_ & 31U) + static_cast<uint32_t>(where.x1 - where.x0) > 32;
+    const uint32_t* const right = is_cut ? left + depths.rows : left;
     const int32_t rows = where.y1 - where.y0;
     const uint32_t inside = UINT32_MAX >> (32 - (where.x1 - where.x0));
     uint32_t columns = 0;
     uint32_t open_rows = 0;
-    for (int32_t row = 0; row < rows; ++row, at += static_cast<size_t>(depths.words) * 4) {
-      uint64_t bits = 0;
-      __builtin_memcpy(&bits, at, sizeof(bits));
-      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 7U)) & inside;
+    for (int32_t row = 0; row < rows; ++row) {
+      const uint64_t bits = uint64_t{right[row]} << 32 | left[row];
+      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 31U)) & inside;
       columns |= rows_[row];
       open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
     }
@@ -834,6 +907,277 @@ HWY_NOINLINE void draw_large_of(const Frame& frame, const Run& run, uint32_t at,
   }
 }
 
+// Which pixels of a small rectangle are not covered. Columns and rows are counted from kMargin before its
+// first, and there are none to either side of it.
+class OpenTable {
+ public:
+  static constexpr int32_t kMost = 32;  ///< columns and rows, with the margin
+  static constexpr int32_t kMargin = 3;
+
+  OpenTable(const Depths& depths, const Rectangle& where) {
+    const U32 d;
+    const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+    const int32_t rows = where.y1 - where.y0;
+    const uint32_t* const left = depths.covered + depths.word(where.x0, where.y0);
+    const int shift = where.x0 & 31;
+    // Of the strip beside it, where the rectangle reaches into it.
+    const bool is_cut = shift + where.x1 - where.x0 > 32;
+    const uint32_t* const right = is_cut ? left + depths.rows : left;
+    const int right_shift = is_cut ? 32 - shift : 0;
+    const auto beside = hn::Set(d, is_cut ? UINT32_MAX : 0);
+    const auto inside = hn::Set(d, UINT32_MAX >> (32 - (where.x1 - where.x0)));
+    auto any = hn::Zero(d);
+    hn::Store(any, d, rows_);
+    for (int32_t row = 0; row < rows; row += lanes) {
+      const auto covered =
+          hn::Or(hn::ShiftRightSame(load_some(left + row, rows - row), shift),
+                 hn::ShiftLeftSame(hn::And(load_some(right + row, rows - row), beside), right_shift));
+      const auto live = hn::FirstN(d, static_cast<size_t>(rows - row));
+      const auto open = hn::IfThenElseZero(live, hn::AndNot(covered, inside));
+      any = hn::Or(any, open);
+      hn::StoreU(hn::ShiftLeft<kMargin>(open), d, rows_ + kMargin + row);
+    }
+    for (int32_t row = (rows + lanes - 1) / lanes * lanes + kMargin; row < kMost; row += lanes) {
+      hn::StoreU(hn::Zero(d), d, rows_ + row);
+    }
+    none_ = hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+  }
+
+  bool none() const { return none_; }
+  // Rows of them, 0 .. kMost - 1, with kHalf below half of that; the first column in the lowest bit.
+  template <bool kHalf>
+  HWY_INLINE hn::Vec<U32> row(hn::Vec<U32> row) const {
+    const U32 d;
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
+    const auto low = hn::TableLookupLanes(hn::Load(d, rows_), index);
+    if (kHalf) {
+      return low;
+    }
+    const auto high = hn::TableLookupLanes(hn::Load(d, rows_ + 16), index);
+    return hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
+#else
+    return hn::GatherIndex(d, rows_, hn::BitCast(I32(), row));
+#endif
+  }
+
+ private:
+  bool none_;
+  alignas(64) uint32_t rows_[kMost + 3 * 64];
+};
+
+// A block of single voxels on the picture, about, and without divisions. With m the block's middle, e = c -
+// m, g = (U - column(m) W) / W.m and q = W.e / W.m,
+//
+//     column(c) = column(m) + g.e / (1 + q) = column(m) + g.e (1 - q) + g.e q^2 / (1 + q)
+//
+// for |e| <= h on every axis. The last term is at most |g|_1 h q0^2 / (1 - q0) with q0 = |W|_1 h / W.m, and
+// is added to the extent, which itself is that of frame.h with |U - column(c) W|_1 <= W.m |g|_1 + |column(c)
+// - column(m)| |W|_1.
+//
+// No divisions: 1 / (1 - q) <= 1 + q + 4/3 q^2 for q <= 1/4.
+template <bool kPerspective>
+HWY_INLINE void find_linear_of(const Frame& frame, const uint32_t (&block)[3], uint32_t side,
+                               const Place& place, Linear* linear) {
+  const float h = 0.5F * static_cast<float>(side);
+  float per_least = place.per_depth;  // 1 / the least depth in the block
+  float factor = 0;
+  float bend = 0;  // q0^2 / (1 - q0)
+  float rounding_s = 0;
+  linear->is_sound = false;
+  if (kPerspective) {
+    const float q = (frame.norm_w * h + frame.rounding_w) * place.per_depth;
+    if (!(q <= 0.25F) || place.per_depth == 0) {  // norm_w may be too large for all
+      return;
+    }
+    per_least *= (1 + q * (1 + 1.334F * q)) * 1.0001F;
+    bend = frame.norm_w * h * place.per_depth * frame.norm_w * h * per_least;
+    const float k = 0.5F * per_least + frame.per_direction * (1 + frame.half_w * per_least);
+    const float r = k * frame.norm_w;
+    if (r > 0.125F) {
+      return;
+    }
+    factor = k * (r * 1.152F + 1.001F);
+    linear->s[3] = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      linear->s[axis] = -frame.w[axis] * place.per_depth;
+      linear->s[3] -= linear->s[axis] * (static_cast<float>(block[axis]) + h - 0.5F);
+    }
+    rounding_s = frame.norm_w * place.per_depth * (1024.0F / (1 << 21));
+  }
+  const auto one_axis = [&](const float(&row)[4], float middle, float reach, float rounding, float slack,
+                            float spread, float(&to)[4], float* low) {
+    float sum = 0;
+    float corner = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float across = kPerspective ? row[axis] - middle * frame.w[axis] : row[axis];
+      sum += __builtin_fabsf(across);
+      to[axis] = kPerspective ? across * place.per_depth : across;
+      corner += to[axis] * (static_cast<float>(block[axis]) + h - 0.5F);
+    }
+    float half = reach + rounding + slack;
+    const float steps = kPerspective ? sum * place.per_depth : sum;
+    if (kPerspective) {
+      const float all = steps * h;  // |g.e|
+      const float curve = all * bend;
+      half = (sum + (1.25F * all + curve) * frame.norm_w) * factor + rounding * per_least + spread + curve +
+             all * rounding_s;
+    }
+    // Roundings of the map: four sums and products of at most 1024 times the steps.
+    half += steps * (1024.0F / (1 << 21));
+    to[3] = -corner;
+    *low = middle - half;
+    return 2 * half;
+  };
+  linear->wide_x = one_axis(frame.u, place.column, frame.reach_x, frame.rounding_x, frame.slack_x,
+                            frame.spread_x, linear->x, &linear->low_x);
+  linear->wide_y = one_axis(frame.v, place.row, frame.reach_y, frame.rounding_y, frame.slack_y,
+                            frame.spread_y, linear->y, &linear->low_y);
+  linear->is_sound = true;
+}
+
+void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
+                 Linear* linear) {
+  frame.perspective ? find_linear_of<true>(frame, block, side, place, linear)
+                    : find_linear_of<false>(frame, block, side, place, linear);
+}
+
+// The loop of pick_boxes: from `at` on until nothing is left or there is no more room. Returns where it
+// stopped. With kOne no box covers more than one pixel, and the pairs wait for their test at once; else no
+// more than two in a row or column. With kHalf the table's rows are below half of what it could have.
+template <bool kPerspective, bool kOne, bool kHalf>
+HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const OpenTable& table, uint32_t at,
+                                Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
+  uint32_t* const entries = kOne ? batch->waiting.entry : batch->picked.entry;
+  uint32_t* const numbers = kOne ? batch->waiting.number : batch->picked.number;
+  uint32_t* const places = kOne ? batch->waiting.place : batch->picked.place;
+  constexpr int kShift = kOne ? 16 : kPlaceBits;
+  const size_t most = (kOne ? Pairs::kSize : Picked::kSize) - lanes;
+  size_t count = kOne ? batch->waiting.count : batch->picked.count;
+  const auto within = hn::Set(du, kWithin);
+  // What lies beyond the table, at the edge of the tile, gets some place in it: a pair too many, perhaps.
+  const auto last_column = hn::Set(du, static_cast<uint32_t>(OpenTable::kMost - 1));
+  const auto last_row = hn::Set(du, static_cast<uint32_t>(OpenTable::kMost / (kHalf ? 2 : 1) - 1));
+  const auto wide_x = hn::Set(d, linear.wide_x);
+  const auto wide_y = hn::Set(d, linear.wide_y);
+  const auto one = hn::Set(d, 1.0F);
+  // Counted as in the table.
+  const float first_low_x = linear.low_x - static_cast<float>(run.place.where.x0 - OpenTable::kMargin);
+  const float first_low_y = linear.low_y - static_cast<float>(run.place.where.y0 - OpenTable::kMargin);
+  // Modulo 2^32, where the margin lies outside the picture.
+  const uint32_t first = (static_cast<uint32_t>(run.place.where.y0) << kShift) +
+                         static_cast<uint32_t>(run.place.where.x0) -
+                         (static_cast<uint32_t>(OpenTable::kMargin) << kShift) - OpenTable::kMargin;
+  for (; at < run.count && count <= most; at += lanes) {
+    const auto entry = hn::LoadU(du, run.entries + at);
+    const auto x = hn::ConvertTo(d, hn::BitCast(di, hn::And(entry, within)));
+    const auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
+    const auto z = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<20>(entry)));
+    const auto apply = [&](const float(&row)[4]) {
+      return hn::MulAdd(
+          hn::Set(d, row[0]), x,
+          hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, row[3]))));
+    };
+    auto low_x = hn::Set(d, first_low_x);
+    auto low_y = hn::Set(d, first_low_y);
+    if (kPerspective) {
+      const auto s = apply(linear.s);
+      low_x = hn::MulAdd(apply(linear.x), s, low_x);
+      low_y = hn::MulAdd(apply(linear.y), s, low_y);
+    } else {
+      low_x = hn::Add(apply(linear.x), low_x);
+      low_y = hn::Add(apply(linear.y), low_y);
+    }
+    const auto column = hn::Ceil(low_x);
+    const auto row = hn::Ceil(low_y);
+    const auto off_x = hn::Sub(column, low_x);
+    const auto off_y = hn::Sub(row, low_y);
+    const auto at_x = hn::And(small_number(column), last_column);
+    const auto at_y = hn::And(small_number(row), last_row);
+    auto open = hn::Shr(table.row<kHalf>(at_y), at_x);
+    // Narrow boxes lie between the pixels' centres, many of them.
+    auto seen = hn::And(hn::Le(off_x, wide_x), hn::Le(off_y, wide_y));
+    if (run.count - at < lanes) {
+      seen = hn::And(seen, hn::FirstN(d, run.count - at));
+    }
+    auto place = hn::Add(hn::Add(hn::ShiftLeft<kShift>(at_y), at_x), hn::Set(du, first));
+    if (kOne) {
+      open = hn::And(open, hn::Set(du, 1U));
+    } else {
+      // The row behind the last one is the first, of the margin.
+      const auto next = hn::And(hn::Add(at_y, hn::Set(du, 1U)), last_row);
+      const auto below = hn::Shr(table.row<kHalf>(next), at_x);
+      const auto has_more = hn::RebindMask(du, hn::Le(hn::Add(off_y, one), wide_y));
+      const auto has_wider = hn::RebindMask(du, hn::Le(hn::Add(off_x, one), wide_x));
+      const auto columns = hn::IfThenElse(has_wider, hn::Set(du, 3U), hn::Set(du, 1U));
+      open = hn::Or(hn::And(open, columns),
+                    hn::IfThenElseZero(has_more, hn::ShiftLeft<2>(hn::And(below, columns))));
+      place = hn::Or(place, hn::ShiftLeft<2 * kPlaceBits>(open));
+    }
+    const auto chosen = hn::And(hn::RebindMask(du, seen), hn::Ne(open, hn::Zero(du)));
+    hn::StoreU(hn::Compress(entry, chosen), du, entries + count);
+    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, numbers + count);
+    hn::StoreU(hn::Compress(place, chosen), du, places + count);
+    count += hn::CountTrue(du, chosen);
+  }
+  (kOne ? batch->waiting.count : batch->picked.count) = count;
+  return at;
+}
+
+// A first look at a block of small single voxels behind all that is in the picture: pairs with those pixels
+// that are not covered. False: not a block for this.
+template <bool kPerspective>
+bool pick_boxes(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  const Rectangle& where = run.place.where;
+  // Behind the last row and column there is one more. A box begins less than its extent, twice, before the
+  // rectangle, unless that is cut off by the tile.
+  constexpr int32_t kMost = OpenTable::kMost - OpenTable::kMargin - 1;
+  const int32_t rows = where.y1 - where.y0;
+  if (where.x1 - where.x0 > kMost || rows > kMost || where.x0 == frame.tile.x0 || where.y0 == frame.tile.y0) {
+    return false;
+  }
+  Linear own{};
+  if (run.linear == nullptr) {
+    find_linear_of<kPerspective>(frame, run.block, run.side, run.place, &own);
+  }
+  const Linear& linear = run.linear == nullptr ? own : *run.linear;
+  const float widest = linear.wide_x > linear.wide_y ? linear.wide_x : linear.wide_y;
+  if (!linear.is_sound || !(widest < 2)) {
+    return false;
+  }
+  bool kept = false;
+  // So that coverage is known where it saves work.
+  if (batch->boxes.count != 0 || batch->picked.count + batch->waiting.count >= kMostBoxesWaiting) {
+    pair_boxes<kPerspective, true>(frame, depths, &kept, batch);
+    test_waiting<kPerspective, true>(frame, depths, &kept, batch);
+  }
+  keep(depths, batch);
+  const OpenTable table(depths, where);
+  if (table.none()) {
+    return true;
+  }
+  batch->counts.boxes += run.count;
+  const bool is_half = rows + 1 + OpenTable::kMargin <= OpenTable::kMost / 2;
+  for (uint32_t at = 0; at < run.count;) {
+    if (widest < 1) {
+      at = is_half ? pick_some<kPerspective, true, true>(run, linear, table, at, batch)
+                   : pick_some<kPerspective, true, false>(run, linear, table, at, batch);
+    } else {
+      at = is_half ? pick_some<kPerspective, false, true>(run, linear, table, at, batch)
+                   : pick_some<kPerspective, false, false>(run, linear, table, at, batch);
+    }
+    if (at < run.count) {
+      pair_boxes<kPerspective, true>(frame, depths, &kept, batch);
+      test_waiting<kPerspective, true>(frame, depths, &kept, batch);
+    }
+  }
+  return true;
+}
+
 // A run in no order. Boxes whose pixels may all be covered go first; those left wait in the batch until there
 // are enough to fill vectors.
 //
@@ -846,11 +1190,14 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   const U32 du;
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
+  if (kUnit && run.behind && pick_boxes<kPerspective>(frame, run, depths, batch)) {
+    return;
+  }
   Boxes& queue = batch->boxes;
   bool kept = false;
   if (run.behind) {
     // So that coverage is known where it saves work.
-    if (queue.count >= kMostBoxesWaiting) {
+    if (queue.count >= kMostBoxesWaiting || batch->picked.count != 0) {
       pair_boxes<kPerspective, kUnit>(frame, depths, &kept, batch);
       test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
     }
@@ -860,8 +1207,8 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   batch->counts.boxes += run.count;
   // Boxes of more than `near` pixels a side are not looked up.
   const uint32_t near = run.voxel_px < 1.6F ? 2 : run.voxel_px < 3.5F ? 4 : 8;
-  const OpenPixels open_pixels(depths, run.behind ? run.where : Rectangle{0, 0, 64, 0}, near);
-  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const OpenPixels open_pixels(depths, run.behind ? run.place.where : Rectangle{0, 0, 64, 0}, near);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
   if (clip.x0 >= clip.x1) {
     return;
   }
@@ -920,8 +1267,8 @@ void draw_sorted_of(const Frame& frame, const Run& run, const Depths& depths, Ba
   }
   keep(depths, batch);
   batch->counts.boxes += run.count;
-  const OpenPixels open_pixels(depths, run.where);
-  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const OpenPixels open_pixels(depths, run.place.where);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
   const Reach reach(frame, clip);
   const auto most = hn::Set(d, kMostQueuedSorted - 1);
   Pairs& waiting = batch->waiting;
@@ -979,8 +1326,8 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
   test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
   keep(depths, batch);
   batch->counts.boxes += run.count;
-  const OpenPixels open_pixels(depths, run.where);
-  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.where;
+  const OpenPixels open_pixels(depths, run.place.where);
+  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
   const Reach reach(frame, clip);
   uint32_t count = 0;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
@@ -1047,8 +1394,8 @@ void finish(const Frame& frame, const Depths& depths, Batch* batch) {
   keep(depths, batch);
 }
 
-void find_rectangles(const Frame& frame, const float* xs, const float* ys, const float* zs, float side,
-                     Rectangle* rectangles) {
+void find_places(const Frame& frame, const float* xs, const float* ys, const float* zs, float side,
+                 Place* places) {
   const hn::CappedTag<float, 8> d;
   const hn::RebindToSigned<decltype(d)> di;
   const size_t lanes = hn::Lanes(d);
@@ -1096,6 +1443,10 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
     y0 = hn::IfThenElse(crossing, first_y, y0);
     x1 = hn::IfThenElse(hidden, first_x, hn::IfThenElse(crossing, end_x, x1));
     y1 = hn::IfThenElse(crossing, end_y, y1);
+    HWY_ALIGN float middles[3][8];
+    hn::StoreU(column, d, middles[0]);
+    hn::StoreU(row, d, middles[1]);
+    hn::StoreU(hn::IfThenElse(crossing, zero, per_depth), d, middles[2]);
     HWY_ALIGN int32_t stored[4][8];
     hn::StoreU(hn::ConvertTo(di, x0), di, stored[0]);
     hn::StoreU(hn::ConvertTo(di, y0), di, stored[1]);
@@ -1103,8 +1454,12 @@ void find_rectangles(const Frame& frame, const float* xs, const float* ys, const
     hn::StoreU(hn::ConvertTo(di, y1), di, stored[3]);
     for (size_t i = 0; i < lanes; ++i) {
       const bool empty = stored[0][i] >= stored[2][i] || stored[1][i] >= stored[3][i];
-      rectangles[at + i] =
+      Place& place = places[at + i];
+      place.where =
           empty ? Rectangle{0, 0, 0, 0} : Rectangle{stored[0][i], stored[1][i], stored[2][i], stored[3][i]};
+      place.column = middles[0][i];
+      place.row = middles[1][i];
+      place.per_depth = middles[2][i];
     }
   }
 }
@@ -1132,6 +1487,7 @@ void find_corners(const Pixels& pixels, Corners* corners) {
     const auto cube = hn::LoadU(d, pixels.cube + at);
     const hn::Vec<U32> keys[3] = {key, hn::ShiftRight<1>(key), hn::ShiftRight<2>(key)};
     const hn::Vec<U32> cubes[3] = {cube, hn::ShiftRight<1>(cube), hn::ShiftRight<2>(cube)};
+#pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
       const auto low = hn::And(cubes[axis], hn::Set(d, 1U));
       const auto high = hn::And(hn::ShiftRight<2>(cubes[axis]), hn::Set(d, 2U));
@@ -1141,14 +1497,73 @@ void find_corners(const Pixels& pixels, Corners* corners) {
   }
 }
 
-void unpack(Pixels* pixels) {
+// The set bits of a word, each plus `first`, to `to`, which has room for 48. Returns how many.
+HWY_INLINE uint32_t store_bits(uint32_t word, uint32_t first, uint32_t* to) {
+  const U32 d;
+  const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
+  uint32_t count = 0;
+  if (lanes < 8) {
+    for (uint32_t bits = word; bits != 0; bits &= bits - 1) {
+      to[count++] = first + static_cast<uint32_t>(__builtin_ctz(bits));
+    }
+    return count;
+  }
+  // No branch for each bit: how many there are cannot be guessed.
+  uint8_t bytes[8] = {};
+  __builtin_memcpy(bytes, &word, sizeof(word));
+  for (uint32_t part = 0; part < 32; part += lanes) {
+    const auto mask = hn::LoadMaskBits(d, bytes + part / 8);
+    hn::StoreU(hn::Compress(hn::Iota(d, first + part), mask), d, to + count);
+    count += static_cast<uint32_t>(hn::CountTrue(d, mask));
+  }
+  return count;
+}
+
+int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels) {
+  const U32 d;
+  const I32 di;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+  const uint32_t before = pixels->count;
+  uint32_t count = before;
+  const uint32_t first_word = static_cast<uint32_t>(depths.word(left, depths.first_row));
+  while (row < end && count <= kMostPixels - 32) {
+    const uint32_t word = static_cast<uint32_t>(depths.word(left, row));
+    const int32_t rows = end - row < lanes ? end - row : lanes;
+    const auto some = load_some(depths.covered + word, rows);
+    int32_t next = row + rows;
+    for (uint32_t bits = bits_of(d, hn::Ne(some, hn::Zero(d))); bits != 0; bits &= bits - 1) {
+      const uint32_t r = static_cast<uint32_t>(__builtin_ctz(bits));
+      if (count > kMostPixels - 32) {
+        next = row + static_cast<int32_t>(r);
+        break;
+      }
+      count += store_bits(depths.covered[word + r], 32 * (word + r), pixels->at + count);
+    }
+    row = next;
+  }
+  for (uint32_t i = before; i < count; i += static_cast<uint32_t>(lanes)) {
+    const auto at = hn::LoadU(d, pixels->at + i);
+    const auto x = hn::Add(hn::And(at, hn::Set(d, 31U)), hn::Set(d, static_cast<uint32_t>(left)));
+    const auto y =
+        hn::Sub(hn::ShiftRight<5>(at), hn::Set(d, first_word - static_cast<uint32_t>(depths.first_row)));
+    hn::StoreU(hn::BitCast(di, x), di, pixels->x + i);
+    hn::StoreU(hn::BitCast(di, y), di, pixels->y + i);
+  }
+  pixels->count = count;
+  return row;
+}
+
+void unpack(const Depths& depths, Pixels* pixels) {
   const U64 d;
   const HalfU32 d32;
   const uint32_t count = pixels->count;
   for (uint32_t i = count; i < count + hn::Lanes(U32()); ++i) {
-    pixels->value[i] = 0;
+    pixels->at[i] = pixels->at[0];
     pixels->x[i] = 0;
     pixels->y[i] = 0;
+  }
+  for (uint32_t i = 0; i < count + hn::Lanes(U32()); ++i) {
+    pixels->value[i] = depths.nearest[pixels->at[i]];
   }
   for (uint32_t at = 0; at < count; at += static_cast<uint32_t>(hn::Lanes(d))) {
     const auto value = hn::LoadU(d, pixels->value + at);
@@ -1188,6 +1603,7 @@ HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, const Co
   found.axis = hn::Set(d, -1);
   found.numerator = zero;
   found.speed = hn::Set(d, 1);
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const auto downward = hn::Lt(rays.direction[axis], zero);
     const auto mirrored = hn::PromoteTo(d, hn::LoadU(d32, corners.at[axis] + at));
@@ -1250,6 +1666,10 @@ class Grays {
     inverse_ = 1.0 / static_cast<double>(range >> excess);
     const double per_depth = static_cast<double>(255 - kFarBrightness) / range;
     float_per_depth_ = static_cast<float>(per_depth);
+    float_dividend_ = static_cast<float>(dividend_);
+    int_dividend_ = static_cast<int32_t>(static_cast<uint32_t>(dividend_));
+    float_scale_ = static_cast<float>(scale_);
+    float_near_ = static_cast<float>(near_);
     // The error of the fall in floats, see in_floats().
     const double greatest = near_ + 1.01 * range;
     float_margin_ = static_cast<float>(per_depth * (1.01 + greatest / (1 << 19)) + 1.0 / (1 << 12));
@@ -1273,19 +1693,18 @@ class Grays {
                                     hn::Mask<F32>* unclear) const {
     const F32 d;
     const I32 di;
-    const auto float_ratio = hn::Div(hn::Set(d, static_cast<float>(dividend_)), speed);
+    const auto float_ratio = hn::Div(hn::Set(d, float_dividend_), speed);
     const auto is_small = hn::Lt(float_ratio, hn::Set(d, 2097152.0F));
     auto ratio = hn::ConvertTo(di, hn::IfThenElseZero(is_small, float_ratio));
     const auto int_speed = hn::ConvertTo(di, speed);
-    const auto dividend = hn::Set(di, static_cast<int32_t>(static_cast<uint32_t>(dividend_)));
+    const auto dividend = hn::Set(di, int_dividend_);
     const auto rest = hn::Sub(dividend, hn::Mul(ratio, int_speed));  // -speed .. 2 * speed - 1
     const auto one = hn::Set(di, 1);
     ratio = hn::Sub(ratio, hn::IfThenElseZero(hn::Lt(rest, hn::Zero(di)), one));
     ratio = hn::Add(ratio, hn::IfThenElseZero(hn::Gt(rest, hn::Sub(int_speed, one)), one));
     const auto found = hn::IfThenElse(is_small, hn::ConvertTo(d, ratio), float_ratio);
-    const auto depth = hn::Mul(hn::Mul(numerator, found), hn::Set(d, static_cast<float>(scale_)));
-    const auto fall =
-        hn::Mul(hn::Sub(depth, hn::Set(d, static_cast<float>(near_))), hn::Set(d, float_per_depth_));
+    const auto depth = hn::Mul(hn::Mul(numerator, found), hn::Set(d, float_scale_));
+    const auto fall = hn::Mul(hn::Sub(depth, hn::Set(d, float_near_)), hn::Set(d, float_per_depth_));
     const auto most_fall = hn::Set(d, static_cast<float>(255 - kFarBrightness));
     const auto off = hn::Abs(hn::Sub(fall, hn::Round(fall)));
     const auto near_step = hn::Lt(off, hn::Set(d, float_margin_));
@@ -1330,7 +1749,9 @@ class Grays {
  private:
   int shift_ = 0;
   double dividend_, scale_, near_, far_, cut_, inverse_;
-  float float_per_depth_, float_margin_;
+  // The same for in_floats().
+  float float_dividend_, float_scale_, float_near_, float_per_depth_, float_margin_;
+  int32_t int_dividend_;
   bool floats_tell_;
 };
 
@@ -1384,6 +1805,7 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays,
     const auto last = hn::Sub(hn::Set(d, 4096.0F), side);
     auto numerator = zero;
     auto found_speed = hn::Set(d, 1.0F);
+#pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
       const auto map = [&](const float(&of)[3][3]) {
         return hn::MulAdd(x, hn::Set(d, of[1][axis]),
@@ -1518,7 +1940,9 @@ namespace thimble::wide {
 HWY_EXPORT(draw_run);
 HWY_EXPORT(finish);
 HWY_EXPORT(cull_run);
-HWY_EXPORT(find_rectangles);
+HWY_EXPORT(find_linear);
+HWY_EXPORT(find_places);
+HWY_EXPORT(find_covered);
 HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
 HWY_EXPORT(find_faces);
@@ -1534,12 +1958,19 @@ uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batc
                   uint32_t* numbers) {
   return HWY_DYNAMIC_DISPATCH(cull_run)(frame, run, depths, batch, entries, numbers);
 }
-void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
-                     Rectangle* rectangles) {
-  HWY_DYNAMIC_DISPATCH(find_rectangles)(frame, x, y, z, side, rectangles);
+void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
+                 Linear* linear) {
+  HWY_DYNAMIC_DISPATCH(find_linear)(frame, block, side, place, linear);
 }
-void unpack(Pixels* pixels) {
-  HWY_DYNAMIC_DISPATCH(unpack)(pixels);
+void find_places(const Frame& frame, const float* x, const float* y, const float* z, float side,
+                 Place* places) {
+  HWY_DYNAMIC_DISPATCH(find_places)(frame, x, y, z, side, places);
+}
+int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels) {
+  return HWY_DYNAMIC_DISPATCH(find_covered)(depths, left, row, end, pixels);
+}
+void unpack(const Depths& depths, Pixels* pixels) {
+  HWY_DYNAMIC_DISPATCH(unpack)(depths, pixels);
 }
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray) {

@@ -23,17 +23,20 @@ namespace thimble::wide {
 /// runs downwards. Of two boxes of an octree that a ray meets, the one met first has the smaller key: they
 /// part at some node, in which the ray passes the children in the order of their mirrored numbers. So depth
 /// is compared as integers, exactly.
+///
+/// The picture is cut into strips of 32 columns, and what is kept of a strip stands row by row: what lies
+/// together in the picture lies together in memory.
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
-  uint32_t* covered;  ///< a bit a pixel, `words` words a row, the leftmost pixel in the lowest bit;
-                      ///< 8 bytes more can be read behind the last
-  int32_t width_px;   ///< 32 * words, a multiple of 64
-  int32_t words;
+  uint32_t* covered;  ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
+                      ///< kRowsAhead words more can be read behind the last
+  int32_t rows;       ///< of the picture, and words from a strip to the next
   int32_t first_row;  ///< the row of the picture that comes first
 
-  /// Where row `y` of the picture begins in `covered`; 32 times that in `nearest`.
-  size_t first_word(int32_t y) const {
-    return static_cast<size_t>(y - first_row) * static_cast<size_t>(words);
+  static constexpr int32_t kRowsAhead = 64;
+  /// Where the word that holds the pixel is in `covered`; 32 times that and x & 31 in `nearest`.
+  size_t word(int32_t x, int32_t y) const {
+    return static_cast<size_t>(x >> 5) * static_cast<size_t>(rows) + static_cast<size_t>(y - first_row);
   }
 };
 inline constexpr int kEntryBits = 28;
@@ -78,8 +81,23 @@ struct Boxes {
   alignas(64) uint32_t wide[kRoom];   ///< wide_y << 16 | wide_x
 };
 
-/// What one thread has under way, from run to run. Less than 28 KiB.
+/// Boxes of one voxel with those of four pixels that are not covered and that each might cover.
+struct Picked {
+  static constexpr size_t kSize = 256;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  /// open << 28 | y << 14 | x; the bits of `open` are the pixels (x, y), (x + 1, y), (x, y + 1) and (x + 1, y
+  /// + 1).
+  alignas(64) uint32_t place[kRoom];
+};
+inline constexpr int kPlaceBits = 14;
+static_assert(kMaxPicturePx <= 1 << kPlaceBits);
+
+/// What one thread has under way, from run to run. Less than 32 KiB.
 struct Batch {
+  Picked picked;  ///< not yet paired with their pixels; empty when `boxes` is not
   Boxes boxes;    ///< not yet paired with their pixels
   Pairs waiting;  ///< for the test in floats
   Pairs unclear;  ///< for the exact one
@@ -87,7 +105,7 @@ struct Batch {
   alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube
   alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
   alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry
-  alignas(64) uint32_t pixel[Pairs::kRoom];   ///< (y - first_row) * width_px + x
+  alignas(64) uint32_t pixel[Pairs::kRoom];   ///< where it is in Depths::nearest
   // Of the cube that the pairs lie in.
   uint64_t cube_value[8];          ///< its corner's key, by `down`
   uint32_t corner[3] = {1, 1, 1};  ///< none yet
@@ -97,15 +115,32 @@ struct Batch {
   /// Whether all of the picture lies in front of `boxes`: of whole runs that said so.
   bool all_behind = true;
 };
-static_assert(sizeof(Batch) < 28 * 1024);
+static_assert(sizeof(Batch) < 32 * 1024);
 
 /// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
 struct Rectangle {
   int32_t x0, y0, x1, y1;
 };
 
+/// Where a cube may be seen, and its middle.
+struct Place {
+  Rectangle where;  ///< within the tile
+  float column, row;
+  float per_depth;  ///< 1 / W.c of the middle (frame.h); 0 where the cube reaches the eye's plane
+};
+
 /// A vector of entries or numbers is read at a time, even when only its first is wanted.
 inline constexpr uint32_t kReadAhead = 64;
+
+/// Where the single voxels of a block are on the picture, about, without divisions (kernels.cpp): with v a
+/// voxel's place in the cube, pixels from low = (x.v + x[3]) (s.v + s[3]) + low_x to low + wide_x, and the
+/// same for rows.
+struct Linear {
+  bool is_sound;  ///< false: there is no such map, the block is too near
+  float x[4], y[4], s[4];
+  float low_x, low_y;
+  float wide_x, wide_y;
+};
 
 /// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
 struct Run {
@@ -115,8 +150,12 @@ struct Run {
   uint32_t first;
   uint32_t corner[3];
   bool unit;  ///< whether all are one voxel
-  /// Holds all pixels of the tile at which any of them may be seen.
-  Rectangle where;
+  /// The block that the entries fill: its lowest corner within the cube, and its side, in voxels.
+  uint32_t block[3];
+  uint32_t side;
+  const Linear* linear;  ///< of a block that holds this one; null where none was made
+  /// Of the block. Its rectangle holds all pixels of the tile at which any of the boxes may be seen.
+  Place place;
   /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
   /// look.
   bool behind;
@@ -138,17 +177,22 @@ void finish(const Frame& frame, const Depths& depths, Batch* batch);
 uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
                   uint32_t* numbers);
 
-/// Where up to 8 boxes may be seen, within the tile.
-/// Cubes of `side` voxels with lowest corners `x[i]`, `y[i]`, `z[i]`, i < 8.
-void find_rectangles(const Frame& frame, const float* x, const float* y, const float* z, float side,
-                     Rectangle* rectangles);
+/// For the block of `side` voxels whose lowest corner within its cube is `block`, and which is seen at
+/// `place`.
+void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
+                 Linear* linear);
+
+/// Where cubes of `side` voxels with lowest corners `x[i]`, `y[i]`, `z[i]`, i < 8, may be seen.
+void find_places(const Frame& frame, const float* x, const float* y, const float* z, float side,
+                 Place* places);
 
 /// Pixels and their nearest boxes. Behind the last there is room for a vector.
 inline constexpr uint32_t kMostPixels = 512;
 struct Pixels {
   uint32_t count = 0;
   bool any_levels = false;                       ///< whether `level` and `voxels` are to be looked at
-  alignas(64) uint64_t value[kMostPixels + 64];  ///< of Depths; the next three follow from it
+  alignas(64) uint32_t at[kMostPixels + 64];     ///< where they are in Depths::nearest
+  alignas(64) uint64_t value[kMostPixels + 64];  ///< what is there; three of the next follow from it
   alignas(64) int32_t x[kMostPixels + 64];
   alignas(64) int32_t y[kMostPixels + 64];
   alignas(64) uint32_t number[kMostPixels + 64];  ///< of the entry
@@ -157,8 +201,11 @@ struct Pixels {
   alignas(64) int32_t level[kMostPixels + 64];    ///< log2 of the boxes' sides
   alignas(64) int32_t voxels[kMostPixels + 64];   ///< 1: what is hit is a voxel of the box, 0: the box
 };
-/// Unpacks the values of the pixels; makes the lanes behind the last pixels too.
-void unpack(Pixels* pixels);
+/// Appends covered pixels of the strip that begins at column `left`, from `row` on, row by row: `at`, `x`,
+/// `y`. Stops at row `end`, or when there may be no room for the next row's. Returns the row that comes next.
+int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels);
+/// Takes the values of the pixels and unpacks them; makes the lanes behind the last pixels too.
+void unpack(const Depths& depths, Pixels* pixels);
 /// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind it.
 void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
                 uint8_t* gray);

@@ -33,7 +33,7 @@ Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& s
 }
 
 // All of the row. In formats of less than a byte, pixels are or'ed into zeros: the covered ones stay 0.
-void Painter::fill_background(uint8_t* to, int32_t y, const uint32_t* covered) const {
+void Painter::fill_background(uint8_t* to, int32_t y, const Depths& depths) const {
   const int32_t width = camera_.width_px();
   const size_t bytes = row_bytes(band_.format, width);
   const bool is_gray = background_.r == background_.g && background_.g == background_.b;
@@ -44,15 +44,15 @@ void Painter::fill_background(uint8_t* to, int32_t y, const uint32_t* covered) c
   }
   memset(to, 0, bytes);
   for (int32_t x = 0; x < width; ++x) {
-    if ((covered[x >> 5] >> (x & 31) & 1U) == 0) {
+    if ((depths.covered[depths.word(x, y)] >> (x & 31) & 1U) == 0) {
       store_pixel(to, x, y, band_.format, background_);
     }
   }
 }
 
-void Painter::paint(const Frame& frame, Pixels* pixels) const {
+void Painter::paint(const Frame& frame, const Depths& depths, Pixels* pixels) const {
   const uint32_t count = pixels->count;
-  unpack(pixels);
+  unpack(depths, pixels);
   Rgb8 colors[kMostPixels];
   if (shading_.mode == ShadeMode::kMono) {
     for (uint32_t i = 0; i < count; ++i) {
@@ -114,46 +114,24 @@ uint64_t Painter::paint_tile(const Frame& frame, const Depths& depths) const {
     memset(pixels.voxels, 0, sizeof(pixels.voxels));
   }
   uint64_t hits = 0;
-  uint32_t count = 0;
-  const int32_t words = (camera_.width_px() + 31) / 32;
+  const auto paint_those = [&] {
+    if (pixels.count != 0) {
+      paint(frame, depths, &pixels);
+    }
+    hits += pixels.count;
+    pixels.count = 0;
+  };
   for (int32_t y = frame.tile.y0; y < frame.tile.y1; ++y) {
-    const uint32_t* const covered = depths.covered + depths.first_word(y);
-    const uint64_t* const nearest = depths.nearest + 32 * depths.first_word(y);
-    fill_background(line(y), y, covered);
-    for (int32_t word = 0; word < words; ++word) {
-      uint32_t bits = covered[word];
-      // Sparse pictures: two empty words at once. Rows hold an even number.
-      if ((word & 1) == 0 && (bits | covered[word + 1]) == 0) {
-        ++word;
-        continue;
-      }
-      // Four at a time, without a look at how many there are: most words hold no more, and the next word
-      // writes over what was none.
-      const uint32_t end = count + static_cast<uint32_t>(__builtin_popcount(bits));
-      do {
-        for (uint32_t i = 0; i < 4; ++i) {
-          const int32_t x = 32 * word + (bits == 0 ? 0 : __builtin_ctz(bits));
-          pixels.x[count + i] = x;
-          pixels.y[count + i] = y;
-          pixels.value[count + i] = nearest[x];
-          bits &= bits - 1;
-        }
-        count += 4;
-      } while (bits != 0);
-      count = end;
-      if (count > kMostPixels - 32) {
-        pixels.count = count;
-        paint(frame, &pixels);
-        hits += count;
-        count = 0;
-      }
+    fill_background(line(y), y, depths);
+  }
+  for (int32_t left = 0; left < camera_.width_px(); left += 32) {
+    int32_t row = frame.tile.y0;
+    while ((row = find_covered(depths, left, row, frame.tile.y1, &pixels)) < frame.tile.y1) {
+      paint_those();
     }
   }
-  pixels.count = count;
-  if (count != 0) {
-    paint(frame, &pixels);
-  }
-  return hits + count;
+  paint_those();
+  return hits;
 }
 
 }  // namespace thimble::wide

@@ -18,8 +18,8 @@ class Painter {
   uint64_t paint_tile(const Frame& frame, const Depths& depths) const;
 
  private:
-  void fill_background(uint8_t* line, int32_t y, const uint32_t* covered) const;
-  void paint(const Frame& frame, Pixels* pixels) const;
+  void fill_background(uint8_t* line, int32_t y, const Depths& depths) const;
+  void paint(const Frame& frame, const Depths& depths, Pixels* pixels) const;
   uint8_t* line(int32_t y) const {
     return band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
   }

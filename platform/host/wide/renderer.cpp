@@ -19,30 +19,40 @@ namespace {
 // Runs of more boxes than this are cut up, flat or not, so that blocks out of sight are not projected.
 constexpr uint32_t kFlatBoxes = 4096;
 constexpr uint32_t kBlockBoxes = 320;
+// Of blocks that are looked up in tables; they are to be no larger than that.
+constexpr uint32_t kTableBoxes = 700;
+constexpr int32_t kTablePx = 28;
 // Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
 constexpr float kSortedPx = 2.0F;
 constexpr uint32_t kMostSorted = 512;
 // Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
-constexpr double kBlocksFrom = 3;
+constexpr double kBlocksFrom = 1.8;
 // Large ones cost more the second time: each is tested at many pixels.
 constexpr double kLargeBlocksFrom = 1;
 
 constexpr int32_t kPatchRows = 16;
 
-int32_t words_of(int32_t width_px) {
-  return (width_px + 63) / 64 * 2;
+size_t strips_of(int32_t width_px) {
+  return static_cast<size_t>(width_px + 31) / 32;
+}
+size_t patches_of(int32_t rows) {
+  return static_cast<size_t>(rows + kPatchRows - 1) / kPatchRows;
+}
+// A strip more than there are, since pixels are looked up with those right of them.
+size_t covered_words(int32_t width_px, int32_t rows) {
+  return (strips_of(width_px) + 1) * static_cast<size_t>(rows) + Depths::kRowsAhead;
 }
 
 // Whether all pixels of `where` are covered. Patches of a word by kPatchRows rows that were seen full are
-// remembered in `full` (a byte each, `words` to a row of patches), so that large rectangles cost little.
+// remembered in `full` (a byte each, strip by strip), so that large rectangles cost little.
 bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
   const int32_t first = where.x0 >> 5;
   const int32_t last = (where.x1 - 1) >> 5;
   const uint32_t head = UINT32_MAX << (where.x0 & 31);
   const uint32_t tail = UINT32_MAX >> (31 - ((where.x1 - 1) & 31));
   const auto are_full = [&](int32_t word, uint32_t wanted, int32_t y0, int32_t y1) {
-    const uint32_t* at = depths.covered + depths.first_word(y0) + word;
-    for (int32_t y = y0; y < y1; ++y, at += depths.words) {
+    const uint32_t* at = depths.covered + depths.word(32 * word, y0);
+    for (int32_t y = y0; y < y1; ++y, ++at) {
       if ((*at & wanted) != wanted) {
         return false;
       }
@@ -54,9 +64,11 @@ bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
     const int32_t patch_y = y / kPatchRows;
     const int32_t next = (patch_y + 1) * kPatchRows;
     const int32_t end = next < y_end ? next : y_end;
-    uint8_t* const flags = full + static_cast<size_t>(patch_y) * static_cast<size_t>(depths.words);
+    uint8_t* const flags = full + patch_y;
+    const size_t stride = patches_of(depths.rows);
     for (int32_t word = first; word <= last; ++word) {
-      if (flags[word] != 0) {
+      uint8_t* const flag = flags + static_cast<size_t>(word) * stride;
+      if (*flag != 0) {
         continue;
       }
       uint32_t wanted = UINT32_MAX;
@@ -67,7 +79,7 @@ bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
       }
       if (end == next &&
           are_full(word, UINT32_MAX, next - kPatchRows + depths.first_row, next + depths.first_row)) {
-        flags[word] = 1;
+        *flag = 1;
       }
     }
     y = end;
@@ -75,15 +87,11 @@ bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
   return true;
 }
 
-size_t words_of_patches(int32_t width_px, int32_t rows) {
-  return static_cast<size_t>(words_of(width_px)) * static_cast<size_t>((rows + kPatchRows - 1) / kPatchRows);
-}
-
 struct Block {
   uint32_t node;
   int level;
   uint32_t corner[3];
-  Rectangle where;
+  Place place;
 };
 
 // Side of a box in voxels, as the root of the mean of their faces.
@@ -114,61 +122,45 @@ class TileDrawer {
     }
     Block stack[7 * kMaxLevel + 8];
     int depth = 0;
-    stack[depth++] = {
-        0, tree.level(), {0, 0, 0}, {frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}};
+    stack[depth++] = {0,
+                      tree.level(),
+                      {0, 0, 0},
+                      {{frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}, 0, 0, 0}};
     // Of a part of the picture, blocks outside it are to be left out too.
     const bool is_part = frame_.tile.y1 - frame_.tile.y0 < frame_.camera.height_px();
-    const uint32_t small = by_blocks_ || is_part ? kBlockBoxes : kFlatBoxes;
     while (depth > 0) {
       const Block block = stack[--depth];
       ++batch_->counts.nodes;
       const BlockNode& node = lists_.nodes()[block.node];
       const unsigned mask = tree.mask(block.node);
-      const bool is_small = node.entries <= small && block.level <= kCubeLevel;
-      const bool is_leaf = mask == 0 || block.level <= lists_.block_level() || is_small;
-      if (by_blocks_ && all_covered(depths_, block.where, full_)) {
+      const int32_t widest = width_of(block.place.where);
+      // Blocks of small voxels are looked up in tables (kernels.cpp) as they are drawn.
+      const bool has_table = by_blocks_ && !lists_.has_blocks() && voxel_px(block) < kSortedPx;
+      const uint32_t small = has_table ? kTableBoxes : by_blocks_ || is_part ? kBlockBoxes : kFlatBoxes;
+      const bool is_few = node.entries <= small && block.level <= kCubeLevel;
+      const bool is_leaf =
+          mask == 0 || block.level <= lists_.block_level() || (is_few && !(has_table && widest > kTablePx));
+      const bool is_family = !is_leaf && has_table && is_few && widest <= 2 * kTablePx;
+      if (by_blocks_ && (!has_table || widest > 2 * kTablePx) &&
+          all_covered(depths_, block.place.where, full_)) {
         continue;
       }
-      if (is_leaf) {
+      if (is_leaf || is_family) {
         // Its boxes are fetched while those of the blocks before it are drawn.
         const uint32_t* entries = lists_.entries().data + node.first_entry;
-        for (uint32_t line = 0; line < 5 && 16 * line < node.entries; ++line) {
+        for (uint32_t line = 0; 16 * line < node.entries && line < kMostLines; ++line) {
           __builtin_prefetch(entries + 16 * line);
         }
         if (ahead_count_ == kAhead) {
           draw_oldest();
         }
-        ahead_[(ahead_first_ + ahead_count_++) % kAhead] = block;
+        ahead_[(ahead_first_ + ahead_count_++) % kAhead] = {block, is_family ? mask : 0};
         continue;
       }
-      const uint32_t side = uint32_t{1} << (block.level - 1);
-      float x[8];
-      float y[8];
-      float z[8];
-      unsigned first = 0;  // the octant nearest to the eye
-      for (unsigned octant = 0; octant < 8; ++octant) {
-        x[octant] = static_cast<float>(block.corner[0] + ((octant & 1U) != 0 ? side : 0));
-        y[octant] = static_cast<float>(block.corner[1] + ((octant & 2U) != 0 ? side : 0));
-        z[octant] = static_cast<float>(block.corner[2] + ((octant & 4U) != 0 ? side : 0));
-      }
-      for (unsigned axis = 0; axis < 3; ++axis) {
-        first |= eye_cell_[axis] >= static_cast<int32_t>(block.corner[axis] + side) ? 1U << axis : 0U;
-      }
-      Rectangle where[8];
-      find_rectangles(frame_, x, y, z, static_cast<float>(side), where);
-      for (unsigned turn = 8; turn-- > 0;) {  // the last pushed is the first drawn
-        const unsigned octant = turn ^ first;
-        if ((mask >> octant & 1U) == 0 || where[octant].x0 >= where[octant].x1) {
-          continue;
-        }
-        const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
-        __builtin_prefetch(&lists_.nodes()[node.first_child + number]);
-        stack[depth++] = {node.first_child + number,
-                          block.level - 1,
-                          {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
-                           block.corner[1] + ((octant & 2U) != 0 ? side : 0),
-                           block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
-                          where[octant]};
+      Block children[8];
+      for (unsigned child = children_of(block, node, mask, children); child-- > 0;) {
+        __builtin_prefetch(&lists_.nodes()[children[child].node]);
+        stack[depth++] = children[child];  // the last pushed is the first drawn
       }
     }
     while (ahead_count_ != 0) {
@@ -178,35 +170,98 @@ class TileDrawer {
   }
 
  private:
-  static constexpr uint32_t kAhead = 8;
+  static constexpr uint32_t kAhead = 4;
+  static constexpr uint32_t kMostLines = 64;
+  struct Waiting {
+    Block block;
+    unsigned mask;  ///< not 0: its children are drawn, one after the other
+  };
 
-  void draw_oldest() {
-    const Block block = ahead_[ahead_first_];
-    ahead_first_ = (ahead_first_ + 1) % kAhead;
-    --ahead_count_;
-    // What lay before it may have been drawn since. Small ones are looked up as they are drawn.
-    const bool is_large = block.where.x1 - block.where.x0 > 32 || block.where.y1 - block.where.y0 > 32;
-    if (by_blocks_ && is_large && all_covered(depths_, block.where, full_)) {
-      return;
-    }
-    draw_block(block, lists_.nodes()[block.node]);
+  static int32_t width_of(const Rectangle& where) {
+    const int32_t x = where.x1 - where.x0;
+    const int32_t y = where.y1 - where.y0;
+    return x > y ? x : y;
   }
 
-  void draw_block(const Block& block, const BlockNode& node) {
+  // The children that may be seen, front to back. Returns how many.
+  unsigned children_of(const Block& block, const BlockNode& node, unsigned mask, Block* children) const {
+    const uint32_t side = uint32_t{1} << (block.level - 1);
+    float x[8];
+    float y[8];
+    float z[8];
+    unsigned first = 0;  // the octant nearest to the eye
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      x[octant] = static_cast<float>(block.corner[0] + ((octant & 1U) != 0 ? side : 0));
+      y[octant] = static_cast<float>(block.corner[1] + ((octant & 2U) != 0 ? side : 0));
+      z[octant] = static_cast<float>(block.corner[2] + ((octant & 4U) != 0 ? side : 0));
+    }
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      first |= eye_cell_[axis] >= static_cast<int32_t>(block.corner[axis] + side) ? 1U << axis : 0U;
+    }
+    Place places[8];
+    find_places(frame_, x, y, z, static_cast<float>(side), places);
+    unsigned count = 0;
+    for (unsigned turn = 0; turn < 8; ++turn) {
+      const unsigned octant = turn ^ first;
+      if ((mask >> octant & 1U) == 0 || places[octant].where.x0 >= places[octant].where.x1) {
+        continue;
+      }
+      const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
+      children[count++] = {node.first_child + number,
+                           block.level - 1,
+                           {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
+                            block.corner[1] + ((octant & 2U) != 0 ? side : 0),
+                            block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
+                           places[octant]};
+    }
+    return count;
+  }
+
+  void draw_oldest() {
+    const Waiting& oldest = ahead_[ahead_first_];
+    ahead_first_ = (ahead_first_ + 1) % kAhead;
+    --ahead_count_;
+    const Block& block = oldest.block;
+    // What lay before it may have been drawn since. Small ones are looked up as they are drawn.
+    if (by_blocks_ && width_of(block.place.where) > kTablePx &&
+        all_covered(depths_, block.place.where, full_)) {
+      return;
+    }
+    const BlockNode& node = lists_.nodes()[block.node];
+    if (oldest.mask == 0) {
+      draw_block(block, node);
+      return;
+    }
+    Block children[8];
+    const unsigned count = children_of(block, node, oldest.mask, children);
+    batch_->counts.nodes += count;
+    const uint32_t within = (uint32_t{1} << kCubeLevel) - 1;
+    const uint32_t corner[3] = {block.corner[0] & within, block.corner[1] & within, block.corner[2] & within};
+    Linear linear;
+    find_linear(frame_, corner, uint32_t{1} << block.level, block.place, &linear);
+    for (unsigned child = 0; child < count; ++child) {
+      draw_block(children[child], lists_.nodes()[children[child].node], linear.is_sound ? &linear : nullptr);
+    }
+  }
+
+  void draw_block(const Block& block, const BlockNode& node, const Linear* linear = nullptr) {
     Run run;
+    run.linear = linear;
     run.entries = lists_.entries().data + node.first_entry;
     run.numbers = nullptr;
     run.count = node.entries;
     run.first = node.first_entry;
     run.unit = !lists_.has_blocks();
-    run.where = block.where;
+    run.place = block.place;
     run.behind = by_blocks_;
     run.sorted = false;
     run.voxel_px = voxel_px(block);
+    run.side = uint32_t{1} << block.level;
     const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
     if (block.level <= kCubeLevel) {
       for (int axis = 0; axis < 3; ++axis) {
         run.corner[axis] = block.corner[axis] & ~cube;
+        run.block[axis] = block.corner[axis] & cube;
       }
       const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(node.face_area);
       const bool is_large = face_px >= kSortedPx * kSortedPx * static_cast<float>(node.entries);
@@ -236,15 +291,7 @@ class TileDrawer {
 
   // How large a voxel of the block looks, about.
   float voxel_px(const Block& block) const {
-    if (!frame_.perspective) {
-      return 2 * frame_.reach_x;
-    }
-    float depth = frame_.w[3];
-    const float middle = static_cast<float>(1 << block.level) * 0.5F;
-    for (int axis = 0; axis < 3; ++axis) {
-      depth += frame_.w[axis] * (static_cast<float>(block.corner[axis]) + middle);
-    }
-    return depth <= 0 ? 1e9F : 2 * frame_.reach_x / depth;
+    return block.place.per_depth == 0 ? 1e9F : 2 * frame_.reach_x * block.place.per_depth;
   }
 
   // The `run->count` boxes of entries_ front to back. Entries of an octant stand together, in every block of
@@ -313,7 +360,7 @@ class TileDrawer {
   bool by_blocks_;
   Batch* batch_;
   int32_t eye_cell_[3];
-  Block ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
+  Waiting ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
   uint32_t ahead_first_ = 0;
   uint32_t ahead_count_ = 0;
   uint32_t entries_[kMostSorted + kReadAhead];
@@ -367,9 +414,9 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 }  // namespace
 
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
-  const size_t words = static_cast<size_t>(words_of(width_px)) * static_cast<size_t>(rows);
-  return words_of_patches(width_px, rows) + words * (sizeof(uint32_t) + 32 * sizeof(uint64_t)) +
-         sizeof(uint64_t) + static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+  return strips_of(width_px) * (patches_of(rows) + static_cast<size_t>(rows) * 32 * sizeof(uint64_t)) +
+         covered_words(width_px, rows) * sizeof(uint32_t) +
+         static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
 }
 
 Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
@@ -399,13 +446,14 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
 
   Arena arena(workspace);
   Depths depths;
-  depths.words = words_of(camera.width_px());
-  depths.width_px = depths.words * 32;
+  depths.rows = band.rows;
   depths.first_row = band.first_row;
-  const size_t words = static_cast<size_t>(depths.words) * static_cast<size_t>(band.rows);
-  depths.nearest = reinterpret_cast<uint64_t*>(arena.take(words * 32 * sizeof(uint64_t), 64).data);
-  depths.covered = reinterpret_cast<uint32_t*>(arena.take(words * sizeof(uint32_t) + sizeof(uint64_t)).data);
-  const Bytes patches = arena.take(words_of_patches(camera.width_px(), band.rows), 1);
+  const size_t strips = strips_of(camera.width_px());
+  depths.nearest = reinterpret_cast<uint64_t*>(
+      arena.take(strips * static_cast<size_t>(band.rows) * 32 * sizeof(uint64_t), 64).data);
+  depths.covered = reinterpret_cast<uint32_t*>(
+      arena.take(covered_words(camera.width_px(), band.rows) * sizeof(uint32_t)).data);
+  const Bytes patches = arena.take(strips * patches_of(band.rows), 1);
   const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
   const auto batch_at = [&](int thread) {
     return std::launder(reinterpret_cast<Batch*>(batches.data) + thread);
@@ -424,11 +472,12 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   const auto draw_tile = [&](int32_t row, Batch* batch) {
     Frame tile;
     (void)make_tile(row, &tile);
-    const size_t rows = static_cast<size_t>(tile.tile.y1 - tile.tile.y0);
-    memset(depths.covered + depths.first_word(tile.tile.y0), 0,
-           rows * static_cast<size_t>(depths.words) * sizeof(uint32_t));
-    const size_t first_patch = words_of_patches(camera.width_px(), row);
-    memset(patches.data + first_patch, 0, words_of_patches(camera.width_px(), tile.tile.y1 - tile.tile.y0));
+    const int32_t rows = tile.tile.y1 - tile.tile.y0;
+    for (size_t strip = 0; strip < strips; ++strip) {
+      memset(depths.covered + depths.word(static_cast<int32_t>(32 * strip), tile.tile.y0), 0,
+             static_cast<size_t>(rows) * sizeof(uint32_t));
+      memset(patches.data + strip * patches_of(band.rows) + row / kPatchRows, 0, patches_of(rows));
+    }
     TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();
     return painter.paint_tile(tile, depths);
   };
