@@ -24,9 +24,11 @@ const std::vector<std::string> kWorlds{
     "points:1", "points:1000", "points:100000", "cluster:100000", "spheres",  "water,depth=7",
     "solid:6",  "inset:6",     "noise:5",       "checker:5",      "sponge:5", "voxel:3",
     "wall:8",   "slant:7",     "columns:6",     "islands:7",      "screen:7", "ball:7"};
-const std::vector<std::string> kJudgedWorlds{"points:1", "points:100000", "cluster:10000", "cluster:100000",
-                                             "solid:6",  "voxel:3",       "wall:8",        "slant:7",
-                                             "slant:8",  "ball:8"};
+const std::vector<std::string> kJudgedWorlds{
+    "points:1",  "points:1000",   "points:10000", "points:100000", "cluster:10000", "cluster:100000",
+    "spheres",   "water,depth=7", "solid:6",      "inset:6",       "noise:5",       "checker:5",
+    "sponge:5",  "voxel:3",       "wall:6",       "wall:8",        "slant:7",       "slant:8",
+    "columns:6", "columns:7",     "islands:7",    "screen:7",      "ball:7",        "ball:8"};
 #endif
 
 class Drawer {

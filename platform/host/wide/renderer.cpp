@@ -1,6 +1,5 @@
 #include "host/wide/renderer.h"
 
-#include <math.h>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -10,6 +9,7 @@
 #include <atomic>
 #include <new>
 
+#include "host/wide/choice.h"
 #include "host/wide/exact.h"
 #include "host/wide/painter.h"
 
@@ -19,17 +19,15 @@ namespace {
 // Runs of more boxes than this are cut up, flat or not, so that blocks out of sight are not projected.
 constexpr uint32_t kFlatBoxes = 4096;
 constexpr uint32_t kBlockBoxes = 320;
+// Blocks of so few pixels a side are drawn whole: what they could hide pays no cut.
+constexpr int32_t kTinyPx = 16;
+constexpr uint32_t kTinyBoxes = 1024;
 // Of blocks that are looked up in tables; they are to be no larger than that.
 constexpr uint32_t kTableBoxes = 700;
 constexpr int32_t kTablePx = 28;
 // Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
-constexpr float kSortedPx = 2.0F;
+constexpr float kSortedPx = 6.0F;
 constexpr uint32_t kMostSorted = 512;
-// Boxes that would cover the picture this many times over hide one another enough for blocks to pay.
-constexpr double kBlocksFrom = 1.8;
-// Large ones cost more the second time: each is tested at many pixels.
-constexpr double kLargeBlocksFrom = 1;
-
 constexpr int32_t kPatchRows = 16;
 
 size_t strips_of(int32_t width_px) {
@@ -94,12 +92,6 @@ struct Block {
   Place place;
 };
 
-// Side of a box in voxels, as the root of the mean of their faces.
-double mean_side(const VoxelLists& lists) {
-  const size_t count = lists.entries().size;
-  return count == 0 ? 1 : sqrt(static_cast<double>(lists.face_area()) / static_cast<double>(count));
-}
-
 // One tile of the picture, by one thread.
 class TileDrawer {
  public:
@@ -122,11 +114,13 @@ class TileDrawer {
     }
     Block stack[7 * kMaxLevel + 8];
     int depth = 0;
-    stack[depth++] = {0,
-                      tree.level(),
-                      {0, 0, 0},
-                      {{frame_.tile.x0, frame_.tile.y0, frame_.tile.x1, frame_.tile.y1}, 0, 0, 0}};
-    // Of a part of the picture, blocks outside it are to be left out too.
+    const float zeros[8] = {};
+    Place places[8];
+    find_places(frame_, zeros, zeros, zeros, static_cast<float>(1 << tree.level()), places);
+    if (places[0].where.x0 < places[0].where.x1) {
+      stack[depth++] = {0, tree.level(), {0, 0, 0}, places[0]};
+    }
+    // Where the tile's edge cuts the world, blocks outside are to be left out too.
     const bool is_part = frame_.tile.y1 - frame_.tile.y0 < frame_.camera.height_px();
     while (depth > 0) {
       const Block block = stack[--depth];
@@ -134,10 +128,11 @@ class TileDrawer {
       const BlockNode& node = lists_.nodes()[block.node];
       const unsigned mask = tree.mask(block.node);
       const int32_t widest = width_of(block.place.where);
-      // Blocks of small voxels are looked up in tables (kernels.cpp) as they are drawn.
-      const bool has_table = by_blocks_ && !lists_.has_blocks() && voxel_px(block) < kSortedPx;
-      const uint32_t small = has_table ? kTableBoxes : by_blocks_ || is_part ? kBlockBoxes : kFlatBoxes;
-      const bool is_few = node.entries <= small && block.level <= kCubeLevel;
+      const bool has_table = by_blocks_ && !lists_.has_blocks() && voxel_px(block) < kTableVoxelPx;
+      const bool is_cut_off = is_part || touches_edge(block.place.where);
+      const uint32_t small = has_table ? kTableBoxes : by_blocks_ || is_cut_off ? kBlockBoxes : kFlatBoxes;
+      const bool is_few = node.entries <= (widest <= kTinyPx && small < kTinyBoxes ? kTinyBoxes : small) &&
+                          block.level <= kCubeLevel;
       const bool is_leaf =
           mask == 0 || block.level <= lists_.block_level() || (is_few && !(has_table && widest > kTablePx));
       const bool is_family = !is_leaf && has_table && is_few && widest <= 2 * kTablePx;
@@ -181,6 +176,11 @@ class TileDrawer {
     const int32_t x = where.x1 - where.x0;
     const int32_t y = where.y1 - where.y0;
     return x > y ? x : y;
+  }
+
+  bool touches_edge(const Rectangle& where) const {
+    return where.x0 == frame_.tile.x0 || where.y0 == frame_.tile.y0 || where.x1 == frame_.tile.x1 ||
+           where.y1 == frame_.tile.y1;
   }
 
   // The children that may be seen, front to back. Returns how many.
@@ -369,24 +369,6 @@ class TileDrawer {
   uint32_t sorted_numbers_[kMostSorted + kReadAhead];
 };
 
-// Whether boxes hide one another enough for blocks to pay: by how often over they would cover the picture,
-// about, were each as large as one in the middle of what is occupied.
-bool hide_one_another(const VoxelLists& lists, const Frame& frame) {
-  const VoxelBox& bounds = lists.tree().bounds();
-  double depth = static_cast<double>(frame.w[3]);
-  for (int axis = 0; axis < 3; ++axis) {
-    depth += static_cast<double>(frame.w[axis]) * (bounds.min[axis] + bounds.max[axis]) / 2;
-  }
-  const double nearest = static_cast<double>(frame.half_w) * 64;
-  depth = frame.perspective ? (depth > nearest ? depth : nearest) : 1;
-  const double voxel_area =
-      4 * static_cast<double>(frame.reach_x) * static_cast<double>(frame.reach_y) / (depth * depth);
-  const double pixels = static_cast<double>(frame.tile.x1 - frame.tile.x0) * (frame.tile.y1 - frame.tile.y0);
-  const double times = static_cast<double>(lists.face_area()) * voxel_area / pixels;
-  const bool is_large = sqrt(voxel_area) * mean_side(lists) >= static_cast<double>(kSortedPx);
-  return times >= (is_large ? kLargeBlocksFrom : kBlocksFrom);
-}
-
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
              const Options& options) {
   const int32_t width = camera.width_px();
@@ -465,7 +447,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   Stats done;
   done.order = options.order;
   if (done.order == Order::kAuto) {
-    done.order = hide_one_another(lists, frame) ? Order::kBlocks : Order::kFlat;
+    done.order = blocks_pay(lists, frame) ? Order::kBlocks : Order::kFlat;
   }
   const bool by_blocks = done.order == Order::kBlocks;
   const Painter painter(lists, camera, shading, band);

@@ -1,0 +1,258 @@
+#include "host/wide/choice.h"
+
+#include <math.h>
+#include <string.h>
+
+namespace thimble::wide {
+namespace {
+
+// Of so few boxes nothing is worth leaving out.
+constexpr uint32_t kFewBoxes = 64;
+// Boxes that are looked at in the time that a cell takes, a hundredth of the frame being for the choice.
+constexpr float kWorkPerCell = 12000;
+// In tests of a pixel: a box that is not looked at; a block that is looked up in tables; what other blocks
+// cost for each of their boxes.
+constexpr float kBoxSpared = 0.2F;
+constexpr float kTableBlock = 9;
+constexpr float kBoxInBlock = 0.12F;
+// Boxes of a block, in the mean, and pixels of a side (renderer.cpp: up to kTableBoxes, kBlockBoxes,
+// kTablePx).
+constexpr float kMeanTableBoxes = 350;
+constexpr float kMeanBlockBoxes = 120;
+constexpr float kMeanTablePx = 20;
+
+// The tree is cut, all cells a level at a time; those out of sight are left out, and the rest are laid front
+// to back on a raster over the part of the picture that they take, each as a haze as dense as its boxes'
+// faces. What stands before them hides boxes and pixels as if they were strewn at random.
+class Haze {
+ public:
+  Haze(const VoxelLists& lists, const Frame& frame) : lists_(lists), frame_(frame) {
+    for (int axis = 0; axis < 3; ++axis) {
+      eye_cell_[axis] = frame.perspective                    ? frame.camera.eye()[axis].raw >> 8
+                        : frame.camera.direction()[axis] < 0 ? INT32_MAX
+                                                             : INT32_MIN;
+    }
+    cut();
+    lay();
+  }
+
+  // Pixels of boxes that blocks need not test, and boxes that they need not look at, against what they cost.
+  bool blocks_pay() const { return count_ != 0 && spared_px_ + kBoxSpared * spared_boxes_ >= cost_; }
+
+ private:
+  static constexpr int kMostCells = 64;
+  static constexpr int kRaster = 16;
+
+  struct Cell {
+    uint32_t node;
+    int level;
+    uint32_t corner[3];
+    float x0, y0, x1, y1;  // in the picture
+    float side_px;         // of all of it, the longer one
+    float voxel_px;        // area of a voxel in its middle
+    float slack_px;        // that is tested besides
+    float share;           // of its rectangle that is in the picture
+  };
+
+  // Finds the cell's rectangle; false where it is out of sight.
+  bool place(Cell* cell) const {
+    const float side = static_cast<float>(1 << cell->level);
+    float x = frame_.u[3];
+    float y = frame_.v[3];
+    float depth = frame_.perspective ? frame_.w[3] : 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float middle = static_cast<float>(cell->corner[axis]) + side / 2;
+      x += frame_.u[axis] * middle;
+      y += frame_.v[axis] * middle;
+      depth += frame_.perspective ? frame_.w[axis] * middle : 0;
+    }
+    if (frame_.perspective) {
+      const float half = frame_.half_w * side;
+      if (depth <= -half) {
+        return false;
+      }
+      depth = fmaxf(depth, half / 2);
+    }
+    const float per_depth = 1 / depth;
+    x *= per_depth;
+    y *= per_depth;
+    // How far a voxel reaches (frame.h), at that place and not at the worst of the picture.
+    float half_x = 0;
+    float half_y = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      half_x += fabsf(frame_.u[axis] - (frame_.perspective ? x * frame_.w[axis] : 0)) * per_depth / 2;
+      half_y += fabsf(frame_.v[axis] - (frame_.perspective ? y * frame_.w[axis] : 0)) * per_depth / 2;
+    }
+    cell->voxel_px = 4 * half_x * half_y;
+    cell->slack_px = 4 * (half_x + frame_.slack_x) * (half_y + frame_.slack_y) - cell->voxel_px;
+    half_x *= side;
+    half_y *= side;
+    cell->side_px = 2 * fmaxf(half_x, half_y);
+    cell->x0 = fmaxf(x - half_x, static_cast<float>(frame_.tile.x0));
+    cell->x1 = fminf(x + half_x, static_cast<float>(frame_.tile.x1));
+    cell->y0 = fmaxf(y - half_y, static_cast<float>(frame_.tile.y0));
+    cell->y1 = fminf(y + half_y, static_cast<float>(frame_.tile.y1));
+    if (!(cell->x0 < cell->x1 && cell->y0 < cell->y1)) {
+      return false;
+    }
+    cell->share = (cell->x1 - cell->x0) * (cell->y1 - cell->y0) / (4 * half_x * half_y);
+    return true;
+  }
+
+  float boxes_of(const Cell& cell) const {
+    return static_cast<float>(lists_.nodes()[cell.node].entries) * cell.share;
+  }
+  // Of the faces of its boxes, in pixels.
+  float faces_of(const Cell& cell, float area) const { return cell.voxel_px * area * cell.share; }
+
+  bool is_cut(const Cell& cell) const {
+    return lists_.tree().mask(cell.node) != 0 && cell.level > lists_.block_level() &&
+           lists_.nodes()[cell.node].entries > kFewBoxes;
+  }
+
+  // Puts the children of the cell that are in sight behind the last cell, front to back. Returns how many it
+  // has.
+  int split(const Cell& cell) {
+    const unsigned mask = lists_.tree().mask(cell.node);
+    const uint32_t side = uint32_t{1} << (cell.level - 1);
+    unsigned first = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      first |= eye_cell_[axis] >= static_cast<int32_t>(cell.corner[axis] + side) ? 1U << axis : 0U;
+    }
+    for (unsigned turn = 0; turn < 8; ++turn) {
+      const unsigned octant = turn ^ first;
+      if ((mask >> octant & 1U) == 0) {
+        continue;
+      }
+      Cell child{};
+      child.node = lists_.nodes()[cell.node].first_child +
+                   static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
+      child.level = cell.level - 1;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        child.corner[axis] = cell.corner[axis] + ((octant >> axis & 1U) != 0 ? side : 0);
+      }
+      if (place(&child)) {
+        cells_[count_++] = child;
+      }
+    }
+    return __builtin_popcount(mask);
+  }
+
+  void cut() {
+    const CompactTree& tree = lists_.tree();
+    Cell root{};
+    root.level = tree.level();
+    if (tree.empty() || !place(&root)) {
+      return;
+    }
+    cells_[0] = root;
+    count_ = 1;
+    const float work = boxes_of(root) + 6 * faces_of(root, static_cast<float>(lists_.face_area()));
+    const int most = 1 + static_cast<int>(fminf(work / kWorkPerCell, kMostCells));
+    for (int looked = 1;;) {
+      int cuts = 0;
+      for (int i = 0; i < count_; ++i) {
+        cuts += is_cut(cells_[i]) ? 1 : 0;
+      }
+      // Half of the children are, about.
+      if (cuts == 0 || looked + 4 * cuts > most) {
+        return;
+      }
+      Cell* const from = cells_ + kRoom - count_;
+      memmove(from, cells_, static_cast<size_t>(count_) * sizeof(Cell));
+      const int before = count_;
+      count_ = 0;
+      for (int i = 0; i < before; ++i) {
+        const Cell cell = from[i];
+        if (is_cut(cell)) {
+          looked += split(cell);
+        } else {
+          cells_[count_++] = cell;
+        }
+      }
+    }
+  }
+
+  void lay() {
+    float x0 = 1e9F;
+    float x1 = -1e9F;
+    float y0 = 1e9F;
+    float y1 = -1e9F;
+    for (int i = 0; i < count_; ++i) {
+      x0 = fminf(x0, cells_[i].x0);
+      x1 = fmaxf(x1, cells_[i].x1);
+      y0 = fminf(y0, cells_[i].y0);
+      y1 = fmaxf(y1, cells_[i].y1);
+    }
+    float open[kRaster][kRaster];
+    for (auto& row : open) {
+      for (float& part : row) {
+        part = 1;
+      }
+    }
+    const float per_x = kRaster / (x1 - x0);
+    const float per_y = kRaster / (y1 - y0);
+    for (int i = 0; i < count_; ++i) {
+      const Cell& cell = cells_[i];
+      const BlockNode& node = lists_.nodes()[cell.node];
+      const float faces_px = faces_of(cell, static_cast<float>(node.face_area));
+      const float rectangle = (cell.x1 - cell.x0) * (cell.y1 - cell.y0);
+      const float density = fminf(faces_px / rectangle, 50);
+      const float left = expf(-density);
+      const float left_x = (cell.x0 - x0) * per_x;
+      const float right_x = (cell.x1 - x0) * per_x;
+      const float upper_y = (cell.y0 - y0) * per_y;
+      const float lower_y = (cell.y1 - y0) * per_y;
+      float area = 0;
+      float open_area = 0;
+      for (int y = static_cast<int>(upper_y); y < kRaster && static_cast<float>(y) < lower_y; ++y) {
+        const float high = fminf(lower_y, static_cast<float>(y + 1)) - fmaxf(upper_y, static_cast<float>(y));
+        for (int x = static_cast<int>(left_x); x < kRaster && static_cast<float>(x) < right_x; ++x) {
+          const float part =
+              high * (fminf(right_x, static_cast<float>(x + 1)) - fmaxf(left_x, static_cast<float>(x)));
+          area += part;
+          open_area += part * open[y][x];
+          open[y][x] *= 1 - part * (1 - left);
+        }
+      }
+      const float before = area > 0 ? open_area / area : 1;
+      // Of what the cell's boxes would cover, so much is open still when they are drawn; and a block is left
+      // out when all of its pixels are covered.
+      const float seen = fminf(density > 1e-6F ? before * (1 - left) / density : before, 1);
+      const float entries = static_cast<float>(node.entries);
+      const float boxes = boxes_of(cell);
+      const bool has_table = !lists_.has_blocks() && cell.voxel_px < kTableVoxelPx * kTableVoxelPx;
+      const float blocks = entries / (has_table ? kMeanTableBoxes : kMeanBlockBoxes);
+      const float block_px = blocks > 1 ? rectangle / cbrtf(blocks * blocks) : rectangle;
+      const float spared = boxes * powf(1 - seen, fmaxf(block_px, 1));
+      spared_px_ += (faces_px + boxes * cell.slack_px) * (1 - seen);
+      spared_boxes_ += spared;
+      if (has_table) {
+        const float across = fmaxf(cell.side_px / kMeanTablePx, 1);
+        const float per_box = fmaxf(fminf(across * across * across / entries, 1), 1 / kMeanTableBoxes);
+        cost_ += kTableBlock * per_box * (boxes - spared);
+      } else {
+        cost_ += kBoxInBlock * (boxes - spared);
+      }
+    }
+  }
+
+  // Cells that are cut make way from the end: eight for each of kMostCells / 4 at most, and those.
+  static constexpr int kRoom = 4 * kMostCells;
+  const VoxelLists& lists_;
+  const Frame& frame_;
+  int32_t eye_cell_[3];
+  Cell cells_[kRoom];
+  int count_ = 0;
+  float cost_ = 0;
+  float spared_px_ = 0;
+  float spared_boxes_ = 0;
+};
+
+}  // namespace
+
+bool blocks_pay(const VoxelLists& lists, const Frame& frame) {
+  return lists.entries().size > kFewBoxes && Haze(lists, frame).blocks_pay();
+}
+
+}  // namespace thimble::wide
