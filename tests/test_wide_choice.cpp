@@ -104,7 +104,7 @@ TEST_CASE("wide choice: worlds and cameras made to mislead, every order -> the c
 }
 
 // In boxes that are projected, about 0.7 ns each. Fitted by least squares of relative errors to the times of
-// thimble_engine_table in 500 views of voxels below 1.2 pixels (0.13 rms of the logarithm in flat order, 0.16
+// thimble_engine_table in views of voxels below 1.2 pixels (0.13 rms of the logarithm in flat order, 0.16
 // in blocks): a test takes 4.2 to 4.7 ns, a node 75 to 135, a frame of this size 0.7 us before its first box.
 double work(const wide::Stats& stats) {
   const wide::Counts& counts = stats.counts;

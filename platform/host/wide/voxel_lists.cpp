@@ -42,8 +42,13 @@ bool count(const CompactTree& tree, Census* census) {
 }
 
 // The lowest level whose nodes, with all above them, are at most a sixteenth of the boxes (or few).
+// Nodes that cost little, whatever the boxes: a megabyte.
+constexpr uint64_t kFreeNodes = 65536;
+
 int choose_block_level(const CompactTree& tree, const Census& census) {
-  const uint64_t most = census.boxes / 16 > 4096 ? census.boxes / 16 : 4096;
+  // A mean over the tree: where it is crowded in a corner, that wants more nodes than a sixteenth of the boxes.
+  const uint64_t quarter = census.boxes / 4 < kFreeNodes ? census.boxes / 4 : kFreeNodes;
+  const uint64_t most = census.boxes / 16 > quarter ? census.boxes / 16 : quarter > 4096 ? quarter : 4096;
   int level = tree.level() < kCubeLevel ? tree.level() : kCubeLevel;
   while (level > 1 && census.level_begin[level - 2] <= most) {
     --level;

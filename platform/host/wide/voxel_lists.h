@@ -40,7 +40,7 @@ struct BlockNode {
 
 /// The lists of one tree, in bytes that the caller gave. 4 bytes a box, 1 more with many materials, 1 more
 /// with merged blocks, and 16 bytes a node of block_level and above, of which there are at most one in 16
-/// boxes and 4096.
+/// boxes, or 4096, or one in 4 boxes up to 65536.
 class VoxelLists {
  public:
   /// Makes the lists; takes `bytes(tree)` from the arena. One pass over the masks and one over the boxes.
