@@ -251,6 +251,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   session.painter = asks_port && command->engine.name != "ray64" ? &wide : nullptr;
 
   const SessionResult result = run_session(session);
+  session.painter = nullptr;  // it ends with this function
   const std::string engine = asks_port ? engine_text(wide) : "";
   const std::string who = std::string(session.application->name) + " on " + board.name;
   if (!result.fault.empty()) {

@@ -14,7 +14,7 @@ constexpr float kWorkPerCell = 12000;
 // cost for each of their boxes.
 constexpr float kBoxSpared = 0.2F;
 constexpr float kTableBlock = 9;
-constexpr float kBoxInBlock = 0.12F;
+constexpr float kBoxInBlock = 0.08F;
 // Boxes of a block, in the mean, and pixels of a side (renderer.cpp: up to kTableBoxes, kBlockBoxes,
 // kTablePx).
 constexpr float kMeanTableBoxes = 350;
@@ -228,8 +228,11 @@ class Haze {
       spared_px_ += (faces_px + boxes * cell.slack_px) * (1 - seen);
       spared_boxes_ += spared;
       if (has_table) {
+        // As many blocks as cells so large would have, were all cut alike: eight each, or four on a surface.
         const float across = fmaxf(cell.side_px / kMeanTablePx, 1);
-        const float per_box = fmaxf(fminf(across * across * across / entries, 1), 1 / kMeanTableBoxes);
+        const float parts = static_cast<float>(__builtin_popcount(lists_.tree().mask(cell.node)));
+        const float table_blocks = parts > 1 ? powf(across, log2f(parts)) : 1;
+        const float per_box = fmaxf(fminf(table_blocks / entries, 1), 1 / kMeanTableBoxes);
         cost_ += kTableBlock * per_box * (boxes - spared);
       } else {
         cost_ += kBoxInBlock * (boxes - spared);

@@ -46,7 +46,8 @@ bool count(const CompactTree& tree, Census* census) {
 constexpr uint64_t kFreeNodes = 65536;
 
 int choose_block_level(const CompactTree& tree, const Census& census) {
-  // A mean over the tree: where it is crowded in a corner, that wants more nodes than a sixteenth of the boxes.
+  // A mean over the tree: where it is crowded in a corner, that wants more nodes than a sixteenth of the
+  // boxes.
   const uint64_t quarter = census.boxes / 4 < kFreeNodes ? census.boxes / 4 : kFreeNodes;
   const uint64_t most = census.boxes / 16 > quarter ? census.boxes / 16 : quarter > 4096 ? quarter : 4096;
   int level = tree.level() < kCubeLevel ? tree.level() : kCubeLevel;
