@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "output/plot.h"
 #include "output/svg.h"
 
 namespace thimble::tools {
@@ -21,6 +22,25 @@ TEST_CASE("svg words: markup is written otherwise, UTF-8 stays, what is neither 
   CHECK(xml_text("\xF4\x90\x80\x80") == other + other + other + other);
   CHECK(xml_text(std::string("a\x01\0b", 4)) == "a" + other + other + "b");
   CHECK(label(1, 2, "middle", "<") == "<text x=\"1.0\" y=\"2.0\" text-anchor=\"middle\">&lt;</text>\n");
+}
+
+TEST_CASE("svg plot: decades far from 1 are powers in plain words, none of its markup is written out") {
+  Plot plot;
+  plot.title = "a < b";
+  plot.x_label = "points";
+  plot.y_label = "ms";
+  plot.series.push_back({"one", false, {{1, 0.001}, {100000, 20000}}});
+  const std::string text = log_plot_text(plot);
+  for (const char* label : {">1<", ">1000<", ">0.1<", ">10\u2074<", ">10\u2075<", ">10\u207B\u00B3<"}) {
+    CAPTURE(label);
+    CHECK(text.find(label) != std::string::npos);
+  }
+  CHECK(text.find("a &lt; b") != std::string::npos);
+  std::size_t written_out = 0;
+  for (std::size_t at = text.find("&lt;"); at != std::string::npos; at = text.find("&lt;", at + 1)) {
+    ++written_out;
+  }
+  CHECK(written_out == 1);  // the title's
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "output/svg.h"
 
@@ -38,7 +39,14 @@ std::string decade_text(int decade) {
   if (decade == -1) {
     return "0.1";
   }
-  return "10<tspan dy=\"-5\" font-size=\"9\">" + std::to_string(decade) + "</tspan>";
+  // Characters of their own, so that a label stays plain words.
+  constexpr std::array<const char*, 10> kRaised{"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
+                                                "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string text = decade < 0 ? "10\u207B" : "10";
+  for (const char digit : std::to_string(std::abs(decade))) {
+    text += kRaised[static_cast<std::size_t>(digit - '0')];
+  }
+  return text;
 }
 
 }  // namespace
