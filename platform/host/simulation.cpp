@@ -119,10 +119,14 @@ void* run_application(void* argument) {
   stack_t own{};
   own.ss_sp = state->signal_stack.bytes().data;
   own.ss_size = state->signal_stack.bytes().size;
-  ::sigaltstack(&own, nullptr);
+  stack_t before{};
+  ::sigaltstack(&own, &before);
   bind_functions(state);
   paint_stack(state);
   state->status = state->application();
+  // Who gave the thread another, a sanitizer, takes back what it finds when the thread ends, wherever that
+  // lies.
+  ::sigaltstack(&before, nullptr);
   state->ended = true;
   state->to_host.post();
   return nullptr;
