@@ -29,11 +29,10 @@ namespace thimble::wide {
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
   uint32_t* covered;  ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
-                      ///< kRowsAhead words more can be read behind the last
+                      ///< behind the last strip one more can be read
   int32_t rows;       ///< of the picture, and words from a strip to the next
   int32_t first_row;  ///< the row of the picture that comes first
 
-  static constexpr int32_t kRowsAhead = 64;
   /// Where the word that holds the pixel is in `covered`; 32 times that and x & 31 in `nearest`.
   size_t word(int32_t x, int32_t y) const {
     return static_cast<size_t>(x >> 5) * static_cast<size_t>(rows) + static_cast<size_t>(y - first_row);

@@ -38,7 +38,7 @@ size_t patches_of(int32_t rows) {
 }
 // A strip more than there are, since pixels are looked up with those right of them.
 size_t covered_words(int32_t width_px, int32_t rows) {
-  return (strips_of(width_px) + 1) * static_cast<size_t>(rows) + Depths::kRowsAhead;
+  return (strips_of(width_px) + 1) * static_cast<size_t>(rows);
 }
 
 // Whether all pixels of `where` are covered. Patches of a word by kPatchRows rows that were seen full are
