@@ -1,5 +1,6 @@
 // The terminal screen: what it sends, what it understands, and that it leaves the terminal as it found it.
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,12 +9,14 @@
 #include <cstdlib>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "host/screen.h"
 #include "host/terminal.h"
 #include "host/terminal_cells.h"
 #include "host/terminal_input.h"
+#include "host/terminal_mode.h"
 #include "support/pty.h"
 
 namespace {
@@ -384,6 +387,33 @@ TEST_CASE("terminal: keys, mouse and a new size -> events in the picture's pixel
   pty.type("q");
   CHECK(pty.wait_for_end());
   CHECK(pty.exit_status() == 0);
+}
+
+TEST_CASE("terminal: a signal between a look and the wait -> not slept through") {
+  for (const int number : {SIGWINCH, SIGCONT}) {
+    for (const bool in_thread : {false, true}) {
+      CAPTURE(number);
+      CAPTURE(in_thread);
+      Pty pty(40, 13, [number, in_thread] {
+        TerminalMode mode(::open("/dev/tty", O_RDWR));
+        if (mode.take_resized() || mode.take_reentered() || mode.wait(0) != Wakeup::kTime) {
+          return 1;
+        }
+        if (in_thread) {
+          std::thread([number] { ::raise(number); }).join();
+        } else {
+          ::raise(number);
+        }
+        if (mode.wait(60000) != Wakeup::kSignal) {
+          return 2;
+        }
+        // Once is enough.
+        return mode.take_resized() && mode.wait(0) == Wakeup::kTime ? 0 : 3;
+      });
+      CHECK(pty.wait_for_end());
+      CHECK(pty.exit_status() == 0);
+    }
+  }
 }
 
 TEST_CASE("terminal: a key without a release -> let go by itself after a moment") {

@@ -286,19 +286,18 @@ void Terminal::release_keys(Clock::time_point now) {
 
 void Terminal::read_input(int timeout_ms) {
   const int wait = input_.waits() ? std::max(timeout_ms, kSequenceMs) : timeout_ms;
-  pollfd source{descriptor_.get(), POLLIN, 0};
-  const int ready = ::poll(&source, 1, wait);
+  const Wakeup wakeup = mode_.wait(wait);
   std::vector<Event> events;
-  if (ready > 0) {
+  if (wakeup == Wakeup::kTime && input_.waits()) {
+    input_.settle(&events);
+  } else if (wakeup == Wakeup::kInput || wakeup == Wakeup::kHangUp) {
     std::array<char, 4096> bytes{};
     const ssize_t count = ::read(descriptor_.get(), bytes.data(), bytes.size());
     if (count > 0) {
       input_.take({bytes.data(), static_cast<std::size_t>(count)}, &events);
-    } else if ((count < 0 && errno != EINTR && errno != EAGAIN) || (source.revents & POLLHUP) != 0) {
+    } else if ((count < 0 && errno != EINTR && errno != EAGAIN) || wakeup == Wakeup::kHangUp) {
       lost_ = true;
     }
-  } else if (ready == 0 && input_.waits()) {
-    input_.settle(&events);
   }
   for (const Event& event : events) {
     take(event);

@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "host/screen.h"
+
 namespace thimble::host {
 namespace {
 
@@ -35,6 +37,9 @@ struct State {
   std::atomic<bool> entered{false};
   std::atomic<bool> resized{false};
   std::atomic<bool> reentered{false};
+  // Handlers write to it and `wait` polls it, so that a signal between a look at the flags and the wait
+  // ends the wait. The same pipe for the whole program: a handler may run late.
+  std::array<int, 2> wakeup{-1, -1};
 };
 State& state() {
   static State only;
@@ -62,6 +67,18 @@ void send(int descriptor, std::string_view text) {
     }
   }
   ::fcntl(descriptor, F_SETFL, flags);
+}
+
+void wake() {
+  const char byte = 0;
+  // A full pipe wakes just as well.
+  [[maybe_unused]] const ssize_t count = ::write(state().wakeup[1], &byte, 1);
+}
+
+void drain() {
+  std::array<char, 64> bytes{};
+  while (::read(state().wakeup[0], bytes.data(), bytes.size()) > 0) {
+  }
 }
 
 void enter() {
@@ -117,12 +134,16 @@ extern "C" void on_continue(int /*number*/) {
     enter();
     state().reentered = true;
     state().resized = true;
+    wake();
   }
   errno = error;
 }
 
 extern "C" void on_resize(int /*number*/) {
+  const int error = errno;
   state().resized = true;
+  wake();
+  errno = error;
 }
 
 void install(int number, void (*handler)(int)) {
@@ -164,6 +185,9 @@ void give_signals_a_stack() {
 
 TerminalMode::TerminalMode(int descriptor) {
   State& now = state();
+  if (now.wakeup[0] < 0 && ::pipe2(now.wakeup.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
+    throw ScreenError("the terminal cannot be used: this program may not open more files");
+  }
   now.descriptor = descriptor;
   ::tcgetattr(descriptor, &now.before);
   now.raw = now.before;
@@ -210,6 +234,20 @@ bool TerminalMode::take_resized() {
 }
 bool TerminalMode::take_reentered() {
   return state().reentered.exchange(false);
+}
+
+Wakeup TerminalMode::wait(int timeout_ms) {
+  std::array<pollfd, 2> sources{{{state().descriptor, POLLIN, 0}, {state().wakeup[0], POLLIN, 0}}};
+  const int ready = ::poll(sources.data(), sources.size(), timeout_ms);
+  if (ready == 0) {
+    return Wakeup::kTime;
+  }
+  if (ready < 0 || sources[1].revents != 0) {
+    drain();  // before the flags are looked at: what comes later is found by the next wait
+    return Wakeup::kSignal;
+  }
+  return (sources[0].revents & POLLIN) != 0 && (sources[0].revents & POLLHUP) == 0 ? Wakeup::kInput
+                                                                                   : Wakeup::kHangUp;
 }
 
 void restore_terminal() {

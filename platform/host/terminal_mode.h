@@ -13,9 +13,12 @@
 
 namespace thimble::host {
 
+enum class Wakeup { kTime, kSignal, kInput, kHangUp };
+
 class TerminalMode {
  public:
-  /// `descriptor` is a terminal, open for reading and writing, and nobody else's.
+  /// `descriptor` is a terminal, open for reading and writing, and nobody else's. Throws ScreenError when
+  /// this program may not open as many files as it takes.
   explicit TerminalMode(int descriptor);
   ~TerminalMode();
   TerminalMode(const TerminalMode&) = delete;
@@ -27,6 +30,9 @@ class TerminalMode {
   bool take_resized();
   /// True once after each time that the terminal was entered again: all of it has to be drawn anew.
   bool take_reentered();
+  /// Waits for what comes next. What `take_resized` and `take_reentered` have not yet told of ends the wait
+  /// too, whenever it came and whichever thread the signal was given to: it is never slept through.
+  Wakeup wait(int timeout_ms);
 };
 
 /// Puts the terminal back if one is entered. Safe to call from a signal handler.
