@@ -1,6 +1,5 @@
 // thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
 // error calls for.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -136,11 +135,9 @@ void run_simulation(const AccuracyCommand& command) {
 
 // Options that say what is measured go with few of the others.
 void check_alone(const CLI::App& sub, const std::string& what, const std::vector<std::string>& allowed) {
-  for (const CLI::Option* option : sub.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() != 0 && name != what &&
-        std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
-      throw CLI::ValidationError(what, "takes no " + (name == "scene" ? "SCENE" : name));
+  for (const std::string& name : options_given(sub)) {
+    if (name != what && std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
+      refuse_usage(what, "takes no " + (name == "scene" ? "SCENE" : name));
     }
   }
 }
@@ -152,8 +149,8 @@ void run(const AccuracyCommand& command, const CLI::App& sub) {
     return;
   }
   for (const char* name : {"--rays", "--seed"}) {
-    if (sub.count(name) != 0) {
-      throw CLI::ValidationError(name, "goes with --hard-cases only");
+    if (is_given(sub, name)) {
+      refuse_usage(name, "goes with --hard-cases only");
     }
   }
   if (command.simulation) {
@@ -162,7 +159,7 @@ void run(const AccuracyCommand& command, const CLI::App& sub) {
     return;
   }
   if (command.scene.arguments.scene.empty()) {
-    throw CLI::RequiredError("SCENE");
+    refuse_usage("SCENE is required");
   }
   run_scene(command);
 }
@@ -188,18 +185,16 @@ void add_accuracy(CLI::App& app) {
   auto command = std::make_shared<AccuracyCommand>();
   command->study.view.width_px = 200;
   command->study.view.height_px = 150;
-  CLI::App* sub = app.add_subcommand(
-      "accuracy",
+  CLI::App* sub = add_command(
+      app, "accuracy",
       "Time against error: one view of a scene with every knob that trades them turned alone and together "
       "(depth, cut-off, bits of a ray's direction, samples a pixel), and frames stopped early, each compared "
       "with a reference that has all knobs at their best.");
   command->scene.add_scene(*sub, false);
-  sub->add_flag(
-         "--hard-cases", command->hard_cases,
-         "instead of a scene: near-degenerate rays through this tracer and through textbook traversals in "
-         "floating point, and every fixed-point operation against exact arithmetic; the exit status is "
-         "1 when this tracer gets one wrong")
-      ->disable_flag_override();
+  add_flag(*sub, "--hard-cases", &command->hard_cases,
+           "instead of a scene: near-degenerate rays through this tracer and through textbook traversals in "
+           "floating point, and every fixed-point operation against exact arithmetic; the exit status is "
+           "1 when this tracer gets one wrong");
   add_choice_option(
       *sub, "--simulation", {"particles", "water"},
       [command](std::size_t index) {
@@ -212,12 +207,12 @@ void add_accuracy(CLI::App& app) {
       *sub, "--rays", "N", 1, 1000000000,
       [command](std::int64_t number) { command->hard_rays = static_cast<std::uint64_t>(number); },
       "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
-      ->default_str("1000000");
+      .default_str("1000000");
   add_whole_option(
       *sub, "--seed", "S", 0, INT64_MAX / 2000003,
       [command](std::int64_t number) { command->seed = static_cast<std::uint64_t>(number); },
       "--hard-cases: of the random rays")
-      ->default_str("1");
+      .default_str("1");
   add_positive(*sub, "--for-ms", "T", 1e-9, &command->for_ms,
                "answer with the options that come nearest to the reference in T milliseconds of the "
                "processor a frame, median on this machine at this --size");
@@ -225,12 +220,12 @@ void add_accuracy(CLI::App& app) {
                "answer with the fastest options whose picture is off by at most E: the root mean square of "
                "all channels' differences from the reference, in steps of 1/255 (column rms_error; 0: equal; "
                "PSNR is 20 log10(255/E) dB)");
-  sub->get_option("--for-ms")->excludes(sub->get_option("--for-error"));
+  exclude_each_other(*sub, "--for-ms", "--for-error");
   add_whole_option(
       *sub, "--rounds", "N", 1, 999,
       [command](std::int64_t number) { command->study.rounds = static_cast<int>(number); },
       "frames timed of each setting, by turns, one of each a round")
-      ->default_str("5");
+      .default_str("5");
   add_choice_option(
       *sub, "--against", {"time", "visits", "instructions"},
       [command](std::size_t index) {
@@ -239,7 +234,7 @@ void add_accuracy(CLI::App& app) {
       },
       "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
       "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
-      ->default_str("time");
+      .default_str("time");
   command->study.view.add_to(*sub, false);
   add_choice_option(
       *sub, "--shade", {"depth", "normal", "color", "mono"},
@@ -249,7 +244,7 @@ void add_accuracy(CLI::App& app) {
         command->study.shade = kModes[index];
       },
       "what is compared: brightness by distance, by the face's direction, palette colours, or hit or not")
-      ->default_str("depth");
+      .default_str("depth");
   add_text_option(
       *sub, "--effects", "LIST",
       [command](const std::string& text) {
@@ -260,7 +255,7 @@ void add_accuracy(CLI::App& app) {
       "light whose knobs are turned too (rays of occlusion, rays of rough metal, bounces): auto (what the "
       "scene's materials and lights call for), none, or effects with commas between them: " +
           effect_names())
-      ->default_str("auto");
+      .default_str("auto");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->csv_path,
       "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
@@ -285,8 +280,8 @@ void add_accuracy(CLI::App& app) {
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,
                   "PSNR against what --against says, the front marked and named");
-  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no notes")->disable_flag_override();
-  sub->callback([command, sub] { run(*command, *sub); });
+  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
+  when_chosen(*sub, [command, sub] { run(*command, *sub); });
 }
 
 }  // namespace thimble::tools

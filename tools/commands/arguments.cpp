@@ -110,26 +110,52 @@ std::optional<double> parse_real(std::string_view text) {
   return number;
 }
 
-CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                             std::function<std::string(const std::string&)> take, const std::string& help) {
-  const std::size_t comma = name.find(',');
-  const std::string shown = comma == std::string::npos ? name : name.substr(comma + 1);
-  return app
-      .add_option_function<std::string>(
-          name,
-          [shown, take = std::move(take)](const std::string& text) {
-            const std::string fault = take(text);
-            if (!fault.empty()) {
-              throw CLI::ValidationError(shown, in_quotes(text) + " " + fault);
-            }
-          },
-          help)
-      ->type_name(type_name);
+Option& Option::default_str(const std::string& text) {
+  option_->default_str(text);
+  return *this;
 }
 
-CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                              std::int64_t low, std::int64_t high,
-                              const std::function<void(std::int64_t)>& take, const std::string& help) {
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description) {
+  return app.add_subcommand(name, description);
+}
+
+void when_chosen(CLI::App& command, std::function<void()> action) {
+  command.callback(std::move(action));
+}
+
+Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
+                    const std::string& help) {
+  return Option(app.add_option(name, *text, help)->type_name(type_name));
+}
+
+void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::string& help) {
+  app.add_flag(name, *flag, help)->disable_flag_override();
+}
+
+Option add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                       std::function<std::string(const std::string&)> take, const std::string& help) {
+  const std::size_t comma = name.find(',');
+  const std::string shown = comma == std::string::npos ? name : name.substr(comma + 1);
+  return Option(app.add_option_function<std::string>(
+                       name,
+                       [shown, take = std::move(take)](const std::string& text) {
+                         const std::string fault = take(text);
+                         if (!fault.empty()) {
+                           refuse_usage(shown, in_quotes(text) + " " + fault);
+                         }
+                       },
+                       help)
+                    ->type_name(type_name));
+}
+
+Option add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                        std::int64_t low, std::int64_t high, const std::function<void(std::int64_t)>& take,
+                        const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [=](const std::string& text) -> std::string {
@@ -143,8 +169,8 @@ CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std:
       help);
 }
 
-CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
-                               std::function<void(std::size_t)> take, const std::string& help) {
+Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                         std::function<void(std::size_t)> take, const std::string& help) {
   std::string type_name;
   for (const std::string& word : words) {
     type_name += (type_name.empty() ? "" : "|") + word;
@@ -166,8 +192,8 @@ CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std
       help);
 }
 
-CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                             std::string* path, const std::string& help) {
+Option add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                       std::string* path, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [path](const std::string& text) -> std::string {
@@ -175,6 +201,40 @@ CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::
         return text.empty() ? "is not a file's name" : "";
       },
       help);
+}
+
+void make_need(CLI::App& app, const std::string& name, const std::string& needed) {
+  app.get_option(name)->needs(app.get_option(needed));
+}
+
+void exclude_each_other(CLI::App& app, const std::string& name, const std::string& other) {
+  app.get_option(name)->excludes(app.get_option(other));
+}
+
+bool has_option(const CLI::App& app, const std::string& name) {
+  return app.get_option_no_throw(name) != nullptr;
+}
+
+bool is_given(const CLI::App& app, const std::string& name) {
+  return app.count(name) != 0;
+}
+
+std::vector<std::string> options_given(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() != 0) {
+      names.push_back(option->get_name());
+    }
+  }
+  return names;
+}
+
+void refuse_usage(const std::string& name, const std::string& what) {
+  throw CLI::ValidationError(name, what);
+}
+
+void refuse_usage(const std::string& what) {
+  throw CLI::ValidationError(what);
 }
 
 std::shared_ptr<CLI::FormatterBase> help_formatter() {

@@ -1,6 +1,8 @@
 /// @file arguments.h
 /// Command-line options whose errors are sentences, and help that fits a terminal. The subcommands add their
 /// options through these instead of CLI11's typed ones, which accept NaN and print limits with 300 digits.
+/// Only arguments.cpp and main.cpp see CLI11 itself, whose headers take longer to compile and to lint than
+/// any subcommand does.
 #ifndef THIMBLE_TOOLS_COMMANDS_ARGUMENTS_H
 #define THIMBLE_TOOLS_COMMANDS_ARGUMENTS_H
 
@@ -26,23 +28,61 @@ std::optional<std::int64_t> parse_whole(std::string_view text, std::int64_t low,
 /// `text` as a finite number.
 std::optional<double> parse_real(std::string_view text);
 
+/// An option or argument that was added, for what else there is to say of it.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  /// What the help names as the default.
+  Option& default_str(const std::string& text);
+  Option& required();
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A subcommand of `app`, which keeps it.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description);
+/// What the subcommand does, once all options are read.
+void when_chosen(CLI::App& command, std::function<void()> action);
+
+/// An argument without a name on the command line; `name` is for the functions below.
+Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
+                    const std::string& help);
+/// An option without a value: `flag` becomes true.
+void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::string& help);
+
 /// An option whose text goes to `take`; what `take` returns, unless empty, is what is wrong with it, and
 /// completes the sentence `--name: "text" ...`.
-CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                             std::function<std::string(const std::string&)> take, const std::string& help);
+Option add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                       std::function<std::string(const std::string&)> take, const std::string& help);
 
 /// An option that is a whole number of low .. high.
-CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                              std::int64_t low, std::int64_t high,
-                              const std::function<void(std::int64_t)>& take, const std::string& help);
+Option add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                        std::int64_t low, std::int64_t high, const std::function<void(std::int64_t)>& take,
+                        const std::string& help);
 
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
-CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
-                               std::function<void(std::size_t)> take, const std::string& help);
+Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                         std::function<void(std::size_t)> take, const std::string& help);
 
 /// The path of a file.
-CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                             std::string* path, const std::string& help);
+Option add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                       std::string* path, const std::string& help);
+
+/// `name` is refused without `needed`.
+void make_need(CLI::App& app, const std::string& name, const std::string& needed);
+/// Only one of the two may be given.
+void exclude_each_other(CLI::App& app, const std::string& name, const std::string& other);
+/// Whether `app` has such an option.
+bool has_option(const CLI::App& app, const std::string& name);
+/// Whether the user gave it.
+bool is_given(const CLI::App& app, const std::string& name);
+/// The names of all that the user gave.
+std::vector<std::string> options_given(const CLI::App& app);
+
+/// Ends the command as wrong usage (status 2): "`name`: `what`", or `what` alone.
+[[noreturn]] void refuse_usage(const std::string& name, const std::string& what);
+[[noreturn]] void refuse_usage(const std::string& what);
 
 /// Help in lines of at most 100 characters.
 std::shared_ptr<CLI::FormatterBase> help_formatter();

@@ -1,5 +1,4 @@
 // thimble bake: a scene as bytes for flash.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -206,8 +205,8 @@ bool ends_in(const std::string& text, const std::string& ending) {
 
 void add_bake(CLI::App& app) {
   auto command = std::make_shared<BakeCommand>();
-  CLI::App* sub = app.add_subcommand(
-      "bake", "Bake a scene: its compact tree, palette and camera as one block of bytes for flash.");
+  CLI::App* sub = add_command(
+      app, "bake", "Bake a scene: its compact tree, palette and camera as one block of bytes for flash.");
   command->scene.add_scene(*sub);
   add_text_option(
       *sub, "-o,--output", "FILE",
@@ -217,21 +216,18 @@ void add_bake(CLI::App& app) {
         return text == "-" || command->as_header || ends_in(text, ".oct") ? "" : "does not end in .oct or .h";
       },
       "the bytes as a file (.oct) or as a C and C++ header (.h); - is the bytes on standard output")
-      ->required();
+      .required();
   add_bytes(*sub, "--memory", &command->scene.memory_bytes,
             "the most bytes that the baked scene may take, such as 65536, 64K or 2M (default: no limit)");
   add_board(*sub, &command->scene.board,
             "the limit is the board's flash less " + grouped(kCodeFlashBytes) +
                 " bytes for code (the smaller counts if --memory is given too), and the camera frames the "
                 "scene for its display");
-  sub->add_flag("--coarsen", command->scene.coarsen,
-                "when it does not fit, merge blocks of voxels until it just does; this only adds solid")
-      ->disable_flag_override();
-  sub->add_flag(
-         "--brick-map", command->brick_map,
-         "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
-         "as long as all keeps the limit; --board always does")
-      ->disable_flag_override();
+  add_flag(*sub, "--coarsen", &command->scene.coarsen,
+           "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
+  add_flag(*sub, "--brick-map", &command->brick_map,
+           "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
+           "as long as all keeps the limit; --board always does");
   add_text_option(
       *sub, "--effects", "LIST",
       [command](const std::string& text) {
@@ -241,7 +237,7 @@ void add_bake(CLI::App& app) {
       },
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
       "commas between them; a header states the set as a macro, so that firmware holds no others")
-      ->default_str("auto");
+      .default_str("auto");
   add_text_option(
       *sub, "--name", "IDENT",
       [command](const std::string& text) {
@@ -249,10 +245,10 @@ void add_bake(CLI::App& app) {
         return is_identifier(text) ? "" : "cannot be the name of an array in C and C++";
       },
       "what a header calls the array; its macros begin with the same in capitals")
-      ->default_str(kDefaultIdentifier);
+      .default_str(kDefaultIdentifier);
   command->view.add_to(*sub);
   command->scene.add_report(*sub);
-  sub->callback([command] { run(*command); });
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,5 +1,4 @@
 // thimble boards: what the boards are, and what of a scene fits on each.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -315,13 +314,13 @@ void run(const BoardsCommand& command) {
 
 void add_boards(CLI::App& app) {
   auto command = std::make_shared<BoardsCommand>();
-  CLI::App* sub = app.add_subcommand(
-      "boards",
+  CLI::App* sub = add_command(
+      app, "boards",
       "The boards and their limits; with a scene also what of it fits: its baked bytes against the flash, "
       "the RAM to draw it and to build it on the chip, and the deepest --depth.");
   command->scene.add_scene(*sub, false);
   for (const char* name : {"--depth", "--as-voxels", "--z-up"}) {
-    sub->get_option(name)->needs("scene");
+    make_need(*sub, name, "scene");
   }
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->csv_path,
@@ -331,8 +330,8 @@ void add_boards(CLI::App& app) {
       "pool_bytes, building_ram_bytes (those and the pool), builds_in_ram, deepest_depth (0: none tried), "
       "deepest_tried_depth");
   add_path_option(*sub, "--json", "FILE.json", &command->json_path, "the same, an array of objects");
-  sub->add_flag("--quiet", command->scene.quiet, "no progress bar")->disable_flag_override();
-  sub->callback([command] { run(*command); });
+  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar");
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,7 +1,5 @@
 #include "commands/effect_options.h"
 
-#include <CLI/CLI.hpp>
-
 #include "commands/arguments.h"
 
 namespace thimble::tools {
@@ -30,7 +28,7 @@ void EffectOptions::add_to(CLI::App& app, const std::string& more) {
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, or with "
       "commas between them any of " +
           spaced_names() + more)
-      ->default_str("auto");
+      .default_str("auto");
   add_whole_option(
       app, "--bounces", "N", 0, kMaxBounces,
       [this](std::int64_t number) { bounces = static_cast<std::uint8_t>(number); },

@@ -1,5 +1,4 @@
 // thimble effects: which effects a scene calls for, why, and what each costs.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -211,8 +210,8 @@ void add_effects(CLI::App& app) {
   auto command = std::make_shared<EffectsCommand>();
   command->study.view.width_px = 320;
   command->study.view.height_px = 240;
-  CLI::App* sub = app.add_subcommand(
-      "effects",
+  CLI::App* sub = add_command(
+      app, "effects",
       "Which effects a scene calls for, why, and what each costs: rays, nodes visited and time of the frame "
       "with it less those of the frame without it, bytes of RAM and of flash. What the scene does not call "
       "for costs 0. Direct light is judged between two frames without shadows, which need it.");
@@ -223,7 +222,7 @@ void add_effects(CLI::App& app) {
       *sub, "--frames", "N", 1, 99,
       [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
       "frames timed of each set of effects, by turns")
-      ->default_str("5");
+      .default_str("5");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->csv_path,
       "a line an effect, all eleven: effect, called_for (1 or 0), why (in words), K_rays for K of primary, "
@@ -236,8 +235,8 @@ void add_effects(CLI::App& app) {
   add_path_option(*sub, "--json", "FILE.json", &command->json_path,
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "milliseconds a frame, a bar an effect");
-  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no notes")->disable_flag_override();
-  sub->callback([command] { run(*command); });
+  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

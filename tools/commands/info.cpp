@@ -1,10 +1,10 @@
 // thimble info: what a scene is, and what it takes.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "commands/stats.h"
@@ -212,9 +212,9 @@ void run(const SceneOptions& options) {
 
 void add_info(CLI::App& app) {
   auto options = std::make_shared<SceneOptions>();
-  CLI::App* sub = app.add_subcommand("info", "Validate a scene and say what it is and what it takes.");
+  CLI::App* sub = add_command(app, "info", "Validate a scene and say what it is and what it takes.");
   options->add_to(*sub);
-  sub->callback([options] { run(*options); });
+  when_chosen(*sub, [options] { run(*options); });
 }
 
 }  // namespace thimble::tools

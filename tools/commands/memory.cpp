@@ -1,6 +1,5 @@
 // thimble memory: what a scene takes at every depth in every structure, which boards hold it, and what a
 // smaller depth or budget does to its picture.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -487,8 +486,8 @@ void run(const MemoryCommand& command) {
 
 void add_memory(CLI::App& app) {
   auto command = std::make_shared<MemoryCommand>();
-  CLI::App* sub = app.add_subcommand(
-      "memory",
+  CLI::App* sub = add_command(
+      app, "memory",
       "Memory against depth: for every depth from 1 to the scene's own the bytes of a dense bit grid, the "
       "mutable pool, the compact tree and the DAG (equal subtrees once), bytes while building, time of a "
       "frame, nodes visited, the picture's error against the deepest, and the boards that hold it. A voxel "
@@ -497,15 +496,14 @@ void add_memory(CLI::App& app) {
   add_bytes(*sub, "--memory", &command->study.budget_bytes,
             "also the deepest depth whose structure fits so many bytes, such as 65536, 64K or 2M (the "
             "structure alone: renderer, band and building not counted)");
-  sub->add_flag("--budget-sweep", command->study.budget_sweep,
-                "the same for 1 KiB, 2 KiB, ... until the whole scene fits, and what coarsening to the "
-                "budget does to the picture; --csv, --json and --plot then hold this")
-      ->disable_flag_override();
+  add_flag(*sub, "--budget-sweep", &command->study.budget_sweep,
+           "the same for 1 KiB, 2 KiB, ... until the whole scene fits, and what coarsening to the "
+           "budget does to the picture; --csv, --json and --plot then hold this");
   add_whole_option(
       *sub, "--frames", "N", 0, 99,
       [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
       "frames timed for each depth and structure; 0: none, no times and visits")
-      ->default_str("3");
+      .default_str("3");
   command->study.view.add_to(*sub);
   add_choice_option(
       *sub, "--shade", {"depth", "normal", "color", "mono"},
@@ -516,7 +514,7 @@ void add_memory(CLI::App& app) {
       },
       "what a wrong pixel is: of another brightness by distance, by the face's direction, of another "
       "palette colour, or hit or not")
-      ->default_str("depth");
+      .default_str("depth");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->csv_path,
       "a line a depth: row (depth; or paper, paper_4_gib: the paper's sum, dense columns only), depth, grid "
@@ -536,8 +534,8 @@ void add_memory(CLI::App& app) {
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,
                   "bytes against depth; with --budget-sweep mean depth error against budget");
-  sub->add_flag("--quiet", command->scene.quiet, "no progress bar and no notes")->disable_flag_override();
-  sub->callback([command] { run(*command); });
+  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,6 +1,5 @@
 #include "commands/options.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -143,26 +142,26 @@ constexpr double kFill = 0.94;
 }  // namespace
 
 void SceneOptions::add_scene(CLI::App& app, bool required) {
-  app.add_option("scene", arguments.scene,
-                 "a file (.vox .ply .obj .off .xyz .csv .scene .oct, a Gadget-1 snapshot, .gz of any) or a "
-                 "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L")
-      ->required(required)
-      ->type_name("SCENE");
+  Option scene =
+      add_argument(app, "scene", "SCENE", &arguments.scene,
+                   "a file (.vox .ply .obj .off .xyz .csv .scene .oct, a Gadget-1 snapshot, .gz of any) or a "
+                   "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L");
+  if (required) {
+    scene.required();
+  }
   add_whole_option(
       app, "--depth", "L", kMinLevel, kMaxLevel,
       [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox, .scene or "
       "--as-voxels file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for the "
       "others)");
-  app.add_flag("--as-voxels", arguments.as_voxels,
-               "point files: coordinates are voxel indices; nothing is scaled, turned or moved")
-      ->disable_flag_override();
-  app.add_flag("--z-up", arguments.z_up, "meshes: z is up in the file (default: y is)")
-      ->disable_flag_override();
+  add_flag(app, "--as-voxels", &arguments.as_voxels,
+           "point files: coordinates are voxel indices; nothing is scaled, turned or moved");
+  add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is)");
 }
 
 void SceneOptions::add_report(CLI::App& app) {
-  app.add_flag("--quiet", quiet, "no progress bar and no summary on standard error")->disable_flag_override();
+  add_flag(app, "--quiet", &quiet, "no progress bar and no summary on standard error");
   add_path_option(app, "--stats", "FILE.json", &stats_path, "write counts, bytes and times as JSON");
 }
 
@@ -174,14 +173,13 @@ void SceneOptions::add_to(CLI::App& app) {
   add_board(app, &board,
             "keep to a board's RAM less its stack, as with --memory (the smaller of both counts); a baked "
             "scene lies in its flash and takes no RAM");
-  app.add_flag("--coarsen", coarsen,
-               "when the budget is short, merge blocks of voxels instead of failing; this only adds solid")
-      ->disable_flag_override();
+  add_flag(app, "--coarsen", &coarsen,
+           "when the budget is short, merge blocks of voxels instead of failing; this only adds solid");
   add_choice_option(
       app, "--structure", {"dense", "pool", "compact"},
       [this](std::size_t index) { structure = static_cast<StructureKind>(index); },
       "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
-      ->default_str("compact");
+      .default_str("compact");
   add_report(app);
 }
 
@@ -255,12 +253,12 @@ void EngineOptions::add_to(CLI::App& app) {
       "wide: object order, with vectors and threads, for --structure compact where there is room; ray64, "
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64")
-      ->default_str("auto");
+      .default_str("auto");
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
       [this](std::int64_t number) { threads = static_cast<int>(number); },
       "threads that build, and that draw with the wide engine or with effects")
-      ->default_str("1");
+      .default_str("1");
 }
 
 void EngineOptions::add_ray_engines_to(CLI::App& app) {
@@ -268,7 +266,7 @@ void EngineOptions::add_ray_engines_to(CLI::App& app) {
   add_choice_option(
       app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
       "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more")
-      ->default_str("auto");
+      .default_str("auto");
 }
 
 bool EngineOptions::prepare(BuiltScene* built, std::int32_t width_px, std::int32_t height_px) const {
@@ -294,12 +292,12 @@ void EngineOptions::add_board_engines_to(CLI::App& app) {
       "compared; ray64: the core, as on the board (by bricks where the scene has a brick map); auto: wide "
       "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
       "applications are always the core's")
-      ->default_str("auto");
+      .default_str("auto");
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
       [this](std::int64_t number) { threads = static_cast<int>(number); },
       "threads that draw with the wide engine")
-      ->default_str("1");
+      .default_str("1");
 }
 
 TraceOptions EngineOptions::trace_options() const {
@@ -320,7 +318,7 @@ void add_quality(CLI::App& app, Quality* quality) {
         return quality->across != 0 ? "" : "is not 1, 4, 9, 16, 25, 36, 49 or 64";
       },
       "samples a pixel, on a regular grid in it, averaged: 1, 4, 9, 16, 25, 36, 49 or 64")
-      ->default_str("1");
+      .default_str("1");
   add_text_option(
       app, "--cutoff", "PX",
       [quality](const std::string& text) -> std::string {
@@ -333,7 +331,7 @@ void add_quality(CLI::App& app, Quality* quality) {
       },
       "stop at blocks of the tree that cover less than PX pixels, in their mean colour; 0 to 64, compact "
       "structure only")
-      ->default_str("0");
+      .default_str("0");
   add_whole_option(
       app, "--max-depth", "D", kMinLevel, kMaxLevel,
       [quality](std::int64_t depth) { quality->max_depth = static_cast<int>(depth); },
@@ -365,7 +363,7 @@ void ViewOptions::add_to(CLI::App& app, bool with_direction_bits) {
         return {};
       },
       "the picture's size in pixels (default: " + std::to_string(width_px) + "x" + std::to_string(height_px) +
-          (app.get_option_no_throw("--board") != nullptr ? ", or the display of --board)" : ")"));
+          (has_option(app, "--board") ? ", or the display of --board)" : ")"));
   add_choice_option(
       app, "--projection", {"perspective", "orthographic"},
       [this](std::size_t index) {
@@ -373,7 +371,7 @@ void ViewOptions::add_to(CLI::App& app, bool with_direction_bits) {
         placed = true;
       },
       "how rays leave the camera")
-      ->default_str("perspective");
+      .default_str("perspective");
   add_triple(app, "--eye", &eye, &placed,
              "where the camera is, in voxels (default: where it sees the whole scene)");
   add_triple(app, "--target", &target, &placed,
@@ -389,7 +387,7 @@ void ViewOptions::add_to(CLI::App& app, bool with_direction_bits) {
         return fov_degrees >= 1 && fov_degrees <= 120 ? "" : "is not a number from 1 to 120";
       },
       "perspective: vertical field of view in degrees, 1 to 120")
-      ->default_str("60");
+      .default_str("60");
   add_text_option(
       app, "--span", "V",
       [this](const std::string& text) {

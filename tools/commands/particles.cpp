@@ -1,5 +1,4 @@
 // thimble particles: the paper's particle world in a window, in a terminal, or unseen.
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -65,9 +64,8 @@ void run(const ParticlesCommand& given) {
   ParticlesCommand command = given;
   WorldOptions& world_options = command.world;
   if (world_options.least_diameter > world_options.most_diameter) {
-    throw CLI::ValidationError("--min-size", std::to_string(world_options.least_diameter) +
-                                                 " is more than --max-size, " +
-                                                 std::to_string(world_options.most_diameter));
+    refuse_usage("--min-size", std::to_string(world_options.least_diameter) + " is more than --max-size, " +
+                                   std::to_string(world_options.most_diameter));
   }
   const std::array<std::string, 6> outputs{command.input_recording_path, command.state_path,
                                            command.field_path,           command.frame_path,
@@ -173,7 +171,7 @@ void add_real_option(CLI::App& sub, const std::string& name, const std::string& 
         return {};
       },
       help)
-      ->default_str(standard);
+      .default_str(standard);
 }
 
 void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
@@ -193,7 +191,7 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         return {};
       },
       "cells of the world, a pixel each")
-      ->default_str("800x600");
+      .default_str("800x600");
   add_whole_option(
       sub, "--count", "N", 0, kMaxBalls / 2,
       [command](std::int64_t count) {
@@ -201,17 +199,17 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         command->count_given = true;
       },
       "balls at the start; of --bodies, the first N")
-      ->default_str("693");
+      .default_str("693");
   add_whole_option(
       sub, "--min-size", "D", 1, kMaxBallDiameter,
       [world](std::int64_t cells) { world->least_diameter = static_cast<std::int32_t>(cells); },
       "least diameter of a ball, cells")
-      ->default_str("2");
+      .default_str("2");
   add_whole_option(
       sub, "--max-size", "D", 1, kMaxBallDiameter,
       [world](std::int64_t cells) { world->most_diameter = static_cast<std::int32_t>(cells); },
       "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
-      ->default_str("12");
+      .default_str("12");
   add_real_option(
       sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
       "the part of its speed that a ball keeps when it bounces, 0 to 1", "0.8");
@@ -231,14 +229,14 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         return {};
       },
       "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
-      ->default_str("0,0.1");
+      .default_str("0,0.1");
   add_real_option(
       sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
       "random balls start with up to V cells a step on each axis; of --bodies the fastest has V", "3");
   add_whole_option(
       sub, "--seed", "S", 0, UINT32_MAX,
       [world](std::int64_t seed) { world->seed = static_cast<std::uint32_t>(seed); }, "of random balls")
-      ->default_str("1");
+      .default_str("1");
   add_path_option(
       sub, "--bodies", "FILE", &command->bodies_path,
       "balls from a file: the number of bodies, the radius of the world, then a line \"x y vx vy m r g b\" "
@@ -250,12 +248,12 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       sub, "--substeps", {"1", "2", "4", "8", "16"},
       [world](std::size_t index) { world->substeps_log2 = static_cast<std::int32_t>(index); },
       "parts that each step is made in")
-      ->default_str("1");
+      .default_str("1");
   add_whole_option(
       sub, "--subpixel-bits", "N", 1, 15,
       [world](std::int64_t bits) { world->subpixel_bits = static_cast<std::int32_t>(bits); },
       "positions are kept to 2^-N cells")
-      ->default_str("15");
+      .default_str("15");
 }
 
 void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
@@ -277,12 +275,12 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       "given, "
       "else in an X11 window where DISPLAY works, else in the terminal where standard output is one, else "
       "nowhere")
-      ->default_str("auto");
+      .default_str("auto");
   add_whole_option(
       sub, "--eps", "N", 1, 1'000'000,
       [command](std::int64_t rate) { command->play.rate = static_cast<std::int32_t>(rate); },
       "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so")
-      ->default_str("60");
+      .default_str("60");
   add_whole_option(
       sub, "--fps", "N", 1, 1000,
       [command](std::int64_t rate) { command->play.frames_a_second = static_cast<int>(rate); },
@@ -325,26 +323,24 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
         return text.size() > 4 && text.ends_with(".y4m") ? "" : "does not end in .y4m";
       },
       "write moving pictures as YUV4MPEG2, which ffmpeg and mpv play: --fps pictures for --eps steps");
-  sub.add_flag("--figures", command->play.figures_in_files,
-               "also write the figures on these pictures: sizes, bounciness, colliders, Eps")
-      ->disable_flag_override();
+  add_flag(sub, "--figures", &command->play.figures_in_files,
+           "also write the figures on these pictures: sizes, bounciness, colliders, Eps");
   add_path_option(sub, "--stats", "FILE.json", &command->stats_path,
                   "write counts, bytes, seconds and the CRC-32 of the state");
-  sub.add_flag("--quiet", command->play.quiet, "no progress bar and no summary on standard error")
-      ->disable_flag_override();
+  add_flag(sub, "--quiet", &command->play.quiet, "no progress bar and no summary on standard error");
 }
 
 }  // namespace
 
 void add_particles(CLI::App& app) {
   auto command = std::make_shared<ParticlesCommand>();
-  CLI::App* sub = app.add_subcommand(
-      "particles",
+  CLI::App* sub = add_command(
+      app, "particles",
       "The paper's particle world: balls in a field of bits, to play with by mouse and keys (? lists them).");
   add_world_options(*sub, command);
   add_view_options(*sub, command);
   add_file_options(*sub, command);
-  sub->callback([command] { run(*command); });
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,6 +1,5 @@
 // thimble render: a scene as a picture.
 #include <zlib.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -99,14 +98,14 @@ std::unique_ptr<OutputFile> open_output(const std::string& path) {
 void check_usage(const RenderCommand& command) {
   const bool wide = command.engine.name == "wide";
   if (wide && !command.quality.plain()) {
-    throw CLI::ValidationError(
+    refuse_usage(
         "--engine wide draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
   }
   if (wide && (command.effects.named() || command.effects.bounces)) {
-    throw CLI::ValidationError("--engine wide draws without --effects and --bounces");
+    refuse_usage("--engine wide draws without --effects and --bounces");
   }
   if (command.effects.named() && !command.shade_name.empty() && command.shade != ShadeMode::kColor) {
-    throw CLI::ValidationError("--shade " + command.shade_name + " shows no light, and so no --effects");
+    refuse_usage("--shade " + command.shade_name + " shows no light, and so no --effects");
   }
 }
 
@@ -122,8 +121,8 @@ EffectChoice effect_choice(const RenderCommand& command) {
 // What a lit picture cannot honour.
 void check_lit(const RenderCommand& command, EffectSet effects) {
   const auto refuse = [&](const std::string& what) {
-    throw CLI::ValidationError("a picture with the effects " + effects_text(effects) + " " + what +
-                               " (--effects none draws the scene without)");
+    refuse_usage("a picture with the effects " + effects_text(effects) + " " + what +
+                 " (--effects none draws the scene without)");
   };
   if (command.scene.structure != StructureKind::kCompact) {
     refuse("wants --structure compact");
@@ -345,7 +344,7 @@ void run(const RenderCommand& given) {
 
 void add_render(CLI::App& app) {
   auto command = std::make_shared<RenderCommand>();
-  CLI::App* sub = app.add_subcommand("render", "Draw a scene as a picture.");
+  CLI::App* sub = add_command(app, "render", "Draw a scene as a picture.");
   command->scene.add_to(*sub);
   add_text_option(
       *sub, "-o,--output", "FILE",
@@ -354,7 +353,7 @@ void add_render(CLI::App& app) {
         return image_kind(text) ? "" : "does not end in .ppm, .pgm, .pbm or .png";
       },
       "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output")
-      ->required();
+      .required();
   command->view.add_to(*sub);
   add_choice_option(
       *sub, "--shade", {"depth", "normal", "color", "mono"},
@@ -367,7 +366,7 @@ void add_render(CLI::App& app) {
       },
       "brightness by distance, the face's direction, the palette in one light, or white where anything is; "
       "given without --effects it draws none")
-      ->default_str("depth");
+      .default_str("depth");
   add_path_option(
       *sub, "--hits", "FILE.csv", &command->hits_path,
       std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
@@ -380,7 +379,7 @@ void add_render(CLI::App& app) {
                           "only");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
-  sub->callback([command] { run(*command); });
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

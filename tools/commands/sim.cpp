@@ -1,6 +1,5 @@
 // thimble sim: the firmware's own application in the host simulator.
 #include <zlib.h>
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -303,18 +302,17 @@ void run(const SimCommand& given) {
   SimCommand command = given;
   SessionOptions& session = command.session;
   if (!session.application->wants_scene && !command.scene.arguments.scene.empty()) {
-    throw CLI::ValidationError("SCENE", in_quotes(command.scene.arguments.scene) +
-                                            " is not for the application " + session.application->name +
-                                            ", which draws no scene");
+    refuse_usage("SCENE", in_quotes(command.scene.arguments.scene) + " is not for the application " +
+                              session.application->name + ", which draws no scene");
   }
   if (session.hold_fps != 0 &&
       (std::strcmp(session.application->name, "demo") != 0 || session.board->visits_a_second == 0)) {
-    throw CLI::ValidationError("--hold", std::string(session.application->name) + " on " +
-                                             session.board->name + " holds no rate of frames");
+    refuse_usage("--hold", std::string(session.application->name) + " on " + session.board->name +
+                               " holds no rate of frames");
   }
   if (command.engine.name == "wide" && !session.application->asks_port) {
-    throw CLI::ValidationError("--engine", std::string("wide draws for the application demo only, not for ") +
-                                               session.application->name);
+    refuse_usage("--engine", std::string("wide draws for the application demo only, not for ") +
+                                 session.application->name);
   }
   if (command.scene.arguments.scene.empty()) {
     const bool is_water = std::strcmp(session.application->name, "water") == 0;
@@ -344,7 +342,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       },
       "where the display is shown; auto: in an X11 window where DISPLAY works, else in the terminal where "
       "standard output is one, else not at all; a board without a display gets one by window or terminal")
-      ->default_str("auto");
+      .default_str("auto");
   add_choice_option(
       sub, "--theme", {"auto", "oled", "lcd", "plain"},
       [command](std::size_t index) {
@@ -353,7 +351,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
         command->session.theme = kThemes[index];
       },
       "how the display looks; auto: as the board's does; pictures in files never have a theme")
-      ->default_str("auto");
+      .default_str("auto");
   add_whole_option(
       sub, "--scale", "N", 1, 32,
       [command](std::int64_t scale) { command->session.scale = static_cast<std::int32_t>(scale); },
@@ -372,7 +370,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       sub, "--fps", "N", 1, 1000,
       [command](std::int64_t rate) { command->session.frames_a_second = static_cast<int>(rate); },
       "frames a second at most in a window or terminal, and of the recording")
-      ->default_str("30");
+      .default_str("30");
 }
 
 void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
@@ -417,8 +415,9 @@ void add_sim(CLI::App& app) {
   auto command = std::make_shared<SimCommand>();
   command->session.board = platform::find_board(kDefaultBoard);
   command->session.application = &applications[0];
-  CLI::App* sub = app.add_subcommand(
-      "sim", "Run the firmware's own application on this machine, with a board's RAM, flash and display.");
+  CLI::App* sub = add_command(
+      app, "sim",
+      "Run the firmware's own application on this machine, with a board's RAM, flash and display.");
   command->scene.add_scene(*sub, false);
   add_board(*sub, &command->session.board,
             std::string("whose limits and display count (default: ") + kDefaultBoard + ")");
@@ -433,9 +432,8 @@ void add_sim(CLI::App& app) {
         command->chooses_application = false;
       },
       "the application (default: water for a scene with water, else " + names.front() + ")");
-  sub->add_flag("--coarsen", command->scene.coarsen,
-                "when the scene does not fit the flash, merge blocks of voxels until it just does")
-      ->disable_flag_override();
+  add_flag(*sub, "--coarsen", &command->scene.coarsen,
+           "when the scene does not fit the flash, merge blocks of voxels until it just does");
   add_text_option(
       *sub, "--effects", "LIST",
       [command](const std::string& text) {
@@ -444,12 +442,12 @@ void add_sim(CLI::App& app) {
         return choice ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
       },
       "what the scene is baked for: auto (what it calls for), none, or effects with commas between them")
-      ->default_str("auto");
+      .default_str("auto");
   add_display_options(*sub, command);
   add_file_options(*sub, command);
   command->engine.add_board_engines_to(*sub);
   command->scene.add_report(*sub);
-  sub->callback([command] { run(*command); });
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

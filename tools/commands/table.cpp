@@ -2,7 +2,6 @@
 //
 // Every frame is judged: pixels are drawn at random and their rays handed to the exact reference, which holds
 // the scene's voxels in a grid of its own, filled from the generator and not from the tree.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -282,8 +281,8 @@ void run(const TableCommand& command) {
 
 void add_table(CLI::App& app) {
   auto command = std::make_shared<TableCommand>();
-  CLI::App* sub = app.add_subcommand(
-      "table",
+  CLI::App* sub = add_command(
+      app, "table",
       "The paper's Tables I and II on this machine: seconds a frame of 800 x 600 pixels (the median of 5, "
       "each "
       "from a slightly different place) beside the paper's, and how many of 10,000 pixels differ from the "
@@ -309,20 +308,20 @@ void add_table(CLI::App& app) {
       *sub, "--scene", {"points", "cluster"},
       [command](std::size_t index) { command->scene = index == 0 ? "points" : "cluster"; },
       "uniformly random points, or points that crowd")
-      ->default_str("points");
+      .default_str("points");
   add_whole_option(
       *sub, "--depth", "L", kLeastLevel, kMaxLevel,
       [command](std::int64_t level) { command->depth = static_cast<int>(level); },
       "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
-      ->default_str("10");
+      .default_str("10");
   add_path_option(
       *sub, "--json", "FILE.json", &command->json_path,
       "an array, one object a row: points, projection, seconds, paper_seconds (null where the paper "
       "has none), hits, exact_mismatches, engine");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "seconds against points");
-  sub->add_flag("--quiet", command->quiet, "no progress bar")->disable_flag_override();
+  add_flag(*sub, "--quiet", &command->quiet, "no progress bar");
   command->engine.add_to(*sub);
-  sub->callback([command] { run(*command); });
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,5 +1,4 @@
 // thimble trace: rays from a file, hits to a file.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -216,18 +215,18 @@ void run(const TraceCommand& command) {
 
 void add_trace(CLI::App& app) {
   auto command = std::make_shared<TraceCommand>();
-  CLI::App* sub = app.add_subcommand("trace", "Trace rays from a file.");
+  CLI::App* sub = add_command(app, "trace", "Trace rays from a file.");
   command->scene.add_to(*sub);
   add_path_option(*sub, "--rays", "FILE.csv", &command->rays_path,
                   "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed")
-      ->required();
+      .required();
   add_path_option(*sub, "-o,--output", "FILE.csv", &command->output,
                   std::string("a header line, then one line a ray: ") + kHitColumns +
                       "; point = q-origin / 256 + t * q-direction, in voxels; - is standard output")
-      ->default_str("-");
+      .default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);
-  sub->callback([command] { run(*command); });
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools
