@@ -178,32 +178,25 @@ HWY_NOINLINE void keep(const Depths& depths, Batch* batch) {
   }
 }
 
-// What floats say of some rays and boxes: `met` only where `unclear` is not set.
-struct Verdict {
-  hn::Mask<F32> met;
-  hn::Mask<F32> unclear;
+// Some rays, and the middles of boxes as seen from their origins; all integers, and exact.
+struct Aims {
   hn::Vec<F32> direction[3];
-  hn::Vec<F32>
-      ahead[3];  // how far the middle lies along the ray, in 1/512 voxel; exact. Not where it stands still
+  hn::Vec<F32> center[3];  // in 1/512 voxel
+  hn::Mask<F32> unclear;   // where floats do not tell what the ray is
 };
 
 // Rounded directions: off a half by more than the error of the float map, the float's nearest integer is the
-// direction. Centres (below 2^24) and directions (at most 20 bits) are then exact, and so is what is compared
-// with: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two. c_a d_b - c_b d_a, by Kahan's
-// method with fused products, is within 2 units in the last place of itself (C.-P. Jeannerod, N. Louvet,
-// J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5), so 2^-21 of it settles what
-// is nearer than that; without fused products the two roundings of the products count too.
+// direction. Centres (below 2^24) and directions (at most 20 bits) are then exact.
 //
 // `low` are lowest corners within the cube, in voxels; `half` half sides in 1/512 voxel; `origin` the cube's
 // corner less the eye, in 1/512 voxel.
 template <bool kPerspective>
-HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F32> x, hn::Vec<F32> y,
-                         const hn::Vec<F32> (&low)[3], hn::Vec<F32> half) {
+HWY_INLINE Aims aims_of(const Frame& frame, const float (&origin)[3], hn::Vec<F32> x, hn::Vec<F32> y,
+                        const hn::Vec<F32> (&low)[3], hn::Vec<F32> half) {
   const F32 d;
   const auto zero = hn::Zero(d);
-  Verdict verdict;
-  hn::Vec<F32> center[3];
-  auto unclear = hn::Lt(zero, zero);
+  Aims aims;
+  aims.unclear = hn::Lt(zero, zero);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const auto map = [&](const float(&of)[3][3]) {
@@ -212,19 +205,46 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
     };
     const auto rest = map(frame.map_rest);
     const auto nearest = hn::Round(rest);
-    unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+    aims.unclear =
+        hn::Or(aims.unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
     const auto varying = hn::Add(map(frame.map_whole), nearest);
-    center[axis] = hn::Add(hn::MulAdd(low[axis], hn::Set(d, 512.0F), hn::Set(d, origin[axis])), half);
+    aims.center[axis] = hn::Add(hn::MulAdd(low[axis], hn::Set(d, 512.0F), hn::Set(d, origin[axis])), half);
     if (kPerspective) {
-      verdict.direction[axis] = varying;
+      aims.direction[axis] = varying;
     } else {
-      verdict.direction[axis] = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
-      center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), center[axis]);
+      aims.direction[axis] = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      aims.center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), aims.center[axis]);
     }
   }
+  return aims;
+}
+
+// How far a middle lies along the ray.
+HWY_INLINE hn::Vec<F32> ahead_of(hn::Vec<F32> center, hn::Vec<F32> direction) {
+  const F32 d;
+  return hn::Xor(center, hn::And(direction, hn::Set(d, -0.0F)));
+}
+
+// What floats say of some rays and boxes: `met` only where `unclear` is not set.
+struct Verdict {
+  hn::Mask<F32> met;
+  hn::Mask<F32> unclear;
+};
+
+// What is compared with is exact, too: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two.
+// c_a d_b - c_b d_a, by Kahan's method with fused products, is within 2 units in the last place of itself
+// (C.-P. Jeannerod, N. Louvet, J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5),
+// so 2^-21 of it settles what is nearer than that; without fused products the two roundings of the products
+// count too.
+template <bool kPerspective>
+HWY_INLINE Verdict judge(const Frame& frame, const Aims& aims, hn::Vec<F32> half) {
+  const F32 d;
+  const auto zero = hn::Zero(d);
+  const auto& center = aims.center;
+  const auto& direction = aims.direction;
+  auto unclear = aims.unclear;
   // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and
   // there.
-  const auto& direction = verdict.direction;
   hn::Vec<F32> size[3];
   bool still[3] = {false, false, false};
 #pragma GCC unroll 3
@@ -268,13 +288,9 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
       met = hn::And(met, hn::And(hn::Le(center[axis], half), hn::Gt(center[axis], minus_half)));
       continue;
     }
-    const auto sign = hn::CopySign(hn::Set(d, 1.0F), direction[axis]);
-    verdict.ahead[axis] = hn::Mul(sign, center[axis]);
-    met = hn::And(met, hn::Gt(verdict.ahead[axis], minus_half));
+    met = hn::And(met, hn::Gt(ahead_of(center[axis], direction[axis]), minus_half));
   }
-  verdict.met = met;
-  verdict.unclear = unclear;
-  return verdict;
+  return {met, unclear};
 }
 
 // Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
@@ -327,7 +343,7 @@ HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> pro
 // tell: GrayScale. Products of a distance (below 2^25) and a direction are compared where they differ by more
 // than four times what their roundings can make.
 template <bool kPerspective>
-HWY_INLINE hn::Vec<U32> grays_of(const Frame& frame, const GrayScale& scale, const Verdict& verdict,
+HWY_INLINE hn::Vec<U32> grays_of(const Frame& frame, const GrayScale& scale, const Aims& aims,
                                  hn::Mask<F32>* unclear) {
   const F32 d;
   const auto zero = hn::Zero(d);
@@ -340,8 +356,9 @@ HWY_INLINE hn::Vec<U32> grays_of(const Frame& frame, const GrayScale& scale, con
     if (!kPerspective && frame.camera.direction()[axis] == 0) {
       continue;
     }
-    const auto size = hn::Abs(verdict.direction[axis]);
-    const auto distance = hn::Sub(verdict.ahead[axis], hn::Set(d, 256.0F));
+    const auto size = hn::Abs(aims.direction[axis]);
+    const auto ahead = ahead_of(aims.center[axis], aims.direction[axis]);
+    const auto distance = hn::Sub(ahead, hn::Set(d, 256.0F));
     const auto ours = hn::Mul(distance, speed);
     const auto theirs = hn::Mul(numerator, size);
     const auto later = hn::Gt(ours, theirs);  // theirs are 0 or more
@@ -414,89 +431,142 @@ HWY_INLINE hn::Vec<U32> word_of(const Depths& depths, hn::Vec<U32> x, hn::Vec<U3
   return hn::Add(hn::Mul(hn::ShiftRight<5>(x), hn::Set(d, static_cast<uint32_t>(depths.rows))), row);
 }
 
-// Tests what waits in floats where they can tell, and exactly where they cannot. `kept`: set when something
-// went into the picture.
+// Pairs, unpacked.
+template <bool kUnit>
+struct Unpacked {
+  hn::Vec<U32> entry, x, y, level;
+  hn::Vec<U32> low[3];
+  hn::Vec<F32> half;
+
+  Unpacked(const Pairs& pairs, size_t at) {
+    const F32 d;
+    const I32 di;
+    const U32 du;
+    const auto place = hn::Load(du, pairs.place + at);
+    x = hn::And(place, hn::Set(du, 0xFFFFU));
+    y = hn::ShiftRight<16>(place);
+    entry = hn::Load(du, pairs.entry + at);
+    unpack_side(du, entry, kUnit, &level, &low[0]);
+    half = kUnit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
+    low[1] = hn::And(hn::ShiftRight<10>(entry), hn::Set(du, kWithin));
+    low[2] = hn::And(hn::ShiftRight<20>(entry), hn::Set(du, kWithin));
+  }
+
+  template <bool kPerspective>
+  HWY_INLINE Aims aims(const Frame& frame, const float (&origin)[3]) const {
+    const auto real = [](hn::Vec<U32> v) { return hn::ConvertTo(F32(), hn::BitCast(I32(), v)); };
+    const hn::Vec<F32> corner[3] = {real(low[0]), real(low[1]), real(low[2])};
+    return aims_of<kPerspective>(frame, origin, real(x), real(y), corner, half);
+  }
+};
+
+// Puts what was met into a row, with keys mirrored by the signs of the directions. `number`: of the entries,
+// or greys.
+template <bool kUnit, bool kGray>
+HWY_INLINE void take(hn::Mask<F32> met, const Unpacked<kUnit>& pairs, const Aims& aims, hn::Vec<U32> number,
+                     const Depths& depths, bool* kept, Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const auto within = hn::Set(du, kWithin);
+  if (batch->met + hn::Lanes(d) > Pairs::kSize) {
+    keep(depths, batch);
+    *kept = true;
+  }
+  auto key = hn::Zero(du);
+  [[maybe_unused]] auto down = hn::Zero(du);
+#pragma GCC unroll 3
+  for (int axis = 2; axis >= 0; --axis) {
+    const auto is_down = hn::RebindMask(du, hn::Lt(aims.direction[axis], hn::Zero(d)));
+    auto mirrored = hn::Xor(pairs.low[axis], hn::IfThenElseZero(is_down, within));
+    if (!kUnit) {
+      const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), pairs.level)));
+      mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
+    }
+    key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
+    if (!kGray) {
+      down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
+    }
+  }
+  const auto pixel =
+      hn::Or(hn::ShiftLeft<5>(word_of(depths, pairs.x, pairs.y)), hn::And(pairs.x, hn::Set(du, 31U)));
+  const auto chosen = hn::RebindMask(du, met);
+  hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
+  if (!kGray) {
+    hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
+  }
+  hn::StoreU(hn::Compress(number, chosen), du, batch->number + batch->met);
+  hn::StoreU(hn::Compress(pixel, chosen), du, batch->pixel + batch->met);
+  batch->met += hn::CountTrue(du, chosen);
+}
+
+// Puts aside what floats could not tell.
+HWY_INLINE void put_aside(const Frame& frame, hn::Mask<F32> unclear, size_t at, const Depths& depths,
+                          bool* kept, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  if (hn::AllFalse(d, unclear)) {
+    return;
+  }
+  const Pairs& pairs = batch->waiting;
+  append(unclear, hn::Load(du, pairs.entry + at), hn::Load(du, pairs.number + at),
+         hn::Load(du, pairs.place + at), &batch->unclear);
+  if (batch->unclear.count + hn::Lanes(d) > Pairs::kSize) {
+    test_unclear(frame, depths, kept, batch);
+  }
+}
+
+// Tests what waits in floats where they can tell, and puts aside the rest. `kept`: set when something went
+// into the picture.
+//
+// Greys are found of those that were met alone, where these are fewer: the pairs that were met are first
+// moved to the front. A parallel camera meets nearly all of them, and its greys take no division.
 template <bool kPerspective, bool kUnit, bool kGray>
 HWY_NOINLINE void test_waiting_of(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
   const F32 d;
-  const I32 di;
   const U32 du;
   const size_t lanes = hn::Lanes(d);
   Pairs& pairs = batch->waiting;
   batch->counts.candidates += pairs.count;
   float origin[3];
   origin_of(frame, *batch, origin);
-  const auto within = hn::Set(du, kWithin);
-  const auto zero = hn::Zero(d);
+  constexpr bool kTwice = kGray && kPerspective;
+  size_t moved = 0;
+  const auto live_from = [&](size_t at, size_t count) {
+    return hn::FirstN(d, count - at < lanes ? count - at : lanes);
+  };
+  const auto add_grays = [&](size_t at, const Unpacked<kUnit>& unpacked, const Aims& aims,
+                             hn::Mask<F32> met) {
+    auto unclear = hn::Lt(hn::Zero(d), hn::Zero(d));
+    const auto gray = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &unclear);
+    put_aside(frame, hn::And(unclear, met), at, depths, kept, batch);
+    met = hn::AndNot(unclear, met);
+    take<kUnit, true>(met, unpacked, aims, gray, depths, kept, batch);
+  };
   for (size_t at = 0; at < pairs.count; at += lanes) {
-    const auto live = hn::FirstN(d, pairs.count - at < lanes ? pairs.count - at : lanes);
-    const auto place = hn::Load(du, pairs.place + at);
-    const auto int_x = hn::And(place, hn::Set(du, 0xFFFFU));
-    const auto int_y = hn::ShiftRight<16>(place);
-    const auto x = hn::ConvertTo(d, hn::BitCast(di, int_x));
-    const auto y = hn::ConvertTo(d, hn::BitCast(di, int_y));
-    const auto entry = hn::Load(du, pairs.entry + at);
-    auto number = hn::Load(du, pairs.number + at);
-    hn::Vec<U32> level;
-    hn::Vec<U32> entry_x;
-    unpack_side(du, entry, kUnit, &level, &entry_x);
-    const auto half =
-        kUnit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
-    const hn::Vec<U32> low[3] = {entry_x, hn::And(hn::ShiftRight<10>(entry), within),
-                                 hn::And(hn::ShiftRight<20>(entry), within)};
-    const hn::Vec<F32> corner[3] = {hn::ConvertTo(d, hn::BitCast(di, low[0])),
-                                    hn::ConvertTo(d, hn::BitCast(di, low[1])),
-                                    hn::ConvertTo(d, hn::BitCast(di, low[2]))};
-    const Verdict verdict = judge<kPerspective>(frame, origin, x, y, corner, half);
-    auto unclear = hn::And(verdict.unclear, live);
-    auto met = hn::AndNot(verdict.unclear, hn::And(verdict.met, live));
-    if (kGray) {
-      auto no_gray = hn::Lt(zero, zero);
-      const auto gray = grays_of<kPerspective>(frame, *depths.gray_scale, verdict, &no_gray);
-      no_gray = hn::And(no_gray, met);
-      unclear = hn::Or(unclear, no_gray);
-      met = hn::AndNot(no_gray, met);
-      number = gray;
-    }
-    if (!hn::AllFalse(d, unclear)) {
-      append(unclear, entry, number, place, &batch->unclear);
-      if (batch->unclear.count + lanes > Pairs::kSize) {
-        test_unclear(frame, depths, kept, batch);
-      }
-    }
-    if (hn::AllFalse(d, met)) {
+    const auto live = live_from(at, pairs.count);
+    const Unpacked<kUnit> unpacked(pairs, at);
+    const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
+    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+    put_aside(frame, hn::And(verdict.unclear, live), at, depths, kept, batch);
+    const auto met = hn::AndNot(verdict.unclear, hn::And(verdict.met, live));
+    if (kTwice) {
+      const auto chosen = hn::RebindMask(du, met);
+      const auto place = hn::Load(du, pairs.place + at);
+      hn::StoreU(hn::Compress(unpacked.entry, chosen), du, pairs.entry + moved);
+      hn::StoreU(hn::Compress(place, chosen), du, pairs.place + moved);
+      moved += hn::CountTrue(du, chosen);
+    } else if (hn::AllFalse(d, met)) {
       continue;
+    } else if (kGray) {
+      add_grays(at, unpacked, aims, met);
+    } else {
+      take<kUnit, false>(met, unpacked, aims, hn::Load(du, pairs.number + at), depths, kept, batch);
     }
-    // Keys, mirrored by the signs of the directions; then those that were met, in a row.
-    if (batch->met + lanes > Pairs::kSize) {
-      keep(depths, batch);
-      *kept = true;
-    }
-    auto key = hn::Zero(du);
-    [[maybe_unused]] auto down = hn::Zero(du);
-    const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
-#pragma GCC unroll 3
-    for (int axis = 2; axis >= 0; --axis) {
-      const auto is_down = hn::RebindMask(du, hn::Lt(verdict.direction[axis], zero));
-      auto mirrored = hn::Xor(low[axis], hn::IfThenElseZero(is_down, within));
-      if (!kUnit) {
-        mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
-      }
-      key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
-      if (!kGray) {
-        down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
-      }
-    }
-    const auto pixel =
-        hn::Or(hn::ShiftLeft<5>(word_of(depths, int_x, int_y)), hn::And(int_x, hn::Set(du, 31U)));
-    const auto chosen = hn::RebindMask(du, met);
-    hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
-    if (!kGray) {
-      hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
-    }
-    hn::StoreU(hn::Compress(number, chosen), du, batch->number + batch->met);
-    hn::StoreU(hn::Compress(pixel, chosen), du, batch->pixel + batch->met);
-    batch->met += hn::CountTrue(du, chosen);
+  }
+  for (size_t at = 0; at < moved; at += lanes) {
+    const Unpacked<kUnit> unpacked(pairs, at);
+    add_grays(at, unpacked, unpacked.template aims<kPerspective>(frame, origin), live_from(at, moved));
   }
   pairs.count = 0;
   for (size_t i = 0; i < batch->met; ++i) {
@@ -705,15 +775,16 @@ HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t num
         continue;
       }
       batch->counts.candidates += static_cast<unsigned>(__builtin_popcount(wanted));
-      const Verdict verdict = judge<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
-                                                  hn::Set(d, static_cast<float>(y)), low, half);
+      const Aims aims = aims_of<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
+                                              hn::Set(d, static_cast<float>(y)), low, half);
+      const Verdict verdict = judge<kPerspective>(frame, aims, half);
       uint32_t met = bits_of(d, hn::AndNot(verdict.unclear, verdict.met)) & wanted;
       uint32_t unclear = bits_of(d, verdict.unclear) & wanted;
       HWY_ALIGN uint8_t grays[64];
       if (kGray) {
         auto no_gray = hn::Lt(half, hn::Zero(d));
         const hn::Rebind<uint8_t, I32> bytes;
-        const auto found = grays_of<kPerspective>(frame, *depths.gray_scale, verdict, &no_gray);
+        const auto found = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
         hn::Store(hn::DemoteTo(bytes, hn::BitCast(I32(), found)), bytes, grays);
         const uint32_t again = bits_of(d, no_gray) & met;
         unclear |= again;
@@ -746,7 +817,7 @@ HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t num
                (axis_bits[2] >> lane & 1U) << 2;
       };
       for (unsigned axis = 0; axis < 3; ++axis) {
-        axis_bits[axis] = bits_of(d, hn::Lt(verdict.direction[axis], hn::Zero(d))) & met;
+        axis_bits[axis] = bits_of(d, hn::Lt(aims.direction[axis], hn::Zero(d))) & met;
         same = same && (axis_bits[axis] == 0 || axis_bits[axis] == met);
         down_all |= axis_bits[axis] != 0 ? 1U << axis : 0U;
       }
