@@ -34,8 +34,8 @@ Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& s
 }
 
 const GrayScale* Painter::gray_scale() const {
-  // Where more than one pixel in fifty needs another look, one look at the end is less.
-  constexpr float kMostMargin = 0.01F;
+  // Where more than one pixel in twenty-five needs another look, one look at the end is less.
+  constexpr float kMostMargin = 0.02F;
   const bool is_apt = shading_.mode == ShadeMode::kDepth && !lists_.has_blocks() &&
                       lists_.tree().level() <= kCubeLevel && gray_scale_.floats_tell &&
                       gray_scale_.margin < kMostMargin;
