@@ -32,7 +32,8 @@ GrayScale gray_scale_of(const Camera& camera, const Shading& shading) {
   for (int axis = 0; axis < 3 && !camera.is_perspective(); ++axis) {
     const int32_t step = camera.direction()[axis];
     const uint32_t speed = static_cast<uint32_t>(step < 0 ? -step : step);
-    made.axis_ratio[axis] = speed == 0 ? 0 : static_cast<float>(dividend / speed);
+    const uint32_t ratio = speed == 0 ? 0 : dividend / speed;
+    made.axis_ratio[axis] = static_cast<float>(ratio);
   }
   return made;
 }
