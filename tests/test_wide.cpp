@@ -341,6 +341,133 @@ TEST_CASE("wide: random scenes, cameras, shades, formats and bands -> every pixe
   CHECK(all_hits > static_cast<std::uint64_t>(drawn) * 50);
 }
 
+TEST_CASE("wide: greys found as voxels are met -> every pixel is the core's, between any two planes") {
+  const BestInstructionSet after;
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kFrames = 60;
+#else
+  constexpr int kFrames = 800;
+#endif
+  std::uint64_t met = 0;
+  std::uint64_t exact = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::uint64_t seed = 52000 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    CAPTURE(seed);
+    Scene scene;
+    scene.level = static_cast<int>(pick(random, 6, 10));
+    const std::int64_t side = std::int64_t{1} << scene.level;
+    const HeapBytes pool(std::size_t{4} << 20);
+    Octree octree;
+    REQUIRE(octree.init(pool.span(), scene.level) == Status::kOk);
+    // Near one another in part, so that some lie before others; no eight that make a block.
+    for (std::int64_t n = pick(random, 1, 6000); n > 0; --n) {
+      const std::int64_t most = pick(random, 0, 2) == 0 ? side - 1 : std::min<std::int64_t>(side - 1, 63);
+      const Vec3i at{static_cast<std::int32_t>(pick(random, 0, most)),
+                     static_cast<std::int32_t>(pick(random, 0, most)),
+                     static_cast<std::int32_t>(pick(random, 0, most))};
+      if ((at.x & at.y & at.z & 1) == 0) {
+        REQUIRE(octree.insert(at, 1) == Status::kOk);
+      }
+    }
+    scene.bytes = std::make_unique<HeapBytes>(compact_of(octree));
+    make_lists(&scene);
+    REQUIRE_FALSE(scene.lists.has_blocks());
+    wide::use_instruction_set(static_cast<int>(pick(random, 0, wide::instruction_set_count() - 1)));
+    Frame frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    frame.shading.mode = ShadeMode::kDepth;
+    if (pick(random, 0, 1) == 0) {
+      // Some part of the range; where floats do not tell greys, they are found at the end.
+      const std::int64_t range = frame.shading.far_q8 - std::int64_t{frame.shading.near_q8};
+      const std::int64_t part = range >> pick(random, 0, 3);
+      if (range > 0 && part > 0 && frame.shading.near_q8 >= 0) {
+        frame.shading.near_q8 += static_cast<std::int32_t>(pick(random, 0, range - part));
+        frame.shading.far_q8 = frame.shading.near_q8 + static_cast<std::int32_t>(part);
+      }
+    }
+    CAPTURE(scene.level);
+    CAPTURE(wide::instruction_set());
+    CAPTURE(frame.camera.is_perspective());
+    CAPTURE(frame.shading.near_q8);
+    CAPTURE(frame.shading.far_q8);
+    const wide::Options options = random_options(random);
+    wide::Stats stats;
+    const auto ours = draw_wide(scene, frame, options, nullptr, &stats);
+    if (!ours) {
+      continue;
+    }
+    std::uint64_t expected_hits = 0;
+    CHECK(*ours == draw_core(scene, frame, &expected_hits));
+    met += stats.counts.hits;
+    exact += stats.counts.exact;
+  }
+  CHECK(met > kFrames * std::uint64_t{20});
+  CHECK(exact > met / 500);
+}
+
+TEST_CASE("wide: a few solid blocks among single voxels -> given as voxels; more of them, or merged, not") {
+  Octree octree;
+  const HeapBytes pool(std::size_t{1} << 20);
+  const auto made = [&](int blocks, int voxels, int block_level) {
+    Scene scene;
+    scene.level = 8;
+    REQUIRE(octree.init(pool.span(), scene.level) == Status::kOk);
+    for (int i = 0; i < blocks; ++i) {
+      REQUIRE(octree.insert_block({i << 4, 64, 0}, block_level, static_cast<std::uint8_t>(i)) == Status::kOk);
+    }
+    for (int i = 0; i < voxels; ++i) {
+      REQUIRE(octree.insert({2 * (i % 100), 0, 2 * (i / 100)}, 200) == Status::kOk);
+    }
+    scene.bytes = std::make_unique<HeapBytes>(compact_of(octree));
+    make_lists(&scene);
+    return scene;
+  };
+  // 8 voxels for 1 box: 7 more.
+  Scene few = made(2, 7 * 2 * 8 - 2, 1);
+  CHECK_FALSE(few.lists.has_blocks());
+  CHECK(few.lists.entries().size == 7 * 2 * 8 - 2 + 2 * 8);
+  CHECK(few.lists.face_area() == few.lists.entries().size);
+  CHECK(made(2, 7 * 2 * 8 - 3, 1).lists.has_blocks());
+  CHECK_FALSE(made(1, 8 * 63, 2).lists.has_blocks());
+  CHECK(made(1, 8 * 60, 2).lists.has_blocks());
+  // Blocks keep their colours, each voxel of them.
+  Scene colored = made(3, 1600, 2);
+  REQUIRE_FALSE(colored.lists.has_blocks());
+  REQUIRE(colored.lists.materials().size == colored.lists.entries().size);
+  std::size_t of_first = 0;
+  for (std::size_t i = 0; i < colored.lists.entries().size; ++i) {
+    of_first += colored.lists.materials()[i] == 0 ? 1U : 0U;
+  }
+  CHECK(of_first == 64);
+  std::mt19937_64 random(5);
+  for (int view = 0; view < 20; ++view) {
+    Frame frame;
+    if (!random_frame(random, colored, &frame)) {
+      continue;
+    }
+    frame.shading.mode = view % 2 == 0 ? ShadeMode::kColor : ShadeMode::kDepth;
+    const auto ours = draw_wide(colored, frame, random_options(random));
+    std::uint64_t hits = 0;
+    if (ours) {
+      CHECK(*ours == draw_core(colored, frame, &hits));
+    }
+  }
+  REQUIRE(octree.init(pool.span(), 8) == Status::kOk);
+  for (int i = 0; i < 3000; ++i) {
+    REQUIRE(octree.insert({2 * (i % 100), i / 1000, 2 * (i / 100 % 10)}, 1) == Status::kOk);
+  }
+  (void)octree.coarsen_to(octree.nodes_used() - 2);
+  Scene merged;
+  merged.level = 8;
+  merged.bytes = std::make_unique<HeapBytes>(compact_of(octree));
+  make_lists(&merged);
+  REQUIRE(merged.tree.merged());
+  CHECK(merged.lists.has_blocks());
+}
+
 TEST_CASE("wide: thick surfaces, voxels of about a pixel to many -> every pixel is the core's") {
   const BestInstructionSet after;
 #ifdef __SANITIZE_ADDRESS__

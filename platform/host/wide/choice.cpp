@@ -12,8 +12,8 @@ constexpr uint32_t kFewBoxes = 64;
 constexpr float kWorkPerCell = 12000;
 // In tests of a pixel: a box that is not looked at; a block that is looked up in tables; what other blocks
 // cost for each of their boxes.
-constexpr float kBoxSpared = 0.2F;
-constexpr float kTableBlock = 9;
+constexpr float kBoxSpared = 0.3F;
+constexpr float kTableBlock = 14;
 constexpr float kBoxInBlock = 0.08F;
 // Boxes of a block, in the mean, and pixels of a side (renderer.cpp: up to kTableBoxes, kBlockBoxes,
 // kTablePx).

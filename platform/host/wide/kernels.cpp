@@ -122,49 +122,81 @@ inline uint64_t value_of(const Batch& batch, uint32_t key, uint32_t down, uint32
 }
 
 // Takes what was met into the picture.
-void keep(const Depths& depths, Batch* batch) {
+template <bool kGray, bool kMarks>
+HWY_INLINE void keep_of(const Depths& depths, Batch* batch) {
+  // In locals, since bytes that are written might be theirs.
+  const size_t met = batch->met;
+  uint32_t* const all_covered = depths.covered;
+  uint64_t* const all_nearest = depths.nearest;
+  uint32_t* const all_keys = depths.nearest_key;
+  uint8_t* const all_grays = depths.gray;
+  // Behind the last there is room to read.
   constexpr size_t kAhead = 12;
-  for (size_t i = 0; i < batch->met; ++i) {
-    __builtin_prefetch(depths.nearest + batch->pixel[i + kAhead < batch->met ? i + kAhead : i], 1);
-    const uint32_t pixel = batch->pixel[i];
-    const uint32_t bit = uint32_t{1} << (pixel & 31U);
-    uint32_t* covered = depths.covered + (pixel >> 5);
-    uint64_t* nearest = depths.nearest + pixel;
-    const uint64_t value = value_of(*batch, batch->key[i], batch->down[i], batch->number[i]);
-    // No branch: what is there when the bit is not set is then made the greatest number.
-    const uint64_t nothing = uint64_t{*covered >> (pixel & 31U) & 1U} - 1;
-    const uint64_t before = *nearest | nothing;
-    *covered |= bit;
-    *nearest = value < before ? value : before;
+  static_assert(kAhead <= Pairs::kRoom - Pairs::kSize);
+  for (size_t i = met; i < met + kAhead; ++i) {
+    batch->pixel[i] = 0;
   }
-  batch->counts.hits += batch->met;
+  for (size_t i = 0; i < met; ++i) {
+    const uint32_t pixel = batch->pixel[i];
+    const uint32_t ahead = batch->pixel[i + kAhead];
+    const uint32_t bit = uint32_t{1} << (pixel & 31U);
+    // No branch: what is there when there is nothing is made the greatest number.
+    if (kGray) {
+      __builtin_prefetch(all_keys + ahead, 1);
+      __builtin_prefetch(all_grays + ahead, 1);
+      const uint32_t gray = all_grays[pixel];
+      const uint32_t value = batch->key[i];
+      const uint32_t before = all_keys[pixel] | (gray == 0 ? UINT32_MAX : 0);
+      const uint32_t is_less = value < before ? UINT32_MAX : 0;
+      all_grays[pixel] = static_cast<uint8_t>((batch->number[i] & is_less) | (gray & ~is_less));
+      all_keys[pixel] = value < before ? value : before;
+    } else {
+      __builtin_prefetch(all_nearest + ahead, 1);
+      const uint64_t value = value_of(*batch, batch->key[i], batch->down[i], batch->number[i]);
+      const uint64_t nothing = uint64_t{all_covered[pixel >> 5] >> (pixel & 31U) & 1U} - 1;
+      const uint64_t before = all_nearest[pixel] | nothing;
+      all_nearest[pixel] = value < before ? value : before;
+    }
+    if (kMarks) {
+      all_covered[pixel >> 5] |= bit;
+    }
+  }
+  batch->counts.hits += met;
   batch->met = 0;
 }
 
-// What floats say of some rays and boxes: `met` only where `unclear` is not set.
-struct Verdict {
-  hn::Mask<F32> met;
-  hn::Mask<F32> unclear;
+HWY_NOINLINE void keep(const Depths& depths, Batch* batch) {
+  if (batch->met == 0) {
+    return;
+  }
+  if (depths.gray_scale == nullptr) {
+    keep_of<false, true>(depths, batch);
+  } else if (depths.marks) {
+    keep_of<true, true>(depths, batch);
+  } else {
+    keep_of<true, false>(depths, batch);
+  }
+}
+
+// Some rays, and the middles of boxes as seen from their origins; all integers, and exact.
+struct Aims {
   hn::Vec<F32> direction[3];
+  hn::Vec<F32> center[3];  // in 1/512 voxel
+  hn::Mask<F32> unclear;   // where floats do not tell what the ray is
 };
 
 // Rounded directions: off a half by more than the error of the float map, the float's nearest integer is the
-// direction. Centres (below 2^24) and directions (at most 20 bits) are then exact, and so is what is compared
-// with: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two. c_a d_b - c_b d_a, by Kahan's
-// method with fused products, is within 2 units in the last place of itself (C.-P. Jeannerod, N. Louvet,
-// J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5), so 2^-21 of it settles what
-// is nearer than that; without fused products the two roundings of the products count too.
+// direction. Centres (below 2^24) and directions (at most 20 bits) are then exact.
 //
 // `low` are lowest corners within the cube, in voxels; `half` half sides in 1/512 voxel; `origin` the cube's
 // corner less the eye, in 1/512 voxel.
 template <bool kPerspective>
-HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F32> x, hn::Vec<F32> y,
-                         const hn::Vec<F32> (&low)[3], hn::Vec<F32> half) {
+HWY_INLINE Aims aims_of(const Frame& frame, const float (&origin)[3], hn::Vec<F32> x, hn::Vec<F32> y,
+                        const hn::Vec<F32> (&low)[3], hn::Vec<F32> half) {
   const F32 d;
   const auto zero = hn::Zero(d);
-  Verdict verdict;
-  hn::Vec<F32> center[3];
-  auto unclear = hn::Lt(zero, zero);
+  Aims aims;
+  aims.unclear = hn::Lt(zero, zero);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const auto map = [&](const float(&of)[3][3]) {
@@ -173,19 +205,46 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
     };
     const auto rest = map(frame.map_rest);
     const auto nearest = hn::Round(rest);
-    unclear = hn::Or(unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+    aims.unclear =
+        hn::Or(aims.unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
     const auto varying = hn::Add(map(frame.map_whole), nearest);
-    center[axis] = hn::Add(hn::MulAdd(low[axis], hn::Set(d, 512.0F), hn::Set(d, origin[axis])), half);
+    aims.center[axis] = hn::Add(hn::MulAdd(low[axis], hn::Set(d, 512.0F), hn::Set(d, origin[axis])), half);
     if (kPerspective) {
-      verdict.direction[axis] = varying;
+      aims.direction[axis] = varying;
     } else {
-      verdict.direction[axis] = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
-      center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), center[axis]);
+      aims.direction[axis] = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      aims.center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), aims.center[axis]);
     }
   }
+  return aims;
+}
+
+// How far a middle lies along the ray.
+HWY_INLINE hn::Vec<F32> ahead_of(hn::Vec<F32> center, hn::Vec<F32> direction) {
+  const F32 d;
+  return hn::Xor(center, hn::And(direction, hn::Set(d, -0.0F)));
+}
+
+// What floats say of some rays and boxes: `met` only where `unclear` is not set.
+struct Verdict {
+  hn::Mask<F32> met;
+  hn::Mask<F32> unclear;
+};
+
+// What is compared with is exact, too: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two.
+// c_a d_b - c_b d_a, by Kahan's method with fused products, is within 2 units in the last place of itself
+// (C.-P. Jeannerod, N. Louvet, J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5),
+// so 2^-21 of it settles what is nearer than that; without fused products the two roundings of the products
+// count too.
+template <bool kPerspective>
+HWY_INLINE Verdict judge(const Frame& frame, const Aims& aims, hn::Vec<F32> half) {
+  const F32 d;
+  const auto zero = hn::Zero(d);
+  const auto& center = aims.center;
+  const auto& direction = aims.direction;
+  auto unclear = aims.unclear;
   // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and
   // there.
-  const auto& direction = verdict.direction;
   hn::Vec<F32> size[3];
   bool still[3] = {false, false, false};
 #pragma GCC unroll 3
@@ -229,12 +288,92 @@ HWY_INLINE Verdict judge(const Frame& frame, const float (&origin)[3], hn::Vec<F
       met = hn::And(met, hn::And(hn::Le(center[axis], half), hn::Gt(center[axis], minus_half)));
       continue;
     }
-    const auto sign = hn::CopySign(hn::Set(d, 1.0F), direction[axis]);
-    met = hn::And(met, hn::Gt(hn::Mul(sign, center[axis]), minus_half));
+    met = hn::And(met, hn::Gt(ahead_of(center[axis], direction[axis]), minus_half));
   }
-  verdict.met = met;
-  verdict.unclear = unclear;
-  return verdict;
+  return {met, unclear};
+}
+
+// Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
+HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
+  const F32 d;
+  const U32 du;
+  return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
+}
+
+// floor(dividend / speed) for integers 1 .. 2^20: exactly below 2^24, and within 2^-22 of itself above. The
+// quotient of floats is off by one at most; the remainder says which way.
+HWY_INLINE hn::Vec<F32> ratios_of(const GrayScale& scale, hn::Vec<F32> speed) {
+  const F32 d;
+  const auto one = hn::Set(d, 1.0F);
+  const auto dividend = hn::Set(d, scale.float_dividend);
+  const auto quotient = hn::Floor(hn::Div(dividend, speed));
+#if HWY_NATIVE_FMA
+  const auto rest = hn::NegMulAdd(quotient, speed, dividend);
+  const auto is_above = hn::Lt(rest, hn::Zero(d));
+  const auto is_below = hn::Ge(rest, speed);
+#else
+  const I32 di;
+  const auto int_speed = hn::ConvertTo(di, speed);
+  const auto is_small = hn::Lt(quotient, hn::Set(d, 16777216.0F));
+  const auto int_quotient = hn::ConvertTo(di, hn::IfThenElseZero(is_small, quotient));
+  const auto rest = hn::Sub(hn::Set(di, scale.int_dividend), hn::Mul(int_quotient, int_speed));
+  const auto is_above = hn::And(is_small, hn::RebindMask(d, hn::Lt(rest, hn::Zero(di))));
+  const auto is_below =
+      hn::And(is_small, hn::RebindMask(d, hn::Gt(rest, hn::Sub(int_speed, hn::Set(di, 1)))));
+#endif
+  return hn::Add(hn::Sub(quotient, hn::IfThenElseZero(is_above, one)), hn::IfThenElseZero(is_below, one));
+}
+
+// Greys of numerator * ratio = `product`, in units of `unit` / 256 voxel. Where floats do not tell
+// (GrayScale), `unclear` is added to. There is no step at either plane: between them the fall changes at
+// whole numbers.
+HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> product, float unit,
+                                        hn::Mask<F32>* unclear) {
+  const F32 d;
+  const auto depth = hn::Mul(product, hn::Set(d, unit * scale.float_scale));
+  const auto fall = hn::Mul(hn::Sub(depth, hn::Set(d, scale.float_near)), hn::Set(d, scale.float_per_depth));
+  const auto most = hn::Set(d, static_cast<float>(255 - kFarBrightness) + 0.5F);
+  const auto clamped = hn::Max(hn::Set(d, 0.5F), hn::Min(fall, most));
+  const auto off = hn::Abs(hn::Sub(clamped, hn::Round(clamped)));
+  *unclear = hn::Or(*unclear, hn::Lt(off, hn::Set(d, scale.margin)));
+  return small_number(hn::Sub(hn::Set(d, 255.0F), hn::Floor(clamped)));
+}
+
+// The greys of voxels that are met, from what was found on the way; `unclear` is added to where floats do not
+// tell: GrayScale. Products of a distance (below 2^25) and a direction are compared where they differ by more
+// than four times what their roundings can make.
+template <bool kPerspective>
+HWY_INLINE hn::Vec<U32> grays_of(const Frame& frame, const GrayScale& scale, const Aims& aims,
+                                 hn::Mask<F32>* unclear) {
+  const F32 d;
+  const auto zero = hn::Zero(d);
+  // The latest of the nearer planes.
+  auto numerator = zero;  // in 1/512 voxel
+  auto speed = hn::Set(d, 1.0F);
+  auto ratio = zero;
+#pragma GCC unroll 3
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!kPerspective && frame.camera.direction()[axis] == 0) {
+      continue;
+    }
+    const auto size = hn::Abs(aims.direction[axis]);
+    const auto ahead = ahead_of(aims.center[axis], aims.direction[axis]);
+    const auto distance = hn::Sub(ahead, hn::Set(d, 256.0F));
+    const auto ours = hn::Mul(distance, speed);
+    const auto theirs = hn::Mul(numerator, size);
+    const auto later = hn::Gt(ours, theirs);  // theirs are 0 or more
+    const auto margin = hn::Mul(theirs, hn::Set(d, 1.0F / (1 << 21)));
+    *unclear = hn::Or(*unclear, hn::Lt(hn::Abs(hn::Sub(ours, theirs)), margin));
+    numerator = hn::IfThenElse(later, distance, numerator);
+    speed = hn::IfThenElse(later, size, speed);
+    if (!kPerspective) {
+      ratio = hn::IfThenElse(later, hn::Set(d, scale.axis_ratio[axis]), ratio);
+    }
+  }
+  if (kPerspective) {
+    ratio = ratios_of(scale, speed);
+  }
+  return grays_in_floats(scale, hn::Mul(numerator, ratio), 0.5F, unclear);
 }
 
 // Puts pairs of the lanes in `mask` behind the last.
@@ -274,6 +413,10 @@ void test_unclear(const Frame& frame, const Depths& depths, bool* kept, Batch* b
     batch->key[batch->met] = key;
     batch->down[batch->met] = down;
     batch->number[batch->met] = pairs.number[i];
+    if (depths.gray_scale != nullptr) {
+      batch->number[batch->met] =
+          gray_exactly(frame.camera, *depths.shading, frame.camera.ray(x, y), pairs.entry[i], batch->corner);
+    }
     batch->pixel[batch->met] =
         static_cast<uint32_t>(32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U));
     ++batch->met;
@@ -288,82 +431,157 @@ HWY_INLINE hn::Vec<U32> word_of(const Depths& depths, hn::Vec<U32> x, hn::Vec<U3
   return hn::Add(hn::Mul(hn::ShiftRight<5>(x), hn::Set(d, static_cast<uint32_t>(depths.rows))), row);
 }
 
-// Tests what waits in floats where they can tell, and exactly where they cannot. `kept`: set when something
-// went into the picture.
-template <bool kPerspective, bool kUnit>
-HWY_NOINLINE void test_waiting(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+// Pairs, unpacked.
+template <bool kUnit>
+struct Unpacked {
+  hn::Vec<U32> entry, x, y, level;
+  hn::Vec<U32> low[3];
+  hn::Vec<F32> half;
+
+  Unpacked(const Pairs& pairs, size_t at) {
+    const F32 d;
+    const I32 di;
+    const U32 du;
+    const auto place = hn::Load(du, pairs.place + at);
+    x = hn::And(place, hn::Set(du, 0xFFFFU));
+    y = hn::ShiftRight<16>(place);
+    entry = hn::Load(du, pairs.entry + at);
+    unpack_side(du, entry, kUnit, &level, &low[0]);
+    half = kUnit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
+    low[1] = hn::And(hn::ShiftRight<10>(entry), hn::Set(du, kWithin));
+    low[2] = hn::And(hn::ShiftRight<20>(entry), hn::Set(du, kWithin));
+  }
+
+  template <bool kPerspective>
+  HWY_INLINE Aims aims(const Frame& frame, const float (&origin)[3]) const {
+    const auto real = [](hn::Vec<U32> v) { return hn::ConvertTo(F32(), hn::BitCast(I32(), v)); };
+    const hn::Vec<F32> corner[3] = {real(low[0]), real(low[1]), real(low[2])};
+    return aims_of<kPerspective>(frame, origin, real(x), real(y), corner, half);
+  }
+};
+
+// Puts what was met into a row, with keys mirrored by the signs of the directions. `number`: of the entries,
+// or greys.
+template <bool kUnit, bool kGray>
+HWY_INLINE void take(hn::Mask<F32> met, const Unpacked<kUnit>& pairs, const Aims& aims, hn::Vec<U32> number,
+                     const Depths& depths, bool* kept, Batch* batch) {
   const F32 d;
   const I32 di;
+  const U32 du;
+  const auto within = hn::Set(du, kWithin);
+  if (batch->met + hn::Lanes(d) > Pairs::kSize) {
+    keep(depths, batch);
+    *kept = true;
+  }
+  auto key = hn::Zero(du);
+  [[maybe_unused]] auto down = hn::Zero(du);
+#pragma GCC unroll 3
+  for (int axis = 2; axis >= 0; --axis) {
+    const auto is_down = hn::RebindMask(du, hn::Lt(aims.direction[axis], hn::Zero(d)));
+    auto mirrored = hn::Xor(pairs.low[axis], hn::IfThenElseZero(is_down, within));
+    if (!kUnit) {
+      const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), pairs.level)));
+      mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
+    }
+    key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
+    if (!kGray) {
+      down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
+    }
+  }
+  const auto pixel =
+      hn::Or(hn::ShiftLeft<5>(word_of(depths, pairs.x, pairs.y)), hn::And(pairs.x, hn::Set(du, 31U)));
+  const auto chosen = hn::RebindMask(du, met);
+  hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
+  if (!kGray) {
+    hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
+  }
+  hn::StoreU(hn::Compress(number, chosen), du, batch->number + batch->met);
+  hn::StoreU(hn::Compress(pixel, chosen), du, batch->pixel + batch->met);
+  batch->met += hn::CountTrue(du, chosen);
+}
+
+// Puts aside what floats could not tell.
+HWY_INLINE void put_aside(const Frame& frame, hn::Mask<F32> unclear, size_t at, const Depths& depths,
+                          bool* kept, Batch* batch) {
+  const F32 d;
+  const U32 du;
+  if (hn::AllFalse(d, unclear)) {
+    return;
+  }
+  const Pairs& pairs = batch->waiting;
+  append(unclear, hn::Load(du, pairs.entry + at), hn::Load(du, pairs.number + at),
+         hn::Load(du, pairs.place + at), &batch->unclear);
+  if (batch->unclear.count + hn::Lanes(d) > Pairs::kSize) {
+    test_unclear(frame, depths, kept, batch);
+  }
+}
+
+// Tests what waits in floats where they can tell, and puts aside the rest. `kept`: set when something went
+// into the picture.
+//
+// Greys are found of those that were met alone, where these are fewer: the pairs that were met are first
+// moved to the front. A parallel camera meets nearly all of them, and its greys take no division.
+template <bool kPerspective, bool kUnit, bool kGray>
+HWY_NOINLINE void test_waiting_of(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  const F32 d;
   const U32 du;
   const size_t lanes = hn::Lanes(d);
   Pairs& pairs = batch->waiting;
   batch->counts.candidates += pairs.count;
   float origin[3];
   origin_of(frame, *batch, origin);
-  const auto within = hn::Set(du, kWithin);
-  const auto zero = hn::Zero(d);
+  constexpr bool kTwice = kGray && kPerspective;
+  size_t moved = 0;
+  const auto live_from = [&](size_t at, size_t count) {
+    return hn::FirstN(d, count - at < lanes ? count - at : lanes);
+  };
+  const auto add_grays = [&](size_t at, const Unpacked<kUnit>& unpacked, const Aims& aims,
+                             hn::Mask<F32> met) {
+    auto unclear = hn::Lt(hn::Zero(d), hn::Zero(d));
+    const auto gray = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &unclear);
+    put_aside(frame, hn::And(unclear, met), at, depths, kept, batch);
+    met = hn::AndNot(unclear, met);
+    take<kUnit, true>(met, unpacked, aims, gray, depths, kept, batch);
+  };
   for (size_t at = 0; at < pairs.count; at += lanes) {
-    const auto live = hn::FirstN(d, pairs.count - at < lanes ? pairs.count - at : lanes);
-    const auto place = hn::Load(du, pairs.place + at);
-    const auto int_x = hn::And(place, hn::Set(du, 0xFFFFU));
-    const auto int_y = hn::ShiftRight<16>(place);
-    const auto x = hn::ConvertTo(d, hn::BitCast(di, int_x));
-    const auto y = hn::ConvertTo(d, hn::BitCast(di, int_y));
-    const auto entry = hn::Load(du, pairs.entry + at);
-    const auto number = hn::Load(du, pairs.number + at);
-    hn::Vec<U32> level;
-    hn::Vec<U32> entry_x;
-    unpack_side(du, entry, kUnit, &level, &entry_x);
-    const auto half =
-        kUnit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
-    const hn::Vec<U32> low[3] = {entry_x, hn::And(hn::ShiftRight<10>(entry), within),
-                                 hn::And(hn::ShiftRight<20>(entry), within)};
-    const hn::Vec<F32> corner[3] = {hn::ConvertTo(d, hn::BitCast(di, low[0])),
-                                    hn::ConvertTo(d, hn::BitCast(di, low[1])),
-                                    hn::ConvertTo(d, hn::BitCast(di, low[2]))};
-    const Verdict verdict = judge<kPerspective>(frame, origin, x, y, corner, half);
-    const auto unclear = hn::And(verdict.unclear, live);
+    const auto live = live_from(at, pairs.count);
+    const Unpacked<kUnit> unpacked(pairs, at);
+    const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
+    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+    put_aside(frame, hn::And(verdict.unclear, live), at, depths, kept, batch);
     const auto met = hn::AndNot(verdict.unclear, hn::And(verdict.met, live));
-    if (!hn::AllFalse(d, unclear)) {
-      append(unclear, entry, number, place, &batch->unclear);
-      if (batch->unclear.count + lanes > Pairs::kSize) {
-        test_unclear(frame, depths, kept, batch);
-      }
-    }
-    if (hn::AllFalse(d, met)) {
+    if (kTwice) {
+      const auto chosen = hn::RebindMask(du, met);
+      const auto place = hn::Load(du, pairs.place + at);
+      hn::StoreU(hn::Compress(unpacked.entry, chosen), du, pairs.entry + moved);
+      hn::StoreU(hn::Compress(place, chosen), du, pairs.place + moved);
+      moved += hn::CountTrue(du, chosen);
+    } else if (hn::AllFalse(d, met)) {
       continue;
+    } else if (kGray) {
+      add_grays(at, unpacked, aims, met);
+    } else {
+      take<kUnit, false>(met, unpacked, aims, hn::Load(du, pairs.number + at), depths, kept, batch);
     }
-    // Keys, mirrored by the signs of the directions; then those that were met, in a row.
-    if (batch->met + lanes > Pairs::kSize) {
-      keep(depths, batch);
-      *kept = true;
-    }
-    auto key = hn::Zero(du);
-    auto down = hn::Zero(du);
-    const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
-#pragma GCC unroll 3
-    for (int axis = 2; axis >= 0; --axis) {
-      const auto is_down = hn::RebindMask(du, hn::Lt(verdict.direction[axis], zero));
-      auto mirrored = hn::Xor(low[axis], hn::IfThenElseZero(is_down, within));
-      if (!kUnit) {
-        mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
-      }
-      key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
-      down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
-    }
-    const auto pixel =
-        hn::Or(hn::ShiftLeft<5>(word_of(depths, int_x, int_y)), hn::And(int_x, hn::Set(du, 31U)));
-    const auto chosen = hn::RebindMask(du, met);
-    hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
-    hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
-    hn::StoreU(hn::Compress(number, chosen), du, batch->number + batch->met);
-    hn::StoreU(hn::Compress(pixel, chosen), du, batch->pixel + batch->met);
-    batch->met += hn::CountTrue(du, chosen);
+  }
+  for (size_t at = 0; at < moved; at += lanes) {
+    const Unpacked<kUnit> unpacked(pairs, at);
+    add_grays(at, unpacked, unpacked.template aims<kPerspective>(frame, origin), live_from(at, moved));
   }
   pairs.count = 0;
   for (size_t i = 0; i < batch->met; ++i) {
-    __builtin_prefetch(depths.nearest + batch->pixel[i], 1);
+    const uint32_t pixel = batch->pixel[i];
+    kGray ? __builtin_prefetch(depths.nearest_key + pixel, 1) : __builtin_prefetch(depths.nearest + pixel, 1);
   }
+}
+
+template <bool kPerspective, bool kUnit>
+HWY_INLINE void test_waiting(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  if (depths.gray_scale != nullptr) {  // all boxes are single voxels
+    test_waiting_of<kPerspective, true, true>(frame, depths, kept, batch);
+    return;
+  }
+  test_waiting_of<kPerspective, kUnit, false>(frame, depths, kept, batch);
 }
 
 // Of the pixels (x .. x + 31, y), a bit each: whether they are not covered. Of those right of the picture,
@@ -454,13 +672,6 @@ HWY_INLINE void pair_vector(const Frame& frame, const Depths& depths, hn::Mask<F
   }
 }
 
-// Whole numbers 0 .. 65535. (ConvertTo minds numbers that no integer holds.)
-HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
-  const F32 d;
-  const U32 du;
-  return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
-}
-
 // Makes candidates of those that were picked.
 template <bool kPerspective>
 HWY_NOINLINE void pair_picked(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
@@ -513,9 +724,9 @@ HWY_NOINLINE void pair_boxes(const Frame& frame, const Depths& depths, bool* kep
 
 // A box that covers many pixels: along the rows of its rectangle, a vector of pixels at a time, straight into
 // the picture. `reject`: covered pixels need no look.
-template <bool kPerspective>
-HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number, const Rectangle& where,
-                             bool reject, const Depths& depths, Batch* batch) {
+template <bool kPerspective, bool kGray>
+HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t number, const Rectangle& where,
+                                bool reject, const Depths& depths, Batch* batch) {
   const F32 d;
   const U64 d64;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
@@ -532,7 +743,22 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
   uint32_t known_down = 8;
   uint64_t value = 0;
   const auto value_for = [&](uint32_t down) {
-    return value_of(*batch, mirrored_key(corner, level, down), down, number);
+    const uint32_t key = mirrored_key(corner, level, down);
+    return kGray ? key : value_of(*batch, key, down, number);
+  };
+  // What is kept of one pixel when its value is less.
+  const auto put = [&](uint32_t* word, uint32_t bit, size_t at, uint64_t one, uint8_t gray) {
+    if (kGray) {
+      if (depths.gray[at] == 0 || one < depths.nearest_key[at]) {
+        depths.nearest_key[at] = static_cast<uint32_t>(one);
+        depths.gray[at] = gray;
+      }
+    } else if ((*word & bit) == 0 || one < depths.nearest[at]) {
+      depths.nearest[at] = one;
+    }
+    if (depths.marks) {
+      *word |= bit;
+    }
   };
   for (int32_t y = where.y0; y < where.y1; ++y) {
     for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
@@ -541,7 +767,7 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
       wanted &= where.x1 - x < lanes ? (uint32_t{1} << (where.x1 - x)) - 1 : UINT32_MAX;
       const uint32_t shift = static_cast<uint32_t>(x) & 31U;
       uint32_t* const word = depths.covered + depths.word(x, y);
-      uint64_t* const nearest = depths.nearest + 32 * depths.word(x, y) + shift;
+      const size_t first = 32 * depths.word(x, y) + shift;
       if (reject) {
         wanted &= ~(*word >> shift);
       }
@@ -549,20 +775,32 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
         continue;
       }
       batch->counts.candidates += static_cast<unsigned>(__builtin_popcount(wanted));
-      const Verdict verdict = judge<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
-                                                  hn::Set(d, static_cast<float>(y)), low, half);
+      const Aims aims = aims_of<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
+                                              hn::Set(d, static_cast<float>(y)), low, half);
+      const Verdict verdict = judge<kPerspective>(frame, aims, half);
       uint32_t met = bits_of(d, hn::AndNot(verdict.unclear, verdict.met)) & wanted;
-      const uint32_t unclear = bits_of(d, verdict.unclear) & wanted;
+      uint32_t unclear = bits_of(d, verdict.unclear) & wanted;
+      HWY_ALIGN uint8_t grays[64];
+      if (kGray) {
+        auto no_gray = hn::Lt(half, hn::Zero(d));
+        const hn::Rebind<uint8_t, I32> bytes;
+        const auto found = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
+        hn::Store(hn::DemoteTo(bytes, hn::BitCast(I32(), found)), bytes, grays);
+        const uint32_t again = bits_of(d, no_gray) & met;
+        unclear |= again;
+        met &= ~again;
+      }
       for (uint32_t left = unclear; left != 0; left &= left - 1) {
         const int32_t lane = __builtin_ctz(left);
         uint32_t key = 0;
         uint32_t down = 0;
         ++batch->counts.exact;
-        if (meets_exactly(frame.camera.ray(x + lane, y), entry, batch->corner, &key, &down)) {
-          const uint64_t one = value_of(*batch, key, down, number);
-          const uint32_t bit = uint32_t{1} << (shift + static_cast<uint32_t>(lane));
-          nearest[lane] = (*word & bit) != 0 && nearest[lane] < one ? nearest[lane] : one;
-          *word |= bit;
+        const Ray ray = frame.camera.ray(x + lane, y);
+        if (meets_exactly(ray, entry, batch->corner, &key, &down)) {
+          const uint8_t gray =
+              kGray ? gray_exactly(frame.camera, *depths.shading, ray, entry, batch->corner) : uint8_t{0};
+          put(word, uint32_t{1} << (shift + static_cast<uint32_t>(lane)), first + static_cast<uint32_t>(lane),
+              kGray ? key : value_of(*batch, key, down, number), gray);
           ++batch->counts.hits;
         }
       }
@@ -574,10 +812,40 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
       uint32_t down_all = 0;
       uint32_t axis_bits[3];
       bool same = true;
+      const auto down_of = [&axis_bits](uint32_t lane) {
+        return (axis_bits[0] >> lane & 1U) | (axis_bits[1] >> lane & 1U) << 1 |
+               (axis_bits[2] >> lane & 1U) << 2;
+      };
       for (unsigned axis = 0; axis < 3; ++axis) {
-        axis_bits[axis] = bits_of(d, hn::Lt(verdict.direction[axis], hn::Zero(d))) & met;
+        axis_bits[axis] = bits_of(d, hn::Lt(aims.direction[axis], hn::Zero(d))) & met;
         same = same && (axis_bits[axis] == 0 || axis_bits[axis] == met);
         down_all |= axis_bits[axis] != 0 ? 1U << axis : 0U;
+      }
+      if (kGray) {
+        HWY_ALIGN uint32_t keys[64];
+        if (same && down_all != known_down) {
+          known_down = down_all;
+          value = value_for(down_all);
+        }
+        for (uint32_t left = same ? 0 : met; left != 0; left &= left - 1) {
+          const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(left));
+          keys[lane] = static_cast<uint32_t>(value_for(down_of(lane)));
+        }
+        const U32 du;
+        const hn::Rebind<uint8_t, U32> bytes;
+        const auto key = same ? hn::Set(du, static_cast<uint32_t>(value)) : hn::Load(du, keys);
+        const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, depths.gray + first)), hn::Zero(du));
+        const auto is_less = hn::Or(is_new, hn::Lt(key, hn::LoadU(du, depths.nearest_key + first)));
+        const uint32_t taken = met & bits_of(du, is_less);
+        const uint8_t mask_bits[8] = {static_cast<uint8_t>(taken), static_cast<uint8_t>(taken >> 8),
+                                      static_cast<uint8_t>(taken >> 16), static_cast<uint8_t>(taken >> 24)};
+        hn::BlendedStore(key, hn::LoadMaskBits(du, mask_bits), du, depths.nearest_key + first);
+        hn::BlendedStore(hn::Load(bytes, grays), hn::LoadMaskBits(bytes, mask_bits), bytes,
+                         depths.gray + first);
+        if (depths.marks) {
+          *word |= met << shift;
+        }
+        continue;
       }
       const uint32_t before = *word >> shift & met;
       if (same && before == 0) {
@@ -589,22 +857,25 @@ HWY_NOINLINE void draw_large(const Frame& frame, uint32_t entry, uint32_t number
         const auto values = hn::Set(d64, value);
         for (int32_t part = 0; part < lanes; part += lanes64) {
           const uint8_t mask_bits[8] = {static_cast<uint8_t>(met >> part & ((1U << lanes64) - 1))};
-          hn::BlendedStore(values, hn::LoadMaskBits(d64, mask_bits), d64, nearest + part);
+          hn::BlendedStore(values, hn::LoadMaskBits(d64, mask_bits), d64,
+                           depths.nearest + first + static_cast<size_t>(part));
         }
         continue;
       }
       for (; met != 0; met &= met - 1) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(met));
-        const uint32_t down =
-            (axis_bits[0] >> lane & 1U) | (axis_bits[1] >> lane & 1U) << 1 | (axis_bits[2] >> lane & 1U) << 2;
-        const uint64_t one = value_for(down);
-        const uint32_t bit = uint32_t{1} << (shift + lane);
-        uint64_t* const at = nearest + lane;
-        *at = (*word & bit) != 0 && *at < one ? *at : one;
-        *word |= bit;
+        put(word, uint32_t{1} << (shift + lane), first + lane, value_for(down_of(lane)), 0);
       }
     }
   }
+}
+
+template <bool kPerspective>
+void draw_large(const Frame& frame, uint32_t entry, uint32_t number, const Rectangle& where, bool reject,
+                const Depths& depths, Batch* batch) {
+  depths.gray_scale != nullptr
+      ? draw_large_in<kPerspective, true>(frame, entry, number, where, reject, depths, batch)
+      : draw_large_in<kPerspective, false>(frame, entry, number, where, reject, depths, batch);
 }
 
 // Whether a box in the eye's plane may be seen through the tile: not when it lies wholly outside one of the
@@ -1235,13 +1506,27 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
       const auto is_open = hn::RebindMask(d, hn::TestBit(open_pixels.near(x, y), hn::Set(du, 1U)));
       seen = hn::And(seen, hn::Or(is_open, hn::Ge(widest, hn::Set(d, static_cast<float>(near)))));
     }
+    const auto place = hn::Or(hn::ShiftLeft<16>(y), x);
+    if (kUnit && !run.behind) {
+      // What covers one pixel at most is a candidate as it is.
+      Pairs& waiting = batch->waiting;
+      append(hn::And(seen, hn::Lt(widest, hn::Set(d, 1.0F))), boxes.entry, hn::Iota(du, run.first + at),
+             place, &waiting);
+      if (waiting.count + lanes > Pairs::kSize) {
+        test_waiting<kPerspective, kUnit>(frame, depths, &kept, batch);
+      }
+      seen = hn::And(seen, hn::Ge(widest, hn::Set(d, 1.0F)));
+      if (hn::AllFalse(d, seen)) {
+        continue;
+      }
+    }
     // No branch on whether any is left: that would be guessed wrong in every third vector.
     const auto chosen = hn::RebindMask(du, seen);
     const auto wide_x = small_number(boxes.wide_x);
     const auto wide_y = small_number(boxes.wide_y);
     hn::StoreU(hn::Compress(boxes.entry, chosen), du, queue.entry + queue.count);
     hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, queue.number + queue.count);
-    hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(y), x), chosen), du, queue.place + queue.count);
+    hn::StoreU(hn::Compress(place, chosen), du, queue.place + queue.count);
     hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(wide_y), wide_x), chosen), du, queue.wide + queue.count);
     queue.count += hn::CountTrue(du, chosen);
     batch->all_behind = batch->all_behind && run.behind && !cut;
@@ -1644,116 +1929,42 @@ HWY_INLINE Entries entries_of(const Frame& frame, const Pixels& pixels, const Co
   return found;
 }
 
-// Of depths along the camera, from where rays enter their boxes: the core's sum, with its roundings
-// (src/shading.cpp). The ratio of integers below 2^32 is exact after Floor: one that is no integer lies
-// farther from the next than a double's last bit. The product has up to 55 bits and is taken in two parts.
-// The last quotient has a half added above, and so is no integer, by more than the inverse divisor's error.
-class Grays {
- public:
-  Grays(int32_t depth_per_t_q8, const Shading& shading) {
-    while (depth_per_t_q8 > 0 && (static_cast<uint32_t>(depth_per_t_q8) << shift_ & 0x80000000U) == 0) {
-      ++shift_;
-    }
-    dividend_ = static_cast<double>(static_cast<uint32_t>(depth_per_t_q8) << shift_);
-    scale_ = 1.0 / static_cast<double>(uint64_t{1} << (shift_ + 8));
-    const uint32_t range = shading.far_q8 > shading.near_q8 ? static_cast<uint32_t>(shading.far_q8) -
-                                                                  static_cast<uint32_t>(shading.near_q8)
-                                                            : 1;
-    const int excess = range >= (1U << 24) ? 8 : 0;
-    near_ = static_cast<double>(shading.near_q8);
-    far_ = static_cast<double>(shading.far_q8);
-    cut_ = excess == 0 ? 1.0 : 1.0 / 256;
-    inverse_ = 1.0 / static_cast<double>(range >> excess);
-    const double per_depth = static_cast<double>(255 - kFarBrightness) / range;
-    float_per_depth_ = static_cast<float>(per_depth);
-    float_dividend_ = static_cast<float>(dividend_);
-    int_dividend_ = static_cast<int32_t>(static_cast<uint32_t>(dividend_));
-    float_scale_ = static_cast<float>(scale_);
-    float_near_ = static_cast<float>(near_);
-    // The error of the fall in floats, see in_floats().
-    const double greatest = near_ + 1.01 * range;
-    float_margin_ = static_cast<float>(per_depth * (1.01 + greatest / (1 << 19)) + 1.0 / (1 << 12));
-    floats_tell_ = dividend_ > 0 && excess == 0 && shading.near_q8 >= 0 && shading.far_q8 > shading.near_q8 &&
-                   float_margin_ < 0.05F;
+// Greys of t = numerator / (256 * speed): the core's sum, with its roundings (src/shading.cpp). The ratio of
+// integers below 2^32 is exact after Floor: one that is no integer lies farther from the next than a double's
+// last bit. The product has up to 55 bits and is taken in two parts. The last quotient has a half added
+// above, and so is no integer, by more than the inverse divisor's error.
+HWY_INLINE hn::Vec<HalfI32> grays_in_doubles(const GrayScale& scale, hn::Vec<F64> numerator,
+                                             hn::Vec<F64> speed) {
+  const F64 d;
+  const HalfI32 d32;
+  const auto zero = hn::Zero(d);
+  const auto dividend = hn::Set(d, scale.dividend);
+  const auto near_plane = hn::Set(d, scale.near_q8);
+  const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
+  const auto ratio = hn::Floor(hn::Div(dividend, speed));
+  const auto high = hn::Floor(hn::Mul(ratio, hn::Set(d, 1.0 / 65536)));
+  const auto low = hn::NegMulAdd(high, hn::Set(d, 65536), ratio);
+  // numerator * ratio = a * 2^16 + b, divided by 2^(shift + 8) and rounded down.
+  const auto a = hn::Mul(numerator, high);
+  const auto b = hn::Mul(numerator, low);
+  const auto b_high = hn::Floor(hn::Mul(b, hn::Set(d, 1.0 / 65536)));
+  const auto whole = hn::Add(a, b_high);  // of 2^16, below 2^40
+  hn::Vec<F64> depth;
+  if (scale.shift + 8 >= 16) {
+    depth = hn::Floor(hn::Mul(whole, hn::Set(d, scale.scale * 65536)));
+  } else {
+    const auto b_low = hn::NegMulAdd(b_high, hn::Set(d, 65536), b);
+    depth = hn::Floor(
+        hn::MulAdd(whole, hn::Set(d, scale.scale * 65536), hn::Mul(b_low, hn::Set(d, scale.scale))));
   }
-
-  // Whether in_floats() is of use.
-  bool floats_tell() const { return floats_tell_; }
-
-  // What of() says, but for lanes in `unclear`, which are added to. `numerator`: integers below 2^24,
-  // `speed`: integers 1 .. 2^20.
-  //
-  // The core rounds twice: ratio = floor(dividend / speed), depth = floor(numerator * ratio / 2^(shift + 8)).
-  // Where the ratio is below 2^21, it is found exactly, from the remainder in integers; larger ones are off
-  // by less than 2^-20 of themselves. So the depth here is at most 1.01 and 2^-19 of itself from the core's,
-  // and the fall, which comes to at most 255 with three more roundings, is within `float_margin_` of that
-  // before the last rounding down. There is no step at the near plane, so nothing below 1 is ever unclear;
-  // beyond the far plane the margin grows no faster than the fall.
-  HWY_INLINE hn::Vec<I32> in_floats(hn::Vec<F32> numerator, hn::Vec<F32> speed,
-                                    hn::Mask<F32>* unclear) const {
-    const F32 d;
-    const I32 di;
-    const auto float_ratio = hn::Div(hn::Set(d, float_dividend_), speed);
-    const auto is_small = hn::Lt(float_ratio, hn::Set(d, 2097152.0F));
-    auto ratio = hn::ConvertTo(di, hn::IfThenElseZero(is_small, float_ratio));
-    const auto int_speed = hn::ConvertTo(di, speed);
-    const auto dividend = hn::Set(di, int_dividend_);
-    const auto rest = hn::Sub(dividend, hn::Mul(ratio, int_speed));  // -speed .. 2 * speed - 1
-    const auto one = hn::Set(di, 1);
-    ratio = hn::Sub(ratio, hn::IfThenElseZero(hn::Lt(rest, hn::Zero(di)), one));
-    ratio = hn::Add(ratio, hn::IfThenElseZero(hn::Gt(rest, hn::Sub(int_speed, one)), one));
-    const auto found = hn::IfThenElse(is_small, hn::ConvertTo(d, ratio), float_ratio);
-    const auto depth = hn::Mul(hn::Mul(numerator, found), hn::Set(d, float_scale_));
-    const auto fall = hn::Mul(hn::Sub(depth, hn::Set(d, float_near_)), hn::Set(d, float_per_depth_));
-    const auto most_fall = hn::Set(d, static_cast<float>(255 - kFarBrightness));
-    const auto off = hn::Abs(hn::Sub(fall, hn::Round(fall)));
-    const auto near_step = hn::Lt(off, hn::Set(d, float_margin_));
-    const auto in_range = hn::And(hn::Gt(fall, hn::Set(d, 0.5F)), hn::Lt(fall, hn::Set(d, 217.0F)));
-    *unclear = hn::Or(*unclear, hn::And(near_step, in_range));
-    const auto clamped = hn::Max(hn::Zero(d), hn::Min(fall, most_fall));
-    return hn::Sub(hn::Set(di, 255), hn::ConvertTo(di, clamped));
-  }
-
-  // Of t = numerator / (256 * speed).
-  HWY_INLINE hn::Vec<HalfI32> of(hn::Vec<F64> numerator, hn::Vec<F64> speed) const {
-    const F64 d;
-    const HalfI32 d32;
-    const auto zero = hn::Zero(d);
-    const auto dividend = hn::Set(d, dividend_);
-    const auto near_plane = hn::Set(d, near_);
-    const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
-    const auto ratio = hn::Floor(hn::Div(dividend, speed));
-    const auto high = hn::Floor(hn::Mul(ratio, hn::Set(d, 1.0 / 65536)));
-    const auto low = hn::NegMulAdd(high, hn::Set(d, 65536), ratio);
-    // numerator * ratio = a * 2^16 + b, divided by 2^(shift + 8) and rounded down.
-    const auto a = hn::Mul(numerator, high);
-    const auto b = hn::Mul(numerator, low);
-    const auto b_high = hn::Floor(hn::Mul(b, hn::Set(d, 1.0 / 65536)));
-    const auto whole = hn::Add(a, b_high);  // of 2^16, below 2^40
-    hn::Vec<F64> depth;
-    if (shift_ + 8 >= 16) {
-      depth = hn::Floor(hn::Mul(whole, hn::Set(d, scale_ * 65536)));
-    } else {
-      const auto b_low = hn::NegMulAdd(b_high, hn::Set(d, 65536), b);
-      depth = hn::Floor(hn::MulAdd(whole, hn::Set(d, scale_ * 65536), hn::Mul(b_low, hn::Set(d, scale_))));
-    }
-    depth = hn::IfThenElse(hn::Gt(hn::Min(numerator, dividend), zero),
-                           hn::Min(depth, hn::Set(d, 2147483647.0)), zero);
-    const auto part = hn::Floor(hn::Mul(hn::Sub(depth, near_plane), hn::Set(d, cut_)));
-    auto fall = hn::Floor(hn::Mul(hn::MulAdd(part, most_fall, hn::Set(d, 0.5)), hn::Set(d, inverse_)));
-    fall = hn::IfThenElse(hn::Lt(depth, hn::Set(d, far_)), fall, most_fall);
-    fall = hn::IfThenElseZero(hn::Gt(depth, near_plane), fall);
-    return hn::DemoteTo(d32, hn::Sub(hn::Set(d, 255.0), fall));
-  }
-
- private:
-  int shift_ = 0;
-  double dividend_, scale_, near_, far_, cut_, inverse_;
-  // The same for in_floats().
-  float float_dividend_, float_scale_, float_near_, float_per_depth_, float_margin_;
-  int32_t int_dividend_;
-  bool floats_tell_;
-};
+  depth = hn::IfThenElse(hn::Gt(hn::Min(numerator, dividend), zero), hn::Min(depth, hn::Set(d, 2147483647.0)),
+                         zero);
+  const auto part = hn::Floor(hn::Mul(hn::Sub(depth, near_plane), hn::Set(d, scale.cut)));
+  auto fall = hn::Floor(hn::Mul(hn::MulAdd(part, most_fall, hn::Set(d, 0.5)), hn::Set(d, scale.inverse)));
+  fall = hn::IfThenElse(hn::Lt(depth, hn::Set(d, scale.far_q8)), fall, most_fall);
+  fall = hn::IfThenElseZero(hn::Gt(depth, near_plane), fall);
+  return hn::DemoteTo(d32, hn::Sub(hn::Set(d, 255.0), fall));
+}
 
 HWY_INLINE void store_bytes(hn::Vec<HalfI32> values, uint8_t* to) {
   const HalfI32 d;
@@ -1765,20 +1976,20 @@ HWY_INLINE void store_bytes(hn::Vec<HalfI32> values, uint8_t* to) {
 }
 
 template <bool kPerspective>
-HWY_NOINLINE void find_grays_exactly(const Frame& frame, const Pixels& pixels, const Grays& grays,
+HWY_NOINLINE void find_grays_exactly(const Frame& frame, const Pixels& pixels, const GrayScale& scale,
                                      uint8_t* gray) {
   Corners corners;
   find_corners(pixels, &corners);
   for (size_t at = 0; at < pixels.count; at += hn::Lanes(F64())) {
     const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
-    store_bytes(grays.of(found.numerator, found.speed), gray + at);
+    store_bytes(grays_in_doubles(scale, found.numerator, found.speed), gray + at);
   }
 }
 
 // Where rays enter their boxes, in floats: distances are integers below 2^24, directions as in judge(), and
 // products are compared where they differ by more than their roundings. What is not clear is done again.
 template <bool kPerspective>
-void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays, uint8_t* gray) {
+void find_grays_of(const Frame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
   const F32 d;
   const I32 di;
   const U32 du;
@@ -1836,17 +2047,19 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays,
       numerator = hn::IfThenElse(later, distance, numerator);
       found_speed = hn::IfThenElse(later, speed, found_speed);
     }
-    if (grays.floats_tell()) {
+    if (scale.floats_tell) {
       const hn::Rebind<uint8_t, I32> bytes;
-      hn::StoreU(hn::DemoteTo(bytes, grays.in_floats(numerator, found_speed, &unclear)), bytes, gray + at);
+      const auto product = hn::Mul(numerator, ratios_of(scale, found_speed));
+      const auto found = grays_in_floats(scale, product, 1.0F, &unclear);
+      hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(di, found)), bytes, gray + at);
     } else {
       HWY_ALIGN float numerators[64];
       HWY_ALIGN float speeds[64];
       hn::Store(numerator, d, numerators);
       hn::Store(found_speed, d, speeds);
       for (size_t part = 0; part < lanes; part += lanes64) {
-        store_bytes(grays.of(hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
-                             hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
+        store_bytes(grays_in_doubles(scale, hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
+                                     hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
                     gray + at + part);
       }
     }
@@ -1873,26 +2086,52 @@ void find_grays_of(const Frame& frame, const Pixels& pixels, const Grays& grays,
     few.voxels[i] = pixels.any_levels ? pixels.voxels[from] : 0;
   }
   uint8_t again[kMostPixels + 64];
-  find_grays_exactly<kPerspective>(frame, few, grays, again);
+  find_grays_exactly<kPerspective>(frame, few, scale, again);
   for (uint32_t i = 0; i < unclear_count; ++i) {
     gray[unclear_at[i]] = again[i];
   }
 }
 
-void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
-                uint8_t* gray) {
-  const Grays grays(depth_per_t_q8, shading);
+void find_grays(const Frame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
   uint32_t blocks = 0;  // are never clear in floats
   for (uint32_t i = 0; pixels.any_levels && i < pixels.count; ++i) {
     blocks += pixels.level[i] > 0 ? 1 : 0;
   }
   if (blocks > pixels.count / 4) {
-    frame.perspective ? find_grays_exactly<true>(frame, pixels, grays, gray)
-                      : find_grays_exactly<false>(frame, pixels, grays, gray);
+    frame.perspective ? find_grays_exactly<true>(frame, pixels, scale, gray)
+                      : find_grays_exactly<false>(frame, pixels, scale, gray);
     return;
   }
-  frame.perspective ? find_grays_of<true>(frame, pixels, grays, gray)
-                    : find_grays_of<false>(frame, pixels, grays, gray);
+  frame.perspective ? find_grays_of<true>(frame, pixels, scale, gray)
+                    : find_grays_of<false>(frame, pixels, scale, gray);
+}
+
+uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to) {
+  const hn::CappedTag<uint8_t, 32> d;
+  const size_t lanes = hn::Lanes(d);
+  const auto behind = hn::Set(d, background);
+  const size_t stride = 32 * static_cast<size_t>(depths.rows);
+  const uint8_t* from = depths.gray + 32 * depths.word(0, y);
+  size_t count = 0;
+  const auto put_strip = [&](uint8_t* into) {
+    for (size_t part = 0; part < 32; part += lanes) {
+      const auto gray = hn::LoadU(d, from + part);
+      const auto is_none = hn::Eq(gray, hn::Zero(d));
+      count += lanes - hn::CountTrue(d, is_none);
+      hn::StoreU(hn::IfThenElse(is_none, behind, gray), d, into + part);
+    }
+    from += stride;
+  };
+  int32_t left = 0;
+  for (; left + 32 <= width_px; left += 32) {
+    put_strip(to + left);
+  }
+  if (left < width_px) {
+    HWY_ALIGN uint8_t last[32];
+    put_strip(last);
+    __builtin_memcpy(to + left, last, static_cast<size_t>(width_px - left));
+  }
+  return static_cast<uint32_t>(count);
 }
 
 template <bool kPerspective>
@@ -1945,6 +2184,7 @@ HWY_EXPORT(find_places);
 HWY_EXPORT(find_covered);
 HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
+HWY_EXPORT(put_grays);
 HWY_EXPORT(find_faces);
 HWY_EXPORT(instruction_set);
 
@@ -1972,9 +2212,11 @@ int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t en
 void unpack(const Depths& depths, Pixels* pixels) {
   HWY_DYNAMIC_DISPATCH(unpack)(depths, pixels);
 }
-void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
-                uint8_t* gray) {
-  HWY_DYNAMIC_DISPATCH(find_grays)(frame, pixels, depth_per_t_q8, shading, gray);
+void find_grays(const Frame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
+  HWY_DYNAMIC_DISPATCH(find_grays)(frame, pixels, scale, gray);
+}
+uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to) {
+  return HWY_DYNAMIC_DISPATCH(put_grays)(depths, y, width_px, background, to);
 }
 void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face) {
   HWY_DYNAMIC_DISPATCH(find_faces)(frame, pixels, face);

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "host/wide/frame.h"
+#include "host/wide/gray_scale.h"
 #include "thimble/shading.h"
 
 namespace thimble::wide {
@@ -24,16 +25,24 @@ namespace thimble::wide {
 /// part at some node, in which the ray passes the children in the order of their mirrored numbers. So depth
 /// is compared as integers, exactly.
 ///
+/// Where only greys by depth are wanted, of single voxels in one cube, a pixel's grey is found as its ray's
+/// voxel is met, and kept in place of the voxel: 5 bytes a pixel instead of 8, and nothing left to look up.
+///
 /// The picture is cut into strips of 32 columns, and what is kept of a strip stands row by row: what lies
 /// together in the picture lies together in memory.
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
-  uint32_t* covered;  ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
-                      ///< behind the last strip one more can be read
-  int32_t rows;       ///< of the picture, and words from a strip to the next
-  int32_t first_row;  ///< the row of the picture that comes first
+  const GrayScale* gray_scale;  ///< null: `nearest` is in use; else the next three are
+  const Shading* shading;
+  uint32_t* nearest_key;  ///< within the cube; holds something only where `gray` does
+  uint8_t* gray;          ///< 0 where there is nothing: greys are at least kFarBrightness
+  uint32_t* covered;      ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
+                          ///< behind the last strip one more can be read
+  bool marks;             ///< whether `covered` is in use; not where `gray` does as well
+  int32_t rows;           ///< of the picture, and words from a strip to the next
+  int32_t first_row;      ///< the row of the picture that comes first
 
-  /// Where the word that holds the pixel is in `covered`; 32 times that and x & 31 in `nearest`.
+  /// Where the word that holds the pixel is in `covered`; 32 times that and x & 31 in the others.
   size_t word(int32_t x, int32_t y) const {
     return static_cast<size_t>(x >> 5) * static_cast<size_t>(rows) + static_cast<size_t>(y - first_row);
   }
@@ -103,7 +112,7 @@ struct Batch {
   // `met` of them were met and are on the way into the picture.
   alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube
   alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
-  alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry
+  alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry; or its grey
   alignas(64) uint32_t pixel[Pairs::kRoom];   ///< where it is in Depths::nearest
   // Of the cube that the pairs lie in.
   uint64_t cube_value[8];          ///< its corner's key, by `down`
@@ -206,8 +215,10 @@ int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t en
 /// Takes the values of the pixels and unpacks them; makes the lanes behind the last pixels too.
 void unpack(const Depths& depths, Pixels* pixels);
 /// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind it.
-void find_grays(const Frame& frame, const Pixels& pixels, int32_t depth_per_t_q8, const Shading& shading,
-                uint8_t* gray);
+void find_grays(const Frame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray);
+/// Where greys are kept: those of row `y`, `background` where there is nothing, to `to[width_px]`. Returns
+/// how many there are.
+uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to);
 /// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates:
 /// `face[count]`, with the same room.
 void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face);

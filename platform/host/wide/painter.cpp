@@ -26,10 +26,20 @@ Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& s
       shading_(shading),
       band_(band),
       stride_(band.stride_bytes == 0 ? row_bytes(band.format, camera.width_px()) : band.stride_bytes),
-      background_(shade(Hit{}, Ray{}, camera, shading)) {
+      background_(shade(Hit{}, Ray{}, camera, shading)),
+      gray_scale_(gray_scale_of(camera, shading)) {
   for (unsigned face = 0; face < 6; ++face) {
     faces_[face] = color_of_face(face, lists.tree().uniform_material(), camera, shading);
   }
+}
+
+const GrayScale* Painter::gray_scale() const {
+  // Where more than one pixel in twenty-five needs another look, one look at the end is less.
+  constexpr float kMostMargin = 0.02F;
+  const bool is_apt = shading_.mode == ShadeMode::kDepth && !lists_.has_blocks() &&
+                      lists_.tree().level() <= kCubeLevel && gray_scale_.floats_tell &&
+                      gray_scale_.margin < kMostMargin;
+  return is_apt ? &gray_scale_ : nullptr;
 }
 
 // All of the row. In formats of less than a byte, pixels are or'ed into zeros: the covered ones stay 0.
@@ -68,7 +78,7 @@ void Painter::paint(const Frame& frame, const Depths& depths, Pixels* pixels) co
     }
     uint8_t codes[kMostPixels + 64];
     if (shading_.mode == ShadeMode::kDepth) {
-      find_grays(frame, *pixels, camera_.depth_per_t_q8(), shading_, codes);
+      find_grays(frame, *pixels, gray_scale_, codes);
       if (band_.format == PixelFormat::kGray8) {
         for (uint32_t i = 0; i < count; ++i) {
           line(pixels->y[i])[pixels->x[i]] = codes[i];
@@ -106,7 +116,31 @@ void Painter::paint(const Frame& frame, const Depths& depths, Pixels* pixels) co
   }
 }
 
+uint64_t Painter::paint_grays(const Frame& frame, const Depths& depths) const {
+  const int32_t width = camera_.width_px();
+  uint64_t hits = 0;
+  if (band_.format == PixelFormat::kGray8) {
+    for (int32_t y = frame.tile.y0; y < frame.tile.y1; ++y) {
+      hits += put_grays(depths, y, width, gray_of(background_), line(y));
+    }
+    return hits;
+  }
+  uint8_t grays[kMaxPicturePx];
+  for (int32_t y = frame.tile.y0; y < frame.tile.y1; ++y) {
+    uint8_t* const to = line(y);
+    hits += put_grays(depths, y, width, 0, grays);
+    memset(to, 0, row_bytes(band_.format, width));
+    for (int32_t x = 0; x < width; ++x) {
+      store_pixel(to, x, y, band_.format, grays[x] == 0 ? background_ : Rgb8{grays[x], grays[x], grays[x]});
+    }
+  }
+  return hits;
+}
+
 uint64_t Painter::paint_tile(const Frame& frame, const Depths& depths) const {
+  if (depths.gray_scale != nullptr) {
+    return paint_grays(frame, depths);
+  }
   Pixels pixels;
   pixels.any_levels = lists_.has_blocks();
   if (pixels.any_levels) {

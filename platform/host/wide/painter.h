@@ -14,10 +14,14 @@ class Painter {
  public:
   Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
 
+  /// For greys that are found as voxels are met (Depths); null where that does not do.
+  const GrayScale* gray_scale() const;
+
   /// Paints the rows of the frame's tile. Returns how many pixels hold anything.
   uint64_t paint_tile(const Frame& frame, const Depths& depths) const;
 
  private:
+  uint64_t paint_grays(const Frame& frame, const Depths& depths) const;
   void fill_background(uint8_t* line, int32_t y, const Depths& depths) const;
   void paint(const Frame& frame, const Depths& depths, Pixels* pixels) const;
   uint8_t* line(int32_t y) const {
@@ -30,7 +34,7 @@ class Painter {
   const Band& band_;
   size_t stride_;
   Rgb8 background_;
-  Rgb8 white_;
+  GrayScale gray_scale_;
   Rgb8 faces_[6];  ///< where there is one material
 };
 

@@ -431,8 +431,14 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   depths.rows = band.rows;
   depths.first_row = band.first_row;
   const size_t strips = strips_of(camera.width_px());
-  depths.nearest = reinterpret_cast<uint64_t*>(
-      arena.take(strips * static_cast<size_t>(band.rows) * 32 * sizeof(uint64_t), 64).data);
+  const size_t strip_pixels = strips * static_cast<size_t>(band.rows) * 32;
+  const Bytes nearest = arena.take(strip_pixels * sizeof(uint64_t), 64);
+  const Painter painter(lists, camera, shading, band);
+  depths.gray_scale = painter.gray_scale();
+  depths.shading = &shading;
+  depths.nearest = reinterpret_cast<uint64_t*>(nearest.data);
+  depths.nearest_key = reinterpret_cast<uint32_t*>(nearest.data);
+  depths.gray = nearest.data + strip_pixels * sizeof(uint32_t);
   depths.covered = reinterpret_cast<uint32_t*>(
       arena.take(covered_words(camera.width_px(), band.rows) * sizeof(uint32_t)).data);
   const Bytes patches = arena.take(strips * patches_of(band.rows), 1);
@@ -450,14 +456,19 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     done.order = blocks_pay(lists, frame) ? Order::kBlocks : Order::kFlat;
   }
   const bool by_blocks = done.order == Order::kBlocks;
-  const Painter painter(lists, camera, shading, band);
+  depths.marks = by_blocks || depths.gray_scale == nullptr;
   const auto draw_tile = [&](int32_t row, Batch* batch) {
     Frame tile;
     (void)make_tile(row, &tile);
     const int32_t rows = tile.tile.y1 - tile.tile.y0;
     for (size_t strip = 0; strip < strips; ++strip) {
-      memset(depths.covered + depths.word(static_cast<int32_t>(32 * strip), tile.tile.y0), 0,
-             static_cast<size_t>(rows) * sizeof(uint32_t));
+      const size_t word = depths.word(static_cast<int32_t>(32 * strip), tile.tile.y0);
+      if (depths.marks) {
+        memset(depths.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
+      }
+      if (depths.gray_scale != nullptr) {
+        memset(depths.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
+      }
       memset(patches.data + strip * patches_of(band.rows) + row / kPatchRows, 0, patches_of(rows));
     }
     TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();

@@ -1,5 +1,7 @@
 #include "host/wide/voxel_lists.h"
 
+#include "thimble/morton.h"
+
 namespace thimble::wide {
 namespace {
 
@@ -8,7 +10,11 @@ struct Census {
   uint32_t level_begin[kMaxLevel + 2];  // of level l; level_begin[0] is the number of nodes
   uint64_t boxes = 0;
   bool has_blocks = false;
+  bool splits = false;  // whether blocks are given as their voxels, which `boxes` counts then
 };
+
+// Lists of single voxels are drawn faster. Blocks are split when that adds at most a box for so many.
+constexpr uint64_t kBoxesPerAdded = 8;
 
 // Solid blocks larger than a cube of entries are given as cubes.
 uint32_t pieces_of(int level) {
@@ -16,6 +22,7 @@ uint32_t pieces_of(int level) {
 }
 
 bool count(const CompactTree& tree, Census* census) {
+  uint64_t added = 0;  // by splitting
   uint32_t begin = 0;
   uint32_t end = tree.empty() ? 0 : 1;
   for (int level = tree.level(); level >= 1; --level) {
@@ -27,6 +34,8 @@ bool count(const CompactTree& tree, Census* census) {
       if (mask == 0) {
         census->boxes += pieces_of(level);
         census->has_blocks = true;
+        // More than can be added, whatever the tree, says enough.
+        added += level < kCubeLevel ? (uint64_t{1} << (3 * level)) - 1 : UINT32_MAX;
       }
     }
     if (level == 1) {
@@ -38,6 +47,11 @@ bool count(const CompactTree& tree, Census* census) {
     end += level == 1 ? 0 : static_cast<uint32_t>(children);
   }
   census->level_begin[0] = begin;
+  census->splits = census->has_blocks && !tree.merged() && added <= census->boxes / kBoxesPerAdded;
+  if (census->splits) {
+    census->boxes += added;
+    census->has_blocks = false;
+  }
   return begin == tree.node_count() && census->boxes <= UINT32_MAX;
 }
 
@@ -142,7 +156,16 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
         made.face_area_ += uint64_t{1} << (2 * box_level);
         entries[written++] = packed(at, box_level);
       };
-      if (solid) {
+      if (solid && census.splits) {
+        const uint8_t material = materials == nullptr ? 0 : tree.block_material(step.node);
+        for (uint32_t code = 0; code >> (3 * level) == 0; ++code) {
+          const Vec3i place = morton_voxel(code);
+          const uint32_t at[3] = {corner[0] + static_cast<uint32_t>(place.x),
+                                  corner[1] + static_cast<uint32_t>(place.y),
+                                  corner[2] + static_cast<uint32_t>(place.z)};
+          add(at, 0, material);
+        }
+      } else if (solid) {
         const uint8_t material = materials == nullptr ? 0 : tree.block_material(step.node);
         for (uint32_t piece = 0; piece < pieces_of(level); ++piece) {
           add(corner, level < kCubeLevel ? level : kCubeLevel, material);

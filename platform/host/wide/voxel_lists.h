@@ -9,6 +9,9 @@
 ///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner
 ///     8-aligned
 ///
+/// Where a tree has few solid blocks, so that their voxels are at most an eighth more than its boxes, they are
+/// given as single voxels: lists of nothing else are drawn faster. Not blocks that coarsening made.
+///
 /// Every node of the tree covers a run of entries. Nodes of `block_level` and above are kept with their runs,
 /// so that whole blocks can be skipped, or taken front to back.
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_VOXEL_LISTS_H
