@@ -37,7 +37,11 @@ class Haze {
   }
 
   // Pixels of boxes that blocks need not test, and boxes that they need not look at, against what they cost.
-  bool blocks_pay() const { return count_ != 0 && spared_px_ + kBoxSpared * spared_boxes_ >= cost_; }
+  Outlook outlook() const {
+    Outlook outlook = outlook_;
+    outlook.blocks_pay = count_ != 0 && spared_px_ + kBoxSpared * spared_boxes_ >= cost_;
+    return outlook;
+  }
 
  private:
   static constexpr int kMostCells = 64;
@@ -225,8 +229,11 @@ class Haze {
       const float blocks = entries / (has_table ? kMeanTableBoxes : kMeanBlockBoxes);
       const float block_px = blocks > 1 ? rectangle / cbrtf(blocks * blocks) : rectangle;
       const float spared = boxes * powf(1 - seen, fmaxf(block_px, 1));
-      spared_px_ += (faces_px + boxes * cell.slack_px) * (1 - seen);
+      const float tests = faces_px + boxes * cell.slack_px;
+      spared_px_ += tests * (1 - seen);
       spared_boxes_ += spared;
+      spread(cell, tests + kBoxSpared * boxes, outlook_.flat);
+      spread(cell, tests * seen + kBoxSpared * (boxes - spared), outlook_.blocks);
       if (has_table) {
         // As many blocks as cells so large would have, were all cut alike: eight each, or four on a surface.
         const float across = fmaxf(cell.side_px / kMeanTablePx, 1);
@@ -240,6 +247,18 @@ class Haze {
     }
   }
 
+  // Over the rows that the cell takes.
+  void spread(const Cell& cell, float work, float (&parts)[Outlook::kParts]) const {
+    const float per_row =
+        static_cast<float>(Outlook::kParts) / static_cast<float>(frame_.tile.y1 - frame_.tile.y0);
+    const float from = (cell.y0 - static_cast<float>(frame_.tile.y0)) * per_row;
+    const float to = (cell.y1 - static_cast<float>(frame_.tile.y0)) * per_row;
+    const float each = work / (to - from);
+    for (int part = static_cast<int>(from); part < Outlook::kParts && static_cast<float>(part) < to; ++part) {
+      parts[part] += each * (fminf(to, static_cast<float>(part + 1)) - fmaxf(from, static_cast<float>(part)));
+    }
+  }
+
   // Cells that are cut make way from the end: eight for each of kMostCells / 4 at most, and those.
   static constexpr int kRoom = 4 * kMostCells;
   const VoxelLists& lists_;
@@ -250,12 +269,13 @@ class Haze {
   float cost_ = 0;
   float spared_px_ = 0;
   float spared_boxes_ = 0;
+  Outlook outlook_;
 };
 
 }  // namespace
 
-bool blocks_pay(const VoxelLists& lists, const Frame& frame) {
-  return lists.entries().size > kFewBoxes && Haze(lists, frame).blocks_pay();
+Outlook outlook_of(const VoxelLists& lists, const Frame& frame) {
+  return lists.entries().size > kFewBoxes ? Haze(lists, frame).outlook() : Outlook{};
 }
 
 }  // namespace thimble::wide

@@ -11,9 +11,20 @@ namespace thimble::wide {
 /// Blocks of single voxels of so few pixels are looked up in tables (kernels.cpp).
 inline constexpr float kTableVoxelPx = 2.0F;
 
-/// Whether boxes hide one another enough for blocks to pay, which are drawn front to back and left out when
-/// all their pixels are covered. Takes about a hundredth of the frame's time: it looks at 65 cells at most.
-bool blocks_pay(const VoxelLists& lists, const Frame& frame);
+/// What is to be expected of a frame.
+struct Outlook {
+  static constexpr int kParts = 32;
+  /// Whether boxes hide one another enough for blocks to pay, which are drawn front to back and left out when
+  /// all their pixels are covered.
+  bool blocks_pay = false;
+  /// How the work is spread over so many equal parts of the tile's rows, about, from the first down: with
+  /// the list as it stands, and with blocks.
+  float flat[kParts] = {};
+  float blocks[kParts] = {};
+};
+
+/// Takes about a hundredth of the frame's time: it looks at 65 cells at most.
+Outlook outlook_of(const VoxelLists& lists, const Frame& frame);
 
 }  // namespace thimble::wide
 

@@ -1,6 +1,5 @@
 #include "host/wide/renderer.h"
 
-#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -120,8 +119,6 @@ class TileDrawer {
     if (places[0].where.x0 < places[0].where.x1) {
       stack[depth++] = {0, tree.level(), {0, 0, 0}, places[0]};
     }
-    // Where the tile's edge cuts the world, blocks outside are to be left out too.
-    const bool is_part = frame_.tile.y1 - frame_.tile.y0 < frame_.camera.height_px();
     while (depth > 0) {
       const Block block = stack[--depth];
       ++batch_->counts.nodes;
@@ -129,7 +126,7 @@ class TileDrawer {
       const unsigned mask = tree.mask(block.node);
       const int32_t widest = width_of(block.place.where);
       const bool has_table = by_blocks_ && !lists_.has_blocks() && voxel_px(block) < kTableVoxelPx;
-      const bool is_cut_off = is_part || touches_edge(block.place.where);
+      const bool is_cut_off = touches_edge(block.place.where);
       const uint32_t small = has_table ? kTableBoxes : by_blocks_ || is_cut_off ? kBlockBoxes : kFlatBoxes;
       const bool is_few = node.entries <= (widest <= kTinyPx && small < kTinyBoxes ? kTinyBoxes : small) &&
                           block.level <= kCubeLevel;
@@ -369,6 +366,56 @@ class TileDrawer {
   uint32_t sorted_numbers_[kMostSorted + kReadAhead];
 };
 
+// The picture is cut into tiles of whole rows, so that as many threads are busy to the end: first a large one
+// for each, then smaller ones for whoever is done first. Few, since boxes on a seam are looked at on both
+// sides.
+class Tiles {
+ public:
+  Tiles(int32_t rows, int threads, const float (&work)[Outlook::kParts]) : end_{rows} {
+    if (threads == 1) {
+      return;
+    }
+    float all = 0;
+    for (const float part : work) {
+      all += part;
+    }
+    // Rows take some time by themselves: they are cleared and painted.
+    const float each = 0.03F * all / Outlook::kParts + 1e-6F;
+    all += each * Outlook::kParts;
+    count_ = 0;
+    float done = 0;
+    float wanted = 0;
+    int part = 0;
+    for (int32_t last = 0; last < rows;) {
+      const bool is_large = count_ < threads;
+      wanted += all * (is_large ? 1 - kSmallShare : kSmallShare) / static_cast<float>(threads);
+      while (part < Outlook::kParts && done + work[part] + each <= wanted) {
+        done += work[part] + each;
+        ++part;
+      }
+      float at = static_cast<float>(part);
+      if (part < Outlook::kParts) {
+        at += (wanted - done) / (work[part] + each);
+      }
+      const int32_t row = static_cast<int32_t>(at * static_cast<float>(rows) / Outlook::kParts);
+      int32_t end = (row + kPatchRows / 2) / kPatchRows * kPatchRows;
+      end = end <= last ? last + kPatchRows : end;
+      last = end < rows && count_ + 1 < kMost ? end : rows;
+      end_[count_++] = last;
+    }
+  }
+
+  int count() const { return count_; }
+  int32_t begin(int tile) const { return tile == 0 ? 0 : end_[tile - 1]; }
+  int32_t end(int tile) const { return end_[tile]; }
+
+ private:
+  static constexpr float kSmallShare = 0.28F;
+  static constexpr int kMost = kMaxPicturePx / kPatchRows;
+  int count_ = 1;
+  int32_t end_[kMost];
+};
+
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
              const Options& options) {
   const int32_t width = camera.width_px();
@@ -407,23 +454,31 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (status != Status::kOk || band.rows == 0) {
     return status;
   }
-  // A tile is some whole rows. With several threads there are more tiles than threads, so that one that is
-  // slow does not hold the frame.
-  const int32_t tile_count = options.threads == 1 ? 1 : 4 * options.threads;
-  int32_t tile_rows = (band.rows + tile_count - 1) / tile_count;
-  tile_rows = (tile_rows + kPatchRows - 1) / kPatchRows * kPatchRows;
-  const auto make_tile = [&](int32_t row, Frame* frame) {
-    const int32_t end = row + tile_rows < band.rows ? row + tile_rows : band.rows;
-    return make_frame(camera, {0, band.first_row + row, camera.width_px(), band.first_row + end}, frame);
-  };
   Frame frame;
-  for (int32_t row = 0; row < band.rows; row += tile_rows) {
-    if (!make_tile(row, &frame)) {
-      return Status::kTooFine;
-    }
-  }
   if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
     return Status::kTooFine;
+  }
+  Stats done;
+  done.order = options.order;
+  Outlook outlook;
+  if (done.order == Order::kAuto || options.threads > 1) {
+    outlook = outlook_of(lists, frame);
+  }
+  if (done.order == Order::kAuto) {
+    done.order = outlook.blocks_pay ? Order::kBlocks : Order::kFlat;
+  }
+  const bool by_blocks = done.order == Order::kBlocks;
+  const Tiles tiles(band.rows, options.threads, by_blocks ? outlook.blocks : outlook.flat);
+  const auto make_tile = [&](int tile, Frame* made) {
+    return make_frame(
+        camera, {0, band.first_row + tiles.begin(tile), camera.width_px(), band.first_row + tiles.end(tile)},
+        made);
+  };
+  for (int tile = 0; tile < tiles.count(); ++tile) {
+    Frame part;
+    if (!make_tile(tile, &part)) {
+      return Status::kTooFine;
+    }
   }
 
   Arena arena(workspace);
@@ -450,16 +505,10 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     return new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
   };
 
-  Stats done;
-  done.order = options.order;
-  if (done.order == Order::kAuto) {
-    done.order = blocks_pay(lists, frame) ? Order::kBlocks : Order::kFlat;
-  }
-  const bool by_blocks = done.order == Order::kBlocks;
   depths.marks = by_blocks || depths.gray_scale == nullptr;
-  const auto draw_tile = [&](int32_t row, Batch* batch) {
+  const auto draw_tile = [&](int number, Batch* batch) {
     Frame tile;
-    (void)make_tile(row, &tile);
+    (void)make_tile(number, &tile);
     const int32_t rows = tile.tile.y1 - tile.tile.y0;
     for (size_t strip = 0; strip < strips; ++strip) {
       const size_t word = depths.word(static_cast<int32_t>(32 * strip), tile.tile.y0);
@@ -469,7 +518,8 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
       if (depths.gray_scale != nullptr) {
         memset(depths.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
       }
-      memset(patches.data + strip * patches_of(band.rows) + row / kPatchRows, 0, patches_of(rows));
+      memset(patches.data + strip * patches_of(band.rows) + tiles.begin(number) / kPatchRows, 0,
+             patches_of(rows));
     }
     TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();
     return painter.paint_tile(tile, depths);
@@ -488,16 +538,14 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
       batch_of(thread);
     }
     std::atomic<uint64_t> all_hits{0};
+    std::atomic<int> next{0};
     workers.execute([&] {
-      oneapi::tbb::parallel_for(
-          oneapi::tbb::blocked_range<int32_t>(0, (band.rows + tile_rows - 1) / tile_rows, 1),
-          [&](const oneapi::tbb::blocked_range<int32_t>& tiles) {
-            const int thread = oneapi::tbb::this_task_arena::current_thread_index();
-            for (int32_t tile = tiles.begin(); tile != tiles.end(); ++tile) {
-              all_hits += draw_tile(tile * tile_rows, batch_at(thread));
-            }
-          },
-          oneapi::tbb::simple_partitioner());
+      oneapi::tbb::parallel_for(0, options.threads, [&](int /*turn*/) {
+        Batch* const batch = batch_at(oneapi::tbb::this_task_arena::current_thread_index());
+        for (int tile = next++; tile < tiles.count(); tile = next++) {
+          all_hits += draw_tile(tile, batch);
+        }
+      });
     });
     hits = all_hits;
     for (int thread = 0; thread < options.threads; ++thread) {

@@ -9,8 +9,8 @@
 ///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner
 ///     8-aligned
 ///
-/// Where a tree has few solid blocks, so that their voxels are at most an eighth more than its boxes, they are
-/// given as single voxels: lists of nothing else are drawn faster. Not blocks that coarsening made.
+/// Where a tree has few solid blocks, so that their voxels are at most an eighth more than its boxes, they
+/// are given as single voxels: lists of nothing else are drawn faster. Not blocks that coarsening made.
 ///
 /// Every node of the tree covers a run of entries. Nodes of `block_level` and above are kept with their runs,
 /// so that whole blocks can be skipped, or taken front to back.
