@@ -2,7 +2,8 @@
 //
 //   thimble_peer_table                                      all rows, some minutes
 //   thimble_peer_table --points 1000,100000 --scene points  some
-//   thimble_peer_table --csv F --json F --plot F.svg        the same for machines and readers
+//   thimble_peer_table --csv F --json F --plot F.svg --plot-bytes F.svg
+//                                                           the same for machines and readers
 //
 // A frame is 800 x 600 pixels with depth shading, processor time on one thread, clearing and all that depends
 // on the view included. `faster` is the time of the fastest peer that counts over this renderer's.
@@ -30,6 +31,7 @@ struct Choice {
   std::string csv_path;
   std::string json_path;
   std::string plot_path;
+  std::string bytes_plot_path;
 };
 
 const char* projection(const Result& result) {
@@ -130,38 +132,59 @@ std::optional<std::pair<double, double>> crossover(const std::vector<const Resul
   return std::nullopt;
 }
 
-// Of the first scene, in perspective.
-std::string plot_text(const std::vector<Result>& results) {
-  tools::Plot plot;
-  plot.title = "One frame of 800 x 600 pixels, perspective, one thread";
-  plot.x_label = "points in the world of 1024 a side (" + results.front().scene + ")";
-  plot.y_label = "milliseconds a frame";
+// The rows of the first scene, in perspective.
+std::vector<const Result*> plotted_rows(const std::vector<Result>& results) {
   std::vector<const Result*> rows;
   for (const Result& result : results) {
     if (result.scene == results.front().scene && !result.orthographic) {
       rows.push_back(&result);
     }
   }
-  double least = 1e30;
+  return rows;
+}
+
+// A line for each engine; `value` says how high an entrant stands.
+tools::Plot plot_of(const std::vector<const Result*>& rows, double (*value)(const Entrant& entrant)) {
+  tools::Plot plot;
+  plot.x_label = "points in the world of 1024 a side (" + rows.front()->scene + ")";
   for (const char* name : {"Thimble", "exact raster", "Embree", "NanoVDB", "Thimble, ray by ray"}) {
     tools::Series series{name, name == std::string("Thimble, ray by ray"), {}};
     for (const Result* row : rows) {
       if (const Entrant* const entrant = row->find(name)) {
-        series.points.emplace_back(static_cast<double>(row->points), entrant->ms);
-        least = std::min(least, entrant->ms);
+        series.points.emplace_back(static_cast<double>(row->points), value(*entrant));
       }
     }
     if (!series.points.empty()) {
       plot.series.push_back(series);
     }
   }
+  return plot;
+}
+
+std::string time_plot(const std::vector<const Result*>& rows) {
+  tools::Plot plot = plot_of(rows, [](const Entrant& entrant) { return entrant.ms; });
+  plot.title = "One frame of 800 x 600 pixels, perspective, one thread";
+  plot.y_label = "milliseconds a frame";
   if (const auto crossing = crossover(rows)) {
+    double least = crossing->second;
+    for (const tools::Series& series : plot.series) {
+      for (const auto& [x, y] : series.points) {
+        least = std::min(least, y);
+      }
+    }
     char name[96];
     std::snprintf(name, sizeof(name), "peers' tracing overtakes rasterization at %.1f million",
                   crossing->first / 1e6);
     plot.series.push_back({name, true, {{crossing->first, least}, {crossing->first, crossing->second}}});
     std::printf("%s points\n", name);
   }
+  return tools::log_plot_text(plot);
+}
+
+std::string bytes_plot(const std::vector<const Result*>& rows) {
+  tools::Plot plot = plot_of(rows, [](const Entrant& entrant) { return static_cast<double>(entrant.bytes); });
+  plot.title = "Memory that is kept between frames";
+  plot.y_label = "bytes";
   return tools::log_plot_text(plot);
 }
 
@@ -183,6 +206,7 @@ int run(int count, char** words) {
   app.add_option("--csv", choice.csv_path, "results as CSV");
   app.add_option("--json", choice.json_path, "results and machine as JSON");
   app.add_option("--plot", choice.plot_path, "milliseconds against points as SVG");
+  app.add_option("--plot-bytes", choice.bytes_plot_path, "memory against points as SVG");
   CLI11_PARSE(app, count, words);
   for (const auto& [key, value] : machine()) {
     std::printf("%s: %s\n", key.c_str(), value.c_str());
@@ -200,8 +224,9 @@ int run(int count, char** words) {
       write(choice.json_path, json_text(results));
     }
   }
-  if (!results.empty() && !choice.plot_path.empty()) {
-    write(choice.plot_path, plot_text(results));
+  if (!results.empty()) {
+    write(choice.plot_path, time_plot(plotted_rows(results)));
+    write(choice.bytes_plot_path, bytes_plot(plotted_rows(results)));
   }
   return 0;
 }
