@@ -408,6 +408,56 @@ TEST_CASE("wide: greys found as voxels are met -> every pixel is the core's, bet
   CHECK(exact > met / 500);
 }
 
+TEST_CASE("wide: several threads with a picture each -> put together, every pixel is the core's") {
+  const BestInstructionSet after;
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kFrames = 2;
+#else
+  constexpr int kFrames = 24;
+#endif
+  std::mt19937_64 random(77);
+  Scene scene;
+  scene.level = 9;
+  const HeapBytes pool(std::size_t{24} << 20);
+  Octree octree;
+  REQUIRE(octree.init(pool.span(), scene.level) == Status::kOk);
+  for (int i = 0; i < 200000; ++i) {
+    const Vec3i at{static_cast<std::int32_t>(pick(random, 0, 511)),
+                   static_cast<std::int32_t>(pick(random, 0, 511)),
+                   static_cast<std::int32_t>(pick(random, 0, 511))};
+    REQUIRE(octree.insert(at, static_cast<std::uint8_t>(pick(random, 1, 3))) == Status::kOk);
+  }
+  scene.bytes = std::make_unique<HeapBytes>(compact_of(octree));
+  make_lists(&scene);
+  int drawn = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    Frame frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    frame.shading.mode = i % 2 == 0 ? ShadeMode::kDepth : ShadeMode::kColor;
+    wide::use_instruction_set(i % wide::instruction_set_count());
+    std::uint64_t expected_hits = 0;
+    const auto expected = draw_core(scene, frame, &expected_hits);
+    for (const int threads : {2, 3, 4}) {
+      CAPTURE(i);
+      CAPTURE(threads);
+      CAPTURE(wide::instruction_set());
+      wide::Options options;
+      options.threads = threads;
+      options.order = wide::Order::kFlat;
+      std::uint64_t hits = 0;
+      const auto ours = draw_wide(scene, frame, options, &hits);
+      if (ours) {
+        CHECK(*ours == expected);
+        CHECK(hits == expected_hits);
+        ++drawn;
+      }
+    }
+  }
+  CHECK(drawn >= kFrames);
+}
+
 TEST_CASE("wide: a few solid blocks among single voxels -> given as voxels; more of them, or merged, not") {
   Octree octree;
   const HeapBytes pool(std::size_t{1} << 20);

@@ -2134,6 +2134,42 @@ uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t ba
   return static_cast<uint32_t>(count);
 }
 
+// Of one word of coverage.
+void merge_word(const Depths& from, size_t word, const Depths& to) {
+  for (uint32_t bits = from.covered[word]; bits != 0; bits &= bits - 1) {
+    const uint32_t bit = bits & (0 - bits);
+    const size_t pixel = 32 * word + static_cast<size_t>(__builtin_ctz(bits));
+    if ((to.covered[word] & bit) == 0 || from.nearest[pixel] < to.nearest[pixel]) {
+      to.nearest[pixel] = from.nearest[pixel];
+    }
+  }
+  to.covered[word] |= from.covered[word];
+}
+
+void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to) {
+  const U32 d;
+  const hn::Rebind<uint8_t, U32> bytes;
+  const size_t lanes = hn::Lanes(d);
+  for (int32_t left = 0; left < width_px; left += 32) {
+    const size_t first = to.word(left, y0);
+    const size_t end = to.word(left, y1);
+    for (size_t word = first; to.gray_scale == nullptr && word < end; ++word) {
+      merge_word(from, word, to);
+    }
+    for (size_t at = 32 * first; to.gray_scale != nullptr && at < 32 * end; at += lanes) {
+      const auto theirs = hn::PromoteTo(d, hn::LoadU(bytes, from.gray + at));
+      const auto ours = hn::PromoteTo(d, hn::LoadU(bytes, to.gray + at));
+      const auto their_key = hn::LoadU(d, from.nearest_key + at);
+      const auto our_key = hn::LoadU(d, to.nearest_key + at);
+      const auto is_nearer = hn::Or(hn::Eq(ours, hn::Zero(d)), hn::Lt(their_key, our_key));
+      const auto taken = hn::And(hn::Ne(theirs, hn::Zero(d)), is_nearer);
+      const auto gray = hn::BitCast(I32(), hn::IfThenElse(taken, theirs, ours));
+      hn::StoreU(hn::IfThenElse(taken, their_key, our_key), d, to.nearest_key + at);
+      hn::StoreU(hn::DemoteTo(bytes, gray), bytes, to.gray + at);
+    }
+  }
+}
+
 template <bool kPerspective>
 void find_faces_of(const Frame& frame, const Pixels& pixels, uint8_t* face) {
   const F64 d;
@@ -2185,6 +2221,7 @@ HWY_EXPORT(find_covered);
 HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
 HWY_EXPORT(put_grays);
+HWY_EXPORT(merge_rows);
 HWY_EXPORT(find_faces);
 HWY_EXPORT(instruction_set);
 
@@ -2217,6 +2254,9 @@ void find_grays(const Frame& frame, const Pixels& pixels, const GrayScale& scale
 }
 uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to) {
   return HWY_DYNAMIC_DISPATCH(put_grays)(depths, y, width_px, background, to);
+}
+void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to) {
+  HWY_DYNAMIC_DISPATCH(merge_rows)(from, width_px, y0, y1, to);
 }
 void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face) {
   HWY_DYNAMIC_DISPATCH(find_faces)(frame, pixels, face);

@@ -194,6 +194,10 @@ void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, 
 void find_places(const Frame& frame, const float* x, const float* y, const float* z, float side,
                  Place* places);
 
+/// Puts into rows y0 .. y1 - 1 of `to` what is nearer in those of `from`, the same rows of the same picture
+/// with other boxes.
+void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to);
+
 /// Pixels and their nearest boxes. Behind the last there is room for a vector.
 inline constexpr uint32_t kMostPixels = 512;
 struct Pixels {

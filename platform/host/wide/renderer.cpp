@@ -28,6 +28,10 @@ constexpr int32_t kTablePx = 28;
 constexpr float kSortedPx = 6.0F;
 constexpr uint32_t kMostSorted = 512;
 constexpr int32_t kPatchRows = 16;
+// Up to so many threads draw lists of so many boxes each in a picture of its own. Fewer boxes are drawn in
+// the time that it takes to put pictures together, and more pictures are more than caches hold.
+constexpr int kMostCopies = 4;
+constexpr size_t kCopyBoxes = 150000;
 
 size_t strips_of(int32_t width_px) {
   return static_cast<size_t>(width_px + 31) / 32;
@@ -94,9 +98,18 @@ struct Block {
 // One tile of the picture, by one thread.
 class TileDrawer {
  public:
+  // `next_share`: null, or common to several that share the runs of a list among them, each with depths of
+  // its own; not with blocks.
   TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, uint8_t* full, bool by_blocks,
-             Batch* batch)
-      : lists_(lists), frame_(frame), depths_(depths), full_(full), by_blocks_(by_blocks), batch_(batch) {
+             Batch* batch, std::atomic<uint32_t>* next_share = nullptr)
+      : lists_(lists),
+        frame_(frame),
+        depths_(depths),
+        full_(full),
+        by_blocks_(by_blocks),
+        batch_(batch),
+        next_share_(next_share),
+        share_(next_share == nullptr ? 0 : (*next_share)++) {
     const Camera& camera = frame.camera;
     for (int axis = 0; axis < 3; ++axis) {
       // Rays of a parallel camera come from beyond the world.
@@ -138,6 +151,9 @@ class TileDrawer {
         continue;
       }
       if (is_leaf || is_family) {
+        if (!is_ours()) {
+          continue;
+        }
         // Its boxes are fetched while those of the blocks before it are drawn.
         const uint32_t* entries = lists_.entries().data + node.first_entry;
         for (uint32_t line = 0; 16 * line < node.entries && line < kMostLines; ++line) {
@@ -163,11 +179,25 @@ class TileDrawer {
 
  private:
   static constexpr uint32_t kAhead = 4;
+  static constexpr uint32_t kRunsPerShare = 2;
   static constexpr uint32_t kMostLines = 64;
   struct Waiting {
     Block block;
     unsigned mask;  ///< not 0: its children are drawn, one after the other
   };
+
+  // Whether the next run is one of ours. All come by the same runs in the same order and take the next share
+  // that nobody has when their last one is done, so each is taken once.
+  bool is_ours() {
+    if (next_share_ == nullptr) {
+      return true;
+    }
+    const uint32_t share = run_++ / kRunsPerShare;
+    if (share > share_) {
+      share_ = (*next_share_)++;
+    }
+    return share == share_;
+  }
 
   static int32_t width_of(const Rectangle& where) {
     const int32_t x = where.x1 - where.x0;
@@ -356,6 +386,9 @@ class TileDrawer {
   uint8_t* full_;  // see all_covered
   bool by_blocks_;
   Batch* batch_;
+  std::atomic<uint32_t>* next_share_;
+  uint32_t share_;
+  uint32_t run_ = 0;
   int32_t eye_cell_[3];
   Waiting ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
   uint32_t ahead_first_ = 0;
@@ -443,9 +476,10 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 }  // namespace
 
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
-  return strips_of(width_px) * (patches_of(rows) + static_cast<size_t>(rows) * 32 * sizeof(uint64_t)) +
-         covered_words(width_px, rows) * sizeof(uint32_t) +
-         static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+  const size_t copy = strips_of(width_px) * static_cast<size_t>(rows) * 32 * sizeof(uint64_t) +
+                      covered_words(width_px, rows) * sizeof(uint32_t) + 64;
+  return static_cast<size_t>(threads <= kMostCopies ? threads : 1) * copy +
+         strips_of(width_px) * patches_of(rows) + static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
 }
 
 Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
@@ -482,20 +516,31 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   }
 
   Arena arena(workspace);
-  Depths depths;
-  depths.rows = band.rows;
-  depths.first_row = band.first_row;
   const size_t strips = strips_of(camera.width_px());
-  const size_t strip_pixels = strips * static_cast<size_t>(band.rows) * 32;
-  const Bytes nearest = arena.take(strip_pixels * sizeof(uint64_t), 64);
   const Painter painter(lists, camera, shading, band);
-  depths.gray_scale = painter.gray_scale();
-  depths.shading = &shading;
-  depths.nearest = reinterpret_cast<uint64_t*>(nearest.data);
-  depths.nearest_key = reinterpret_cast<uint32_t*>(nearest.data);
-  depths.gray = nearest.data + strip_pixels * sizeof(uint32_t);
-  depths.covered = reinterpret_cast<uint32_t*>(
-      arena.take(covered_words(camera.width_px(), band.rows) * sizeof(uint32_t)).data);
+  const auto make_depths = [&] {
+    const size_t pixels = strips * static_cast<size_t>(band.rows) * 32;
+    const Bytes nearest = arena.take(pixels * sizeof(uint64_t), 64);
+    Depths depths;
+    depths.nearest = reinterpret_cast<uint64_t*>(nearest.data);
+    depths.gray_scale = painter.gray_scale();
+    depths.shading = &shading;
+    depths.nearest_key = reinterpret_cast<uint32_t*>(nearest.data);
+    depths.gray = nearest.data + pixels * sizeof(uint32_t);
+    depths.covered = reinterpret_cast<uint32_t*>(
+        arena.take(covered_words(camera.width_px(), band.rows) * sizeof(uint32_t)).data);
+    depths.marks = by_blocks || depths.gray_scale == nullptr;
+    depths.rows = band.rows;
+    depths.first_row = band.first_row;
+    return depths;
+  };
+  const bool copies = options.threads > 1 && options.threads <= kMostCopies && !by_blocks &&
+                      lists.entries().size >= kCopyBoxes;
+  Depths copy[kMostCopies] = {make_depths()};
+  const Depths& depths = copy[0];
+  for (int thread = 1; copies && thread < options.threads; ++thread) {
+    copy[thread] = make_depths();
+  }
   const Bytes patches = arena.take(strips * patches_of(band.rows), 1);
   const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
   const auto batch_at = [&](int thread) {
@@ -504,20 +549,24 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   const auto batch_of = [&](int thread) {
     return new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
   };
+  const auto clear = [&](const Depths& cleared, int32_t y, int32_t rows) {
+    for (size_t strip = 0; strip < strips; ++strip) {
+      const size_t word = cleared.word(static_cast<int32_t>(32 * strip), y);
+      if (cleared.marks) {
+        memset(cleared.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
+      }
+      if (cleared.gray_scale != nullptr) {
+        memset(cleared.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
+      }
+    }
+  };
 
-  depths.marks = by_blocks || depths.gray_scale == nullptr;
   const auto draw_tile = [&](int number, Batch* batch) {
     Frame tile;
     (void)make_tile(number, &tile);
     const int32_t rows = tile.tile.y1 - tile.tile.y0;
+    clear(depths, tile.tile.y0, rows);
     for (size_t strip = 0; strip < strips; ++strip) {
-      const size_t word = depths.word(static_cast<int32_t>(32 * strip), tile.tile.y0);
-      if (depths.marks) {
-        memset(depths.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
-      }
-      if (depths.gray_scale != nullptr) {
-        memset(depths.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
-      }
       memset(patches.data + strip * patches_of(band.rows) + tiles.begin(number) / kPatchRows, 0,
              patches_of(rows));
     }
@@ -539,14 +588,31 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     }
     std::atomic<uint64_t> all_hits{0};
     std::atomic<int> next{0};
-    workers.execute([&] {
-      oneapi::tbb::parallel_for(0, options.threads, [&](int /*turn*/) {
-        Batch* const batch = batch_at(oneapi::tbb::this_task_arena::current_thread_index());
-        for (int tile = next++; tile < tiles.count(); tile = next++) {
-          all_hits += draw_tile(tile, batch);
-        }
+    if (copies) {
+      std::atomic<uint32_t> next_share{0};
+      workers.execute([&] {
+        oneapi::tbb::parallel_for(0, options.threads, [&](int part) {
+          clear(copy[part], band.first_row, band.rows);
+          TileDrawer(lists, frame, copy[part], nullptr, false, batch_at(part), &next_share).draw();
+        });
+        oneapi::tbb::parallel_for(0, tiles.count(), [&](int number) {
+          Frame tile;
+          (void)make_tile(number, &tile);
+          for (int part = 1; part < options.threads; ++part) {
+            merge_rows(copy[part], camera.width_px(), tile.tile.y0, tile.tile.y1, depths);
+          }
+          all_hits += painter.paint_tile(tile, depths);
+        });
       });
-    });
+    } else {
+      workers.execute([&] {
+        oneapi::tbb::parallel_for(0, options.threads, [&](int part) {
+          for (int tile = next++; tile < tiles.count(); tile = next++) {
+            all_hits += draw_tile(tile, batch_at(part));
+          }
+        });
+      });
+    }
     hits = all_hits;
     for (int thread = 0; thread < options.threads; ++thread) {
       done.counts.add(batch_at(thread)->counts);
