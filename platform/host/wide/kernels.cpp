@@ -1316,7 +1316,8 @@ void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, 
 // The loop of pick_boxes: from `at` on until nothing is left or there is no more room. Returns where it
 // stopped. With kOne no box covers more than one pixel, and the pairs wait for their test at once; else no
 // more than two in a row or column. With kHalf the table's rows are below half of what it could have.
-template <bool kPerspective, bool kOne, bool kHalf>
+// Greys need no numbers of entries.
+template <bool kPerspective, bool kOne, bool kHalf, bool kGray>
 HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const OpenTable& table, uint32_t at,
                                 Batch* batch) {
   const F32 d;
@@ -1324,7 +1325,7 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
   const U32 du;
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   uint32_t* const entries = kOne ? batch->waiting.entry : batch->picked.entry;
-  uint32_t* const numbers = kOne ? batch->waiting.number : batch->picked.number;
+  [[maybe_unused]] uint32_t* const numbers = kOne ? batch->waiting.number : batch->picked.number;
   uint32_t* const places = kOne ? batch->waiting.place : batch->picked.place;
   constexpr int kShift = kOne ? 16 : kPlaceBits;
   const size_t most = (kOne ? Pairs::kSize : Picked::kSize) - lanes;
@@ -1391,12 +1392,25 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
     }
     const auto chosen = hn::And(hn::RebindMask(du, seen), hn::Ne(open, hn::Zero(du)));
     hn::StoreU(hn::Compress(entry, chosen), du, entries + count);
-    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, numbers + count);
+    if (!kGray) {
+      hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, numbers + count);
+    }
     hn::StoreU(hn::Compress(place, chosen), du, places + count);
     count += hn::CountTrue(du, chosen);
   }
   (kOne ? batch->waiting.count : batch->picked.count) = count;
   return at;
+}
+
+template <bool kPerspective, bool... kKnown>
+HWY_INLINE uint32_t pick_in(const Run& run, const Linear& linear, const OpenTable& table, uint32_t at,
+                            Batch* batch) {
+  return pick_some<kPerspective, kKnown...>(run, linear, table, at, batch);
+}
+template <bool kPerspective, bool... kKnown, class... Rest>
+HWY_INLINE uint32_t pick_in(bool next, Rest&&... rest) {
+  return next ? pick_in<kPerspective, kKnown..., true>(rest...)
+              : pick_in<kPerspective, kKnown..., false>(rest...);
 }
 
 // A first look at a block of small single voxels behind all that is in the picture: pairs with those pixels
@@ -1433,14 +1447,10 @@ bool pick_boxes(const Frame& frame, const Run& run, const Depths& depths, Batch*
   }
   batch->counts.boxes += run.count;
   const bool is_half = rows + 1 + OpenTable::kMargin <= OpenTable::kMost / 2;
+  const bool is_one = widest < 1;
+  const bool is_gray = depths.gray_scale != nullptr;
   for (uint32_t at = 0; at < run.count;) {
-    if (widest < 1) {
-      at = is_half ? pick_some<kPerspective, true, true>(run, linear, table, at, batch)
-                   : pick_some<kPerspective, true, false>(run, linear, table, at, batch);
-    } else {
-      at = is_half ? pick_some<kPerspective, false, true>(run, linear, table, at, batch)
-                   : pick_some<kPerspective, false, false>(run, linear, table, at, batch);
-    }
+    at = pick_in<kPerspective>(is_one, is_half, is_gray, run, linear, table, at, batch);
     if (at < run.count) {
       pair_boxes<kPerspective, true>(frame, depths, &kept, batch);
       test_waiting<kPerspective, true>(frame, depths, &kept, batch);
