@@ -1220,13 +1220,12 @@ class OpenTable {
   HWY_INLINE hn::Vec<U32> row(hn::Vec<U32> row) const {
     const U32 d;
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
-    const auto low = hn::TableLookupLanes(hn::Load(d, rows_), index);
+    const auto low = hn::Load(d, rows_);
     if (kHalf) {
-      return low;
+      return hn::TableLookupLanes(low, hn::IndicesFromVec(d, row));
     }
-    const auto high = hn::TableLookupLanes(hn::Load(d, rows_ + 16), index);
-    return hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
+    // Highway 1.0 has no name for a look-up in two vectors.
+    return hn::Vec<U32>{_mm512_permutex2var_epi32(low.raw, row.raw, hn::Load(d, rows_ + 16).raw)};
 #else
     return hn::GatherIndex(d, rows_, hn::BitCast(I32(), row));
 #endif
@@ -1377,8 +1376,9 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
       seen = hn::And(seen, hn::FirstN(d, run.count - at));
     }
     auto place = hn::Add(hn::Add(hn::ShiftLeft<kShift>(at_y), at_x), hn::Set(du, first));
+    hn::Mask<U32> is_open;
     if (kOne) {
-      open = hn::And(open, hn::Set(du, 1U));
+      is_open = hn::TestBit(open, hn::Set(du, 1U));
     } else {
       // The row behind the last one is the first, of the margin.
       const auto next = hn::And(hn::Add(at_y, hn::Set(du, 1U)), last_row);
@@ -1389,8 +1389,9 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
       open = hn::Or(hn::And(open, columns),
                     hn::IfThenElseZero(has_more, hn::ShiftLeft<2>(hn::And(below, columns))));
       place = hn::Or(place, hn::ShiftLeft<2 * kPlaceBits>(open));
+      is_open = hn::Ne(open, hn::Zero(du));
     }
-    const auto chosen = hn::And(hn::RebindMask(du, seen), hn::Ne(open, hn::Zero(du)));
+    const auto chosen = hn::And(hn::RebindMask(du, seen), is_open);
     hn::StoreU(hn::Compress(entry, chosen), du, entries + count);
     if (!kGray) {
       hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, numbers + count);
