@@ -8,8 +8,8 @@
 /// to back, and left out when all pixels that they could reach are covered.
 ///
 /// The core does not know of it. It needs the voxel lists (voxel_lists.h), 8 1/8 bytes a pixel, as much again
-/// for each of two to four threads beyond the first, and 32 KiB a thread; where the caller has less to give, or the camera is beyond what floats resolve, the core's own
-/// renderer draws the frame.
+/// for each of two to four threads beyond the first, and 32 KiB a thread; where the caller has less to give,
+/// or the camera is beyond what floats resolve, the core's own renderer draws the frame.
 #ifndef THIMBLE_PLATFORM_HOST_WIDE_RENDERER_H
 #define THIMBLE_PLATFORM_HOST_WIDE_RENDERER_H
 
