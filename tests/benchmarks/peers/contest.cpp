@@ -29,14 +29,15 @@ Voxel voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) {
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
 }
 
+}  // namespace
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-// From outside with the cube filling the picture, or along y: as `thimble table` does.
-Camera camera_of(int level, bool orthographic, int frame) {
+Camera contest_camera(int level, bool orthographic, int frame) {
   const double side = 1 << level;
   const double drift = 0.003 * side * (frame % 5 + 1);
   tools::ViewOptions view;
@@ -53,15 +54,13 @@ Camera camera_of(int level, bool orthographic, int frame) {
   return view.camera(level, {});
 }
 
-Shading shading_for(const Camera& camera, const VoxelBox& bounds) {
+Shading contest_shading(const Camera& camera, const VoxelBox& bounds) {
   Shading shading;
   const DepthRange range = depth_range(camera, bounds);
   shading.near_q8 = range.near_q8;
   shading.far_q8 = range.far_q8;
   return shading;
 }
-
-}  // namespace
 
 const Entrant* Result::find(const std::string& name) const {
   for (const Entrant& entrant : entrants) {
@@ -123,7 +122,7 @@ double Contest::draw_wide(const Camera& camera, std::uint64_t* hits) {
   band.rows = kHeightPx;
   RenderCounts counts;
   wide::Counts work;
-  if (built_->render_wide(camera, shading_for(camera, built_->bounds()), band, &counts, &work) !=
+  if (built_->render_wide(camera, contest_shading(camera, built_->bounds()), band, &counts, &work) !=
       Status::kOk) {
     throw std::runtime_error("the wide renderer leaves this view to the core");
   }
@@ -138,7 +137,8 @@ double Contest::draw_core(const Camera& camera) {
   band.format = PixelFormat::kGray8;
   band.rows = kHeightPx;
   RenderCounts counts;
-  if (built_->render_band(camera, shading_for(camera, built_->bounds()), band, &counts, {}) != Status::kOk) {
+  if (built_->render_band(camera, contest_shading(camera, built_->bounds()), band, &counts, {}) !=
+      Status::kOk) {
     throw std::runtime_error("the core does not take the rays of this view");
   }
   return processor_seconds() - start;
@@ -157,15 +157,16 @@ Result Contest::run(bool orthographic, int frames) {
   std::vector<std::uint8_t> core_pixels;
   std::uint64_t wide_differing = 0;
   for (int frame = 0; frame < frames; ++frame) {
-    const Camera camera = camera_of(built_->level(), orthographic, frame);
+    const Camera camera = contest_camera(built_->level(), orthographic, frame);
     // This renderer is far faster than the others: it draws as often as costs little, and the median counts.
     for (int again = 0; again < 5; ++again) {
-      seconds[0].push_back(draw_wide(camera_of(built_->level(), orthographic, frame + again), &result.hits));
+      seconds[0].push_back(
+          draw_wide(contest_camera(built_->level(), orthographic, frame + again), &result.hits));
     }
     if (frame == 0 || seconds[1].front() < kSlowSeconds) {
       seconds[1].push_back(draw_core(camera));
     }
-    const Shading shading = shading_for(camera, built_->bounds());
+    const Shading shading = contest_shading(camera, built_->bounds());
     for (std::size_t i = 0; i < rivals_.size(); ++i) {
       if (frame > 0 && seconds[2 + i].front() > kSlowSeconds) {
         continue;
@@ -177,7 +178,7 @@ Result Contest::run(bool orthographic, int frames) {
     }
   }
   // One frame more is judged, not timed: by the voxels, and this renderer's and the core's by their pixels.
-  const Camera camera = camera_of(built_->level(), orthographic, 0);
+  const Camera camera = contest_camera(built_->level(), orthographic, 0);
   for (std::int32_t y = 0; y < kHeightPx; ++y) {
     for (std::int32_t x = 0; x < kWidthPx; ++x) {
       Hit hit;
@@ -194,7 +195,7 @@ Result Contest::run(bool orthographic, int frames) {
   for (std::size_t i = 0; i < kPixels; ++i) {
     wide_differing += core_pixels[i] != pixels_[i] ? 1U : 0U;
   }
-  const Shading shading = shading_for(camera, built_->bounds());
+  const Shading shading = contest_shading(camera, built_->bounds());
   for (std::size_t i = 0; i < rivals_.size(); ++i) {
     rivals_[i].peer->draw(View(camera, shading.near_q8, shading.far_q8), pixels_.data(), shown.data());
     for (std::size_t pixel = 0; pixel < kPixels; ++pixel) {

@@ -68,6 +68,14 @@ class Contest {
   std::vector<std::uint8_t> pixels_;
 };
 
+/// The table's view of a world of that level, from a slightly different place each frame: from outside with
+/// the cube filling the picture, or along y, as `thimble table` does.
+Camera contest_camera(int level, bool orthographic, int frame);
+/// Depth shading between the planes that bound the scene.
+Shading contest_shading(const Camera& camera, const VoxelBox& bounds);
+/// The middle one, or the upper of two.
+double median(std::vector<double> values);
+
 /// The machine in words: processor, caches, memory, system, compiler, instruction set in use.
 std::vector<std::pair<std::string, std::string>> machine();
 

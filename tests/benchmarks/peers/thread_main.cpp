@@ -1,0 +1,150 @@
+// What threads give the wide renderer: frames by the clock, with one thread and with several, by turns.
+//
+//   thimble_thread_table                        2 threads from 100,000 points on
+//   thimble_thread_table --threads 2,4 --csv F  for other machines, and for machines
+//
+// A frame is 800 x 600 pixels with depth shading. The median of the frames counts, and the pictures are
+// compared. Wants processors that are idle: the clock does not know who else uses them.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "benchmarks/peers/contest.h"
+#include "host/wide/renderer.h"
+#include "output/output_file.h"
+#include "scene/scene_source.h"
+
+namespace thimble::benchmarks {
+namespace {
+
+struct Choice {
+  std::vector<std::uint64_t> points{100'000, 1'000'000, 3'000'000, 10'000'000, 20'000'000};
+  std::vector<std::string> scenes{"points", "cluster"};
+  std::vector<int> threads{2};
+  int frames = 40;
+  std::string csv_path;
+};
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class ThreadTable {
+ public:
+  ThreadTable(const std::string& kind, std::uint64_t points) {
+    tools::SceneArguments arguments;
+    arguments.scene = kind + ":" + std::to_string(points);
+    const auto source = tools::open_scene(arguments);
+    built_ = std::make_unique<tools::BuiltScene>(*source, tools::BuildOptions{});
+    list_bytes_.resize(wide::VoxelLists::bytes(built_->compact()) + 64);
+    Arena arena(Bytes(list_bytes_.data(), list_bytes_.size()));
+    if (wide::VoxelLists::make(built_->compact(), &arena, &lists_) != Status::kOk) {
+      throw std::runtime_error("no room for the lists");
+    }
+  }
+
+  // Milliseconds a frame for each number of threads, one among them.
+  std::vector<double> run(bool orthographic, int frames, const std::vector<int>& threads) {
+    std::vector<std::vector<double>> seconds(threads.size());
+    for (int frame = 0; frame < frames; ++frame) {
+      for (std::size_t i = 0; i < threads.size(); ++i) {
+        seconds[i].push_back(draw(contest_camera(built_->level(), orthographic, frame), threads[i]));
+        if (i == 0) {
+          first_ = pixels_;
+        } else if (pixels_ != first_) {
+          throw std::runtime_error("pictures differ");
+        }
+      }
+    }
+    std::vector<double> ms;
+    for (const std::vector<double>& each : seconds) {
+      ms.push_back(1e3 * median(each));
+    }
+    return ms;
+  }
+
+ private:
+  double draw(const Camera& camera, int threads) {
+    workspace_.resize(
+        std::max(workspace_.size(), wide::workspace_bytes(Contest::kWidthPx, Contest::kHeightPx, threads)));
+    Band band;
+    band.pixels = Bytes(pixels_.data(), pixels_.size());
+    band.format = PixelFormat::kGray8;
+    band.rows = Contest::kHeightPx;
+    wide::Options options;
+    options.threads = threads;
+    const Shading shading = contest_shading(camera, built_->bounds());
+    const double start = seconds_now();
+    if (wide::render(lists_, camera, shading, band, Bytes(workspace_.data(), workspace_.size()), nullptr,
+                     options) != Status::kOk) {
+      throw std::runtime_error("the wide renderer leaves this view to the core");
+    }
+    return seconds_now() - start;
+  }
+
+  std::unique_ptr<tools::BuiltScene> built_;
+  std::vector<std::uint8_t> list_bytes_;
+  std::vector<std::uint8_t> workspace_;
+  std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(Contest::kPixels);
+  std::vector<std::uint8_t> first_;
+  wide::VoxelLists lists_;
+};
+
+int run(int count, char** words) {
+  Choice choice;
+  CLI::App app("What threads give the wide renderer");
+  app.add_option("--points", choice.points, "numbers of points")->delimiter(',');
+  app.add_option("--scene", choice.scenes, "points, cluster")->delimiter(',');
+  app.add_option("--threads", choice.threads, "numbers of threads, besides one")
+      ->delimiter(',')
+      ->check(CLI::Range(2, wide::kMaxThreads));
+  app.add_option("--frames", choice.frames, "of each number and row")->check(CLI::Range(1, 1000));
+  app.add_option("--csv", choice.csv_path, "results as CSV");
+  CLI11_PARSE(app, count, words);
+  std::vector<int> threads{1};
+  threads.insert(threads.end(), choice.threads.begin(), choice.threads.end());
+  std::string csv = "scene,points,projection,threads,frame_ms,times_faster\n";
+  for (const std::string& scene : choice.scenes) {
+    for (const std::uint64_t points : choice.points) {
+      ThreadTable table(scene, points);
+      for (const bool orthographic : {false, true}) {
+        const char* const projection = orthographic ? "orthographic" : "perspective";
+        const std::vector<double> ms = table.run(orthographic, choice.frames, threads);
+        std::printf("%-8s%12llu  %-12s  1 thread %.3f ms", scene.c_str(),
+                    static_cast<unsigned long long>(points), projection, ms[0]);
+        for (std::size_t i = 0; i < threads.size(); ++i) {
+          if (i > 0) {
+            std::printf("  %d threads %.3f ms, %.2f x", threads[i], ms[i], ms[0] / ms[i]);
+          }
+          char line[160];
+          std::snprintf(line, sizeof(line), "%s,%llu,%s,%d,%.4f,%.3f\n", scene.c_str(),
+                        static_cast<unsigned long long>(points), projection, threads[i], ms[i],
+                        ms[0] / ms[i]);
+          csv += line;
+        }
+        std::printf("\n");
+        std::fflush(stdout);
+      }
+    }
+  }
+  if (!choice.csv_path.empty()) {
+    tools::OutputFile file(choice.csv_path);
+    file.write(csv);
+    file.commit();
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace thimble::benchmarks
+
+int main(int count, char** words) {
+  try {
+    return thimble::benchmarks::run(count, words);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "thimble_thread_table: %s\n", error.what());
+    return 1;
+  }
+}
