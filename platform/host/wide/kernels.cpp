@@ -376,13 +376,16 @@ HWY_INLINE hn::Vec<U32> grays_of(const Frame& frame, const GrayScale& scale, con
   return grays_in_floats(scale, hn::Mul(numerator, ratio), 0.5F, unclear);
 }
 
-// Puts pairs of the lanes in `mask` behind the last.
+// Puts pairs of the lanes in `mask` behind the last. With kGray without numbers, which greys do not need.
+template <bool kGray = false>
 HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> number, hn::Vec<U32> place,
                        Pairs* pairs) {
   const U32 d;
   const auto chosen = hn::RebindMask(d, mask);
   hn::StoreU(hn::Compress(entry, chosen), d, pairs->entry + pairs->count);
-  hn::StoreU(hn::Compress(number, chosen), d, pairs->number + pairs->count);
+  if (!kGray) {
+    hn::StoreU(hn::Compress(number, chosen), d, pairs->number + pairs->count);
+  }
   hn::StoreU(hn::Compress(place, chosen), d, pairs->place + pairs->count);
   pairs->count += hn::CountTrue(d, chosen);
 }
@@ -673,8 +676,8 @@ HWY_INLINE void pair_vector(const Frame& frame, const Depths& depths, hn::Mask<F
 }
 
 // Makes candidates of those that were picked.
-template <bool kPerspective>
-HWY_NOINLINE void pair_picked(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+template <bool kPerspective, bool kGray>
+HWY_NOINLINE void pair_picked_of(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
   const F32 d;
   const U32 du;
   const size_t lanes = hn::Lanes(d);
@@ -687,17 +690,23 @@ HWY_NOINLINE void pair_picked(const Frame& frame, const Depths& depths, bool* ke
     }
     const auto live = hn::FirstN(d, picked.count - at < lanes ? picked.count - at : lanes);
     const auto entry = hn::Load(du, picked.entry + at);
-    const auto number = hn::Load(du, picked.number + at);
+    const auto number = kGray ? hn::Zero(du) : hn::Load(du, picked.number + at);
     const auto packed = hn::Load(du, picked.place + at);
     const auto y = hn::And(hn::ShiftRight<kPlaceBits>(packed), fourteen);
     const auto place = hn::Or(hn::ShiftLeft<16>(y), hn::And(packed, fourteen));
     for (uint32_t pixel = 0; pixel < 4; ++pixel) {
       const auto open = hn::TestBit(packed, hn::Set(du, uint32_t{1} << (2 * kPlaceBits + pixel)));
-      append(hn::And(live, hn::RebindMask(d, open)), entry, number,
-             hn::Add(place, hn::Set(du, (pixel >> 1) << 16 | (pixel & 1U))), &waiting);
+      append<kGray>(hn::And(live, hn::RebindMask(d, open)), entry, number,
+                    hn::Add(place, hn::Set(du, (pixel >> 1) << 16 | (pixel & 1U))), &waiting);
     }
   }
   picked.count = 0;
+}
+
+template <bool kPerspective>
+void pair_picked(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
+  depths.gray_scale != nullptr ? pair_picked_of<kPerspective, true>(frame, depths, kept, batch)
+                               : pair_picked_of<kPerspective, false>(frame, depths, kept, batch);
 }
 
 // Makes candidates of the boxes that wait.
