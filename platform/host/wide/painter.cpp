@@ -129,6 +129,15 @@ uint64_t Painter::paint_grays(const Frame& frame, const Depths& depths) const {
   for (int32_t y = frame.tile.y0; y < frame.tile.y1; ++y) {
     uint8_t* const to = line(y);
     hits += put_grays(depths, y, width, 0, grays);
+    if (band_.format == PixelFormat::kRgb888) {
+      for (int32_t x = 0; x < width; ++x) {
+        const uint8_t gray = grays[x];
+        to[3 * x] = gray == 0 ? background_.r : gray;
+        to[3 * x + 1] = gray == 0 ? background_.g : gray;
+        to[3 * x + 2] = gray == 0 ? background_.b : gray;
+      }
+      continue;
+    }
     memset(to, 0, row_bytes(band_.format, width));
     for (int32_t x = 0; x < width; ++x) {
       store_pixel(to, x, y, band_.format, grays[x] == 0 ? background_ : Rgb8{grays[x], grays[x], grays[x]});

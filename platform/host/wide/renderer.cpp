@@ -400,7 +400,7 @@ class TileDrawer {
 };
 
 // The picture is cut into tiles of whole rows, so that as many threads are busy to the end: first a large one
-// for each, then smaller ones for whoever is done first. Few, since boxes on a seam are looked at on both
+// for each, then a small one for each that is done. Few, since boxes on a seam are looked at on both
 // sides.
 class Tiles {
  public:
@@ -430,6 +430,8 @@ class Tiles {
       if (part < Outlook::kParts) {
         at += (wanted - done) / (work[part] + each);
       }
+      // Sums that are no numbers make one tile of what is left.
+      at = at >= 0 && at < Outlook::kParts ? at : Outlook::kParts;
       const int32_t row = static_cast<int32_t>(at * static_cast<float>(rows) / Outlook::kParts);
       int32_t end = (row + kPatchRows / 2) / kPatchRows * kPatchRows;
       end = end <= last ? last + kPatchRows : end;
