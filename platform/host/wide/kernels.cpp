@@ -300,8 +300,8 @@ HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
   return hn::And(hn::BitCast(du, hn::Add(value, hn::Set(d, 8388608.0F))), hn::Set(du, 0xFFFFU));
 }
 
-// floor(dividend / speed) for integers 1 .. 2^20: exactly below 2^24, and within 2^-22 of itself above. The
-// quotient of floats is off by one at most; the remainder says which way.
+// floor(dividend / speed) for integers 1 .. 2^20: exactly below 2^22, and within 2^-22 of itself above. The
+// quotient of floats is within 2^-23 of itself, so off by one at most; the remainder says which way.
 HWY_INLINE hn::Vec<F32> ratios_of(const GrayScale& scale, hn::Vec<F32> speed) {
   const F32 d;
   const auto one = hn::Set(d, 1.0F);
