@@ -103,13 +103,16 @@ TEST_CASE("wide choice: worlds and cameras made to mislead, every order -> the c
   CHECK(chosen[static_cast<std::size_t>(wide::Order::kBlocks)] > 20);
 }
 
-// In boxes that are projected, about 0.7 ns each. Fitted by least squares of relative errors to the times of
-// thimble_engine_table in views of voxels below 1.2 pixels (0.13 rms of the logarithm in flat order, 0.16
-// in blocks): a test takes 4.2 to 4.7 ns, a node 75 to 135, a frame of this size 0.7 us before its first box.
+// In ns, about. Fitted to the times of views so large in which voxels are small (0.11 rms of the logarithm in
+// flat order, 0.18 in blocks): a frame, a box that is projected or looked up, a test, one that is met, a
+// node.
 double work(const wide::Stats& stats) {
   const wide::Counts& counts = stats.counts;
-  return 1000 + static_cast<double>(counts.boxes) + 6 * static_cast<double>(counts.candidates) +
-         100 * static_cast<double>(counts.nodes);
+  const bool flat = stats.order == wide::Order::kFlat;
+  return 2900 + (flat ? 0.56 : 0.21) * static_cast<double>(counts.boxes) +
+         1.9 * static_cast<double>(counts.candidates) +
+         (flat ? 1.3 : 2.0) * static_cast<double>(counts.hits) +
+         (flat ? 29 : 50) * static_cast<double>(counts.nodes);
 }
 
 TEST_CASE("wide choice: worlds and cameras made to mislead -> at most 1.3 times the better order's work") {

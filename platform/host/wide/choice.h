@@ -9,7 +9,10 @@
 namespace thimble::wide {
 
 /// Blocks of single voxels of so few pixels are looked up in tables (kernels.cpp).
-inline constexpr float kTableVoxelPx = 2.0F;
+inline constexpr float kTableVoxelPx = 1.8F;
+
+/// But not where perspective moves what is in them by more pixels than that from where an affine map has it.
+inline constexpr float kMostBentPx = 0.15F;
 
 /// What is to be expected of a frame.
 struct Outlook {

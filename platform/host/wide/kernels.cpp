@@ -675,6 +675,9 @@ HWY_INLINE void pair_vector(const Frame& frame, const Depths& depths, hn::Mask<F
   }
 }
 
+// The coordinates of a picked pixel.
+constexpr uint32_t kPlacePixels = ((1U << kPlaceBits) - 1) * 0x10001U;
+
 // Makes candidates of those that were picked.
 template <bool kPerspective, bool kGray>
 HWY_NOINLINE void pair_picked_of(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) {
@@ -683,7 +686,7 @@ HWY_NOINLINE void pair_picked_of(const Frame& frame, const Depths& depths, bool*
   const size_t lanes = hn::Lanes(d);
   Picked& picked = batch->picked;
   Pairs& waiting = batch->waiting;
-  const auto fourteen = hn::Set(du, (1U << kPlaceBits) - 1);
+  const auto pixels = hn::Set(du, kPlacePixels);
   for (size_t at = 0; at < picked.count; at += lanes) {
     if (waiting.count + 4 * lanes > Pairs::kSize) {
       test_waiting<kPerspective, true>(frame, depths, kept, batch);
@@ -692,12 +695,14 @@ HWY_NOINLINE void pair_picked_of(const Frame& frame, const Depths& depths, bool*
     const auto entry = hn::Load(du, picked.entry + at);
     const auto number = kGray ? hn::Zero(du) : hn::Load(du, picked.number + at);
     const auto packed = hn::Load(du, picked.place + at);
-    const auto y = hn::And(hn::ShiftRight<kPlaceBits>(packed), fourteen);
-    const auto place = hn::Or(hn::ShiftLeft<16>(y), hn::And(packed, fourteen));
+    const auto first = hn::And(packed, pixels);
     for (uint32_t pixel = 0; pixel < 4; ++pixel) {
-      const auto open = hn::TestBit(packed, hn::Set(du, uint32_t{1} << (2 * kPlaceBits + pixel)));
-      append<kGray>(hn::And(live, hn::RebindMask(d, open)), entry, number,
-                    hn::Add(place, hn::Set(du, (pixel >> 1) << 16 | (pixel & 1U))), &waiting);
+      const uint32_t below = pixel >> 1;
+      const uint32_t beside = pixel & 1U;
+      const auto is_meant =
+          hn::TestBit(packed, hn::Set(du, uint32_t{1} << (kPlaceBits + 16 * below + beside)));
+      append<kGray>(hn::And(live, hn::RebindMask(d, is_meant)), entry, number,
+                    hn::And(hn::Add(first, hn::Set(du, below << 16 | beside)), pixels), &waiting);
     }
   }
   picked.count = 0;
@@ -920,7 +925,7 @@ bool crosses_tile(const Frame& frame, const double (&center)[3], double side) {
 constexpr float kMostQueued = 8;
 constexpr float kMostQueuedSorted = 3;
 // So many boxes are paired with their pixels before the next run is looked up.
-constexpr size_t kMostBoxesWaiting = 64;
+constexpr size_t kMostBoxesWaiting = 128;
 
 template <bool kPerspective, bool kUnit>
 void enter_cube(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
@@ -1187,62 +1192,130 @@ HWY_NOINLINE void draw_large_of(const Frame& frame, const Run& run, uint32_t at,
   }
 }
 
-// Which pixels of a small rectangle are not covered. Columns and rows are counted from kMargin before its
-// first, and there are none to either side of it.
+// Which pixels of a rectangle are not covered. Columns and rows are counted from kMargin before its first,
+// and there are none to either side of it.
 class OpenTable {
  public:
-  static constexpr int32_t kMost = 32;  ///< columns and rows, with the margin
   static constexpr int32_t kMargin = 3;
+  /// Pixels of a side, at most; behind the last there is one more row and column. Narrow tables have a word a
+  /// row.
+  static constexpr int32_t kMostPx = 60 - kMargin - 1;
+  static constexpr int32_t kNarrowPx = 32 - kMargin - 1;
 
-  OpenTable(const Depths& depths, const Rectangle& where) {
+  OpenTable(const Depths& depths, const Rectangle& where) : depths_(depths), where_(where) {
+    const int32_t columns = where.x1 - where.x0;
+    const int32_t rows = where.y1 - where.y0;
+    rows_ = columns > kNarrowPx || rows > kNarrowPx ? 64 : rows + kMargin + 1 > 16 ? 32 : 16;
+    none_ = fill(0, left_, kMargin);
+    if (rows_ == 64) {
+      none_ = fill(kRightColumn - kMargin, right_, 0) && none_;
+    }
+  }
+
+  bool none() const { return none_; }
+  // How many there are: 16, 32 or 64, and as many columns, or 32.
+  int rows() const { return rows_; }
+  // From column `x` of row `y` modulo kRows on, in the lowest bit and the next: whether they are not covered.
+  // x: 0 .. 31, or 63 with 64 rows.
+  template <int kRows>
+  HWY_INLINE hn::Vec<U32> at(hn::Vec<U32> x, hn::Vec<U32> y) const {
+    const U32 d;
+    if (kRows < 64) {
+      return hn::Shr(look_up<kRows>(left_, y), x);
+    }
+    const auto is_right = hn::Gt(x, hn::Set(d, kRightColumn + 1U));
+    const auto shift = hn::Sub(x, hn::IfThenElseZero(is_right, hn::Set(d, uint32_t{kRightColumn})));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    const auto row = hn::IfThenElse(is_right, look_up<kRows>(right_, y), look_up<kRows>(left_, y));
+#else
+    const auto right = hn::Set(d, static_cast<uint32_t>(right_ - left_));
+    const auto row = hn::GatherIndex(
+        d, left_,
+        hn::BitCast(I32(), hn::Add(hn::And(y, hn::Set(d, 63U)), hn::IfThenElseZero(is_right, right))));
+#endif
+    // The last columns, beyond all pixels, are all taken to be the one before them.
+    return hn::Shr(row, hn::Min(shift, hn::Set(d, 31U)));
+  }
+
+ private:
+  // Wide tables have two words a row. The second begins with the last columns of the first, so that
+  // neighbours stand together.
+  static constexpr int32_t kRightColumn = 28;
+  static constexpr size_t kRoom = 64 + kMargin + 61;
+
+  // Words of the pixels from column `first` of the rectangle on, `shift` bits up. Returns whether all are 0.
+  bool fill(int32_t first, uint32_t* words, int shift) {
     const U32 d;
     const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
-    const int32_t rows = where.y1 - where.y0;
-    const uint32_t* const left = depths.covered + depths.word(where.x0, where.y0);
-    const int shift = where.x0 & 31;
+    const int32_t rows = where_.y1 - where_.y0;
+    const int32_t columns = where_.x1 - where_.x0 - first;
+    const int32_t x = where_.x0 + first;
+    const uint32_t* const left = depths_.covered + depths_.word(columns > 0 ? x : where_.x0, where_.y0);
+    const int left_shift = x & 31;
     // Of the strip beside it, where the rectangle reaches into it.
-    const bool is_cut = shift + where.x1 - where.x0 > 32;
-    const uint32_t* const right = is_cut ? left + depths.rows : left;
-    const int right_shift = is_cut ? 32 - shift : 0;
-    const auto beside = hn::Set(d, is_cut ? UINT32_MAX : 0);
-    const auto inside = hn::Set(d, UINT32_MAX >> (32 - (where.x1 - where.x0)));
+    const bool is_cut = columns > 0 && left_shift + columns > 32;
+    const uint32_t* const right = is_cut ? left + depths_.rows : left;
+    const int right_shift = is_cut && left_shift != 0 ? 32 - left_shift : 0;
+    const auto beside = hn::Set(d, is_cut && left_shift != 0 ? UINT32_MAX : 0);
+    const auto inside = hn::Set(d, columns >= 32  ? UINT32_MAX
+                                   : columns <= 0 ? 0
+                                                  : UINT32_MAX >> (32 - columns));
     auto any = hn::Zero(d);
-    hn::Store(any, d, rows_);
+    for (int32_t row = 0; row < kMargin; row += lanes) {
+      hn::Store(any, d, words + row);
+    }
     for (int32_t row = 0; row < rows; row += lanes) {
       const auto covered =
-          hn::Or(hn::ShiftRightSame(load_some(left + row, rows - row), shift),
+          hn::Or(hn::ShiftRightSame(load_some(left + row, rows - row), left_shift),
                  hn::ShiftLeftSame(hn::And(load_some(right + row, rows - row), beside), right_shift));
       const auto live = hn::FirstN(d, static_cast<size_t>(rows - row));
       const auto open = hn::IfThenElseZero(live, hn::AndNot(covered, inside));
       any = hn::Or(any, open);
-      hn::StoreU(hn::ShiftLeft<kMargin>(open), d, rows_ + kMargin + row);
+      hn::StoreU(hn::ShiftLeftSame(open, shift), d, words + kMargin + row);
     }
-    for (int32_t row = (rows + lanes - 1) / lanes * lanes + kMargin; row < kMost; row += lanes) {
-      hn::StoreU(hn::Zero(d), d, rows_ + row);
+    for (int32_t row = (rows + lanes - 1) / lanes * lanes + kMargin; row < rows_; row += lanes) {
+      hn::StoreU(hn::Zero(d), d, words + row);
     }
-    none_ = hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+    return hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
   }
 
-  bool none() const { return none_; }
-  // Rows of them, 0 .. kMost - 1, with kHalf below half of that; the first column in the lowest bit.
-  template <bool kHalf>
-  HWY_INLINE hn::Vec<U32> row(hn::Vec<U32> row) const {
+  template <int kRows>
+  HWY_INLINE hn::Vec<U32> look_up(const uint32_t* words, hn::Vec<U32> row) const {
     const U32 d;
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    const auto low = hn::Load(d, rows_);
-    if (kHalf) {
-      return hn::TableLookupLanes(low, hn::IndicesFromVec(d, row));
+    if (kRows == 16) {
+      return hn::Vec<U32>{_mm512_permutexvar_epi32(row.raw, hn::Load(d, words).raw)};
     }
-    // Highway 1.0 has no name for a look-up in two vectors.
-    return hn::Vec<U32>{_mm512_permutex2var_epi32(low.raw, row.raw, hn::Load(d, rows_ + 16).raw)};
+    // Highway 1.0 has no name for a look-up in two vectors. It heeds five bits of the row.
+    const auto of_32 = [&](const uint32_t* part) {
+      return hn::Vec<U32>{
+          _mm512_permutex2var_epi32(hn::Load(d, part).raw, row.raw, hn::Load(d, part + 16).raw)};
+    };
+    if (kRows == 32) {
+      return of_32(words);
+    }
+    return hn::IfThenElse(hn::TestBit(row, hn::Set(d, 32U)), of_32(words + 32), of_32(words));
 #else
-    return hn::GatherIndex(d, rows_, hn::BitCast(I32(), row));
+    return hn::GatherIndex(d, words, hn::BitCast(I32(), hn::And(row, hn::Set(d, kRows - 1U))));
 #endif
   }
 
- private:
+  const Depths& depths_;
+  Rectangle where_;
+  int rows_;
   bool none_;
-  alignas(64) uint32_t rows_[kMost + 3 * 64];
+  alignas(64) uint32_t left_[kRoom];
+  alignas(64) uint32_t right_[kRoom];
+};
+
+// Where the single voxels of a block are on the picture, about: with v a voxel's place in the cube, pixels
+// from low = (x.v + x[3]) (s.v + s[3]) + low_x to low + wide_x, and the same for rows. Steps along y are for
+// 1024 of v, as it stands in an entry. Orthographic: without s, and x[3] is part of low_x.
+struct Linear {
+  bool is_sound;  ///< false: there is no such map, the block is too near
+  float x[4], y[4], s[4];
+  double low_x, low_y;
+  float wide_x, wide_y;
 };
 
 // A block of single voxels on the picture, about, and without divisions. With m the block's middle, e = c -
@@ -1256,8 +1329,8 @@ class OpenTable {
 //
 // No divisions: 1 / (1 - q) <= 1 + q + 4/3 q^2 for q <= 1/4.
 template <bool kPerspective>
-HWY_INLINE void find_linear_of(const Frame& frame, const uint32_t (&block)[3], uint32_t side,
-                               const Place& place, Linear* linear) {
+HWY_INLINE void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
+                            Linear* linear) {
   const float h = 0.5F * static_cast<float>(side);
   float per_least = place.per_depth;  // 1 / the least depth in the block
   float factor = 0;
@@ -1282,10 +1355,11 @@ HWY_INLINE void find_linear_of(const Frame& frame, const uint32_t (&block)[3], u
       linear->s[axis] = -frame.w[axis] * place.per_depth;
       linear->s[3] -= linear->s[axis] * (static_cast<float>(block[axis]) + h - 0.5F);
     }
+    linear->s[1] *= 1.0F / 1024;
     rounding_s = frame.norm_w * place.per_depth * (1024.0F / (1 << 21));
   }
   const auto one_axis = [&](const float(&row)[4], float middle, float reach, float rounding, float slack,
-                            float spread, float(&to)[4], float* low) {
+                            float spread, float(&to)[4], double* low) {
     float sum = 0;
     float corner = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -1304,8 +1378,10 @@ HWY_INLINE void find_linear_of(const Frame& frame, const uint32_t (&block)[3], u
     }
     // Roundings of the map: four sums and products of at most 1024 times the steps.
     half += steps * (1024.0F / (1 << 21));
+    to[1] *= 1.0F / 1024;
     to[3] = -corner;
-    *low = middle - half;
+    *low = static_cast<double>(middle) - static_cast<double>(half) -
+           (kPerspective ? 0 : static_cast<double>(corner));
     return 2 * half;
   };
   linear->wide_x = one_axis(frame.u, place.column, frame.reach_x, frame.rounding_x, frame.slack_x,
@@ -1315,17 +1391,10 @@ HWY_INLINE void find_linear_of(const Frame& frame, const uint32_t (&block)[3], u
   linear->is_sound = true;
 }
 
-void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
-                 Linear* linear) {
-  frame.perspective ? find_linear_of<true>(frame, block, side, place, linear)
-                    : find_linear_of<false>(frame, block, side, place, linear);
-}
-
 // The loop of pick_boxes: from `at` on until nothing is left or there is no more room. Returns where it
 // stopped. With kOne no box covers more than one pixel, and the pairs wait for their test at once; else no
-// more than two in a row or column. With kHalf the table's rows are below half of what it could have.
-// Greys need no numbers of entries.
-template <bool kPerspective, bool kOne, bool kHalf, bool kGray>
+// more than two in a row or column. Greys need no numbers of entries.
+template <bool kPerspective, bool kOne, bool kGray, int kRows>
 HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const OpenTable& table, uint32_t at,
                                 Batch* batch) {
   const F32 d;
@@ -1335,69 +1404,85 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
   uint32_t* const entries = kOne ? batch->waiting.entry : batch->picked.entry;
   [[maybe_unused]] uint32_t* const numbers = kOne ? batch->waiting.number : batch->picked.number;
   uint32_t* const places = kOne ? batch->waiting.place : batch->picked.place;
-  constexpr int kShift = kOne ? 16 : kPlaceBits;
   const size_t most = (kOne ? Pairs::kSize : Picked::kSize) - lanes;
   size_t count = kOne ? batch->waiting.count : batch->picked.count;
-  const auto within = hn::Set(du, kWithin);
-  // What lies beyond the table, at the edge of the tile, gets some place in it: a pair too many, perhaps.
-  const auto last_column = hn::Set(du, static_cast<uint32_t>(OpenTable::kMost - 1));
-  const auto last_row = hn::Set(du, static_cast<uint32_t>(OpenTable::kMost / (kHalf ? 2 : 1) - 1));
-  const auto wide_x = hn::Set(d, linear.wide_x);
-  const auto wide_y = hn::Set(d, linear.wide_y);
-  const auto one = hn::Set(d, 1.0F);
+  // Places are found as fixed-point numbers: a sum with 3072 has 12 bits of fraction, and below them 10 of
+  // the whole number. Four such sums are each within 2^-13 of what they should be. 1 - 2^-12 more, and the
+  // whole number is rounded up.
+  constexpr int kFraction = 12;
+  constexpr float kError = 4.0F / (1 << (kFraction + 1));
+  constexpr double kBase = 3073.0 - 1.0 / (1 << kFraction) - static_cast<double>(kError);
   // Counted as in the table.
-  const float first_low_x = linear.low_x - static_cast<float>(run.place.where.x0 - OpenTable::kMargin);
-  const float first_low_y = linear.low_y - static_cast<float>(run.place.where.y0 - OpenTable::kMargin);
-  // Modulo 2^32, where the margin lies outside the picture.
-  const uint32_t first = (static_cast<uint32_t>(run.place.where.y0) << kShift) +
-                         static_cast<uint32_t>(run.place.where.x0) -
-                         (static_cast<uint32_t>(OpenTable::kMargin) << kShift) - OpenTable::kMargin;
+  const auto base_of = [](double low, int32_t first) {
+    return hn::Set(F32(), static_cast<float>(low - (first - OpenTable::kMargin) + kBase));
+  };
+  const auto base_x = base_of(linear.low_x, run.place.where.x0);
+  const auto base_y = base_of(linear.low_y, run.place.where.y0);
+  // A box reaches the next pixel where the fraction is so large, and the one behind that with 1 more.
+  const auto least = [&](float wide) {
+    return static_cast<int32_t>((1 - wide - 2 * kError) * (1 << kFraction)) - 1;
+  };
+  const int32_t least_x = least(linear.wide_x);
+  const int32_t least_y = least(linear.wide_y);
+  const auto within_x = hn::Set(du, kWithin);
+  const auto within_y = hn::Set(du, kWithin << 10);
+  const auto fraction = hn::Set(du, (1U << kFraction) - 1);
+  // What lies beyond the table, at the edge of the tile, gets some place in it: a pair too many, perhaps.
+  const auto last_column = hn::Set(du, kRows < 64 ? 31U : 63U);
+  const auto place_rows = hn::Set(du, (kRows - 1U) << 16);
+  // The table's first pixel: with a margin outside the picture, x and y modulo 2^14 each. Those pixels that
+  // are open are in the picture.
+  const uint32_t first_x = static_cast<uint32_t>(run.place.where.x0 - OpenTable::kMargin);
+  const uint32_t first_y = static_cast<uint32_t>(run.place.where.y0 - OpenTable::kMargin);
+  const auto first =
+      hn::Set(du, kOne ? (first_y << 16) + first_x : (first_y << 16 | (first_x & 0xFFFFU)) & kPlacePixels);
+  const uint32_t* ahead = batch->ahead;
+  const uint32_t* const ahead_end = batch->ahead_end;
   for (; at < run.count && count <= most; at += lanes) {
+    __builtin_prefetch(ahead);
+    ahead += ahead < ahead_end ? lanes : 0;
     const auto entry = hn::LoadU(du, run.entries + at);
-    const auto x = hn::ConvertTo(d, hn::BitCast(di, hn::And(entry, within)));
-    const auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
+    const auto x = hn::ConvertTo(d, hn::BitCast(di, hn::And(entry, within_x)));
+    const auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(entry, within_y)));
     const auto z = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<20>(entry)));
-    const auto apply = [&](const float(&row)[4]) {
-      return hn::MulAdd(
-          hn::Set(d, row[0]), x,
-          hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, row[3]))));
+    const auto apply = [&](const float(&row)[4], auto last) {
+      return hn::MulAdd(hn::Set(d, row[0]), x,
+                        hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, last)));
     };
-    auto low_x = hn::Set(d, first_low_x);
-    auto low_y = hn::Set(d, first_low_y);
+    hn::Vec<U32> low_x;
+    hn::Vec<U32> low_y;
     if (kPerspective) {
-      const auto s = apply(linear.s);
-      low_x = hn::MulAdd(apply(linear.x), s, low_x);
-      low_y = hn::MulAdd(apply(linear.y), s, low_y);
+      const auto s = apply(linear.s, hn::Set(d, linear.s[3]));
+      low_x = hn::BitCast(du, hn::MulAdd(apply(linear.x, hn::Set(d, linear.x[3])), s, base_x));
+      low_y = hn::BitCast(du, hn::MulAdd(apply(linear.y, hn::Set(d, linear.y[3])), s, base_y));
     } else {
-      low_x = hn::Add(apply(linear.x), low_x);
-      low_y = hn::Add(apply(linear.y), low_y);
+      low_x = hn::BitCast(du, apply(linear.x, base_x));
+      low_y = hn::BitCast(du, apply(linear.y, base_y));
     }
-    const auto column = hn::Ceil(low_x);
-    const auto row = hn::Ceil(low_y);
-    const auto off_x = hn::Sub(column, low_x);
-    const auto off_y = hn::Sub(row, low_y);
-    const auto at_x = hn::And(small_number(column), last_column);
-    const auto at_y = hn::And(small_number(row), last_row);
-    auto open = hn::Shr(table.row<kHalf>(at_y), at_x);
+    const auto at_x = hn::And(hn::ShiftRight<kFraction>(low_x), last_column);
+    const auto at_y = hn::ShiftRight<kFraction>(low_y);
+    auto open = table.template at<kRows>(at_x, at_y);
     // Narrow boxes lie between the pixels' centres, many of them.
-    auto seen = hn::And(hn::Le(off_x, wide_x), hn::Le(off_y, wide_y));
+    const auto part_x = hn::BitCast(di, hn::And(low_x, fraction));
+    const auto part_y = hn::BitCast(di, hn::And(low_y, fraction));
+    auto seen = hn::And(hn::Gt(part_x, hn::Set(di, least_x)), hn::Gt(part_y, hn::Set(di, least_y)));
     if (run.count - at < lanes) {
-      seen = hn::And(seen, hn::FirstN(d, run.count - at));
+      seen = hn::And(seen, hn::FirstN(di, run.count - at));
     }
-    auto place = hn::Add(hn::Add(hn::ShiftLeft<kShift>(at_y), at_x), hn::Set(du, first));
+    auto place = hn::Add(hn::OrAnd(at_x, hn::ShiftLeft<16 - kFraction>(low_y), place_rows), first);
     hn::Mask<U32> is_open;
     if (kOne) {
       is_open = hn::TestBit(open, hn::Set(du, 1U));
     } else {
       // The row behind the last one is the first, of the margin.
-      const auto next = hn::And(hn::Add(at_y, hn::Set(du, 1U)), last_row);
-      const auto below = hn::Shr(table.row<kHalf>(next), at_x);
-      const auto has_more = hn::RebindMask(du, hn::Le(hn::Add(off_y, one), wide_y));
-      const auto has_wider = hn::RebindMask(du, hn::Le(hn::Add(off_x, one), wide_x));
+      const auto below = table.template at<kRows>(at_x, hn::Add(at_y, hn::Set(du, 1U)));
+      const auto has_more = hn::RebindMask(du, hn::Gt(part_y, hn::Set(di, least_y + (1 << kFraction))));
+      const auto has_wider = hn::RebindMask(du, hn::Gt(part_x, hn::Set(di, least_x + (1 << kFraction))));
       const auto columns = hn::IfThenElse(has_wider, hn::Set(du, 3U), hn::Set(du, 1U));
-      open = hn::Or(hn::And(open, columns),
-                    hn::IfThenElseZero(has_more, hn::ShiftLeft<2>(hn::And(below, columns))));
-      place = hn::Or(place, hn::ShiftLeft<2 * kPlaceBits>(open));
+      open = hn::ShiftLeft<kPlaceBits>(hn::And(open, columns));
+      open =
+          hn::Or(open, hn::IfThenElseZero(has_more, hn::ShiftLeft<kPlaceBits + 16>(hn::And(below, columns))));
+      place = hn::OrAnd(open, place, hn::Set(du, kPlacePixels));
       is_open = hn::Ne(open, hn::Zero(du));
     }
     const auto chosen = hn::And(hn::RebindMask(du, seen), is_open);
@@ -1409,18 +1494,21 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
     count += hn::CountTrue(du, chosen);
   }
   (kOne ? batch->waiting.count : batch->picked.count) = count;
+  batch->ahead = ahead;
   return at;
 }
 
-template <bool kPerspective, bool... kKnown>
+template <bool kPerspective, bool kOne, bool kGray>
 HWY_INLINE uint32_t pick_in(const Run& run, const Linear& linear, const OpenTable& table, uint32_t at,
                             Batch* batch) {
-  return pick_some<kPerspective, kKnown...>(run, linear, table, at, batch);
-}
-template <bool kPerspective, bool... kKnown, class... Rest>
-HWY_INLINE uint32_t pick_in(bool next, Rest&&... rest) {
-  return next ? pick_in<kPerspective, kKnown..., true>(rest...)
-              : pick_in<kPerspective, kKnown..., false>(rest...);
+  switch (table.rows()) {
+    case 16:
+      return pick_some<kPerspective, kOne, kGray, 16>(run, linear, table, at, batch);
+    case 32:
+      return pick_some<kPerspective, kOne, kGray, 32>(run, linear, table, at, batch);
+    default:
+      return pick_some<kPerspective, kOne, kGray, 64>(run, linear, table, at, batch);
+  }
 }
 
 // A first look at a block of small single voxels behind all that is in the picture: pairs with those pixels
@@ -1428,20 +1516,17 @@ HWY_INLINE uint32_t pick_in(bool next, Rest&&... rest) {
 template <bool kPerspective>
 bool pick_boxes(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const Rectangle& where = run.place.where;
-  // Behind the last row and column there is one more. A box begins less than its extent, twice, before the
-  // rectangle, unless that is cut off by the tile.
-  constexpr int32_t kMost = OpenTable::kMost - OpenTable::kMargin - 1;
-  const int32_t rows = where.y1 - where.y0;
-  if (where.x1 - where.x0 > kMost || rows > kMost || where.x0 == frame.tile.x0 || where.y0 == frame.tile.y0) {
+  constexpr int32_t kMost = OpenTable::kMostPx;
+  if (where.x1 - where.x0 > kMost || where.y1 - where.y0 > kMost) {
     return false;
   }
-  Linear own{};
-  if (run.linear == nullptr) {
-    find_linear_of<kPerspective>(frame, run.block, run.side, run.place, &own);
+  Linear linear;
+  find_linear<kPerspective>(frame, run.block, run.side, run.place, &linear);
+  if (!linear.is_sound) {
+    return false;
   }
-  const Linear& linear = run.linear == nullptr ? own : *run.linear;
   const float widest = linear.wide_x > linear.wide_y ? linear.wide_x : linear.wide_y;
-  if (!linear.is_sound || !(widest < 2)) {
+  if (!(widest < 2)) {
     return false;
   }
   bool kept = false;
@@ -1456,11 +1541,16 @@ bool pick_boxes(const Frame& frame, const Run& run, const Depths& depths, Batch*
     return true;
   }
   batch->counts.boxes += run.count;
-  const bool is_half = rows + 1 + OpenTable::kMargin <= OpenTable::kMost / 2;
   const bool is_one = widest < 1;
   const bool is_gray = depths.gray_scale != nullptr;
   for (uint32_t at = 0; at < run.count;) {
-    at = pick_in<kPerspective>(is_one, is_half, is_gray, run, linear, table, at, batch);
+    if (is_one) {
+      at = is_gray ? pick_in<kPerspective, true, true>(run, linear, table, at, batch)
+                   : pick_in<kPerspective, true, false>(run, linear, table, at, batch);
+    } else {
+      at = is_gray ? pick_in<kPerspective, false, true>(run, linear, table, at, batch)
+                   : pick_in<kPerspective, false, false>(run, linear, table, at, batch);
+    }
     if (at < run.count) {
       pair_boxes<kPerspective, true>(frame, depths, &kept, batch);
       test_waiting<kPerspective, true>(frame, depths, &kept, batch);
@@ -1699,16 +1789,40 @@ void finish(const Frame& frame, const Depths& depths, Batch* batch) {
   keep(depths, batch);
 }
 
-void find_places(const Frame& frame, const float* xs, const float* ys, const float* zs, float side,
-                 Place* places) {
+int find_children(const Frame& frame, const Block& block, unsigned mask, uint32_t first_child,
+                  unsigned nearest, Block* children) {
   const hn::CappedTag<float, 8> d;
   const hn::RebindToSigned<decltype(d)> di;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const hn::Rebind<uint8_t, decltype(d)> bytes;
   const size_t lanes = hn::Lanes(d);
+  const uint32_t level = uint32_t{block.level} - 1;
+  const uint32_t int_side = uint32_t{1} << level;
+  const float side = static_cast<float>(int_side);
+  // How many octants of the mask come before each: a byte for each of eight, by sums of bytes.
+  constexpr uint64_t kOnes = 0x0101010101010101U;
+  const uint64_t set = ((mask * kOnes & 0x8040201008040201U) + 0x7F7F7F7F7F7F7F7FU) >> 7 & kOnes;
+  const uint64_t before = set * kOnes << 8;
+  uint8_t numbers[8];
+  __builtin_memcpy(numbers, &before, sizeof(before));
+  struct alignas(16) Part {
+    uint32_t words[4];
+  };
+  Part parts[3][8];
+  uint32_t seen = 0;
   for (size_t at = 0; at < 8; at += lanes) {
+    const auto octant = hn::Iota(du, static_cast<uint32_t>(at));
+    const auto corner = [&](uint32_t low, uint32_t bit) {
+      const auto is_high = hn::TestBit(octant, hn::Set(du, bit));
+      return hn::Add(hn::Set(du, low), hn::IfThenElseZero(is_high, hn::Set(du, int_side)));
+    };
+    const auto corner_x = corner(block.corner[0], 1);
+    const auto corner_y = corner(block.corner[1], 2);
+    const auto corner_z = corner(block.corner[2], 4);
     const auto middle = hn::Set(d, side * 0.5F);
-    const auto x = hn::Add(hn::LoadU(d, xs + at), middle);
-    const auto y = hn::Add(hn::LoadU(d, ys + at), middle);
-    const auto z = hn::Add(hn::LoadU(d, zs + at), middle);
+    const auto x = hn::Add(hn::ConvertTo(d, hn::BitCast(di, corner_x)), middle);
+    const auto y = hn::Add(hn::ConvertTo(d, hn::BitCast(di, corner_y)), middle);
+    const auto z = hn::Add(hn::ConvertTo(d, hn::BitCast(di, corner_z)), middle);
     const auto apply = [&](const float(&row)[4]) {
       return hn::MulAdd(
           hn::Set(d, row[0]), x,
@@ -1748,25 +1862,26 @@ void find_places(const Frame& frame, const float* xs, const float* ys, const flo
     y0 = hn::IfThenElse(crossing, first_y, y0);
     x1 = hn::IfThenElse(hidden, first_x, hn::IfThenElse(crossing, end_x, x1));
     y1 = hn::IfThenElse(crossing, end_y, y1);
-    HWY_ALIGN float middles[3][8];
-    hn::StoreU(column, d, middles[0]);
-    hn::StoreU(row, d, middles[1]);
-    hn::StoreU(hn::IfThenElse(crossing, zero, per_depth), d, middles[2]);
-    HWY_ALIGN int32_t stored[4][8];
-    hn::StoreU(hn::ConvertTo(di, x0), di, stored[0]);
-    hn::StoreU(hn::ConvertTo(di, y0), di, stored[1]);
-    hn::StoreU(hn::ConvertTo(di, x1), di, stored[2]);
-    hn::StoreU(hn::ConvertTo(di, y1), di, stored[3]);
-    for (size_t i = 0; i < lanes; ++i) {
-      const bool empty = stored[0][i] >= stored[2][i] || stored[1][i] >= stored[3][i];
-      Place& place = places[at + i];
-      place.where =
-          empty ? Rectangle{0, 0, 0, 0} : Rectangle{stored[0][i], stored[1][i], stored[2][i], stored[3][i]};
-      place.column = middles[0][i];
-      place.row = middles[1][i];
-      place.per_depth = middles[2][i];
-    }
+    seen |= bits_of(d, hn::And(hn::Lt(x0, x1), hn::Lt(y0, y1))) << at;
+    const auto whole = [&](auto value) { return hn::BitCast(du, hn::ConvertTo(di, value)); };
+    const auto raw = [&](auto value) { return hn::BitCast(du, value); };
+    hn::StoreInterleaved4(whole(x0), whole(y0), whole(x1), whole(y1), du, parts[0][at].words);
+    hn::StoreInterleaved4(raw(column), raw(row), raw(hn::IfThenElse(crossing, zero, per_depth)), raw(zero),
+                          du, parts[1][at].words);
+    const auto node = hn::Add(hn::Set(du, first_child), hn::PromoteTo(du, hn::LoadU(bytes, numbers + at)));
+    hn::StoreInterleaved4(node, hn::Or(hn::ShiftLeft<16>(corner_y), corner_x),
+                          hn::Or(hn::Set(du, level << 16), corner_z), hn::Zero(du), du, parts[2][at].words);
   }
+  seen &= mask;
+  int count = 0;
+  for (unsigned turn = 8; turn-- > 0;) {
+    const unsigned octant = turn ^ nearest;
+    for (unsigned part = 0; part < 3; ++part) {
+      __builtin_memcpy(reinterpret_cast<Part*>(children + count) + part, &parts[part][octant], sizeof(Part));
+    }
+    count += static_cast<int>(seen >> octant & 1U);
+  }
+  return count;
 }
 
 // Every third bit to bits 0..9.
@@ -2235,8 +2350,7 @@ namespace thimble::wide {
 HWY_EXPORT(draw_run);
 HWY_EXPORT(finish);
 HWY_EXPORT(cull_run);
-HWY_EXPORT(find_linear);
-HWY_EXPORT(find_places);
+HWY_EXPORT(find_children);
 HWY_EXPORT(find_covered);
 HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
@@ -2255,13 +2369,9 @@ uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batc
                   uint32_t* numbers) {
   return HWY_DYNAMIC_DISPATCH(cull_run)(frame, run, depths, batch, entries, numbers);
 }
-void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
-                 Linear* linear) {
-  HWY_DYNAMIC_DISPATCH(find_linear)(frame, block, side, place, linear);
-}
-void find_places(const Frame& frame, const float* x, const float* y, const float* z, float side,
-                 Place* places) {
-  HWY_DYNAMIC_DISPATCH(find_places)(frame, x, y, z, side, places);
+int find_children(const Frame& frame, const Block& block, unsigned mask, uint32_t first_child,
+                  unsigned nearest, Block* children) {
+  return HWY_DYNAMIC_DISPATCH(find_children)(frame, block, mask, first_child, nearest, children);
 }
 int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels) {
   return HWY_DYNAMIC_DISPATCH(find_covered)(depths, left, row, end, pixels);

@@ -96,8 +96,8 @@ struct Picked {
   size_t count = 0;
   alignas(64) uint32_t entry[kRoom];
   alignas(64) uint32_t number[kRoom];
-  /// open << 28 | y << 14 | x; the bits of `open` are the pixels (x, y), (x + 1, y), (x, y + 1) and (x + 1, y
-  /// + 1).
+  /// y << 16 | x of the first pixel, each modulo 2^14: it may lie beside the picture. Above x, which of it
+  /// and the one right of it is meant; above y, which of those below them.
   alignas(64) uint32_t place[kRoom];
 };
 inline constexpr int kPlaceBits = 14;
@@ -119,6 +119,9 @@ struct Batch {
   uint32_t corner[3] = {1, 1, 1};  ///< none yet
   float constant[3];               ///< of u, v and w, for corners within the cube
   size_t met = 0;
+  /// Entries that are wanted soon, up to an end: a line of them is fetched for each vector that is looked at.
+  const uint32_t* ahead = nullptr;
+  const uint32_t* ahead_end = nullptr;
   Counts counts;
   /// Whether all of the picture lies in front of `boxes`: of whole runs that said so.
   bool all_behind = true;
@@ -135,20 +138,24 @@ struct Place {
   Rectangle where;  ///< within the tile
   float column, row;
   float per_depth;  ///< 1 / W.c of the middle (frame.h); 0 where the cube reaches the eye's plane
+  uint32_t unused;
 };
+
+/// A block of the tree: a node and where it may be seen.
+///
+/// It is written and copied as three vectors of 16 bytes. What is read at once right after it was written in
+/// pieces would wait until these are in the cache.
+struct alignas(16) Block {
+  Place place;
+  uint32_t node;
+  uint16_t corner[3];
+  uint16_t level;
+  uint32_t unused;
+};
+static_assert(sizeof(Block) == 48);
 
 /// A vector of entries or numbers is read at a time, even when only its first is wanted.
 inline constexpr uint32_t kReadAhead = 64;
-
-/// Where the single voxels of a block are on the picture, about, without divisions (kernels.cpp): with v a
-/// voxel's place in the cube, pixels from low = (x.v + x[3]) (s.v + s[3]) + low_x to low + wide_x, and the
-/// same for rows.
-struct Linear {
-  bool is_sound;  ///< false: there is no such map, the block is too near
-  float x[4], y[4], s[4];
-  float low_x, low_y;
-  float wide_x, wide_y;
-};
 
 /// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
 struct Run {
@@ -161,7 +168,6 @@ struct Run {
   /// The block that the entries fill: its lowest corner within the cube, and its side, in voxels.
   uint32_t block[3];
   uint32_t side;
-  const Linear* linear;  ///< of a block that holds this one; null where none was made
   /// Of the block. Its rectangle holds all pixels of the tile at which any of the boxes may be seen.
   Place place;
   /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
@@ -185,14 +191,11 @@ void finish(const Frame& frame, const Depths& depths, Batch* batch);
 uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
                   uint32_t* numbers);
 
-/// For the block of `side` voxels whose lowest corner within its cube is `block`, and which is seen at
-/// `place`.
-void find_linear(const Frame& frame, const uint32_t (&block)[3], uint32_t side, const Place& place,
-                 Linear* linear);
-
-/// Where cubes of `side` voxels with lowest corners `x[i]`, `y[i]`, `z[i]`, i < 8, may be seen.
-void find_places(const Frame& frame, const float* x, const float* y, const float* z, float side,
-                 Place* places);
+/// The children of a block that may be seen, of the octants in `mask`, whose nodes count up from
+/// `first_child`: the nearest last, where `nearest` is the octant nearest to the eye. Returns how many. There
+/// is room for eight.
+int find_children(const Frame& frame, const Block& block, unsigned mask, uint32_t first_child,
+                  unsigned nearest, Block* children);
 
 /// Puts into rows y0 .. y1 - 1 of `to` what is nearer in those of `from`, the same rows of the same picture
 /// with other boxes.

@@ -5,11 +5,13 @@
 #include <oneapi/tbb/task_arena.h>
 #include <string.h>
 
+#include <algorithm>
 #include <atomic>
 #include <new>
 
 #include "host/wide/choice.h"
 #include "host/wide/exact.h"
+#include "host/wide/handover.h"
 #include "host/wide/painter.h"
 
 namespace thimble::wide {
@@ -22,16 +24,20 @@ constexpr uint32_t kBlockBoxes = 320;
 constexpr int32_t kTinyPx = 16;
 constexpr uint32_t kTinyBoxes = 1024;
 // Of blocks that are looked up in tables; they are to be no larger than that.
-constexpr uint32_t kTableBoxes = 700;
-constexpr int32_t kTablePx = 28;
+constexpr uint32_t kTableBoxes = 1900;
+constexpr int32_t kTablePx = 56;
+constexpr float kMostBend = 0.24F;
 // Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
 constexpr float kSortedPx = 6.0F;
+constexpr float kSortedVoxelPx = 8.0F;  // where all are single voxels
 constexpr uint32_t kMostSorted = 512;
 constexpr int32_t kPatchRows = 16;
 // Up to so many threads draw lists of so many boxes each in a picture of its own. Fewer boxes are drawn in
 // the time that it takes to put pictures together, and more pictures are more than caches hold.
 constexpr int kMostCopies = 4;
 constexpr size_t kCopyBoxes = 150000;
+// Their pictures are put together in so many rows at a time.
+constexpr int32_t kMergedRows = 32;
 
 size_t strips_of(int32_t width_px) {
   return static_cast<size_t>(width_px + 31) / 32;
@@ -88,26 +94,23 @@ bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
   return true;
 }
 
-struct Block {
-  uint32_t node;
-  int level;
-  uint32_t corner[3];
-  Place place;
-};
-
-// One tile of the picture, by one thread.
+// What one thread draws with: one tile of the picture after the other, or parts of them.
 class TileDrawer {
  public:
-  // `next_share`: null, or common to several that share the runs of a list among them, each with depths of
-  // its own; not with blocks.
+  using Others = Handover<TileDrawer>;
+
+  // `others`: null, or those that draw on other rows of the same depths, and take some of ours when they have
+  // none left. `next_share`: null, or common to several that share the runs of a list among them, each with
+  // depths of its own; not with blocks.
   TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, uint8_t* full, bool by_blocks,
-             Batch* batch, std::atomic<uint32_t>* next_share = nullptr)
+             Batch* batch, Others* others, std::atomic<uint32_t>* next_share = nullptr)
       : lists_(lists),
         frame_(frame),
         depths_(depths),
         full_(full),
         by_blocks_(by_blocks),
         batch_(batch),
+        others_(others),
         next_share_(next_share),
         share_(next_share == nullptr ? 0 : (*next_share)++) {
     const Camera& camera = frame.camera;
@@ -119,21 +122,30 @@ class TileDrawer {
     }
   }
 
+  // Takes these rows, of the picture that it was made for.
+  void start(int32_t y0, int32_t y1) {
+    frame_.tile.y0 = y0;
+    frame_.tile.y1 = y1;
+    const CompactTree& tree = lists_.tree();
+    if (!tree.empty()) {
+      // The root, as the first child of a world twice as large.
+      Block world{};
+      world.level = static_cast<uint16_t>(tree.level() + 1);
+      depth_ = find_children(frame_, world, 1, 0, 0, stack_);
+    }
+  }
+
+  // Draws what was started or given, but for what is given away. Then the frame's tile is what was drawn.
   void draw() {
     const CompactTree& tree = lists_.tree();
-    if (tree.empty()) {
-      return;
-    }
-    Block stack[7 * kMaxLevel + 8];
-    int depth = 0;
-    const float zeros[8] = {};
-    Place places[8];
-    find_places(frame_, zeros, zeros, zeros, static_cast<float>(1 << tree.level()), places);
-    if (places[0].where.x0 < places[0].where.x1) {
-      stack[depth++] = {0, tree.level(), {0, 0, 0}, places[0]};
-    }
-    while (depth > 0) {
-      const Block block = stack[--depth];
+    while (depth_ > 0) {
+      if (others_ != nullptr && others_->is_wanted()) {
+        split();
+        if (depth_ == 0) {
+          break;
+        }
+      }
+      const Block block = stack_[--depth_];
       ++batch_->counts.nodes;
       const BlockNode& node = lists_.nodes()[block.node];
       const unsigned mask = tree.mask(block.node);
@@ -143,48 +155,140 @@ class TileDrawer {
       const uint32_t small = has_table ? kTableBoxes : by_blocks_ || is_cut_off ? kBlockBoxes : kFlatBoxes;
       const bool is_few = node.entries <= (widest <= kTinyPx && small < kTinyBoxes ? kTinyBoxes : small) &&
                           block.level <= kCubeLevel;
-      const bool is_leaf =
-          mask == 0 || block.level <= lists_.block_level() || (is_few && !(has_table && widest > kTablePx));
-      const bool is_family = !is_leaf && has_table && is_few && widest <= 2 * kTablePx;
-      if (by_blocks_ && (!has_table || widest > 2 * kTablePx) &&
-          all_covered(depths_, block.place.where, full_)) {
+      const bool is_large = has_table && (widest > kTablePx || !is_flat(block));
+      const bool is_leaf = mask == 0 || block.level <= lists_.block_level() || (is_few && !is_large);
+      if (by_blocks_ && (!has_table || widest > kTablePx) && all_covered(depths_, block.place.where, full_)) {
         continue;
       }
-      if (is_leaf || is_family) {
+      if (is_leaf) {
         if (!is_ours()) {
           continue;
         }
         // Its boxes are fetched while those of the blocks before it are drawn.
-        const uint32_t* entries = lists_.entries().data + node.first_entry;
-        for (uint32_t line = 0; 16 * line < node.entries && line < kMostLines; ++line) {
-          __builtin_prefetch(entries + 16 * line);
-        }
-        if (ahead_count_ == kAhead) {
+        ahead_[(ahead_first_ + ahead_count_++) % kAhead] = block;
+        if (ahead_count_ < kAhead) {
+          fetch(node, 0);
+        } else {
+          const uint32_t* const first = lists_.entries().data + node.first_entry;
+          batch_->ahead = first;
+          batch_->ahead_end = first + node.entries;
           draw_oldest();
+          fetch(node, static_cast<uint32_t>(batch_->ahead - first) / 16);
         }
-        ahead_[(ahead_first_ + ahead_count_++) % kAhead] = {block, is_family ? mask : 0};
         continue;
       }
-      Block children[8];
-      for (unsigned child = children_of(block, node, mask, children); child-- > 0;) {
+      // The last pushed is the first drawn.
+      Block* const children = stack_ + depth_;
+      const int count = find_children(frame_, block, mask, node.first_child, nearest_octant(block), children);
+      for (int child = 0; child < count; ++child) {
         __builtin_prefetch(&lists_.nodes()[children[child].node]);
-        stack[depth++] = children[child];  // the last pushed is the first drawn
       }
+      depth_ += count;
     }
     while (ahead_count_ != 0) {
+      batch_->ahead_end = batch_->ahead;
       draw_oldest();
     }
     finish(frame_, depths_, batch_);
   }
 
+  const Frame& frame() const { return frame_; }
+
+  // Of Handover.
+  std::atomic<bool> given{false};
+  TileDrawer* next_taker = nullptr;
+
  private:
-  static constexpr uint32_t kAhead = 4;
+  static constexpr uint32_t kAhead = 16;
   static constexpr uint32_t kRunsPerShare = 2;
   static constexpr uint32_t kMostLines = 64;
-  struct Waiting {
-    Block block;
-    unsigned mask;  ///< not 0: its children are drawn, one after the other
-  };
+  // Fewer rows, and fewer boxes that remain, are not split.
+  static constexpr int32_t kLeastRows = 2 * kPatchRows;
+  static constexpr float kLeastWork = 4000;
+
+  // Gives the lower rows, with all that is still to be drawn there, to a thread that waits: about half of the
+  // work.
+  void split() {
+    const Tile& tile = frame_.tile;
+    if (tile.y1 - tile.y0 < kLeastRows) {
+      return;
+    }
+    const int32_t cut = middle_row();
+    const float all = work_above(tile.y1);
+    const float above = work_above(cut);
+    if (all < kLeastWork || above < all / 16 || above > all * 15 / 16) {
+      return;
+    }
+    TileDrawer* const taker = others_->take();
+    if (taker == nullptr) {
+      return;
+    }
+    // What was drawn so far is to be in the picture, whose rows are the taker's from now on.
+    finish(frame_, depths_, batch_);
+    std::rotate(ahead_, ahead_ + ahead_first_, ahead_ + kAhead);
+    ahead_first_ = 0;
+    taker->frame_.tile = {tile.x0, cut, tile.x1, tile.y1};
+    taker->take_blocks(*this);
+    frame_.tile.y1 = cut;
+    take_blocks(*this);
+    Others::give(taker);
+  }
+
+  // The blocks of `from`, which may be this one, as far as they are in our rows. Its ring begins at 0.
+  void take_blocks(const TileDrawer& from) {
+    const auto take = [&](const Block* blocks, uint32_t count, Block* to) {
+      uint32_t taken = 0;
+      for (uint32_t i = 0; i < count; ++i) {
+        Block block = blocks[i];
+        Rectangle& where = block.place.where;
+        where.y0 = std::max(where.y0, frame_.tile.y0);
+        where.y1 = std::min(where.y1, frame_.tile.y1);
+        if (where.y0 < where.y1) {
+          to[taken++] = block;
+        }
+      }
+      return taken;
+    };
+    depth_ = static_cast<int>(take(from.stack_, static_cast<uint32_t>(from.depth_), stack_));
+    ahead_count_ = take(from.ahead_, from.ahead_count_, ahead_);
+    ahead_first_ = 0;
+  }
+
+  // The first row of a patch, not the tile's first, with about half of the work above it.
+  int32_t middle_row() const {
+    const int32_t origin = depths_.first_row;
+    const float half = work_above(frame_.tile.y1) / 2;
+    int32_t low = (frame_.tile.y0 - origin) / kPatchRows + 1;
+    int32_t high = (frame_.tile.y1 - origin - 1) / kPatchRows;
+    while (low < high) {
+      const int32_t middle = (low + high) / 2;
+      // Half a patch more: the cut that is nearest.
+      if (work_above(origin + middle * kPatchRows + kPatchRows / 2) < half) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return origin + low * kPatchRows;
+  }
+
+  // How many of the boxes that remain are above the row, if each block has them evenly in all of its rows.
+  float work_above(int32_t y) const {
+    float work = 0;
+    const auto add = [&](const Block& block) {
+      const Rectangle& where = block.place.where;
+      const float part = static_cast<float>(std::clamp(y, where.y0, where.y1) - where.y0) /
+                         static_cast<float>(where.y1 - where.y0);
+      work += part * static_cast<float>(lists_.nodes()[block.node].entries);
+    };
+    for (int i = 0; i < depth_; ++i) {
+      add(stack_[i]);
+    }
+    for (uint32_t i = 0; i < ahead_count_; ++i) {
+      add(ahead_[(ahead_first_ + i) % kAhead]);
+    }
+    return work;
+  }
 
   // Whether the next run is one of ours. All come by the same runs in the same order and take the next share
   // that nobody has when their last one is done, so each is taken once.
@@ -199,6 +303,14 @@ class TileDrawer {
     return share == share_;
   }
 
+  // Fetches the boxes of a block, but for the first `done` lines.
+  void fetch(const BlockNode& node, uint32_t done) const {
+    const uint32_t* entries = lists_.entries().data + node.first_entry;
+    for (uint32_t line = done; 16 * line < node.entries && line < kMostLines; ++line) {
+      __builtin_prefetch(entries + 16 * line);
+    }
+  }
+
   static int32_t width_of(const Rectangle& where) {
     const int32_t x = where.x1 - where.x0;
     const int32_t y = where.y1 - where.y0;
@@ -210,70 +322,29 @@ class TileDrawer {
            where.y1 == frame_.tile.y1;
   }
 
-  // The children that may be seen, front to back. Returns how many.
-  unsigned children_of(const Block& block, const BlockNode& node, unsigned mask, Block* children) const {
-    const uint32_t side = uint32_t{1} << (block.level - 1);
-    float x[8];
-    float y[8];
-    float z[8];
-    unsigned first = 0;  // the octant nearest to the eye
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      x[octant] = static_cast<float>(block.corner[0] + ((octant & 1U) != 0 ? side : 0));
-      y[octant] = static_cast<float>(block.corner[1] + ((octant & 2U) != 0 ? side : 0));
-      z[octant] = static_cast<float>(block.corner[2] + ((octant & 4U) != 0 ? side : 0));
-    }
+  unsigned nearest_octant(const Block& block) const {
+    const int32_t side = int32_t{1} << (block.level - 1);
+    unsigned octant = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
-      first |= eye_cell_[axis] >= static_cast<int32_t>(block.corner[axis] + side) ? 1U << axis : 0U;
+      octant |= eye_cell_[axis] >= block.corner[axis] + side ? 1U << axis : 0U;
     }
-    Place places[8];
-    find_places(frame_, x, y, z, static_cast<float>(side), places);
-    unsigned count = 0;
-    for (unsigned turn = 0; turn < 8; ++turn) {
-      const unsigned octant = turn ^ first;
-      if ((mask >> octant & 1U) == 0 || places[octant].where.x0 >= places[octant].where.x1) {
-        continue;
-      }
-      const uint32_t number = static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
-      children[count++] = {node.first_child + number,
-                           block.level - 1,
-                           {block.corner[0] + ((octant & 1U) != 0 ? side : 0),
-                            block.corner[1] + ((octant & 2U) != 0 ? side : 0),
-                            block.corner[2] + ((octant & 4U) != 0 ? side : 0)},
-                           places[octant]};
-    }
-    return count;
+    return octant;
   }
 
   void draw_oldest() {
-    const Waiting& oldest = ahead_[ahead_first_];
+    const Block& block = ahead_[ahead_first_];
     ahead_first_ = (ahead_first_ + 1) % kAhead;
     --ahead_count_;
-    const Block& block = oldest.block;
     // What lay before it may have been drawn since. Small ones are looked up as they are drawn.
     if (by_blocks_ && width_of(block.place.where) > kTablePx &&
         all_covered(depths_, block.place.where, full_)) {
       return;
     }
-    const BlockNode& node = lists_.nodes()[block.node];
-    if (oldest.mask == 0) {
-      draw_block(block, node);
-      return;
-    }
-    Block children[8];
-    const unsigned count = children_of(block, node, oldest.mask, children);
-    batch_->counts.nodes += count;
-    const uint32_t within = (uint32_t{1} << kCubeLevel) - 1;
-    const uint32_t corner[3] = {block.corner[0] & within, block.corner[1] & within, block.corner[2] & within};
-    Linear linear;
-    find_linear(frame_, corner, uint32_t{1} << block.level, block.place, &linear);
-    for (unsigned child = 0; child < count; ++child) {
-      draw_block(children[child], lists_.nodes()[children[child].node], linear.is_sound ? &linear : nullptr);
-    }
+    draw_block(block, lists_.nodes()[block.node]);
   }
 
-  void draw_block(const Block& block, const BlockNode& node, const Linear* linear = nullptr) {
+  void draw_block(const Block& block, const BlockNode& node) {
     Run run;
-    run.linear = linear;
     run.entries = lists_.entries().data + node.first_entry;
     run.numbers = nullptr;
     run.count = node.entries;
@@ -291,7 +362,8 @@ class TileDrawer {
         run.block[axis] = block.corner[axis] & cube;
       }
       const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(node.face_area);
-      const bool is_large = face_px >= kSortedPx * kSortedPx * static_cast<float>(node.entries);
+      const float sorted_px = run.unit ? kSortedVoxelPx : kSortedPx;
+      const bool is_large = face_px >= sorted_px * sorted_px * static_cast<float>(node.entries);
       if (by_blocks_ && run.count > 1 && run.count <= kMostSorted && is_large) {
         run.count = cull_run(frame_, run, depths_, batch_, entries_, numbers_);
         if (run.count == 0) {
@@ -314,6 +386,15 @@ class TileDrawer {
       ++run.entries;
       ++run.first;
     }
+  }
+
+  // Whether perspective bends the block so little that tables serve: by `bend` of its size, and its middle
+  // by the square of that.
+  bool is_flat(const Block& block) const {
+    const float bend = frame_.norm_w * static_cast<float>(1 << block.level) * 0.5F * block.place.per_depth;
+    return !frame_.perspective ||
+           (bend <= kMostBend &&
+            0.5F * static_cast<float>(width_of(block.place.where)) * bend * bend <= kMostBentPx);
   }
 
   // How large a voxel of the block looks, about.
@@ -381,16 +462,19 @@ class TileDrawer {
   }
 
   const VoxelLists& lists_;
-  const Frame& frame_;
+  Frame frame_;
   const Depths& depths_;
   uint8_t* full_;  // see all_covered
   bool by_blocks_;
   Batch* batch_;
+  Others* others_;
   std::atomic<uint32_t>* next_share_;
   uint32_t share_;
   uint32_t run_ = 0;
   int32_t eye_cell_[3];
-  Waiting ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
+  int depth_ = 0;  ///< of stack_
+  Block stack_[7 * kMaxLevel + 8];
+  Block ahead_[kAhead];  ///< blocks on their way from memory, a ring in the order of drawing
   uint32_t ahead_first_ = 0;
   uint32_t ahead_count_ = 0;
   uint32_t entries_[kMostSorted + kReadAhead];
@@ -399,9 +483,8 @@ class TileDrawer {
   uint32_t sorted_numbers_[kMostSorted + kReadAhead];
 };
 
-// The picture is cut into tiles of whole rows, so that as many threads are busy to the end: first a large one
-// for each, then a small one for each that is done. Few, since boxes on a seam are looked at on both
-// sides.
+// The picture is cut into tiles of whole rows, one for each thread, of about the same work. Few, since boxes
+// on a seam are looked at on both sides.
 class Tiles {
  public:
   Tiles(int32_t rows, int threads, const float (&work)[Outlook::kParts]) : end_{rows} {
@@ -417,11 +500,9 @@ class Tiles {
     all += each * Outlook::kParts;
     count_ = 0;
     float done = 0;
-    float wanted = 0;
     int part = 0;
     for (int32_t last = 0; last < rows;) {
-      const bool is_large = count_ < threads;
-      wanted += all * (is_large ? 1 - kSmallShare : kSmallShare) / static_cast<float>(threads);
+      const float wanted = all * static_cast<float>(count_ + 1) / static_cast<float>(threads);
       while (part < Outlook::kParts && done + work[part] + each <= wanted) {
         done += work[part] + each;
         ++part;
@@ -435,7 +516,7 @@ class Tiles {
       const int32_t row = static_cast<int32_t>(at * static_cast<float>(rows) / Outlook::kParts);
       int32_t end = (row + kPatchRows / 2) / kPatchRows * kPatchRows;
       end = end <= last ? last + kPatchRows : end;
-      last = end < rows && count_ + 1 < kMost ? end : rows;
+      last = end < rows && count_ + 1 < threads ? end : rows;
       end_[count_++] = last;
     }
   }
@@ -445,10 +526,8 @@ class Tiles {
   int32_t end(int tile) const { return end_[tile]; }
 
  private:
-  static constexpr float kSmallShare = 0.28F;
-  static constexpr int kMost = kMaxPicturePx / kPatchRows;
   int count_ = 1;
-  int32_t end_[kMost];
+  int32_t end_[kMaxThreads];
 };
 
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
@@ -505,17 +584,6 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   }
   const bool by_blocks = done.order == Order::kBlocks;
   const Tiles tiles(band.rows, options.threads, by_blocks ? outlook.blocks : outlook.flat);
-  const auto make_tile = [&](int tile, Frame* made) {
-    return make_frame(
-        camera, {0, band.first_row + tiles.begin(tile), camera.width_px(), band.first_row + tiles.end(tile)},
-        made);
-  };
-  for (int tile = 0; tile < tiles.count(); ++tile) {
-    Frame part;
-    if (!make_tile(tile, &part)) {
-      return Status::kTooFine;
-    }
-  }
 
   Arena arena(workspace);
   const size_t strips = strips_of(camera.width_px());
@@ -563,22 +631,35 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     }
   };
 
-  const auto draw_tile = [&](int number, Batch* batch) {
-    Frame tile;
-    (void)make_tile(number, &tile);
-    const int32_t rows = tile.tile.y1 - tile.tile.y0;
-    clear(depths, tile.tile.y0, rows);
-    for (size_t strip = 0; strip < strips; ++strip) {
-      memset(patches.data + strip * patches_of(band.rows) + tiles.begin(number) / kPatchRows, 0,
-             patches_of(rows));
+  // Draws tiles and parts until there are no more. Returns how many pixels hold anything.
+  TileDrawer::Others others(tiles.count());
+  const auto draw_all = [&](Batch* batch) {
+    uint64_t hits = 0;
+    TileDrawer drawer(lists, frame, depths, patches.data, by_blocks, batch,
+                      options.threads > 1 ? &others : nullptr);
+    for (;;) {
+      const int number = others.next(&drawer);
+      if (number == TileDrawer::Others::kNothing) {
+        return hits;
+      }
+      if (number != TileDrawer::Others::kGiven) {
+        const int32_t first = tiles.begin(number);
+        const int32_t rows = tiles.end(number) - first;
+        clear(depths, band.first_row + first, rows);
+        for (size_t strip = 0; strip < strips; ++strip) {
+          memset(patches.data + strip * patches_of(band.rows) + first / kPatchRows, 0, patches_of(rows));
+        }
+        drawer.start(band.first_row + first, band.first_row + first + rows);
+      }
+      drawer.draw();
+      hits += painter.paint_tile(drawer.frame(), depths);
+      others.finish();
     }
-    TileDrawer(lists, tile, depths, patches.data, by_blocks, batch).draw();
-    return painter.paint_tile(tile, depths);
   };
   uint64_t hits = 0;
   if (options.threads == 1) {
     Batch* const batch = batch_of(0);
-    hits = draw_tile(0, batch);
+    hits = draw_all(batch);
     done.counts = batch->counts;
   } else {
     // More threads than processors are no gain, but what was asked for.
@@ -589,36 +670,36 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
       batch_of(thread);
     }
     std::atomic<uint64_t> all_hits{0};
-    std::atomic<int> next{0};
     if (copies) {
       std::atomic<uint32_t> next_share{0};
       workers.execute([&] {
         oneapi::tbb::parallel_for(0, options.threads, [&](int part) {
           clear(copy[part], band.first_row, band.rows);
-          TileDrawer(lists, frame, copy[part], nullptr, false, batch_at(part), &next_share).draw();
+          TileDrawer drawer(lists, frame, copy[part], nullptr, false, batch_at(part), nullptr, &next_share);
+          drawer.start(frame.tile.y0, frame.tile.y1);
+          drawer.draw();
         });
-        oneapi::tbb::parallel_for(0, tiles.count(), [&](int number) {
-          Frame tile;
-          (void)make_tile(number, &tile);
-          for (int part = 1; part < options.threads; ++part) {
-            merge_rows(copy[part], camera.width_px(), tile.tile.y0, tile.tile.y1, depths);
+        oneapi::tbb::parallel_for(0, (band.rows - 1) / kMergedRows + 1, [&](int part) {
+          Frame merged = frame;
+          merged.tile.y0 += part * kMergedRows;
+          merged.tile.y1 = std::min(merged.tile.y0 + kMergedRows, frame.tile.y1);
+          for (int thread = 1; thread < options.threads; ++thread) {
+            merge_rows(copy[thread], camera.width_px(), merged.tile.y0, merged.tile.y1, depths);
           }
-          all_hits += painter.paint_tile(tile, depths);
+          all_hits += painter.paint_tile(merged, depths);
         });
       });
     } else {
       workers.execute([&] {
-        oneapi::tbb::parallel_for(0, options.threads, [&](int part) {
-          for (int tile = next++; tile < tiles.count(); tile = next++) {
-            all_hits += draw_tile(tile, batch_at(part));
-          }
-        });
+        oneapi::tbb::parallel_for(0, options.threads,
+                                  [&](int part) { all_hits += draw_all(batch_at(part)); });
       });
     }
     hits = all_hits;
     for (int thread = 0; thread < options.threads; ++thread) {
       done.counts.add(batch_at(thread)->counts);
     }
+    done.splits = others.splits();
   }
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);

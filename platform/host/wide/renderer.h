@@ -36,6 +36,7 @@ struct Options {
 struct Stats {
   Counts counts;
   Order order = Order::kAuto;  ///< the one chosen
+  uint32_t splits = 0;         ///< how often a thread gave some of its rows to one that had none left
 };
 
 /// Bytes that `render` wants as workspace for bands of `rows` rows of this width.
