@@ -30,6 +30,37 @@ inline uint32_t bits_of(D d, hn::Mask<D> mask) {
   return uint32_t{bytes[0]} | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 | uint32_t{bytes[3]} << 24;
 }
 
+// The lanes in `mask`, moved to the front. For AVX2, Highway 1.0 has a table for this in the function, which
+// gcc 12 copies onto the stack at each call: that was three quarters of a frame.
+#if HWY_TARGET == HWY_AVX2
+// The numbers of the lanes in a mask, four bits each.
+struct LaneTable {
+  uint32_t of[256];
+  constexpr LaneTable() : of{} {
+    for (uint32_t mask = 0; mask < 256; ++mask) {
+      uint32_t shift = 0;
+      for (uint32_t lane = 0; lane < 8; ++lane) {
+        of[mask] |= (mask >> lane & 1U) * lane << shift;
+        shift += 4 * (mask >> lane & 1U);
+      }
+    }
+  }
+};
+constexpr LaneTable kLanesIn;
+
+HWY_INLINE hn::Vec<U32> squeeze(hn::Vec<U32> v, hn::Mask<U32> mask) {
+  const U32 d;
+  const int bits = _mm256_movemask_ps(_mm256_castsi256_ps(hn::VecFromMask(d, mask).raw));
+  const auto packed = hn::Set(d, kLanesIn.of[bits]);
+  const auto shifts = hn::ShiftLeft<2>(hn::Iota(d, 0));
+  return hn::Vec<U32>{_mm256_permutevar8x32_epi32(v.raw, hn::Shr(packed, shifts).raw)};
+}
+#else
+HWY_INLINE hn::Vec<U32> squeeze(hn::Vec<U32> v, hn::Mask<U32> mask) {
+  return hn::Compress(v, mask);
+}
+#endif
+
 constexpr uint32_t kWithin = 1023;  // a coordinate within a cube of entries
 
 // The first `count` numbers from there, and zeros. Reads no others: they may be another thread's.
@@ -382,11 +413,11 @@ HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> numb
                        Pairs* pairs) {
   const U32 d;
   const auto chosen = hn::RebindMask(d, mask);
-  hn::StoreU(hn::Compress(entry, chosen), d, pairs->entry + pairs->count);
+  hn::StoreU(squeeze(entry, chosen), d, pairs->entry + pairs->count);
   if (!kGray) {
-    hn::StoreU(hn::Compress(number, chosen), d, pairs->number + pairs->count);
+    hn::StoreU(squeeze(number, chosen), d, pairs->number + pairs->count);
   }
-  hn::StoreU(hn::Compress(place, chosen), d, pairs->place + pairs->count);
+  hn::StoreU(squeeze(place, chosen), d, pairs->place + pairs->count);
   pairs->count += hn::CountTrue(d, chosen);
 }
 
@@ -494,12 +525,12 @@ HWY_INLINE void take(hn::Mask<F32> met, const Unpacked<kUnit>& pairs, const Aims
   const auto pixel =
       hn::Or(hn::ShiftLeft<5>(word_of(depths, pairs.x, pairs.y)), hn::And(pairs.x, hn::Set(du, 31U)));
   const auto chosen = hn::RebindMask(du, met);
-  hn::StoreU(hn::Compress(key, chosen), du, batch->key + batch->met);
+  hn::StoreU(squeeze(key, chosen), du, batch->key + batch->met);
   if (!kGray) {
-    hn::StoreU(hn::Compress(down, chosen), du, batch->down + batch->met);
+    hn::StoreU(squeeze(down, chosen), du, batch->down + batch->met);
   }
-  hn::StoreU(hn::Compress(number, chosen), du, batch->number + batch->met);
-  hn::StoreU(hn::Compress(pixel, chosen), du, batch->pixel + batch->met);
+  hn::StoreU(squeeze(number, chosen), du, batch->number + batch->met);
+  hn::StoreU(squeeze(pixel, chosen), du, batch->pixel + batch->met);
   batch->met += hn::CountTrue(du, chosen);
 }
 
@@ -556,8 +587,8 @@ HWY_NOINLINE void test_waiting_of(const Frame& frame, const Depths& depths, bool
     if (kTwice) {
       const auto chosen = hn::RebindMask(du, met);
       const auto place = hn::Load(du, pairs.place + at);
-      hn::StoreU(hn::Compress(unpacked.entry, chosen), du, pairs.entry + moved);
-      hn::StoreU(hn::Compress(place, chosen), du, pairs.place + moved);
+      hn::StoreU(squeeze(unpacked.entry, chosen), du, pairs.entry + moved);
+      hn::StoreU(squeeze(place, chosen), du, pairs.place + moved);
       moved += hn::CountTrue(du, chosen);
     } else if (hn::AllFalse(d, met)) {
       continue;
@@ -1206,9 +1237,9 @@ class OpenTable {
     const int32_t columns = where.x1 - where.x0;
     const int32_t rows = where.y1 - where.y0;
     rows_ = columns > kNarrowPx || rows > kNarrowPx ? 64 : rows + kMargin + 1 > 16 ? 32 : 16;
-    none_ = fill(0, left_, kMargin);
+    none_ = fill(0, words_, kMargin);
     if (rows_ == 64) {
-      none_ = fill(kRightColumn - kMargin, right_, 0) && none_;
+      none_ = fill(kRightColumn - kMargin, words_ + kRight, 0) && none_;
     }
   }
 
@@ -1221,27 +1252,26 @@ class OpenTable {
   HWY_INLINE hn::Vec<U32> at(hn::Vec<U32> x, hn::Vec<U32> y) const {
     const U32 d;
     if (kRows < 64) {
-      return hn::Shr(look_up<kRows>(left_, y), x);
+      return hn::Shr(look_up<kRows>(words_, y), x);
     }
     const auto is_right = hn::Gt(x, hn::Set(d, kRightColumn + 1U));
     const auto shift = hn::Sub(x, hn::IfThenElseZero(is_right, hn::Set(d, uint32_t{kRightColumn})));
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    const auto row = hn::IfThenElse(is_right, look_up<kRows>(right_, y), look_up<kRows>(left_, y));
+    const auto row = hn::IfThenElse(is_right, look_up<kRows>(words_ + kRight, y), look_up<kRows>(words_, y));
 #else
-    const auto right = hn::Set(d, static_cast<uint32_t>(right_ - left_));
-    const auto row = hn::GatherIndex(
-        d, left_,
-        hn::BitCast(I32(), hn::Add(hn::And(y, hn::Set(d, 63U)), hn::IfThenElseZero(is_right, right))));
+    const auto right = hn::IfThenElseZero(is_right, hn::Set(d, uint32_t{kRight}));
+    const auto index = hn::Add(hn::And(y, hn::Set(d, 63U)), right);
+    const auto row = hn::GatherIndex(d, words_, hn::BitCast(I32(), index));
 #endif
     // The last columns, beyond all pixels, are all taken to be the one before them.
     return hn::Shr(row, hn::Min(shift, hn::Set(d, 31U)));
   }
 
  private:
-  // Wide tables have two words a row. The second begins with the last columns of the first, so that
-  // neighbours stand together.
+  // Wide tables have two words a row. The second, kRight words behind the first, begins with the last columns
+  // of that, so that neighbours stand together. Vectors are stored from any row on.
   static constexpr int32_t kRightColumn = 28;
-  static constexpr size_t kRoom = 64 + kMargin + 61;
+  static constexpr uint32_t kRight = 128;
 
   // Words of the pixels from column `first` of the rectangle on, `shift` bits up. Returns whether all are 0.
   bool fill(int32_t first, uint32_t* words, int shift) {
@@ -1304,8 +1334,7 @@ class OpenTable {
   Rectangle where_;
   int rows_;
   bool none_;
-  alignas(64) uint32_t left_[kRoom];
-  alignas(64) uint32_t right_[kRoom];
+  alignas(64) uint32_t words_[2 * kRight];
 };
 
 // Where the single voxels of a block are on the picture, about: with v a voxel's place in the cube, pixels
@@ -1486,11 +1515,11 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
       is_open = hn::Ne(open, hn::Zero(du));
     }
     const auto chosen = hn::And(hn::RebindMask(du, seen), is_open);
-    hn::StoreU(hn::Compress(entry, chosen), du, entries + count);
+    hn::StoreU(squeeze(entry, chosen), du, entries + count);
     if (!kGray) {
-      hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, numbers + count);
+      hn::StoreU(squeeze(hn::Iota(du, run.first + at), chosen), du, numbers + count);
     }
-    hn::StoreU(hn::Compress(place, chosen), du, places + count);
+    hn::StoreU(squeeze(place, chosen), du, places + count);
     count += hn::CountTrue(du, chosen);
   }
   (kOne ? batch->waiting.count : batch->picked.count) = count;
@@ -1634,10 +1663,10 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
     const auto chosen = hn::RebindMask(du, seen);
     const auto wide_x = small_number(boxes.wide_x);
     const auto wide_y = small_number(boxes.wide_y);
-    hn::StoreU(hn::Compress(boxes.entry, chosen), du, queue.entry + queue.count);
-    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen), du, queue.number + queue.count);
-    hn::StoreU(hn::Compress(place, chosen), du, queue.place + queue.count);
-    hn::StoreU(hn::Compress(hn::Or(hn::ShiftLeft<16>(wide_y), wide_x), chosen), du, queue.wide + queue.count);
+    hn::StoreU(squeeze(boxes.entry, chosen), du, queue.entry + queue.count);
+    hn::StoreU(squeeze(hn::Iota(du, run.first + at), chosen), du, queue.number + queue.count);
+    hn::StoreU(squeeze(place, chosen), du, queue.place + queue.count);
+    hn::StoreU(squeeze(hn::Or(hn::ShiftLeft<16>(wide_y), wide_x), chosen), du, queue.wide + queue.count);
     queue.count += hn::CountTrue(du, chosen);
     batch->all_behind = batch->all_behind && run.behind && !cut;
     if (queue.count + lanes > Boxes::kSize) {
@@ -1743,8 +1772,8 @@ uint32_t cull_run_of(const Frame& frame, const Run& run, const Depths& depths, B
       in_row = hn::AndNot(found, hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down)))));
     }
     const auto chosen_u = hn::RebindMask(du, chosen);
-    hn::StoreU(hn::Compress(boxes.entry, chosen_u), du, entries + count);
-    hn::StoreU(hn::Compress(hn::Iota(du, run.first + at), chosen_u), du, numbers + count);
+    hn::StoreU(squeeze(boxes.entry, chosen_u), du, entries + count);
+    hn::StoreU(squeeze(hn::Iota(du, run.first + at), chosen_u), du, numbers + count);
     count += static_cast<uint32_t>(hn::CountTrue(du, chosen_u));
   }
   return count;
@@ -1933,7 +1962,7 @@ HWY_INLINE uint32_t store_bits(uint32_t word, uint32_t first, uint32_t* to) {
   __builtin_memcpy(bytes, &word, sizeof(word));
   for (uint32_t part = 0; part < 32; part += lanes) {
     const auto mask = hn::LoadMaskBits(d, bytes + part / 8);
-    hn::StoreU(hn::Compress(hn::Iota(d, first + part), mask), d, to + count);
+    hn::StoreU(squeeze(hn::Iota(d, first + part), mask), d, to + count);
     count += static_cast<uint32_t>(hn::CountTrue(d, mask));
   }
   return count;
