@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -247,6 +248,19 @@ std::size_t band_size(const Frame& frame) {
   return frame.band.rows == 0 ? 0 : stride * static_cast<std::size_t>(frame.band.rows - 1) + line;
 }
 
+// Kept from frame to frame, as those who draw films do.
+wide::Threads* threads_of(int count) {
+  static std::map<int, std::unique_ptr<wide::Threads>> kept;
+  auto& threads = kept[count];
+  if (threads == nullptr) {
+    threads = std::make_unique<wide::Threads>(count);
+  }
+  return threads.get();
+}
+int thread_count(const wide::Options& options) {
+  return options.threads == nullptr ? 1 : options.threads->count();
+}
+
 // The band by this renderer; nothing where it leaves the frame to the core.
 std::optional<std::vector<std::uint8_t>> draw_wide(const Scene& scene, const Frame& frame,
                                                    const wide::Options& options,
@@ -254,7 +268,8 @@ std::optional<std::vector<std::uint8_t>> draw_wide(const Scene& scene, const Fra
                                                    wide::Stats* stats = nullptr) {
   const HeapBytes pixels(band_size(frame));
   std::memset(pixels.span().data, 0xA5, pixels.span().size);
-  const HeapBytes workspace(wide::workspace_bytes(frame.camera.width_px(), frame.band.rows, options.threads));
+  const HeapBytes workspace(
+      wide::workspace_bytes(frame.camera.width_px(), frame.band.rows, thread_count(options)));
   Band band = frame.band;
   band.pixels = pixels.span();
   RenderCounts counts;
@@ -285,7 +300,7 @@ std::vector<std::uint8_t> draw_core(const Scene& scene, const Frame& frame, std:
 wide::Options random_options(std::mt19937_64& random) {
   wide::Options options;
   constexpr int kThreads[] = {1, 1, 1, 2, 5};
-  options.threads = kThreads[pick(random, 0, 4)];
+  options.threads = threads_of(kThreads[pick(random, 0, 4)]);
   options.order = static_cast<wide::Order>(pick(random, 0, 2));
   return options;
 }
@@ -318,7 +333,7 @@ TEST_CASE("wide: random scenes, cameras, shades, formats and bands -> every pixe
       CAPTURE(wide::instruction_set());
       CAPTURE(frame.camera.is_perspective());
       const wide::Options options = random_options(random);
-      CAPTURE(options.threads);
+      CAPTURE(thread_count(options));
       CAPTURE(static_cast<int>(options.order));
       std::uint64_t hits = 0;
       std::uint64_t expected_hits = 0;
@@ -447,7 +462,7 @@ TEST_CASE("wide: several threads with a picture each -> put together, every pixe
       CAPTURE(threads);
       CAPTURE(wide::instruction_set());
       wide::Options options;
-      options.threads = threads;
+      options.threads = threads_of(threads);
       options.order = wide::Order::kFlat;
       std::uint64_t hits = 0;
       const auto ours = draw_wide(scene, frame, options, &hits);
@@ -583,7 +598,7 @@ TEST_CASE("wide: thick surfaces, voxels of about a pixel to many -> every pixel 
       CAPTURE(wide::instruction_set());
       CAPTURE(threads);
       wide::Options options;
-      options.threads = threads;
+      options.threads = threads_of(threads);
       options.order = wide::Order::kBlocks;
       const auto ours = draw_wide(scene, frame, options);
       REQUIRE(ours.has_value());
@@ -686,7 +701,7 @@ TEST_CASE("wide: clouds of voxels of a part of a pixel to some -> every pixel is
         wide::use_instruction_set(set);
         CAPTURE(wide::instruction_set());
         wide::Options options;
-        options.threads = v % 3 == 1 ? 2 : 1;
+        options.threads = threads_of(v % 3 == 1 ? 2 : 1);
         options.order = wide::Order::kBlocks;
         std::uint64_t hits = 0;
         wide::Stats stats;
@@ -833,7 +848,7 @@ TEST_CASE("wide: every instruction set, order and number of threads -> the same 
       for (const int threads : {1, 2, 5}) {
         for (const wide::Order order : {wide::Order::kFlat, wide::Order::kBlocks}) {
           wide::Options options;
-          options.threads = threads;
+          options.threads = threads_of(threads);
           options.order = order;
           CHECK(draw_wide(scene, frame, options) == first);
         }
@@ -873,7 +888,7 @@ TEST_CASE("wide: an arena or a workspace that is too small -> kOutOfMemory, noth
         Band band = frame.band;
         band.pixels = Bytes(pixels.data(), pixels.size());
         wide::Options options;
-        options.threads = threads;
+        options.threads = threads_of(threads);
         CHECK(wide::render(scene.lists, frame.camera, frame.shading, band, workspace.span(), nullptr,
                            options) == Status::kOutOfMemory);
         CHECK(std::all_of(pixels.begin(), pixels.end(), [](std::uint8_t byte) { return byte == 0xA5; }));
@@ -882,7 +897,12 @@ TEST_CASE("wide: an arena or a workspace that is too small -> kOutOfMemory, noth
   }
 }
 
-TEST_CASE("wide: bands and threads that cannot be -> refused as render_band refuses them") {
+TEST_CASE("wide: numbers of threads that cannot be -> the nearest that can") {
+  CHECK(wide::Threads(-1).count() == 1);
+  CHECK(wide::Threads(wide::kMaxThreads + 1).count() == wide::kMaxThreads);
+}
+
+TEST_CASE("wide: bands that cannot be -> refused as render_band refuses them") {
   std::mt19937_64 random(6);
   Scene scene = random_scene(random);
   PerspectiveView view;
@@ -895,33 +915,28 @@ TEST_CASE("wide: bands and threads that cannot be -> refused as render_band refu
   Camera other_level;
   REQUIRE(other_level.set(view, scene.level == 12 ? 11 : scene.level + 1) == Status::kOk);
   std::vector<std::uint8_t> pixels(600);
-  std::vector<std::uint8_t> workspace(wide::workspace_bytes(20, 10, 4));
-  const auto draw = [&](const Camera& of, const Band& band, int threads) {
-    wide::Options options;
-    options.threads = threads;
-    return wide::render(scene.lists, of, {}, band, Bytes(workspace.data(), workspace.size()), nullptr,
-                        options);
+  std::vector<std::uint8_t> workspace(wide::workspace_bytes(20, 10));
+  const auto draw = [&](const Camera& of, const Band& band) {
+    return wide::render(scene.lists, of, {}, band, Bytes(workspace.data(), workspace.size()), nullptr);
   };
   Band band;
   band.pixels = Bytes(pixels.data(), pixels.size());
   band.rows = 10;
-  CHECK(draw(camera, band, 1) == Status::kOk);
-  CHECK(draw(Camera(), band, 1) == Status::kBadArgument);
-  CHECK(draw(other_level, band, 1) == Status::kBadArgument);
-  CHECK(draw(camera, band, 0) == Status::kBadArgument);
-  CHECK(draw(camera, band, wide::kMaxThreads + 1) == Status::kBadArgument);
+  CHECK(draw(camera, band) == Status::kOk);
+  CHECK(draw(Camera(), band) == Status::kBadArgument);
+  CHECK(draw(other_level, band) == Status::kBadArgument);
   Band wrong = band;
   wrong.first_row = 1;
-  CHECK(draw(camera, wrong, 1) == Status::kBadArgument);
+  CHECK(draw(camera, wrong) == Status::kBadArgument);
   wrong = band;
   wrong.stride_bytes = 59;
-  CHECK(draw(camera, wrong, 1) == Status::kBadArgument);
+  CHECK(draw(camera, wrong) == Status::kBadArgument);
   wrong = band;
   wrong.pixels = Bytes(pixels.data(), 599);
-  CHECK(draw(camera, wrong, 1) == Status::kOutOfMemory);
+  CHECK(draw(camera, wrong) == Status::kOutOfMemory);
   wrong = band;
   wrong.rows = 0;
-  CHECK(draw(camera, wrong, 1) == Status::kOk);
+  CHECK(draw(camera, wrong) == Status::kOk);
 }
 
 TEST_CASE("wide: damaged trees -> refused, or some picture within the bytes") {
@@ -1047,7 +1062,7 @@ TEST_CASE("wide: work in some rows, several threads -> parts change hands, every
         CHECK(expected_hits > 3000);
         for (const int threads : {2, 3, 8}) {
           CAPTURE(threads);
-          options.threads = threads;
+          options.threads = threads_of(threads);
           int wrong = 0;
           // The first large ones again and again, until there was a processor for the other thread.
           const auto is_early = [&] {

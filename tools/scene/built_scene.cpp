@@ -531,7 +531,7 @@ bool BuiltScene::prepare_wide(std::int32_t width_px, std::int32_t height_px, int
     return false;
   }
   wide_rows_ = rows;
-  wide_threads_ = threads;
+  wide_threads_ = std::make_unique<wide::Threads>(threads);
   build_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
@@ -539,7 +539,7 @@ bool BuiltScene::prepare_wide(std::int32_t width_px, std::int32_t height_px, int
 Status BuiltScene::render_wide(const Camera& camera, const Shading& shading, const Band& band,
                                RenderCounts* counts, wide::Counts* work) const {
   wide::Options options;
-  options.threads = wide_threads_;
+  options.threads = wide_threads_.get();
   wide::Stats stats;
   const Status status = wide::render(lists_, camera, shading, band, wide_workspace_, counts, options, &stats);
   work->add(stats.counts);

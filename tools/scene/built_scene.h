@@ -4,6 +4,7 @@
 #define THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -129,7 +130,7 @@ class BuiltScene {
   wide::VoxelLists lists_;
   Bytes wide_workspace_;
   std::int32_t wide_rows_ = 0;
-  int wide_threads_ = 1;
+  std::unique_ptr<wide::Threads> wide_threads_;
   std::uint64_t least_budget_bytes_ = 0;
   std::uint64_t solid_added_ = 0;
   double build_seconds_ = 0;

@@ -21,7 +21,7 @@ bool WideFrames::prepare(const CompactTree& tree, const Camera& camera) {
   height_px_ = camera.height_px();
   is_ready_ = false;
   const std::size_t list_bytes = wide::VoxelLists::bytes(tree);
-  const std::size_t work_bytes = wide::workspace_bytes(width_px_, height_px_, threads_);
+  const std::size_t work_bytes = wide::workspace_bytes(width_px_, height_px_, threads_.count());
   if (list_bytes > most_bytes_ || work_bytes > most_bytes_ - list_bytes) {
     return false;
   }
@@ -48,7 +48,7 @@ bool WideFrames::draw(const CompactTree& tree, const Camera& camera, const Shadi
     return leave("no room for --engine wide");
   }
   wide::Options options;
-  options.threads = threads_;
+  options.threads = &threads_;
   if (wide::render(lists_, camera, shading, {pixels, format, 0, 0, camera.height_px()}, workspace_, nullptr,
                    options) != Status::kOk) {
     return leave("--engine wide does not take the rays of this camera");

@@ -38,7 +38,7 @@ class WideFrames final : public host::FramePainter {
   bool leave(const char* why);
 
   bool insists_;
-  int threads_;
+  wide::Threads threads_;
   std::size_t most_bytes_;
   std::uint32_t drawn_ = 0;
   std::uint32_t left_ = 0;

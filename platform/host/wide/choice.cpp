@@ -10,14 +10,18 @@ namespace {
 constexpr uint32_t kFewBoxes = 64;
 // Boxes that are looked at in the time that a cell takes, a hundredth of the frame being for the choice.
 constexpr float kWorkPerCell = 12000;
-// In tests of a pixel in flat order, about 0.8 ns. Fitted to the times of 1,743 views, by the time that wrong
-// choices cost: a box in flat order; in blocks a test, a block that is looked up in tables (its boxes count
-// for nothing besides), a box of another block, and that there are blocks at all.
-constexpr float kBox = 0.3F;
-constexpr float kOpenTest = 0.5F;
-constexpr float kTableBlock = 80;
-constexpr float kBoxInBlock = 0.4F;
-constexpr float kBlocks = 800;
+// In tests of a pixel in flat order, about 0.8 ns. Fitted to the times of 1,199 views, by the time that wrong
+// choices cost: a box in flat order; a test of a box that is drawn row by row, in either order; in blocks a
+// test where tables are looked up, a block that is (its boxes count for nothing besides), a box of another
+// block (but a large one's tests are what counts), and that there are blocks at all.
+constexpr float kBox = 0.1F;
+constexpr float kLargeTest = 0.42F;
+constexpr float kTableTest = 0.67F;
+constexpr float kTableBlock = 62;
+constexpr float kBoxInBlock = 0.24F;
+constexpr float kBlocks = 110;
+// Boxes of so many pixels are drawn row by row, in the mean of both orders (kernels.cpp).
+constexpr float kLargePx = 40;
 // Boxes of a block, in the mean, and pixels of a side (renderer.cpp: up to kTableBoxes, kBlockBoxes,
 // kTablePx).
 constexpr float kMeanTableBoxes = 800;
@@ -26,12 +30,35 @@ constexpr float kMeanTablePx = 40;
 // Of a limit that halves sides, where it falls in the mean.
 constexpr float kMeanOfMost = 0.7F;
 
+// Within a hundredth, which is enough for a guess, and in a few steps: x is a normal number above 0.
+float log2_about(float x) {
+  uint32_t bits;
+  memcpy(&bits, &x, sizeof(bits));
+  const float exponent = static_cast<float>(static_cast<int32_t>(bits >> 23) - 127);
+  bits = (bits & 0x7FFFFFU) | 0x3F800000U;
+  float part;  // 1 to 2
+  memcpy(&part, &bits, sizeof(part));
+  return exponent + (2 - part / 3) * part - 5.0F / 3;
+}
+float exp2_about(float x) {
+  const float whole = floorf(fminf(fmaxf(x, -120), 120));
+  const float part = fminf(fmaxf(x, -120), 120) - whole;
+  const uint32_t bits = static_cast<uint32_t>(static_cast<int32_t>(whole) + 127) << 23;
+  float power;
+  memcpy(&power, &bits, sizeof(power));
+  return power * (1 + part * (0.6565F + 0.3435F * part));
+}
+float power_about(float base, float exponent) {
+  return exp2_about(exponent * log2_about(base));
+}
+
 // The tree is cut, all cells a level at a time; those out of sight are left out, and the rest are laid front
 // to back on a raster over the part of the picture that they take, each as a haze as dense as its boxes'
 // faces. What stands before them hides boxes and pixels as if they were strewn at random.
 class Haze {
  public:
-  Haze(const VoxelLists& lists, const Frame& frame) : lists_(lists), frame_(frame) {
+  Haze(const VoxelLists& lists, const Frame& frame, bool by_rows)
+      : lists_(lists), frame_(frame), by_rows_(by_rows) {
     for (int axis = 0; axis < 3; ++axis) {
       eye_cell_[axis] = frame.perspective                    ? frame.camera.eye()[axis].raw >> 8
                         : frame.camera.direction()[axis] < 0 ? INT32_MAX
@@ -53,7 +80,7 @@ class Haze {
 
  private:
   static constexpr int kMostCells = 64;
-  static constexpr int kRaster = 16;
+  static constexpr int kRaster = 8;
 
   struct Cell {
     uint32_t node;
@@ -159,13 +186,15 @@ class Haze {
     }
     cells_[0] = root;
     count_ = 1;
-    const float work = boxes_of(root) + 6 * faces_of(root, static_cast<float>(lists_.face_area()));
-    const int most = 1 + static_cast<int>(fminf(work / kWorkPerCell, kMostCells));
     for (int looked = 1;;) {
       int cuts = 0;
+      float work = 0;  // of what is in sight, as far as that is known
       for (int i = 0; i < count_; ++i) {
-        cuts += is_cut(cells_[i]) ? 1 : 0;
+        const Cell& cell = cells_[i];
+        cuts += is_cut(cell) ? 1 : 0;
+        work += boxes_of(cell) + 6 * faces_of(cell, static_cast<float>(lists_.nodes()[cell.node].face_area));
       }
+      const int most = 1 + static_cast<int>(fminf(work / kWorkPerCell, kMostCells));
       // Half of the children are, about.
       if (cuts == 0 || looked + 4 * cuts > most) {
         return;
@@ -210,7 +239,7 @@ class Haze {
       const float faces_px = faces_of(cell, static_cast<float>(node.face_area));
       const float rectangle = (cell.x1 - cell.x0) * (cell.y1 - cell.y0);
       const float density = fminf(faces_px / rectangle, 50);
-      const float left = expf(-density);
+      const float left = exp2_about(-1.4427F * density);
       const float left_x = (cell.x0 - x0) * per_x;
       const float right_x = (cell.x1 - x0) * per_x;
       const float upper_y = (cell.y0 - y0) * per_y;
@@ -232,27 +261,35 @@ class Haze {
       // out when all of its pixels are covered.
       const float seen = fminf(density > 1e-6F ? before * (1 - left) / density : before, 1);
       const float entries = static_cast<float>(node.entries);
-      const float boxes = boxes_of(cell);
+      // Blocks that are in the picture in part are looked at whole.
+      const float small_px = cell.side_px * power_about(fmaxf(entries / kMeanBlockBoxes, 1), -1.0F / 3);
+      const float whole = (1 + small_px / (cell.x1 - cell.x0)) * (1 + small_px / (cell.y1 - cell.y0));
+      const float boxes = entries * fminf(cell.share * whole, 1);
+      const bool is_large = cell.voxel_px >= kLargePx;
       const bool has_table = !lists_.has_blocks() && cell.voxel_px < kTableVoxelPx * kTableVoxelPx;
       const float blocks = entries / (has_table ? kMeanTableBoxes : kMeanBlockBoxes);
-      const float block_px = blocks > 1 ? rectangle / cbrtf(blocks * blocks) : rectangle;
-      const float looked_at = boxes * (1 - powf(1 - seen, fmaxf(block_px, 1)));
-      const float tests = faces_px + boxes * cell.slack_px;
-      float work = kOpenTest * tests * seen;
+      const float block_px = blocks > 1 ? rectangle * power_about(blocks, -2.0F / 3) : rectangle;
+      const float looked_at = boxes * (1 - power_about(fmaxf(1 - seen, 1e-6F), fmaxf(block_px, 1)));
+      const float tests = (faces_px + boxes * cell.slack_px) * (is_large ? kLargeTest : 1);
+      const float flat = tests + kBox * boxes;
+      float work = tests * seen;
       if (has_table) {
+        work *= kTableTest;
         // As many blocks as cells so large would have, were all cut alike: eight each, or four on a surface.
         const float across = fmaxf(cell.side_px / table_px_, 1);
         const float parts = static_cast<float>(__builtin_popcount(lists_.tree().mask(cell.node)));
-        const float table_blocks = parts > 1 ? powf(across, log2f(parts)) : 1;
+        const float table_blocks = parts > 1 ? power_about(across, log2_about(parts)) : 1;
         const float per_box = fmaxf(fminf(table_blocks / entries, 1), 1 / kMeanTableBoxes);
         work += kTableBlock * per_box * looked_at;
-      } else {
+      } else if (!is_large) {
         work += kBoxInBlock * looked_at;
       }
       blocks_ += work;
-      flat_ += tests + kBox * boxes;
-      spread(cell, work, outlook_.blocks);
-      spread(cell, tests + kBox * boxes, outlook_.flat);
+      flat_ += flat;
+      if (by_rows_) {
+        spread(cell, work, outlook_.blocks);
+        spread(cell, flat, outlook_.flat);
+      }
     }
   }
 
@@ -272,6 +309,7 @@ class Haze {
   static constexpr int kRoom = 4 * kMostCells;
   const VoxelLists& lists_;
   const Frame& frame_;
+  bool by_rows_;
   int32_t eye_cell_[3];
   float table_px_;  // of blocks that are looked up in tables, in the mean
   Cell cells_[kRoom];
@@ -283,8 +321,8 @@ class Haze {
 
 }  // namespace
 
-Outlook outlook_of(const VoxelLists& lists, const Frame& frame) {
-  return lists.entries().size > kFewBoxes ? Haze(lists, frame).outlook() : Outlook{};
+Outlook outlook_of(const VoxelLists& lists, const Frame& frame, bool by_rows) {
+  return lists.entries().size > kFewBoxes ? Haze(lists, frame, by_rows).outlook() : Outlook{};
 }
 
 }  // namespace thimble::wide

@@ -26,8 +26,9 @@ struct Outlook {
   float blocks[kParts] = {};
 };
 
-/// Takes about a hundredth of the frame's time: it looks at 65 cells at most.
-Outlook outlook_of(const VoxelLists& lists, const Frame& frame);
+/// Takes about a hundredth of the frame's time: it looks at 65 cells at most. `by_rows`: whether the work of
+/// the parts is asked for.
+Outlook outlook_of(const VoxelLists& lists, const Frame& frame, bool by_rows);
 
 }  // namespace thimble::wide
 

@@ -22,6 +22,15 @@ inline uint32_t x_of(uint32_t entry) {
 /// of `down` (a bit each).
 uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down);
 
+/// The sum of a voxel's coordinates within its cube, mirrored in the axes of `down`: 0 .. 3 * 1023.
+inline uint32_t mirrored_sum(uint32_t entry, uint32_t down) {
+  uint32_t sum = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    sum += (entry >> (10 * axis) & 1023U) ^ ((down >> axis & 1U) != 0 ? 1023U : 0U);
+  }
+  return sum;
+}
+
 /// Whether the ray spends a positive length, at t >= 0, in the entry of the cube at `cube` (voxels). If so,
 /// `down` gets the axes along which it runs downwards and `key` the entry's key mirrored in them.
 bool meets_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down);

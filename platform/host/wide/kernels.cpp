@@ -159,10 +159,10 @@ HWY_INLINE void keep_of(const Depths& depths, Batch* batch) {
   const size_t met = batch->met;
   uint32_t* const all_covered = depths.covered;
   uint64_t* const all_nearest = depths.nearest;
-  uint32_t* const all_keys = depths.nearest_key;
+  uint16_t* const all_sums = depths.nearest_sum;
   uint8_t* const all_grays = depths.gray;
   // Behind the last there is room to read.
-  constexpr size_t kAhead = 12;
+  constexpr size_t kAhead = 32;
   static_assert(kAhead <= Pairs::kRoom - Pairs::kSize);
   for (size_t i = met; i < met + kAhead; ++i) {
     batch->pixel[i] = 0;
@@ -173,14 +173,14 @@ HWY_INLINE void keep_of(const Depths& depths, Batch* batch) {
     const uint32_t bit = uint32_t{1} << (pixel & 31U);
     // No branch: what is there when there is nothing is made the greatest number.
     if (kGray) {
-      __builtin_prefetch(all_keys + ahead, 1);
+      __builtin_prefetch(all_sums + ahead, 1);
       __builtin_prefetch(all_grays + ahead, 1);
       const uint32_t gray = all_grays[pixel];
-      const uint32_t value = batch->key[i];
-      const uint32_t before = all_keys[pixel] | (gray == 0 ? UINT32_MAX : 0);
-      const uint32_t is_less = value < before ? UINT32_MAX : 0;
-      all_grays[pixel] = static_cast<uint8_t>((batch->number[i] & is_less) | (gray & ~is_less));
-      all_keys[pixel] = value < before ? value : before;
+      const uint32_t sum = batch->key[i];
+      const uint32_t before = all_sums[pixel] | (gray - 1) >> 16;
+      const uint32_t is_less = 0 - ((sum - before) >> 31);
+      all_grays[pixel] = static_cast<uint8_t>(gray ^ ((batch->number[i] ^ gray) & is_less));
+      all_sums[pixel] = static_cast<uint16_t>(before ^ ((sum ^ before) & is_less));
     } else {
       __builtin_prefetch(all_nearest + ahead, 1);
       const uint64_t value = value_of(*batch, batch->key[i], batch->down[i], batch->number[i]);
@@ -225,9 +225,8 @@ template <bool kPerspective>
 HWY_INLINE Aims aims_of(const Frame& frame, const float (&origin)[3], hn::Vec<F32> x, hn::Vec<F32> y,
                         const hn::Vec<F32> (&low)[3], hn::Vec<F32> half) {
   const F32 d;
-  const auto zero = hn::Zero(d);
   Aims aims;
-  aims.unclear = hn::Lt(zero, zero);
+  auto off = hn::Zero(d);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const auto map = [&](const float(&of)[3][3]) {
@@ -236,8 +235,7 @@ HWY_INLINE Aims aims_of(const Frame& frame, const float (&origin)[3], hn::Vec<F3
     };
     const auto rest = map(frame.map_rest);
     const auto nearest = hn::Round(rest);
-    aims.unclear =
-        hn::Or(aims.unclear, hn::Gt(hn::Abs(hn::Sub(rest, nearest)), hn::Set(d, 0.5F - frame.map_error)));
+    off = hn::Max(off, hn::Abs(hn::Sub(rest, nearest)));
     const auto varying = hn::Add(map(frame.map_whole), nearest);
     aims.center[axis] = hn::Add(hn::MulAdd(low[axis], hn::Set(d, 512.0F), hn::Set(d, origin[axis])), half);
     if (kPerspective) {
@@ -247,6 +245,7 @@ HWY_INLINE Aims aims_of(const Frame& frame, const float (&origin)[3], hn::Vec<F3
       aims.center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), aims.center[axis]);
     }
   }
+  aims.unclear = hn::Gt(off, hn::Set(d, 0.5F - frame.map_error));
   return aims;
 }
 
@@ -256,24 +255,27 @@ HWY_INLINE hn::Vec<F32> ahead_of(hn::Vec<F32> center, hn::Vec<F32> direction) {
   return hn::Xor(center, hn::And(direction, hn::Set(d, -0.0F)));
 }
 
-// What floats say of some rays and boxes: `met` only where `unclear` is not set.
+// What floats say of some rays and boxes, if they tell what the rays are: `met` only where `unclear` is not
+// set.
 struct Verdict {
   hn::Mask<F32> met;
   hn::Mask<F32> unclear;
 };
 
-// What is compared with is exact, too: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two.
+// A box is met where none of three cross products is too great; so it is the one that comes closest to its
+// bound, or exceeds it by most, that decides.
+//
+// What is compared with is exact: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two.
 // c_a d_b - c_b d_a, by Kahan's method with fused products, is within 2 units in the last place of itself
 // (C.-P. Jeannerod, N. Louvet, J.-M. Muller, "Further analysis of Kahan's algorithm", Math. Comp. 2013: 1.5),
-// so 2^-21 of it settles what is nearer than that; without fused products the two roundings of the products
-// count too.
+// so 2^-21 of the bound settles what differs from it by more; without fused products the two roundings of the
+// products count too.
 template <bool kPerspective>
 HWY_INLINE Verdict judge(const Frame& frame, const Aims& aims, hn::Vec<F32> half) {
   const F32 d;
   const auto zero = hn::Zero(d);
   const auto& center = aims.center;
   const auto& direction = aims.direction;
-  auto unclear = aims.unclear;
   // An orthographic camera's rays may all stand still along an axis; a perspective camera's do so here and
   // there.
   hn::Vec<F32> size[3];
@@ -281,13 +283,10 @@ HWY_INLINE Verdict judge(const Frame& frame, const Aims& aims, hn::Vec<F32> half
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = hn::Abs(direction[axis]);
-    if (kPerspective) {
-      unclear = hn::Or(unclear, hn::Eq(size[axis], zero));
-    } else {
-      still[axis] = frame.camera.direction()[axis] == 0;
-    }
+    still[axis] = !kPerspective && frame.camera.direction()[axis] == 0;
   }
-  auto met = hn::Eq(zero, zero);
+  auto excess = hn::Set(d, -1e30F);  // of the worst product over its bound
+  auto magnitude = hn::Mul(half, hn::Add(hn::Add(size[0], size[1]), size[2]));
   constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 #pragma GCC unroll 3
   for (int pair = 0; pair < 3; ++pair) {
@@ -301,25 +300,30 @@ HWY_INLINE Verdict judge(const Frame& frame, const Aims& aims, hn::Vec<F32> half
 #if HWY_NATIVE_FMA
     const auto error = hn::NegMulAdd(center[b], direction[a], product);
     const auto cross = hn::Abs(hn::Add(hn::MulSub(center[a], direction[b], product), error));
-    const auto margin = hn::Mul(wanted, hn::Set(d, 1.0F / (1 << 21)));
 #else
     const auto other = hn::Mul(center[a], direction[b]);
     const auto cross = hn::Abs(hn::Sub(other, product));
-    const auto margin =
-        hn::Mul(hn::Add(wanted, hn::Add(hn::Abs(other), hn::Abs(product))), hn::Set(d, 1.0F / (1 << 21)));
+    magnitude = hn::Max(magnitude, hn::Add(wanted, hn::Add(hn::Abs(other), hn::Abs(product))));
 #endif
-    met = hn::And(met, hn::Lt(cross, wanted));
-    unclear = hn::Or(unclear, hn::Le(hn::Abs(hn::Sub(cross, wanted)), margin));
+    excess = hn::Max(excess, hn::Sub(cross, wanted));
   }
+  const auto margin = hn::Mul(magnitude, hn::Set(d, 1.0F / (1 << 21)));
+  auto unclear = hn::Le(hn::Abs(excess), margin);
+  auto met = hn::Lt(excess, zero);
   // The upper plane, as the ray goes, lies ahead.
   const auto minus_half = hn::Neg(half);
+  auto least_ahead = half;
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     if (still[axis]) {
       met = hn::And(met, hn::And(hn::Le(center[axis], half), hn::Gt(center[axis], minus_half)));
       continue;
     }
-    met = hn::And(met, hn::Gt(ahead_of(center[axis], direction[axis]), minus_half));
+    least_ahead = hn::Min(least_ahead, ahead_of(center[axis], direction[axis]));
+  }
+  met = hn::And(met, hn::Gt(least_ahead, minus_half));
+  if (kPerspective) {
+    unclear = hn::Or(unclear, hn::Eq(hn::Min(size[0], hn::Min(size[1], size[2])), zero));
   }
   return {met, unclear};
 }
@@ -377,24 +381,25 @@ template <bool kPerspective>
 HWY_INLINE hn::Vec<U32> grays_of(const Frame& frame, const GrayScale& scale, const Aims& aims,
                                  hn::Mask<F32>* unclear) {
   const F32 d;
-  const auto zero = hn::Zero(d);
-  // The latest of the nearer planes.
-  auto numerator = zero;  // in 1/512 voxel
+  // The latest of the nearer planes. What lies at or behind the origin is not entered through.
+  auto numerator = hn::Zero(d);  // in 1/512 voxel
   auto speed = hn::Set(d, 1.0F);
-  auto ratio = zero;
+  auto ratio = hn::Zero(d);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     if (!kPerspective && frame.camera.direction()[axis] == 0) {
       continue;
     }
     const auto size = hn::Abs(aims.direction[axis]);
-    const auto ahead = ahead_of(aims.center[axis], aims.direction[axis]);
-    const auto distance = hn::Sub(ahead, hn::Set(d, 256.0F));
-    const auto ours = hn::Mul(distance, speed);
-    const auto theirs = hn::Mul(numerator, size);
-    const auto later = hn::Gt(ours, theirs);  // theirs are 0 or more
-    const auto margin = hn::Mul(theirs, hn::Set(d, 1.0F / (1 << 21)));
-    *unclear = hn::Or(*unclear, hn::Lt(hn::Abs(hn::Sub(ours, theirs)), margin));
+    const auto distance = hn::Sub(ahead_of(aims.center[axis], aims.direction[axis]), hn::Set(d, 256.0F));
+    auto later = hn::Gt(distance, numerator);
+    if (axis != 0) {
+      const auto ours = hn::Mul(distance, speed);
+      const auto theirs = hn::Mul(numerator, size);
+      later = hn::Gt(ours, theirs);  // theirs are 0 or more
+      const auto margin = hn::Mul(theirs, hn::Set(d, 1.0F / (1 << 21)));
+      *unclear = hn::Or(*unclear, hn::Lt(hn::Abs(hn::Sub(ours, theirs)), margin));
+    }
     numerator = hn::IfThenElse(later, distance, numerator);
     speed = hn::IfThenElse(later, size, speed);
     if (!kPerspective) {
@@ -448,6 +453,7 @@ void test_unclear(const Frame& frame, const Depths& depths, bool* kept, Batch* b
     batch->down[batch->met] = down;
     batch->number[batch->met] = pairs.number[i];
     if (depths.gray_scale != nullptr) {
+      batch->key[batch->met] = mirrored_sum(pairs.entry[i], down);
       batch->number[batch->met] =
           gray_exactly(frame.camera, *depths.shading, frame.camera.ray(x, y), pairs.entry[i], batch->corner);
     }
@@ -513,14 +519,16 @@ HWY_INLINE void take(hn::Mask<F32> met, const Unpacked<kUnit>& pairs, const Aims
   for (int axis = 2; axis >= 0; --axis) {
     const auto is_down = hn::RebindMask(du, hn::Lt(aims.direction[axis], hn::Zero(d)));
     auto mirrored = hn::Xor(pairs.low[axis], hn::IfThenElseZero(is_down, within));
+    if (kGray) {
+      key = hn::Add(key, mirrored);
+      continue;
+    }
     if (!kUnit) {
       const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), pairs.level)));
       mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
     }
     key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
-    if (!kGray) {
-      down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
-    }
+    down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
   }
   const auto pixel =
       hn::Or(hn::ShiftLeft<5>(word_of(depths, pairs.x, pairs.y)), hn::And(pairs.x, hn::Set(du, 31U)));
@@ -534,20 +542,62 @@ HWY_INLINE void take(hn::Mask<F32> met, const Unpacked<kUnit>& pairs, const Aims
   batch->met += hn::CountTrue(du, chosen);
 }
 
-// Puts aside what floats could not tell.
-HWY_INLINE void put_aside(const Frame& frame, hn::Mask<F32> unclear, size_t at, const Depths& depths,
-                          bool* kept, Batch* batch) {
+// The lanes of each vector of pairs that floats could not tell. They are put aside when all are tested: a
+// branch for each vector would be guessed wrong now and then, just where much waits for it.
+class Unclear {
+ public:
+  HWY_INLINE void set(size_t vector, hn::Mask<F32> lanes) { lanes_[vector] = bits_of(F32(), lanes); }
+  void put_aside(const Frame& frame, const Depths& depths, bool* kept, Batch* batch) const {
+    const size_t lanes = hn::Lanes(F32());
+    const Pairs& pairs = batch->waiting;
+    Pairs& unclear = batch->unclear;
+    for (size_t at = 0; at < pairs.count; at += lanes) {
+      for (uint32_t bits = lanes_[at / lanes]; bits != 0; bits &= bits - 1) {
+        const size_t pair = at + static_cast<size_t>(__builtin_ctz(bits));
+        unclear.entry[unclear.count] = pairs.entry[pair];
+        unclear.number[unclear.count] = pairs.number[pair];
+        unclear.place[unclear.count] = pairs.place[pair];
+        if (++unclear.count == Pairs::kSize) {
+          test_unclear(frame, depths, kept, batch);
+        }
+      }
+    }
+  }
+
+ private:
+  uint32_t lanes_[Pairs::kSize];
+};
+
+// Leaves of the pairs that wait, with greys, those that are met; and those whose rays are not clear, which
+// whoever comes to them next sees again.
+template <bool kPerspective>
+HWY_NOINLINE void leave_met(const Frame& frame, const float (&origin)[3], const Depths& depths, bool* kept,
+                            Batch* batch) {
+  Pairs* const pairs = &batch->waiting;
   const F32 d;
   const U32 du;
-  if (hn::AllFalse(d, unclear)) {
-    return;
+  const size_t lanes = hn::Lanes(d);
+  size_t count = 0;
+  for (size_t at = 0; at < pairs->count; at += lanes) {
+    const auto live = hn::FirstN(d, pairs->count - at < lanes ? pairs->count - at : lanes);
+    const Unpacked<true> unpacked(*pairs, at);
+    const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
+    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+    const auto place = hn::Load(du, pairs->place + at);
+    const auto may_be_met = hn::Or(hn::AndNot(verdict.unclear, verdict.met), aims.unclear);
+    const auto chosen = hn::RebindMask(du, hn::And(live, may_be_met));
+    const auto unclear = hn::AndNot(aims.unclear, hn::And(live, verdict.unclear));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, unclear))) {
+      append<true>(unclear, unpacked.entry, unpacked.entry, place, &batch->unclear);
+      if (batch->unclear.count + lanes > Pairs::kSize) {
+        test_unclear(frame, depths, kept, batch);
+      }
+    }
+    hn::StoreU(squeeze(unpacked.entry, chosen), du, pairs->entry + count);
+    hn::StoreU(squeeze(place, chosen), du, pairs->place + count);
+    count += hn::CountTrue(du, chosen);
   }
-  const Pairs& pairs = batch->waiting;
-  append(unclear, hn::Load(du, pairs.entry + at), hn::Load(du, pairs.number + at),
-         hn::Load(du, pairs.place + at), &batch->unclear);
-  if (batch->unclear.count + hn::Lanes(d) > Pairs::kSize) {
-    test_unclear(frame, depths, kept, batch);
-  }
+  pairs->count = count;
 }
 
 // Tests what waits in floats where they can tell, and puts aside the rest. `kept`: set when something went
@@ -565,48 +615,34 @@ HWY_NOINLINE void test_waiting_of(const Frame& frame, const Depths& depths, bool
   float origin[3];
   origin_of(frame, *batch, origin);
   constexpr bool kTwice = kGray && kPerspective;
-  size_t moved = 0;
-  const auto live_from = [&](size_t at, size_t count) {
-    return hn::FirstN(d, count - at < lanes ? count - at : lanes);
-  };
-  const auto add_grays = [&](size_t at, const Unpacked<kUnit>& unpacked, const Aims& aims,
-                             hn::Mask<F32> met) {
-    auto unclear = hn::Lt(hn::Zero(d), hn::Zero(d));
-    const auto gray = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &unclear);
-    put_aside(frame, hn::And(unclear, met), at, depths, kept, batch);
-    met = hn::AndNot(unclear, met);
-    take<kUnit, true>(met, unpacked, aims, gray, depths, kept, batch);
-  };
+  if (kTwice) {
+    leave_met<kPerspective>(frame, origin, depths, kept, batch);
+  }
+  Unclear all_unclear;
   for (size_t at = 0; at < pairs.count; at += lanes) {
-    const auto live = live_from(at, pairs.count);
+    const auto live = hn::FirstN(d, pairs.count - at < lanes ? pairs.count - at : lanes);
     const Unpacked<kUnit> unpacked(pairs, at);
     const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
-    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
-    put_aside(frame, hn::And(verdict.unclear, live), at, depths, kept, batch);
-    const auto met = hn::AndNot(verdict.unclear, hn::And(verdict.met, live));
-    if (kTwice) {
-      const auto chosen = hn::RebindMask(du, met);
-      const auto place = hn::Load(du, pairs.place + at);
-      hn::StoreU(squeeze(unpacked.entry, chosen), du, pairs.entry + moved);
-      hn::StoreU(squeeze(place, chosen), du, pairs.place + moved);
-      moved += hn::CountTrue(du, chosen);
-    } else if (hn::AllFalse(d, met)) {
-      continue;
-    } else if (kGray) {
-      add_grays(at, unpacked, aims, met);
-    } else {
-      take<kUnit, false>(met, unpacked, aims, hn::Load(du, pairs.number + at), depths, kept, batch);
+    auto unclear = aims.unclear;
+    auto met = live;
+    if (!kTwice) {
+      const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+      unclear = hn::Or(unclear, verdict.unclear);
+      met = hn::And(met, verdict.met);
     }
+    hn::Vec<U32> number;
+    if (kGray) {
+      auto no_gray = hn::Lt(hn::Zero(d), hn::Zero(d));
+      number = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
+      unclear = hn::Or(unclear, hn::And(no_gray, met));
+    } else {
+      number = hn::Load(du, pairs.number + at);
+    }
+    all_unclear.set(at / lanes, hn::And(unclear, live));
+    take<kUnit, kGray>(hn::AndNot(unclear, met), unpacked, aims, number, depths, kept, batch);
   }
-  for (size_t at = 0; at < moved; at += lanes) {
-    const Unpacked<kUnit> unpacked(pairs, at);
-    add_grays(at, unpacked, unpacked.template aims<kPerspective>(frame, origin), live_from(at, moved));
-  }
+  all_unclear.put_aside(frame, depths, kept, batch);
   pairs.count = 0;
-  for (size_t i = 0; i < batch->met; ++i) {
-    const uint32_t pixel = batch->pixel[i];
-    kGray ? __builtin_prefetch(depths.nearest_key + pixel, 1) : __builtin_prefetch(depths.nearest + pixel, 1);
-  }
 }
 
 template <bool kPerspective, bool kUnit>
@@ -788,14 +824,16 @@ HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t num
   uint32_t known_down = 8;
   uint64_t value = 0;
   const auto value_for = [&](uint32_t down) {
-    const uint32_t key = mirrored_key(corner, level, down);
-    return kGray ? key : value_of(*batch, key, down, number);
+    if (kGray) {
+      return uint64_t{mirrored_sum(entry, down)};
+    }
+    return value_of(*batch, mirrored_key(corner, level, down), down, number);
   };
   // What is kept of one pixel when its value is less.
   const auto put = [&](uint32_t* word, uint32_t bit, size_t at, uint64_t one, uint8_t gray) {
     if (kGray) {
-      if (depths.gray[at] == 0 || one < depths.nearest_key[at]) {
-        depths.nearest_key[at] = static_cast<uint32_t>(one);
+      if (depths.gray[at] == 0 || one < depths.nearest_sum[at]) {
+        depths.nearest_sum[at] = static_cast<uint16_t>(one);
         depths.gray[at] = gray;
       }
     } else if ((*word & bit) == 0 || one < depths.nearest[at]) {
@@ -823,18 +861,17 @@ HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t num
       const Aims aims = aims_of<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
                                               hn::Set(d, static_cast<float>(y)), low, half);
       const Verdict verdict = judge<kPerspective>(frame, aims, half);
-      uint32_t met = bits_of(d, hn::AndNot(verdict.unclear, verdict.met)) & wanted;
-      uint32_t unclear = bits_of(d, verdict.unclear) & wanted;
+      uint32_t met = bits_of(d, verdict.met) & wanted;
+      uint32_t unclear = bits_of(d, hn::Or(verdict.unclear, aims.unclear)) & wanted;
       HWY_ALIGN uint8_t grays[64];
       if (kGray) {
         auto no_gray = hn::Lt(half, hn::Zero(d));
         const hn::Rebind<uint8_t, I32> bytes;
         const auto found = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
         hn::Store(hn::DemoteTo(bytes, hn::BitCast(I32(), found)), bytes, grays);
-        const uint32_t again = bits_of(d, no_gray) & met;
-        unclear |= again;
-        met &= ~again;
+        unclear |= bits_of(d, no_gray) & met;
       }
+      met &= ~unclear;
       for (uint32_t left = unclear; left != 0; left &= left - 1) {
         const int32_t lane = __builtin_ctz(left);
         uint32_t key = 0;
@@ -845,7 +882,7 @@ HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t num
           const uint8_t gray =
               kGray ? gray_exactly(frame.camera, *depths.shading, ray, entry, batch->corner) : uint8_t{0};
           put(word, uint32_t{1} << (shift + static_cast<uint32_t>(lane)), first + static_cast<uint32_t>(lane),
-              kGray ? key : value_of(*batch, key, down, number), gray);
+              kGray ? mirrored_sum(entry, down) : value_of(*batch, key, down, number), gray);
           ++batch->counts.hits;
         }
       }
@@ -867,24 +904,27 @@ HWY_NOINLINE void draw_large_in(const Frame& frame, uint32_t entry, uint32_t num
         down_all |= axis_bits[axis] != 0 ? 1U << axis : 0U;
       }
       if (kGray) {
-        HWY_ALIGN uint32_t keys[64];
+        HWY_ALIGN uint32_t sums[64];
         if (same && down_all != known_down) {
           known_down = down_all;
           value = value_for(down_all);
         }
         for (uint32_t left = same ? 0 : met; left != 0; left &= left - 1) {
           const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(left));
-          keys[lane] = static_cast<uint32_t>(value_for(down_of(lane)));
+          sums[lane] = static_cast<uint32_t>(value_for(down_of(lane)));
         }
         const U32 du;
         const hn::Rebind<uint8_t, U32> bytes;
-        const auto key = same ? hn::Set(du, static_cast<uint32_t>(value)) : hn::Load(du, keys);
+        const hn::Rebind<uint16_t, U32> shorts;
+        const auto sum = same ? hn::Set(du, static_cast<uint32_t>(value)) : hn::Load(du, sums);
         const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, depths.gray + first)), hn::Zero(du));
-        const auto is_less = hn::Or(is_new, hn::Lt(key, hn::LoadU(du, depths.nearest_key + first)));
+        const auto before = hn::PromoteTo(du, hn::LoadU(shorts, depths.nearest_sum + first));
+        const auto is_less = hn::Or(is_new, hn::Lt(sum, before));
         const uint32_t taken = met & bits_of(du, is_less);
         const uint8_t mask_bits[8] = {static_cast<uint8_t>(taken), static_cast<uint8_t>(taken >> 8),
                                       static_cast<uint8_t>(taken >> 16), static_cast<uint8_t>(taken >> 24)};
-        hn::BlendedStore(key, hn::LoadMaskBits(du, mask_bits), du, depths.nearest_key + first);
+        hn::BlendedStore(hn::DemoteTo(shorts, hn::BitCast(I32(), sum)), hn::LoadMaskBits(shorts, mask_bits),
+                         shorts, depths.nearest_sum + first);
         hn::BlendedStore(hn::Load(bytes, grays), hn::LoadMaskBits(bytes, mask_bits), bytes,
                          depths.gray + first);
         if (depths.marks) {
@@ -1588,6 +1628,172 @@ bool pick_boxes(const Frame& frame, const Run& run, const Depths& depths, Batch*
   return true;
 }
 
+// Single voxels of a block that is wholly before the eye, on the picture. Per axis of it, with a = (row of
+// the projection).v + `from`: pixels from a / depth + low to (a + across) / depth + high, counted from the
+// block's first.
+struct Scatter {
+  float from_x, from_y;
+  float across_x, across_y;
+  float low_x, low_y, high_x, high_y;
+  int32_t last_x, last_y;  // of the block's pixels
+  float across, besides;
+
+  // Places are fixed-point numbers, as in pick_some: a sum with 3072, and that constant, are each within
+  // 2^-13. Constants of more than 4096 are less exact, as columns of so many are: that is in Reach.
+  static constexpr int kFraction = 12;
+  static constexpr double kBase = 3072;
+  static constexpr int32_t kFirst = 0x45400000 >> kFraction;  // of the float 3072
+  static constexpr double kError = 2.0 / (1 << (kFraction + 1));
+  static constexpr int32_t kMostPx = 1000;  // of the block, so that all sums are below 4096
+
+  Scatter(const Frame& frame, const Run& run, const Batch& batch) {
+    const Rectangle& where = run.place.where;
+    const Reach reach(frame, where);
+    const double half_x = static_cast<double>(reach.x) + static_cast<double>(frame.rounding_x);
+    const double half_y = static_cast<double>(reach.y) + static_cast<double>(frame.rounding_y);
+    from_x = static_cast<float>(static_cast<double>(batch.constant[0]) - half_x);
+    from_y = static_cast<float>(static_cast<double>(batch.constant[1]) - half_y);
+    across_x = static_cast<float>(2 * half_x);
+    across_y = static_cast<float>(2 * half_y);
+    // Rounded up and down to whole numbers by cutting.
+    const auto low = [](float slack, int32_t first) {
+      return static_cast<float>(kBase + 1 - 1.0 / (1 << kFraction) - kError - static_cast<double>(slack) -
+                                first);
+    };
+    const auto high = [](float slack, int32_t first) {
+      return static_cast<float>(kBase + kError + static_cast<double>(slack) - first);
+    };
+    low_x = low(reach.slack_x, where.x0);
+    low_y = low(reach.slack_y, where.y0);
+    high_x = high(reach.slack_x, where.x0);
+    high_y = high(reach.slack_y, where.y0);
+    last_x = where.x1 - where.x0 - 1;
+    last_y = where.y1 - where.y0 - 1;
+    const float slack = reach.slack_x > reach.slack_y ? reach.slack_x : reach.slack_y;
+    across = across_x > across_y ? across_x : across_y;
+    besides = 2 * slack + static_cast<float>(4 * kError) + 0.001F;
+  }
+
+  // What a box measures on the picture, at most, at that depth and beyond.
+  float widest(float per_depth) const { return across * per_depth + besides; }
+};
+
+// From box `at` on, until there is no more room. Returns where it stopped. With kMany boxes may cover several
+// pixels.
+template <bool kPerspective, bool kMany, bool kGray>
+HWY_NOINLINE uint32_t scatter_some(const Frame& frame, const Run& run, const Scatter& scatter, uint32_t at,
+                                   Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
+  Pairs& waiting = batch->waiting;
+  Boxes& queue = batch->boxes;
+  const auto within = hn::Set(du, kWithin);
+  const auto zero = hn::Zero(di);
+  const auto last_x = hn::Set(di, scatter.last_x);
+  const auto last_y = hn::Set(di, scatter.last_y);
+  const auto first = hn::Set(
+      du, (static_cast<uint32_t>(run.place.where.y0) << 16) + static_cast<uint32_t>(run.place.where.x0));
+  for (; at < run.count && waiting.count + lanes <= Pairs::kSize && queue.count + lanes <= Boxes::kSize;
+       at += lanes) {
+    const auto entry = hn::LoadU(du, run.entries + at);
+    const auto x = hn::ConvertTo(d, hn::BitCast(di, hn::And(entry, within)));
+    const auto y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
+    const auto z = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<20>(entry)));
+    const auto apply = [&](const float(&row)[4], float last) {
+      return hn::MulAdd(
+          hn::Set(d, row[0]), x,
+          hn::MulAdd(hn::Set(d, row[1]), y, hn::MulAdd(hn::Set(d, row[2]), z, hn::Set(d, last))));
+    };
+    auto per_depth = hn::Set(d, 1.0F);
+    if (kPerspective) {
+      per_depth = hn::Div(per_depth, apply(frame.w, batch->constant[2]));
+    }
+    const auto from_x = apply(frame.u, scatter.from_x);
+    const auto from_y = apply(frame.v, scatter.from_y);
+    // What lies beside the block's pixels comes out as some number on that side.
+    const auto whole = [&](hn::Vec<F32> a, float last) {
+      const auto sum = hn::BitCast(di, hn::MulAdd(a, per_depth, hn::Set(d, last)));
+      return hn::Sub(hn::ShiftRight<Scatter::kFraction>(sum), hn::Set(di, Scatter::kFirst));
+    };
+    auto low_x = whole(from_x, scatter.low_x);
+    auto low_y = whole(from_y, scatter.low_y);
+    auto high_x = whole(hn::Add(from_x, hn::Set(d, scatter.across_x)), scatter.high_x);
+    auto high_y = whole(hn::Add(from_y, hn::Set(d, scatter.across_y)), scatter.high_y);
+    low_x = hn::Max(low_x, zero);
+    low_y = hn::Max(low_y, zero);
+    high_x = hn::Min(high_x, last_x);
+    high_y = hn::Min(high_y, last_y);
+    const auto place = hn::Add(hn::BitCast(du, hn::Or(hn::ShiftLeft<16>(low_y), low_x)), first);
+    const auto wide_x = hn::Sub(high_x, low_x);
+    const auto wide_y = hn::Sub(high_y, low_y);
+    const auto live = hn::FirstN(di, run.count - at < lanes ? run.count - at : lanes);
+    const auto is_one = hn::And(live, hn::Eq(hn::Or(wide_x, wide_y), zero));
+    const auto number = hn::Iota(du, run.first + at);
+    append<kGray>(hn::RebindMask(d, is_one), entry, number, place, &waiting);
+    if (kMany) {
+      const auto are_seen = hn::Gt(hn::Min(wide_x, wide_y), hn::Set(di, -1));
+      const auto are_many = hn::And(live, hn::And(are_seen, hn::Gt(hn::Max(wide_x, wide_y), zero)));
+      const auto chosen = hn::RebindMask(du, are_many);
+      const auto wide = hn::BitCast(du, hn::Or(hn::ShiftLeft<16>(wide_y), wide_x));
+      hn::StoreU(squeeze(entry, chosen), du, queue.entry + queue.count);
+      hn::StoreU(squeeze(number, chosen), du, queue.number + queue.count);
+      hn::StoreU(squeeze(place, chosen), du, queue.place + queue.count);
+      hn::StoreU(squeeze(wide, chosen), du, queue.wide + queue.count);
+      queue.count += hn::CountTrue(du, chosen);
+    }
+  }
+  return at;
+}
+
+// A block of single voxels in no order that does not reach the eye's plane. False: it is not such a block.
+template <bool kPerspective>
+bool scatter_boxes(const Frame& frame, const Run& run, const Depths& depths, Batch* batch) {
+  const Rectangle& where = run.place.where;
+  if (run.place.per_depth == 0 || where.x1 - where.x0 > Scatter::kMostPx ||
+      where.y1 - where.y0 > Scatter::kMostPx) {
+    return false;
+  }
+  // The least depth in the block.
+  float per_least = 1;
+  if (kPerspective) {
+    const float q = (frame.half_w * static_cast<float>(run.side) + frame.rounding_w) * run.place.per_depth;
+    if (!(q < 0.9F)) {
+      return false;
+    }
+    per_least = run.place.per_depth / (1 - q);
+  }
+  const Scatter scatter(frame, run, *batch);
+  const float widest = scatter.widest(per_least);
+  if (widest >= kMostQueued - 1) {
+    return false;
+  }
+  const bool are_many = widest >= 1;
+  const bool is_gray = depths.gray_scale != nullptr;
+  batch->counts.boxes += run.count;
+  batch->all_behind = batch->all_behind && !are_many;
+  bool kept = false;
+  for (uint32_t at = 0; at < run.count;) {
+    if (are_many) {
+      at = is_gray ? scatter_some<kPerspective, true, true>(frame, run, scatter, at, batch)
+                   : scatter_some<kPerspective, true, false>(frame, run, scatter, at, batch);
+    } else {
+      at = is_gray ? scatter_some<kPerspective, false, true>(frame, run, scatter, at, batch)
+                   : scatter_some<kPerspective, false, false>(frame, run, scatter, at, batch);
+    }
+    if (at < run.count) {
+      if (batch->boxes.count + hn::Lanes(F32()) > Boxes::kSize) {
+        pair_boxes<kPerspective, true>(frame, depths, &kept, batch);
+        batch->all_behind = false;
+      } else {
+        test_waiting<kPerspective, true>(frame, depths, &kept, batch);
+      }
+    }
+  }
+  return true;
+}
+
 // A run in no order. Boxes whose pixels may all be covered go first; those left wait in the batch until there
 // are enough to fill vectors.
 //
@@ -1601,6 +1807,9 @@ void draw_run_of(const Frame& frame, const Run& run, const Depths& depths, Batch
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
   if (kUnit && run.behind && pick_boxes<kPerspective>(frame, run, depths, batch)) {
+    return;
+  }
+  if (kUnit && !run.behind && scatter_boxes<kPerspective>(frame, run, depths, batch)) {
     return;
   }
   Boxes& queue = batch->boxes;
@@ -2313,6 +2522,7 @@ void merge_word(const Depths& from, size_t word, const Depths& to) {
 void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to) {
   const U32 d;
   const hn::Rebind<uint8_t, U32> bytes;
+  const hn::Rebind<uint16_t, U32> shorts;
   const size_t lanes = hn::Lanes(d);
   for (int32_t left = 0; left < width_px; left += 32) {
     const size_t first = to.word(left, y0);
@@ -2323,12 +2533,13 @@ void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, co
     for (size_t at = 32 * first; to.gray_scale != nullptr && at < 32 * end; at += lanes) {
       const auto theirs = hn::PromoteTo(d, hn::LoadU(bytes, from.gray + at));
       const auto ours = hn::PromoteTo(d, hn::LoadU(bytes, to.gray + at));
-      const auto their_key = hn::LoadU(d, from.nearest_key + at);
-      const auto our_key = hn::LoadU(d, to.nearest_key + at);
-      const auto is_nearer = hn::Or(hn::Eq(ours, hn::Zero(d)), hn::Lt(their_key, our_key));
+      const auto their_sum = hn::PromoteTo(d, hn::LoadU(shorts, from.nearest_sum + at));
+      const auto our_sum = hn::PromoteTo(d, hn::LoadU(shorts, to.nearest_sum + at));
+      const auto is_nearer = hn::Or(hn::Eq(ours, hn::Zero(d)), hn::Lt(their_sum, our_sum));
       const auto taken = hn::And(hn::Ne(theirs, hn::Zero(d)), is_nearer);
       const auto gray = hn::BitCast(I32(), hn::IfThenElse(taken, theirs, ours));
-      hn::StoreU(hn::IfThenElse(taken, their_key, our_key), d, to.nearest_key + at);
+      const auto sum = hn::BitCast(I32(), hn::IfThenElse(taken, their_sum, our_sum));
+      hn::StoreU(hn::DemoteTo(shorts, sum), shorts, to.nearest_sum + at);
       hn::StoreU(hn::DemoteTo(bytes, gray), bytes, to.gray + at);
     }
   }

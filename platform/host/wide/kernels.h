@@ -26,7 +26,9 @@ namespace thimble::wide {
 /// is compared as integers, exactly.
 ///
 /// Where only greys by depth are wanted, of single voxels in one cube, a pixel's grey is found as its ray's
-/// voxel is met, and kept in place of the voxel: 5 bytes a pixel instead of 8, and nothing left to look up.
+/// voxel is met, and kept in place of the voxel; and the sum of the voxel's mirrored coordinates in place of
+/// the code, since from voxel to voxel a ray raises one or more of them and lowers none. 3 bytes a pixel
+/// instead of 8, and nothing left to look up.
 ///
 /// The picture is cut into strips of 32 columns, and what is kept of a strip stands row by row: what lies
 /// together in the picture lies together in memory.
@@ -34,7 +36,7 @@ struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
   const GrayScale* gray_scale;  ///< null: `nearest` is in use; else the next three are
   const Shading* shading;
-  uint32_t* nearest_key;  ///< within the cube; holds something only where `gray` does
+  uint16_t* nearest_sum;  ///< of the voxel's mirrored coordinates; holds something only where `gray` does
   uint8_t* gray;          ///< 0 where there is nothing: greys are at least kFarBrightness
   uint32_t* covered;      ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
                           ///< behind the last strip one more can be read
@@ -110,7 +112,7 @@ struct Batch {
   Pairs waiting;  ///< for the test in floats
   Pairs unclear;  ///< for the exact one
   // `met` of them were met and are on the way into the picture.
-  alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube
+  alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube; or the sum of mirrored coordinates
   alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
   alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry; or its grey
   alignas(64) uint32_t pixel[Pairs::kRoom];   ///< where it is in Depths::nearest

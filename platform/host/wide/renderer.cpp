@@ -1,8 +1,5 @@
 #include "host/wide/renderer.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 #include <string.h>
 
 #include <algorithm>
@@ -199,7 +196,7 @@ class TileDrawer {
   TileDrawer* next_taker = nullptr;
 
  private:
-  static constexpr uint32_t kAhead = 16;
+  static constexpr uint32_t kAhead = 8;
   static constexpr uint32_t kRunsPerShare = 2;
   static constexpr uint32_t kMostLines = 64;
   // Fewer rows, and fewer boxes that remain, are not split.
@@ -530,12 +527,10 @@ class Tiles {
   int32_t end_[kMaxThreads];
 };
 
-Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace,
-             const Options& options) {
+Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace, int threads) {
   const int32_t width = camera.width_px();
   if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row || options.threads < 1 ||
-      options.threads > kMaxThreads) {
+      band.rows > camera.height_px() - band.first_row) {
     return Status::kBadArgument;
   }
   const size_t line_bytes = row_bytes(band.format, width);
@@ -548,7 +543,7 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
   }
   if (line_bytes > band.pixels.size ||
       static_cast<size_t>(band.rows - 1) > (band.pixels.size - line_bytes) / stride ||
-      workspace.size < workspace_bytes(width, band.rows, options.threads)) {
+      workspace.size < workspace_bytes(width, band.rows, threads)) {
     return Status::kOutOfMemory;
   }
   return lists.entries().size > size_t{1} << kEntryBits ? Status::kTooFine : Status::kOk;
@@ -565,7 +560,8 @@ size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
 
 Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
               Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
-  const Status status = check(lists, camera, band, workspace, options);
+  const int threads = options.threads == nullptr ? 1 : options.threads->count();
+  const Status status = check(lists, camera, band, workspace, threads);
   if (status != Status::kOk || band.rows == 0) {
     return status;
   }
@@ -576,14 +572,14 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   Stats done;
   done.order = options.order;
   Outlook outlook;
-  if (done.order == Order::kAuto || options.threads > 1) {
-    outlook = outlook_of(lists, frame);
+  if (done.order == Order::kAuto || threads > 1) {
+    outlook = outlook_of(lists, frame, threads > 1);
   }
   if (done.order == Order::kAuto) {
     done.order = outlook.blocks_pay ? Order::kBlocks : Order::kFlat;
   }
   const bool by_blocks = done.order == Order::kBlocks;
-  const Tiles tiles(band.rows, options.threads, by_blocks ? outlook.blocks : outlook.flat);
+  const Tiles tiles(band.rows, threads, by_blocks ? outlook.blocks : outlook.flat);
 
   Arena arena(workspace);
   const size_t strips = strips_of(camera.width_px());
@@ -595,8 +591,8 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     depths.nearest = reinterpret_cast<uint64_t*>(nearest.data);
     depths.gray_scale = painter.gray_scale();
     depths.shading = &shading;
-    depths.nearest_key = reinterpret_cast<uint32_t*>(nearest.data);
-    depths.gray = nearest.data + pixels * sizeof(uint32_t);
+    depths.nearest_sum = reinterpret_cast<uint16_t*>(nearest.data);
+    depths.gray = nearest.data + pixels * sizeof(uint16_t);
     depths.covered = reinterpret_cast<uint32_t*>(
         arena.take(covered_words(camera.width_px(), band.rows) * sizeof(uint32_t)).data);
     depths.marks = by_blocks || depths.gray_scale == nullptr;
@@ -604,15 +600,15 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     depths.first_row = band.first_row;
     return depths;
   };
-  const bool copies = options.threads > 1 && options.threads <= kMostCopies && !by_blocks &&
-                      lists.entries().size >= kCopyBoxes;
+  const bool copies =
+      threads > 1 && threads <= kMostCopies && !by_blocks && lists.entries().size >= kCopyBoxes;
   Depths copy[kMostCopies] = {make_depths()};
   const Depths& depths = copy[0];
-  for (int thread = 1; copies && thread < options.threads; ++thread) {
+  for (int thread = 1; copies && thread < threads; ++thread) {
     copy[thread] = make_depths();
   }
   const Bytes patches = arena.take(strips * patches_of(band.rows), 1);
-  const Bytes batches = arena.take(static_cast<size_t>(options.threads) * sizeof(Batch), alignof(Batch));
+  const Bytes batches = arena.take(static_cast<size_t>(threads) * sizeof(Batch), alignof(Batch));
   const auto batch_at = [&](int thread) {
     return std::launder(reinterpret_cast<Batch*>(batches.data) + thread);
   };
@@ -635,8 +631,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   TileDrawer::Others others(tiles.count());
   const auto draw_all = [&](Batch* batch) {
     uint64_t hits = 0;
-    TileDrawer drawer(lists, frame, depths, patches.data, by_blocks, batch,
-                      options.threads > 1 ? &others : nullptr);
+    TileDrawer drawer(lists, frame, depths, patches.data, by_blocks, batch, threads > 1 ? &others : nullptr);
     for (;;) {
       const int number = others.next(&drawer);
       if (number == TileDrawer::Others::kNothing) {
@@ -657,46 +652,37 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     }
   };
   uint64_t hits = 0;
-  if (options.threads == 1) {
+  if (threads == 1) {
     Batch* const batch = batch_of(0);
     hits = draw_all(batch);
     done.counts = batch->counts;
   } else {
-    // More threads than processors are no gain, but what was asked for.
-    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
-                                              static_cast<size_t>(options.threads));
-    oneapi::tbb::task_arena workers(options.threads);
-    for (int thread = 0; thread < options.threads; ++thread) {
+    for (int thread = 0; thread < threads; ++thread) {
       batch_of(thread);
     }
     std::atomic<uint64_t> all_hits{0};
     if (copies) {
       std::atomic<uint32_t> next_share{0};
-      workers.execute([&] {
-        oneapi::tbb::parallel_for(0, options.threads, [&](int part) {
-          clear(copy[part], band.first_row, band.rows);
-          TileDrawer drawer(lists, frame, copy[part], nullptr, false, batch_at(part), nullptr, &next_share);
-          drawer.start(frame.tile.y0, frame.tile.y1);
-          drawer.draw();
-        });
-        oneapi::tbb::parallel_for(0, (band.rows - 1) / kMergedRows + 1, [&](int part) {
-          Frame merged = frame;
-          merged.tile.y0 += part * kMergedRows;
-          merged.tile.y1 = std::min(merged.tile.y0 + kMergedRows, frame.tile.y1);
-          for (int thread = 1; thread < options.threads; ++thread) {
-            merge_rows(copy[thread], camera.width_px(), merged.tile.y0, merged.tile.y1, depths);
-          }
-          all_hits += painter.paint_tile(merged, depths);
-        });
+      options.threads->each(threads, [&](int part) {
+        clear(copy[part], band.first_row, band.rows);
+        TileDrawer drawer(lists, frame, copy[part], nullptr, false, batch_at(part), nullptr, &next_share);
+        drawer.start(frame.tile.y0, frame.tile.y1);
+        drawer.draw();
+      });
+      options.threads->each((band.rows - 1) / kMergedRows + 1, [&](int part) {
+        Frame merged = frame;
+        merged.tile.y0 += part * kMergedRows;
+        merged.tile.y1 = std::min(merged.tile.y0 + kMergedRows, frame.tile.y1);
+        for (int thread = 1; thread < threads; ++thread) {
+          merge_rows(copy[thread], camera.width_px(), merged.tile.y0, merged.tile.y1, depths);
+        }
+        all_hits += painter.paint_tile(merged, depths);
       });
     } else {
-      workers.execute([&] {
-        oneapi::tbb::parallel_for(0, options.threads,
-                                  [&](int part) { all_hits += draw_all(batch_at(part)); });
-      });
+      options.threads->each(threads, [&](int part) { all_hits += draw_all(batch_at(part)); });
     }
     hits = all_hits;
-    for (int thread = 0; thread < options.threads; ++thread) {
+    for (int thread = 0; thread < threads; ++thread) {
       done.counts.add(batch_at(thread)->counts);
     }
     done.splits = others.splits();

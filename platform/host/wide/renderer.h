@@ -14,6 +14,7 @@
 #define THIMBLE_PLATFORM_HOST_WIDE_RENDERER_H
 
 #include "host/wide/kernels.h"
+#include "host/wide/threads.h"
 #include "host/wide/voxel_lists.h"
 #include "thimble/render.h"
 
@@ -26,10 +27,8 @@ enum class Order : uint8_t {
   kBlocks,  ///< small blocks front to back, leaving out what is covered
 };
 
-inline constexpr int kMaxThreads = 256;
-
 struct Options {
-  int threads = 1;  ///< 1 .. kMaxThreads
+  Threads* threads = nullptr;  ///< null: the calling one alone
   Order order = Order::kAuto;
 };
 
@@ -44,8 +43,8 @@ size_t workspace_bytes(int32_t width_px, int32_t rows, int threads = 1);
 
 /// Draws the band's rows. `counts` (may be null) is added to: rays, hits, and as node_visits the blocks
 /// looked at. `stats` (may be null) is overwritten.
-/// Errors, with nothing drawn: those of render_band; kBadArgument for `threads`; kOutOfMemory for a workspace
-/// that is too small; kTooFine for cameras and lists that this renderer leaves to the core.
+/// Errors, with nothing drawn: those of render_band; kOutOfMemory for a workspace that is too small; kTooFine
+/// for cameras and lists that this renderer leaves to the core.
 Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
               Bytes workspace, RenderCounts* counts, const Options& options = {}, Stats* stats = nullptr);
 

@@ -1,0 +1,48 @@
+/// @file threads.h
+/// The threads that draw. Whoever draws many frames keeps them: a thread that has to be made ready for each
+/// frame comes a tenth of a millisecond late, and one that drew the frame before is there at once.
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_THREADS_H
+#define THIMBLE_PLATFORM_HOST_WIDE_THREADS_H
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <stddef.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace thimble::wide {
+
+inline constexpr int kMaxThreads = 256;
+
+/// Not to be copied. One frame at a time.
+class Threads {
+ public:
+  /// `count`: with the calling one; 1 .. kMaxThreads, else the nearest of these. More than there are
+  /// processors are no gain, but what was asked for.
+  explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)), arena_(count_) {
+    if (count_ > oneapi::tbb::info::default_concurrency()) {
+      allowed_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count_));
+    }
+  }
+
+  int count() const { return count_; }
+
+  /// Calls run(0) .. run(tasks - 1), each once, the calling thread taking its part; returns when all have
+  /// returned. No task may wait for another to begin.
+  template <typename Run>
+  void each(int tasks, const Run& run) {
+    arena_.execute([&] { oneapi::tbb::parallel_for(0, tasks, run); });
+  }
+
+ private:
+  int count_;
+  std::optional<oneapi::tbb::global_control> allowed_;
+  oneapi::tbb::task_arena arena_;
+};
+
+}  // namespace thimble::wide
+
+#endif
