@@ -3,7 +3,7 @@
 #ifndef THIMBLE_PLATFORM_APPS_APP_TABLE_H
 #define THIMBLE_PLATFORM_APPS_APP_TABLE_H
 
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::apps {
 

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::apps {
 

@@ -21,10 +21,10 @@
 #include "apps/shown_scene.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/crc32.h"
-#include "thimble/render.h"
-#include "thimble/trace.h"
+#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
+#include "thimble/trace/trace.h"
 
 namespace thimble::apps {
 namespace {
@@ -335,7 +335,7 @@ int bench() {
     }
   }
   if constexpr (kCanLight) {
-    if (status == Status::kOk && bench->light.effects() != kNoEffects) {
+    if (status == Status::kOk && bench->light.effects() != Effect::kNone) {
       uint32_t cost = 0;
       status = measure(bench, Engine::kLit, &exact, &cost);
     }

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 #include "portable/groups.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::apps {
 

@@ -15,10 +15,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/span.h"
-#include "thimble/vec.h"
+#include "thimble/base/memory.h"
+#include "thimble/base/vec.h"
+#include "thimble/picture/camera.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::apps {
 

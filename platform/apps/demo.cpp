@@ -23,10 +23,10 @@
 #include "apps/spheres.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/crc32.h"
-#include "thimble/octree.h"
-#include "thimble/render.h"
+#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::apps {
 namespace {
@@ -215,8 +215,9 @@ Status draw(const Demo& demo, const Band& band) {
   const CompactTree& tree = demo->shown.scene.tree();
   Status status = Status::kOk;
   if (demo->changed) {
-    status = demo->builds ? frame.begin(demo->pool, demo->camera, demo->shading, screen.format, bytes)
-                          : frame.begin(tree, demo->camera, demo->shading, screen.format, bytes);
+    status = demo->builds
+                 ? AnytimeFrame::make(demo->pool, demo->camera, demo->shading, screen.format, bytes, &frame)
+                 : AnytimeFrame::make(tree, demo->camera, demo->shading, screen.format, bytes, &frame);
   }
   if (status == Status::kOk) {
     status = demo->builds ? frame.refine(demo->pool, pool_visits(visits, !demo->spheres.is_done()))
@@ -300,7 +301,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   const Bytes bytes = demo->arena.rest().subspan(0, kMostPoolBytes);
   // A world that spheres cannot fill before they fill the pool.
   const int level = bytes.size > (size_t{64} << 10) ? 7 : 6;
-  if (demo->pool.init(bytes, level) != Status::kOk) {
+  if (Octree::make(level, bytes, &demo->pool) != Status::kOk) {
     return;
   }
   demo->builds = true;
@@ -367,7 +368,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 }
 
 [[gnu::noinline]] void switch_light(Demo* demo) {
-  if (demo->light.effects() == kNoEffects) {
+  if (demo->light.effects() == Effect::kNone) {
     put("the scene was baked for no effects\n");
     return;
   }
@@ -496,7 +497,7 @@ int demo() {
     return refuse(&demo->arena, "the arena does not hold a row of the picture");
   }
   show_baked(demo);
-  demo->lights = demo->light.effects() != kNoEffects;
+  demo->lights = demo->light.effects() != Effect::kNone;
   demo->turns = !demo->lights;
   if (port::facts().hold_fps != 0) {
     demo->fps = port::facts().hold_fps;

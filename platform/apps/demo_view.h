@@ -18,10 +18,10 @@
 #include <stdint.h>
 
 #include "port.h"
-#include "thimble/baked_scene.h"
-#include "thimble/camera.h"
-#include "thimble/shading.h"
-#include "thimble/trace.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/trace.h"
 
 namespace thimble::apps {
 
@@ -181,7 +181,7 @@ inline Status place_camera(const Orbit& orbit, int32_t yaw, int32_t pitch, int32
     moved.up = {part(at.up.x, -at.up.y), part(at.up.y, at.up.x), at.up.z};
   }
   moved.span = Q14::from_raw(zoomed(at.span.raw));
-  return make_camera(moved, width_px, height_px, level, camera);
+  return set_camera(moved, width_px, height_px, level, camera);
 }
 
 /// The camera of frame `frame`. `tree` (CompactTree or Octree) is asked whether the eye is in something

@@ -19,8 +19,8 @@
 #include <stdint.h>
 
 #include "port.h"
-#include "thimble/camera.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/camera.h"
 
 namespace thimble::apps {
 
@@ -100,7 +100,7 @@ namespace bands {
 inline Vec3i varying(const Camera& camera, int32_t px, int32_t py) {
   const Camera::Affine& affine = camera.affine();
   const auto part = [&](int axis) {
-    return Camera::round(affine.base[axis] + px * affine.step_x[axis] + py * affine.step_y[axis]);
+    return Camera::rounded(affine.base[axis] + px * affine.step_x[axis] + py * affine.step_y[axis]);
   };
   return {part(0), part(1), part(2)};
 }

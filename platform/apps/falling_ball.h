@@ -11,11 +11,11 @@
 #include <stdint.h>
 
 #include "apps/dirty_bands.h"
-#include "thimble/pixel.h"
-#include "thimble/ray.h"
-#include "thimble/secondary_ray.h"
-#include "thimble/shading.h"
-#include "thimble/vec.h"
+#include "thimble/base/vec.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/ray.h"
+#include "thimble/trace/secondary_ray.h"
 
 namespace thimble::apps {
 

@@ -5,11 +5,11 @@
 
 #include "apps/apps.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/baked_scene.h"
-#include "thimble/compact_tree.h"
-#include "thimble/octree.h"
-#include "thimble/trace.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/base/memory.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::apps {
 namespace {
@@ -54,15 +54,15 @@ Bytes bake_small_scene(Arena* arena) {
   Octree octree;
   size_t tree_bytes = 0;
   const VoxelBox box = {{1, 2, 3}, {5, 4, 6}};
-  if (octree.init(arena->take(Octree::octree_bytes(kNodes)), 3) != Status::kOk ||
+  if (Octree::make(3, arena->take(Octree::octree_bytes(kNodes)), &octree) != Status::kOk ||
       octree.insert_box(box, 1) != Status::kOk || octree.insert({7, 7, 7}, 2) != Status::kOk ||
-      compact_from_octree(octree, arena->rest(), &tree_bytes) != Status::kOk) {
+      CompactTree::make(octree, arena->rest(), nullptr, &tree_bytes) != Status::kOk) {
     return {};
   }
   BakedParts parts;
   parts.tree = arena->take(tree_bytes, 1);
   const Bytes bytes = arena->take(baked_bytes(parts));
-  return bytes.empty() || bake(parts, bytes) != Status::kOk ? Bytes{} : bytes;
+  return bytes.empty() || BakedScene::make(parts, bytes, nullptr) != Status::kOk ? Bytes{} : bytes;
 }
 
 // Opens and traces a scene that is damaged in one byte, for every byte of it. Nothing may hang or fault;

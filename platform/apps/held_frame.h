@@ -4,7 +4,7 @@
 ///
 /// The work depends on the board's facts and the rate alone, never on a clock, so that the pictures are the
 /// same on the board and in the simulator. Two ways, whichever serves better:
-///   - rays through a tree: an any-time frame (thimble/anytime.h) of so many node visits;
+///   - rays through a tree: an any-time frame (thimble/picture/anytime.h) of so many node visits;
 ///   - with a brick map, a thirteenth of the instructions a pixel: the thinned camera's picture, every 2nd or
 ///     4th pixel both ways by the map, each as a square; the exact picture when the camera stands still.
 #ifndef THIMBLE_PLATFORM_APPS_HELD_FRAME_H
@@ -15,9 +15,9 @@
 
 #include "apps/place.h"
 #include "port.h"
-#include "thimble/anytime.h"
-#include "thimble/arena.h"
-#include "thimble/brick_render.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/anytime.h"
+#include "thimble/picture/brick_render.h"
 
 namespace thimble::apps {
 

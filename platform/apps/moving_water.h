@@ -7,13 +7,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/arena.h"
-#include "thimble/compact_tree.h"
-#include "thimble/lit_scene.h"
-#include "thimble/secondary_ray.h"
-#include "thimble/status.h"
-#include "thimble/trace.h"
-#include "thimble/water.h"
+#include "thimble/base/memory.h"
+#include "thimble/base/status.h"
+#include "thimble/light/scene.h"
+#include "thimble/light/water.h"
+#include "thimble/trace/secondary_ray.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::apps {
 
@@ -76,7 +76,7 @@ inline bool is_filled(const CompactTree& tree, const WaterSurface& rest, int32_t
     config.greatest_q8 = config.rest_q8;
   }
   config.blocked = scratch;
-  const Status status = Water::init(water->bytes, config, &water->columns);
+  const Status status = Water::make(config, water->bytes, &water->columns);
   if (status == Status::kOk) {
     water->corner = rest.corner;
     water->greatest_q8 = config.greatest_q8;

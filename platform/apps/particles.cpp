@@ -16,8 +16,8 @@
 #include "apps/place.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/render.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::apps {
 namespace {

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/particles.h"
+#include "thimble/plane/particles.h"
 
 namespace thimble::apps {
 
@@ -37,7 +37,7 @@ constexpr ParticleConfig particles_config(int32_t width, int32_t height, size_t 
 /// Makes the world and fills it with `config.capacity` balls of up to a cell a step; with fewer only where
 /// there is no room. `world` is empty after anything but kOk.
 inline Status begin_particles(Bytes bytes, const ParticleConfig& config, ParticleWorld* world) {
-  const Status status = ParticleWorld::init(bytes, config, world);
+  const Status status = ParticleWorld::make(config, bytes, world);
   if (status != Status::kOk) {
     return status;
   }

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "thimble/arena.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::apps {
 

@@ -8,33 +8,33 @@
 #ifndef THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
 #define THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
 
-#include "thimble/baked_lighting.h"
-#include "thimble/baked_scene.h"
-#include "thimble/lit_render.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/light/render.h"
 
 namespace thimble::apps {
 
 #ifdef THIMBLE_IMAGE_EFFECTS
 inline constexpr EffectSet kImageEffects = THIMBLE_IMAGE_EFFECTS;
 #else
-inline constexpr EffectSet kImageEffects = kAllEffects;
+inline constexpr EffectSet kImageEffects = Effect::kAll;
 #endif
 /// Whether there is anything of light in this program.
-inline constexpr bool kCanLight = kImageEffects != kNoEffects;
+inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
 
 #if !defined(THIMBLE_IMAGE_EFFECTS) || THIMBLE_IMAGE_EFFECTS != 0
 
 struct SceneLight {
   BakedLighting baked;
-  /// The effects that are drawn; kNoEffects: the scene was baked for none.
+  /// The effects that are drawn; Effect::kNone: the scene was baked for none.
   EffectSet effects() const { return baked.effects; }
 };
 
 /// Opens what `scene` has. Null when all is well, also without any light; else an English phrase.
 [[gnu::noinline]] inline const char* open_light(const BakedScene& scene, SceneLight* light) {
   const ConstBytes section = scene.section(SectionKind::kLighting);
-  light->baked.effects = kNoEffects;
-  if (!section.empty() && open_lighting(section, scene.tree().level(), &light->baked) != Status::kOk) {
+  light->baked.effects = Effect::kNone;
+  if (!section.empty() && BakedLighting::open(section, scene.tree().level(), &light->baked) != Status::kOk) {
     return "the scene's lighting is damaged";
   }
 #ifdef THIMBLE_IMAGE_EFFECTS
@@ -60,7 +60,7 @@ struct SceneLight {
 #else
 
 struct SceneLight {
-  static constexpr EffectSet effects() { return kNoEffects; }
+  static constexpr EffectSet effects() { return Effect::kNone; }
 };
 inline const char* open_light(const BakedScene& /*scene*/, SceneLight* /*light*/) {
   return nullptr;

@@ -8,11 +8,11 @@
 
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/baked_scene.h"
-#include "thimble/brick_map.h"
-#include "thimble/brick_render.h"
-#include "thimble/render.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/brick_map.h"
 
 namespace thimble::apps {
 
@@ -48,7 +48,7 @@ struct ShownScene {
   }
   const Bytes half = arena->rest().subspan(0, arena->free_bytes() / 2);
   size_t written = 0;
-  if (BrickMap::build(tree, half, &written) == Status::kOk) {
+  if (BrickMap::make(tree, half, nullptr, &written) == Status::kOk) {
     const Bytes bytes = arena->take(written);
     shown->has_map = BrickMap::open(bytes, &shown->map) == Status::kOk;
     shown->map_in_ram = shown->has_map;

@@ -6,9 +6,9 @@
 
 #include <stdint.h>
 
-#include "thimble/octree.h"
-#include "thimble/pixel.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::apps {
 

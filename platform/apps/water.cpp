@@ -16,7 +16,7 @@
 //
 // A frame is drawn in bands, and only those bands that can show something else than in the frame before
 // (dirty_bands.h). The water is stepped only while it moves. The work a frame hangs on no clock.
-#include "thimble/water.h"
+#include "thimble/light/water.h"
 
 #include "apps/apps.h"
 #include "apps/demo_view.h"
@@ -27,9 +27,9 @@
 #include "apps/shown_scene.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/baked_lighting.h"
-#include "thimble/lit_render.h"
+#include "thimble/base/memory.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/light/render.h"
 
 namespace thimble::apps {
 namespace {
@@ -457,9 +457,9 @@ void zoom(Pool* pool, int32_t by) {
   }
   tell_board_and_scene("water", pool->shown);
   const BakedScene& scene = pool->shown.scene;
-  if (open_lighting(scene.section(SectionKind::kLighting), tree_of(*pool).level(), &pool->lighting) !=
+  if (BakedLighting::open(scene.section(SectionKind::kLighting), tree_of(*pool).level(), &pool->lighting) !=
           Status::kOk ||
-      (pool->lighting.effects & kWater) == 0 || !pool->lighting.scene.has_water) {
+      (pool->lighting.effects & Effect::kWater) == 0 || !pool->lighting.scene.has_water) {
     return "the scene holds no water";
   }
 #ifdef THIMBLE_IMAGE_EFFECTS

@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/pixel.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::platform {
 

@@ -9,14 +9,14 @@
 ///     kLitBaseFlashBytes + the bytes of each effect in SET
 ///
 /// or less, since effects share parts: all eleven take kAllEffectsFlashBytes. An effect that SET does not
-/// name takes nothing; with kNoEffects the image is the other one, byte for byte (the same test compares
+/// name takes nothing; with Effect::kNone the image is the other one, byte for byte (the same test compares
 /// them).
 #ifndef THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
 #define THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
 
 #include <stdint.h>
 
-#include "thimble/lit_scene.h"
+#include "thimble/light/scene.h"
 
 namespace thimble {
 
@@ -25,23 +25,23 @@ inline constexpr uint32_t kLitBaseFlashBytes = 1424;
 
 struct EffectFlash {
   EffectSet effect;  ///< one
-  /// The image with this effect alone less the one with the base alone. kShadows, which need kDirectLight:
-  /// with both, less the one with kDirectLight.
+  /// The image with this effect alone less the one with the base alone. Effect::kShadows, which need
+  /// Effect::kDirectLight: with both, less the one with Effect::kDirectLight.
   uint32_t bytes;
 };
 // clang-format off
 inline constexpr EffectFlash kEffectFlash[] = {
-    {kDirectLight, 1852},
-    {kShadows, 456},
-    {kAmbientOcclusion, 576},
-    {kEmission, 84},
-    {kMirror, 1788},
-    {kGlass, 16248},
-    {kMedia, 11660},
-    {kWater, 11108},
-    {kFog, 1156},
-    {kSky, 720},
-    {kDepthCue, 656},
+    {Effect::kDirectLight, 1852},
+    {Effect::kShadows, 456},
+    {Effect::kAmbientOcclusion, 576},
+    {Effect::kEmission, 84},
+    {Effect::kMirror, 1788},
+    {Effect::kGlass, 16248},
+    {Effect::kMedia, 11660},
+    {Effect::kWater, 11108},
+    {Effect::kFog, 1156},
+    {Effect::kSky, 720},
+    {Effect::kDepthCue, 656},
 };
 // clang-format on
 

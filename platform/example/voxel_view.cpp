@@ -1,8 +1,8 @@
 // A voxel model on your own display. Yours: a function that takes rows of pixels, and scene.h, made by
 //   thimble bake MODEL.vox --size 128x64 -o scene.h
-#include "thimble/arena.h"
-#include "thimble/baked_scene.h"
-#include "thimble/render.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
 
 #include "scene.h"
 
@@ -27,7 +27,7 @@ int voxel_view_draw(int32_t sideways_q8) {
   from.forward = {};  // look at the target from there
   Camera camera;
   if (status == Status::kOk) {
-    status = make_camera(from, kWidth, kHeight, scene.tree().level(), &camera);
+    status = set_camera(from, kWidth, kHeight, scene.tree().level(), &camera);
   }
   Shading shading;
   shading.mode = ShadeMode::kColor;

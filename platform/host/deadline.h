@@ -1,13 +1,13 @@
 /// @file deadline.h
-/// Any-time frames (thimble/anytime.h) under a deadline. The core has no clock, so the loop is here: a slice
-/// of visits, a look at the time, another slice.
+/// Any-time frames (thimble/picture/anytime.h) under a deadline. The core has no clock, so the loop is here:
+/// a slice of visits, a look at the time, another slice.
 #ifndef THIMBLE_PLATFORM_HOST_DEADLINE_H
 #define THIMBLE_PLATFORM_HOST_DEADLINE_H
 
 #include <chrono>
 #include <cstdint>
 
-#include "thimble/anytime.h"
+#include "thimble/picture/anytime.h"
 
 namespace thimble::host {
 

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "host/simulation.h"
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/pixel.h"
-#include "thimble/render.h"
-#include "thimble/shading.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::host {
 

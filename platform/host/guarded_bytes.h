@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::host {
 

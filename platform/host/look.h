@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::host {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::host {
 

@@ -29,11 +29,11 @@
 
 #include "boards/board_table.h"
 #include "host/packed_picture.h"
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/pixel.h"
-#include "thimble/shading.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::host {
 

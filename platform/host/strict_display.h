@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "host/packed_picture.h"
-#include "thimble/render.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::host {
 

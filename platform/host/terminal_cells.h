@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/canvas.h"
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::host {
 

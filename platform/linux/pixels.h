@@ -7,9 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/pixel.h"
-#include "thimble/render.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::linux_port {
 

@@ -26,7 +26,7 @@
 #include "commands/options.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
-#include "thimble/morton.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::benchmarks {
 namespace {

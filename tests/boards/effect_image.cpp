@@ -10,14 +10,14 @@
 #include "apps/place.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/arena.h"
-#include "thimble/baked_scene.h"
-#include "thimble/crc32.h"
-#include "thimble/render.h"
-#include "thimble/shading.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
 #ifndef THIMBLE_IMAGE_PLAIN
-#include "thimble/baked_lighting.h"
-#include "thimble/lit_render.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/light/render.h"
 #endif
 
 namespace thimble {
@@ -40,7 +40,7 @@ struct Image : apps::Placed {
 Status open_light([[maybe_unused]] Image* image) {
 #if defined(THIMBLE_IMAGE_BASE) || (defined(THIMBLE_IMAGE_EFFECTS) && THIMBLE_IMAGE_EFFECTS != 0)
   const ConstBytes section = image->scene.section(SectionKind::kLighting);
-  return open_lighting(section, image->scene.tree().level(), &image->lighting);
+  return BakedLighting::open(section, image->scene.tree().level(), &image->lighting);
 #else
   return Status::kOk;
 #endif
@@ -51,10 +51,10 @@ Status draw(const Image& image, const Band& band) {
 #if defined(THIMBLE_IMAGE_PLAIN)
   return render_band(tree, image.camera, image.shading, band);
 #elif defined(THIMBLE_IMAGE_BASE)
-  return lit::draw<kNoEffects>(
-      {tree, image.camera, image.shading, image.lighting.scene, LitOptions{}, kNoEffects}, band, nullptr);
+  return lit::draw<Effect::kNone>(
+      {tree, image.camera, image.shading, image.lighting.scene, LitOptions{}, Effect::kNone}, band, nullptr);
 #elif THIMBLE_IMAGE_EFFECTS == 0
-  return render_lit_band<kNoEffects>(tree, image.camera, image.shading, LitScene{}, band);
+  return render_lit_band<Effect::kNone>(tree, image.camera, image.shading, LitScene{}, band);
 #else
   return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree, image.camera, image.shading, image.lighting.scene,
                                                 band);
@@ -71,8 +71,8 @@ int draw_frame() {
   }
   image->band = arena.take(band_bytes(screen.format, screen.width_px, kBandRows));
   image->shading = apps::demo_shading(image->scene.palette());
-  if (image->band.empty() || make_camera(image->scene.camera(), screen.width_px, screen.height_px,
-                                         image->scene.tree().level(), &image->camera) != Status::kOk) {
+  if (image->band.empty() || set_camera(image->scene.camera(), screen.width_px, screen.height_px,
+                                        image->scene.tree().level(), &image->camera) != Status::kOk) {
     return 1;
   }
   uint32_t crc = 0;

@@ -61,7 +61,7 @@ names='0x001 kDirectLight
 
 #include <stdint.h>
 
-#include "thimble/lit_scene.h"
+#include "thimble/light/scene.h"
 
 namespace thimble {
 

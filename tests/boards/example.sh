@@ -18,7 +18,7 @@ lines=$(grep -c . platform/example/voxel_view.cpp)
 
 # The colours here are the command's; a display of 16 greys is within half a step of its 256.
 g++ $core -O2 -Wall -Wextra -Werror -c -I"$work" platform/example/voxel_view.cpp -o "$work/voxel_view.o"
-g++ -std=c++20 -O2 -Iinclude -ffreestanding -o "$work/example" "$work/voxel_view.o" tests/boards/example_display.cpp src/*.cpp
+g++ -std=c++20 -O2 -Iinclude -ffreestanding -o "$work/example" "$work/voxel_view.o" tests/boards/example_display.cpp $(find src -name "*.cpp")
 "$work/example" >"$work/example.pgm" || fail "it does not draw"
 "$thimble" render "$work/scene.oct" --size 128x64 --shade color -o "$work/command.pgm" --quiet 2>/dev/null || fail "the command does not draw"
 cmp -l "$work/example.pgm" "$work/command.pgm" | awk '

@@ -33,9 +33,10 @@ fi
 rm -rf "$work"
 mkdir -p "$work"
 # Without -fno-ipa-icf two equal functions share a body and one of them vanishes from the call graph.
-for source in src/*.cpp; do
+for source in $(find src -name '*.cpp' | sort); do
+  object=$(echo "${source#src/}" | tr / _)
   if ! ${prefix}g++ -std=c++20 $flags -fno-ipa-icf -fcallgraph-info=su,da -Wall -Wextra -Werror -nostdinc++ -Iinclude \
-    -c "$source" -o "$work/$(basename "$source" .cpp).o"; then
+    -c "$source" -o "$work/${object%.cpp}.o"; then
     echo "core_on: $source does not compile for $target" >&2
     exit 1
   fi

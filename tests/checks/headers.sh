@@ -6,7 +6,7 @@ flags='-std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wsign-con
   -fno-exceptions -fno-rtti -Iinclude -x c++'
 failed=0
 found=0
-for header in include/thimble/*.h; do
+for header in $(find include/thimble -name '*.h' | sort); do
   [ -e "$header" ] || continue
   found=1
   for compiler in g++ clang++; do

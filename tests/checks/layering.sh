@@ -1,7 +1,7 @@
 #!/bin/sh
 # Who may include whom. layering.sh ROOT
-#   include/thimble  <stdint.h>, <stddef.h>, "thimble/..."
-#   src              those, and headers that lie in src
+#   include, src     <stdint.h>, <stddef.h>, and headers of their own room or of a room below it; a public header
+#                    none of src; only src and public headers those of a folder `detail`
 #   tools, platform  no header of src
 #   platform         nothing of the tests but "portable/..." in the applications that run them on boards
 #   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
@@ -24,31 +24,68 @@ includes() {
     fi
   done
 }
-core='#[[:space:]]*include[[:space:]]*(<stdint\.h>|<stddef\.h>|"thimble/[a-z0-9_]+\.h")'
-complain "a public header includes more than <stdint.h>, <stddef.h> and \"thimble/...\"" \
-  "$(includes include | grep -vE "$core" || true)"
-own=
-for header in src/*.h; do
-  [ -e "$header" ] && own="$own|$(basename "$header" .h)"
+# What a room may see besides itself. Each is named before those that stand above it.
+rooms_below() {
+  case $1 in
+    base) echo ;;
+    tree) echo base ;;
+    trace) echo base tree ;;
+    picture) echo base tree trace ;;
+    light) echo base tree trace picture ;;
+    plane) echo base ;;
+    bake) echo base tree trace picture ;;
+    *) echo "layering: src/$1 is no room that tests/checks/layering.sh knows" >&2 && return 1 ;;
+  esac
+}
+# resolve ROOT FILE:LINE:#include "PATH" ...: each include in quotes as FILE:LINE: FILE'S ROOM, PLACE MEANT (as
+# include/... or src/...).
+resolve() {
+  awk -v root="$1" '{
+    split($0, part, ":"); file = part[1]
+    if (!match($0, /"[^"]*"/)) next
+    path = substr($0, RSTART + 1, RLENGTH - 2)
+    room = substr(file, length(root) + 2); sub(/\/.*/, "", room)
+    folder = file; sub(/[^\/]*$/, "", folder)
+    if (path ~ /^thimble\//) place = "include/" path
+    else {
+      place = folder path
+      while (match(place, /[^\/.]+\/\.\.\//)) place = substr(place, 1, RSTART - 1) substr(place, RSTART + RLENGTH)
+    }
+    print file ":" part[2] ": " room " " place
+  }'
+}
+complain "the core includes more than <stdint.h>, <stddef.h> and headers in quotes" \
+  "$(includes include src | grep -vE '#[[:space:]]*include[[:space:]]*(<stdint\.h>|<stddef\.h>|"[a-z0-9_./]+\.h")' || true)"
+for root in include/thimble src; do
+  for folder in "$root"/*/; do
+    [ -d "$folder" ] || continue
+    room=$(basename "$folder")
+    below=$(rooms_below "$room") || failed=1
+    allowed="$room"
+    for other in $below; do
+      allowed="$allowed|$other"
+    done
+    places="include/thimble/($allowed)/"
+    [ "$root" = src ] && places="$places|src/($allowed)/"
+    complain "$folder sees only itself and the rooms below it ($below)" \
+      "$(includes "$folder" | resolve "$root" | grep -vE ": $room ($places)[a-z0-9_/]+\.h\$" || true)"
+  done
+  complain "the files of $root stand in rooms (besides include/thimble/thimble.h)" \
+    "$(find "$root" -maxdepth 1 \( -name '*.h' -o -name '*.cpp' \) ! -path include/thimble/thimble.h)"
 done
-complain "src includes more than the public headers, its own and <stdint.h>, <stddef.h>" \
-  "$(includes src | grep -vE "$core|#[[:space:]]*include[[:space:]]*\"(src/)?(${own#|})\\.h\"" || true)"
+complain "a public header finds the others from where it stands, so that the folder can be moved" \
+  "$(includes include | grep '"thimble/' || true)"
+complain "what lies in a folder detail is the core's own" \
+  "$(includes tools platform tests | grep -E '"thimble/[a-z0-9_/]*detail/' || true)"
 complain "tools and platform see public headers only, never src" \
   "$(includes tools platform | grep -E '["/]src/' || true)"
-for name in $(echo "$own" | tr '|' ' '); do
-  # The same name may exist on both sides; then it is the includer's own.
-  if [ -z "$(find tools platform -name "$name.h" 2>/dev/null)" ]; then
-    complain "tools and platform see public headers only, never src/$name.h" \
-      "$(includes tools platform | grep -E "[\"/]$name\\.h\"" || true)"
-  fi
-done
 tests_on_boards='^platform/apps/(selftest|golden|lit|cases)\.(cpp|h):'
 complain "platform sees no test; only the applications selftest, golden and lit run those of tests/portable" \
   "$({
     includes platform | grep -E '["/](golden|portable|support|reference|tests)/' | grep -vE "$tests_on_boards"
     includes platform | grep -E "$tests_on_boards" | grep -E '["/](golden|support|reference|tests)/'
   } || true)"
-board='#[[:space:]]*include[[:space:]]*(<stdint\.h>|<stddef\.h>|"(thimble|portable|golden)/[a-z0-9_]+\.(h|inc)")'
+board='#[[:space:]]*include[[:space:]]*(<stdint\.h>|<stddef\.h>|"(thimble|portable|golden)/[a-z0-9_/]+\.(h|inc)")'
 complain "the cases that run on boards include more than <stdint.h>, <stddef.h>, \"thimble/...\" and one another" \
   "$(includes tests/portable tests/golden | grep -v '^tests/golden/main\.cpp:' | grep -vE "$board" || true)"
 complain "the reference shares no code with the product" \

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "thimble/arena.h"
-#include "thimble/octree.h"
-#include "thimble/render.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/octree.h"
 
 using namespace thimble;  // NOLINT
 
@@ -13,7 +13,8 @@ int main() {
   static std::uint8_t memory[8192];
   Arena arena{Bytes(memory)};
   Octree octree;
-  Status status = octree.init(arena.take(Octree::octree_bytes(700)), 5);  // a world of 32 voxels a side
+  Status status =
+      Octree::make(5, arena.take(Octree::octree_bytes(700)), &octree);  // a world of 32 voxels a side
   for (std::int32_t i = 0; i < 32 * 32 * 32 && status == Status::kOk; ++i) {
     const Vec3i voxel{i & 31, (i >> 5) & 31, i >> 10};
     const Vec3i from{voxel.x - 16, voxel.y - 16, voxel.z - 16};
@@ -25,7 +26,7 @@ int main() {
   const Bytes bytes = arena.take(compact_bytes(compact_shape(octree)));
   CompactTree tree;
   if (status == Status::kOk) {
-    status = compact_from_octree(octree, bytes, &size);
+    status = CompactTree::make(octree, bytes, nullptr, &size);
   }
   if (status == Status::kOk) {
     status = CompactTree::open(bytes, &tree);

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::golden {
 

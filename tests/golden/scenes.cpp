@@ -1,6 +1,6 @@
 #include "golden/scenes.h"
 
-#include "thimble/crc32.h"
+#include "thimble/base/crc32.h"
 
 namespace thimble::golden {
 namespace {
@@ -194,7 +194,7 @@ Status build_grid(SceneId id, Arena* arena, DenseGrid* grid) {
   const int32_t side = int32_t{1} << scene_info(id).level;
   const Vec3i size{side, side, side};
   const Bytes bytes = arena->take(dense_grid_bytes(size));
-  const Status status = DenseGrid::init(bytes, size, grid);
+  const Status status = DenseGrid::make(size, bytes, grid);
   if (status != Status::kOk) {
     return status;
   }
@@ -204,7 +204,7 @@ Status build_grid(SceneId id, Arena* arena, DenseGrid* grid) {
 
 Status build_pool(SceneId id, Arena* arena, Octree* pool) {
   const SceneInfo& info = scene_info(id);
-  const Status status = pool->init(arena->take(Octree::octree_bytes(info.pool_nodes)), info.level);
+  const Status status = Octree::make(info.level, arena->take(Octree::octree_bytes(info.pool_nodes)), pool);
   if (status != Status::kOk) {
     return status;
   }
@@ -378,7 +378,7 @@ Status build_scene(SceneId id, Structure structure, Arena* arena, World* world) 
   }
   const Bytes bytes = arena->take(compact_bytes(compact_shape(world->pool)));
   size_t written = 0;
-  status = compact_from_octree(world->pool, bytes, &written);
+  status = CompactTree::make(world->pool, bytes, nullptr, &written);
   if (status != Status::kOk) {
     return status;
   }

@@ -11,16 +11,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/arena.h"
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/dense_grid.h"
-#include "thimble/octree.h"
-#include "thimble/pixel.h"
-#include "thimble/render.h"
-#include "thimble/shading.h"
-#include "thimble/status.h"
-#include "thimble/trace.h"
+#include "thimble/base/memory.h"
+#include "thimble/base/status.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::golden {
 

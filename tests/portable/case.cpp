@@ -1,6 +1,6 @@
 #include "portable/case.h"
 
-#include "thimble/crc32.h"
+#include "thimble/base/crc32.h"
 
 namespace thimble::portable {
 

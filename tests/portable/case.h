@@ -18,15 +18,14 @@
 #include <stdint.h>
 
 #include "golden/scenes.h"
-#include "thimble/arena.h"
-#include "thimble/camera.h"
-#include "thimble/pixel.h"
-#include "thimble/ray.h"
-#include "thimble/shading.h"
-#include "thimble/span.h"
-#include "thimble/status.h"
-#include "thimble/trace.h"
-#include "thimble/vec.h"
+#include "thimble/base/memory.h"
+#include "thimble/base/status.h"
+#include "thimble/base/vec.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/ray.h"
+#include "thimble/trace/trace.h"
 
 namespace thimble::portable {
 

@@ -2,8 +2,8 @@
 #include "golden/golden_table.h"
 #include "portable/golden_trees.h"
 #include "portable/groups.h"
-#include "thimble/anytime.h"
-#include "thimble/crc32.h"
+#include "thimble/base/crc32.h"
+#include "thimble/picture/anytime.h"
 
 namespace thimble::portable {
 namespace {
@@ -31,7 +31,8 @@ void run_frame(Check& check, int index) {
   const Bytes object = check.arena.take(sizeof(Object));
   THIMBLE_REQUIRE(!memory.empty() && !object.empty());
   AnytimeFrame& frame = (new (object.data) Object)->frame;
-  THIMBLE_REQUIRE_OK(frame.begin(check.world.compact, check.camera, check.shading, shown.format, memory));
+  THIMBLE_REQUIRE_OK(
+      AnytimeFrame::make(check.world.compact, check.camera, check.shading, shown.format, memory, &frame));
   uint32_t visits = kFirstVisits;
   for (int i = 0; i < kDoublings; ++i) {
     THIMBLE_REQUIRE_OK(frame.refine(check.world.compact, visits));

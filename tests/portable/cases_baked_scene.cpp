@@ -1,8 +1,8 @@
 // A baked scene: what comes back out of its bytes, and what is refused.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/baked_scene.h"
-#include "thimble/crc32.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/base/crc32.h"
 
 namespace thimble::portable {
 namespace {
@@ -52,7 +52,8 @@ Bytes make_scene(Check& check, bool perspective = true) {
   const SceneCamera camera = view_of(perspective);
   const BakedParts parts = parts_of(check, &camera);
   const Bytes bytes = check.arena.take(baked_bytes(parts), 4);
-  return check.equal(bake(parts, bytes), Status::kOk, THIMBLE_WHAT("bake")) ? bytes : Bytes();
+  return check.equal(BakedScene::make(parts, bytes, nullptr), Status::kOk, THIMBLE_WHAT("bake")) ? bytes
+                                                                                                 : Bytes();
 }
 
 uint32_t word_at(ConstBytes bytes, size_t at) {
@@ -97,7 +98,7 @@ void same_parts(Check& check, int perspective) {
 
 void its_camera(Check& check, int perspective) {
   const SceneCamera baked = view_of(perspective != 0);
-  THIMBLE_REQUIRE_OK(make_camera(baked, 20, 10, 3, &check.camera));
+  THIMBLE_REQUIRE_OK(set_camera(baked, 20, 10, 3, &check.camera));
   const Ray corner = check.camera.ray(0, 0);
   const Ray middle = check.camera.ray(10, 5);
   if (perspective != 0) {
@@ -166,7 +167,7 @@ constexpr Case kCases[] = {
        BakedParts parts;
        parts.tree = {check.world.compact.bytes(), check.world.compact.size_bytes()};
        const Bytes bytes = check.arena.take(baked_bytes(parts), 4);
-       THIMBLE_REQUIRE_OK(bake(parts, bytes));
+       THIMBLE_REQUIRE_OK(BakedScene::make(parts, bytes, nullptr));
        BakedScene scene;
        THIMBLE_REQUIRE_OK(BakedScene::open(bytes, &scene));
        THIMBLE_CHECK(scene.palette().empty());
@@ -174,13 +175,15 @@ constexpr Case kCases[] = {
        THIMBLE_CHECK(scene.section(SectionKind::kName).empty());
      }},
     {"no tree -> bad argument", kBytes,
-     [](Check& check, int) { THIMBLE_EQUAL(bake({}, check.arena.take(kBytes)), Status::kBadArgument); }},
+     [](Check& check, int) {
+       THIMBLE_EQUAL(BakedScene::make({}, check.arena.take(kBytes), nullptr), Status::kBadArgument);
+     }},
     {"a tree cut short -> bad argument", kBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_tree(check));
        BakedParts parts;
        parts.tree = {check.world.compact.bytes(), check.world.compact.size_bytes() - 1};
-       THIMBLE_EQUAL(bake(parts, check.arena.take(512)), Status::kBadArgument);
+       THIMBLE_EQUAL(BakedScene::make(parts, check.arena.take(512), nullptr), Status::kBadArgument);
      }},
     {"an output that is too small -> out of memory, not a byte written", kBytes,
      [](Check& check, int) {
@@ -192,7 +195,7 @@ constexpr Case kCases[] = {
          byte = 0x5A;
        }
        for (size_t size = 0; size < bytes.size; size += 7) {
-         THIMBLE_EQUAL(bake(parts, bytes.subspan(0, size)), Status::kOutOfMemory);
+         THIMBLE_EQUAL(BakedScene::make(parts, bytes.subspan(0, size), nullptr), Status::kOutOfMemory);
        }
        bool untouched = true;
        for (const uint8_t byte : bytes) {

@@ -280,11 +280,11 @@ constexpr Case kCases[] = {
     {"direction bits as given -> all of them used", 0, direction_bits, 20, "20"},
     {"rounding: halves -> away from zero", 0,
      [](Check& check, int) {
-       THIMBLE_EQUAL(Camera::round(int64_t{1} << 31), 1);
-       THIMBLE_EQUAL(Camera::round(-(int64_t{1} << 31)), -1);
-       THIMBLE_EQUAL(Camera::round((int64_t{1} << 31) - 1), 0);
-       THIMBLE_EQUAL(Camera::round(1 - (int64_t{1} << 31)), 0);
-       THIMBLE_EQUAL(Camera::round(-(int64_t{3} << 31)), -2);
+       THIMBLE_EQUAL(Camera::rounded(int64_t{1} << 31), 1);
+       THIMBLE_EQUAL(Camera::rounded(-(int64_t{1} << 31)), -1);
+       THIMBLE_EQUAL(Camera::rounded((int64_t{1} << 31) - 1), 0);
+       THIMBLE_EQUAL(Camera::rounded(1 - (int64_t{1} << 31)), 0);
+       THIMBLE_EQUAL(Camera::rounded(-(int64_t{3} << 31)), -2);
      }},
     {"origins half way between two numbers -> away from the eye on both sides", 0,
      [](Check& check, int) {

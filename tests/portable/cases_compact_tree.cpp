@@ -1,8 +1,8 @@
 // The tree in flash: its size, its bytes, what is refused, and that damage cannot do harm.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/crc32.h"
-#include "thimble/morton.h"
+#include "thimble/base/crc32.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::portable {
 namespace {
@@ -132,7 +132,7 @@ void hidden_damage(Check& check, int kind) {
   int opened = 0;
   for (int round = 0; round < 60; ++round) {
     size_t written = 0;
-    THIMBLE_REQUIRE_OK(compact_from_octree(check.world.pool, bytes, &written, kMinRankShift));
+    THIMBLE_REQUIRE_OK(CompactTree::make(check.world.pool, bytes, nullptr, &written, kMinRankShift));
     const size_t first = round % 4 == 0 ? 28 : kCompactHeaderBytes;
     for (int i = 0; i < 3; ++i) {
       const size_t at = first + static_cast<size_t>(random.below(static_cast<int32_t>(bytes.size - first)));
@@ -163,8 +163,9 @@ void too_small(Check& check, int kind) {
       byte = 0xA5;
     }
     size_t needed = 0;
-    THIMBLE_EQUAL(compact_from_octree(check.world.pool, bytes.subspan(0, size), &needed, kMinRankShift),
-                  Status::kOutOfMemory);
+    THIMBLE_EQUAL(
+        CompactTree::make(check.world.pool, bytes.subspan(0, size), nullptr, &needed, kMinRankShift),
+        Status::kOutOfMemory);
     THIMBLE_EQUAL(needed, exact);
     bool untouched = true;
     for (const uint8_t byte : bytes) {
@@ -197,7 +198,7 @@ void from_keys(Check& check, int materials) {
   const CompactTree& tree = check.world.compact;
   const Bytes again = check.arena.take(tree.size_bytes());
   size_t needed = 0;
-  THIMBLE_REQUIRE_OK(compact_from_keys(Span<const uint64_t>(keys.data, count), 4, again, &needed));
+  THIMBLE_REQUIRE_OK(CompactTree::make(Span<const uint64_t>(keys.data, count), 4, again, nullptr, &needed));
   THIMBLE_EQUAL(needed, tree.size_bytes());
   THIMBLE_CHECK(
       check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()), THIMBLE_WHAT("bytes")));
@@ -246,7 +247,7 @@ void joined(Check& check, int) {
   THIMBLE_REQUIRE(parts.size == 8);
   for (uint32_t part = 0; part < 8; ++part) {
     check.world.pool.clear();
-    THIMBLE_REQUIRE_OK(check.world.pool.init(check.arena.take(3 * 8 + 3), 2));
+    THIMBLE_REQUIRE_OK(Octree::make(2, check.arena.take(3 * 8 + 3), &check.world.pool));
     if (part == 2) {
       THIMBLE_REQUIRE_OK(check.world.pool.insert_block({0, 0, 0}, 2, 0));
     } else if (part != 5) {
@@ -257,7 +258,7 @@ void joined(Check& check, int) {
   }
   const Bytes out = check.arena.take(160);
   size_t written = 0;
-  THIMBLE_REQUIRE_OK(compact_from_parts(Span<const CompactTree>(parts), out, &written));
+  THIMBLE_REQUIRE_OK(CompactTree::make(Span<const CompactTree>(parts), out, nullptr, &written));
   THIMBLE_REQUIRE(make_pool(check, 40, 3));
   for (uint32_t part = 0; part < 8; ++part) {
     const Vec3i corner{static_cast<int32_t>(part & 1U) * 4, static_cast<int32_t>(part >> 1 & 1U) * 4,
@@ -401,8 +402,9 @@ constexpr Case kCases[] = {
        size_t needed = 0;
        constexpr int kShifts[] = {kMinRankShift - 1, kMaxRankShift + 1, -1, 64};
        for (const int shift : kShifts) {
-         THIMBLE_EQUAL(compact_from_octree(check.world.pool, bytes, &needed, shift), Status::kOutOfRange);
-         THIMBLE_EQUAL(compact_from_keys(Span<const uint64_t>(), 3, bytes, &needed, shift),
+         THIMBLE_EQUAL(CompactTree::make(check.world.pool, bytes, nullptr, &needed, shift),
+                       Status::kOutOfRange);
+         THIMBLE_EQUAL(CompactTree::make(Span<const uint64_t>(), 3, bytes, nullptr, &needed, shift),
                        Status::kOutOfRange);
        }
      }},
@@ -412,10 +414,12 @@ constexpr Case kCases[] = {
        size_t needed = 0;
        constexpr int kLevels[] = {-1, 0, 13};
        for (const int level : kLevels) {
-         THIMBLE_EQUAL(compact_from_keys(Span<const uint64_t>(), level, bytes, &needed), Status::kOutOfRange);
+         THIMBLE_EQUAL(CompactTree::make(Span<const uint64_t>(), level, bytes, nullptr, &needed),
+                       Status::kOutOfRange);
        }
-       THIMBLE_EQUAL(compact_from_keys(Span<const uint32_t>(), 11, 0, bytes, &needed), Status::kOutOfRange);
-       THIMBLE_EQUAL(compact_from_keys(Span<const uint64_t>(), 12, bytes, &needed), Status::kOk);
+       THIMBLE_EQUAL(CompactTree::make(Span<const uint32_t>(), 11, 0, bytes, nullptr, &needed),
+                     Status::kOutOfRange);
+       THIMBLE_EQUAL(CompactTree::make(Span<const uint64_t>(), 12, bytes, nullptr, &needed), Status::kOk);
        THIMBLE_EQUAL(needed, kCompactHeaderBytes);
      }},
     {"from sorted keys -> the octree's bytes", 1608 + 320 + 1200, from_keys, 1, "one material"},
@@ -431,7 +435,7 @@ constexpr Case kCases[] = {
        const CompactTree& tree = check.world.compact;
        const Bytes again = check.arena.take(tree.size_bytes());
        size_t needed = 0;
-       THIMBLE_REQUIRE_OK(compact_from_keys(Span<const uint32_t>(keys), 4, 6, again, &needed));
+       THIMBLE_REQUIRE_OK(CompactTree::make(Span<const uint32_t>(keys), 4, 6, again, nullptr, &needed));
        THIMBLE_CHECK(check.equal(ConstBytes(again), ConstBytes(tree.bytes(), tree.size_bytes()),
                                  THIMBLE_WHAT("bytes")));
      }},
@@ -442,8 +446,9 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE(make_compact(check));
        const Span<const CompactTree> one(&check.world.compact, 1);
        const Bytes out = check.arena.take(64);
-       THIMBLE_EQUAL(compact_from_parts(Span<const CompactTree>(), out, nullptr), Status::kBadArgument);
-       THIMBLE_EQUAL(compact_from_parts(one, out, nullptr), Status::kOk);
+       THIMBLE_EQUAL(CompactTree::make(Span<const CompactTree>(), out, nullptr, nullptr),
+                     Status::kBadArgument);
+       THIMBLE_EQUAL(CompactTree::make(one, out, nullptr, nullptr), Status::kOk);
      }},
     {"every truncation -> refused, the tree handed in as it was", kSmallBytes, every_truncation, kPlain,
      kKindNames[0]},
@@ -498,7 +503,7 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(check.world.pool.insert({5, 2, 7}, 9));
        const Bytes bytes = check.arena.take(200);
        size_t written = 0;
-       THIMBLE_REQUIRE_OK(compact_from_octree(check.world.pool, bytes, &written));
+       THIMBLE_REQUIRE_OK(CompactTree::make(check.world.pool, bytes, nullptr, &written));
        THIMBLE_REQUIRE_OK(CompactTree::open(bytes, &check.world.compact));
        THIMBLE_EQUAL(check.world.compact.size_bytes(), written);
        THIMBLE_CHECK(CompactTree::validate(bytes) == nullptr);

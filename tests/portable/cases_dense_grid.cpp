@@ -24,7 +24,7 @@ constexpr Case kCases[] = {
          byte = 0xFF;
        }
        DenseGrid& grid = check.world.grid;
-       THIMBLE_REQUIRE_OK(DenseGrid::init(bytes, {5, 3, 7}, &grid));
+       THIMBLE_REQUIRE_OK(DenseGrid::make({5, 3, 7}, bytes, &grid));
        THIMBLE_EQUAL(grid.voxel_count(), 0U);
        THIMBLE_EQUAL(grid.used_bytes(), 14U);
        THIMBLE_EQUAL(grid.level(), 3);
@@ -37,16 +37,16 @@ constexpr Case kCases[] = {
        const Bytes bytes = check.arena.take(13, 1);
        bytes[0] = 0x5A;
        DenseGrid& grid = check.world.grid;
-       THIMBLE_EQUAL(DenseGrid::init(bytes, {5, 3, 7}, &grid), Status::kOutOfMemory);
+       THIMBLE_EQUAL(DenseGrid::make({5, 3, 7}, bytes, &grid), Status::kOutOfMemory);
        THIMBLE_EQUAL(bytes[0], 0x5A);
        THIMBLE_EQUAL(grid.size(), (Vec3i{0, 0, 0}));
      }},
     {"init: sizes beyond the limits -> out of range", 16,
      [](Check& check, int) {
        const Bytes bytes = check.arena.take(16);
-       THIMBLE_EQUAL(DenseGrid::init(bytes, {0, 1, 1}, &check.world.grid), Status::kOutOfRange);
-       THIMBLE_EQUAL(DenseGrid::init(bytes, {1, 4097, 1}, &check.world.grid), Status::kOutOfRange);
-       THIMBLE_EQUAL(DenseGrid::init(bytes, {1, 1, INT32_MIN}, &check.world.grid), Status::kOutOfRange);
+       THIMBLE_EQUAL(DenseGrid::make({0, 1, 1}, bytes, &check.world.grid), Status::kOutOfRange);
+       THIMBLE_EQUAL(DenseGrid::make({1, 4097, 1}, bytes, &check.world.grid), Status::kOutOfRange);
+       THIMBLE_EQUAL(DenseGrid::make({1, 1, INT32_MIN}, bytes, &check.world.grid), Status::kOutOfRange);
      }},
     {"set and test: a voxel -> that bit of that byte", 16,
      [](Check& check, int) {
@@ -109,7 +109,7 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        static_cast<void>(check.arena.take(1, 1));
        const Bytes bytes = check.arena.take(14, 1);
-       THIMBLE_REQUIRE_OK(DenseGrid::init(bytes, {5, 3, 7}, &check.world.grid));
+       THIMBLE_REQUIRE_OK(DenseGrid::make({5, 3, 7}, bytes, &check.world.grid));
        THIMBLE_REQUIRE_OK(check.world.grid.set({4, 2, 6}));
        THIMBLE_EQUAL(bytes[13], 1);
        THIMBLE_REQUIRE_OK(closest(check, 0, ray_q8({1150, 600, 0}, {0, 0, 3}), check.options));

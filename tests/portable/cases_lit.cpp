@@ -2,8 +2,8 @@
 #include "golden/lit_table.h"
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/crc32.h"
-#include "thimble/lit_render.h"
+#include "thimble/base/crc32.h"
+#include "thimble/light/render.h"
 
 namespace thimble::portable {
 namespace {
@@ -142,8 +142,13 @@ void run(Check& check, int index) {
     check.note(static_cast<int64_t>(state->counts.node_visits[kind]));
   }
   // No effect, no ray for it.
-  constexpr EffectSet kSends[kLitRayKinds] = {
-      kAllEffects, kShadows, kAmbientOcclusion, kMirror, kGlass | kWater, kMedia | kGlass, kWater};
+  constexpr EffectSet kSends[kLitRayKinds] = {Effect::kAll,
+                                              Effect::kShadows,
+                                              Effect::kAmbientOcclusion,
+                                              Effect::kMirror,
+                                              Effect::kGlass | Effect::kWater,
+                                              Effect::kMedia | Effect::kGlass,
+                                              Effect::kWater};
   for (int kind = 0; kind < kLitRayKinds; ++kind) {
     THIMBLE_CHECK((kSet & kSends[kind]) != 0 || state->counts.rays[kind] == 0);
   }
@@ -151,14 +156,15 @@ void run(Check& check, int index) {
   THIMBLE_EQUAL(crc, wanted.crc32);
 }
 
-constexpr EffectSet kSunlit = kDirectLight | kShadows;
-constexpr EffectSet kDry = kSunlit | kAmbientOcclusion | kEmission | kMirror | kGlass | kSky;
+constexpr EffectSet kSunlit = Effect::kDirectLight | Effect::kShadows;
+constexpr EffectSet kDry =
+    kSunlit | Effect::kAmbientOcclusion | Effect::kEmission | Effect::kMirror | Effect::kGlass | Effect::kSky;
 constexpr Case kCases[] = {
     {"direct light and shadows, 16 greys -> the golden picture", kArenaBytes, run<kSunlit>, 0},
     {"the same in black and white -> the golden picture", kArenaBytes, run<kSunlit>, 1},
     {"shadows, occlusion, a lamp, a mirror, glass, sky in 16 bits -> the golden picture", kArenaBytes,
      run<kDry>, 2},
-    {"every effect there is, in 24 bits -> the golden picture", kArenaBytes, run<kAllEffects>, 3},
+    {"every effect there is, in 24 bits -> the golden picture", kArenaBytes, run<Effect::kAll>, 3},
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // The octree that changes: what is in it, how many nodes it has, what a full pool does, what merging does.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/crc32.h"
+#include "thimble/base/crc32.h"
 
 namespace thimble::portable {
 namespace {
@@ -214,15 +214,15 @@ constexpr Case kCases[] = {
     {"init: levels 0 and 13 -> out of range", 64,
      [](Check& check, int) {
        const Bytes bytes = check.arena.take(64);
-       THIMBLE_EQUAL(check.world.pool.init(bytes, 0), Status::kOutOfRange);
-       THIMBLE_EQUAL(check.world.pool.init(bytes, 13), Status::kOutOfRange);
-       THIMBLE_EQUAL(check.world.pool.init(bytes, 12), Status::kOk);
+       THIMBLE_EQUAL(Octree::make(0, bytes, &check.world.pool), Status::kOutOfRange);
+       THIMBLE_EQUAL(Octree::make(13, bytes, &check.world.pool), Status::kOutOfRange);
+       THIMBLE_EQUAL(Octree::make(12, bytes, &check.world.pool), Status::kOk);
      }},
     {"init: bytes at odd addresses -> as many nodes as fit behind the padding", 80,
      [](Check& check, int) {
        const Bytes bytes = check.arena.take(80);
        for (size_t offset = 0; offset < 8; ++offset) {
-         THIMBLE_REQUIRE_OK(check.world.pool.init(bytes.subspan(offset, 40), 3));
+         THIMBLE_REQUIRE_OK(Octree::make(3, bytes.subspan(offset, 40), &check.world.pool));
          THIMBLE_EQUAL(check.world.pool.capacity(), offset % 4 == 0 ? 5U : 4U);
        }
      }},

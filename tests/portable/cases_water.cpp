@@ -1,7 +1,6 @@
 // Moving water and rays that meet it.
 #include "portable/groups.h"
-#include "thimble/water.h"
-#include "thimble/water_surface.h"
+#include "thimble/light/water.h"
 
 namespace thimble::portable {
 namespace {
@@ -21,7 +20,7 @@ bool fill(Check& check, Water* water) {
   config.rest_q8 = 3 * 256;
   config.greatest_q8 = 6 * 256;
   config.blocked = mask;
-  return check.equal(Water::init(check.arena.take(water_bytes(kWidth, kDepth)), config, water), Status::kOk,
+  return check.equal(Water::make(config, check.arena.take(water_bytes(kWidth, kDepth)), water), Status::kOk,
                      THIMBLE_WHAT("init")) &&
          check.equal(water->touch(2400, 1300, 700, 200), Status::kOk, THIMBLE_WHAT("touch"));
 }
@@ -83,10 +82,10 @@ constexpr Case kCases[] = {
        config.depth = kDepth;
        const Bytes bytes = check.arena.take(water_bytes(kWidth, kDepth));
        config.wave_speed_q6 = kMaxWaveSpeedQ6 + 1;
-       THIMBLE_EQUAL(Water::init(bytes, config, &water), Status::kOutOfRange);
+       THIMBLE_EQUAL(Water::make(config, bytes, &water), Status::kOutOfRange);
        config.wave_speed_q6 = kMaxWaveSpeedQ6;
-       THIMBLE_EQUAL(Water::init(bytes.subspan(1), config, &water), Status::kOutOfMemory);
-       THIMBLE_EQUAL(Water::init(bytes, config, &water), Status::kOk);
+       THIMBLE_EQUAL(Water::make(config, bytes.subspan(1), &water), Status::kOutOfMemory);
+       THIMBLE_EQUAL(Water::make(config, bytes, &water), Status::kOk);
      }},
     {"rays among waves -> the same columns, faces and t everywhere", kBytes,
      [](Check& check, int) {

@@ -6,7 +6,7 @@
 #define THIMBLE_TESTS_PORTABLE_GOLDEN_TREES_H
 
 #include "golden/scenes.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 

@@ -7,9 +7,9 @@
 
 #include <stdint.h>
 
-#include "thimble/ray.h"
-#include "thimble/span.h"
-#include "thimble/vec.h"
+#include "thimble/base/memory.h"
+#include "thimble/base/vec.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::portable {
 

@@ -4,7 +4,7 @@ namespace thimble::portable {
 
 bool make_pool(Check& check, uint32_t nodes, int level) {
   const Bytes bytes = check.arena.take(Octree::octree_bytes(nodes));
-  return check.equal(check.world.pool.init(bytes, level), Status::kOk, THIMBLE_WHAT("pool.init")) &&
+  return check.equal(Octree::make(level, bytes, &check.world.pool), Status::kOk, THIMBLE_WHAT("pool.init")) &&
          check.equal(check.world.pool.capacity(), nodes, THIMBLE_WHAT("nodes of the pool"));
 }
 
@@ -12,7 +12,7 @@ bool make_compact(Check& check, int rank_shift) {
   const size_t size = compact_bytes(compact_shape(check.world.pool, rank_shift));
   const Bytes bytes = check.arena.take(size);
   size_t written = 0;
-  return check.equal(compact_from_octree(check.world.pool, bytes, &written, rank_shift), Status::kOk,
+  return check.equal(CompactTree::make(check.world.pool, bytes, nullptr, &written, rank_shift), Status::kOk,
                      THIMBLE_WHAT("compact_from_octree")) &&
          check.equal(written, size, THIMBLE_WHAT("bytes of the compact tree")) &&
          check.equal(CompactTree::open(bytes, &check.world.compact), Status::kOk, THIMBLE_WHAT("open"));
@@ -20,7 +20,7 @@ bool make_compact(Check& check, int rank_shift) {
 
 bool make_grid(Check& check, const Vec3i& size) {
   const Bytes bytes = check.arena.take(dense_grid_bytes(size));
-  return check.equal(DenseGrid::init(bytes, size, &check.world.grid), Status::kOk, THIMBLE_WHAT("grid.init"));
+  return check.equal(DenseGrid::make(size, bytes, &check.world.grid), Status::kOk, THIMBLE_WHAT("grid.init"));
 }
 
 bool build(Check& check, const RayScene& scene) {

@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "support/compact_damage.h"
-#include "thimble/baked_lighting.h"
-#include "thimble/baked_scene.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/light/baked_lighting.h"
 
 namespace thimble::tests {
 
@@ -17,7 +17,7 @@ namespace thimble::tests {
 inline const char* use_lighting(const BakedLighting& lighting, int level) {
   const LitScene& scene = lighting.scene;
   const std::int32_t side = 1 << level;
-  if ((lighting.effects & ~kAllEffects) != 0 || scene.surfaces.size > kMaxSurfaces ||
+  if ((lighting.effects & ~Effect::kAll) != 0 || scene.surfaces.size > kMaxSurfaces ||
       scene.lights.size > kMaxLights || scene.bounces > kMaxBounces) {
     return "lighting beyond its limits";
   }
@@ -78,7 +78,8 @@ inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   }
   BakedLighting lighting;
   lighting.effects = UINT32_MAX;
-  if (open_lighting(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) == Status::kOk) {
+  if (BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
+      Status::kOk) {
     if (const char* text = use_lighting(lighting, scene.tree().level())) {
       return text;
     }
@@ -88,7 +89,7 @@ inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   if (scene.has_camera()) {
     Camera camera;
     // Square and one pixel: only what is wrong with the view itself could be refused.
-    const Status status = make_camera(scene.camera(), 1, 1, scene.tree().level(), &camera);
+    const Status status = set_camera(scene.camera(), 1, 1, scene.tree().level(), &camera);
     if (status == Status::kBadArgument) {
       return "a camera that makes no view";
     }

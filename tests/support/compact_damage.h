@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
-#include "thimble/compact_tree.h"
-#include "thimble/crc32.h"
-#include "thimble/trace.h"
+#include "thimble/base/crc32.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tests {
 

@@ -9,22 +9,22 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/lit_render.h"
-#include "thimble/octree.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/camera.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::testing {
 
-inline constexpr EffectSet kTracing =
-    kShadows | kAmbientOcclusion | kMirror | kGlass | kMedia | kWater | kDirectLight;
+inline constexpr EffectSet kTracing = Effect::kShadows | Effect::kAmbientOcclusion | Effect::kMirror |
+                                      Effect::kGlass | Effect::kMedia | Effect::kWater | Effect::kDirectLight;
 
 /// Not to be moved: the tree points into it.
 class LitWorld {
  public:
   explicit LitWorld(int level = 5, std::uint32_t nodes = 60000) {
     pool_bytes_.resize(Octree::octree_bytes(nodes));
-    REQUIRE(pool_.init({pool_bytes_.data(), pool_bytes_.size()}, level) == Status::kOk);
+    REQUIRE(Octree::make(level, {pool_bytes_.data(), pool_bytes_.size()}, &pool_) == Status::kOk);
     surfaces.resize(16);
   }
   LitWorld(const LitWorld&) = delete;
@@ -40,7 +40,8 @@ class LitWorld {
   void finish() {
     tree_bytes_.resize(compact_bytes(compact_shape(pool_)));
     std::size_t written = 0;
-    REQUIRE(compact_from_octree(pool_, {tree_bytes_.data(), tree_bytes_.size()}, &written) == Status::kOk);
+    REQUIRE(CompactTree::make(pool_, {tree_bytes_.data(), tree_bytes_.size()}, nullptr, &written) ==
+            Status::kOk);
     REQUIRE(CompactTree::open({tree_bytes_.data(), written}, &tree) == Status::kOk);
     scene.surfaces = {surfaces.data(), surfaces.size()};
     scene.lights = {lights.data(), lights.size()};

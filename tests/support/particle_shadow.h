@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "thimble/particles.h"
+#include "thimble/plane/particles.h"
 
 namespace thimble::tools {
 
@@ -25,7 +25,7 @@ class ShadowedWorld {
   explicit ShadowedWorld(const ParticleConfig& config)
       : bytes_(particles_bytes(config)),
         walls_(static_cast<std::size_t>(config.width) * static_cast<std::size_t>(config.height), 0) {
-    status = ParticleWorld::init({bytes_.data(), bytes_.size()}, config, &world);
+    status = ParticleWorld::make(config, {bytes_.data(), bytes_.size()}, &world);
   }
 
   ParticleWorld world;

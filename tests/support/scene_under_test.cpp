@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "thimble/morton.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::tests {
 
@@ -39,7 +39,7 @@ Octree fill_pool(std::vector<std::uint8_t>& bytes, int level, const std::vector<
                                                   std::size_t{1} << std::min(3 * level + 1, 27));
   bytes.resize(Octree::octree_bytes(nodes));
   Octree pool;
-  if (pool.init({bytes.data(), bytes.size()}, level) != Status::kOk) {
+  if (Octree::make(level, {bytes.data(), bytes.size()}, &pool) != Status::kOk) {
     throw std::logic_error("scene under test: the pool refuses its level");
   }
   for (const reference::Voxel& voxel : voxels) {
@@ -57,10 +57,10 @@ HeapBytes from_sorted(std::vector<Key> keys, int key_bits, int level, std::uint8
   const Span<const Key> sorted{keys.data(), count};
   const auto write = [&](Bytes out, std::size_t* needed) {
     if constexpr (sizeof(Key) == 4) {
-      return compact_from_keys(sorted, level, material, out, needed, rank_shift);
+      return CompactTree::make(sorted, level, material, out, nullptr, needed, rank_shift);
     } else {
       static_cast<void>(material);
-      return compact_from_keys(sorted, level, out, needed, rank_shift);
+      return CompactTree::make(sorted, level, out, nullptr, needed, rank_shift);
     }
   };
   std::size_t needed = 0;
@@ -105,7 +105,7 @@ Ray to_core(const reference::Ray& ray) {
 HeapBytes compact_of(const Octree& octree, int rank_shift, std::size_t offset) {
   HeapBytes bytes(compact_bytes(compact_shape(octree, rank_shift)), offset);
   std::size_t written = 0;
-  if (compact_from_octree(octree, bytes.span(), &written, rank_shift) != Status::kOk ||
+  if (CompactTree::make(octree, bytes.span(), nullptr, &written, rank_shift) != Status::kOk ||
       written != bytes.view().size) {
     throw std::logic_error("scene under test: compact_bytes is not what is written");
   }
@@ -183,7 +183,7 @@ SceneUnderTest::SceneUnderTest(const reference::Voxel& size, const std::vector<r
   if (dense_size <= std::size_t{1} << 20) {
     dense_bytes_.resize(dense_size);
     DenseGrid grid;
-    if (DenseGrid::init({dense_bytes_.data(), dense_bytes_.size()}, grid_size, &grid) != Status::kOk) {
+    if (DenseGrid::make(grid_size, {dense_bytes_.data(), dense_bytes_.size()}, &grid) != Status::kOk) {
       throw std::logic_error("scene under test: the dense grid refuses its size");
     }
     for (const reference::Voxel& voxel : voxels) {

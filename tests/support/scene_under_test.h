@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "reference/reference.h"
-#include "thimble/compact_tree.h"
-#include "thimble/dense_grid.h"
-#include "thimble/octree.h"
-#include "thimble/trace.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "reference/reference.h"
-#include "thimble/ray.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tests {
 

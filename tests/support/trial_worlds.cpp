@@ -11,8 +11,8 @@
 #include "commands/options.h"
 #include "readers/oct.h"
 #include "scene/scene_source.h"
-#include "thimble/octree.h"
-#include "thimble/trace.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 namespace {
@@ -30,7 +30,7 @@ class Builder {
       if (fill(builder)) {
         std::vector<std::uint8_t> compact(compact_bytes(compact_shape(builder.octree_)));
         std::size_t written = 0;
-        if (compact_from_octree(builder.octree_, Bytes(compact.data(), compact.size()), &written) !=
+        if (CompactTree::make(builder.octree_, Bytes(compact.data(), compact.size()), nullptr, &written) !=
             Status::kOk) {
           throw std::logic_error("the octree does not become compact");
         }
@@ -55,7 +55,7 @@ class Builder {
 
  private:
   Builder(int level, std::size_t bytes) : level_(level), pool_(bytes), random_(1) {
-    if (octree_.init(Bytes(pool_.data(), pool_.size()), level) != Status::kOk) {
+    if (Octree::make(level, Bytes(pool_.data(), pool_.size()), &octree_) != Status::kOk) {
       throw std::logic_error("no such level");
     }
   }

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "host/wide/voxel_lists.h"
 #include "scene/built_scene.h"
-#include "thimble/camera.h"
+#include "thimble/picture/camera.h"
+#include "wide/voxel_lists.h"
 
 namespace thimble::tests {
 

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::tests {
 

@@ -27,7 +27,7 @@ struct BakeCommand {
   bool as_header = false;
   bool brick_map = false;
   EffectChoice effects;
-  EffectSet effects_found = kNoEffects;  // once it was baked: their code takes flash too
+  EffectSet effects_found = Effect::kNone;  // once it was baked: their code takes flash too
 };
 
 // --memory or what the board's flash has for a scene, the smaller of both.
@@ -102,7 +102,7 @@ void report(const BakeCommand& command, const Baked& baked, const std::string& n
   }
   text += grouped(tree.voxel_count()) + (tree.voxel_count() == 1 ? " voxel" : " voxels") + " in " +
           grouped(bytes) + " bytes (depth " + std::to_string(tree.level()) + ratio.data() + ")\n";
-  if (baked.effects != kNoEffects) {
+  if (baked.effects != Effect::kNone) {
     text += "for the effects " + effects_text(baked.effects) + "\n";
   }
   if (tree.solid_added() != 0) {

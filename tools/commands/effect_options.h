@@ -24,7 +24,7 @@ struct EffectOptions {
   /// `more` ends the help of --effects.
   void add_to(CLI::App& app, const std::string& more = {});
   /// Whether effects were asked for by name.
-  bool named() const { return !choice.automatic && choice.effects != kNoEffects; }
+  bool named() const { return !choice.automatic && choice.effects != Effect::kNone; }
   /// The scene's lighting with --bounces for its own.
   LitDescription lighting(const SceneSource& source) const;
 };

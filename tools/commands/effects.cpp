@@ -112,7 +112,7 @@ std::string rays_table(const EffectsStudy& study) {
     rows.push_back(cells);
   };
   frame("frame without any", study.plain);
-  if (study.effects == kNoEffects) {
+  if (study.effects == Effect::kNone) {
     return "\n" + columns_of(rows, 1);
   }
   frame("frame with all", study.lit);
@@ -130,7 +130,7 @@ std::string rays_table(const EffectsStudy& study) {
 
 std::string frame_lines(const EffectsStudy& study) {
   std::string text = "\na frame without effects takes " + fixed(study.plain_ms, 2) + " ms";
-  if (study.effects != kNoEffects) {
+  if (study.effects != Effect::kNone) {
     text += ", with these " + fixed(study.lit_ms, 2) + " ms and " + grouped(study.state_bytes) +
             " bytes beside\ntree and band; a lit picture takes " + grouped(study.base_ram_bytes) +
             " bytes of RAM and " + grouped(study.base_flash_bytes) +

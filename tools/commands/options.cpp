@@ -429,7 +429,7 @@ Camera ViewOptions::camera(const SceneSource& source, int level, const VoxelBox&
     own.direction_bits = static_cast<std::uint8_t>(direction_bits);
   }
   Camera result;
-  const Status status = make_camera(own, width_px, height_px, level, &result);
+  const Status status = set_camera(own, width_px, height_px, level, &result);
   if (status != Status::kOk) {
     throw InputError(std::string("the scene's own camera does not suit a picture of ") +
                      std::to_string(width_px) + "x" + std::to_string(height_px) + ": " + status_text(status) +

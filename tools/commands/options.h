@@ -14,9 +14,9 @@
 #include "scene/built_scene.h"
 #include "scene/quality.h"
 #include "scene/scene_source.h"
-#include "thimble/baked_scene.h"
-#include "thimble/camera.h"
-#include "thimble/trace.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/picture/camera.h"
+#include "thimble/trace/trace.h"
 
 namespace CLI {
 class App;

@@ -111,7 +111,7 @@ void check_usage(const RenderCommand& command) {
 
 // An explicit --shade is drawn as such, unless effects are asked for beside it.
 EffectChoice effect_choice(const RenderCommand& command) {
-  constexpr EffectChoice kNone{false, kNoEffects};
+  constexpr EffectChoice kNone{false, Effect::kNone};
   if (command.shade_name.empty() || command.effects.named()) {
     return command.effects.choice;
   }
@@ -241,14 +241,14 @@ void run(const RenderCommand& given) {
   const EffectChoice choice = effect_choice(command);
   UsedMaterials used;
   EffectSet effects = expected_effects(*source, lighting, choice, &used);
-  if (effects != kNoEffects) {
+  if (effects != Effect::kNone) {
     check_lit(command, effects);
   }
   const bool in_flash = command.scene.board != nullptr && source->baked() != nullptr;
   // Each thread that draws with effects keeps rays of its own.
   const auto more_threads = static_cast<std::uint64_t>(command.engine.threads - 1);
   const std::uint64_t state_bytes =
-      (effects != kNoEffects ? more_threads * lit_render_bytes(effects) : 0) +
+      (effects != Effect::kNone ? more_threads * lit_render_bytes(effects) : 0) +
       (in_flash ? lit_render_bytes(effects)
                 : lit_state_bytes(lit_scene_for(lighting, used, effects), effects));
 
@@ -275,7 +275,7 @@ void run(const RenderCommand& given) {
   const QualityFrame frame(built, command.quality, camera, fine, shading, colors);
   const Subject subject{command, built, frame, camera, fine, shading, format};
   LitPicture lit;
-  if (effects != kNoEffects) {
+  if (effects != Effect::kNone) {
     used = used_materials(built.compact());
     lit.effects = effects = chosen_effects(lighting, used, choice);
     lit.scene = lit_scene_for(lighting, used, effects);
@@ -285,7 +285,7 @@ void run(const RenderCommand& given) {
   ProgressBar bar("tracing", command.scene.quiet);
   const auto update = [&](double done) { bar.update(done); };
   const Painting painting =
-      effects == kNoEffects ? paint_without_effects(subject, update) : paint_lit(subject, lit, update);
+      effects == Effect::kNone ? paint_without_effects(subject, update) : paint_lit(subject, lit, update);
   bar.clear();
 
   const Image shown = converted(painting.image, pixel_format(kind));
@@ -306,7 +306,7 @@ void run(const RenderCommand& given) {
   const std::vector<std::uint8_t> pixels = file_pixels(shown, kind);
   stats.frame_crc32 = crc_text(static_cast<std::uint32_t>(crc32_z(0, pixels.data(), pixels.size())));
   stats.effects = effects;
-  if (effects != kNoEffects) {
+  if (effects != Effect::kNone) {
     stats.bounces = lit.scene.bounces;
     stats.lit_counts = painting.counts.lit;
   }

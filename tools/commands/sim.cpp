@@ -23,8 +23,8 @@
 #include "scene/baking.h"
 #include "scene/board_fit.h"
 #include "scene/wide_frames.h"
-#include "thimble/baked_lighting.h"
-#include "thimble/baked_scene.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/light/baked_lighting.h"
 
 namespace thimble::tools {
 namespace {
@@ -61,9 +61,9 @@ bool has_water(const std::vector<std::uint8_t>& bytes) {
   BakedScene scene;
   BakedLighting lighting;
   return BakedScene::open({bytes.data(), bytes.size()}, &scene) == Status::kOk &&
-         open_lighting(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
+         BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
              Status::kOk &&
-         (lighting.effects & kWater) != 0;
+         (lighting.effects & Effect::kWater) != 0;
 }
 
 // The scene as it lies in the board's flash: baked for its display, or a baked file as it is.

@@ -9,7 +9,7 @@
 
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
-#include "thimble/lit_pixel.h"
+#include "thimble/light/render.h"
 
 namespace thimble::tools {
 

@@ -196,7 +196,7 @@ std::string answer(const std::string& question, const AccuracyRow& row) {
 
 // Rendering draws a scene's light unless it is told what to shade.
 std::string unlit_advice(const AccuracyStudy& study) {
-  return study.effects == kNoEffects
+  return study.effects == Effect::kNone
              ? ""
              : "  with --shade as given here; without it thimble render draws light\n";
 }

@@ -10,7 +10,7 @@
 #include "output/hit_csv.h"
 #include "output/units.h"
 #include "readers/source.h"
-#include "thimble/anytime.h"
+#include "thimble/picture/anytime.h"
 
 namespace thimble::tools {
 namespace {
@@ -84,8 +84,8 @@ class Studio {
                 AnytimeFrame* frame) const {
     memory->resize(anytime_bytes(camera.width_px(), camera.height_px(), PixelFormat::kRgb888));
     const Stopwatch watch;
-    if (frame->begin(built_.compact(), camera, shading_, PixelFormat::kRgb888,
-                     {memory->data(), memory->size()}) != Status::kOk ||
+    if (AnytimeFrame::make(built_.compact(), camera, shading_, PixelFormat::kRgb888,
+                           {memory->data(), memory->size()}, frame) != Status::kOk ||
         frame->refine(built_.compact(), visits, Width::k64) != Status::kOk) {
       throw InputError("internal error: a frame cannot be refined");
     }

@@ -39,7 +39,7 @@ struct AccuracyRow {
   bool front = false;            ///< mark_front
 };
 
-/// A frame that was stopped after so much work (thimble/anytime.h), with the knobs at their defaults.
+/// A frame that was stopped after so much work (thimble/picture/anytime.h), with the knobs at their defaults.
 struct WorkRow {
   std::uint64_t given_visits = 0;
   /// Pixels not yet exact, and how far the picture can then be from the finished one: the core's own bound.
@@ -69,7 +69,7 @@ struct AccuracyStudy {
   /// Lit pictures with the knobs of light, against the one with these at their best (one sample a pixel); no
   /// depths, no instructions. Empty where the scene's effects have no knobs.
   std::vector<AccuracyRow> light;
-  EffectSet effects = kNoEffects;
+  EffectSet effects = Effect::kNone;
   Setting reference;
   LightSetting light_reference;
   std::uint64_t pixels = 0;

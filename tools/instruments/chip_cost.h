@@ -15,7 +15,7 @@
 
 #include <cstdint>
 
-#include "thimble/render.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::tools {
 

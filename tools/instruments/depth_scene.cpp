@@ -49,7 +49,7 @@ std::vector<SolidBlock> coarser(const std::vector<SolidBlock>& blocks, int level
 
 DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, int up, bool one_material)
     : pool_memory_(HostMemory::largest()) {
-  if (pool_.init(pool_memory_.bytes(), world_level) != Status::kOk) {
+  if (Octree::make(world_level, pool_memory_.bytes(), &pool_) != Status::kOk) {
     throw InputError("a world of depth " + std::to_string(world_level) + " is beyond the limits");
   }
   for (const SolidBlock& block : blocks) {
@@ -64,17 +64,18 @@ DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, i
   const std::size_t size = compact_bytes(shape_);
   compact_bytes_.resize(size);
   std::size_t written = 0;
-  if (size == 0 || compact_from_octree(pool_, Bytes(compact_bytes_.data(), size), &written) != Status::kOk ||
+  if (size == 0 ||
+      CompactTree::make(pool_, Bytes(compact_bytes_.data(), size), nullptr, &written) != Status::kOk ||
       CompactTree::open({compact_bytes_.data(), written}, &compact_) != Status::kOk) {
     throw InputError("the scene does not go into a compact tree");
   }
   {
     const HostMemory work(thimble::shared_work_bytes(compact_.node_count()));
-    Status status = shared_from_compact(compact_, {}, work.bytes(), &shared_build_);
+    Status status = SharedTree::make(compact_, {}, work.bytes(), nullptr, &shared_build_);
     if (status == Status::kOutOfMemory) {
       shared_bytes_.resize(shared_build_.bytes);
-      status = shared_from_compact(compact_, Bytes(shared_bytes_.data(), shared_bytes_.size()), work.bytes(),
-                                   &shared_build_);
+      status = SharedTree::make(compact_, Bytes(shared_bytes_.data(), shared_bytes_.size()), work.bytes(),
+                                nullptr, &shared_build_);
     }
     if (status != Status::kOk ||
         SharedTree::open({shared_bytes_.data(), shared_bytes_.size()}, &shared_) != Status::kOk) {
@@ -107,7 +108,7 @@ std::uint64_t DepthScene::bytes(MemoryStructure structure) const {
 
 void DepthScene::make_dense(const std::vector<SolidBlock>& blocks) {
   dense_bytes_.resize(dense_grid_bytes(dense_size_));
-  if (DenseGrid::init(Bytes(dense_bytes_.data(), dense_bytes_.size()), dense_size_, &dense_) != Status::kOk) {
+  if (DenseGrid::make(dense_size_, Bytes(dense_bytes_.data(), dense_bytes_.size()), &dense_) != Status::kOk) {
     throw InputError("the scene does not go into a dense grid");
   }
   for (const SolidBlock& block : blocks) {

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "scene/host_memory.h"
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/dense_grid.h"
-#include "thimble/octree.h"
-#include "thimble/render.h"
-#include "thimble/shared_tree.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
 
 namespace thimble::tools {
 

@@ -136,7 +136,7 @@ std::int64_t difference(std::uint64_t with, std::uint64_t without) {
 }
 
 // A set without effects that trace on: nothing but what every lit picture keeps.
-constexpr std::size_t kBaseRamBytes = lit_render_bytes(kSky) - render_bytes();
+constexpr std::size_t kBaseRamBytes = lit_render_bytes(Effect::kSky) - render_bytes();
 
 void fill(const Studio& studio, EffectRow* row) {
   const Variant& with = studio.of(row->with);
@@ -155,7 +155,7 @@ void fill(const Studio& studio, EffectRow* row) {
   row->ms_q25 = quantile(more, 0.25);
   row->ms_q75 = quantile(more, 0.75);
   row->ram_bytes = lit_state_bytes(with.scene, row->with) - lit_state_bytes(without.scene, row->without) -
-                   (row->without == kNoEffects ? kBaseRamBytes : 0);
+                   (row->without == Effect::kNone ? kBaseRamBytes : 0);
   for (const EffectFlash& flash : kEffectFlash) {
     row->flash_bytes += flash.effect == row->effect ? flash.bytes : 0;
   }
@@ -178,33 +178,33 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
   const std::string named = "the scene names it";
   const LitScene& rest = lit.rest;
   switch (effect) {
-    case kDirectLight:
+    case Effect::kDirectLight:
       return lit.lights.empty() ? named : lights(lit);
-    case kShadows:
+    case Effect::kShadows:
       return rest.has_shadows ? "its lights cast shadows" : named;
-    case kAmbientOcclusion:
+    case Effect::kAmbientOcclusion:
       return rest.occlusion.rays == 0 ? named
                                       : std::to_string(rest.occlusion.rays) + " rays a face, " +
                                             std::to_string(rest.occlusion.reach) + " voxels far";
-    case kEmission:
+    case Effect::kEmission:
       return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
-    case kMirror:
+    case Effect::kMirror:
       return materials(lit, used, SurfaceKind::kMetal, "metal", named);
-    case thimble::kGlass:
+    case thimble::Effect::kGlass:
       return materials(lit, used, SurfaceKind::kGlass, "clear", named);
-    case thimble::kMedia:
+    case thimble::Effect::kMedia:
       return materials(lit, used, SurfaceKind::kMedia, "cloud", named);
-    case thimble::kWater:
+    case thimble::Effect::kWater:
       return rest.has_water ? "water of " + std::to_string(rest.water.width) + " x " +
                                   std::to_string(rest.water.depth) + " columns"
                             : named;
-    case kFog:
+    case Effect::kFog:
       return rest.fog.density_q16 == 0
                  ? named
                  : "air that halves light in " + fixed(65536.0 / rest.fog.density_q16, 0) + " voxels";
-    case kSky:
+    case Effect::kSky:
       return rest.has_sky ? "a sky behind it" : named;
-    case kDepthCue:
+    case Effect::kDepthCue:
       return rest.has_depth_cue ? "far is darker" : named;
     default:
       return {};
@@ -218,8 +218,8 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
   Studio studio(source, built, options, &study.note);
   study.effects = chosen_effects(studio.lit(), studio.used(), options.effects.choice);
   studio.add(study.effects);
-  studio.add(kNoEffects);
-  for (int bit = 0; bit < kEffectCount; ++bit) {
+  studio.add(Effect::kNone);
+  for (int bit = 0; bit < Effect::kCount; ++bit) {
     EffectRow& row = study.rows[static_cast<std::size_t>(bit)];
     row.effect = EffectSet{1} << bit;
     row.called_for = (study.effects & row.effect) != 0;
@@ -227,7 +227,7 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
       continue;
     }
     row.why = why_effect(studio.lit(), studio.used(), row.effect);
-    row.with = row.effect == kDirectLight ? study.effects & ~kShadows : study.effects;
+    row.with = row.effect == Effect::kDirectLight ? study.effects & ~Effect::kShadows : study.effects;
     row.without = row.with & ~row.effect;
     studio.add(row.with);
     studio.add(row.without);
@@ -239,13 +239,13 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
     }
   }
   const Variant& whole = studio.of(study.effects);
-  const Variant& plain = studio.of(kNoEffects);
+  const Variant& plain = studio.of(Effect::kNone);
   study.lit = whole.counts;
   study.plain = plain.counts;
   study.lit_ms = quantile(whole.ms, 0.5);
   study.plain_ms = quantile(plain.ms, 0.5);
   study.state_bytes = lit_state_bytes(whole.scene, study.effects);
-  if (study.effects != kNoEffects) {
+  if (study.effects != Effect::kNone) {
     study.base_ram_bytes = kBaseRamBytes;
     study.base_flash_bytes = kLitBaseFlashBytes;
   }

@@ -14,7 +14,7 @@
 #include "commands/effect_options.h"
 #include "commands/options.h"
 #include "scene/scene_source.h"
-#include "thimble/lit_render.h"
+#include "thimble/light/render.h"
 
 namespace thimble::tools {
 
@@ -25,11 +25,11 @@ struct EffectsOptions {
 };
 
 struct EffectRow {
-  EffectSet effect = kNoEffects;
+  EffectSet effect = Effect::kNone;
   bool called_for = false;  ///< if not, all below is 0 and empty
   std::string why;          ///< in words: which material, light or line of the scene
-  EffectSet with = kNoEffects;
-  EffectSet without = kNoEffects;
+  EffectSet with = Effect::kNone;
+  EffectSet without = Effect::kNone;
   std::array<std::int64_t, kLitRayKinds> rays{};  ///< more with it than without, by kind
   std::int64_t node_visits = 0;                   ///< the same, of all kinds
   double with_ms = 0;                             ///< medians of the frames
@@ -46,10 +46,10 @@ struct EffectRow {
 };
 
 struct EffectsStudy {
-  EffectSet effects = kNoEffects;
-  std::array<EffectRow, kEffectCount> rows;  ///< in the order of the bits
-  LitCounts lit;                             ///< the whole frame
-  LitCounts plain;                           ///< the frame without effects
+  EffectSet effects = Effect::kNone;
+  std::array<EffectRow, Effect::kCount> rows;  ///< in the order of the bits
+  LitCounts lit;                               ///< the whole frame
+  LitCounts plain;                             ///< the frame without effects
   double lit_ms = 0;
   double plain_ms = 0;
   /// What the first effect costs beside its own: nothing where there is none.

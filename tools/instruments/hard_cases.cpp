@@ -8,9 +8,9 @@
 
 #include "reference/reference.h"
 #include "reference/textbook.h"
-#include "thimble/compact_tree.h"
-#include "thimble/morton.h"
-#include "thimble/trace.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::tools {
 namespace {
@@ -57,9 +57,9 @@ struct World {
     std::sort(keys.begin(), keys.end());
     std::size_t needed = 0;
     const Span<const std::uint64_t> sorted{keys.data(), keys.size()};
-    (void)compact_from_keys(sorted, level, Bytes{}, &needed);
+    (void)CompactTree::make(sorted, level, Bytes{}, nullptr, &needed);
     bytes.resize(needed);
-    if (compact_from_keys(sorted, level, {bytes.data(), bytes.size()}, nullptr) != Status::kOk ||
+    if (CompactTree::make(sorted, level, {bytes.data(), bytes.size()}, nullptr, nullptr) != Status::kOk ||
         CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
       throw std::logic_error("the world of the hard cases has no tree");
     }

@@ -26,15 +26,15 @@ LightStudio::LightStudio(const SceneSource& source, const BuiltScene& built, con
   const UsedMaterials used = used_materials(built.compact());
   effects_ = chosen_effects(lit_, used, choice);
   const LitScene scene = with_defaults(lit_.lit_scene(), effects_);
-  if ((effects_ & kAmbientOcclusion) != 0) {
+  if ((effects_ & Effect::kAmbientOcclusion) != 0) {
     own_.occlusion_rays = scene.occlusion.rays;
   }
-  if ((effects_ & kBranchingEffects) != 0) {
+  if ((effects_ & Effect::kBranching) != 0) {
     own_.bounces = scene.bounces;
   }
   for (std::size_t material = 0; material < lit_.surfaces.size(); ++material) {
     const Surface& surface = lit_.surfaces[material];
-    if ((effects_ & kMirror) != 0 && used.is[material] && surface.kind == SurfaceKind::kMetal &&
+    if ((effects_ & Effect::kMirror) != 0 && used.is[material] && surface.kind == SurfaceKind::kMetal &&
         surface.roughness != 0) {
       own_.roughness_rays = 4;
     }
@@ -109,7 +109,7 @@ void LightStudio::draw(const LightSetting& setting, std::vector<std::uint8_t>* p
     scene.occlusion.rays = static_cast<std::uint8_t>(setting.occlusion_rays);
   }
   if (setting.occlusion_rays == 0) {
-    effects &= ~kAmbientOcclusion;
+    effects &= ~Effect::kAmbientOcclusion;
   }
   if (setting.bounces >= 0) {
     scene.bounces = static_cast<std::uint8_t>(setting.bounces);

@@ -11,10 +11,10 @@
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
-#include "thimble/camera.h"
-#include "thimble/lit_render.h"
-#include "thimble/render.h"
-#include "thimble/shading.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
 
 namespace thimble::tools {
 
@@ -55,7 +55,7 @@ class LightStudio {
   Shading shading_;
   LitDescription lit_;
   LitDescription polished_;
-  EffectSet effects_ = kNoEffects;
+  EffectSet effects_ = Effect::kNone;
   LightSetting own_;
 };
 

@@ -210,7 +210,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     part(0.2);
     Camera view;
     if (options.frames > 0) {
-      if (make_camera(scaled(chosen, levels), camera.width_px(), camera.height_px(), depth, &view) ==
+      if (set_camera(scaled(chosen, levels), camera.width_px(), camera.height_px(), depth, &view) ==
           Status::kOk) {
         if (row.structures[kDense].bytes <= kMostDenseBytes) {
           scene.make_dense(coarse);
@@ -239,7 +239,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
       std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(own.pool())));
       std::size_t size = 0;
       CompactTree tree;
-      if (compact_from_octree(own.pool(), Bytes(bytes.data(), bytes.size()), &size) != Status::kOk ||
+      if (CompactTree::make(own.pool(), Bytes(bytes.data(), bytes.size()), nullptr, &size) != Status::kOk ||
           CompactTree::open({bytes.data(), size}, &tree) != Status::kOk) {
         throw InputError("internal error: a coarsened tree that cannot be written");
       }

@@ -7,15 +7,14 @@
 #include <cmath>
 #include <random>
 
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/cutoff.h"
-#include "thimble/fixed.h"
-#include "thimble/morton.h"
-#include "thimble/node_colors.h"
-#include "thimble/pixel.h"
-#include "thimble/samples.h"
-#include "thimble/shading.h"
+#include "thimble/base/vec.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/cutoff.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::tools {
 namespace {
@@ -350,8 +349,8 @@ Found node_colors(Draw& draw, std::uint64_t cases) {
     std::array<std::uint8_t, 16> table{};
     CompactTree tree;
     NodeColors colors;
-    if (compact_from_keys(Span<const std::uint64_t>(keys.data(), count), 1, {bytes.data(), bytes.size()},
-                          nullptr) != Status::kOk ||
+    if (CompactTree::make(Span<const std::uint64_t>(keys.data(), count), 1, {bytes.data(), bytes.size()},
+                          nullptr, nullptr) != Status::kOk ||
         CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk ||
         NodeColors::make(tree, {palette.data(), count}, {}, {table.data(), table.size()}, &colors) !=
             Status::kOk) {

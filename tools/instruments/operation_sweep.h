@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "thimble/vec.h"
+#include "thimble/base/vec.h"
 
 namespace thimble::tools::sweep {
 
@@ -89,7 +89,7 @@ struct Operation {
   Found (*sweep)(Draw& draw, std::uint64_t cases);
 };
 
-/// Those of thimble/optics.h.
+/// Those of thimble/light/optics.h.
 std::vector<Operation> optics_operations();
 
 }  // namespace thimble::tools::sweep

@@ -5,7 +5,7 @@
 
 #include "output/hit_csv.h"
 #include "readers/source.h"
-#include "thimble/trace.h"
+#include "thimble/trace/trace.h"
 
 namespace thimble::tools {
 

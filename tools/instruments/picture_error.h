@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/shading.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 

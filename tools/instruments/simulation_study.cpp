@@ -11,7 +11,7 @@
 #include "output/units.h"
 #include "particles/populated_world.h"
 #include "readers/source.h"
-#include "thimble/water.h"
+#include "thimble/light/water.h"
 
 namespace thimble::tools {
 namespace {
@@ -81,7 +81,7 @@ Basin run_water(int columns, int wave_speed_q6) {
   std::vector<std::uint8_t> bytes(water_bytes(columns, columns));
   Water water;
   const std::int32_t side_q8 = columns * 256;
-  if (Water::init({bytes.data(), bytes.size()}, config, &water) != Status::kOk ||
+  if (Water::make(config, {bytes.data(), bytes.size()}, &water) != Status::kOk ||
       water.touch(side_q8 * 3 / 8, side_q8 * 7 / 16, side_q8 / 8, kPressedQ8) != Status::kOk) {
     throw InputError("internal error: the basin cannot be set up");
   }

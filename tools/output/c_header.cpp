@@ -5,7 +5,7 @@
 #include <cctype>
 #include <cstdio>
 
-#include "thimble/baked_lighting.h"
+#include "thimble/light/baked_lighting.h"
 
 namespace thimble::tools {
 namespace {
@@ -88,14 +88,14 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   define("IS_PERSPECTIVE", scene.has_camera() && scene.camera().is_perspective ? "1" : "0");
   define("IS_ORTHOGRAPHIC", scene.has_camera() && !scene.camera().is_perspective ? "1" : "0");
   BakedLighting lighting;
-  if (open_lighting(scene.section(SectionKind::kLighting), tree.level(), &lighting) != Status::kOk) {
-    lighting.effects = kNoEffects;  // baked without
+  if (BakedLighting::open(scene.section(SectionKind::kLighting), tree.level(), &lighting) != Status::kOk) {
+    lighting.effects = Effect::kNone;  // baked without
   }
   std::array<char, 16> effects{};
   std::snprintf(effects.data(), effects.size(), "0x%03xu", static_cast<unsigned>(lighting.effects));
-  // The bits are those of thimble/lit_scene.h; words for a person.
+  // The bits are those of thimble/light/scene.h; words for a person.
   std::string names;
-  for (int bit = 0; bit < kEffectCount; ++bit) {
+  for (int bit = 0; bit < Effect::kCount; ++bit) {
     const EffectSet effect = EffectSet{1} << bit;
     names += (lighting.effects & effect) != 0 ? std::string(" ") + effect_name(effect) : "";
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "thimble/baked_scene.h"
+#include "thimble/bake/baked_scene.h"
 
 namespace thimble::tools {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "thimble/ray.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::tools {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "thimble/pixel.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::tools {
 

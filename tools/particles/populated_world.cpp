@@ -74,7 +74,7 @@ PopulatedWorld::PopulatedWorld(const WorldOptions& options, const std::optional<
 }
 
 std::uint32_t PopulatedWorld::fill() {
-  if (ParticleWorld::init({bytes_.data(), bytes_.size()}, config_of(options_), &world_) != Status::kOk ||
+  if (ParticleWorld::make(config_of(options_), {bytes_.data(), bytes_.size()}, &world_) != Status::kOk ||
       world_.set_diameters(options_.least_diameter, options_.most_diameter) != Status::kOk) {
     throw InputError("a value of the world is beyond its limits");
   }

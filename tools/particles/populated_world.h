@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "particles/bodies.h"
-#include "thimble/particles.h"
+#include "thimble/plane/particles.h"
 
 namespace thimble::tools {
 

@@ -27,7 +27,7 @@ void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb)
   rgb->resize(3 * width * static_cast<std::size_t>(field.height()));
   for (std::int32_t y = 0; y < field.height(); ++y) {
     for (std::int32_t x = 0; x < field.width(); ++x) {
-      const bool is_set = (field.word(x >> 5, y) >> (x & 31) & 1U) != 0;
+      const bool is_set = (field.cells_32(x >> 5, y) >> (x & 31) & 1U) != 0;
       put(rgb, static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x),
           is_set ? apps::kWallColor : kGround);
     }

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "thimble/baked_lighting.h"
+#include "thimble/light/baked_lighting.h"
 
 namespace thimble::tools {
 namespace {
@@ -54,7 +54,7 @@ Source read_oct(const SharedBytes& file, const Progress&) {
   // The core leaves this to whoever draws light; here the whole file must be sound.
   const ConstBytes lighting = result.scene.section(SectionKind::kLighting);
   if (lighting.data != nullptr) {
-    const char* fault = check_lighting(lighting, result.scene.tree().level(), &place);
+    const char* fault = BakedLighting::validate(lighting, result.scene.tree().level(), &place);
     if (fault != nullptr) {
       throw InputError("damaged at " +
                        std::to_string(static_cast<std::size_t>(lighting.data - view.data) + place) + ": " +

@@ -10,7 +10,7 @@
 
 #include "readers/shared_bytes.h"
 #include "readers/source.h"
-#include "thimble/compact_tree.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 

@@ -8,8 +8,8 @@
 
 #include "output/units.h"
 #include "readers/text.h"
-#include "thimble/baked_lighting.h"
-#include "thimble/ray.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {
@@ -812,14 +812,14 @@ class Parser {
     bool any = false;
     for (; !any || !line.at_end(); any = true) {
       const Word word = line.word();
-      EffectSet found = kNoEffects;
+      EffectSet found = Effect::kNone;
       std::string known;
-      for (int bit = 0; bit < kEffectCount; ++bit) {
+      for (int bit = 0; bit < Effect::kCount; ++bit) {
         const std::string_view name = effect_name(EffectSet{1} << bit);
-        found |= name == word.text ? EffectSet{1} << bit : kNoEffects;
+        found |= name == word.text ? EffectSet{1} << bit : Effect::kNone;
         known += (bit == 0 ? "" : ", ") + std::string(name);
       }
-      if (found == kNoEffects) {
+      if (found == Effect::kNone) {
         fail_at(word.place,
                 (word.empty() ? "the name of an effect is missing" : quoted(word.text) + " is no effect") +
                     "; there are " + known);

@@ -16,8 +16,8 @@
 
 #include "readers/shared_bytes.h"
 #include "readers/source.h"
-#include "thimble/baked_scene.h"
-#include "thimble/lit_scene.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 
@@ -92,8 +92,8 @@ struct SceneText {
     TextPlace place;
   };
   std::optional<WaterArea> water;
-  EffectSet on = kNoEffects;
-  EffectSet off = kNoEffects;
+  EffectSet on = Effect::kNone;
+  EffectSet off = Effect::kNone;
 };
 
 /// Parses the whole file.

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "readers/shared_bytes.h"
-#include "thimble/baked_scene.h"
-#include "thimble/lit_scene.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 

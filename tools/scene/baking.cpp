@@ -10,8 +10,8 @@
 #include "scene/built_scene.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
-#include "thimble/brick_map.h"
-#include "thimble/octree.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::tools {
 namespace {
@@ -75,7 +75,7 @@ class Assembly {
     map_.resize(most_brick_map_bytes(tree.level()) / sizeof(std::uint64_t) + 1);
     std::size_t written = 0;
     const Bytes room{reinterpret_cast<std::uint8_t*>(map_.data()), map_.size() * sizeof(std::uint64_t)};
-    if (BrickMap::build(tree, room, &written) != Status::kOk) {
+    if (BrickMap::make(tree, room, nullptr, &written) != Status::kOk) {
       return;  // more bricks than a map has numbers for
     }
     parts_.brick_map = {room.data, written};
@@ -91,7 +91,7 @@ class Assembly {
     }
     result->effects = effects_;
     result->bytes.resize(size);
-    if (bake(parts_, {result->bytes.data(), size}) != Status::kOk ||
+    if (BakedScene::make(parts_, {result->bytes.data(), size}, nullptr) != Status::kOk ||
         BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk) {
       throw InputError("internal error: the scene cannot be baked");
     }
@@ -101,7 +101,7 @@ class Assembly {
   std::vector<Rgb8> palette_;
   std::string name_;
   SceneCamera camera_;
-  EffectSet effects_ = kNoEffects;
+  EffectSet effects_ = Effect::kNone;
   std::vector<std::uint8_t> lighting_;
   std::vector<std::uint64_t> map_;  // for its alignment
   BakedParts parts_;
@@ -111,7 +111,7 @@ class Assembly {
 class Coarsener {
  public:
   explicit Coarsener(const CompactTree& tree) : memory_(HostMemory::largest()) {
-    if (octree_.init(memory_.bytes(), tree.level()) != Status::kOk) {
+    if (Octree::make(tree.level(), memory_.bytes(), &octree_) != Status::kOk) {
       throw InputError("internal error: no pool to coarsen in");
     }
     // In Morton order, so that the passes over the pool go through memory from front to back.
@@ -148,7 +148,7 @@ class Coarsener {
     std::vector<std::uint8_t> bytes(tree_bytes());
     std::size_t written = 0;
     if (bytes.empty() ||
-        compact_from_octree(octree_, {bytes.data(), bytes.size()}, &written) != Status::kOk) {
+        CompactTree::make(octree_, {bytes.data(), bytes.size()}, nullptr, &written) != Status::kOk) {
       throw InputError("internal error: the coarsened tree cannot be written");
     }
     return bytes;

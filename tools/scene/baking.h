@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scene/scene_source.h"
-#include "thimble/baked_scene.h"
+#include "thimble/bake/baked_scene.h"
 
 namespace thimble::tools {
 
@@ -31,7 +31,7 @@ struct BakingOptions {
 struct Baked {
   std::vector<std::uint8_t> bytes;
   BakedScene scene;  ///< views into `bytes`; moving this keeps them, copying does not
-  EffectSet effects = kNoEffects;
+  EffectSet effects = Effect::kNone;
   std::uint64_t work_bytes = 0;
   double seconds = 0;
   /// Whether it keeps the limit. If not, it is the scene as it is (or, coarsened, as small as it gets).

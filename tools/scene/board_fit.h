@@ -7,8 +7,8 @@
 
 #include "boards/board_table.h"
 #include "boards/effect_flash.h"
-#include "thimble/lit_render.h"
-#include "thimble/render.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::tools {
 
@@ -23,7 +23,7 @@ inline constexpr std::int32_t kBoardBandRows = 8;
 /// Flash kept for the program that draws with these effects: what they take as measured on a Cortex-M3
 /// (boards/effect_flash.h), one by one or all together, whichever is less.
 inline std::uint32_t code_flash_bytes(EffectSet effects) {
-  if (effects == kNoEffects) {
+  if (effects == Effect::kNone) {
     return kCodeFlashBytes;
   }
   std::uint32_t bytes = kLitBaseFlashBytes;
@@ -33,7 +33,7 @@ inline std::uint32_t code_flash_bytes(EffectSet effects) {
   return kCodeFlashBytes + (bytes < kAllEffectsFlashBytes ? bytes : kAllEffectsFlashBytes);
 }
 /// Bytes of flash that a baked scene may take.
-inline std::uint64_t scene_flash_bytes(const platform::BoardFacts& board, EffectSet effects = kNoEffects) {
+inline std::uint64_t scene_flash_bytes(const platform::BoardFacts& board, EffectSet effects = Effect::kNone) {
   const std::uint32_t code = code_flash_bytes(effects);
   return board.flash_bytes > code ? board.flash_bytes - code : 0;
 }
@@ -47,7 +47,7 @@ inline std::uint64_t board_band_bytes(const platform::BoardFacts& board) {
 }
 /// RAM to draw a scene that lies in flash: camera, shading and counters (as large as on this machine; a
 /// 32-bit chip takes less), one band, and the stack.
-inline std::uint64_t drawing_ram_bytes(const platform::BoardFacts& board, EffectSet effects = kNoEffects) {
+inline std::uint64_t drawing_ram_bytes(const platform::BoardFacts& board, EffectSet effects = Effect::kNone) {
   return lit_render_bytes(effects) + board_band_bytes(board) + board.stack_bytes;
 }
 

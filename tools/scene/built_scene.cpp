@@ -8,7 +8,7 @@
 #include "output/units.h"
 #include "readers/oct.h"
 #include "scene/key_sort.h"
-#include "thimble/morton.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::tools {
 namespace {
@@ -199,7 +199,7 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
 void BuiltScene::build_dense(const SceneSource& source, const Progress& progress) {
   const Vec3i size = dense_size(source);
   const Bytes bytes = arena_.take(dense_grid_bytes(size));
-  if (bytes.empty() || DenseGrid::init(bytes, size, &dense_) != Status::kOk) {
+  if (bytes.empty() || DenseGrid::make(size, bytes, &dense_) != Status::kOk) {
     throw Shortage{};
   }
   source.stream(
@@ -245,7 +245,7 @@ void BuiltScene::insert(const SceneSource& source, const Vec3i& voxel, int block
 // Fills the pool with part `part` (by its Morton number) of the world, `part_level` of its levels.
 void BuiltScene::fill_part(const SceneSource& source, Bytes pool, int part_level, std::size_t part,
                            const Progress& progress) {
-  if (octree_.init(pool, part_level) != Status::kOk || octree_.capacity() == 0) {
+  if (Octree::make(part_level, pool, &octree_) != Status::kOk || octree_.capacity() == 0) {
     throw Shortage{};
   }
   octree_.set_coarsen(true);
@@ -331,14 +331,14 @@ void BuiltScene::build_parts(const SceneSource& source, const Progress& progress
       pool_used = std::max(pool_used, octree_.high_water_bytes());
       const Bytes target = aligned(home.subspan(used), alignof(std::uint64_t));
       std::size_t size = 0;
-      if (compact_from_octree(octree_, target, &size) != Status::kOk ||
+      if (CompactTree::make(octree_, target, nullptr, &size) != Status::kOk ||
           CompactTree::open(target.subspan(0, size), &parts[part]) != Status::kOk) {
         break;
       }
       used = static_cast<std::size_t>(target.data - home.data) + size;
     }
     std::size_t size = 0;
-    if (part == count && compact_from_parts({parts, count}, pool, &size) == Status::kOk) {
+    if (part == count && CompactTree::make({parts, count}, pool, nullptr, &size) == Status::kOk) {
       arena_.note_scratch(static_cast<std::size_t>(pool.data - arena_.rest().data) +
                           std::max(pool_used, size));
       arena_.rewind(mark);
@@ -358,7 +358,7 @@ void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progr
   // bytes, more where there are materials.
   const std::size_t pool_bytes =
       compact && coarsen ? (source.single_material() ? rest.size / 8 * 7 : rest.size / 4 * 3) : rest.size;
-  if (octree_.init(rest.subspan(0, pool_bytes), source.level()) != Status::kOk) {
+  if (Octree::make(source.level(), rest.subspan(0, pool_bytes), &octree_) != Status::kOk) {
     throw Shortage{};
   }
   octree_.set_coarsen(coarsen);
@@ -375,14 +375,14 @@ void BuiltScene::build_pool(const SceneSource& source, bool coarsen, const Progr
   }
   const Bytes target = aligned(rest.subspan(coarsen ? pool_bytes : pool_used), alignof(std::uint64_t));
   std::size_t size = 0;
-  Status status = compact_from_octree(octree_, target, &size);
+  Status status = CompactTree::make(octree_, target, nullptr, &size);
   while (status == Status::kOutOfMemory && coarsen && octree_.nodes_used() > 1) {
     const std::uint64_t nodes = octree_.nodes_used();
     const std::uint64_t fewer = std::min(nodes - 1, std::max<std::uint64_t>(1, nodes * target.size / size));
     if (octree_.coarsen_to(static_cast<std::size_t>(fewer)) != Status::kOk) {
       break;
     }
-    status = compact_from_octree(octree_, target, &size);
+    status = CompactTree::make(octree_, target, nullptr, &size);
   }
   if (status != Status::kOk) {
     throw Shortage{};
@@ -437,9 +437,9 @@ void BuiltScene::build_keys(const SceneSource& source, const Progress& progress)
   const Span<const Key> sorted(keys, count);
   Status status = Status::kOk;
   if constexpr (kBare) {
-    status = compact_from_keys(sorted, source.level(), 0, target, &size);
+    status = CompactTree::make(sorted, source.level(), 0, target, nullptr, &size);
   } else {
-    status = compact_from_keys(sorted, source.level(), target, &size);
+    status = CompactTree::make(sorted, source.level(), target, nullptr, &size);
   }
   if (status != Status::kOk) {
     throw Shortage{};

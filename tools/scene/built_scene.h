@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "host/wide/renderer.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
-#include "thimble/arena.h"
-#include "thimble/compact_tree.h"
-#include "thimble/dense_grid.h"
-#include "thimble/octree.h"
-#include "thimble/pixel.h"
-#include "thimble/render.h"
-#include "thimble/trace.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/render.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
+#include "wide/renderer.h"
 
 namespace thimble::tools {
 
@@ -75,7 +75,7 @@ class BuiltScene {
   Bytes take(std::size_t bytes) { return arena_.take(bytes); }
   const CompactTree& compact() const { return compact_; }
 
-  /// Makes the lists of the wide renderer (platform/host/wide) and takes its workspace: for all rows of
+  /// Makes the lists of the wide renderer (platform/wide) and takes its workspace: for all rows of
   /// pictures of this size, or for as many as there is room for. False, and nothing taken, when there is no
   /// compact tree, or room for fewer than `kLeastWideRows`. Its time counts as building.
   bool prepare_wide(std::int32_t width_px, std::int32_t height_px, int threads);

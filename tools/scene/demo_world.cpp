@@ -514,7 +514,7 @@ void demo_world_light(LitDescription* lit) {
   lit->rest.ambient_q8[1] = 122;
   lit->rest.ambient_q8[2] = 132;
   // For those who ask for light: the scene's own look is that of its faces.
-  lit->off = kDirectLight;
+  lit->off = Effect::kDirectLight;
 }
 
 }  // namespace thimble::tools

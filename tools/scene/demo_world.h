@@ -13,7 +13,7 @@
 #include "readers/source.h"
 #include "scene/lit_description.h"
 #include "scene/voxel_sink.h"
-#include "thimble/baked_scene.h"
+#include "thimble/bake/baked_scene.h"
 
 namespace thimble::tools {
 

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::tools {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "thimble/morton.h"
+#include "thimble/tree/morton.h"
 
 namespace thimble::tools {
 namespace {

@@ -6,17 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::tools {
 
 /// Most bytes of scratch that sorting so many keys on so many threads makes use of: a byte a key at most.
 std::size_t key_sort_scratch_bytes(std::size_t keys, int threads);
 
-/// What `sort_keys` (thimble/morton.h) does, two to three times as fast: keys are dealt in place into buckets
-/// by their highest 8 bits, and a bucket that fits the scratch (or is dealt again until it does) goes there
-/// and back in passes of 11 bits, lowest first. Buckets are shared out among `threads`, 1 or more. `scratch`
-/// is aligned for keys and overwritten; with none, or for short lists, it is `sort_keys`.
+/// What `sort_keys` (thimble/tree/morton.h) does, two to three times as fast: keys are dealt in place into
+/// buckets by their highest 8 bits, and a bucket that fits the scratch (or is dealt again until it does) goes
+/// there and back in passes of 11 bits, lowest first. Buckets are shared out among `threads`, 1 or more.
+/// `scratch` is aligned for keys and overwritten; with none, or for short lists, it is `sort_keys`.
 void sort_keys_fast(Span<std::uint32_t> keys, int key_bits, Bytes scratch, int threads);
 void sort_keys_fast(Span<std::uint64_t> keys, int key_bits, Bytes scratch, int threads);
 

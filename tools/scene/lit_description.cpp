@@ -103,16 +103,16 @@ LitDescription describe_baked(const BakedLighting& lighting, const Palette& pale
   lit.rest.surfaces = {};
   lit.rest.lights = {};
   lit.on = lighting.effects;
-  lit.off = kAllEffects & ~lighting.effects;
+  lit.off = Effect::kAll & ~lighting.effects;
   return lit;
 }
 
 EffectSet called_for(const LitDescription& lit, const UsedMaterials& used) {
   EffectSet set = (effects_of(lit.lit_scene(), &used.is) | lit.on) & ~lit.off;
-  if ((lit.on & kShadows) != 0 && (lit.off & kDirectLight) == 0) {
-    set |= kDirectLight;
+  if ((lit.on & Effect::kShadows) != 0 && (lit.off & Effect::kDirectLight) == 0) {
+    set |= Effect::kDirectLight;
   }
-  return (set & kDirectLight) != 0 ? set : set & ~kShadows;
+  return (set & Effect::kDirectLight) != 0 ? set : set & ~Effect::kShadows;
 }
 
 std::optional<EffectChoice> parse_effects(std::string_view text) {
@@ -127,12 +127,12 @@ std::optional<EffectChoice> parse_effects(std::string_view text) {
   for (;;) {
     const std::size_t comma = std::min(text.find(','), text.size());
     const std::string_view name = text.substr(0, comma);
-    EffectSet found = kNoEffects;
-    for (int bit = 0; bit < kEffectCount; ++bit) {
+    EffectSet found = Effect::kNone;
+    for (int bit = 0; bit < Effect::kCount; ++bit) {
       const EffectSet effect = EffectSet{1} << bit;
-      found |= name == effect_name(effect) ? effect : kNoEffects;
+      found |= name == effect_name(effect) ? effect : Effect::kNone;
     }
-    if (found == kNoEffects || (choice.effects & found) != 0) {
+    if (found == Effect::kNone || (choice.effects & found) != 0) {
       return std::nullopt;
     }
     choice.effects |= found;
@@ -145,7 +145,7 @@ std::optional<EffectChoice> parse_effects(std::string_view text) {
 
 std::string effects_text(EffectSet effects) {
   std::string text;
-  for (int bit = 0; bit < kEffectCount; ++bit) {
+  for (int bit = 0; bit < Effect::kCount; ++bit) {
     const EffectSet effect = EffectSet{1} << bit;
     if ((effects & effect) != 0) {
       text += (text.empty() ? "" : ",") + std::string(effect_name(effect));
@@ -155,28 +155,28 @@ std::string effects_text(EffectSet effects) {
 }
 
 std::string effect_names() {
-  return effects_text(kAllEffects);
+  return effects_text(Effect::kAll);
 }
 
 EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice) {
   if (choice.automatic) {
     return called_for(lit, used);
   }
-  return choice.effects | ((choice.effects & kShadows) != 0 ? kDirectLight : kNoEffects);
+  return choice.effects | ((choice.effects & Effect::kShadows) != 0 ? Effect::kDirectLight : Effect::kNone);
 }
 
 LitScene with_defaults(LitScene scene, EffectSet effects) {
   const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
-  if (wanted(kDirectLight) && scene.lights.empty()) {
+  if (wanted(Effect::kDirectLight) && scene.lights.empty()) {
     scene.lights = {&kDefaultSun, 1};
   }
-  scene.has_shadows = scene.has_shadows || wanted(kShadows);
-  scene.has_sky = scene.has_sky || wanted(kSky);
-  scene.has_depth_cue = scene.has_depth_cue || wanted(kDepthCue);
-  if (wanted(kAmbientOcclusion) && scene.occlusion.rays == 0) {
+  scene.has_shadows = scene.has_shadows || wanted(Effect::kShadows);
+  scene.has_sky = scene.has_sky || wanted(Effect::kSky);
+  scene.has_depth_cue = scene.has_depth_cue || wanted(Effect::kDepthCue);
+  if (wanted(Effect::kAmbientOcclusion) && scene.occlusion.rays == 0) {
     scene.occlusion.rays = kDefaultOcclusionRays;
   }
-  if (wanted(kFog) && scene.fog.density_q16 == 0) {
+  if (wanted(Effect::kFog) && scene.fog.density_q16 == 0) {
     scene.fog.density_q16 = kDefaultFogDensity;
   }
   return scene;
@@ -184,7 +184,7 @@ LitScene with_defaults(LitScene scene, EffectSet effects) {
 
 std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const UsedMaterials& used,
                                            EffectSet effects, int level) {
-  if (effects == kNoEffects) {
+  if (effects == Effect::kNone) {
     return {};
   }
   BakedLighting lighting;
@@ -193,22 +193,22 @@ std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const Used
   scene = with_defaults(lit.lit_scene(), effects);
   const LitScene plain;
   const auto unwanted = [effects](EffectSet effect) { return (effects & effect) == 0; };
-  if (unwanted(kDirectLight)) {
+  if (unwanted(Effect::kDirectLight)) {
     scene.lights = {};
   }
-  scene.has_shadows = scene.has_shadows && !unwanted(kShadows);
-  scene.has_depth_cue = scene.has_depth_cue && !unwanted(kDepthCue);
-  if (unwanted(kAmbientOcclusion)) {
+  scene.has_shadows = scene.has_shadows && !unwanted(Effect::kShadows);
+  scene.has_depth_cue = scene.has_depth_cue && !unwanted(Effect::kDepthCue);
+  if (unwanted(Effect::kAmbientOcclusion)) {
     scene.occlusion = plain.occlusion;
   }
-  if (unwanted(kFog)) {
+  if (unwanted(Effect::kFog)) {
     scene.fog = plain.fog;
   }
-  if (unwanted(kSky)) {
+  if (unwanted(Effect::kSky)) {
     scene.has_sky = false;
     scene.sky = plain.sky;
   }
-  if (unwanted(kWater)) {
+  if (unwanted(Effect::kWater)) {
     scene.has_water = false;
     scene.water = plain.water;
     scene.water_material = plain.water_material;
@@ -219,10 +219,10 @@ std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const Used
       count = i + 1;
     }
   }
-  constexpr EffectSet kOfMaterials = kEmission | kMirror | kGlass | kMedia;
+  constexpr EffectSet kOfMaterials = Effect::kEmission | Effect::kMirror | Effect::kGlass | Effect::kMedia;
   scene.surfaces = {scene.surfaces.data, (effects & kOfMaterials) != 0 ? count : 0};
   std::vector<std::uint8_t> bytes(lighting_bytes(scene));
-  if (bytes.empty() || write_lighting(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk) {
+  if (bytes.empty() || BakedLighting::make(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk) {
     throw InputError("its lights, surfaces or water are beyond the limits of a baked scene");
   }
   return bytes;

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "readers/source.h"
-#include "thimble/baked_lighting.h"
-#include "thimble/compact_tree.h"
-#include "thimble/lit_scene.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 
@@ -47,8 +47,8 @@ struct LitDescription {
   /// All the rest; its spans are empty.
   LitScene rest;
   /// Effects that the scene's author turned on or off, whatever materials and lights call for.
-  EffectSet on = kNoEffects;
-  EffectSet off = kNoEffects;
+  EffectSet on = Effect::kNone;
+  EffectSet off = Effect::kNone;
 
   /// A view of it all, as long as this lives and keeps its vectors.
   LitScene lit_scene() const;
@@ -79,7 +79,7 @@ EffectSet called_for(const LitDescription& lit, const UsedMaterials& used);
 /// What --effects says.
 struct EffectChoice {
   bool automatic = true;
-  EffectSet effects = kNoEffects;  ///< unless automatic
+  EffectSet effects = Effect::kNone;  ///< unless automatic
 };
 /// "auto", "none" or names of effects with commas between them; nothing for anything else.
 std::optional<EffectChoice> parse_effects(std::string_view text);

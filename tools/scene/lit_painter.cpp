@@ -12,7 +12,7 @@
 
 #include "scene/lit_setup.h"
 #include "scene/painter.h"
-#include "thimble/samples.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::tools {
 namespace {

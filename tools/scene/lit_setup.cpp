@@ -12,7 +12,7 @@ EffectSet expected_effects(const SceneSource& source, const LitDescription& lit,
   std::fill(std::begin(all.is), std::end(all.is), true);
   *used = all;
   const EffectSet most = chosen_effects(lit, all, choice);
-  if (most == kNoEffects || most == chosen_effects(lit, {}, choice)) {
+  if (most == Effect::kNone || most == chosen_effects(lit, {}, choice)) {
     return most;
   }
   *used = used_materials(source);
@@ -21,10 +21,10 @@ EffectSet expected_effects(const SceneSource& source, const LitDescription& lit,
 
 LitScene lit_scene_for(const LitDescription& lit, const UsedMaterials& used, EffectSet effects) {
   LitScene scene = with_defaults(lit.lit_scene(), effects);
-  if ((effects & kDirectLight) == 0) {
+  if ((effects & Effect::kDirectLight) == 0) {
     scene.lights = {};
   }
-  constexpr EffectSet kOfMaterials = kEmission | kMirror | kGlass | kMedia;
+  constexpr EffectSet kOfMaterials = Effect::kEmission | Effect::kMirror | Effect::kGlass | Effect::kMedia;
   std::size_t count = 0;
   for (std::size_t i = 0; (effects & kOfMaterials) != 0 && i < scene.surfaces.size; ++i) {
     count = used.is[i] && scene.surfaces[i].kind != SurfaceKind::kDiffuse ? i + 1 : count;
@@ -38,7 +38,7 @@ std::size_t lit_table_bytes(const LitScene& scene) {
 }
 
 std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects) {
-  return lit_render_bytes(effects) + (effects == kNoEffects ? 0 : lit_table_bytes(scene));
+  return lit_render_bytes(effects) + (effects == Effect::kNone ? 0 : lit_table_bytes(scene));
 }
 
 void add_counts(const LitCounts& more, LitCounts* counts) {

@@ -18,8 +18,8 @@
 
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
-#include "thimble/lit_render.h"
-#include "thimble/render.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::tools {
 

@@ -3,7 +3,7 @@
 ///
 ///   ray painter      the core, ray by ray
 ///   quality painter  the same with several samples a pixel, a cut-off or a depth
-///   wide painter     object order, with vectors and threads (platform/host/wide)
+///   wide painter     object order, with vectors and threads (platform/wide)
 ///   lit painter      light, shadows, glass, water: the core's lit_render.h
 ///
 /// The first three give the same picture where their options are the same.
@@ -13,13 +13,13 @@
 #include <cstdint>
 #include <memory>
 
-#include "host/wide/renderer.h"
 #include "scene/built_scene.h"
 #include "scene/quality.h"
-#include "thimble/camera.h"
-#include "thimble/lit_render.h"
-#include "thimble/render.h"
-#include "thimble/shading.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "wide/renderer.h"
 
 namespace thimble::tools {
 
@@ -63,7 +63,7 @@ std::unique_ptr<Painter> make_wide_painter(const BuiltScene& built, const Camera
 /// What a lit picture is made of beside tree, camera and shading.
 struct LitPicture {
   LitScene scene;
-  EffectSet effects = kNoEffects;
+  EffectSet effects = Effect::kNone;
   /// Samples a pixel are its square; the band then has room for them (quality_band_bytes), and the camera is
   /// that of a picture so many times as wide and high.
   int across = 1;

@@ -6,11 +6,10 @@
 #include <cstdint>
 
 #include "scene/built_scene.h"
-#include "thimble/camera.h"
-#include "thimble/cutoff.h"
-#include "thimble/node_colors.h"
-#include "thimble/samples.h"
-#include "thimble/shading.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/cutoff.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
 
 namespace thimble::tools {
 

@@ -11,8 +11,8 @@
 #include "scene/palette.h"
 #include "scene/text_scene.h"
 #include "scene/voxelise.h"
-#include "thimble/baked_lighting.h"
-#include "thimble/ray.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {
@@ -210,7 +210,7 @@ class BakedFileScene final : public SceneSource {
       palette_[i].color = {color.r, color.g, color.b};
     }
     BakedLighting lighting;
-    if (open_lighting(file_.scene.section(SectionKind::kLighting), level_, &lighting) != Status::kOk) {
+    if (BakedLighting::open(file_.scene.section(SectionKind::kLighting), level_, &lighting) != Status::kOk) {
       return;  // baked without
     }
     lit_ = describe_baked(lighting, palette_);

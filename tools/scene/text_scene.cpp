@@ -9,7 +9,7 @@
 
 #include "output/units.h"
 #include "scene/generators.h"
-#include "thimble/ray.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {
@@ -329,7 +329,7 @@ class TextScene final : public SceneSource {
         fail_at(text_.camera_place, "the eye of the camera is outside the accepted " + limits);
       }
       Camera camera;
-      if (make_camera(*text_.camera, 1, 1, level_, &camera) == Status::kBadArgument) {
+      if (set_camera(*text_.camera, 1, 1, level_, &camera) == Status::kBadArgument) {
         fail_at(text_.camera_place, "up of the camera is parallel to the direction of view");
       }
     }

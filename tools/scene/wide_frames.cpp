@@ -3,7 +3,7 @@
 #include <string>
 
 #include "readers/source.h"
-#include "thimble/arena.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::tools {
 namespace {

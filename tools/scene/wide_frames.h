@@ -7,13 +7,13 @@
 #include <cstdint>
 
 #include "host/simulation.h"
-#include "host/wide/renderer.h"
 #include "scene/host_memory.h"
-#include "thimble/camera.h"
-#include "thimble/compact_tree.h"
-#include "thimble/pixel.h"
-#include "thimble/shading.h"
-#include "thimble/span.h"
+#include "thimble/base/memory.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
+#include "wide/renderer.h"
 
 namespace thimble::tools {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "engine.h"
-#include "thimble/particles.h"
+#include "thimble/plane/particles.h"
 
 namespace thimble::benchmarks {
 namespace {
@@ -24,7 +24,7 @@ class BitFieldEngine : public Engine {
     config.substeps_log2 = options.substeps_log2;
     config.subpixel_bits = options.subpixel_bits;
     words_.resize(particles_bytes(config) / 4 + 1);
-    check(ParticleWorld::init({reinterpret_cast<std::uint8_t*>(words_.data()), words_.size() * 4}, config,
+    check(ParticleWorld::make(config, {reinterpret_cast<std::uint8_t*>(words_.data()), words_.size() * 4},
                               &world_));
     for (const int x : scene.wall_columns) {
       world_.draw_box({{x, 0}, {x + 1, scene.height}});

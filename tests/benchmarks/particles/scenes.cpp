@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine.h"
-#include "thimble/bitfield.h"
+#include "thimble/plane/bitfield.h"
 
 namespace thimble::benchmarks {
 namespace {
@@ -21,8 +21,9 @@ double uniform(std::mt19937& random, double low, double high) {
 void scatter(Scene& scene, const CellBox& box, int count, int least, int most, std::mt19937& random) {
   std::vector<std::uint32_t> words(bitfield_bytes(scene.width, scene.height) / 4);
   BitField field;
-  if (BitField::init({reinterpret_cast<std::uint8_t*>(words.data()), words.size() * 4}, scene.width,
-                     scene.height, &field) != Status::kOk) {
+  if (BitField::make(scene.width, scene.height,
+                     {reinterpret_cast<std::uint8_t*>(words.data()), words.size() * 4},
+                     &field) != Status::kOk) {
     throw std::runtime_error("the scene is too large for a bit field");
   }
   while (static_cast<int>(scene.balls.size()) < count) {

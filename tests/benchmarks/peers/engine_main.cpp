@@ -17,9 +17,9 @@
 #include <exception>
 #include <stdexcept>
 
-#include "host/wide/renderer.h"
 #include "output/output_file.h"
 #include "support/trial_worlds.h"
+#include "wide/renderer.h"
 
 namespace thimble::benchmarks {
 namespace {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "host/wide/frame.h"
+#include "wide/frame.h"
 
 namespace thimble::benchmarks {
 

@@ -24,7 +24,7 @@ class Raster : public Peer {
  private:
   static constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-  // How many pixels a box reaches from its middle: host/wide/frame.h.
+  // How many pixels a box reaches from its middle: wide/frame.h.
   struct Reach {
     float x, y;
   };

@@ -13,9 +13,9 @@
 #include <stdexcept>
 
 #include "benchmarks/peers/contest.h"
-#include "host/wide/renderer.h"
 #include "output/output_file.h"
 #include "scene/scene_source.h"
+#include "wide/renderer.h"
 
 namespace thimble::benchmarks {
 namespace {

@@ -1,0 +1,396 @@
+/// @file pixel.h
+/// The parts of lit_render.h: one function an effect, and the loop over the rays of a pixel that calls those
+/// which the set names. Not for callers; it is public because the loop is compiled with the caller's set.
+///
+/// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
+/// since the weights of a pixel's rays never add up to more than 1.
+#ifndef THIMBLE_LIGHT_DETAIL_PIXEL_H
+#define THIMBLE_LIGHT_DETAIL_PIXEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../../base/status.h"
+#include "../../picture/camera.h"
+#include "../../picture/render.h"
+#include "../../picture/shading.h"
+#include "../../trace/ray.h"
+#include "../../trace/secondary_ray.h"
+#include "../../trace/trace.h"
+#include "../../tree/compact_tree.h"
+#include "../scene.h"
+#include "../water.h"
+
+namespace thimble {
+
+/// What a ray was sent for. kGlassRay and kWaterRay: reflected or refracted at such a boundary; kMediaRay:
+/// not a ray of its own but a stretch of one, from where it left a cloud (or glass of index 1) straight on.
+enum class LitRayKind : uint8_t {
+  kPrimary,
+  kShadow,
+  kOcclusion,
+  kMirrorRay,
+  kGlassRay,
+  kMediaRay,
+  kWaterRay
+};
+inline constexpr int kLitRayKinds = 7;
+
+/// What a renderer did. An effect that is not in the set counts 0.
+struct LitCounts {
+  uint64_t rays[kLitRayKinds] = {};
+  uint64_t hits[kLitRayKinds] = {};  ///< of these, met something solid
+  /// Nodes whose mask was read (`Hit::visits`), cells walked through inside clear solids, columns of water.
+  uint64_t node_visits[kLitRayKinds] = {};
+  uint64_t step_limited = 0;        ///< rays stopped by `LitOptions::max_visits`; they count as misses
+  uint32_t pending_high_water = 0;  ///< most rays of a pixel that waited to be followed at once
+};
+
+struct LitOptions {
+  /// A ray is stopped where it would visit one more node than this.
+  uint32_t max_visits = UINT32_MAX;
+  /// Ordered dither (Bayer, 8 x 8) in formats with fewer than 8 bits a channel.
+  bool dither = true;
+};
+
+namespace lit {
+
+/// One step of 8 bits in a colour's units; kWhite is 255 of them.
+inline constexpr uint32_t kLevel = 64;
+inline constexpr uint32_t kWhite = 255 * kLevel;
+inline constexpr uint32_t kMaxChannel = UINT16_MAX;
+/// Weight of the ray that shows all of what it meets.
+inline constexpr uint32_t kFullWeight = 1U << 15;
+/// Rays below 1/256 in every channel are not followed.
+inline constexpr uint32_t kLeastWeight = kFullWeight / 256;
+/// Light of brightness 1, as a sum over lights.
+inline constexpr uint32_t kFullLight = 1U << 12;
+/// Stretches that a ray goes straight on through clear solids and media before it ends.
+inline constexpr int kMaxLegs = 16;
+
+/// r, g, b.
+template <class T>
+struct Channels {
+  T c[3] = {};
+};
+using Weight = Channels<uint16_t>;
+using Color = Channels<uint32_t>;
+
+/// A ray still to be followed.
+struct PendingRay {
+  Ray ray;
+  Weight weight{{kFullWeight, kFullWeight, kFullWeight}};
+  uint8_t bounces = 0;  ///< before it
+  LitRayKind kind = LitRayKind::kPrimary;
+  int8_t axis = -1;  ///< of the face that it starts on
+};
+
+/// The most rays that wait at once: two come out of one, so a bounce adds one; four out of the first rough
+/// metal.
+constexpr size_t pending_rays(EffectSet effects) {
+  const size_t rough = (effects & Effect::kMirror) != 0 ? 3 : 0;
+  const size_t split = (effects & (Effect::kGlass | Effect::kWater)) != 0 ? kMaxBounces : 0;
+  return rough + split == 0 ? 0 : 1 + rough + split;
+}
+
+/// What all pixels of a band share.
+struct Frame {
+  const CompactTree& tree;
+  const Camera& camera;
+  const Shading& shading;
+  const LitScene& scene;
+  const LitOptions& options;
+  EffectSet effects;
+  LitCounts counts{};
+};
+
+/// What a point of a ray lies in: air, the clear solid of a material, water.
+struct Medium {
+  enum Kind : uint8_t { kAir, kSolid, kWaterBody };
+  Kind kind = kAir;
+  uint8_t material = 0;
+  friend constexpr bool operator==(const Medium&, const Medium&) = default;
+};
+
+/// Where a stretch of a ray ends.
+struct Meeting {
+  bool found = false;       ///< false: it leaves the world
+  bool opaque = false;      ///< a surface; else a boundary of clear media
+  bool at_water = false;    ///< a boundary of the water: `at` is valid, of `hit` axis and t
+  bool at_surface = false;  ///< its upper one, which waves bend
+  Medium beyond;            ///< if not opaque
+  Hit hit;                  ///< what is entered, even where that is an empty voxel
+  Vec3Q8 at;
+};
+
+/// The stretch of a ray that is being followed: what it goes through, and where on the ray it began.
+struct Leg {
+  Medium medium;
+  RayPoint from;
+};
+
+/// A lit point of a surface.
+struct Spot {
+  Vec3Q8 at;  ///< on the face
+  Face face{0, false};
+  bool inside = false;  ///< the camera is in it: nothing reaches it
+  Vec3i arriving;       ///< direction of the ray that met it
+  Surface surface;
+};
+
+/// The ray from a spot to a light that its face is turned to.
+struct LightRay {
+  Ray ray;
+  uint32_t brightness[3] = {};  ///< kFullLight = 1; what arrives if nothing is in the way
+  bool is_point = false;
+  RayPoint place;  ///< where a point light is on the ray
+};
+
+// --- the band: lit_band.cpp ------------------------------------------------------------------------------
+
+Status draw_plain(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
+                  LitCounts* counts, const LitOptions& options);
+/// The errors of `render_lit_band`; `stride` gets the bytes from row to row.
+Status check_frame(const Frame& frame, const Band& band, size_t* stride);
+void clear_row(const Frame& frame, const Band& band, uint8_t* line);
+void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32_t y, const Color& color);
+void add_counts(const LitCounts& from, LitCounts* to);
+
+// --- what a ray meets, what a face gets: lit_surface.cpp -------------------------------------------------
+
+void count_ray(Frame& frame, LitRayKind kind);
+void count_result(Frame& frame, LitRayKind kind, HitKind result, uint32_t visits);
+Surface surface_of(const Frame& frame, uint8_t material);
+/// The solid voxel met first, counted.
+void find_solid(Frame& frame, LitRayKind kind, const Ray& ray, Hit* hit);
+/// As above; opaque whatever the material.
+void meet_solid(Frame& frame, const PendingRay& now, Meeting* meeting);
+Spot spot_of(const Frame& frame, const PendingRay& now, const Meeting& meeting);
+/// Light of a scene without Effect::kDirectLight: `Shading::face_light`.
+void plain_light(const Frame& frame, const Spot& spot, Color* light);
+void ambient_light(const Frame& frame, const Spot& spot, Color* light);
+Color lit_color(const Spot& spot, const Color& light);
+void add(const Color& color, const Weight& weight, Color* sum);
+Color background(const Frame& frame);
+
+// --- one file an effect ----------------------------------------------------------------------------------
+
+/// Towards a light; false when the face is turned away from it.
+bool light_ray(const Light& light, const Spot& spot, LightRay* ray);
+void add_light(const LightRay& ray, Color* light);
+/// Whether what was hit lies behind a point light, or shines and so may hold it.
+bool spares_light(const Frame& frame, const LightRay& light, const Hit& hit);
+/// Whether nothing solid is between the spot and the light.
+bool light_arrives(Frame& frame, const LightRay& light);
+/// The same, but what is clear only takes from `brightness` what it absorbs.
+bool light_arrives_through(Frame& frame, LightRay* light);
+void filter_by_water(Frame& frame, LightRay* light);
+void occlude(Frame& frame, const Spot& spot, Color* light);
+void add_emission(const Spot& spot, Color* color);
+/// Sends what a metal mirrors; the weight becomes that of the metal's own colour.
+void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, PendingRay* pending, size_t* count);
+/// Clear solids and media. What the ray begins in, and where it comes to something else.
+void begin_leg(const Frame& frame, const PendingRay& now, Leg* leg);
+void meet_clear(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting);
+/// The same with water: `leg` and `meeting` have what there is without it.
+/// At the start of a ray, also of one that goes straight on.
+void begin_in_water(const Frame& frame, const PendingRay& now, Leg* leg);
+void meet_water(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting);
+/// What glass and water take from the ray on its way to the meeting.
+void absorb(const Frame& frame, const PendingRay& now, const Leg& leg, const Meeting& meeting,
+            Weight* weight);
+/// What clouds take, and their own colour instead.
+void scatter(const Frame& frame, const PendingRay& now, const Leg& leg, const Meeting& meeting,
+             Weight* weight, Color* sum);
+/// Past a boundary that bends nothing.
+void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting);
+/// At a boundary of glass or water: straight on (true), or sends what is reflected and refracted.
+bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+           size_t* count);
+Color sky_color(const Frame& frame, const Vec3i& direction);
+void fade_in_fog(const Frame& frame, const Ray& ray, const Leg& leg, const Meeting& meeting, Weight* weight,
+                 Color* sum);
+/// Brightness by depth of what the camera sees first.
+void cue_depth(const Frame& frame, const Meeting& meeting, Weight* weight);
+
+// --- the loops -------------------------------------------------------------------------------------------
+
+/// Whether the effect is on, where the code has it at all.
+template <EffectSet kSet, EffectSet kEffect>
+bool has(const Frame& frame) {
+  return (kSet & kEffect) != 0 && (frame.effects & kEffect) != 0;
+}
+template <EffectSet kSet>
+inline constexpr bool kHasClear = (kSet & (Effect::kGlass | Effect::kMedia)) != 0;
+template <EffectSet kSet>
+inline constexpr bool kHasWater = (kSet & Effect::kWater) != 0;
+template <EffectSet kSet>
+inline constexpr bool kBends = (kSet & (Effect::kGlass | Effect::kWater)) != 0;
+
+/// The colour that a face shows of itself.
+template <EffectSet kSet>
+Color face_color(Frame& frame, const Spot& spot) {
+  Color light;
+  if (has<kSet, Effect::kDirectLight>(frame)) {
+    ambient_light(frame, spot, &light);
+  } else {
+    plain_light(frame, spot, &light);
+  }
+  if constexpr ((kSet & Effect::kAmbientOcclusion) != 0) {
+    if (!spot.inside) {
+      occlude(frame, spot, &light);
+    }
+  }
+  if constexpr ((kSet & Effect::kDirectLight) != 0) {
+    const size_t lights =
+        has<kSet, Effect::kDirectLight>(frame) && !spot.inside ? frame.scene.lights.size : 0;
+    for (size_t i = 0; i < lights; ++i) {
+      LightRay ray;
+      if (!light_ray(frame.scene.lights[i], spot, &ray)) {
+        continue;
+      }
+      if constexpr ((kSet & Effect::kShadows) != 0) {
+        if constexpr (kHasClear<kSet>) {
+          if (!light_arrives_through(frame, &ray)) {
+            continue;
+          }
+        } else if (!light_arrives(frame, ray)) {
+          continue;
+        }
+        if constexpr (kHasWater<kSet>) {
+          filter_by_water(frame, &ray);
+        }
+      }
+      add_light(ray, &light);
+    }
+  }
+  Color color = lit_color(spot, light);
+  if constexpr ((kSet & Effect::kEmission) != 0) {
+    if (has<kSet, Effect::kEmission>(frame)) {
+      add_emission(spot, &color);
+    }
+  }
+  return color;
+}
+
+/// Follows one ray to its end: adds what it shows, and puts what comes out of it with the pending ones.
+template <EffectSet kSet>
+void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Color* sum) {
+  constexpr bool kStretches = kHasClear<kSet> || kHasWater<kSet>;
+  Leg leg;
+  if constexpr (kHasClear<kSet>) {
+    begin_leg(frame, now, &leg);
+  }
+  if constexpr (kHasWater<kSet>) {
+    begin_in_water(frame, now, &leg);
+  }
+  for (int legs = 0; legs < (kStretches ? kMaxLegs : 1); ++legs) {
+    Meeting meeting;
+    if constexpr (kHasClear<kSet>) {
+      meet_clear(frame, now, leg, &meeting);
+    } else {
+      meet_solid(frame, now, &meeting);
+    }
+    if constexpr (kHasWater<kSet>) {
+      meet_water(frame, now, leg, &meeting);
+    }
+    if constexpr ((kSet & Effect::kDepthCue) != 0) {
+      if (has<kSet, Effect::kDepthCue>(frame) && now.kind == LitRayKind::kPrimary && legs == 0) {
+        cue_depth(frame, meeting, &now.weight);
+      }
+    }
+    if constexpr ((kSet & Effect::kFog) != 0) {
+      if (has<kSet, Effect::kFog>(frame)) {
+        fade_in_fog(frame, now.ray, leg, meeting, &now.weight, sum);
+      }
+    }
+    if constexpr (kBends<kSet>) {
+      absorb(frame, now, leg, meeting, &now.weight);
+    }
+    if constexpr ((kSet & Effect::kMedia) != 0) {
+      scatter(frame, now, leg, meeting, &now.weight, sum);
+    }
+    if (!meeting.found) {
+      if constexpr ((kSet & Effect::kSky) != 0) {
+        if (has<kSet, Effect::kSky>(frame)) {
+          add(sky_color(frame, now.ray.direction), now.weight, sum);
+          return;
+        }
+      }
+      add(background(frame), now.weight, sum);
+      return;
+    }
+    if (meeting.opaque) {
+      const Spot spot = spot_of(frame, now, meeting);
+      if constexpr ((kSet & Effect::kMirror) != 0) {
+        send_mirrored(frame, &now, spot, pending, count);
+      }
+      add(face_color<kSet>(frame, spot), now.weight, sum);
+      return;
+    }
+    if constexpr (kBends<kSet>) {
+      if (!cross(frame, &now, &leg, meeting, pending, count)) {
+        return;
+      }
+    } else if constexpr (kStretches) {
+      go_straight(frame, &now, &leg, meeting);
+    }
+    if constexpr (kHasWater<kSet>) {
+      begin_in_water(frame, now, &leg);
+    }
+  }
+}
+
+/// The colour of a pixel.
+template <EffectSet kSet>
+Color pixel(Frame& frame, const Ray& ray) {
+  Color sum;
+  frame.counts.rays[static_cast<int>(LitRayKind::kPrimary)] += 1;
+  PendingRay first;
+  first.ray = ray;
+  if constexpr (pending_rays(kSet) == 0) {
+    follow<kSet>(frame, first, nullptr, nullptr, &sum);
+  } else {
+    // The last one first, so that few wait. It ends: every ray comes out of one with a bounce less.
+    PendingRay pending[pending_rays(kSet)];
+    pending[0] = first;
+    size_t count = 1;
+    while (count != 0) {
+      --count;
+      follow<kSet>(frame, pending[count], pending, &count, &sum);
+      if (count > frame.counts.pending_high_water) {
+        frame.counts.pending_high_water = static_cast<uint32_t>(count);
+      }
+    }
+  }
+  return sum;
+}
+
+template <EffectSet kSet>
+Status draw(Frame frame, const Band& band, LitCounts* counts) {
+  size_t stride = 0;
+  const Status status = check_frame(frame, band, &stride);
+  if (status != Status::kOk) {
+    return status;
+  }
+  const int32_t width = frame.camera.width_px();
+  for (int32_t row = 0; row < band.rows; ++row) {
+    const int32_t y = band.first_row + row;
+    uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row);
+    clear_row(frame, band, line);
+    RowRays rays(frame.camera, 0, y);
+    for (int32_t x = 0; x < width; ++x, rays.next()) {
+      store(frame, band, line, x, y, pixel<kSet>(frame, rays.ray()));
+    }
+  }
+  if (counts != nullptr) {
+    add_counts(frame.counts, counts);
+  }
+  return Status::kOk;
+}
+
+}  // namespace lit
+
+}  // namespace thimble
+
+#endif

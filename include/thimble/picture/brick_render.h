@@ -1,0 +1,51 @@
+/// @file brick_render.h
+/// The picture of render.h in a thirteenth of the instructions, for chips that draw frames: a compact tree
+/// with a brick map beside it.
+///
+/// The pixels are those of `render_band` for the tree, bit for bit, whatever camera, shading, format and
+/// band: what the fast way does not take goes the other's way, ray by ray or as a whole. Nothing is kept
+/// between bands, so bands may be drawn in any order and side by side.
+///
+/// The fast way takes perspective cameras whose products of distances and directions fit in 32 bits
+/// (`draws_fast`): in a world of 64 pictures of up to some 300 pixels a side seen from within two world
+/// sizes. Cheapest are bands of many rows that start at a multiple of kBrickTilePx, in pictures whose width
+/// is a multiple of 16. kDepth costs a division a pixel.
+///
+/// Cost: some 360 instructions a pixel on a Cortex-M3, 650 on a Cortex-M0 (src/DESIGN.md, "Frames on a
+/// chip"). Stack: 3 KiB (tests/budgets/stack.csv), most of it colours and the state of a tile. Code: some 45
+/// KB.
+#ifndef THIMBLE_PICTURE_BRICK_RENDER_H
+#define THIMBLE_PICTURE_BRICK_RENDER_H
+
+#include <stdint.h>
+
+#include "../base/status.h"
+#include "../tree/brick_map.h"
+#include "../tree/compact_tree.h"
+#include "camera.h"
+#include "render.h"
+#include "shading.h"
+
+namespace thimble {
+
+inline constexpr int kMaxBrickDirectionBits = 12;
+/// Rows of a tile: its rays start where the first of them may meet something.
+inline constexpr int32_t kBrickTilePx = 8;
+
+/// Whether frames of that camera take the fast way.
+bool draws_fast(const BrickMap& map, const Camera& camera);
+
+/// As `render_band` (render.h) with `map`, which belongs to `tree`; the counters of nodes stay as they are
+/// for rays that read none. Errors, with nothing drawn: those of `render_band`, and kDamaged when the map is
+/// another tree's.
+Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& camera, const Shading& shading,
+                   const Band& band, RenderCounts* counts = nullptr);
+
+/// The same for cameras that `draws_fast`; kBadArgument for others. A firmware that calls this one only has
+/// nothing of the 64-bit tracer in its flash and on its stack.
+Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
+                      const Shading& shading, const Band& band, RenderCounts* counts = nullptr);
+
+}  // namespace thimble
+
+#endif

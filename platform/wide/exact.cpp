@@ -1,0 +1,59 @@
+#include "wide/exact.h"
+
+#include "thimble/tree/morton.h"
+
+namespace thimble::wide {
+
+uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down) {
+  uint32_t place[3];
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const uint32_t flip = (down >> axis & 1U) != 0 ? 1023U : 0U;
+    place[axis] = (corner[axis] ^ flip) >> level << level;
+  }
+  return static_cast<uint32_t>(morton_code(place[0], place[1], place[2]));
+}
+
+// Two planes of different axes a and b: with c the box's centre less the origin, the ray passes the lower
+// plane of each before the upper one of the other just when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|). Along
+// an axis with d = 0 it must lie in the slab, lower plane included. Centres are below 2^25 in 1/512 voxel,
+// directions have 20 bits.
+bool meets_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down) {
+  const int32_t level = level_of(entry);
+  const uint32_t corner[3] = {x_of(entry), entry >> 10 & 1023U, entry >> 20 & 1023U};
+  const int64_t half = int64_t{256} << level;
+  int64_t center[3];
+  int64_t direction[3];
+  int64_t size[3];
+  *down = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const int i = static_cast<int>(axis);
+    direction[axis] = ray.direction[i];
+    size[axis] = direction[axis] < 0 ? -direction[axis] : direction[axis];
+    center[axis] = int64_t{512} * (cube[axis] + corner[axis]) + half - int64_t{2} * ray.origin[i].raw;
+    *down |= direction[axis] < 0 ? 1U << axis : 0U;
+    if (size[axis] == 0) {
+      if (center[axis] > half || center[axis] <= -half) {
+        return false;
+      }
+      continue;
+    }
+    // The upper plane, as the ray goes, lies ahead.
+    if ((direction[axis] < 0 ? -center[axis] : center[axis]) <= -half) {
+      return false;
+    }
+  }
+  for (unsigned a = 0; a < 3; ++a) {
+    const unsigned b = a == 2 ? 0 : a + 1;
+    if (size[a] == 0 || size[b] == 0) {
+      continue;
+    }
+    const int64_t cross = center[a] * direction[b] - center[b] * direction[a];
+    if ((cross < 0 ? -cross : cross) >= half * (size[a] + size[b])) {
+      return false;
+    }
+  }
+  *key = mirrored_key(corner, level, *down);
+  return true;
+}
+
+}  // namespace thimble::wide

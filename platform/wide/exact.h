@@ -1,0 +1,40 @@
+/// @file exact.h
+/// The core's predicate for one ray and one entry, in integers; and how entries are packed.
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_EXACT_H
+#define THIMBLE_PLATFORM_HOST_WIDE_EXACT_H
+
+#include <stdint.h>
+
+#include "thimble/trace/ray.h"
+
+namespace thimble::wide {
+
+/// Side of an entry (voxel_lists.h) as a power of two, and its x without the bits that tell it.
+inline int32_t level_of(uint32_t entry) {
+  const uint32_t side = entry >> 30;
+  return static_cast<int32_t>(side < 3 ? side : 3 + (entry & 7U));
+}
+inline uint32_t x_of(uint32_t entry) {
+  return (entry >> 30) < 3 ? entry & 1023U : entry & 1016U;
+}
+
+/// The Morton code of a box of 2^level voxels with lowest corner `corner` (below 1024), mirrored in the axes
+/// of `down` (a bit each).
+uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down);
+
+/// The sum of a voxel's coordinates within its cube, mirrored in the axes of `down`: 0 .. 3 * 1023.
+inline uint32_t mirrored_sum(uint32_t entry, uint32_t down) {
+  uint32_t sum = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    sum += (entry >> (10 * axis) & 1023U) ^ ((down >> axis & 1U) != 0 ? 1023U : 0U);
+  }
+  return sum;
+}
+
+/// Whether the ray spends a positive length, at t >= 0, in the entry of the cube at `cube` (voxels). If so,
+/// `down` gets the axes along which it runs downwards and `key` the entry's key mirrored in them.
+bool meets_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down);
+
+}  // namespace thimble::wide
+
+#endif

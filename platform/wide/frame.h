@@ -1,0 +1,85 @@
+/// @file frame.h
+/// What all boxes of a frame are projected and tested with.
+///
+/// A camera's rays are rounded affine functions of the pixel (thimble/picture/camera.h). Their inverse,
+/// without the rounding, takes a point to the picture: with c the point less the eye,
+///
+///     column = U.c / W.c     row = V.c / W.c        (orthographic: W.c is 1, and c is taken from the base as
+///     well)
+///
+/// Which pixels can a box around c with half sides h meet? Let the ray of column P have the direction D + r,
+/// with D the map's own and |r| <= 1/2 on every axis, and meet the point c + e of the box (|e| <= h) at t.
+/// Since U.D = P and W.D = 1,
+///
+///     U.(c + e) - P W.(c + e) = t (U - P W).r,   hence   |column - P| <= k |U - P W|_1   for W.c > 0,
+///     k = (h + t / 2) / W.c,   t <= (W.c + h |W|_1) / (1 - |W|_1 / 2).
+///
+/// With s = 1/2 / (1 - |W|_1 / 2), that is k <= (1 + s |W|_1) h / W.c + s: `reach` and `slack`. |U - P W|_1
+/// is convex in P, so over a tile, or the part of it in which some boxes may be seen, its greatest value is
+/// at one of the two sides. Or it is taken from the middle's own column, since |U - P W|_1 <= |U - column
+/// W|_1 + |P - column| |W|_1:
+///
+///     |column - P| <= k |U - column W|_1 / (1 - k |W|_1),   where k |W|_1 <= 1/8: 1 / (1 - q) <= 1 + 1.15 q.
+///
+/// Floating point adds to U.c, V.c and W.c at most `kRounding` times the sum of the magnitudes that went in,
+/// which is added to `reach`. So what floats decide is only which pixels are looked at: a superset. Whether a
+/// ray meets a box is judged on the ray's own integers (kernels.cpp, exact.h).
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
+#define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
+
+#include <stdint.h>
+
+#include "thimble/picture/camera.h"
+
+namespace thimble::wide {
+
+/// Pixels x0 .. x1 - 1, y0 .. y1 - 1.
+struct Tile {
+  int32_t x0 = 0;
+  int32_t y0 = 0;
+  int32_t x1 = 0;
+  int32_t y1 = 0;
+};
+
+/// Plain data, made once a frame and tile.
+struct Frame {
+  Tile tile;
+  bool perspective = false;
+
+  // Projection of the point p, in voxels: column = (u.p + u[3]) / (w.p + w[3]).
+  float u[4];
+  float v[4];
+  float w[4];
+  float reach_x;  ///< of a box of one voxel; times its side for larger ones
+  float reach_y;
+  float rounding_x;  ///< added to reach, whatever the box's size
+  float rounding_y;
+  float slack_x;  ///< pixels that are added besides
+  float slack_y;
+  float spread_x;  ///< pixels that are added to the nearer bound of far boxes
+  float spread_y;
+  float norm_w;         ///< |W|_1, or so much that the nearer bound is never used
+  float per_direction;  ///< 1/2 / (1 - |W|_1 / 2)
+  float half_w;  ///< a box of one voxel lies in front of the eye's plane, at least in part, when w > -half_w
+  float rounding_w;
+
+  // The same map in floats, for the test that decides where it can. Base and steps are split into whole
+  // numbers, whose sum is exact below 2^24, and fractions of at most a half, whose sum is within `map_error`:
+  // 0.5 where that says nothing.
+  float map_whole[3][3], map_rest[3][3];  ///< of base, step_x, step_y; by axis
+  float map_error;
+
+  // The exact ray: component a is round(base + px * step_x + py * step_y), each split as high * 2^20 + low.
+  double base_high[3], base_low[3];
+  double step_x_high[3], step_x_low[3];
+  double step_y_high[3], step_y_low[3];
+  Camera camera;
+};
+
+/// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off
+/// that floats do not tell their pixels apart; such frames are drawn ray by ray.
+bool make_frame(const Camera& camera, const Tile& tile, Frame* frame);
+
+}  // namespace thimble::wide
+
+#endif

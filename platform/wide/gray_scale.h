@@ -1,0 +1,50 @@
+/// @file gray_scale.h
+/// ShadeMode::kDepth as numbers for the kernels: from where a ray enters its box to a grey.
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_GRAY_SCALE_H
+#define THIMBLE_PLATFORM_HOST_WIDE_GRAY_SCALE_H
+
+#include <stdint.h>
+
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
+
+namespace thimble::wide {
+
+/// A ray enters its box at t = numerator / (256 * speed), with the speed |direction| along the axis whose
+/// plane is passed last. The core rounds three times (src/shading.cpp):
+///
+///     ratio = floor(dividend / speed)    depth = floor(numerator * ratio * scale)
+///     grey = 255 - floor((depth - near) * (255 - kFarBrightness) / (far - near)), between its limits
+///
+/// In floats the fall in brightness before its last rounding is known within `margin`: a ratio below 2^21 is
+/// found exactly, larger ones are off by less than 2^-20 of themselves, so the depth is at most 1.01 and
+/// 2^-19 of itself from the core's, and the fall, which comes to at most 255 with three more roundings, is
+/// within margin = per_depth * (1.01 + greatest / 2^19) + 2^-12, where `greatest` is a little beyond the far
+/// plane. Beyond that plane the margin grows no faster than the fall.
+struct GrayScale {
+  double dividend;  ///< depth per t, in the upper of 32 bits
+  double scale;     ///< 2^-(shift + 8)
+  int shift;
+  double near_q8, far_q8;
+  double cut;  ///< 1/256 where depths are cut to 24 bits, else 1
+  double inverse;
+
+  float float_dividend, float_scale, float_near, float_per_depth;
+  int32_t int_dividend;
+  float margin;
+  /// Whether floats are of use: else every fall may lie within the margin of a whole number.
+  bool floats_tell;
+  /// The ratios of the axes of a camera whose rays are parallel, rounded to floats (within 2^-24); 0 along
+  /// axes on which they stand still.
+  float axis_ratio[3];
+};
+
+GrayScale gray_scale_of(const Camera& camera, const Shading& shading);
+
+/// The core's grey of a ray and an entry of one voxel (voxel_lists.h) of the cube at `cube` that it meets.
+uint8_t gray_exactly(const Camera& camera, const Shading& shading, const Ray& ray, uint32_t entry,
+                     const uint32_t (&cube)[3]);
+
+}  // namespace thimble::wide
+
+#endif

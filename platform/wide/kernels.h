@@ -1,0 +1,244 @@
+/// @file kernels.h
+/// The loops that run over boxes and pixels, compiled for several instruction sets and chosen when the
+/// program runs (Highway).
+///
+/// A box goes through three stages. It is projected, sixteen boxes at a time, to the rectangle of pixels that
+/// it might cover. Small rectangles become candidates, pairs of a box and a pixel, in a queue that is tested
+/// when it is full; of large ones the rows are tested at once. What is met goes into the picture when it is
+/// nearer than what is there.
+#ifndef THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
+#define THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/picture/shading.h"
+#include "wide/frame.h"
+#include "wide/gray_scale.h"
+
+namespace thimble::wide {
+
+/// The nearest box of every pixel so far.
+///
+/// A box's key is the Morton code of its lowest corner, mirrored in every axis along which the pixel's ray
+/// runs downwards. Of two boxes of an octree that a ray meets, the one met first has the smaller key: they
+/// part at some node, in which the ray passes the children in the order of their mirrored numbers. So depth
+/// is compared as integers, exactly.
+///
+/// Where only greys by depth are wanted, of single voxels in one cube, a pixel's grey is found as its ray's
+/// voxel is met, and kept in place of the voxel; and the sum of the voxel's mirrored coordinates in place of
+/// the code, since from voxel to voxel a ray raises one or more of them and lowers none. 3 bytes a pixel
+/// instead of 8, and nothing left to look up.
+///
+/// The picture is cut into strips of 32 columns, and what is kept of a strip stands row by row: what lies
+/// together in the picture lies together in memory.
+struct Depths {
+  uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
+  const GrayScale* gray_scale;  ///< null: `nearest` is in use; else the next three are
+  const Shading* shading;
+  uint16_t* nearest_sum;  ///< of the voxel's mirrored coordinates; holds something only where `gray` does
+  uint8_t* gray;          ///< 0 where there is nothing: greys are at least kFarBrightness
+  uint32_t* covered;      ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
+                          ///< behind the last strip one more can be read
+  bool marks;             ///< whether `covered` is in use; not where `gray` does as well
+  int32_t rows;           ///< of the picture, and words from a strip to the next
+  int32_t first_row;      ///< the row of the picture that comes first
+
+  /// Where the word that holds the pixel is in `covered`; 32 times that and x & 31 in the others.
+  size_t word(int32_t x, int32_t y) const {
+    return static_cast<size_t>(x >> 5) * static_cast<size_t>(rows) + static_cast<size_t>(y - first_row);
+  }
+};
+inline constexpr int kEntryBits = 28;
+inline constexpr int kKeyBits = 36;
+
+struct Counts {
+  uint64_t boxes = 0;       ///< projected
+  uint64_t candidates = 0;  ///< pixels whose ray was tested against a box
+  uint64_t exact = 0;       ///< of those, how many floats could not tell
+  uint64_t hits = 0;        ///< tests that were met
+  uint64_t nodes = 0;       ///< blocks looked at
+  uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
+
+  void add(const Counts& other) {
+    boxes += other.boxes;
+    candidates += other.candidates;
+    exact += other.exact;
+    hits += other.hits;
+    nodes += other.nodes;
+    crossing += other.crossing;
+  }
+};
+
+/// Pairs of a box and a pixel. Behind the last there is room for the store of a whole vector.
+struct Pairs {
+  static constexpr size_t kSize = 512;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
+};
+
+/// Boxes that may be seen, and where: the pixels x .. x + wide_x, y .. y + wide_y.
+struct Boxes {
+  static constexpr size_t kSize = 192;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  alignas(64) uint32_t place[kRoom];  ///< y << 16 | x
+  alignas(64) uint32_t wide[kRoom];   ///< wide_y << 16 | wide_x
+};
+
+/// Boxes of one voxel with those of four pixels that are not covered and that each might cover.
+struct Picked {
+  static constexpr size_t kSize = 256;
+  static constexpr size_t kRoom = kSize + 64;
+  size_t count = 0;
+  alignas(64) uint32_t entry[kRoom];
+  alignas(64) uint32_t number[kRoom];
+  /// y << 16 | x of the first pixel, each modulo 2^14: it may lie beside the picture. Above x, which of it
+  /// and the one right of it is meant; above y, which of those below them.
+  alignas(64) uint32_t place[kRoom];
+};
+inline constexpr int kPlaceBits = 14;
+static_assert(kMaxPicturePx <= 1 << kPlaceBits);
+
+/// What one thread has under way, from run to run. Less than 32 KiB.
+struct Batch {
+  Picked picked;  ///< not yet paired with their pixels; empty when `boxes` is not
+  Boxes boxes;    ///< not yet paired with their pixels
+  Pairs waiting;  ///< for the test in floats
+  Pairs unclear;  ///< for the exact one
+  // `met` of them were met and are on the way into the picture.
+  alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube; or the sum of mirrored coordinates
+  alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
+  alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry; or its grey
+  alignas(64) uint32_t pixel[Pairs::kRoom];   ///< where it is in Depths::nearest
+  // Of the cube that the pairs lie in.
+  uint64_t cube_value[8];          ///< its corner's key, by `down`
+  uint32_t corner[3] = {1, 1, 1};  ///< none yet
+  float constant[3];               ///< of u, v and w, for corners within the cube
+  size_t met = 0;
+  /// Entries that are wanted soon, up to an end: a line of them is fetched for each vector that is looked at.
+  const uint32_t* ahead = nullptr;
+  const uint32_t* ahead_end = nullptr;
+  Counts counts;
+  /// Whether all of the picture lies in front of `boxes`: of whole runs that said so.
+  bool all_behind = true;
+};
+static_assert(sizeof(Batch) < 32 * 1024);
+
+/// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
+struct Rectangle {
+  int32_t x0, y0, x1, y1;
+};
+
+/// Where a cube may be seen, and its middle.
+struct Place {
+  Rectangle where;  ///< within the tile
+  float column, row;
+  float per_depth;  ///< 1 / W.c of the middle (frame.h); 0 where the cube reaches the eye's plane
+  uint32_t unused;
+};
+
+/// A block of the tree: a node and where it may be seen.
+///
+/// It is written and copied as three vectors of 16 bytes. What is read at once right after it was written in
+/// pieces would wait until these are in the cache.
+struct alignas(16) Block {
+  Place place;
+  uint32_t node;
+  uint16_t corner[3];
+  uint16_t level;
+  uint32_t unused;
+};
+static_assert(sizeof(Block) == 48);
+
+/// A vector of entries or numbers is read at a time, even when only its first is wanted.
+inline constexpr uint32_t kReadAhead = 64;
+
+/// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
+struct Run {
+  const uint32_t* entries;  ///< `count`, and kReadAhead more that can be read
+  uint32_t count;
+  const uint32_t* numbers;  ///< of the entries; null: they count up from `first`
+  uint32_t first;
+  uint32_t corner[3];
+  bool unit;  ///< whether all are one voxel
+  /// The block that the entries fill: its lowest corner within the cube, and its side, in voxels.
+  uint32_t block[3];
+  uint32_t side;
+  /// Of the block. Its rectangle holds all pixels of the tile at which any of the boxes may be seen.
+  Place place;
+  /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
+  /// look.
+  bool behind;
+  /// How large a voxel looks, about, in pixels.
+  float voxel_px;
+  /// Whether, besides, each entry lies in front of the ones after it, where any ray meets both. With
+  /// `numbers`.
+  bool sorted;
+};
+
+/// Draws the boxes of a run. Some may stay in the batch until `finish`.
+void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch);
+/// Draws what waits in the batch.
+void finish(const Frame& frame, const Depths& depths, Batch* batch);
+
+/// Which boxes of the run may be seen at pixels that are not covered yet: their entries and numbers, in the
+/// order of the run, to `entries` and `numbers`, which have room for run.count + kReadAhead. Returns how
+/// many.
+uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
+                  uint32_t* numbers);
+
+/// The children of a block that may be seen, of the octants in `mask`, whose nodes count up from
+/// `first_child`: the nearest last, where `nearest` is the octant nearest to the eye. Returns how many. There
+/// is room for eight.
+int find_children(const Frame& frame, const Block& block, unsigned mask, uint32_t first_child,
+                  unsigned nearest, Block* children);
+
+/// Puts into rows y0 .. y1 - 1 of `to` what is nearer in those of `from`, the same rows of the same picture
+/// with other boxes.
+void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to);
+
+/// Pixels and their nearest boxes. Behind the last there is room for a vector.
+inline constexpr uint32_t kMostPixels = 512;
+struct Pixels {
+  uint32_t count = 0;
+  bool any_levels = false;                       ///< whether `level` and `voxels` are to be looked at
+  alignas(64) uint32_t at[kMostPixels + 64];     ///< where they are in Depths::nearest
+  alignas(64) uint64_t value[kMostPixels + 64];  ///< what is there; three of the next follow from it
+  alignas(64) int32_t x[kMostPixels + 64];
+  alignas(64) int32_t y[kMostPixels + 64];
+  alignas(64) uint32_t number[kMostPixels + 64];  ///< of the entry
+  alignas(64) uint32_t key[kMostPixels + 64];     ///< the mirrored corner within its cube
+  alignas(64) uint32_t cube[kMostPixels + 64];    ///< the same of the cube
+  alignas(64) int32_t level[kMostPixels + 64];    ///< log2 of the boxes' sides
+  alignas(64) int32_t voxels[kMostPixels + 64];   ///< 1: what is hit is a voxel of the box, 0: the box
+};
+/// Appends covered pixels of the strip that begins at column `left`, from `row` on, row by row: `at`, `x`,
+/// `y`. Stops at row `end`, or when there may be no room for the next row's. Returns the row that comes next.
+int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels);
+/// Takes the values of the pixels and unpacks them; makes the lanes behind the last pixels too.
+void unpack(const Depths& depths, Pixels* pixels);
+/// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind it.
+void find_grays(const Frame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray);
+/// Where greys are kept: those of row `y`, `background` where there is nothing, to `to[width_px]`. Returns
+/// how many there are.
+uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to);
+/// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates:
+/// `face[count]`, with the same room.
+void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face);
+
+/// The name of the instruction set in use: the best one that this machine has.
+const char* instruction_set();
+/// How many this machine and this build have. `use_instruction_set` takes the one of that number from now on
+/// (for tests; not while anything is drawn), the best one again when it is negative.
+int instruction_set_count();
+void use_instruction_set(int number);
+
+}  // namespace thimble::wide
+
+#endif

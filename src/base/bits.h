@@ -1,0 +1,73 @@
+// Counting bits, spreading them, and reading little-endian words: the few machine-near operations of the
+// core, in one place. Internal to src/.
+#ifndef THIMBLE_SRC_BASE_BITS_H
+#define THIMBLE_SRC_BASE_BITS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace thimble::bits {
+
+// Set bits of one byte. Without an instruction for it: four copies of the byte, 9 bits apart, bring each of
+// its bits to the lowest place of a nibble of its own; the second product adds the nibbles up in the highest.
+constexpr unsigned popcount8(unsigned byte) {
+#if defined(__POPCNT__)
+  return static_cast<unsigned>(__builtin_popcount(byte));
+#else
+  return ((byte * 0x08040201U >> 3 & 0x11111111U) * 0x11111111U) >> 28;
+#endif
+}
+
+constexpr unsigned popcount32(uint32_t word) {
+#if defined(__POPCNT__)
+  return static_cast<unsigned>(__builtin_popcount(word));
+#else
+  word = word - ((word >> 1) & 0x55555555U);
+  word = (word & 0x33333333U) + ((word >> 2) & 0x33333333U);
+  return (((word + (word >> 4)) & 0x0F0F0F0FU) * 0x01010101U) >> 24;
+#endif
+}
+
+// Index of the highest set bit of `word`, which is not 0.
+constexpr int highest_bit(uint32_t word) {
+  return 31 - __builtin_clz(word);
+}
+
+// Index of the lowest set bit of `word`, which is not 0.
+constexpr unsigned lowest_bit(uint32_t word) {
+  return static_cast<unsigned>(__builtin_ctz(word));
+}
+
+// Number of bits needed to write `value`: 0 for 0.
+constexpr int bit_length(uint32_t value) {
+  return value == 0 ? 0 : highest_bit(value) + 1;
+}
+
+// Little-endian words at any address. The targets are little-endian; the compiler turns these into single
+// loads where the machine allows unaligned ones.
+inline uint32_t load32(const uint8_t* bytes) {
+  return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8 |
+         static_cast<uint32_t>(bytes[2]) << 16 | static_cast<uint32_t>(bytes[3]) << 24;
+}
+inline uint64_t load64(const uint8_t* bytes) {
+  return static_cast<uint64_t>(load32(bytes)) | static_cast<uint64_t>(load32(bytes + 4)) << 32;
+}
+inline uint32_t load16(const uint8_t* bytes) {
+  return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8;
+}
+inline void store16(uint8_t* bytes, uint32_t value) {
+  bytes[0] = static_cast<uint8_t>(value);
+  bytes[1] = static_cast<uint8_t>(value >> 8);
+}
+inline void store32(uint8_t* bytes, uint32_t value) {
+  store16(bytes, value & 0xFFFFU);
+  store16(bytes + 2, value >> 16);
+}
+inline void store64(uint8_t* bytes, uint64_t value) {
+  store32(bytes, static_cast<uint32_t>(value));
+  store32(bytes + 4, static_cast<uint32_t>(value >> 32));
+}
+
+}  // namespace thimble::bits
+
+#endif

@@ -1,0 +1,106 @@
+// From a pixel's colour to its bytes, and what surrounds a band.
+#include "../picture/band.h"
+#include "arithmetic.h"
+#include "thimble/light/detail/pixel.h"
+
+namespace thimble::lit {
+namespace {
+
+// The step, of `levels` above 0, for a channel of 0 .. kWhite: the next one up where the rest is more than
+// the pixel's place in the dither.
+uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, int32_t x, int32_t y) {
+  const uint32_t place = options.dither ? 2 * bayer_rank(x, y) + 1 : 64;  // of 128
+  return (channel * levels + (128 - place) * kWhite / 128) / kWhite;
+}
+
+// What is brighter than white: half way between cutting channels off, which turns orange into yellow, and
+// keeping their ratio, which makes a lamp look like paint.
+void expose(const Color& color, uint32_t (*channel)[3]) {
+  uint32_t most = kWhite;
+  for (const uint32_t one : color.c) {
+    most = one > most ? one : most;
+  }
+  most = most < kMaxChannel ? most : kMaxChannel;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t one = color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel;
+    const uint32_t cut = one < kWhite ? one : kWhite;
+    (*channel)[i] = most == kWhite ? cut : (cut + one * kWhite / most) / 2;  // 16 bits by 14
+  }
+}
+
+}  // namespace
+
+Status draw_plain(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
+                  LitCounts* counts, const LitOptions& options) {
+  RenderCounts plain;
+  const Status status = render_band(tree, camera, shading, band, &plain, {options.max_visits, Width::kAuto});
+  if (counts != nullptr) {
+    constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
+    counts->rays[kPrimary] += plain.rays;
+    counts->hits[kPrimary] += plain.hits;
+    counts->node_visits[kPrimary] += plain.node_visits;
+    counts->step_limited += plain.step_limited;
+  }
+  return status;
+}
+
+Status check_frame(const Frame& frame, const Band& band, size_t* stride) {
+  const Status status = check_band(frame.camera, frame.tree.level(), band, stride);
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (frame.scene.lights.size > kMaxLights || frame.scene.surfaces.size > kMaxSurfaces ||
+      frame.scene.bounces > kMaxBounces) {
+    return Status::kOutOfRange;
+  }
+  return Status::kOk;
+}
+
+void clear_row(const Frame& frame, const Band& band, uint8_t* line) {
+  const size_t bytes = row_bytes(band.format, frame.camera.width_px());
+  for (size_t i = 0; i < bytes; ++i) {
+    line[i] = 0;
+  }
+}
+
+void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32_t y, const Color& color) {
+  uint32_t channel[3];
+  expose(color, &channel);
+  const uint32_t gray = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
+  Rgb8 stored;
+  switch (band.format) {
+    case PixelFormat::kMono1:
+    case PixelFormat::kGray4: {
+      const uint32_t levels = band.format == PixelFormat::kMono1 ? 1 : 15;
+      const uint8_t value = static_cast<uint8_t>(step_of(gray, levels, frame.options, x, y) * (255 / levels));
+      stored = {value, value, value};
+      break;
+    }
+    case PixelFormat::kRgb565:
+      stored = {static_cast<uint8_t>(step_of(channel[0], 31, frame.options, x, y) << 3),
+                static_cast<uint8_t>(step_of(channel[1], 63, frame.options, x, y) << 2),
+                static_cast<uint8_t>(step_of(channel[2], 31, frame.options, x, y) << 3)};
+      break;
+    case PixelFormat::kGray8:
+    case PixelFormat::kRgb888:
+      stored = {static_cast<uint8_t>((channel[0] + kLevel / 2) / kLevel),
+                static_cast<uint8_t>((channel[1] + kLevel / 2) / kLevel),
+                static_cast<uint8_t>((channel[2] + kLevel / 2) / kLevel)};
+      break;
+  }
+  store_pixel(line, x, y, band.format, stored);
+}
+
+void add_counts(const LitCounts& from, LitCounts* to) {
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    to->rays[kind] += from.rays[kind];
+    to->hits[kind] += from.hits[kind];
+    to->node_visits[kind] += from.node_visits[kind];
+  }
+  to->step_limited += from.step_limited;
+  if (from.pending_high_water > to->pending_high_water) {
+    to->pending_high_water = from.pending_high_water;
+  }
+}
+
+}  // namespace thimble::lit

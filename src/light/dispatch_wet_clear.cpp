@@ -1,0 +1,12 @@
+#include "instances.h"
+
+namespace thimble::lit {
+
+Status draw_wet_clear(const Frame& frame, const Band& band, LitCounts* counts) {
+  return (frame.effects & Effect::kMirror) != 0
+             ? draw_instance<Effect::kMirror | Effect::kGlass | Effect::kMedia | Effect::kWater>(frame, band,
+                                                                                                 counts)
+             : draw_instance<Effect::kGlass | Effect::kMedia | Effect::kWater>(frame, band, counts);
+}
+
+}  // namespace thimble::lit

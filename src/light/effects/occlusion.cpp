@@ -1,0 +1,40 @@
+// Ambient occlusion: how much of the hemisphere above a face is open. A fixed pattern of rays; what is met
+// darkens the less the farther away it is, so that no edge of a layer shows.
+#include "../arithmetic.h"
+#include "thimble/light/detail/pixel.h"
+
+namespace thimble::lit {
+
+void occlude(Frame& frame, const Spot& spot, Color* light) {
+  const Occlusion& occlusion = frame.scene.occlusion;
+  const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
+  if (rays == 0 || occlusion.reach == 0) {
+    return;
+  }
+  constexpr uint32_t kOpen = 1U << 12;
+  uint32_t open = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Ray ray{spot.at, occlusion_direction(i, spot.face.axis, spot.face.negative)};
+    count_ray(frame, LitRayKind::kOcclusion);
+    Hit hit;
+    find_solid(frame, LitRayKind::kOcclusion, ray, &hit);
+    uint32_t share = kOpen;
+    if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
+      // All directions of the pattern have one length, 7 bits; the numerator has 23.
+      // A face is only entered along its axis; inside a voxel t is 0, whatever it is divided by.
+      const uint32_t along = hit.axis < 0 ? 0 : absolute(ray.direction[hit.axis]);
+      const uint32_t component = along == 0 ? 1 : along;
+      const uint32_t distance_q8 = static_cast<uint32_t>(hit.t_numerator) * kOcclusionLength / component;
+      const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
+      share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+    }
+    open += share;
+  }
+  const uint32_t closed = kOpen - open / static_cast<uint32_t>(rays);
+  const uint32_t factor = kOpen - closed * occlusion.strength / 255;
+  for (uint32_t& channel : light->c) {
+    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
+  }
+}
+
+}  // namespace thimble::lit

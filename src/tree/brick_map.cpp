@@ -1,0 +1,563 @@
+// The bytes of a brick map: opening, checking, building. src/FORMAT.md is the specification.
+#include "thimble/tree/brick_map.h"
+
+#include "../base/bits.h"
+#include "compact_header.h"
+#include "thimble/base/crc32.h"
+
+namespace thimble {
+namespace {
+
+constexpr uint32_t kMagic = 0x014D4254;  // "TBM", then the version, 1
+constexpr uint32_t kLevelOffset = 4;
+constexpr uint32_t kBoxMinOffset = 5;
+constexpr uint32_t kSizeOffset = 8;
+constexpr uint32_t kChecksumOffset = 12;
+constexpr uint32_t kChecksumStart = 16;
+constexpr uint32_t kTreeChecksumOffset = 16;
+constexpr uint32_t kBoxSizeOffset = 20;
+constexpr uint32_t kBricksOffset = 24;
+constexpr uint32_t kMixedOffset = 28;
+
+// While a map is made, where a brick comes from: below this a node of level 2, counted from the first of that
+// level; from it on the low byte is the material of all that is seen of the brick.
+constexpr uint32_t kUniform = 0xFF00;
+
+// A mixed brick's origin: number of its first node of level 1 and, in the highest byte, its child mask; then
+// the materials of voxels and of solid blocks before those of the brick.
+constexpr uint32_t kOriginBytes = 12;
+constexpr uint32_t kChildBits = 24;
+
+struct Header {
+  int level;
+  Vec3i min;
+  Vec3i size;
+  uint32_t cells;
+  uint32_t bricks;
+  uint32_t mixed;
+};
+
+size_t bricks_at(uint32_t cells) {
+  return kBrickMapHeaderBytes + ((2 * size_t{cells} + 7) & ~size_t{7});
+}
+size_t origins_at(uint32_t cells, uint32_t bricks) {
+  return bricks_at(cells) + 8 * size_t{bricks};
+}
+size_t materials_at(uint32_t cells, uint32_t bricks, uint32_t mixed) {
+  return origins_at(cells, bricks) + kOriginBytes * size_t{mixed};
+}
+
+const char* read_header(ConstBytes bytes, Header* header) {
+  if (bytes.size < kBrickMapHeaderBytes || bits::load32(bytes.data) != kMagic) {
+    return "not a brick map of this version";
+  }
+  const uint8_t* base = bytes.data;
+  header->level = base[kLevelOffset];
+  if (header->level < kMinBrickMapLevel || header->level > kMaxBrickMapLevel) {
+    return "level out of range";
+  }
+  const int32_t side = int32_t{1} << (header->level - 2);
+  header->cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    header->min[axis] = base[kBoxMinOffset + static_cast<uint32_t>(axis)];
+    header->size[axis] = base[kBoxSizeOffset + static_cast<uint32_t>(axis)];
+    if (header->min[axis] + header->size[axis] > side) {
+      return "box outside the world";
+    }
+    header->cells *= static_cast<uint32_t>(header->size[axis]);
+  }
+  header->bricks = bits::load16(base + kBricksOffset);
+  const uint32_t size = bits::load32(base + kSizeOffset);
+  header->mixed = bits::load16(base + kMixedOffset);
+  if (header->bricks == 0 || header->mixed >= header->bricks ||
+      size != brick_map_bytes(header->cells, header->bricks, header->mixed)) {
+    return "size does not match the counts";
+  }
+  return size > bytes.size ? "truncated" : nullptr;
+}
+
+bool aligned(const uint8_t* data) {
+  return (reinterpret_cast<size_t>(data) & 7U) == 0;
+}
+
+// Bits of a brick whose octants (as bits) `octant` and voxels of it `mask` are solid.
+uint64_t spread(unsigned octant, unsigned mask) {
+  uint64_t brick = 0;
+  const unsigned corner = (octant & 1U) * 2 + (octant >> 1 & 1U) * 8 + (octant >> 2) * 32;
+  for (unsigned bit = 0; bit < 8; ++bit) {
+    if ((mask >> bit & 1U) != 0) {
+      brick |= uint64_t{1} << (corner + (bit & 1U) + (bit >> 1 & 1U) * 4 + (bit >> 2) * 16);
+    }
+  }
+  return brick;
+}
+
+uint64_t bits_of_node(const CompactTree& tree, uint32_t node) {
+  const unsigned mask = tree.mask(node);
+  if (mask == 0) {
+    return ~uint64_t{0};
+  }
+  uint64_t brick = 0;
+  uint32_t child = tree.first_child(node);
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    if ((mask >> octant & 1U) != 0) {
+      if (child < tree.node_count()) {
+        const unsigned voxels = tree.mask(child);
+        brick |= spread(octant, voxels == 0 ? 0xFFU : voxels);
+      }
+      ++child;
+    }
+  }
+  return brick;
+}
+
+uint8_t material_in_node(const CompactTree& tree, uint32_t node, unsigned bit) {
+  const unsigned octant = (bit >> 1 & 1U) | (bit >> 3 & 1U) << 1 | (bit >> 5 & 1U) << 2;
+  const unsigned voxel = (bit & 1U) | (bit >> 2 & 1U) << 1 | (bit >> 4 & 1U) << 2;
+  if (node >= tree.node_count()) {
+    return 0;
+  }
+  const unsigned mask = tree.mask(node);
+  if (mask == 0) {
+    return tree.block_material(node);
+  }
+  const uint32_t child = tree.first_child(node) + bits::popcount8(mask & ((1U << octant) - 1));
+  if (child >= tree.node_count()) {
+    return 0;
+  }
+  const unsigned voxels = tree.mask(child);
+  if (voxels == 0) {
+    return tree.block_material(child);
+  }
+  return tree.voxel_material(tree.first_child(child) + bits::popcount8(voxels & ((1U << voxel) - 1)));
+}
+
+// A map in the making: directory and bricks as they will be, sources from the end of the bytes downwards.
+class Builder {
+ public:
+  Builder(const CompactTree& tree, Bytes out) : tree_(tree), out_(out) {
+    for (uint16_t& number : solid_) {
+      number = 0;
+    }
+    const VoxelBox& bounds = tree.bounds();
+    for (int axis = 0; axis < 3; ++axis) {
+      min_[axis] = bounds.min[axis] >> 2;
+      size_[axis] = tree.empty() ? 0 : ((bounds.max[axis] + 3) >> 2) - min_[axis];
+    }
+    cells_ = static_cast<uint32_t>(size_.x * size_.y * size_.z);
+  }
+
+  Status run(size_t* written) {
+    if (out_.size < brick_map_bytes(cells_, 1, 0) + 2) {
+      return Status::kOutOfMemory;
+    }
+    for (size_t at = 0; at < bricks_at(cells_); ++at) {
+      out_[at] = 0;
+    }
+    uint32_t empty = 0;
+    Status status = add(0, kUniform, &empty);
+    if (status == Status::kOk && !tree_.empty()) {
+      status = place_all();
+    }
+    if (status != Status::kOk) {
+      return status;
+    }
+    share_uniform();
+    mixed_first();
+    return finish(written);
+  }
+
+ private:
+  uint8_t* cell(uint32_t index) const { return out_.data + kBrickMapHeaderBytes + 2 * size_t{index}; }
+  uint8_t* brick(uint32_t number) const { return out_.data + bricks_at(cells_) + 8 * size_t{number}; }
+  uint8_t* source(uint32_t number) const {
+    return out_.data + (out_.size & ~size_t{1}) - 2 * (size_t{number} + 1);
+  }
+
+  Status add(uint64_t brick_bits, uint32_t where, uint32_t* number) {
+    if (bricks_ == kMaxBricks) {
+      return Status::kOutOfRange;
+    }
+    if (out_.size < brick_map_bytes(cells_, bricks_ + 1, 0) + 2 * (size_t{bricks_} + 1)) {
+      return Status::kOutOfMemory;
+    }
+    *number = bricks_++;
+    bits::store64(brick(*number), brick_bits);
+    bits::store16(source(*number), where);
+    return Status::kOk;
+  }
+
+  // The one brick that is solid through with `material`.
+  Status solid(uint8_t material, uint32_t* number) {
+    if (solid_[material] == 0) {
+      const Status status = add(~uint64_t{0}, kUniform | material, number);
+      if (status != Status::kOk) {
+        return status;
+      }
+      solid_[material] = static_cast<uint16_t>(*number);
+    }
+    *number = solid_[material];
+    return Status::kOk;
+  }
+
+  // Enters `number` for all cells of the block of `level` at `corner` (in bricks) that lie in the box.
+  void enter(const Vec3i& corner, int level, uint32_t number) {
+    const int32_t side = int32_t{1} << (level - 2);
+    Vec3i low;
+    Vec3i high;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = corner[axis] - min_[axis];
+      high[axis] = low[axis] + side < size_[axis] ? low[axis] + side : size_[axis];
+      low[axis] = low[axis] > 0 ? low[axis] : 0;
+    }
+    for (int32_t z = low.z; z < high.z; ++z) {
+      for (int32_t y = low.y; y < high.y; ++y) {
+        for (int32_t x = low.x; x < high.x; ++x) {
+          bits::store16(cell(static_cast<uint32_t>((z * size_.y + y) * size_.x + x)), number);
+        }
+      }
+    }
+  }
+
+  // Depth first over the nodes of level 2 and up.
+  Status place_all() {
+    struct Frame {
+      uint32_t child;
+      uint8_t mask;
+      uint8_t next;
+    } stack[kMaxBrickMapLevel + 1];
+    const int top = tree_.level();
+    int level = top;
+    uint32_t node = 0;
+    Vec3i corner;
+    bool arrive = true;
+    bool first = true;
+    while (level <= top) {
+      if (arrive) {
+        arrive = false;
+        const bool known = node < tree_.node_count();
+        const unsigned mask = known ? tree_.mask(node) : 0;
+        if (!known || mask == 0 || level == 2) {
+          Status status = Status::kOk;
+          uint32_t number = 0;
+          if (known && mask == 0) {
+            status = solid(tree_.block_material(node), &number);
+          } else if (known) {
+            if (first) {
+              first_node_ = node;
+              first = false;
+            }
+            const uint32_t where = node - first_node_;
+            status = where < kUniform ? add(bits_of_node(tree_, node), where, &number) : Status::kOutOfRange;
+          }
+          if (status != Status::kOk) {
+            return status;
+          }
+          enter(corner, level, number);
+          ++level;
+          continue;
+        }
+        stack[level] = {tree_.first_child(node), static_cast<uint8_t>(mask), 0};
+      }
+      Frame& frame = stack[level];
+      while (frame.next < 8 && (frame.mask >> frame.next & 1) == 0) {
+        ++frame.next;
+      }
+      if (frame.next == 8) {
+        ++level;
+        continue;
+      }
+      const unsigned octant = frame.next++;
+      node = frame.child++;
+      --level;
+      const int32_t side = int32_t{1} << (level - 2);
+      for (int axis = 0; axis < 3; ++axis) {
+        corner[axis] = (corner[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
+      }
+      arrive = true;
+    }
+    return Status::kOk;
+  }
+
+  bool is_solid(const Vec3i& voxel) const {
+    const Vec3i at{voxel.x >> 2, voxel.y >> 2, voxel.z >> 2};
+    if (at.x < 0 || at.y < 0 || at.z < 0 || at.x >= size_.x || at.y >= size_.y || at.z >= size_.z) {
+      return false;
+    }
+    const uint32_t number =
+        bits::load16(cell(static_cast<uint32_t>((at.z * size_.y + at.y) * size_.x + at.x)));
+    const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
+    return (brick(number)[bit >> 3] >> (bit & 7) & 1) != 0;
+  }
+
+  // Whether a ray can come to `voxel` from an empty neighbour: one of 26, since it may pass through an edge
+  // or a corner between solid ones.
+  bool is_seen(const Vec3i& voxel) const {
+    for (int32_t z = -1; z <= 1; ++z) {
+      for (int32_t y = -1; y <= 1; ++y) {
+        for (int32_t x = -1; x <= 1; ++x) {
+          if (!is_solid({voxel.x + x, voxel.y + y, voxel.z + z})) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  // Where all that can be seen of a brick has one material, its source says so; where such a brick is solid
+  // through, it is the shared one of that material.
+  void share_uniform() {
+    Vec3i at;
+    for (uint32_t index = 0; index < cells_; ++index) {
+      const uint32_t number = bits::load16(cell(index));
+      const uint32_t where = bits::load16(source(number));
+      if (where < kUniform) {
+        const uint64_t brick_bits = bits::load64(brick(number));
+        int material = -1;
+        bool uniform = true;
+        for (int32_t bit = 0; bit < 64 && uniform; ++bit) {
+          if ((brick_bits >> bit & 1U) != 0 &&
+              is_seen({4 * at.x + (bit & 3), 4 * at.y + (bit >> 2 & 3), 4 * at.z + (bit >> 4)})) {
+            const int own = material_in_node(tree_, first_node_ + where, static_cast<unsigned>(bit));
+            uniform = material < 0 || material == own;
+            material = own;
+          }
+        }
+        if (uniform) {
+          const uint8_t seen = static_cast<uint8_t>(material < 0 ? 0 : material);
+          bits::store16(source(number), kUniform | seen);
+          if (brick_bits == ~uint64_t{0}) {
+            share(index, number, seen);
+          }
+        }
+      }
+      if (++at.x == size_.x) {
+        at.x = 0;
+        if (++at.y == size_.y) {
+          at.y = 0;
+          ++at.z;
+        }
+      }
+    }
+  }
+
+  void rename(uint32_t from, uint32_t to) {
+    for (uint32_t index = 0; index < cells_; ++index) {
+      if (bits::load16(cell(index)) == from) {
+        bits::store16(cell(index), to);
+      }
+    }
+    for (uint16_t& solid : solid_) {
+      if (solid == from) {
+        solid = static_cast<uint16_t>(to);
+      }
+    }
+  }
+
+  // Cell `index` takes the shared solid brick; the last brick moves into the place of `number`.
+  void share(uint32_t index, uint32_t number, uint8_t material) {
+    if (solid_[material] == 0) {
+      solid_[material] = static_cast<uint16_t>(number);
+      return;
+    }
+    bits::store16(cell(index), solid_[material]);
+    const uint32_t last = --bricks_;
+    if (number != last) {
+      bits::store64(brick(number), bits::load64(brick(last)));
+      bits::store16(source(number), bits::load16(source(last)));
+      rename(last, number);
+    }
+  }
+
+  bool is_mixed(uint32_t number) const { return bits::load16(source(number)) < kUniform; }
+
+  // Bricks that need the tree get the numbers from 1 on.
+  void mixed_first() {
+    uint32_t low = 1;
+    uint32_t high = bricks_ - 1;
+    for (;;) {
+      while (low <= high && is_mixed(low)) {
+        ++low;
+      }
+      while (high >= low && !is_mixed(high)) {
+        --high;
+      }
+      if (low > high) {
+        break;
+      }
+      const uint64_t brick_bits = bits::load64(brick(low));
+      const uint32_t where = bits::load16(source(low));
+      bits::store64(brick(low), bits::load64(brick(high)));
+      bits::store16(source(low), bits::load16(source(high)));
+      bits::store64(brick(high), brick_bits);
+      bits::store16(source(high), where);
+      // No cell has this number, so that the two do not mix.
+      rename(low, kMaxBricks);
+      rename(high, low);
+      rename(kMaxBricks, high);
+    }
+    mixed_ = low - 1;
+  }
+
+  Status finish(size_t* written) {
+    const size_t size = brick_map_bytes(cells_, bricks_, mixed_);
+    if (out_.size < size + 2 * size_t{bricks_}) {
+      return Status::kOutOfMemory;
+    }
+    for (uint32_t number = 1; number <= mixed_; ++number) {
+      uint8_t* origin = out_.data + origins_at(cells_, bricks_) + kOriginBytes * (size_t{number} - 1);
+      const uint32_t node = first_node_ + bits::load16(source(number));
+      const unsigned mask = tree_.mask(node);
+      const uint32_t child = tree_.first_child(node);
+      if (child >= uint32_t{1} << kChildBits) {
+        return Status::kOutOfRange;
+      }
+      bits::store32(origin, child | static_cast<uint32_t>(mask) << kChildBits);
+      const bool known = child < tree_.node_count();
+      bits::store32(origin + 4, known ? tree_.first_child(child) - tree_.node_count() : 0);
+      bits::store32(origin + 8, known ? tree_.blocks_before(child) : 0);
+    }
+    uint8_t* material = out_.data + materials_at(cells_, bricks_, mixed_);
+    for (uint32_t number = mixed_ + 1; number < bricks_; ++number) {
+      *material++ = source(number)[0];
+    }
+    while (material < out_.data + size) {
+      *material++ = 0;
+    }
+    uint8_t* base = out_.data;
+    bits::store32(base, kMagic);
+    base[kLevelOffset] = static_cast<uint8_t>(tree_.level());
+    for (int axis = 0; axis < 3; ++axis) {
+      base[kBoxMinOffset + static_cast<uint32_t>(axis)] = static_cast<uint8_t>(min_[axis]);
+      base[kBoxSizeOffset + static_cast<uint32_t>(axis)] = static_cast<uint8_t>(size_[axis]);
+    }
+    bits::store32(base + kSizeOffset, static_cast<uint32_t>(size));
+    bits::store32(base + kTreeChecksumOffset, bits::load32(tree_.bytes() + compact_header::kChecksumOffset));
+    bits::store32(base + kBricksOffset, bricks_);
+    bits::store32(base + kMixedOffset, mixed_);
+    bits::store32(base + kChecksumOffset,
+                  crc32({base + kChecksumStart, size - kChecksumStart}, crc32({base, kChecksumOffset})));
+    *written = size;
+    return Status::kOk;
+  }
+
+  const CompactTree& tree_;
+  Bytes out_;
+  Vec3i min_;
+  Vec3i size_;
+  uint32_t cells_ = 0;
+  uint32_t bricks_ = 0;
+  uint32_t mixed_ = 0;
+  uint32_t first_node_ = 0;
+  uint16_t solid_[256];
+};
+
+}  // namespace
+
+Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
+  if (!aligned(bytes.data)) {
+    return Status::kBadArgument;
+  }
+  Header header{};
+  if (read_header(bytes, &header) != nullptr) {
+    return Status::kDamaged;
+  }
+  BrickMap result;
+  result.directory_ = bytes.data + kBrickMapHeaderBytes;
+  for (uint32_t cell = 0; cell < header.cells; ++cell) {
+    if (bits::load16(result.directory_ + 2 * size_t{cell}) >= header.bricks) {
+      return Status::kDamaged;
+    }
+  }
+  result.bricks_ = bytes.data + bricks_at(header.cells);
+  if (bits::load64(result.bricks_) != 0) {
+    return Status::kDamaged;  // number 0 is met in space only, and has no origin
+  }
+  result.origins_ = bytes.data + origins_at(header.cells, header.bricks);
+  result.materials_ = bytes.data + materials_at(header.cells, header.bricks, header.mixed);
+  result.box_.min = header.min;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.box_.max[axis] = header.min[axis] + header.size[axis];
+  }
+  result.size_bytes_ = bits::load32(bytes.data + kSizeOffset);
+  result.cells_ = header.cells;
+  result.brick_count_ = header.bricks;
+  result.mixed_count_ = header.mixed;
+  result.tree_checksum_ = bits::load32(bytes.data + kTreeChecksumOffset);
+  result.level_ = static_cast<uint8_t>(header.level);
+  *map = result;
+  return Status::kOk;
+}
+
+const char* BrickMap::validate(ConstBytes bytes) {
+  Header header{};
+  if (const char* text = read_header(bytes, &header)) {
+    return text;
+  }
+  const uint8_t* base = bytes.data;
+  const ConstBytes checked{base + kChecksumStart, bits::load32(base + kSizeOffset) - kChecksumStart};
+  if (crc32(checked, crc32({base, kChecksumOffset})) != bits::load32(base + kChecksumOffset)) {
+    return "checksum does not match";
+  }
+  for (uint32_t cell = 0; cell < header.cells; ++cell) {
+    if (bits::load16(base + kBrickMapHeaderBytes + 2 * size_t{cell}) >= header.bricks) {
+      return "a cell names a brick that is not there";
+    }
+  }
+  return bits::load64(base + bricks_at(header.cells)) != 0 ? "brick 0 is not empty" : nullptr;
+}
+
+Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size) {
+  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel) {
+    return Status::kOutOfRange;
+  }
+  if (!aligned(out.data)) {
+    return Status::kBadArgument;
+  }
+  size_t written = 0;
+  const Status status = Builder(tree, out).run(&written);
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (size != nullptr) {
+    *size = written;
+  }
+  return map == nullptr ? Status::kOk : open(out.subspan(0, written), map);
+}
+
+bool BrickMap::belongs_to(const CompactTree& tree) const {
+  return directory_ != nullptr && tree.bytes() != nullptr && tree.level() == level_ &&
+         bits::load32(tree.bytes() + compact_header::kChecksumOffset) == tree_checksum_;
+}
+
+uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const {
+  const uint8_t* origin = origins_ + kOriginBytes * (number - 1);
+  const uint32_t children = bits::load32(origin);
+  const unsigned octant = (bit >> 1 & 1U) | (bit >> 2 & 2U) | (bit >> 3 & 4U);
+  const unsigned voxel = (bit & 1U) | (bit >> 1 & 2U) | (bit >> 2 & 4U);
+  // The masks of the brick's nodes of level 1 up to the one in question stand side by side.
+  const uint32_t before = bits::popcount8(children >> kChildBits & ((1U << octant) - 1));
+  const uint32_t first = children & ((uint32_t{1} << kChildBits) - 1);
+  if (first + before >= tree.node_count()) {
+    return 0;
+  }
+  const uint8_t* masks = tree.masks() + first;
+  const unsigned own = masks[before];
+  if (own == 0) {
+    uint32_t block = bits::load32(origin + 8);
+    for (uint32_t child = 0; child < before; ++child) {
+      block += masks[child] == 0 ? 1U : 0U;
+    }
+    return tree.material_of_block(block);
+  }
+  uint32_t count = bits::load32(origin + 4) + bits::popcount8(own & ((1U << voxel) - 1));
+  if (before >= 4) {
+    count += bits::popcount32(bits::load32(masks));
+    masks += 4;
+  }
+  count += bits::popcount32(bits::load32(masks) & ((uint32_t{1} << 8 * (before & 3U)) - 1));
+  return tree.voxel_material(tree.node_count() + count);
+}
+
+}  // namespace thimble

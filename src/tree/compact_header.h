@@ -1,0 +1,85 @@
+// Byte offsets of a compact tree's header and sections (src/FORMAT.md), and what its writers and readers
+// share. Internal to src/.
+#ifndef THIMBLE_SRC_TREE_COMPACT_HEADER_H
+#define THIMBLE_SRC_TREE_COMPACT_HEADER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::compact_header {
+
+inline constexpr uint32_t kMagic = 0x01424D54;  // "TMB", then the version, 1
+inline constexpr uint32_t kLevelOffset = 4;
+inline constexpr uint32_t kRankShiftOffset = 5;
+inline constexpr uint32_t kFlagsOffset = 6;
+inline constexpr uint32_t kMaterialOffset = 7;
+inline constexpr uint32_t kSizeOffset = 8;
+inline constexpr uint32_t kChecksumOffset = 12;
+inline constexpr uint32_t kChecksumStart = 16;  // the checksum covers bytes 0..11 and all from here on
+inline constexpr uint32_t kNodesOffset = 16;
+inline constexpr uint32_t kSolidBlocksOffset = 20;
+inline constexpr uint32_t kVoxelBitsOffset = 24;
+inline constexpr uint32_t kBoundsMinOffset = 28;
+inline constexpr uint32_t kBoundsMaxOffset = 34;
+inline constexpr uint32_t kVoxelCountOffset = 40;
+inline constexpr uint32_t kSolidAddedOffset = 48;
+static_assert(kSolidAddedOffset + 8 == kCompactHeaderBytes);
+
+inline constexpr unsigned kManyMaterialsFlag = 1;
+inline constexpr unsigned kMergedFlag = 2;
+inline constexpr unsigned kKnownFlags = kManyMaterialsFlag | kMergedFlag;
+
+// Where each section starts, in bytes from the front. Only valid for a shape whose compact_bytes is not 0.
+struct Sections {
+  size_t masks;
+  size_t ranks;
+  size_t merged;
+  size_t block_ranks;
+  size_t materials;
+};
+
+constexpr Sections sections_of(const CompactShape& shape) {
+  const size_t nodes = shape.nodes;
+  const size_t blocks =
+      (nodes >> shape.rank_shift) + ((nodes & ((size_t{1} << shape.rank_shift) - 1)) != 0 ? 1 : 0);
+  Sections at{};
+  at.masks = kCompactHeaderBytes;
+  at.ranks = at.masks + ((nodes + 3) & ~size_t{3});
+  at.merged = at.ranks + 4 * blocks;
+  at.block_ranks = at.merged + (shape.merged ? ((nodes + 31) >> 5) * 4 : 0);
+  at.materials = at.block_ranks + (shape.many_materials && shape.solid_blocks != 0 ? 4 * blocks : 0);
+  return at;
+}
+
+// Grows `box` (all zero at first) by what is solid in the node of `level` at `corner`: all of it for mask 0,
+// else the voxels of a level-1 mask.
+constexpr void grow_bounds(VoxelBox* box, const Vec3i& corner, int level, unsigned mask) {
+  // Which of the lower and upper halves hold a voxel: bits of the mask with that axis' bit of the octant 0
+  // or 1.
+  constexpr unsigned kUpper[3] = {0xAA, 0xCC, 0xF0};
+  const bool first = box->empty();
+  for (int axis = 0; axis < 3; ++axis) {
+    int32_t low = corner[axis];
+    int32_t high = corner[axis] + (int32_t{1} << level);
+    if (mask != 0) {
+      if ((mask & ~kUpper[axis] & 0xFFU) == 0) {
+        ++low;
+      }
+      if ((mask & kUpper[axis]) == 0) {
+        --high;
+      }
+    }
+    if (first || low < box->min[axis]) {
+      box->min[axis] = low;
+    }
+    if (first || high > box->max[axis]) {
+      box->max[axis] = high;
+    }
+  }
+}
+
+}  // namespace thimble::compact_header
+
+#endif

@@ -1,0 +1,463 @@
+// A baked scene's bytes: what they are, what comes back out of them, and what happens when they are too few
+// or damaged.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <zlib.h>
+
+#include "support/baked_damage.h"
+#include "support/scene_under_test.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/octree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+constexpr int kScale = 1;
+#else
+constexpr int kScale = 8;
+#endif
+
+constexpr Rgb8 kColors[] = {{1, 2, 3}, {200, 100, 50}, {9, 8, 7}};
+constexpr char kName[] = "a scene";
+
+SceneCamera perspective() {
+  SceneCamera camera;
+  camera.eye = {Q8::from_raw(-700), Q8::from_raw(-900), Q8::from_raw(1500)};
+  camera.target = {Q8::from_raw(1024), Q8::from_raw(1024), Q8::from_raw(1000)};
+  camera.fov_degrees = Q16::saturate(40);
+  return camera;
+}
+
+SceneCamera orthographic() {
+  SceneCamera camera = perspective();
+  camera.is_perspective = false;
+  camera.direction_bits = 12;
+  camera.forward = {3, 5, -2};
+  camera.up = {0, 1, 4};
+  camera.span = Q14::from_raw(12 << 14);
+  return camera;
+}
+
+// A tree of level 3 with two materials and a solid block.
+HeapBytes small_tree(bool coarsened = false) {
+  std::vector<std::uint8_t> bytes(Octree::octree_bytes(4096));
+  Octree octree;
+  REQUIRE(Octree::make(3, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
+  REQUIRE(octree.insert_block({0, 0, 0}, 1, 1) == Status::kOk);
+  std::mt19937 random(5);
+  for (int i = 0; i < 40; ++i) {
+    const auto coordinate = [&] { return static_cast<std::int32_t>(random() % 8); };
+    const Vec3i at{coordinate(), coordinate(), coordinate()};
+    REQUIRE(octree.insert(at, static_cast<std::uint8_t>(random() % 3)) == Status::kOk);
+  }
+  if (coarsened) {
+    REQUIRE(octree.coarsen_to(octree.nodes_used() / 2) == Status::kOk);
+  }
+  return compact_of(octree);
+}
+
+// All parts but the brick map, which only has to come back.
+struct WholeScene {
+  explicit WholeScene(const SceneCamera& with, bool coarsened = false)
+      : tree(small_tree(coarsened)), camera(with) {
+    parts.tree = tree.view();
+    parts.palette = Span<const Rgb8>(kColors);
+    parts.camera = &camera;
+    parts.brick_map = {kBricks, sizeof kBricks};
+    parts.name = {reinterpret_cast<const std::uint8_t*>(kName), sizeof kName - 1};
+  }
+  WholeScene(const WholeScene&) = delete;
+  WholeScene& operator=(const WholeScene&) = delete;
+
+  HeapBytes baked(std::size_t offset = 0) const {
+    HeapBytes bytes(baked_bytes(parts), offset);
+    REQUIRE(BakedScene::make(parts, bytes.span(), nullptr) == Status::kOk);
+    return bytes;
+  }
+
+  static constexpr std::uint8_t kBricks[5] = {11, 22, 33, 44, 55};
+  HeapBytes tree;
+  SceneCamera camera;
+  BakedParts parts;
+};
+
+bool equal(ConstBytes a, ConstBytes b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+bool equal(const SceneCamera& a, const SceneCamera& b) {
+  return a.is_perspective == b.is_perspective && a.direction_bits == b.direction_bits && a.eye == b.eye &&
+         a.target == b.target && a.forward == b.forward && a.up == b.up && a.fov_degrees == b.fov_degrees &&
+         a.span == b.span;
+}
+
+std::uint32_t load32(ConstBytes bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data + at, sizeof word);
+  return word;
+}
+
+void store32(Bytes bytes, std::size_t at, std::uint32_t word) {
+  std::memcpy(bytes.data + at, &word, sizeof word);
+}
+
+HeapBytes copy_of(ConstBytes bytes, std::size_t size) {
+  HeapBytes copy(size);
+  std::memset(copy.span().data, 0, size);
+  std::memcpy(copy.span().data, bytes.data, std::min(size, bytes.size));
+  return copy;
+}
+
+// What `validate` says of bytes whose checksums are right.
+std::string fault_of(const HeapBytes& bytes) {
+  repair_baked_checksums(bytes.span());
+  const char* fault = BakedScene::validate(bytes.view());
+  BakedScene scene;
+  CHECK((BakedScene::open(bytes.view(), &scene) == Status::kOk) == (fault == nullptr));
+  return fault == nullptr ? "" : fault;
+}
+
+constexpr std::size_t entry(std::size_t index) {
+  return kBakedHeaderBytes + kBakedEntryBytes * index;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "baked scene: opened again, at any address -> tree, palette, camera, bricks and name as they were") {
+  for (const SceneCamera& camera : {perspective(), orthographic()}) {
+    for (const std::size_t offset : {0U, 1U, 2U, 3U}) {
+      CAPTURE(offset);
+      const WholeScene whole(camera);
+      const HeapBytes bytes = whole.baked(offset);
+      CHECK(BakedScene::validate(bytes.view()) == nullptr);
+      BakedScene scene;
+      REQUIRE(BakedScene::open(bytes.view(), &scene) == Status::kOk);
+      CHECK(scene.validate() == Status::kOk);
+      CHECK(equal({scene.tree().bytes(), scene.tree().size_bytes()}, whole.parts.tree));
+      CHECK(equal(scene.section(SectionKind::kTree), whole.parts.tree));
+      CHECK(
+          std::equal(scene.palette().begin(), scene.palette().end(), std::begin(kColors), std::end(kColors)));
+      REQUIRE(scene.has_camera());
+      CHECK(equal(scene.camera(), camera));
+      CHECK(equal(scene.section(SectionKind::kBrickMap), whole.parts.brick_map));
+      CHECK(equal(scene.section(SectionKind::kName), whole.parts.name));
+      CHECK(equal(scene.bytes(), bytes.view()));
+    }
+  }
+}
+
+TEST_CASE("baked scene: parts left out -> are not there; the tree must be") {
+  const HeapBytes tree = small_tree();
+  BakedParts parts;
+  parts.tree = tree.view();
+  const HeapBytes bytes(baked_bytes(parts));
+  CHECK(bytes.view().size == kBakedHeaderBytes + kBakedEntryBytes + tree.view().size);
+  REQUIRE(BakedScene::make(parts, bytes.span(), nullptr) == Status::kOk);
+  BakedScene scene;
+  REQUIRE(BakedScene::open(bytes.view(), &scene) == Status::kOk);
+  CHECK(scene.validate() == Status::kOk);
+  CHECK(scene.palette().empty());
+  CHECK_FALSE(scene.has_camera());
+  CHECK(scene.section(SectionKind::kName).empty());
+  CHECK(BakedScene().section(SectionKind::kTree).empty());
+  CHECK(BakedScene().validate() == Status::kDamaged);
+
+  const HeapBytes to(1000);
+  CHECK(BakedScene::make({}, to.span(), nullptr) == Status::kBadArgument);
+  parts.tree = tree.view().subspan(0, tree.view().size - 1);
+  CHECK(BakedScene::make(parts, to.span(), nullptr) == Status::kBadArgument);
+  // Bytes behind the tree would not be validated.
+  const HeapBytes longer = copy_of(tree.view(), tree.view().size + 4);
+  parts.tree = longer.view();
+  CHECK(BakedScene::make(parts, to.span(), nullptr) == Status::kBadArgument);
+}
+
+TEST_CASE("baked scene: its bytes -> as FORMAT.md has them, the checksum being zlib's") {
+  const WholeScene whole(orthographic());
+  const HeapBytes baked = whole.baked();
+  const ConstBytes bytes = baked.view();
+  CHECK(std::memcmp(bytes.data, "TMS\x01", 4) == 0);
+  CHECK(load32(bytes, 4) == bytes.size);
+  const uLong front = ::crc32(0, bytes.data, 8);
+  CHECK(load32(bytes, 8) == ::crc32(front, bytes.data + 12, static_cast<uInt>(bytes.size - 12)));
+  REQUIRE(load32(bytes, 12) == 5);
+  std::size_t at = entry(5);
+  const std::size_t sizes[] = {whole.parts.tree.size, 9, 60, 5, 7};
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(load32(bytes, entry(i)) == i + 1);
+    for (; i == 3 && at % 8 != 0; ++at) {  // the brick map
+      CHECK(bytes[at] == 0);
+    }
+    CHECK(load32(bytes, entry(i) + 4) == at);
+    CHECK(load32(bytes, entry(i) + 8) == sizes[i]);
+    for (std::size_t padding = at + sizes[i]; padding < (at + sizes[i] + 3) / 4 * 4; ++padding) {
+      CHECK(bytes[padding] == 0);
+    }
+    if (i == 2) {
+      const std::uint32_t words[] = {0x0C01,
+                                     static_cast<std::uint32_t>(-700),
+                                     static_cast<std::uint32_t>(-900),
+                                     1500,
+                                     1024,
+                                     1024,
+                                     1000,
+                                     3,
+                                     5,
+                                     static_cast<std::uint32_t>(-2),
+                                     0,
+                                     1,
+                                     4,
+                                     40 << 16,
+                                     12 << 14};
+      CHECK(std::memcmp(bytes.data + at, words, sizeof words) == 0);
+    }
+    at = (at + sizes[i] + 3) / 4 * 4;
+  }
+  CHECK(at == bytes.size);
+}
+
+TEST_CASE("baked scene: outputs too small by any number of bytes -> refused and untouched") {
+  const WholeScene whole(perspective());
+  const std::size_t needed = baked_bytes(whole.parts);
+  for (std::size_t size = 0; size < needed; ++size) {
+    const HeapBytes to(size);
+    std::memset(to.span().data, 0x5A, size);
+    REQUIRE(BakedScene::make(whole.parts, to.span(), nullptr) == Status::kOutOfMemory);
+    REQUIRE(std::all_of(to.view().begin(), to.view().end(), [](std::uint8_t byte) { return byte == 0x5A; }));
+  }
+}
+
+TEST_CASE("baked scene: parts too long or a camera without a view -> refused") {
+  WholeScene whole(perspective());
+  const HeapBytes to(1U << 16);
+  const std::vector<std::uint8_t> name(kMaxNameBytes + 1, 'x');
+  BakedParts parts = whole.parts;
+  parts.name = {name.data(), name.size()};
+  CHECK(baked_bytes(parts) == SIZE_MAX);
+  CHECK(BakedScene::make(parts, to.span(), nullptr) == Status::kBadArgument);
+  parts.name = {name.data(), kMaxNameBytes};
+  CHECK(BakedScene::make(parts, to.span(), nullptr) == Status::kOk);
+  const std::vector<Rgb8> palette(kMaxPaletteColors + 1);
+  parts.palette = {palette.data(), palette.size()};
+  CHECK(BakedScene::make(parts, to.span(), nullptr) == Status::kBadArgument);
+  parts.palette = {palette.data(), kMaxPaletteColors};
+  CHECK(BakedScene::make(parts, to.span(), nullptr) == Status::kOk);
+
+  const auto refused = [&](const SceneCamera& camera) {
+    BakedParts with = whole.parts;
+    with.camera = &camera;
+    return BakedScene::make(with, to.span(), nullptr) == Status::kBadArgument;
+  };
+  SceneCamera camera = perspective();
+  CHECK_FALSE(refused(camera));
+  camera.target = camera.eye;
+  CHECK(refused(camera));
+  camera.forward = {0, 0, 1};
+  CHECK_FALSE(refused(camera));
+  camera.up = {0, 0, -7};
+  CHECK(refused(camera));
+  camera.up = {0, 1, 0};
+  camera.fov_degrees = Q16::saturate(121);
+  CHECK(refused(camera));
+  camera.is_perspective = false;
+  CHECK(refused(camera));  // no span
+  camera.span = Q14::from_raw(1);
+  CHECK_FALSE(refused(camera));
+  camera.eye.y = Q8::from_raw(5 * 8 * 256 + 1);
+  CHECK(refused(camera));
+  camera = perspective();
+  camera.direction_bits = 7;
+  CHECK(refused(camera));
+  camera = perspective();
+  camera.forward = {0, kMaxViewComponent, kMaxViewComponent + 1};
+  CHECK(refused(camera));
+}
+
+TEST_CASE("baked scene: its camera -> the very rays of the view that it was made from") {
+  for (const SceneCamera& baked : {perspective(), orthographic()}) {
+    Camera expected;
+    const Vec3i forward = baked.forward == Vec3i{} ? look_at(baked.eye, baked.target) : baked.forward;
+    if (baked.is_perspective) {
+      const PerspectiveView view{baked.eye, forward, baked.up, baked.fov_degrees, 96, 64, 0};
+      REQUIRE(expected.set(view, 3) == Status::kOk);
+    } else {
+      const OrthographicView view{baked.eye, forward, baked.up, baked.span, 96, 64, 12};
+      REQUIRE(expected.set(view, 3) == Status::kOk);
+    }
+    Camera camera;
+    REQUIRE(set_camera(baked, 96, 64, 3, &camera) == Status::kOk);
+    for (std::int32_t y = 0; y < 64; y += 7) {
+      for (std::int32_t x = 0; x < 96; x += 5) {
+        CHECK(camera.ray(x, y).origin == expected.ray(x, y).origin);
+        CHECK(camera.ray(x, y).direction == expected.ray(x, y).direction);
+      }
+    }
+    CHECK(set_camera(baked, 0, 64, 3, &camera) == Status::kBadArgument);
+    CHECK(camera.width_px() == 96);
+  }
+}
+
+TEST_CASE("baked scene: every truncation -> refused; bytes behind it -> no matter") {
+  const WholeScene whole(perspective());
+  const HeapBytes bytes = whole.baked();
+  for (std::size_t size = 0; size < bytes.view().size; ++size) {
+    const HeapBytes cut = copy_of(bytes.view(), size);
+    BakedScene scene;
+    REQUIRE(BakedScene::open(cut.view(), &scene) == Status::kDamaged);
+    REQUIRE(BakedScene::validate(cut.view()) != nullptr);
+    REQUIRE(scene.bytes().empty());
+  }
+  const HeapBytes longer = copy_of(bytes.view(), bytes.view().size + 9);
+  BakedScene scene;
+  REQUIRE(BakedScene::open(longer.view(), &scene) == Status::kOk);
+  CHECK(scene.bytes().size == bytes.view().size);
+  CHECK(BakedScene::validate(longer.view()) == nullptr);
+}
+
+TEST_CASE("baked scene: every byte changed, one at a time -> not valid, and refused or safe to use") {
+  for (const bool coarsened : {false, true}) {
+    const WholeScene whole(coarsened ? orthographic() : perspective(), coarsened);
+    const HeapBytes bytes = whole.baked();
+    for (std::size_t at = 0; at < bytes.view().size; ++at) {
+      for (const unsigned change : {0x01U, 0x02U, 0x10U, 0x80U, 0xFFU}) {
+        CAPTURE(at);
+        CAPTURE(change);
+        const HeapBytes damaged = copy_of(bytes.view(), bytes.view().size);
+        damaged.span()[at] = static_cast<std::uint8_t>(damaged.span()[at] ^ change);
+        REQUIRE(BakedScene::validate(damaged.view()) != nullptr);
+        const char* text = use_damaged(damaged.view(), {3, -5, 7});
+        CAPTURE(text);
+        REQUIRE(text == nullptr);
+        // The same with checksums that agree.
+        repair_baked_checksums(damaged.span());
+        REQUIRE(use_damaged(damaged.view(), {3, -5, 7}) == nullptr);
+      }
+    }
+  }
+}
+
+TEST_CASE("baked scene: many bytes changed under right checksums -> refused or safe to use") {
+  const std::uint32_t seed = 20240;
+  std::mt19937 random(seed);
+  CAPTURE(seed);
+  const WholeScene whole(perspective());
+  const HeapBytes bytes = whole.baked();
+  int opened = 0;
+  for (int i = 0; i < 4000 * kScale; ++i) {
+    CAPTURE(i);
+    const std::size_t size = random() % 4 == 0 ? random() % bytes.view().size : bytes.view().size;
+    const HeapBytes damaged = copy_of(bytes.view(), size);
+    for (unsigned change = 0; change < 1 + random() % 4 && size != 0; ++change) {
+      // Half of them in the header and the list.
+      const std::size_t at = random() % (random() % 2 == 0 ? std::min<std::size_t>(size, entry(5)) : size);
+      damaged.span()[at] = static_cast<std::uint8_t>(random() % 4 == 0 ? random() % 4 : random());
+    }
+    repair_baked_checksums(damaged.span());
+    const Vec3i direction{static_cast<std::int32_t>(random() % 2001) - 1000,
+                          static_cast<std::int32_t>(random() % 2001) - 1000,
+                          static_cast<std::int32_t>(random() % 3)};
+    const char* text = use_damaged(damaged.view(), direction);
+    CAPTURE(text);
+    REQUIRE(text == nullptr);
+    BakedScene scene;
+    opened += BakedScene::open(damaged.view(), &scene) == Status::kOk ? 1 : 0;
+  }
+  CHECK(opened > 400);  // else the damage was never past the door
+}
+
+TEST_CASE("baked scene: sections of unknown kinds -> passed over, up to sixteen in all") {
+  const WholeScene whole(perspective());
+  const HeapBytes bytes = whole.baked();
+  // The name becomes something unknown, then another of the same unknown kind.
+  const HeapBytes unknown = copy_of(bytes.view(), bytes.view().size);
+  store32(unknown.span(), entry(4), 77);
+  store32(unknown.span(), entry(3), 77);
+  CHECK(fault_of(unknown) == "");
+  BakedScene scene;
+  REQUIRE(BakedScene::open(unknown.view(), &scene) == Status::kOk);
+  CHECK(scene.section(SectionKind::kName).empty());
+  CHECK(scene.has_camera());
+  CHECK(scene.section(static_cast<SectionKind>(77)).size == sizeof WholeScene::kBricks);
+
+  // The same sections behind a list with empty sections at its end.
+  for (const std::uint32_t more : {11U, 12U}) {
+    const std::uint32_t shift = static_cast<std::uint32_t>(kBakedEntryBytes) * more;
+    const HeapBytes grown(bytes.view().size + shift);
+    std::memcpy(grown.span().data, bytes.view().data, entry(5));
+    std::memcpy(grown.span().data + entry(5) + shift, bytes.view().data + entry(5),
+                bytes.view().size - entry(5));
+    store32(grown.span(), 4, static_cast<std::uint32_t>(grown.view().size));
+    store32(grown.span(), 12, 5 + more);
+    for (std::size_t i = 0; i < 5; ++i) {
+      store32(grown.span(), entry(i) + 4, load32(bytes.view(), entry(i) + 4) + shift);
+    }
+    for (std::uint32_t i = 0; i < more; ++i) {
+      store32(grown.span(), entry(5 + i), 1000 + i);
+      store32(grown.span(), entry(5 + i) + 4, static_cast<std::uint32_t>(grown.view().size));
+      store32(grown.span(), entry(5 + i) + 8, 0);
+    }
+    CHECK(fault_of(grown) == (more == 11 ? "" : "a list of sections that does not fit"));
+  }
+}
+
+TEST_CASE("baked scene: a wrong header or list -> the phrase that says so") {
+  const WholeScene whole(perspective());
+  const HeapBytes good = whole.baked();
+  const auto with = [&](std::size_t at, std::uint32_t word) {
+    const HeapBytes bytes = copy_of(good.view(), good.view().size);
+    store32(bytes.span(), at, word);
+    return fault_of(bytes);
+  };
+  CHECK(with(0, 0x02534D54) == "baked in another version of the format");
+  CHECK(with(0, 0x01424D54) == "not a baked scene");
+  CHECK(with(4, static_cast<std::uint32_t>(good.view().size + 1)) == "truncated");
+  CHECK(with(4, 12) == "a list of sections that does not fit");
+  CHECK(with(12, UINT32_MAX) == "a list of sections that does not fit");
+  CHECK(with(12, 0) == "no tree");
+  CHECK(with(entry(0), 99) == "no tree");
+  CHECK(with(entry(1), 1) == "two sections of one kind");
+  const char* const kOutside = "a section outside the bytes or on top of another";
+  CHECK(with(entry(0) + 4, 0) == kOutside);
+  CHECK(with(entry(1) + 4, load32(good.view(), entry(0) + 4)) == kOutside);
+  CHECK(with(entry(4) + 4, load32(good.view(), entry(4) + 4) + 1) == kOutside);
+  CHECK(with(entry(4) + 8, 9) == kOutside);
+  CHECK(with(entry(4) + 8, UINT32_MAX) == kOutside);
+  CHECK(with(entry(4) + 4, UINT32_MAX - 3) == kOutside);
+  CHECK(with(entry(0) + 8, load32(good.view(), entry(0) + 8) - 4) == "a damaged tree");
+  CHECK(with(entry(1) + 8, 8) == "a palette of the wrong size");
+  CHECK(with(entry(2) + 8, 59) == "a camera of an unknown kind");
+  CHECK(with(load32(good.view(), entry(2) + 4), 2) == "a camera of an unknown kind");
+  CHECK(with(load32(good.view(), entry(2) + 4) + 4, 1U << 30) == "a camera that makes no view");
+
+  const HeapBytes checksum = copy_of(good.view(), good.view().size);
+  checksum.span()[checksum.view().size - 2] ^= 1;
+  std::uint32_t place = 0;
+  CHECK(std::string(BakedScene::validate(checksum.view(), &place)) == "checksum does not match");
+  CHECK(place == 8);
+}
+
+TEST_CASE("baked scene: an empty world -> bakes, opens and shows nothing") {
+  std::vector<std::uint8_t> pool(64);
+  Octree octree;
+  REQUIRE(Octree::make(12, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  const HeapBytes tree = compact_of(octree);
+  BakedParts parts;
+  parts.tree = tree.view();
+  const HeapBytes bytes(baked_bytes(parts));
+  REQUIRE(BakedScene::make(parts, bytes.span(), nullptr) == Status::kOk);
+  BakedScene scene;
+  REQUIRE(BakedScene::open(bytes.view(), &scene) == Status::kOk);
+  CHECK(scene.tree().empty());
+  CHECK(use_damaged(bytes.view(), {1, 1, 1}) == nullptr);
+}

@@ -1,0 +1,576 @@
+// `thimble bake`, and baked scenes wherever a scene is taken: the same pictures, limits to the byte, headers
+// that compile, and bad input.
+#include <doctest/doctest.h>
+#include <zlib.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "boards/board_table.h"
+#include "output/units.h"
+#include "scene/board_fit.h"
+#include "support/run_command.h"
+#include "thimble/bake/baked_scene.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+
+Words joined(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+CommandResult check_ok(const Words& words) {
+  CommandResult result = run_command(words);
+  CAPTURE(result.describe());
+  std::string line;
+  for (const std::string& word : words) {
+    line += word + " ";
+  }
+  CAPTURE(line);
+  REQUIRE(result.status == 0);
+  return result;
+}
+
+void check_refused(const Words& words, int status, const Words& named) {
+  const CommandResult result = run_command(words);
+  std::string line;
+  for (const std::string& word : words) {
+    line += word + " ";
+  }
+  CAPTURE(line);
+  CAPTURE(result.describe());
+  CHECK(result.status == status);
+  CHECK(result.out.empty());
+  CHECK(is_one_sentence(result.err));
+  for (const std::string& name : named) {
+    CAPTURE(name);
+    CHECK(result.err.find(name) != std::string::npos);
+  }
+}
+
+nlohmann::json json_of(const std::string& path) {
+  return nlohmann::json::parse(read_text(path));
+}
+
+std::string render(const TemporaryFolder& folder, const std::string& scene, const Words& options,
+                   const std::string& name = "picture.ppm") {
+  check_ok(joined({"render", scene, "-o", folder.path(name), "--quiet"}, options));
+  return read_text(folder.path(name));
+}
+
+BakedScene open_text(const std::string& text) {
+  BakedScene scene;
+  const ConstBytes bytes{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+  REQUIRE(BakedScene::validate(bytes) == nullptr);
+  REQUIRE(BakedScene::open(bytes, &scene) == Status::kOk);
+  return scene;
+}
+
+std::string little(std::uint32_t number) {
+  std::string bytes;
+  for (int shift = 0; shift < 32; shift += 8) {
+    bytes += static_cast<char>(number >> shift & 255U);
+  }
+  return bytes;
+}
+
+// A .vox of a few voxels of three colours.
+std::string small_vox() {
+  const auto chunk = [](const std::string& id, const std::string& content, const std::string& children) {
+    return id + little(static_cast<std::uint32_t>(content.size())) +
+           little(static_cast<std::uint32_t>(children.size())) + content + children;
+  };
+  std::string voxels;
+  std::uint32_t count = 0;
+  for (int i = 0; i < 300; ++i) {
+    const int x = i * 7 % 20;
+    const int y = i * 3 % 18;
+    const int z = i % 17;
+    voxels +=
+        {static_cast<char>(x), static_cast<char>(y), static_cast<char>(z), static_cast<char>(1 + i % 3)};
+    ++count;
+  }
+  return "VOX " + little(150) +
+         chunk("MAIN", "",
+               chunk("SIZE", little(20) + little(18) + little(17), "") +
+                   chunk("XYZI", little(count) + voxels, ""));
+}
+
+std::string gzipped(const std::string& text) {
+  z_stream stream{};
+  REQUIRE(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+// What a picture of netpbm holds behind its header.
+std::string pixels_of(const std::string& picture, int header_lines = 3) {
+  std::size_t at = 0;
+  for (int i = 0; i < header_lines; ++i) {
+    at = picture.find('\n', at) + 1;
+  }
+  return picture.substr(at);
+}
+
+}  // namespace
+
+TEST_CASE("bake: with any camera -> the baked scene renders to the same pixels as the scene itself") {
+  const TemporaryFolder folder;
+  const std::string vox = folder.write("small.vox", small_vox());
+  const std::string points = folder.write("p.xyz", "0 0 0 255 0 0\n1 2 3 0 255 0\n4 1 9 0 0 255\n");
+  const std::string oct = folder.path("s.oct");
+  const std::vector<Words> cameras{
+      {},
+      {"--fov", "33.3"},
+      {"--projection", "orthographic"},
+      {"--projection", "orthographic", "--span", "40.7", "--up", "0.3,1,0.2"},
+      {"--eye", "-11.37,-20.111,31.7", "--target", "10.1,9.9,8.3"},
+      {"--eye", "10.0001,10,10", "--target", "10,10.0001,9.9999", "--up", "1,2,3", "--fov", "100"},
+      {"--target", "5,5,5", "--direction-bits", "14"},
+      {"--eye", "10,10,60", "--target", "10,10,1e9"}};
+  for (const std::string& scene : {std::string("spheres,depth=5"), vox, points}) {
+    for (const Words& camera : cameras) {
+      CAPTURE(scene);
+      CAPTURE(camera.size());
+      check_ok(joined({"bake", scene, "-o", oct, "--size", "80x60", "--quiet"}, camera));
+      const Words picture{"--size", "80x60", "--shade", "color"};
+      const std::string expected = render(folder, scene, joined(picture, camera));
+      CHECK(render(folder, oct, picture) == expected);
+      // The same camera said once more.
+      CHECK(render(folder, oct, joined(picture, camera)) == expected);
+    }
+    const Words depth{"--size", "80x60"};
+    check_ok({"bake", scene, "-o", oct, "--quiet"});
+    CHECK(render(folder, oct, depth) == render(folder, scene, depth));
+    for (const char* structure : {"dense", "pool"}) {
+      const Words other{"--size", "80x60", "--structure", structure, "--shade", "color"};
+      CHECK(render(folder, oct, other) == render(folder, scene, other));
+    }
+  }
+}
+
+TEST_CASE("bake: traced, hits and statistics -> those of the scene itself, node visits included") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres", "-o", oct, "--quiet"});
+  std::string rays;
+  for (int i = 0; i < 200; ++i) {
+    rays += std::to_string(i % 17 - 40) + ".5," + std::to_string(i * 5 % 64) + "," + std::to_string(i % 61) +
+            ",3," + std::to_string(i % 3 - 1) + "," + std::to_string(i % 5 - 2) + "\n";
+  }
+  const std::string file = folder.write("rays.csv", rays);
+  const std::string plain =
+      check_ok({"trace", "spheres", "--rays", file, "--stats", folder.path("a.json")}).out;
+  const std::string baked = check_ok({"trace", oct, "--rays", file, "--stats", folder.path("b.json")}).out;
+  CHECK(plain == baked);
+  const auto a = json_of(folder.path("a.json"));
+  const auto b = json_of(folder.path("b.json"));
+  for (const char* key : {"depth", "voxels", "nodes", "tree_bytes", "rays", "hits", "node_visits"}) {
+    CAPTURE(key);
+    CHECK(a[key] == b[key]);
+  }
+  CHECK(b["high_water_bytes"] == b["tree_bytes"]);  // nothing was built
+}
+
+TEST_CASE("bake: a baked scene under gzip, with another ending or baked again -> read all the same") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres,depth=5", "-o", oct, "--quiet"});
+  const std::string bytes = read_text(oct);
+  const Words size{"--size", "40x30"};
+  const std::string expected = render(folder, oct, size);
+  CHECK(render(folder, folder.write("s.oct.gz", gzipped(bytes)), size) == expected);
+  CHECK(render(folder, folder.write("s.bin", bytes), size) == expected);
+  check_ok({"bake", oct, "-o", folder.path("again.oct"), "--quiet"});
+  CHECK(render(folder, folder.path("again.oct"), size) == expected);
+  CHECK(check_ok({"bake", "spheres,depth=5", "-o", "-"}).out == bytes);
+}
+
+TEST_CASE("bake: --memory -> fits at N, at N - 1 refused by one byte, with the depth that does fit") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  const std::string stats = folder.path("s.json");
+  const CommandResult result = check_ok({"bake", "spheres", "-o", oct, "--stats", stats});
+  CHECK(result.err.find("28,327 voxels in 12,624 bytes (depth 6, 0.45 bytes a voxel)") != std::string::npos);
+  const auto size = std::filesystem::file_size(oct);
+  CHECK(size == 12624);
+  const auto json = json_of(stats);
+  CHECK(json["baked_bytes"] == size);
+  CHECK(json["budget_bytes"] == size);
+  CHECK(json["voxels"] == 28327);
+  CHECK(json["solid_added"] == 0);
+  const std::string text = read_text(oct);
+  const BakedScene scene = open_text(text);
+  CHECK(json["tree_bytes"] == scene.tree().size_bytes());
+  CHECK(json["nodes"] == scene.tree().node_count());
+  check_ok({"bake", "spheres", "-o", oct, "--memory", std::to_string(size), "--quiet"});
+  std::filesystem::remove(oct);
+  check_refused({"bake", "spheres", "-o", oct, "--memory", std::to_string(size - 1), "--quiet"}, 1,
+                {"takes 12,624 bytes", "limit is 12,623 bytes (--memory)", "1 byte too many",
+                 "--depth 5 fits with 2,880 bytes", "--coarsen"});
+  check_ok({"bake", "spheres", "--depth", "5", "-o", oct, "--memory", "2880", "--quiet"});
+  CHECK(std::filesystem::file_size(oct) == 2880);
+  std::filesystem::remove(oct);
+  check_refused({"bake", "spheres", "-o", oct, "--memory", "2879"}, 1, {"9,745 bytes too many", "--depth 4"});
+  check_refused({"bake", "spheres", "-o", oct, "--memory", "0"}, 1, {"12,624 bytes too many", "--coarsen"});
+  const std::string vox = folder.write("small.vox", small_vox());
+  check_refused({"bake", vox, "-o", oct, "--memory", "300"}, 1, {vox, "one depth only", "--coarsen"});
+  CHECK(folder.names() == Words{"s.json", "small.vox"});
+}
+
+TEST_CASE("bake: the header of a .h counts its scene's bytes, not its own") {
+  const TemporaryFolder folder;
+  check_ok({"bake", "spheres", "-o", folder.path("s.h"), "--memory", "12624", "--quiet"});
+  check_refused({"bake", "spheres", "-o", folder.path("t.h"), "--memory", "12623"}, 1, {"1 byte too many"});
+  CHECK(folder.names() == Words{"s.h"});
+}
+
+TEST_CASE("bake: --coarsen -> within the limit and close to it, only solid added, and said so") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  const std::string vox = folder.write("small.vox", small_vox());
+  for (const std::string& scene : {std::string("spheres"), std::string("points:5000,depth=7"),
+                                   std::string("cluster:3000,depth=9"), vox}) {
+    CAPTURE(scene);
+    check_ok({"bake", scene, "-o", oct, "--quiet", "--stats", folder.path("full.json")});
+    const auto full = json_of(folder.path("full.json"));
+    const std::size_t exact = std::filesystem::file_size(oct);
+    for (const std::size_t percent : {100U, 99U, 80U, 50U, 30U}) {
+      const std::size_t limit = exact * percent / 100;
+      CAPTURE(percent);
+      const CommandResult result = check_ok({"bake", scene, "-o", oct, "--coarsen", "--memory",
+                                             std::to_string(limit), "--stats", folder.path("s.json")});
+      const std::size_t size = std::filesystem::file_size(oct);
+      CHECK(size <= limit);
+      // One block is merged at a time. The first one also costs a bit a node.
+      CHECK(size + limit / 12 + 64 >= limit);
+      const auto stats = json_of(folder.path("s.json"));
+      CHECK(stats["baked_bytes"] == size);
+      CHECK(stats["budget_bytes"] == limit);
+      const std::uint64_t added = stats["solid_added"];
+      CHECK(stats["voxels"].get<std::uint64_t>() == full["voxels"].get<std::uint64_t>() + added);
+      CHECK((added == 0) == (percent == 100));
+      CHECK((result.err.find("of solid volume added") != std::string::npos) == (percent != 100));
+      // With the same camera nothing that was seen has gone.
+      if (percent >= 80) {
+        const Words camera{"--eye",  "-40,-70,60", "--target", "30,30,30",
+                           "--size", "64x48",      "--shade",  "mono"};
+        const std::string before = pixels_of(render(folder, scene, camera, "a.pbm"), 2);
+        const std::string after = pixels_of(render(folder, oct, camera, "b.pbm"), 2);
+        REQUIRE(before.size() == after.size());
+        for (std::size_t i = 0; i < before.size(); ++i) {
+          CHECK((static_cast<unsigned char>(after[i]) & ~static_cast<unsigned char>(before[i])) == 0);
+        }
+      }
+    }
+  }
+  check_refused({"bake", "spheres", "-o", folder.path("no.oct"), "--coarsen", "--memory", "200"}, 1,
+                {"even the coarsest tree takes 208 bytes", "8 bytes too many"});
+  check_ok({"bake", "spheres", "-o", oct, "--coarsen", "--memory", "208", "--quiet"});
+  CHECK(open_text(read_text(oct)).tree().node_count() == 1);
+}
+
+TEST_CASE(
+    "bake: a coarsened scene, baked again or in other structures -> its added volume is not forgotten") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres", "-o", oct, "--coarsen", "--memory", "6000", "--quiet", "--stats",
+            folder.path("a.json")});
+  const auto added = json_of(folder.path("a.json"))["solid_added"];
+  CHECK(added > 0);
+  for (const char* structure : {"compact", "pool", "dense"}) {
+    check_ok({"info", oct, "--structure", structure, "--stats", folder.path("b.json")});
+    CHECK(json_of(folder.path("b.json"))["solid_added"] == added);
+  }
+  // In less memory than its tree takes, --coarsen goes on merging.
+  const auto bytes = json_of(folder.path("b.json"))["tree_bytes"];
+  check_ok({"info", oct, "--memory", "20000", "--coarsen", "--stats", folder.path("b.json")});
+  CHECK(json_of(folder.path("b.json"))["solid_added"] == added);
+  check_ok({"info", oct, "--memory", "5000", "--coarsen", "--stats", folder.path("b.json")});
+  CHECK(json_of(folder.path("b.json"))["solid_added"] > added);
+  CHECK(bytes > 0);
+}
+
+TEST_CASE("bake: a .h -> compiles as C and C++ without a warning and holds the .oct's bytes") {
+  if (std::system("gcc --version >/dev/null 2>&1 && g++ --version >/dev/null 2>&1") != 0) {
+    MESSAGE("skipped: no gcc and g++");
+    return;
+  }
+  const TemporaryFolder folder;
+  check_ok({"bake", "spheres,depth=5", "-o", folder.path("s.oct"), "--quiet"});
+  check_ok({"bake", "spheres,depth=5", "-o", folder.path("s.h"), "--quiet"});
+  check_ok({"bake", "spheres,depth=5", "-o", folder.path("other.h"), "--quiet", "--name", "my_Scene2",
+            "--projection", "orthographic"});
+  // A file's name may hold anything.
+  const std::string odd = folder.write("* \\ ?\n\".xyz", "1 2 3\n");
+  check_ok({"bake", odd, "-o", folder.path("odd.h"), "--quiet", "--name", "odd"});
+  const std::string source =
+      folder.write("main.c",
+                   "#include \"s.h\"\n"
+                   "#include \"s.h\"\n"
+                   "#include \"other.h\"\n"
+                   "#include \"odd.h\"\n"
+                   "#include <stdio.h>\n"
+                   "#if THIMBLE_SCENE_DEPTH != 5 || THIMBLE_SCENE_VERSION != 1 || \\\n"
+                   "    THIMBLE_SCENE_VOXELS < 1000 || !THIMBLE_SCENE_HAS_CAMERA || \\\n"
+                   "    !THIMBLE_SCENE_IS_PERSPECTIVE || THIMBLE_SCENE_HAS_BRICK_MAP || \\\n"
+                   "    THIMBLE_SCENE_CRC32 == 0 || THIMBLE_SCENE_IS_ORTHOGRAPHIC || \\\n"
+                   "    MY_SCENE2_IS_PERSPECTIVE || !MY_SCENE2_IS_ORTHOGRAPHIC\n"
+                   "#error facts\n"
+                   "#endif\n"
+                   "int main(void) {\n"
+                   "  if (((uintptr_t)thimble_scene) % 4 != 0) return 3;\n"
+                   "  if (my_Scene2[0] != 0x54 || odd[1] != 0x4D) return 4;\n"
+                   "  return fwrite(thimble_scene, 1, THIMBLE_SCENE_BYTES, stdout) != "
+                   "sizeof thimble_scene;\n"
+                   "}\n");
+  for (const char* compiler :
+       {"gcc -std=c99 -x c", "gcc -std=c11 -x c", "g++ -std=c++11 -x c++", "g++ -std=c++20 -x c++"}) {
+    CAPTURE(compiler);
+    const std::string program = folder.path("program");
+    const std::string command = std::string(compiler) + " -Wall -Wextra -Wpedantic -Werror -o " + program +
+                                " " + source + " && " + program + " > " + folder.path("out.bin");
+    REQUIRE(std::system(command.c_str()) == 0);
+    CHECK(read_text(folder.path("out.bin")) == read_text(folder.path("s.oct")));
+  }
+}
+
+TEST_CASE("bake: --board -> its flash is the limit, its display the picture; RAM is reported") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  const platform::BoardFacts* board = platform::find_board("stm32vldiscovery");
+  REQUIRE(board != nullptr);
+  const std::uint64_t flash = tools::scene_flash_bytes(*board);
+  CHECK(flash == board->flash_bytes - 40 * 1024);
+  const CommandResult result = check_ok(
+      {"bake", "spheres", "-o", oct, "--board", "stm32vldiscovery", "--stats", folder.path("s.json")});
+  // The tree, and a brick map beside it.
+  const std::uint64_t baked_bytes = std::filesystem::file_size(oct);
+  CHECK(baked_bytes > 12624);
+  CHECK(baked_bytes < 12624 + 16384);
+  CHECK(result.err.find("stm32vldiscovery: flash " + tools::grouped(baked_bytes) + " of the 90,112 bytes") !=
+        std::string::npos);
+  CHECK(run_command({"info", oct}).out.find("brick map ") != std::string::npos);
+  check_ok({"bake", "spheres", "-o", oct, "--memory", "12700", "--board", "stm32vldiscovery", "--quiet"});
+  CHECK(std::filesystem::file_size(oct) == 12624);  // no room for a map: none
+  check_ok({"bake", "spheres", "-o", oct, "--brick-map", "--quiet"});
+  CHECK(std::filesystem::file_size(oct) == baked_bytes);
+  const std::string ram = "RAM " + tools::grouped(208 + 512 + board->stack_bytes) + " of 8,192 bytes";
+  CHECK(result.err.find(ram) != std::string::npos);  // renderer, band and stack
+  CHECK(json_of(folder.path("s.json"))["board"] == "stm32vldiscovery");
+  CHECK(json_of(folder.path("s.json"))["budget_bytes"] == flash);
+  CHECK(render(folder, oct, {"--size", "128x64"}) == render(folder, "spheres", {"--size", "128x64"}));
+
+  check_refused({"bake", "points:100000", "-o", folder.path("no.oct"), "--board", "stm32vldiscovery"}, 1,
+                {"takes 442,764 bytes", "stm32vldiscovery has 90,112 bytes of flash",
+                 "352,652 bytes too many", "--depth 6 fits"});
+  // Of --memory and --board the smaller counts, whichever it is.
+  const Words both{"bake", "points:100000", "-o", oct, "--board", "stm32vldiscovery", "--coarsen", "--quiet"};
+  check_ok(both);
+  CHECK(std::filesystem::file_size(oct) <= flash);
+  CHECK(std::filesystem::file_size(oct) > flash / 100 * 95);
+  const auto size = std::filesystem::file_size(oct);
+  check_ok(joined(both, {"--memory", "1M"}));
+  CHECK(std::filesystem::file_size(oct) == size);
+  check_ok(joined(both, {"--memory", "40000"}));
+  CHECK(std::filesystem::file_size(oct) <= 40000);
+  check_refused({"bake", "spheres", "-o", oct, "--board", "microbot"}, 2,
+                {"--board: \"microbot\" is not a board", "lm3s6965evb, microbit, mps2-an500"});
+}
+
+TEST_CASE("render --board: the display's size and pixels as it shows them, its RAM as the budget") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres", "-o", oct, "--board", "lm3s6965evb", "--quiet"});
+  // 16 greys, 17 apart, rounded from 256.
+  const std::string fine = pixels_of(render(folder, "spheres", {"--size", "128x64"}, "a.pgm"));
+  const std::string shown =
+      pixels_of(render(folder, oct, {"--board", "lm3s6965evb", "--stats", folder.path("s.json")}, "b.pgm"));
+  REQUIRE(fine.size() == 128 * 64);
+  REQUIRE(shown.size() == fine.size());
+  std::string packed;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const unsigned gray = static_cast<unsigned char>(fine[i]);
+    const unsigned level = (2 * gray + 17) / 34;
+    REQUIRE(static_cast<unsigned char>(shown[i]) == level * 17);
+    if (i % 2 == 0) {
+      packed += static_cast<char>(level << 4);
+    } else {
+      packed.back() = static_cast<char>(static_cast<unsigned char>(packed.back()) | level);
+    }
+  }
+  const auto stats = json_of(folder.path("s.json"));
+  std::array<char, 9> crc{};
+  std::snprintf(crc.data(), crc.size(), "%08lx",
+                crc32(0, reinterpret_cast<const Bytef*>(packed.data()), static_cast<uInt>(packed.size())));
+  CHECK(stats["display_crc32"] == crc.data());
+  CHECK(stats["budget_bytes"] == 65536 - platform::find_board("lm3s6965evb")->stack_bytes);
+  CHECK(stats["board"] == "lm3s6965evb");
+  // The scene lies in flash: the state and the band are all the RAM it takes.
+  CHECK(stats["high_water_bytes"] < 2048);
+  CHECK(stats["tree_bytes"] > 12000);
+
+  // Another size, another format, another file.
+  const std::string fine_color =
+      pixels_of(render(folder, oct, {"--size", "31x20", "--shade", "color"}, "c.ppm"));
+  const std::string color = pixels_of(
+      render(folder, oct, {"--size", "31x20", "--shade", "color", "--board", "mps2-an500"}, "d.ppm"));
+  REQUIRE(color.size() == fine_color.size());
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    const unsigned bits = i % 3 == 1 ? 6 : 5;
+    const unsigned kept = static_cast<unsigned>(static_cast<unsigned char>(fine_color[i])) >> (8 - bits);
+    REQUIRE(static_cast<unsigned char>(color[i]) == (kept << (8 - bits) | kept >> (2 * bits - 8)));
+  }
+  CHECK(render(folder, oct, {"--board", "raspi0"}).substr(0, 15) == "P6\n640 480\n255\n");
+
+  // A scene that is built in the board's RAM.
+  const auto usable_bytes = [](const char* name) {
+    const platform::BoardFacts* board = platform::find_board(name);
+    REQUIRE(board != nullptr);
+    return std::uint64_t{board->ram_bytes - board->stack_bytes};
+  };
+  const std::uint64_t least_bytes = usable_bytes("stm32vldiscovery");
+  check_refused({"render", "spheres", "-o", folder.path("e.ppm"), "--board", "stm32vldiscovery"}, 1,
+                {"stm32vldiscovery's RAM less its stack", tools::grouped(least_bytes), "--coarsen"});
+  check_ok({"render", "spheres", "-o", folder.path("e.ppm"), "--board", "stm32vldiscovery", "--coarsen",
+            "--quiet", "--stats", folder.path("s.json")});
+  CHECK(json_of(folder.path("s.json"))["high_water_bytes"] <= least_bytes);
+  // The smaller of both counts.
+  check_refused({"info", "spheres", "--board", "microbit", "--memory", "4000"}, 1, {"4,000 (--memory)"});
+  check_refused({"info", "spheres", "--board", "microbit", "--memory", "1M"}, 1,
+                {tools::grouped(usable_bytes("microbit"))});
+  check_refused({"trace", "spheres", "--rays", "x.csv", "--board", "microbit"}, 1,
+                {tools::grouped(usable_bytes("microbit"))});
+  check_refused({"render", "spheres", "-o", folder.path("f.ppm"), "--board", "ZX81"}, 2, {"ZX81", "raspi0"});
+  // A baked scene that the flash does not hold.
+  check_ok({"bake", "points:100000", "-o", oct, "--quiet"});
+  check_refused({"render", oct, "-o", folder.path("f.ppm"), "--board", "lm3s6965evb"}, 1,
+                {oct, "442,764", "lm3s6965evb", "221,184"});
+}
+
+TEST_CASE("baked scenes: --memory counts the tree, and nothing to build it with") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres", "-o", oct, "--quiet"});
+  check_ok({"info", oct, "--memory", "12468"});
+  check_refused({"info", oct, "--memory", "12467"}, 1, {oct, "needs 12,468 bytes", "12,467"});
+  check_ok({"render", oct, "-o", folder.path("p.ppm"), "--size", "64x48", "--memory", "16K", "--quiet"});
+  check_refused({"info", oct, "--depth", "7"}, 1, {"baked with depth 6", "--depth"});
+  check_ok({"info", oct, "--depth", "6"});
+  check_refused({"info", oct, "--as-voxels"}, 1, {"--as-voxels"});
+}
+
+TEST_CASE("info: a baked scene -> version, sections by bytes, palette, camera, name, checksum, boards") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres", "-o", oct, "--quiet", "--eye", "-10,-20.5,30", "--target", "32,32,32", "--up",
+            "0,1,1", "--fov", "45"});
+  const std::string bytes = read_text(oct);
+  std::map<std::string, std::string> rows;
+  for (const std::string& line : lines_of(check_ok({"info", oct, "--stats", folder.path("s.json")}).out)) {
+    const std::size_t end = line.find("  ");
+    REQUIRE(end != std::string::npos);
+    rows[line.substr(0, end)] = line.substr(line.find_first_not_of(' ', end));
+  }
+  const BakedScene scene = open_text(bytes);
+  std::array<char, 9> crc{};
+  std::snprintf(crc.data(), crc.size(), "%08x", static_cast<unsigned>(scene.crc32()));
+  CHECK(rows["kind"] == "baked scene");
+  CHECK(rows["depth"] == "6 (a world of 64 voxels a side)");
+  CHECK(rows["solid voxels"] == "28,327");
+  CHECK(rows["format version"] == "1");
+  CHECK(rows["made from"] == "spheres");
+  CHECK(rows["crc32"] == crc.data());
+  CHECK(rows["baked bytes"] == "12,624");
+  CHECK(rows["sections"] == "tree 12,468, palette 24, camera 60, name 7, rest 65");
+  CHECK(rows["palette entries"] == "8");
+  CHECK(
+      rows["camera"].starts_with("perspective, fov 45 degrees, eye -10,-20.5,30, target 32,32,32, up 0,1,1"));
+  CHECK(rows["fits the flash of"].find("stm32vldiscovery") != std::string::npos);
+  CHECK(rows["compact tree"] == "sound");
+  const auto stats = json_of(folder.path("s.json"));
+  CHECK(stats["baked_crc32"] == crc.data());
+  CHECK(stats["baked_bytes"] == 12624);
+}
+
+TEST_CASE("baked scenes: damaged -> status 1 and a sentence, for every command") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  check_ok({"bake", "spheres,depth=4", "-o", oct, "--quiet"});
+  const std::string good = read_text(oct);
+  std::string bad = good;
+  bad[200] = static_cast<char>(bad[200] ^ 4);
+  const std::string flipped = folder.write("flipped.oct", bad);
+  check_refused({"info", flipped}, 1, {flipped, "damaged at 8", "checksum"});
+  check_refused({"render", flipped, "-o", folder.path("p.ppm")}, 1, {flipped, "checksum"});
+  check_refused({"trace", flipped, "--rays", oct}, 1, {"checksum"});
+  check_refused({"bake", flipped, "-o", folder.path("q.oct")}, 1, {flipped, "checksum"});
+  check_refused({"boards", flipped}, 1, {flipped, "checksum"});
+  bad = good;
+  bad[3] = 2;
+  check_refused({"info", folder.write("version.oct", bad)}, 1, {"version 2", "reads version 1"});
+  check_refused({"info", folder.write("cut.oct", good.substr(0, good.size() - 1))}, 1,
+                {std::to_string(good.size() - 1), std::to_string(good.size()), "truncated"});
+  check_refused({"info", folder.write("long.oct", good + "x")}, 1, {std::to_string(good.size() + 1)});
+  check_refused({"info", folder.write("other.oct", "something else")}, 1, {"not a scene baked"});
+  check_refused({"info", folder.write("short.oct", "TMS")}, 1, {"damaged at 0", "shorter than a header"});
+  check_refused({"info", folder.write("empty.oct", "")}, 1, {"empty"});
+  for (std::size_t size = 1; size < good.size(); size += 97) {
+    const CommandResult result = run_command({"info", folder.write("cut.oct", good.substr(0, size))});
+    CHECK(result.status == 1);
+    CHECK(is_one_sentence(result.err));
+  }
+}
+
+TEST_CASE("bake: bad usage and outputs that cannot be written -> a sentence, and nothing half-written") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  for (const char* name : {"s.bin", "s", "oct", ".oct2", "s.oct.gz", ""}) {
+    check_refused({"bake", "spheres", "-o", name}, 2, {"--output", ".oct or .h"});
+  }
+  for (const char* name : {"", "2x", "a b", "int", "_x", "a__b", "uint8_t", "a-b", "caf\xC3\xA9"}) {
+    CAPTURE(name);
+    check_refused({"bake", "spheres", "-o", folder.path("s.h"), "--name", name}, 2, {"--name"});
+  }
+  check_refused({"bake", "spheres", "-o", oct, "--eye", "nan,0,0"}, 2, {"X,Y,Z"});
+  check_refused({"bake", "spheres", "-o", oct, "--structure", "pool"}, 2, {"--structure"});
+  check_refused({"bake", "spheres", "-o", oct, "--eye", "1,1,1", "--target", "1,1,1"}, 1, {"same point"});
+  check_refused({"bake", folder.write("nan.xyz", "1 nan 2\n"), "-o", oct}, 1, {"nan.xyz"});
+  check_refused({"bake", folder.path("missing.vox"), "-o", oct}, 1, {"missing.vox"});
+  check_refused({"bake", "spheres", "-o", folder.path("no/such/s.oct")}, 1, {"no/such/s.oct"});
+  check_refused({"bake", "spheres", "-o", oct, "--stats", oct}, 1, {oct, "share"});
+  CHECK(folder.names() == Words{"nan.xyz"});
+
+  // A device without room, and a disk that fills up half way.
+  for (const char* name : {"full.oct", "full.h"}) {
+    std::filesystem::create_symlink("/dev/full", folder.path(name));
+    check_refused({"bake", "spheres", "-o", folder.path(name)}, 1, {name, "No space left"});
+    std::filesystem::remove(folder.path(name));
+  }
+  folder.write("s.oct", "old");
+  CommandLimits small;
+  small.file_size_bytes = 4096;
+  const CommandResult result =
+      run_command({"bake", "spheres", "-o", oct, "--stats", folder.path("s.json")}, small);
+  CAPTURE(result.describe());
+  CHECK(result.status == 1);
+  CHECK(is_one_sentence(result.err));
+  CHECK(read_text(oct) == "old");
+  CHECK(folder.names() == Words{"nan.xyz", "s.oct"});
+  check_refused({"bake", oct, "-o", oct}, 1, {"input"});
+}

@@ -1,0 +1,273 @@
+// `thimble effects`: every effect a row, its figures those of two counting runs, its files well formed.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "boards/effect_flash.h"
+#include "scene/built_scene.h"
+#include "scene/lit_setup.h"
+#include "support/run_command.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/camera.h"
+
+namespace {
+
+using namespace thimble::tests;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+using thimble::EffectSet;
+namespace tools = thimble::tools;
+
+constexpr const char* kRoom = R"(depth 5
+camera eye -20 -26 34 target 16 16 6 fov 45
+sun toward -5 -9 16
+lamp at 26 6 14 color 255 220 180 reach 12
+occlusion rays 4 reach 6
+fog color 200 205 210 density 0.015625
+material floor color 170 150 130
+material mirror metal color 230 230 230 mirror 0.9
+material glow emit color 255 210 150 emission 1.5
+material mist media color 200 210 220 density 0.05
+box floor from 0 0 0 to 32 32 2
+box mirror from 18 20 2 to 28 24 16
+box mist from 14 4 2 to 20 12 9
+ball glow at 26 26 5 radius 3
+)";
+
+json rows_of(const std::string& scene, const Words& more = {}) {
+  const TemporaryFolder folder;
+  Words words{
+      "effects", scene, "--size", "48x36", "--frames", "1", "--quiet", "--json", folder.path("e.json")};
+  words.insert(words.end(), more.begin(), more.end());
+  const CommandResult result = run_command(words);
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  CHECK(result.err.empty());
+  const json rows = json::parse(read_text(folder.path("e.json")));
+  REQUIRE(rows.size() == thimble::Effect::kCount);
+  for (int bit = 0; bit < thimble::Effect::kCount; ++bit) {
+    CHECK(rows[static_cast<std::size_t>(bit)]["effect"] == thimble::effect_name(EffectSet{1} << bit));
+  }
+  return rows;
+}
+
+// A scene with a camera of its own, drawn by the core with a set of effects.
+class CountingRun {
+ public:
+  explicit CountingRun(const std::string& scene)
+      : source_(open(scene)), built_(*source_, {}), lit_(source_->lighting()) {
+    used_ = tools::used_materials(built_.compact());
+    REQUIRE(thimble::set_camera(*source_->camera(), 48, 36, built_.level(), &camera_) ==
+            thimble::Status::kOk);
+    shading_.palette = {built_.palette().data(), built_.palette().size()};
+  }
+
+  EffectSet called_for() const { return tools::called_for(lit_, used_); }
+  thimble::LitCounts counts(EffectSet effects) const {
+    std::vector<std::uint8_t> pixels(thimble::band_bytes(thimble::PixelFormat::kRgb888, 48, 36));
+    thimble::Band band;
+    band.pixels = {pixels.data(), pixels.size()};
+    band.rows = 36;
+    thimble::LitCounts counts;
+    REQUIRE(thimble::render_lit_band(effects, built_.compact(), camera_, shading_,
+                                     tools::with_defaults(lit_.lit_scene(), effects), band,
+                                     &counts) == thimble::Status::kOk);
+    return counts;
+  }
+
+ private:
+  static std::unique_ptr<tools::SceneSource> open(const std::string& scene) {
+    tools::SceneArguments arguments;
+    arguments.scene = scene;
+    return tools::open_scene(arguments);
+  }
+
+  std::unique_ptr<tools::SceneSource> source_;
+  tools::BuiltScene built_;
+  tools::LitDescription lit_;
+  tools::UsedMaterials used_;
+  thimble::Camera camera_;
+  thimble::Shading shading_;
+};
+
+void check_nothing(const json& row) {
+  CAPTURE(row.dump());
+  CHECK(row["called_for"] == 0);
+  CHECK(row["why"] == "");
+  for (const auto& [name, value] : row.items()) {
+    if (name == "with_ms" || name == "without_ms") {
+      CHECK(value.is_null());
+    } else if (value.is_number()) {
+      CHECK(value == 0);
+    }
+  }
+}
+
+TEST_CASE("effects: what is not called for -> exactly 0 rays, nodes, time, RAM and flash") {
+  for (const json& row : rows_of("spheres")) {
+    check_nothing(row);
+  }
+  int none = 0;
+  for (const json& row : rows_of("water")) {
+    if (row["called_for"] == 0) {
+      check_nothing(row);
+      ++none;
+    } else {
+      CHECK(row["flash_bytes"] > 0);
+      CHECK(row["why"] != "");
+    }
+  }
+  CHECK(none == 5);
+}
+
+TEST_CASE("effects: rays of each kind and nodes -> those of two counting runs by the core") {
+  const TemporaryFolder folder;
+  for (const std::string& scene : {std::string("water"), folder.write("a.scene", kRoom)}) {
+    CAPTURE(scene);
+    const CountingRun run(scene);
+    const EffectSet all = run.called_for();
+    for (const json& row : rows_of(scene)) {
+      if (row["called_for"] == 0) {
+        continue;
+      }
+      CAPTURE(row.dump());
+      const EffectSet effect = tools::parse_effects(row["effect"].get<std::string>())->effects;
+      CHECK((all & effect) != 0);
+      const EffectSet with = effect == thimble::Effect::kDirectLight ? all & ~thimble::Effect::kShadows : all;
+      const thimble::LitCounts more = run.counts(with);
+      const thimble::LitCounts less = run.counts(with & ~effect);
+      std::int64_t rays = 0;
+      std::int64_t visits = 0;
+      for (int kind = 0; kind < thimble::kLitRayKinds; ++kind) {
+        const std::int64_t expected =
+            static_cast<std::int64_t>(more.rays[kind]) - static_cast<std::int64_t>(less.rays[kind]);
+        const std::string name = tools::ray_kind_name(static_cast<thimble::LitRayKind>(kind));
+        CHECK(row[name + "_rays"] == expected);
+        rays += expected;
+        visits += static_cast<std::int64_t>(more.node_visits[kind]) -
+                  static_cast<std::int64_t>(less.node_visits[kind]);
+      }
+      CHECK(row["rays"] == rays);
+      CHECK(row["node_visits"] == visits);
+      CHECK(row["q25_ms"] <= row["ms"]);
+      CHECK(row["ms"] <= row["q75_ms"]);
+      CHECK(row["with_ms"] > 0);
+      CHECK(row["without_ms"] > 0);
+      for (const thimble::EffectFlash& flash : thimble::kEffectFlash) {
+        if (flash.effect == effect) {
+          CHECK(row["flash_bytes"] == flash.bytes);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("effects: RAM -> the rays that wait and the tables that only this effect needs") {
+  const TemporaryFolder folder;
+  const json rows = rows_of(folder.write("a.scene", kRoom));
+  const auto ram = [&](EffectSet effect) {
+    std::size_t bit = 0;
+    while (EffectSet{1} << bit != effect) {
+      ++bit;
+    }
+    return rows[bit]["ram_bytes"].get<std::size_t>();
+  };
+  namespace lit = thimble;
+  CHECK(ram(lit::Effect::kDirectLight) == 2 * sizeof(lit::Light));
+  CHECK(ram(lit::Effect::kShadows) == 0);
+  CHECK(ram(lit::Effect::kAmbientOcclusion) == 0);
+  CHECK(ram(lit::Effect::kFog) == 0);
+  // The table of surfaces is there for the others too.
+  CHECK(ram(lit::Effect::kEmission) == 0);
+  CHECK(ram(lit::Effect::kMirror) ==
+        lit::lit_render_bytes(lit::Effect::kMirror) - lit::lit_render_bytes(lit::Effect::kFog));
+
+  const json alone = rows_of(folder.write("b.scene", "material m emit\nbox m from 0 0 0 to 2 2 2\n"));
+  CHECK(alone[3]["effect"] == "emission");
+  CHECK(alone[3]["ram_bytes"] == sizeof(lit::Surface));
+}
+
+TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
+  const TemporaryFolder folder;
+  std::string all;
+  for (const json& row : rows_of(folder.write("a.scene", kRoom))) {
+    all += row["why"].get<std::string>() + "\n";
+  }
+  CHECK(all ==
+        "1 distant light, 1 lamp\nits lights cast shadows\n4 rays a face, 6 voxels far\nmaterial 3 is "
+        "emissive\n"
+        "material 1 is metal\n\nmaterial 2 is cloud\n\nair that halves light in 64 voxels\n\n\n");
+  const json asked = rows_of("spheres", {"--effects", "sky,shadows"});
+  CHECK(asked[0]["why"] == "asked for");
+  CHECK(asked[1]["why"] == "asked for");
+  CHECK(asked[9]["called_for"] == 1);
+  check_nothing(asked[2]);
+}
+
+TEST_CASE("effects: table, CSV, JSON and SVG -> all eleven, in lines that fit a terminal") {
+  const TemporaryFolder folder;
+  const std::string csv_path = folder.path("e.csv");
+  const std::string svg_path = folder.path("e.svg");
+  const CommandResult result = run_command({"effects", "water", "--size", "48x36", "--frames", "2", "--csv",
+                                            csv_path, "--plot", svg_path, "--bounces", "2"});
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  for (const std::string& line : lines_of(result.out)) {
+    CAPTURE(line);
+    CHECK(line.size() <= 100);
+  }
+  const std::vector<std::string> lines = lines_of(read_text(csv_path));
+  REQUIRE(lines.size() == 12);
+  CHECK(lines[0] ==
+        "effect,called_for,why,primary_rays,shadow_rays,occlusion_rays,mirror_rays,glass_rays,media_rays,"
+        "water_rays,rays,node_visits,ms,q25_ms,q75_ms,with_ms,without_ms,ram_bytes,flash_bytes");
+  const std::string svg = read_text(svg_path);
+  CHECK(svg.starts_with("<svg "));
+  CHECK(svg.ends_with("</svg>\n"));
+  for (int bit = 0; bit < thimble::Effect::kCount; ++bit) {
+    const std::string name = thimble::effect_name(EffectSet{1} << bit);
+    CAPTURE(name);
+    CHECK(lines[static_cast<std::size_t>(bit) + 1].starts_with(name + ","));
+    CHECK(svg.find(">" + name + "<") != std::string::npos);
+    CHECK(result.out.find("\n" + name + " ") != std::string::npos);
+  }
+  // As many tags opened as closed, no number that is none.
+  const auto count = [&](const std::string& what) {
+    std::size_t number = 0;
+    for (std::size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) {
+      ++number;
+    }
+    return number;
+  };
+  CHECK(count("<text") == count("</text>"));
+  CHECK(count("<rect") == 12);
+  CHECK(count("nan") + count("inf") == 0);
+
+  // Data on standard output stand alone.
+  const CommandResult data =
+      run_command({"effects", "spheres", "--size", "16x16", "--frames", "1", "--json", "-"});
+  CHECK(json::parse(data.out).size() == 11);
+}
+
+TEST_CASE("effects: wrong usage -> status 2 and a sentence") {
+  for (const Words& more : {Words{"--frames", "0"},
+                            {"--frames", "x"},
+                            {"--effects", "gloss"},
+                            {"--bounces", "9"},
+                            {"--memory", "64K"}}) {
+    Words words{"effects", "spheres"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_command(words);
+    CAPTURE(result.describe());
+    CHECK(result.status == 2);
+    CHECK(is_one_sentence(result.err));
+    CHECK(result.err.find(more[0]) != std::string::npos);
+  }
+  CHECK(run_command({"effects"}).status == 2);
+}
+
+}  // namespace

@@ -1,0 +1,605 @@
+// The integer optics against long double: every bound that optics.h names, swept.
+//
+// THIMBLE_SEED sets the seed of the random sweeps.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/ray_cases.h"
+#include "thimble/light/optics.h"
+#include "thimble/trace/ray.h"
+#include "thimble/trace/secondary_ray.h"
+
+namespace {
+
+using namespace thimble;
+using thimble::tests::pick;
+
+using Real = long double;
+using Reals = std::array<Real, 3>;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kSweep = 100000;
+#else
+constexpr int kSweep = 1000000;
+#endif
+
+std::uint64_t seed() {
+  const char* text = std::getenv("THIMBLE_SEED");
+  return text != nullptr && *text != '\0' ? std::strtoull(text, nullptr, 10) : 5;
+}
+
+Reals reals(const Vec3i& v) {
+  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+}
+Real dot(const Reals& a, const Reals& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Real length(const Reals& a) {
+  return std::sqrt(dot(a, a));
+}
+Reals combine(Real s, const Reals& a, Real t, const Reals& b) {
+  return {s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]};
+}
+Real angle_urad(const Reals& a, const Reals& b) {
+  const Reals cross = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  return 1e6L * std::atan2(length(cross), dot(a, b));
+}
+
+std::string text_of(const Vec3i& v) {
+  return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
+}
+
+// Of any number of bits up to `bits`, zeros among them, never all zero.
+Vec3i random_direction(std::mt19937_64& random, int bits) {
+  Vec3i direction;
+  do {
+    const int most = static_cast<int>(pick(random, 1, bits));
+    for (int axis = 0; axis < 3; ++axis) {
+      const int own = pick(random, 0, 2) == 0 ? static_cast<int>(pick(random, 0, most)) : most;
+      const std::int64_t limit = (std::int64_t{1} << own) - 1;
+      direction[axis] = static_cast<std::int32_t>(pick(random, -limit, limit));
+    }
+  } while (direction == Vec3i{});
+  return direction;
+}
+
+// The largest value seen, and where.
+struct Worst {
+  Real value = 0;
+  std::string where;
+
+  void see(Real candidate, const std::string& place) {
+    if (!(candidate <= value)) {
+      value = candidate;
+      where = place;
+    }
+  }
+};
+
+#define CHECK_WORST(worst, bound)                                                                            \
+  do {                                                                                                       \
+    INFO("largest " << static_cast<double>((worst).value) << " at " << (worst).where << " seed " << seed()); \
+    CHECK((worst).value <= static_cast<Real>(bound));                                                        \
+    CHECK((worst).value > 0.3L * static_cast<Real>(bound)); /* the bound means something */                  \
+  } while (false)
+
+}  // namespace
+
+TEST_CASE("shorten: any direction -> 15 bits, within the bound, zeros and short ones as they are") {
+  std::mt19937_64 random(seed());
+  Worst turned;
+  int wrong = 0;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i direction = random_direction(random, 20);
+    const Vec3i result = shorten(direction);
+    std::int32_t before = 0;
+    std::int32_t after = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      before = std::max(before, std::abs(direction[axis]));
+      after = std::max(after, std::abs(result[axis]));
+      wrong += direction[axis] == 0 && result[axis] != 0 ? 1 : 0;
+      wrong += (direction[axis] < 0 && result[axis] > 0) || (direction[axis] > 0 && result[axis] < 0) ? 1 : 0;
+    }
+    wrong += after > kMaxShort ? 1 : 0;
+    wrong += before <= kMaxShort ? (result == direction ? 0 : 1) : (after < (1 << 14) ? 1 : 0);
+    turned.see(angle_urad(reals(direction), reals(result)), text_of(direction));
+  }
+  CHECK(wrong == 0);
+  CHECK_WORST(turned, kShortenErrorUrad);
+  CHECK(shorten({kMaxDirection, -kMaxDirection, 0}) == Vec3i{1 << 14, -(1 << 14), 0});
+  CHECK(shorten({65535, 0, 3}) == Vec3i{1 << 14, 0, 1});
+}
+
+TEST_CASE("length_of: every vector of 15 bits -> the nearest integer") {
+  std::mt19937_64 random(seed());
+  Worst off;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i vector = random_direction(random, 15);
+    off.see(std::fabs(static_cast<Real>(length_of(vector)) - length(reals(vector))), text_of(vector));
+  }
+  CHECK_WORST(off, 0.5L);
+  CHECK(length_of({0, 0, 0}) == 0);
+  CHECK(length_of({kMaxShort, kMaxShort, -kMaxShort}) == 56754);
+  CHECK(length_of({0, -kMaxShort, 0}) == kMaxShort);
+}
+
+TEST_CASE("unit_q14: any direction -> a length of 16384 and an angle within the bounds") {
+  std::mt19937_64 random(seed());
+  Worst turned;
+  Worst longer;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i direction = random_direction(random, 20);
+    const Vec3i unit = unit_q14(direction);
+    turned.see(angle_urad(reals(direction), reals(unit)), text_of(direction));
+    longer.see(std::fabs(length(reals(unit)) - 16384), text_of(direction));
+  }
+  CHECK_WORST(turned, kUnitErrorUrad);
+  CHECK_WORST(longer, kUnitLengthError);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t size : {1, 3, 16384, 32767, 65535, kMaxDirection}) {
+      Vec3i direction;
+      direction[axis] = -size;
+      Vec3i unit;
+      unit[axis] = -kUnitQ14;
+      CHECK(unit_q14(direction) == unit);
+    }
+  }
+  CHECK(unit_q14({5, -5, 0}) == Vec3i{11585, -11585, 0});
+  CHECK(unit_q14({0, 0, 0}) == Vec3i{});
+}
+
+TEST_CASE("dot_q14: two units -> their cosine to the nearest") {
+  std::mt19937_64 random(seed());
+  Worst off;
+  for (int i = 0; i < kSweep / 4; ++i) {
+    const Vec3i a = unit_q14(random_direction(random, 20));
+    const Vec3i b = unit_q14(random_direction(random, 20));
+    off.see(std::fabs(static_cast<Real>(dot_q14(a, b)) - dot(reals(a), reals(b)) / 16384), text_of(a));
+  }
+  CHECK_WORST(off, 0.5L);
+}
+
+TEST_CASE("reflect: at a face -> a change of one sign, at a bent normal -> within the bound") {
+  CHECK(reflect(Vec3i{7, -9, kMaxDirection}, 2) == Vec3i{7, -9, -kMaxDirection});
+  CHECK(reflect(Vec3i{7, -9, 1}, 0) == Vec3i{-7, -9, 1});
+  std::mt19937_64 random(seed());
+  Worst turned;
+  Worst longer;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i direction = unit_q14(random_direction(random, 20));
+    const Vec3i normal = unit_q14(random_direction(random, 20));
+    const Reals d = reals(direction);
+    const Reals n = reals(normal);
+    const Reals exact = combine(1, d, -2 * dot(d, n) / dot(n, n), n);
+    const Vec3i mirrored = reflect(direction, normal);
+    turned.see(angle_urad(exact, reals(mirrored)), text_of(direction) + text_of(normal));
+    longer.see(std::fabs(length(reals(mirrored)) - length(d)), text_of(direction));
+  }
+  CHECK_WORST(turned, kReflectErrorUrad);
+  CHECK_WORST(longer, 2);
+  // The longest directions that are allowed, and normals along an axis: as the change of sign.
+  CHECK(reflect(Vec3i{kMaxShort, -kMaxShort, kMaxShort}, Vec3i{0, 0, kUnitQ14}) ==
+        Vec3i{kMaxShort, -kMaxShort, -kMaxShort});
+  CHECK(reflect(Vec3i{kMaxShort, -kMaxShort, kMaxShort}, Vec3i{0, -kUnitQ14, 0}) ==
+        Vec3i{kMaxShort, kMaxShort, kMaxShort});
+}
+
+namespace {
+
+__extension__ typedef __int128 Int128;
+
+// Snell's law for the very integers given. `outcome`: the exact direction; false for total reflection by the
+// exact inequality.
+bool exact_refraction(const Vec3i& unit, const Vec3i& normal, std::uint32_t eta, Reals* outcome) {
+  const Reals d = reals(unit);
+  const Reals n = reals(normal);
+  const Int128 big_d = Int128{unit.x} * normal.x + Int128{unit.y} * normal.y + Int128{unit.z} * normal.z;
+  const Int128 big_n =
+      Int128{normal.x} * normal.x + Int128{normal.y} * normal.y + Int128{normal.z} * normal.z;
+  const Int128 big_l = Int128{unit.x} * unit.x + Int128{unit.y} * unit.y + Int128{unit.z} * unit.z;
+  const Int128 left = big_l * big_n * (Int128{1} << 24) - Int128{eta} * eta * (big_l * big_n - big_d * big_d);
+  if (big_d == 0 || left <= 0) {
+    return false;
+  }
+  const Real ratio = static_cast<Real>(eta) / 4096;
+  // Along the normal afterwards, as a multiple of it.
+  const Real after = std::sqrt(static_cast<Real>(left)) / 4096 / static_cast<Real>(big_n);
+  const Real before = static_cast<Real>(big_d) / static_cast<Real>(big_n);
+  *outcome = combine(ratio, d, (big_d < 0 ? -after : after) - ratio * before, n);
+  return true;
+}
+
+// Ratios from 1/4 to 4: the ends, usual ones and any.
+std::uint32_t random_eta(std::mt19937_64& random) {
+  constexpr std::array<std::uint32_t, 8> kUsual = {1024, 4096, 16384, 5460, 3073, 5325, 3151, 4097};
+  const std::int64_t choice = pick(random, 0, 15);
+  return choice < 8 ? kUsual[static_cast<std::size_t>(choice)]
+                    : static_cast<std::uint32_t>(pick(random, 1024, 16384));
+}
+
+}  // namespace
+
+TEST_CASE(
+    "refract at a face: all angles, ratios 1/4 to 4 -> Snell within the bound, total reflection exactly") {
+  std::mt19937_64 random(seed());
+  Worst turned;
+  Worst longer;
+  int total = 0;
+  int wrong = 0;
+  for (int i = 0; i < kSweep; ++i) {
+    const int axis = static_cast<int>(pick(random, 0, 2));
+    Vec3i unit = unit_q14(random_direction(random, 20));
+    const std::uint32_t eta = random_eta(random);
+    if (pick(random, 0, 3) == 0) {
+      // Near the critical angle, on both sides, or grazing.
+      const Real sine =
+          std::min(1.0L, 4096.0L / static_cast<Real>(eta)) + 1e-4L * static_cast<Real>(pick(random, -9, 9));
+      const Real turn = 1e-3L * static_cast<Real>(pick(random, 0, 6283));
+      const Real s = std::min(sine, 1.0L);
+      unit = {};
+      unit[axis] = static_cast<std::int32_t>(std::lround(16384 * std::sqrt(1 - s * s)));
+      unit[(axis + 1) % 3] = static_cast<std::int32_t>(std::lround(16384 * s * std::cos(turn)));
+      unit[(axis + 2) % 3] = static_cast<std::int32_t>(std::lround(16384 * s * std::sin(turn)));
+      unit[axis] = pick(random, 0, 1) == 0 ? unit[axis] : -unit[axis];
+    }
+    Vec3i normal;
+    normal[axis] = kUnitQ14;
+    Reals exact{};
+    const bool through = exact_refraction(unit, normal, eta, &exact);
+    Vec3i out{1, 2, 3};
+    const bool result = refract(unit, axis, eta, &out);
+    const std::string place = text_of(unit) + " eta " + std::to_string(eta);
+    if (eta == 4096) {
+      wrong += result && out == unit ? 0 : 1;
+    } else if (result != through) {
+      ++wrong;
+    } else if (!result) {
+      ++total;
+      wrong += out == Vec3i{1, 2, 3} ? 0 : 1;
+    } else {
+      wrong += (out[axis] > 0) == (unit[axis] > 0) && out[axis] != 0 ? 0 : 1;
+      turned.see(angle_urad(exact, reals(out)), place);
+      longer.see(std::fabs(length(reals(out)) - length(reals(unit))), place);
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(total > kSweep / 10);
+  CHECK_WORST(turned, kRefractErrorUrad);
+  CHECK_WORST(longer, 2);
+}
+
+TEST_CASE("refract at a bent normal: all angles, ratios 1/4 to 4 -> Snell within the bound") {
+  std::mt19937_64 random(seed());
+  Worst turned;
+  Worst longer;
+  int total = 0;
+  int wrong = 0;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i normal = unit_q14(random_direction(random, 20));
+    Vec3i unit = unit_q14(random_direction(random, 20));
+    const std::uint32_t eta = random_eta(random);
+    if (pick(random, 0, 3) == 0) {
+      // Near the critical angle: a sideways vector made from another one.
+      const Reals n = reals(normal);
+      const Reals other = reals(unit);
+      const Reals side = combine(1, other, -dot(other, n) / dot(n, n), n);
+      const Real s = std::min(1.0L, std::min(1.0L, 4096.0L / static_cast<Real>(eta)) +
+                                        1e-4L * static_cast<Real>(pick(random, -9, 9)));
+      if (length(side) > 100) {
+        const Reals aimed =
+            combine(16384 * s / length(side), side, 16384 * std::sqrt(1 - s * s) / length(n), n);
+        unit = {static_cast<std::int32_t>(std::lround(aimed[0])),
+                static_cast<std::int32_t>(std::lround(aimed[1])),
+                static_cast<std::int32_t>(std::lround(aimed[2]))};
+      }
+    }
+    Reals exact{};
+    const bool through = exact_refraction(unit, normal, eta, &exact);
+    Vec3i out{1, 2, 3};
+    const bool result = refract(unit, normal, eta, &out);
+    const std::string place = text_of(unit) + text_of(normal) + " eta " + std::to_string(eta);
+    if (eta == 4096) {
+      wrong += result && out == unit ? 0 : 1;
+      continue;
+    }
+    if (result != through) {
+      // The inequality of the header leaves less than 1/64 of a unit of the square for this.
+      const Reals n = reals(normal);
+      const Real sine_square =
+          dot(reals(unit), reals(unit)) - dot(reals(unit), n) * dot(reals(unit), n) / dot(n, n);
+      const Real ratio = static_cast<Real>(eta) / 4096;
+      const Real excess = ratio * ratio * sine_square - dot(reals(unit), reals(unit));
+      wrong += std::fabs(excess) <= ratio * ratio / 64 ? 0 : 1;
+    } else if (result) {
+      turned.see(angle_urad(exact, reals(out)), place);
+      longer.see(std::fabs(length(reals(out)) - length(reals(unit))), place);
+    } else {
+      ++total;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(total > kSweep / 10);
+  CHECK_WORST(turned, kRefractErrorUrad);
+  CHECK_WORST(longer, 3);
+}
+
+TEST_CASE("refract: the critical angle -> total reflection from its exact integer on, not before") {
+  // Every second ratio from dense to thin; the last tangent that passes is found, and the next one does not.
+  int wrong = 0;
+  for (std::uint32_t eta = 4098; eta <= 16384; eta += 2) {
+    std::int32_t low = 0;  // passes
+    std::int32_t high = kUnitQ14;
+    Vec3i out;
+    while (high - low > 1) {
+      const std::int32_t middle = (low + high) / 2;
+      const std::int32_t along =
+          static_cast<std::int32_t>(std::lround(std::sqrt(16384.0L * 16384 - Real{1} * middle * middle)));
+      (refract(Vec3i{middle, 0, -along}, 2, eta, &out) ? low : high) = middle;
+    }
+    const Real critical = 4096.0L / static_cast<Real>(eta) * 16384;
+    wrong += std::fabs(static_cast<Real>(low) - critical) <= 2 ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+  // By the inequality: 16 * 4096^2 against 4096^2 + c^2, which c = 15863 is below and 15864 above.
+  Vec3i out;
+  CHECK_FALSE(refract(Vec3i{4096, 0, 15863}, 2, 16384, &out));
+  CHECK(refract(Vec3i{4096, 0, 15864}, 2, 16384, &out));
+  CHECK_FALSE(refract(Vec3i{4096, 0, 15863}, Vec3i{0, 0, kUnitQ14}, 16384, &out));
+  CHECK(refract(Vec3i{4096, 0, 15864}, Vec3i{0, 0, -kUnitQ14}, 16384, &out));
+  // On it: a triangle of 3, 4 and 5 and the ratio 5/4.
+  CHECK_FALSE(refract(Vec3i{0, 4 * 3277, -3 * 3277}, 2, 5120, &out));
+  CHECK(refract(Vec3i{0, 4 * 3277, -3 * 3277}, 2, 5119, &out));
+  CHECK_FALSE(refract(Vec3i{0, kUnitQ14, 0}, 2, 4095, &out));
+  CHECK(refract(Vec3i{0, kUnitQ14, 1}, 2, 4095, &out));
+}
+
+TEST_CASE(
+    "refract: normal incidence -> straight on, any ratio and side; there and back -> the same direction") {
+  int wrong = 0;
+  for (std::uint32_t eta = kMinEtaQ12; eta <= kMaxEtaQ12; eta += 7) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const std::int32_t sign : {-kUnitQ14, kUnitQ14}) {
+        Vec3i unit;
+        unit[axis] = sign;
+        Vec3i out;
+        REQUIRE(refract(unit, axis, eta, &out));
+        wrong += out == unit ? 0 : 1;
+        REQUIRE(refract(unit, unit, eta, &out));
+        wrong += out == unit ? 0 : 1;
+        REQUIRE(refract(unit, Vec3i{-unit.x, -unit.y, -unit.z}, eta, &out));
+        wrong += out == unit ? 0 : 1;
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  std::mt19937_64 random(seed());
+  Worst turned;
+  for (int i = 0; i < kSweep / 10; ++i) {
+    const Vec3i unit = unit_q14(random_direction(random, 20));
+    Vec3i inside;
+    Vec3i back;
+    if (unit.z != 0 && std::abs(unit.z) > 2000 && refract(unit, 2, eta_q12(4096, 6144), &inside) &&
+        refract(inside, 2, eta_q12(6144, 4096), &back)) {
+      turned.see(angle_urad(reals(unit), reals(back)), text_of(unit));
+    }
+  }
+  CHECK(turned.value < 2000);
+  CHECK(turned.value > 0);
+}
+
+TEST_CASE("eta_q12: two indices -> their ratio to the nearest, clamped") {
+  CHECK(eta_q12(4096, 4096) == kOneQ12);
+  CHECK(eta_q12(5325, 5325) == kOneQ12);
+  CHECK(eta_q12(4096, 16384) == kMinEtaQ12);
+  CHECK(eta_q12(16384, 4096) == kMaxEtaQ12);
+  CHECK(eta_q12(4096, 5460) == 3073);
+  CHECK(eta_q12(1, 65535) == kMinEtaQ12);
+  CHECK(eta_q12(65535, 1) == kMaxEtaQ12);
+  CHECK(eta_q12(1, 0) == kMaxEtaQ12);
+}
+
+TEST_CASE("r0_q16: pairs of indices -> the formula within the bound, 0 for equal ones only") {
+  std::mt19937_64 random(seed());
+  Worst off;
+  int wrong = 0;
+  for (int i = 0; i < kSweep / 4; ++i) {
+    const std::uint32_t a = static_cast<std::uint32_t>(pick(random, 1, 65535));
+    const std::uint32_t b = static_cast<std::uint32_t>(
+        pick(random, 0, 3) == 0 ? a - pick(random, 0, std::min(a - 1, 9U)) : pick(random, 1, 65535));
+    const std::uint32_t value = r0_q16(a, b);
+    const Real ratio =
+        (static_cast<Real>(a) - static_cast<Real>(b)) / (static_cast<Real>(a) + static_cast<Real>(b));
+    off.see(std::fabs(static_cast<Real>(value) - 65536 * ratio * ratio),
+            std::to_string(a) + " " + std::to_string(b));
+    wrong += (value == 0) == (a == b) && value <= kOneQ16 && value == r0_q16(b, a) ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+  CHECK_WORST(off, kNormalErrorQ16);
+  CHECK(r0_q16(4096, 6144) == 2621);  // glass of 1.5: 4 per cent
+  CHECK(r0_q16(4096, 0) == kOneQ16);
+  CHECK(r0_q16(0, 0) == 0);
+}
+
+TEST_CASE("fresnel_q16: every cosine -> Schlick within the bound, falling with it, never above 1") {
+  Worst off;
+  int wrong = 0;
+  for (const std::uint32_t r0 : {1U, 2U, 655U, 1337U, 2621U, 23593U, 65535U, 65536U}) {
+    std::uint32_t last = kOneQ16;
+    for (std::int32_t cosine = 0; cosine <= kUnitQ14 + 3; ++cosine) {
+      const std::uint32_t value = fresnel_q16(cosine, r0);
+      const Real normal = static_cast<Real>(r0) / 65536;
+      const Real lack = 1 - std::min(1.0L, static_cast<Real>(cosine) / 16384);
+      const Real exact = 65536 * (normal + (1 - normal) * lack * lack * lack * lack * lack);
+      off.see(std::fabs(static_cast<Real>(value) - exact),
+              std::to_string(cosine) + " r0 " + std::to_string(r0));
+      wrong += value <= last && value >= r0 && value <= kOneQ16 && value == fresnel_q16(-cosine, r0) ? 0 : 1;
+      last = value;
+    }
+    CHECK(fresnel_q16(kUnitQ14, r0) == r0);
+    CHECK(fresnel_q16(0, r0) == kOneQ16);
+  }
+  CHECK(wrong == 0);
+  CHECK_WORST(off, kSchlickErrorQ16);
+  for (std::int32_t cosine = 0; cosine <= kUnitQ14; ++cosine) {
+    wrong += fresnel_q16(cosine, r0_q16(5325, 5325)) == 0 ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE(
+    "transmittance_q16: every number of halvings -> within the bound, never rising, 1 at 0 and 0 beyond 17") {
+  Worst off;
+  int wrong = 0;
+  std::uint32_t last = kOneQ16;
+  for (std::uint32_t x = 0; x <= 18U << 16; ++x) {
+    const std::uint32_t value = transmittance_q16(x);
+    wrong += value <= last ? 0 : 1;
+    last = value;
+    off.see(std::fabs(static_cast<Real>(value) - 65536 * std::exp2(-static_cast<Real>(x) / 65536)),
+            std::to_string(x));
+  }
+  CHECK(wrong == 0);
+  CHECK_WORST(off, kTransmittanceErrorQ16);
+  for (std::uint32_t n = 0; n <= 16; ++n) {
+    CHECK(transmittance_q16(n << 16) == kOneQ16 >> n);
+  }
+  CHECK(transmittance_q16(17U << 16) == 0);
+  CHECK(transmittance_q16(UINT32_MAX) == 0);
+}
+
+TEST_CASE("absorption: slabs of known thickness -> products of what parts of them leave") {
+  // A slab of two parts absorbs as the sum: Beer and Lambert, to the rounding of two factors.
+  std::mt19937_64 random(seed());
+  for (int i = 0; i < 10000; ++i) {
+    const std::uint32_t a = static_cast<std::uint32_t>(pick(random, 0, 4 << 16));
+    const std::uint32_t b = static_cast<std::uint32_t>(pick(random, 0, 4 << 16));
+    const std::int64_t both = transmittance_q16(a + b);
+    const std::int64_t parts = (std::int64_t{transmittance_q16(a)} * transmittance_q16(b)) >> 16;
+    REQUIRE(std::llabs(both - parts) <= 6);
+  }
+}
+
+TEST_CASE("distance_q8: any direction and t -> within the bound, clamped at the top") {
+  std::mt19937_64 random(seed());
+  Worst off;
+  int clamped = 0;
+  int wrong = 0;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i direction = random_direction(random, 20);
+    const int axis = static_cast<int>(pick(random, 0, 2));
+    if (direction[axis] == 0) {
+      continue;
+    }
+    const std::int32_t numerator =
+        static_cast<std::int32_t>(pick(random, 0, std::int64_t{1} << pick(random, 0, 24)));
+    const std::int32_t denominator = 256 * std::abs(direction[axis]);
+    const Real exact =
+        length(reals(direction)) * static_cast<Real>(numerator) * 256 / static_cast<Real>(denominator);
+    const std::int32_t result = distance_q8(direction, numerator, denominator);
+    if (exact > 2147e6L) {
+      ++clamped;
+      wrong += result >= 2146000000 ? 0 : 1;
+      continue;
+    }
+    off.see((std::fabs(static_cast<Real>(result) - exact) - 0.501L) / std::max(exact, 1.0L) * 1e6L,
+            text_of(direction) + " " + std::to_string(numerator));
+  }
+  CHECK(wrong == 0);
+  CHECK(clamped > 100);
+  CHECK_WORST(off, kDistanceErrorPpm);
+  CHECK(distance_q8({0, -7, 0}, 1234, 7 * 256) == 1234);
+  CHECK(distance_q8({300, 400, 0}, 300, 300 * 256) == 500);
+  CHECK(distance_q8({1, 1, 1}, 0, 1) == 0);
+  CHECK(distance_q8({kMaxDirection, kMaxDirection, 1}, 1 << 24, 256) == INT32_MAX);
+}
+
+TEST_CASE("occlusion pattern: each prefix -> balanced, cosine distributed, never in the plane") {
+  for (const int count : {4, 8, 16, 32}) {
+    int x = 0;
+    int y = 0;
+    Real z = 0;
+    std::vector<Real> areas;
+    for (int i = 0; i < count; ++i) {
+      const Vec3i direction = occlusion_direction(i, 2, false);
+      CHECK(direction.z > 0);
+      CHECK(std::fabs(length(reals(direction)) - kOcclusionLength) <= 1);
+      x += direction.x;
+      y += direction.y;
+      z += direction.z;
+      areas.push_back(static_cast<Real>(direction.x * direction.x + direction.y * direction.y) / (127 * 127));
+    }
+    CHECK(x == 0);
+    CHECK(y == 0);
+    // The mean height of the distribution is 2/3; four directions alone are a little higher.
+    CHECK(std::fabs(z / count / 127 - 2.0L / 3) < 0.05L);
+    // Equal areas of the disc: the squares of the radii fill equal bins, four to a bin.
+    std::sort(areas.begin(), areas.end());
+    CHECK(std::fabs(areas[static_cast<std::size_t>(count / 2)] - 0.5L) < 0.1L);
+    // No two within 1/3 of the spacing that so many would have on average.
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < i; ++j) {
+        CHECK(angle_urad(reals(occlusion_direction(i, 2, false)), reals(occlusion_direction(j, 2, false))) >
+              0.4e6L * std::sqrt(2 * 3.14159L / count));
+      }
+    }
+  }
+}
+
+TEST_CASE("occlusion direction: the six faces -> away from each, a turned copy of the first") {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool smaller : {false, true}) {
+      for (int i = 0; i < kOcclusionDirections; ++i) {
+        const Vec3i direction = occlusion_direction(i, axis, smaller);
+        CHECK(leaves_face(direction, axis, smaller));
+        CHECK_FALSE(enters_face(direction, axis, smaller));
+        CHECK(std::abs(direction[axis]) == kOcclusionPattern[i].z);
+        CHECK(direction[(axis + 1) % 3] == kOcclusionPattern[i].x);
+        CHECK(direction[(axis + 2) % 3] == kOcclusionPattern[i].y);
+      }
+    }
+  }
+}
+
+TEST_CASE("roughen: four offsets -> nothing in sum, none at 0, equal lengths") {
+  const Vec3i unit{0, 9830, 13107};
+  for (int i = 0; i < kRoughnessRays; ++i) {
+    CHECK(roughen(unit, 0, i) == unit);
+  }
+  for (const int roughness : {1, 100, 255}) {
+    Vec3i sum;
+    for (int i = 0; i < kRoughnessRays; ++i) {
+      const Vec3i bent = roughen(unit, static_cast<std::uint8_t>(roughness), i);
+      for (int axis = 0; axis < 3; ++axis) {
+        sum[axis] += bent[axis] - unit[axis];
+      }
+      CHECK(angle_urad(reals(bent), reals(unit)) < 0.58e6L);
+    }
+    CHECK(sum == Vec3i{});
+  }
+}
+
+TEST_CASE("energy: reflected and transmitted shares -> 1 together, at most 1 after any number of surfaces") {
+  std::mt19937_64 random(seed());
+  for (int i = 0; i < 1000; ++i) {
+    std::uint32_t through = kOneQ16;
+    std::uint64_t reflected = 0;
+    for (int surface = 0; surface < 8; ++surface) {
+      const std::uint32_t share =
+          fresnel_q16(static_cast<std::int32_t>(pick(random, 0, kUnitQ14)),
+                      r0_q16(4096, static_cast<std::uint32_t>(pick(random, 4096, 16384))));
+      REQUIRE(share <= kOneQ16);
+      reflected += (std::uint64_t{through} * share) >> 16;
+      through = static_cast<std::uint32_t>((std::uint64_t{through} * (kOneQ16 - share)) >> 16);
+      REQUIRE(reflected + through <= kOneQ16);
+    }
+  }
+}

@@ -1,0 +1,734 @@
+// The camera against the ideal one in long double, and the promises of camera.h one by one.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "../../src/base/wide_arithmetic.h"
+#include "../../src/picture/cotangent.h"
+#include "thimble/picture/camera.h"
+#include "thimble/trace/ray.h"
+
+namespace thimble::tools {
+namespace {
+
+using Real = long double;
+using Real3 = std::array<Real, 3>;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kCameras = 1000;
+#else
+constexpr int kCameras = 20000;
+#endif
+
+Real dot(const Real3& a, const Real3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Real3 cross(const Real3& a, const Real3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Real3 unit(const Real3& a) {
+  const Real length = std::sqrt(dot(a, a));
+  return {a[0] / length, a[1] / length, a[2] / length};
+}
+Real3 real(const Vec3i& a) {
+  return {Real(a.x), Real(a.y), Real(a.z)};
+}
+Real3 real(const Vec3Q8& a) {
+  return {Real(a.x.raw) / 256, Real(a.y.raw) / 256, Real(a.z.raw) / 256};
+}
+
+struct RealFrame {
+  Real3 forward, right, up;
+  RealFrame(const Vec3i& view_forward, const Vec3i& view_up) {
+    const Vec3i chosen = view_up == Vec3i{} ? default_up(view_forward) : view_up;
+    forward = unit(real(view_forward));
+    // The cross product of the integers, exactly: below 2^62.
+    const auto minor = [](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
+      return Real(a * d - b * c);
+    };
+    const Vec3i& f = view_forward;
+    right = unit({minor(f.y, f.z, chosen.y, chosen.z), minor(f.z, f.x, chosen.z, chosen.x),
+                  minor(f.x, f.y, chosen.x, chosen.y)});
+    up = cross(right, forward);
+  }
+};
+
+Real focal_px(const PerspectiveView& view) {
+  const Real degrees = Real(view.fov_degrees.raw) / 65536;
+  return Real(view.height_px) / 2 / std::tan(degrees / 360 * std::acos(Real(-1)));
+}
+
+/// Distance on the picture, in pixels, between where `ray` and the ideal ray of (px, py) meet it.
+Real error_px(const PerspectiveView& view, const RealFrame& frame, const Ray& ray, int px, int py) {
+  const Real focal = focal_px(view);
+  const Real3 direction = real(ray.direction);
+  const Real depth = dot(direction, frame.forward);
+  if (depth <= 0) {
+    return 1e9L;
+  }
+  const Real x = focal * dot(direction, frame.right) / depth;
+  const Real y = focal * dot(direction, frame.up) / depth;
+  return std::hypot(x - (Real(px) + 0.5L - Real(view.width_px) / 2),
+                    y - (Real(view.height_px) / 2 - 0.5L - Real(py)));
+}
+
+/// The same for parallel rays: the worse of planar depth 0 and `depth` voxels.
+Real error_px(const OrthographicView& view, const RealFrame& frame, const Ray& ray, int px, int py,
+              Real depth) {
+  const Real pitch = Real(view.span.raw) / 16384 / view.width_px;
+  const Real3 origin = real(ray.origin);
+  const Real3 eye = real(view.eye);
+  const Real3 direction = real(ray.direction);
+  Real worst = 0;
+  for (const Real target : {Real(0), depth}) {
+    const Real3 offset{origin[0] - eye[0], origin[1] - eye[1], origin[2] - eye[2]};
+    const Real t = (target - dot(offset, frame.forward)) / dot(direction, frame.forward);
+    Real3 point{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point[axis] = offset[axis] + t * direction[axis];
+    }
+    const Real x = dot(point, frame.right) / pitch;
+    const Real y = dot(point, frame.up) / pitch;
+    worst = std::max(worst, std::hypot(x - (Real(px) + 0.5L - Real(view.width_px) / 2),
+                                       y - (Real(view.height_px) / 2 - 0.5L - Real(py))));
+  }
+  return worst;
+}
+
+/// Planar depth of the furthest corner of the world; 0 when all of it is behind.
+Real world_depth(const OrthographicView& view, const RealFrame& frame, int level) {
+  Real depth = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Real corner = frame.forward[axis] > 0 ? Real(1 << level) : 0;
+    depth += frame.forward[axis] * (corner - real(view.eye)[axis]);
+  }
+  return std::max(depth, Real(0));
+}
+
+class Random {
+ public:
+  explicit Random(std::uint32_t seed) : engine_(seed) {}
+  std::int32_t whole(std::int32_t low, std::int32_t high) {
+    return std::uniform_int_distribution<std::int32_t>(low, high)(engine_);
+  }
+  /// Log-uniform, low .. high.
+  std::int32_t log_whole(std::int32_t low, std::int32_t high) {
+    const double value = std::uniform_real_distribution<double>(std::log(low), std::log(high + 1.0))(engine_);
+    return std::clamp(static_cast<std::int32_t>(std::exp(value)), low, high);
+  }
+  /// Vectors of all lengths, with zero, equal and nearly parallel components now and then.
+  Vec3i vector() {
+    Vec3i result;
+    do {
+      const std::int32_t size = log_whole(1, kMaxViewComponent);
+      for (int axis = 0; axis < 3; ++axis) {
+        result[axis] = whole(0, 9) == 0 ? 0 : whole(0, 9) == 0 ? size : whole(-size, size);
+      }
+    } while (result == Vec3i{});
+    return result;
+  }
+  Vec3Q8 eye(int level) {
+    Vec3Q8 result;
+    for (int axis = 0; axis < 3; ++axis) {
+      result[axis] = Q8::from_raw(whole(-4 * (256 << level), 5 * (256 << level)));
+    }
+    return result;
+  }
+  /// Corners of the picture, then pixels anywhere.
+  std::vector<std::array<int, 2>> pixels(int width, int height, int count) {
+    std::vector<std::array<int, 2>> result{{0, 0}, {width - 1, 0}, {0, height - 1}, {width - 1, height - 1}};
+    for (int index = 0; index < count; ++index) {
+      result.push_back({whole(0, width - 1), whole(0, height - 1)});
+    }
+    return result;
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+PerspectiveView random_perspective(Random& random, int level) {
+  PerspectiveView view;
+  view.eye = random.eye(level);
+  view.forward = random.whole(0, 3) == 0 ? look_at(view.eye, random.eye(level)) : random.vector();
+  view.up = random.whole(0, 2) == 0 ? Vec3i{} : random.vector();
+  view.fov_degrees = Q16::from_raw(random.whole(0, 7) == 0 ? (random.whole(0, 1) == 0 ? kMinFov : kMaxFov).raw
+                                                           : random.whole(kMinFov.raw, kMaxFov.raw));
+  const std::int32_t most_px = random.whole(0, 7) == 0 ? kMaxPicturePx : 2000;
+  view.width_px = random.log_whole(1, most_px);
+  view.height_px = random.log_whole(1, most_px);
+  return view;
+}
+
+OrthographicView random_orthographic(Random& random, int level) {
+  OrthographicView view;
+  view.eye = random.eye(level);
+  view.forward = random.whole(0, 3) == 0 ? look_at(view.eye, random.eye(level)) : random.vector();
+  view.up = random.whole(0, 2) == 0 ? Vec3i{} : random.vector();
+  const std::int32_t most_px = random.whole(0, 7) == 0 ? kMaxPicturePx : 2000;
+  view.width_px = random.log_whole(1, most_px);
+  view.height_px = random.log_whole(1, most_px);
+  view.span = Q14::from_raw(random.log_whole(1 << 12, (1 << level) * 16384));
+  return view;
+}
+
+OrthographicView simple_orthographic() {
+  OrthographicView view;
+  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
+  view.forward = {1, 0, 0};
+  view.span = Q14::saturate(4);
+  view.width_px = 4;
+  view.height_px = 2;
+  return view;
+}
+
+PerspectiveView simple_perspective() {
+  PerspectiveView view;
+  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
+  view.forward = {1, 0, 0};
+  view.fov_degrees = Q16::saturate(90);
+  view.width_px = 2;
+  view.height_px = 2;
+  return view;
+}
+
+template <class View>
+Camera made(const View& view, int level = 6) {
+  Camera camera;
+  REQUIRE(camera.set(view, level) == Status::kOk);
+  return camera;
+}
+
+bool same(const Ray& a, const Ray& b) {
+  return a.origin == b.origin && a.direction == b.direction;
+}
+
+/// Component `axis` of the affine function before rounding.
+Real exact_value(const Camera& camera, int px, int py, int axis) {
+  const Camera::Affine& affine = camera.affine();
+  return Real(affine.base[axis] + px * affine.step_x[axis] + py * affine.step_y[axis]) / 4294967296.0L;
+}
+
+}  // namespace
+
+TEST_CASE("wide arithmetic: random operands -> quotients, roots and products of the compiler") {
+  Random random(1);
+  for (int count = 0; count < kCameras; ++count) {
+    const auto wide = [&random] {
+      const std::uint64_t low = static_cast<std::uint32_t>(random.whole(INT32_MIN, INT32_MAX));
+      const std::uint64_t high = static_cast<std::uint32_t>(random.whole(INT32_MIN, INT32_MAX));
+      return ((high << 32) | low) >> random.whole(0, 63);
+    };
+    const std::uint64_t a = wide();
+    const std::uint64_t b = std::min(wide() + 1, std::uint64_t{1} << 63);
+    CHECK(divide(a, b) == a / b);
+    CHECK(bit_width(a) == static_cast<int>(a == 0 ? 0 : 64 - __builtin_clzll(a)));
+    const std::uint64_t half = a >> 1;
+    const Real root = std::sqrt(Real(half));
+    CHECK(std::abs(Real(square_root_rounded(half)) - root) <= 0.5000001L);
+    const std::uint32_t factor = static_cast<std::uint32_t>(b);
+    const int shift = random.whole(42, 80);
+    CHECK(std::abs(Real(multiply_shifted(half, factor, shift)) -
+                   std::ldexp(Real(half) * Real(factor), -shift)) <=
+          0.5011L + Real(half) * Real(factor) * std::ldexp(1.0L, -shift - 62));
+  }
+  CHECK(divide(0, 1) == 0);
+  CHECK(divide(UINT64_MAX, 1) == UINT64_MAX);
+  CHECK(divide(UINT64_MAX, std::uint64_t{1} << 63) == 1);
+  CHECK(square_root_rounded(0) == 0);
+  CHECK(square_root_rounded(2) == 1);
+  CHECK(square_root_rounded(3) == 2);
+  CHECK(square_root_rounded(UINT64_MAX - UINT32_MAX) == UINT32_MAX);
+}
+
+TEST_CASE("cotangent: every 1/256 degree from 1 to 120 -> relative error below 2^-28") {
+  Real worst = 0;
+  for (std::int32_t raw = kMinFov.raw; raw <= kMaxFov.raw; raw += 256) {
+    const Real exact = 1 / std::tan(Real(raw) / 65536 / 360 * std::acos(Real(-1)));
+    const Real mine = Real(half_angle_cotangent_q39(Q16::from_raw(raw))) / 549755813888.0L;
+    worst = std::max(worst, std::abs(mine / exact - 1));
+  }
+  MESSAGE("worst relative error: 2^", static_cast<double>(std::log2(worst)));
+  CHECK(worst < std::ldexp(1.0L, -28));
+}
+
+TEST_CASE("camera: random perspective views -> every ray within the bound, within 1/8 pixel, accepted") {
+  const std::uint32_t seed = 20240;
+  CAPTURE(seed);
+  Random random(seed);
+  Real worst = 0;
+  Real worst_share = 0;
+  Real worst_setup = 0;
+  int made_count = 0;
+  int too_fine = 0;
+  for (int count = 0; count < kCameras; ++count) {
+    const int level = random.whole(kMinLevel, kMaxLevel);
+    PerspectiveView view = random_perspective(random, level);
+    view.direction_bits = random.whole(0, 3) == 0 ? random.whole(kMinDirectionBits, kMaxDirectionBits) : 0;
+    Camera camera;
+    const Status status = camera.set(view, level);
+    CAPTURE(count);
+    if (status == Status::kTooFine) {
+      ++too_fine;
+      if (view.direction_bits == 0) {
+        // 20 bits as given are coarser than 1/8 pixel indeed, as far as the bound says.
+        view.direction_bits = kMaxDirectionBits;
+        if (camera.set(view, level) == Status::kOk) {
+          CHECK(camera.error_bound_px_q16() > 8192);
+        }
+      }
+      continue;
+    }
+    if (status == Status::kBadArgument) {  // up happens to be parallel
+      const RealFrame frame(view.forward, {});
+      CHECK(dot(unit(real(view.up)), frame.forward) * dot(unit(real(view.up)), frame.forward) > 0.999999L);
+      continue;
+    }
+    REQUIRE(status == Status::kOk);
+    ++made_count;
+    const RealFrame frame(view.forward, view.up);
+    const Real bound = Real(camera.error_bound_px_q16()) / 65536;
+    if (view.direction_bits == 0) {
+      REQUIRE(bound <= 0.125L);
+    } else {
+      REQUIRE(camera.direction_bits() == view.direction_bits);
+    }
+    const std::int32_t most = (1 << camera.direction_bits()) - 1;
+    std::int32_t seen = 0;
+    for (const auto& [px, py] : random.pixels(view.width_px, view.height_px, 12)) {
+      const Ray ray = camera.ray(px, py);
+      REQUIRE(check_ray(ray, level) == Status::kOk);
+      for (int axis = 0; axis < 3; ++axis) {
+        seen = std::max(seen, std::abs(ray.direction[axis]));
+      }
+      const Real error = error_px(view, frame, ray, px, py);
+      REQUIRE(error <= bound);
+      if (view.direction_bits == 0) {
+        worst = std::max(worst, error);
+      }
+      worst_share = std::max(worst_share, error / bound);
+
+      // Set-up alone: how far the unrounded direction lies from the line of the ideal one.
+      const Real3 exact{exact_value(camera, px, py, 0), exact_value(camera, px, py, 1),
+                        exact_value(camera, px, py, 2)};
+      const Real x = Real(px) + 0.5L - Real(view.width_px) / 2;
+      const Real y = Real(view.height_px) / 2 - 0.5L - Real(py);
+      const Real focal = focal_px(view);
+      Real3 ideal{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ideal[axis] = focal * frame.forward[axis] + x * frame.right[axis] + y * frame.up[axis];
+      }
+      const Real3 across = cross(unit(ideal), exact);
+      const Real setup = std::sqrt(dot(across, across));
+      worst_setup = std::max(worst_setup, setup);
+      REQUIRE(setup < 0.0245L);
+      REQUIRE(std::abs(dot(exact, frame.forward) * 256 - camera.depth_per_t_q8()) <= 4);
+      REQUIRE(std::abs(dot(real(ray.direction), frame.forward) * 256 - camera.depth_per_t_q8()) <= 232);
+    }
+    REQUIRE(seen == most);  // all bits are used, in a corner
+  }
+  MESSAGE(made_count, " cameras, ", too_fine, " too fine; worst error ", static_cast<double>(worst),
+          " pixel, worst share of the bound ", static_cast<double>(worst_share), ", set-up alone ",
+          static_cast<double>(worst_setup), " direction units");
+  CHECK(made_count > kCameras / 2);
+}
+
+TEST_CASE(
+    "camera: random orthographic views -> every ray within the bound through the whole world, accepted") {
+  const std::uint32_t seed = 77;
+  CAPTURE(seed);
+  Random random(seed);
+  Real worst = 0;
+  Real worst_share = 0;
+  int made_count = 0;
+  int too_fine = 0;
+  int out_of_range = 0;
+  for (int count = 0; count < kCameras; ++count) {
+    const int level = random.whole(kMinLevel, kMaxLevel);
+    OrthographicView view = random_orthographic(random, level);
+    view.direction_bits = random.whole(0, 3) == 0 ? random.whole(kMinDirectionBits, kMaxDirectionBits) : 0;
+    Camera camera;
+    const Status status = camera.set(view, level);
+    CAPTURE(count);
+    if (status == Status::kBadArgument) {
+      continue;
+    }
+    const RealFrame frame(view.forward, view.up);
+    const Real pitch = Real(view.span.raw) / 16384 / view.width_px;
+    if (status == Status::kOutOfRange) {
+      ++out_of_range;
+      Real most = 0;  // how far a corner's origin lies outside
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Real reach = (std::abs(frame.right[axis]) * (view.width_px - 1) +
+                            std::abs(frame.up[axis]) * (view.height_px - 1)) *
+                           pitch / 2;
+        const Real world = Real(1 << level);
+        most = std::max(
+            {most, real(view.eye)[axis] + reach - 5 * world, -4 * world - (real(view.eye)[axis] - reach)});
+      }
+      CHECK(most > -0.01L);
+      continue;
+    }
+    if (status == Status::kTooFine) {
+      ++too_fine;
+      CHECK(view.span < least_orthographic_span(view.width_px, level));
+      continue;
+    }
+    REQUIRE(status == Status::kOk);
+    ++made_count;
+    const Real bound = Real(camera.error_bound_px_q16()) / 65536;
+    if (view.direction_bits == 0) {
+      REQUIRE(bound <= 0.125L);
+    }
+    const Real depth = world_depth(view, frame, level);
+    for (const auto& [px, py] : random.pixels(view.width_px, view.height_px, 12)) {
+      const Ray ray = camera.ray(px, py);
+      REQUIRE(check_ray(ray, level) == Status::kOk);
+      const Real error = error_px(view, frame, ray, px, py, depth);
+      REQUIRE(error <= bound);
+      if (view.direction_bits == 0) {
+        worst = std::max(worst, error);
+      }
+      worst_share = std::max(worst_share, error / bound);
+    }
+    REQUIRE(std::abs(dot(real(camera.direction()), frame.forward) * 256 - camera.depth_per_t_q8()) <= 1);
+  }
+  MESSAGE(made_count, " cameras, ", too_fine, " too fine, ", out_of_range, " out of range; worst error ",
+          static_cast<double>(worst), " pixel, worst share of the bound ", static_cast<double>(worst_share));
+  CHECK(made_count > kCameras / 4);
+  CHECK(too_fine > 0);
+  CHECK(out_of_range > 0);
+}
+
+TEST_CASE("camera: looking along each axis, default and given up -> zero components stay zero") {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t sign : {-1, 1}) {
+      for (const std::int32_t length : {1, 77, kMaxViewComponent}) {
+        CAPTURE(axis);
+        CAPTURE(sign);
+        PerspectiveView view = simple_perspective();
+        view.forward = {};
+        view.forward[axis] = sign * length;
+        view.width_px = 5;
+        view.height_px = 3;
+        const Camera camera = made(view);
+        const Vec3i middle = camera.ray(2, 1).direction;
+        for (int other = 0; other < 3; ++other) {
+          CHECK((middle[other] != 0) == (other == axis));
+        }
+        CHECK(middle[axis] * sign > 0);
+        // World up, or y where the view is vertical, is up in the picture, and right is forward x up.
+        const int up = axis == 2 ? 1 : 2;
+        const Vec3i top = camera.ray(2, 0).direction;
+        const Vec3i bottom = camera.ray(2, 2).direction;
+        CHECK(top[up] > 0);
+        CHECK(bottom[up] == -top[up]);
+        const int side = 3 - axis - up;
+        CHECK(top[side] == 0);
+        const bool cyclic = (axis + 1) % 3 == up;
+        CHECK(camera.ray(4, 1).direction[side] * sign * (cyclic ? 1 : -1) > 0);
+
+        OrthographicView parallel = simple_orthographic();
+        parallel.forward = view.forward;
+        const Vec3i direction = made(parallel).direction();
+        for (int other = 0; other < 3; ++other) {
+          CHECK(direction[other] == (other == axis ? sign * 255 : 0));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("camera: mirrored in an axis -> rays mirrored exactly, the picture left to right") {
+  const std::uint32_t seed = 5;
+  CAPTURE(seed);
+  Random random(seed);
+  const int level = 9;
+  for (int count = 0; count < kCameras / 10; ++count) {
+    CAPTURE(count);
+    const int axis = random.whole(0, 2);
+    // In the plane axis = world / 2, which keeps eyes in range; directions have no place.
+    const auto mirror_point = [axis](Vec3Q8 point) {
+      point[axis] = Q8::from_raw((256 << level) - point[axis].raw);
+      return point;
+    };
+    const auto mirror = [axis](Vec3i vector) {
+      vector[axis] = -vector[axis];
+      return vector;
+    };
+    const auto compare = [&](auto view) {
+      auto mirrored = view;
+      mirrored.eye = mirror_point(view.eye);
+      mirrored.forward = mirror(view.forward);
+      // Not the default: mirrored it may point down.
+      mirrored.up = mirror(view.up == Vec3i{} ? default_up(view.forward) : view.up);
+      Camera camera;
+      Camera other;
+      const Status status = camera.set(view, level);
+      REQUIRE(other.set(mirrored, level) == status);
+      if (status != Status::kOk) {
+        return;
+      }
+      for (const auto& [px, py] : random.pixels(view.width_px, view.height_px, 8)) {
+        const Ray ray = camera.ray(px, py);
+        const Ray expected{mirror_point(ray.origin), mirror(ray.direction)};
+        REQUIRE(same(other.ray(view.width_px - 1 - px, py), expected));
+      }
+    };
+    const auto turn = [](const auto& vector) {
+      return std::decay_t<decltype(vector)>{vector.z, vector.x, vector.y};
+    };
+    const auto compare_turned = [&](auto view) {
+      auto turned = view;
+      view.up = view.up == Vec3i{} ? default_up(view.forward) : view.up;
+      turned.eye = turn(view.eye);
+      turned.forward = turn(view.forward);
+      turned.up = turn(view.up);
+      Camera camera;
+      Camera other;
+      const Status status = camera.set(view, level);
+      REQUIRE(other.set(turned, level) == status);
+      if (status != Status::kOk) {
+        return;
+      }
+      for (const auto& [px, py] : random.pixels(view.width_px, view.height_px, 8)) {
+        const Ray ray = camera.ray(px, py);
+        REQUIRE(same(other.ray(px, py), {turn(ray.origin), turn(ray.direction)}));
+      }
+    };
+    compare(random_perspective(random, level));
+    compare(random_orthographic(random, level));
+    compare_turned(random_perspective(random, level));
+    compare_turned(random_orthographic(random, level));
+  }
+}
+
+TEST_CASE(
+    "camera: walking along rows -> the rays of every pixel; components monotone, so corners bound tiles") {
+  Random random(3);
+  for (int count = 0; count < 40; ++count) {
+    const int level = random.whole(4, 12);
+    PerspectiveView perspective = random_perspective(random, level);
+    perspective.width_px = random.whole(1, 90);
+    perspective.height_px = random.whole(1, 60);
+    OrthographicView orthographic = random_orthographic(random, level);
+    orthographic.width_px = random.whole(1, 90);
+    orthographic.height_px = random.whole(1, 60);
+    Camera camera;
+    if ((count % 2 == 0 ? camera.set(perspective, level) : camera.set(orthographic, level)) != Status::kOk) {
+      continue;
+    }
+    const Ray corners[] = {camera.ray(0, 0), camera.ray(camera.width_px() - 1, 0),
+                           camera.ray(0, camera.height_px() - 1),
+                           camera.ray(camera.width_px() - 1, camera.height_px() - 1)};
+    const std::int32_t first = random.whole(0, camera.width_px() - 1);
+    for (std::int32_t py = 0; py < camera.height_px(); ++py) {
+      RowRays rays(camera, first, py);
+      for (std::int32_t px = first; px < camera.width_px(); ++px, rays.next()) {
+        const Ray ray = rays.ray();
+        REQUIRE(same(ray, camera.ray(px, py)));
+        for (int axis = 0; axis < 3; ++axis) {
+          const auto inside = [&](auto component) {
+            std::int32_t low = INT32_MAX;
+            std::int32_t high = INT32_MIN;
+            for (const Ray& corner : corners) {
+              low = std::min(low, component(corner));
+              high = std::max(high, component(corner));
+            }
+            return component(ray) >= low && component(ray) <= high;
+          };
+          REQUIRE(inside([axis](const Ray& r) { return r.origin[axis].raw; }));
+          REQUIRE(inside([axis](const Ray& r) { return r.direction[axis]; }));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("camera: arguments at and beyond their limits -> the stated status, camera unchanged") {
+  const Camera before = made(simple_perspective());
+  const auto refuses = [&before](const auto& view, int level, Status expected) {
+    Camera camera = before;
+    CHECK(camera.set(view, level) == expected);
+    CHECK(same(camera.ray(1, 0), before.ray(1, 0)));
+    CHECK(camera.width_px() == before.width_px());
+    CHECK(camera.is_perspective());
+    CHECK(camera.error_bound_px_q16() == before.error_bound_px_q16());
+  };
+  const auto both = [&](auto change, Status expected, int level = 6) {
+    PerspectiveView perspective = simple_perspective();
+    OrthographicView orthographic = simple_orthographic();
+    change(perspective);
+    change(orthographic);
+    if (expected == Status::kOk) {
+      Camera camera;
+      CHECK(camera.set(perspective, level) == Status::kOk);
+      CHECK(camera.set(orthographic, level) == Status::kOk);
+    } else {
+      refuses(perspective, level, expected);
+      refuses(orthographic, level, expected);
+    }
+  };
+  both([](auto& view) { view.width_px = 0; }, Status::kBadArgument);
+  both([](auto& view) { view.height_px = -1; }, Status::kBadArgument);
+  both([](auto& view) { view.width_px = kMaxPicturePx + 1; }, Status::kOutOfRange);
+  both([](auto& view) { view.height_px = INT32_MAX; }, Status::kOutOfRange);
+  both([](auto& view) { view.direction_bits = 7; }, Status::kOutOfRange);
+  both([](auto& view) { view.direction_bits = 21; }, Status::kOutOfRange);
+  both([](auto& view) { view.direction_bits = -1; }, Status::kOutOfRange);
+  both([](auto& view) { view.direction_bits = 20; }, Status::kOk);
+  both([](auto&) {}, Status::kOutOfRange, 0);
+  both([](auto&) {}, Status::kOutOfRange, 13);
+  both([](auto&) {}, Status::kOk, 12);
+  both([](auto& view) { view.forward = {}; }, Status::kBadArgument);
+  both([](auto& view) { view.forward = {}, view.up = {1, 2, 3}; }, Status::kBadArgument);
+  both([](auto& view) { view.up = {-7, 0, 0}; }, Status::kBadArgument);
+  both([](auto& view) { view.forward = {1000, 2000, -3000}, view.up = {-1, -2, 3}; }, Status::kBadArgument);
+  both([](auto& view) { view.forward.x = kMaxViewComponent + 1; }, Status::kOutOfRange);
+  both([](auto& view) { view.forward.y = INT32_MIN; }, Status::kOutOfRange);
+  both([](auto& view) { view.up.z = -kMaxViewComponent - 1; }, Status::kOutOfRange);
+  both([](auto& view) { view.up = {kMaxViewComponent, -kMaxViewComponent, 1}; }, Status::kOk);
+  // A hair off the view: still a picture.
+  both(
+      [](auto& view) {
+        view.forward = {kMaxViewComponent, 1, 0}, view.up = {kMaxViewComponent, 0, 0};
+      },
+      Status::kOk);
+  for (int axis = 0; axis < 3; ++axis) {
+    both([axis](auto& view) { view.eye[axis] = Q8::from_raw(5 * 64 * 256 + 1); }, Status::kOutOfRange);
+    both([axis](auto& view) { view.eye[axis] = Q8::from_raw(-4 * 64 * 256 - 1); }, Status::kOutOfRange);
+    both([axis](auto& view) { view.eye[axis] = Q8::from_raw(INT32_MIN); }, Status::kOutOfRange);
+  }
+  both([](auto& view) { view.eye.x = Q8::from_raw(5 * 64 * 256); }, Status::kOk);
+  both([](auto& view) { view.eye.x = Q8::from_raw(-4 * 64 * 256); }, Status::kOk);
+
+  PerspectiveView perspective = simple_perspective();
+  perspective.fov_degrees = Q16::from_raw(kMinFov.raw - 1);
+  refuses(perspective, 6, Status::kOutOfRange);
+  perspective.fov_degrees = Q16::from_raw(kMaxFov.raw + 1);
+  refuses(perspective, 6, Status::kOutOfRange);
+
+  OrthographicView orthographic = simple_orthographic();
+  orthographic.span = {};
+  refuses(orthographic, 6, Status::kBadArgument);
+  orthographic.span = Q14::from_raw(-1);
+  refuses(orthographic, 6, Status::kBadArgument);
+  orthographic.span = Q14::from_raw(INT32_MAX);
+  refuses(orthographic, 6, Status::kOutOfRange);
+  orthographic.width_px = 1;
+  orthographic.height_px = kMaxPicturePx;
+  refuses(orthographic, 12, Status::kOutOfRange);
+
+  // Origins to the limit: looking down from the middle, 8 worlds to either side of... x = -4 .. 5 worlds.
+  orthographic = simple_orthographic();
+  orthographic.forward = {0, 0, -1};
+  orthographic.width_px = 10;
+  orthographic.height_px = 1;
+  orthographic.span = Q14::saturate(64 * 10);  // centres from -4.5 to 4.5 worlds around the eye
+  Camera camera;
+  CHECK(camera.set(orthographic, 6) == Status::kOk);
+  CHECK(camera.ray(0, 0).origin.x == Q8::saturate(-4 * 64));
+  CHECK(camera.ray(9, 0).origin.x == Q8::saturate(5 * 64));
+  orthographic.eye.x = Q8::from_raw(orthographic.eye.x.raw + 1);
+  CHECK(camera.set(orthographic, 6) == Status::kOutOfRange);
+  orthographic.eye.x = Q8::from_raw(orthographic.eye.x.raw - 2);
+  CHECK(camera.set(orthographic, 6) == Status::kOutOfRange);
+}
+
+TEST_CASE("camera: pictures finer and finer -> kOk up to 1/8 pixel, kTooFine from there") {
+  // Perspective: 1 degree over more and more rows.
+  PerspectiveView view = simple_perspective();
+  view.forward = {3, 2, -1};
+  view.fov_degrees = Q16::saturate(1);
+  view.width_px = 1;
+  int last = 0;
+  Camera camera;
+  for (int height = 1; height <= kMaxPicturePx; ++height) {
+    view.height_px = height;
+    const Status status = camera.set(view, 8);
+    if (status == Status::kOk) {
+      CHECK(last == height - 1);
+      CHECK(camera.error_bound_px_q16() <= 8192);
+      last = height;
+    } else {
+      CHECK(status == Status::kTooFine);
+    }
+  }
+  MESSAGE("1 degree: up to ", last, " rows");
+  CHECK(last > 2000);
+  CHECK(last < 6000);
+  view.height_px = last + 1;
+  view.direction_bits = 20;  // as given: coarse, but said so
+  CHECK(camera.set(view, 8) == Status::kOk);
+  CHECK(camera.error_bound_px_q16() > 8192);
+  // A picture so wide and low that 8 bits leave nothing of the forward component.
+  view.fov_degrees = kMaxFov;
+  view.height_px = 1;
+  view.width_px = 2000;
+  view.direction_bits = 8;
+  CHECK(camera.set(view, 8) == Status::kTooFine);
+
+  // Orthographic: the stated least span is enough from everywhere; half of it is not from afar; 6/256 voxel a
+  // pixel never is.
+  Random random(9);
+  for (int count = 0; count < 500; ++count) {
+    const int level = random.whole(6, 12);
+    OrthographicView parallel = simple_orthographic();
+    const std::int32_t far = 5 << level;
+    parallel.eye = {Q8::saturate(far - (1 << (level - 3))), Q8::saturate(far - (1 << (level - 3))),
+                    Q8::saturate(far - (1 << (level - 3)))};
+    parallel.forward = {-1000 - random.whole(0, 50), -1000 - random.whole(0, 50),
+                        -1000 - random.whole(0, 50)};
+    parallel.width_px = random.log_whole(1, 300);
+    parallel.height_px = 1;
+    parallel.span = least_orthographic_span(parallel.width_px, level);
+    CHECK(camera.set(parallel, level) == Status::kOk);
+    CHECK(camera.error_bound_px_q16() <= 8192);
+    parallel.span = Q14::from_raw(parallel.width_px * 6 * 64);
+    CHECK(camera.set(parallel, level) == Status::kTooFine);
+    parallel.direction_bits = 12;
+    CHECK(camera.set(parallel, level) == Status::kTooFine);
+    parallel.span = Q14::from_raw(parallel.width_px * 8 * 64);
+    CHECK(camera.set(parallel, level) == Status::kOk);
+    CHECK(camera.direction_bits() == 12);
+  }
+}
+
+TEST_CASE("camera: automatic bits -> the fewest that bound the error by 1/16 pixel") {
+  Random random(11);
+  for (int count = 0; count < 500; ++count) {
+    const int level = random.whole(1, 12);
+    PerspectiveView view = random_perspective(random, level);
+    Camera camera;
+    if (camera.set(view, level) != Status::kOk) {
+      continue;
+    }
+    const int bits = camera.direction_bits();
+    const std::uint32_t bound = camera.error_bound_px_q16();
+    CHECK((bound <= 4098 || bits == kMaxDirectionBits));
+    if (bits > kMinDirectionBits) {
+      view.direction_bits = bits - 1;
+      if (camera.set(view, level) == Status::kOk) {
+        CHECK(camera.error_bound_px_q16() > 4096);
+      }
+    }
+  }
+  PerspectiveView view = simple_perspective();
+  view.forward = {-3, -2, -1};
+  view.fov_degrees = Q16::saturate(60);
+  view.width_px = 800;
+  view.height_px = 600;
+  const Camera large = made(view, 10);
+  view.width_px = 128;
+  view.height_px = 64;
+  const Camera small = made(view, 10);
+  MESSAGE("800 x 600 at 60 degrees: ", large.direction_bits(), " bits; 128 x 64: ", small.direction_bits());
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,515 @@
+// Stopping at nodes that cover less than a part of a pixel: held to the definition (cutoff.h), worked out
+// from the voxels alone; and the mean colours of what was left out.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "golden/scenes.h"
+#include "reference/reference.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/picture/cutoff.h"
+
+namespace thimble::tests {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kScenes = 6;
+constexpr int kRaysAScene = 150;
+#else
+constexpr int kScenes = 24;
+constexpr int kRaysAScene = 1500;
+#endif
+constexpr std::uint64_t kSeed = 20240611;
+
+using reference::Voxel;
+
+Camera pinhole(int level, int width_px, int fov) {
+  PerspectiveView view;
+  const std::int32_t world = 1 << level;
+  view.eye = {Q8::saturate(-2 * world), Q8::saturate(-3 * world), Q8::saturate(2 * world)};
+  view.forward = {5, 9, -2};
+  view.fov_degrees = Q16::saturate(fov);
+  view.width_px = width_px;
+  view.height_px = width_px * 3 / 4;
+  Camera camera;
+  REQUIRE(camera.set(view, level) == Status::kOk);
+  return camera;
+}
+
+Camera parallel(int level, int width_px, std::int32_t span) {
+  OrthographicView view;
+  view.eye = {Q8::saturate(0), Q8::saturate(-2), Q8::saturate(8)};
+  view.forward = {1, 8, -1};
+  view.span = Q14::saturate(span);
+  view.width_px = width_px;
+  view.height_px = width_px * 3 / 4;
+  Camera camera;
+  REQUIRE(camera.set(view, level) == Status::kOk);
+  return camera;
+}
+
+// The boxes that count for one ray, from the voxels: the definition's words.
+class Boxes {
+ public:
+  Boxes(const reference::BitGrid& grid, int level, const reference::Ray& ray, const Cutoff& cutoff)
+      : grid_(grid), ray_(ray), cut_level_(cutoff.level()) {
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+      if (std::abs(ray.direction[axis]) > std::abs(ray.direction[axis_])) {
+        axis_ = axis;
+      }
+    }
+    reach_q8_ = cutoff.reach_q8(static_cast<std::int32_t>(std::abs(ray.direction[axis_])));
+    add({0, 0, 0}, level);
+  }
+  const std::vector<reference::Block>& boxes() const { return boxes_; }
+  // Whether the box is a node that was cut.
+  bool is_cut(const Voxel& lowest, int level) const {
+    return std::any_of(cut_.begin(), cut_.end(), [&](const reference::Block& box) {
+      return box.lowest == lowest && box.log2_side == level;
+    });
+  }
+
+ private:
+  int count(const Voxel& lowest, int level) const {
+    int result = 0;
+    const int side = 1 << level;
+    for (int z = 0; z < side; ++z) {
+      for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+          result += grid_.test({lowest[0] + x, lowest[1] + y, lowest[2] + z}) ? 1 : 0;
+        }
+      }
+    }
+    return result;
+  }
+  bool cuts(const Voxel& lowest, int level) const {
+    if (level <= cut_level_) {
+      return true;
+    }
+    const bool up = ray_.direction[axis_] > 0;
+    const std::int64_t plane = 256 * (lowest[axis_] + (up ? 0 : 1 << level));
+    const std::int64_t distance = up ? plane - ray_.origin_q8[axis_] : ray_.origin_q8[axis_] - plane;
+    return distance >= (std::int64_t{reach_q8_} << level);
+  }
+  void add(const Voxel& lowest, int level) {
+    const int voxels = count(lowest, level);
+    if (voxels == 0) {
+      return;
+    }
+    if (level == 0) {
+      boxes_.push_back({lowest, 0});
+      return;
+    }
+    if (cuts(lowest, level)) {
+      boxes_.push_back({lowest, level});
+      cut_.push_back({lowest, level});
+      return;
+    }
+    // A node that is solid through has none below it.
+    const bool full = voxels == 1 << 3 * level;
+    const int step = full ? 1 : 1 << (level - 1);
+    for (int z = 0; z < 1 << level; z += step) {
+      for (int y = 0; y < 1 << level; y += step) {
+        for (int x = 0; x < 1 << level; x += step) {
+          const Voxel corner{lowest[0] + x, lowest[1] + y, lowest[2] + z};
+          if (full) {
+            boxes_.push_back({corner, 0});
+          } else {
+            add(corner, level - 1);
+          }
+        }
+      }
+    }
+  }
+
+  const reference::BitGrid& grid_;
+  const reference::Ray& ray_;
+  std::size_t axis_ = 0;
+  int cut_level_;
+  std::int32_t reach_q8_ = 0;
+  std::vector<reference::Block> boxes_;
+  std::vector<reference::Block> cut_;
+};
+
+// Whether the ray meets the least box around all voxels.
+bool meets(const VoxelBox& box, const reference::Ray& ray) {
+  std::vector<Voxel> shell;
+  for (int z = box.min.z; z < box.max.z; ++z) {
+    for (int y = box.min.y; y < box.max.y; ++y) {
+      for (int x = box.min.x; x < box.max.x; ++x) {
+        const bool outer = x == box.min.x || x == box.max.x - 1 || y == box.min.y || y == box.max.y - 1 ||
+                           z == box.min.z || z == box.max.z - 1;
+        if (outer) {
+          shell.push_back({x, y, z});
+        }
+      }
+    }
+  }
+  return reference::brute_force(shell, ray).hit;
+}
+
+std::vector<Voxel> random_voxels(std::mt19937_64& random, int side) {
+  std::vector<Voxel> voxels;
+  const std::int64_t strewn = pick(random, 1, 40);
+  for (std::int64_t i = 0; i < strewn; ++i) {
+    voxels.push_back({static_cast<int>(pick(random, 0, side - 1)),
+                      static_cast<int>(pick(random, 0, side - 1)),
+                      static_cast<int>(pick(random, 0, side - 1))});
+  }
+  // Aligned cubes, so that some nodes are solid through.
+  for (std::int64_t i = pick(random, 0, 3); i > 0; --i) {
+    const int size = 1 << pick(random, 1, side == 2 ? 1 : 2);
+    Voxel corner{};
+    for (int& coordinate : corner) {
+      coordinate = static_cast<int>(pick(random, 0, side / size - 1)) * size;
+    }
+    for (int z = 0; z < size; ++z) {
+      for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+          voxels.push_back({corner[0] + x, corner[1] + y, corner[2] + z});
+        }
+      }
+    }
+  }
+  std::sort(voxels.begin(), voxels.end());
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+  return voxels;
+}
+
+TEST_CASE("cutoff: any ray and any cut-off, both widths -> the first box of the definition") {
+  INFO("seed ", kSeed);
+  std::mt19937_64 random(kSeed);
+  int cut_hits = 0;
+  int other_hits = 0;
+  int narrow = 0;
+  for (int scene = 0; scene < kScenes; ++scene) {
+    const int level = static_cast<int>(pick(random, 2, 4));
+    const int side = 1 << level;
+    const SceneUnderTest world({side, side, side}, random_voxels(random, side));
+    const CompactTree& tree = world.compact();
+    const Q16 pixels = Q16::from_raw(static_cast<std::int32_t>(pick(random, 1, 1 << pick(random, 8, 22))));
+    Cutoff cutoff;
+    const Camera camera = scene % 3 == 0
+                              ? parallel(level, 32, static_cast<int>(pick(random, side / 2, 4 * side)))
+                              : pinhole(level, static_cast<int>(pick(random, 4, 200)), 60);
+    REQUIRE(cutoff.set(camera, pixels) == Status::kOk);
+    if (scene % 4 == 1) {
+      REQUIRE(cutoff.set_level(static_cast<int>(pick(random, 0, level))) == Status::kOk);
+    }
+    RayCases rays(random(), {side, side, side}, full_limits({side, side, side}));
+    for (int i = 0; i < kRaysAScene; ++i) {
+      const reference::Ray judged = rays.next().ray;
+      const Ray ray = to_core(judged);
+      const Boxes boxes(world.reference(), level, judged, cutoff);
+      reference::Hit expected = reference::judge_blocks(boxes.boxes(), judged);
+      expected.hit = expected.hit && meets(tree.bounds(), judged);
+      for (const Width width : {Width::k64, Width::k32}) {
+        if (width == Width::k32 && !accepts_32(ray, level)) {
+          continue;
+        }
+        narrow += width == Width::k32 ? 1 : 0;
+        CutHit hit;
+        REQUIRE(closest_hit_cut(tree, ray, cutoff, &hit, {UINT32_MAX, width}) == Status::kOk);
+        INFO(reference::describe(judged), " -> ", describe(hit.hit), ", expected ",
+             reference::describe(expected));
+        REQUIRE(same_answer(hit.hit, expected));
+        if (expected.hit) {
+          REQUIRE(hit.cut == boxes.is_cut(expected.voxel, hit.hit.block_level));
+          cut_hits += hit.cut ? 1 : 0;
+          other_hits += hit.cut ? 0 : 1;
+        }
+        Hit plain;
+        REQUIRE(closest_hit(tree, ray, &plain, {UINT32_MAX, width}) == Status::kOk);
+        REQUIRE(hit.hit.visits <= plain.visits);
+        if (plain.kind == HitKind::kHit) {  // nothing vanishes, nothing moves away
+          REQUIRE(hit.hit.kind == HitKind::kHit);
+          REQUIRE(std::int64_t{hit.hit.t_numerator} * plain.t_denominator <=
+                  std::int64_t{plain.t_numerator} * hit.hit.t_denominator);
+        }
+      }
+    }
+  }
+  CHECK(cut_hits > kScenes * kRaysAScene / 20);
+  CHECK(other_hits > kScenes * kRaysAScene / 20);
+  CHECK(narrow > kScenes * kRaysAScene / 20);
+}
+
+TEST_CASE("cutoff: reach and level -> those of real arithmetic, reach within its bound") {
+  std::mt19937_64 random(kSeed);
+  for (int i = 0; i < 2000; ++i) {
+    const int level = static_cast<int>(pick(random, 1, 12));
+    const Q16 pixels = Q16::from_raw(static_cast<std::int32_t>(pick(random, 1, 1 << pick(random, 1, 25))));
+    Cutoff cutoff;
+    const Camera camera = pinhole(std::max(level, 4), static_cast<int>(pick(random, 2, 1500)),
+                                  static_cast<int>(pick(random, 5, 120)));
+    REQUIRE(cutoff.set(camera, pixels) == Status::kOk);
+    CHECK(cutoff.level() == 0);
+    const auto& step = camera.affine().step_x;
+    const double width =
+        std::hypot(static_cast<double>(step.x), static_cast<double>(step.y), static_cast<double>(step.z)) /
+        4294967296.0;
+    const auto largest = static_cast<std::int32_t>(pick(random, 1, kMaxDirection));
+    const double ideal = 256.0 * largest / (width * pixels.raw / 65536);
+    if (ideal < (1 << 24)) {
+      CHECK(cutoff.reach_q8(largest) - ideal <= kReachErrorQ8);
+      CHECK(cutoff.reach_q8(largest) - ideal > -0.1);
+    }
+  }
+  // A pixel of exactly half a voxel: nodes of 2 are less than 4.001 pixels, and not less than 4.
+  const Camera half = parallel(6, 64, 32);
+  for (const auto& [raw, expected] : std::array<std::array<std::int32_t, 2>, 5>{{{4 * 65536 - 100, 0},
+                                                                                 {4 * 65536 + 100, 1},
+                                                                                 {8 * 65536 - 100, 1},
+                                                                                 {8 * 65536 + 100, 2},
+                                                                                 {64 * 65536, 4}}}) {
+    Cutoff cutoff;
+    REQUIRE(cutoff.set(half, Q16::from_raw(raw)) == Status::kOk);
+    CHECK(cutoff.level() == expected);
+    CHECK(cutoff.reach_q8(1000) == INT32_MAX);
+  }
+}
+
+TEST_CASE("cutoff: limits -> kOutOfRange or kBadArgument, and nothing changed") {
+  const Camera camera = pinhole(5, 100, 60);
+  Cutoff cutoff;
+  REQUIRE(cutoff.set(camera, Q16::saturate(2)) == Status::kOk);
+  const std::int32_t before = cutoff.reach_q8(1000);
+  CHECK(cutoff.set(camera, Q16::from_raw(-1)) == Status::kOutOfRange);
+  CHECK(cutoff.set(camera, Q16::from_raw(kMaxCutoff.raw + 1)) == Status::kOutOfRange);
+  CHECK(cutoff.set(Camera(), Q16::saturate(1)) == Status::kBadArgument);
+  CHECK(cutoff.set_level(-1) == Status::kOutOfRange);
+  CHECK(cutoff.set_level(kMaxLevel + 1) == Status::kOutOfRange);
+  CHECK(cutoff.reach_q8(1000) == before);
+  CHECK(cutoff.level() == 0);
+  CHECK(!cutoff.cuts_nothing());
+  CHECK(cutoff.set(camera, Q16()) == Status::kOk);
+  CHECK(cutoff.cuts_nothing());
+}
+
+// A golden frame's picture, whole, with a cut-off.
+struct Drawn {
+  std::vector<std::uint8_t> pixels;
+  RenderCounts counts;
+};
+Drawn draw(const golden::Frame& frame, const golden::World& world, const Cutoff* cutoff,
+           const NodeColors& colors, std::int32_t band_rows, Width width = Width::k64) {
+  Camera camera;
+  Shading shading;
+  REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
+  Drawn drawn;
+  const std::size_t row = row_bytes(frame.format, frame.width_px);
+  drawn.pixels.resize(row * static_cast<std::size_t>(frame.height_px));
+  for (std::int32_t y = 0; y < frame.height_px; y += band_rows) {
+    Band band;
+    band.first_row = y;
+    band.rows = std::min<std::int32_t>(band_rows, frame.height_px - y);
+    band.format = frame.format;
+    band.pixels = Bytes(drawn.pixels.data() + row * static_cast<std::size_t>(y),
+                        row * static_cast<std::size_t>(band.rows));
+    const TraceOptions options{UINT32_MAX, width};
+    const Status status =
+        cutoff == nullptr
+            ? render_band(world.compact, camera, shading, band, &drawn.counts, options)
+            : render_band_cut(world.compact, camera, shading, *cutoff, colors, band, &drawn.counts, options);
+    REQUIRE(status == Status::kOk);
+  }
+  return drawn;
+}
+
+TEST_CASE(
+    "cutoff: 0 pixels, every golden frame -> its bytes and counts; more -> fewer visits, no fewer hits") {
+  std::vector<std::uint8_t> memory(1 << 20);
+  std::uint64_t visits_without = 0;
+  std::uint64_t visits_with = 0;
+  for (int i = 0; i < golden::frame_count(); ++i) {
+    const golden::Frame& frame = golden::frame(i);
+    INFO(frame.name);
+    Arena arena(Bytes(memory.data(), memory.size()));
+    golden::World world;
+    REQUIRE(golden::build_scene(frame.scene, golden::Structure::kCompact, &arena, &world) == Status::kOk);
+    Camera camera;
+    Shading shading;
+    REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
+    std::vector<std::uint8_t> table(node_colors_bytes(world.compact));
+    NodeColors colors;
+    if (!table.empty()) {
+      REQUIRE(NodeColors::make(world.compact, shading.palette, shading.default_color,
+                               Bytes(table.data(), table.size()), &colors) == Status::kOk);
+    }
+    const Drawn plain = draw(frame, world, nullptr, colors, frame.height_px);
+    const Cutoff none;
+    for (const std::int32_t rows : {1, 7, int{frame.height_px}}) {
+      const Drawn same = draw(frame, world, &none, NodeColors(), rows);
+      CHECK(same.pixels == plain.pixels);
+      CHECK(same.counts.node_visits == plain.counts.node_visits);
+      CHECK(same.counts.hits == plain.counts.hits);
+      CHECK(same.counts.rays == plain.counts.rays);
+    }
+    std::uint64_t visits = plain.counts.node_visits;
+    for (const int pixels : {1, 2, 4, 8, 16}) {
+      Cutoff cutoff;
+      REQUIRE(cutoff.set(camera, Q16::saturate(pixels)) == Status::kOk);
+      const Drawn cut = draw(frame, world, &cutoff, colors, 5);
+      CHECK(cut.counts.node_visits <= visits);
+      CHECK(cut.counts.hits >= plain.counts.hits);
+      CHECK(cut.pixels == draw(frame, world, &cutoff, colors, frame.height_px).pixels);
+      if (frame.narrow) {
+        CHECK(cut.pixels == draw(frame, world, &cutoff, colors, 3, Width::k32).pixels);
+      }
+      visits = cut.counts.node_visits;
+    }
+    visits_without += plain.counts.node_visits;
+    visits_with += visits;
+  }
+  CHECK(visits_with * 2 < visits_without);
+}
+
+TEST_CASE("cutoff: a band that cannot be drawn -> an error and nothing drawn") {
+  const SceneUnderTest world({16, 16, 16}, {{1, 2, 3}, {9, 9, 9}, {4, 5, 6}, {7, 7, 8}, {1, 1, 1}}, 5);
+  const Camera camera = pinhole(4, 20, 60);
+  Shading shading;
+  shading.mode = ShadeMode::kColor;
+  Cutoff cutoff;
+  REQUIRE(cutoff.set(camera, Q16::saturate(1)) == Status::kOk);
+  REQUIRE(world.compact().many_materials());
+  std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, 20, 15), 0xA5);
+  const auto untouched = pixels;
+  const auto attempt = [&](const CompactTree& tree, const Camera& view, std::int32_t first, std::int32_t rows,
+                           std::size_t size, std::size_t stride) {
+    Band band{Bytes(pixels.data(), size), PixelFormat::kRgb888, stride, first, rows};
+    return render_band_cut(tree, view, shading, cutoff, NodeColors(), band);
+  };
+  const CompactTree& tree = world.compact();
+  CHECK(attempt(tree, camera, 0, 15, pixels.size(), 0) == Status::kBadArgument);  // no colours
+  shading.mode = ShadeMode::kDepth;
+  CHECK(attempt(tree, Camera(), 0, 15, pixels.size(), 0) == Status::kBadArgument);
+  CHECK(attempt(tree, pinhole(5, 20, 60), 0, 15, pixels.size(), 0) == Status::kBadArgument);
+  CHECK(attempt(tree, camera, -1, 2, pixels.size(), 0) == Status::kBadArgument);
+  CHECK(attempt(tree, camera, 1, 15, pixels.size(), 0) == Status::kBadArgument);
+  CHECK(attempt(tree, camera, 0, 15, pixels.size(), 59) == Status::kBadArgument);
+  CHECK(attempt(tree, camera, 0, 15, pixels.size() - 1, 0) == Status::kOutOfMemory);
+  CHECK(attempt(tree, camera, 0, 0, 0, 0) == Status::kOk);
+  CHECK(pixels == untouched);
+  CHECK(attempt(tree, camera, 0, 15, pixels.size(), 0) == Status::kOk);
+}
+
+TEST_CASE("cutoff: any bytes that open as a tree -> no read outside, visits bounded, an answer") {
+  INFO("seed ", kSeed);
+  std::mt19937_64 random(kSeed);
+  const SceneUnderTest world({16, 16, 16}, random_voxels(random, 16), 3, 5);
+  Cutoff cutoff;
+  REQUIRE(cutoff.set(pinhole(4, 30, 60), Q16::saturate(1)) == Status::kOk);
+  const Rgb8 palette[] = {{1, 2, 3}, {200, 100, 50}};
+  const int rounds = kScenes * 20;
+  for (int round = 0; round < rounds; ++round) {
+    const HeapBytes bytes(world.compact().size_bytes());
+    std::copy_n(world.compact().bytes(), bytes.span().size, bytes.span().data);
+    for (std::int64_t hits = pick(random, 1, 6); hits > 0; --hits) {
+      const std::int64_t at = pick(random, static_cast<std::int64_t>(kCompactHeaderBytes),
+                                   static_cast<std::int64_t>(bytes.span().size) - 1);
+      bytes.span()[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(random());
+    }
+    CompactTree tree;
+    REQUIRE(CompactTree::open(bytes.view(), &tree) == Status::kOk);
+    const HeapBytes table(node_colors_bytes(tree.node_count()));
+    NodeColors colors;
+    const Status status = NodeColors::make(tree, palette, {}, table.span(), &colors);
+    CHECK((status == Status::kOk || status == Status::kDamaged));
+    RayCases rays(random(), {16, 16, 16}, full_limits({16, 16, 16}));
+    for (int i = 0; i < 40; ++i) {
+      CutHit hit;
+      REQUIRE(closest_hit_cut(tree, to_core(rays.next().ray), cutoff, &hit) == Status::kOk);
+      CHECK(hit.hit.visits <= 200);
+    }
+  }
+}
+
+// --- Mean colours.
+
+TEST_CASE("node colours: every node -> the mean of its voxels' colours, once rounded") {
+  INFO("seed ", kSeed);
+  std::mt19937_64 random(kSeed);
+  std::vector<Rgb8> palette(7);
+  for (Rgb8& color : palette) {
+    color = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
+             static_cast<std::uint8_t>(random())};
+  }
+  const Rgb8 other{10, 20, 30};
+  for (int scene = 0; scene < kScenes; ++scene) {
+    const int level = static_cast<int>(pick(random, 1, 5));
+    const int side = 1 << level;
+    // Materials beyond the palette too; cubes of one material come from a salt that gives few materials.
+    const unsigned materials = scene % 2 == 0 ? 9 : 2;
+    const std::uint64_t salt = random();
+    const SceneUnderTest world({side, side, side}, random_voxels(random, side), materials, salt);
+    const CompactTree& tree = world.compact();
+    if (!tree.many_materials()) {
+      CHECK(node_colors_bytes(tree) == 0);
+      continue;
+    }
+    const HeapBytes table(node_colors_bytes(tree), 1);
+    NodeColors colors;
+    REQUIRE(NodeColors::make(tree, {palette.data(), palette.size()}, other, table.span(), &colors) ==
+            Status::kOk);
+    REQUIRE(colors.nodes() == tree.node_count());
+    // Nodes in the tree's order, by their corners.
+    struct Node {
+      std::uint32_t index;
+      Voxel corner;
+      int level;
+    };
+    std::vector<Node> nodes{{0, {0, 0, 0}, level}};
+    for (std::size_t at = 0; at < nodes.size(); ++at) {
+      const Node node = nodes[at];
+      std::array<double, 3> sum{};
+      double count = 0;
+      for (const Voxel& voxel : world.voxels()) {
+        bool within = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          within = within && voxel[axis] >> node.level == node.corner[axis] >> node.level;
+        }
+        if (within) {
+          const std::size_t material = material_at(voxel, materials, salt);
+          const Rgb8 color = material < palette.size() ? palette[material] : other;
+          sum = {sum[0] + color.r, sum[1] + color.g, sum[2] + color.b};
+          ++count;
+        }
+      }
+      REQUIRE(count > 0);
+      const Rgb8 mean = colors.color(node.index);
+      const std::array<double, 3> channels{double(mean.r), double(mean.g), double(mean.b)};
+      const std::array<double, 3> steps{31, 63, 31};
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double exact = sum[channel] / count;
+        CHECK(std::abs(channels[channel] - exact) <= kNodeColorError);
+        CHECK(std::abs(channels[channel] - exact) <= 127.5 / steps[channel] + 0.5001);
+      }
+      std::uint32_t child = tree.mask(node.index) != 0 && node.level > 1 ? tree.first_child(node.index) : 0;
+      for (int octant = 0; child != 0 && octant < 8; ++octant) {
+        if ((tree.mask(node.index) >> octant & 1) != 0) {
+          const int half = 1 << (node.level - 1);
+          nodes.push_back({child++,
+                           {node.corner[0] + (octant & 1) * half, node.corner[1] + (octant >> 1 & 1) * half,
+                            node.corner[2] + (octant >> 2) * half},
+                           node.level - 1});
+        }
+      }
+    }
+    CHECK(nodes.size() == tree.node_count());
+    NodeColors unchanged;
+    CHECK(NodeColors::make(tree, {palette.data(), palette.size()}, other,
+                           table.span().subspan(0, node_colors_bytes(tree) - 1),
+                           &unchanged) == Status::kOutOfMemory);
+    CHECK(unchanged.nodes() == 0);
+  }
+}
+
+}  // namespace
+}  // namespace thimble::tests

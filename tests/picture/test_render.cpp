@@ -1,0 +1,499 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "scene/random.h"
+#include "thimble/picture/render.h"
+
+namespace {
+
+using namespace thimble;
+using thimble::tools::SplitMix64;
+
+constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
+                                    PixelFormat::kRgb565, PixelFormat::kRgb888};
+constexpr ShadeMode kModes[] = {ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor, ShadeMode::kMono};
+constexpr int kWidthPx = 29;
+constexpr int kHeightPx = 23;
+constexpr std::uint8_t kGuard = 0xA5;
+constexpr Rgb8 kPalette[] = {{250, 120, 30}, {20, 200, 90}, {70, 80, 240}};
+
+/// A level-5 world of random voxels and blocks in all three structures. Not to be moved: they point into it.
+class Scene {
+ public:
+  explicit Scene(std::uint64_t seed, int voxels = 400) {
+    pool_bytes_.resize(Octree::octree_bytes(8000));
+    REQUIRE(Octree::make(5, Bytes(pool_bytes_.data(), pool_bytes_.size()), &pool) == Status::kOk);
+    grid_bytes_.resize(dense_grid_bytes({32, 32, 32}));
+    REQUIRE(DenseGrid::make({32, 32, 32}, Bytes(grid_bytes_.data(), grid_bytes_.size()), &grid) ==
+            Status::kOk);
+    SplitMix64 random(seed);
+    for (int i = 0; i < voxels; ++i) {
+      insert({static_cast<int>(random.below(32)), static_cast<int>(random.below(32)),
+              static_cast<int>(random.below(32))},
+             static_cast<std::uint8_t>(random.below(5)));
+    }
+    finish();
+  }
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  void insert(const Vec3i& at, std::uint8_t material) {
+    REQUIRE(pool.insert(at, material) == Status::kOk);
+    REQUIRE(grid.set(at) == Status::kOk);
+  }
+  void finish() {
+    tree_bytes_.resize(compact_bytes(compact_shape(pool)));
+    std::size_t written = 0;
+    REQUIRE(CompactTree::make(pool, Bytes(tree_bytes_.data(), tree_bytes_.size()), nullptr, &written) ==
+            Status::kOk);
+    REQUIRE(CompactTree::open(ConstBytes(tree_bytes_.data(), written), &compact) == Status::kOk);
+  }
+
+  Octree pool;
+  DenseGrid grid;
+  CompactTree compact;
+
+ private:
+  std::vector<std::uint8_t> pool_bytes_;
+  std::vector<std::uint8_t> grid_bytes_;
+  std::vector<std::uint8_t> tree_bytes_;
+};
+
+struct RowRange {
+  int first;
+  int rows;
+};
+
+Vec3Q8 point(int x, int y, int z) {
+  return {Q8::from_raw(x), Q8::from_raw(y), Q8::from_raw(z)};
+}
+Camera pinhole(const Vec3Q8& eye, const Vec3Q8& target, int level = 5, int bits = 0) {
+  Camera camera;
+  const PerspectiveView view{eye, look_at(eye, target), {}, Q16::saturate(50), kWidthPx, kHeightPx, bits};
+  REQUIRE(camera.set(view, level) == Status::kOk);
+  return camera;
+}
+Camera parallel(const Vec3Q8& eye, const Vec3Q8& target) {
+  Camera camera;
+  const OrthographicView view{eye, look_at(eye, target), {}, Q14::saturate(48), kWidthPx, kHeightPx, 0};
+  REQUIRE(camera.set(view, 5) == Status::kOk);
+  return camera;
+}
+Camera usual_camera() {
+  return pinhole(point(-3001, -7003, 9987), point(4096, 4096, 4000));
+}
+
+Shading shading_of(ShadeMode mode, const Camera& camera) {
+  Shading shading;
+  shading.mode = mode;
+  shading.palette = Span<const Rgb8>(kPalette);
+  shading.background = {12, 34, 56};
+  const DepthRange range = depth_range(camera, {{0, 0, 0}, {32, 32, 32}});
+  shading.near_q8 = range.near_q8;
+  shading.far_q8 = range.far_q8;
+  return shading;
+}
+
+Band band_over(std::vector<std::uint8_t>& bytes, PixelFormat format, int first_row, int rows,
+               std::size_t stride = 0) {
+  Band band;
+  band.pixels = Bytes(bytes.data(), bytes.size());
+  band.format = format;
+  band.stride_bytes = stride;
+  band.first_row = first_row;
+  band.rows = rows;
+  return band;
+}
+
+/// The picture by its definition: each pixel is the shade of its ray's closest hit. Adds up what was met.
+template <class Structure>
+std::vector<std::uint8_t> picture_by_rays(const Structure& structure, const Camera& camera,
+                                          const Shading& shading, PixelFormat format, RenderCounts& counts,
+                                          const TraceOptions& options = {}) {
+  const std::size_t line = row_bytes(format, camera.width_px());
+  std::vector<std::uint8_t> picture(line * static_cast<std::size_t>(camera.height_px()), 0);
+  for (int y = 0; y < camera.height_px(); ++y) {
+    for (int x = 0; x < camera.width_px(); ++x) {
+      const Ray ray = camera.ray(x, y);
+      Hit hit;
+      REQUIRE(closest_hit(structure, ray, &hit, options) == Status::kOk);
+      store_pixel(picture.data() + line * static_cast<std::size_t>(y), x, y, format,
+                  shade(hit, ray, camera, shading));
+      ++counts.rays;
+      counts.hits += hit.kind == HitKind::kHit ? 1 : 0;
+      counts.step_limited += hit.kind == HitKind::kStepLimit ? 1 : 0;
+      counts.node_visits += hit.visits;
+    }
+  }
+  return picture;
+}
+
+template <class Structure>
+void check_against_rays(const Structure& structure, const Camera& camera, const TraceOptions& options = {}) {
+  for (const ShadeMode mode : kModes) {
+    for (const PixelFormat format : kFormats) {
+      CAPTURE(static_cast<int>(mode));
+      CAPTURE(static_cast<int>(format));
+      const Shading shading = shading_of(mode, camera);
+      RenderCounts wanted;
+      const auto picture = picture_by_rays(structure, camera, shading, format, wanted, options);
+      // The bytes' former content does not shine through.
+      std::vector<std::uint8_t> drawn(picture.size(), kGuard);
+      RenderCounts counts{1000, 2000, 3000, 4000};
+      REQUIRE(render_band(structure, camera, shading, band_over(drawn, format, 0, kHeightPx), &counts,
+                          options) == Status::kOk);
+      CHECK(drawn == picture);
+      // Counters are added to.
+      CHECK(counts.rays == 1000 + std::uint64_t{kWidthPx * kHeightPx});
+      CHECK(counts.hits == 2000 + wanted.hits);
+      CHECK(counts.node_visits == 3000 + wanted.node_visits);
+      CHECK(counts.step_limited == 4000 + wanted.step_limited);
+      CHECK(wanted.hits > 50);
+    }
+  }
+}
+
+std::vector<std::uint8_t> whole_frame(const Scene& scene, const Camera& camera, const Shading& shading,
+                                      PixelFormat format) {
+  std::vector<std::uint8_t> frame(band_bytes(format, kWidthPx, kHeightPx));
+  REQUIRE(render_band(scene.compact, camera, shading, band_over(frame, format, 0, kHeightPx)) == Status::kOk);
+  return frame;
+}
+
+/// Draws what must be refused, and checks the status, the bytes and the counters.
+template <class Structure>
+void check_refused(Status wanted, const Structure& structure, const Camera& camera, Band band,
+                   const TraceOptions& options = {}) {
+  RenderCounts counts{1, 2, 3, 4};
+  const std::vector<std::uint8_t> before(band.pixels.begin(), band.pixels.end());
+  CHECK(render_band(structure, camera, shading_of(ShadeMode::kNormal, camera), band, &counts, options) ==
+        wanted);
+  CHECK(std::equal(before.begin(), before.end(), band.pixels.begin()));
+  CHECK(counts.rays == 1);
+  CHECK(counts.hits == 2);
+  CHECK(counts.node_visits == 3);
+  CHECK(counts.step_limited == 4);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "render_band: every structure, shade and format -> each pixel is its ray's shade, counters the sums") {
+  const Scene scene(0x5CE7E);
+  for (const Camera& camera : {usual_camera(), parallel(point(-3001, -7003, 9987), point(4096, 4096, 4000)),
+                               pinhole(point(4100, 4111, 4090), point(8000, 5000, 3000))}) {
+    check_against_rays(scene.compact, camera);
+    check_against_rays(scene.pool, camera);
+    check_against_rays(scene.grid, camera);
+  }
+}
+
+TEST_CASE("render_band: both widths -> the same picture") {
+  const Scene scene(0x32);
+  const Camera camera = usual_camera();
+  const Shading shading = shading_of(ShadeMode::kDepth, camera);
+  const auto wanted = whole_frame(scene, camera, shading, PixelFormat::kRgb888);
+  for (const Width width : {Width::k32, Width::k64}) {
+    TraceOptions options;
+    options.width = width;
+    std::vector<std::uint8_t> drawn(wanted.size());
+    const Band band = band_over(drawn, PixelFormat::kRgb888, 0, kHeightPx);
+    REQUIRE(render_band(scene.compact, camera, shading, band, nullptr, options) == Status::kOk);
+    CHECK(drawn == wanted);
+  }
+}
+
+TEST_CASE("render_band: bands of any height in any order -> the picture of one frame") {
+  const Scene scene(0xBA4D);
+  constexpr std::uint64_t kSeed = 0x04DE4;
+  SplitMix64 random(kSeed);
+  for (const Camera& camera :
+       {usual_camera(), parallel(point(-3001, -7003, 9987), point(4096, 4096, 4000))}) {
+    for (const PixelFormat format : kFormats) {
+      const Shading shading = shading_of(ShadeMode::kDepth, camera);
+      const auto wanted = whole_frame(scene, camera, shading, format);
+      const std::size_t line = row_bytes(format, kWidthPx);
+      for (int height = 1; height <= kHeightPx; height += height < 9 ? 1 : 7) {
+        CAPTURE(kSeed);
+        CAPTURE(height);
+        std::vector<int> starts;
+        for (int row = 0; row < kHeightPx; row += height) {
+          starts.push_back(row);
+        }
+        for (std::size_t i = starts.size(); i > 1; --i) {
+          std::swap(starts[i - 1], starts[random.below(i)]);
+        }
+        std::vector<std::uint8_t> drawn(wanted.size(), kGuard);
+        for (const int row : starts) {
+          const int rows = std::min(height, kHeightPx - row);
+          // One buffer for all bands, as a board has it: what the last one left does not matter.
+          std::vector<std::uint8_t> buffer(band_bytes(format, kWidthPx, rows), kGuard);
+          REQUIRE(render_band(scene.compact, camera, shading, band_over(buffer, format, row, rows)) ==
+                  Status::kOk);
+          std::copy(buffer.begin(), buffer.end(), drawn.begin() + static_cast<std::ptrdiff_t>(line) * row);
+        }
+        CHECK(drawn == wanted);
+      }
+    }
+  }
+}
+
+TEST_CASE("render_band: a stride with gaps -> rows in place, gaps and what lies around untouched") {
+  const Scene scene(0x6A9);
+  const Camera camera = usual_camera();
+  for (const PixelFormat format : kFormats) {
+    const Shading shading = shading_of(ShadeMode::kNormal, camera);
+    const auto wanted = whole_frame(scene, camera, shading, format);
+    const std::size_t line = row_bytes(format, kWidthPx);
+    for (const std::size_t gap : {std::size_t{0}, std::size_t{1}, std::size_t{13}}) {
+      constexpr int kFirst = 7;
+      constexpr int kRows = 9;
+      const std::size_t stride = line + gap;
+      std::vector<std::uint8_t> bytes(16 + stride * kRows + 16, kGuard);
+      Band band = band_over(bytes, format, kFirst, kRows, stride);
+      // Just enough: no gap is needed behind the last row.
+      band.pixels = Bytes(bytes.data() + 16, stride * (kRows - 1) + line);
+      REQUIRE(render_band(scene.compact, camera, shading, band) == Status::kOk);
+      for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const std::size_t offset = i - 16;
+        const bool inside = i >= 16 && offset < stride * kRows && offset % stride < line;
+        const std::uint8_t expected =
+            inside ? wanted[line * (kFirst + offset / stride) + offset % stride] : kGuard;
+        REQUIRE(bytes[i] == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("render_band: rows outside, stride or bytes too small -> refused, nothing written") {
+  const Scene scene(0xBAD);
+  const Camera camera = usual_camera();
+  const PixelFormat format = PixelFormat::kRgb565;
+  const std::size_t line = row_bytes(format, kWidthPx);
+  std::vector<std::uint8_t> bytes(line * kHeightPx, kGuard);
+  constexpr RowRange kRowsOutside[] = {
+      {-1, 1},           {0, -1},        {0, kHeightPx + 1},     {kHeightPx, 1}, {kHeightPx - 1, 2},
+      {1, INT32_MAX},    {INT32_MAX, 1}, {INT32_MAX, INT32_MAX}, {INT32_MIN, 1}, {0, INT32_MIN},
+      {kHeightPx + 1, 0}};
+  for (const RowRange& range : kRowsOutside) {
+    CAPTURE(range.first);
+    CAPTURE(range.rows);
+    check_refused(Status::kBadArgument, scene.compact, camera,
+                  band_over(bytes, format, range.first, range.rows));
+  }
+  check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, 0, 1, line - 1));
+  check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, 0, 1, 1));
+
+  for (const int rows : {1, 2, kHeightPx}) {
+    for (const std::size_t stride : {line, line + 5}) {
+      Band band = band_over(bytes, format, 0, rows, stride);
+      band.pixels.size = std::min(bytes.size(), stride * static_cast<std::size_t>(rows - 1) + line) - 1;
+      check_refused(Status::kOutOfMemory, scene.compact, camera, band);
+    }
+  }
+  // A stride whose product with the rows wraps around.
+  check_refused(Status::kOutOfMemory, scene.compact, camera,
+                band_over(bytes, format, 0, 3, SIZE_MAX / 2 + 1));
+  check_refused(Status::kOutOfMemory, scene.compact, camera, band_over(bytes, format, 0, 2, SIZE_MAX));
+  Band nothing;
+  nothing.rows = 1;
+  check_refused(Status::kOutOfMemory, scene.compact, camera, nothing);
+}
+
+TEST_CASE("render_band: no rows -> ok, nothing written or counted") {
+  const Scene scene(0x0);
+  const Camera camera = usual_camera();
+  RenderCounts counts;
+  Band band;
+  for (const int first : {0, 5, kHeightPx}) {
+    band.first_row = first;
+    CHECK(render_band(scene.compact, camera, shading_of(ShadeMode::kMono, camera), band, &counts) ==
+          Status::kOk);
+  }
+  CHECK(counts.rays == 0);
+}
+
+TEST_CASE("render_band: a camera not set up or for another level -> refused, nothing written") {
+  const Scene scene(0x1E7E1);
+  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx), kGuard);
+  const Band band = band_over(bytes, PixelFormat::kGray8, 0, 1);
+  for (const Camera& camera : {Camera(), pinhole(point(0, 0, 999), point(2000, 900, 500), 4),
+                               pinhole(point(0, 0, 999), point(2000, 900, 500), 6)}) {
+    check_refused(Status::kBadArgument, scene.compact, camera, band);
+    check_refused(Status::kBadArgument, scene.pool, camera, band);
+    check_refused(Status::kBadArgument, scene.grid, camera, band);
+  }
+}
+
+TEST_CASE("render_band: rays too long for 32 bits -> refused with Width::k32, drawn with kAuto") {
+  const Scene scene(0x3264);
+  const Camera camera = pinhole(point(-3001, -7003, 9987), point(4096, 4096, 4000), 5, 20);
+  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx), kGuard);
+  TraceOptions options;
+  options.width = Width::k32;
+  const Band band = band_over(bytes, PixelFormat::kGray8, 0, 1);
+  check_refused(Status::kBadArgument, scene.compact, camera, band, options);
+  check_refused(Status::kBadArgument, scene.pool, camera, band, options);
+  check_refused(Status::kBadArgument, scene.grid, camera, band, options);
+  options.width = Width::kAuto;
+  CHECK(render_band(scene.compact, camera, Shading{}, band, nullptr, options) == Status::kOk);
+}
+
+TEST_CASE("render_band: Width::k32 at the border of what it takes -> all rays of a picture or none") {
+  const Scene scene(0xB04D);
+  TraceOptions options;
+  options.width = Width::k32;
+  constexpr std::uint64_t kSeed = 0xB04DE4;
+  SplitMix64 random(kSeed);
+  int taken = 0;
+  int refused = 0;
+  for (int turn = 0; turn < 600; ++turn) {
+    // Parallel pictures about the plane where distances take one more bit, so that the longest rays may be
+    // those of one corner alone; and pinholes of every kind.
+    const bool is_parallel = random.below(3) != 0;
+    Vec3Q8 eye;
+    Vec3i forward;
+    Vec3i up;
+    for (int axis = 0; axis < 3; ++axis) {
+      eye[axis] =
+          Q8::from_raw(static_cast<int>(random.below(is_parallel ? 8192 : 60000)) - (axis == 0 ? 28672 : 0));
+      forward[axis] = static_cast<int>(random.below(2001)) - 1000;
+      up[axis] = static_cast<int>(random.below(2001)) - 1000;
+    }
+    const int bits = 14 + static_cast<int>(random.below(4));
+    Camera camera;
+    const Status status =
+        is_parallel ? camera.set(OrthographicView{eye, forward, up, Q14::saturate(40), 5, 4, bits}, 5)
+                    : camera.set(PerspectiveView{eye, forward, up, Q16::saturate(120), 5, 4, bits}, 5);
+    if (status != Status::kOk) {
+      continue;
+    }
+    bool all = true;
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 5; ++x) {
+        all = all && accepts_32(camera.ray(x, y), 5);
+      }
+    }
+    std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, 5, 4), kGuard);
+    const Band band = band_over(bytes, PixelFormat::kGray8, 0, 4);
+    CAPTURE(kSeed);
+    CAPTURE(turn);
+    if (all) {
+      ++taken;
+      CHECK(render_band(scene.compact, camera, Shading{}, band, nullptr, options) == Status::kOk);
+    } else {
+      ++refused;
+      check_refused(Status::kBadArgument, scene.compact, camera, band, options);
+    }
+  }
+  CHECK(taken > 50);
+  CHECK(refused > 50);
+}
+
+TEST_CASE("render_band: a camera that looks past what is occupied -> no node visited") {
+  Scene scene(0xE3, 0);
+  for (const Vec3i& at : {Vec3i{0, 0, 0}, Vec3i{1, 0, 0}, Vec3i{0, 3, 2}}) {
+    scene.insert(at, 1);
+  }
+  scene.finish();
+  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx));
+  const Band band = band_over(bytes, PixelFormat::kGray8, 0, kHeightPx);
+  const auto visits = [&](const Camera& camera) {
+    std::array<RenderCounts, 3> counts;
+    const Shading shading = shading_of(ShadeMode::kMono, camera);
+    REQUIRE(render_band(scene.compact, camera, shading, band, &counts[0]) == Status::kOk);
+    REQUIRE(render_band(scene.pool, camera, shading, band, &counts[1]) == Status::kOk);
+    REQUIRE(render_band(scene.grid, camera, shading, band, &counts[2]) == Status::kOk);
+    for (const RenderCounts& one : counts) {
+      CHECK(one.rays == std::uint64_t{kWidthPx * kHeightPx});
+      CHECK((one.node_visits == 0) == (counts[0].node_visits == 0));
+      CHECK(one.hits == counts[0].hits);
+    }
+    return counts[0].node_visits;
+  };
+  // Through the world, but past its occupied corner; and away from it.
+  CHECK(visits(pinhole(point(8000, -6000, 8000), point(8000, 8000, 8000))) == 0);
+  CHECK(visits(pinhole(point(-900, -900, -900), point(-5000, -5000, -5000))) == 0);
+  CHECK(visits(parallel(point(-4000, 4096, 8192 + 3000), point(8000, 4096, 8192 + 3000))) == 0);
+  CHECK(visits(pinhole(point(-3000, -3000, 3000), point(200, 200, 200))) > 0);
+}
+
+TEST_CASE("render_band: an empty world -> background, no node visited") {
+  const Scene scene(0xE, 0);
+  const Camera camera = usual_camera();
+  const Shading shading = shading_of(ShadeMode::kColor, camera);
+  RenderCounts counts;
+  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kRgb888, kWidthPx, kHeightPx));
+  const Band band = band_over(bytes, PixelFormat::kRgb888, 0, kHeightPx);
+  REQUIRE(render_band(scene.compact, camera, shading, band, &counts) == Status::kOk);
+  CHECK(counts.hits == 0);
+  CHECK(counts.node_visits == 0);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    REQUIRE(Rgb8{bytes[i], bytes[i + 1], bytes[i + 2]} == Rgb8{12, 34, 56});
+  }
+}
+
+TEST_CASE("render_band: a step limit -> counted, its pixels like misses, the others as without") {
+  const Scene scene(0x57E9);
+  const Camera camera = usual_camera();
+  for (const std::uint32_t limit : {0U, 1U, 4U, 12U}) {
+    TraceOptions options;
+    options.max_visits = limit;
+    const Shading shading = shading_of(ShadeMode::kNormal, camera);
+    RenderCounts wanted;
+    const auto picture =
+        picture_by_rays(scene.compact, camera, shading, PixelFormat::kRgb888, wanted, options);
+    std::vector<std::uint8_t> drawn(picture.size(), kGuard);
+    RenderCounts counts;
+    const Band band = band_over(drawn, PixelFormat::kRgb888, 0, kHeightPx);
+    REQUIRE(render_band(scene.compact, camera, shading, band, &counts, options) == Status::kOk);
+    CAPTURE(limit);
+    CHECK(drawn == picture);
+    CHECK(counts.step_limited == wanted.step_limited);
+    CHECK(counts.step_limited > 0);
+    CHECK(counts.node_visits <= std::uint64_t{limit} * counts.rays);
+    if (limit == 0) {
+      CHECK(counts.hits == 0);
+    }
+  }
+}
+
+TEST_CASE("render_band: hits lie between the planes of depth_range -> depth shading uses its whole scale") {
+  const Scene scene(0xD4);
+  for (const Camera& camera :
+       {usual_camera(), parallel(point(-3001, -7003, 9987), point(4096, 4096, 4000))}) {
+    const DepthRange range = depth_range(camera, scene.compact.bounds());
+    for (int y = 0; y < kHeightPx; ++y) {
+      for (int x = 0; x < kWidthPx; ++x) {
+        Hit hit;
+        REQUIRE(closest_hit(scene.compact, camera.ray(x, y), &hit) == Status::kOk);
+        if (hit.kind == HitKind::kHit) {
+          const int depth = planar_depth_q8(hit, camera);
+          // Rays are rounded, so their depths are off by up to 0.4 per cent at 8 bits.
+          CHECK(depth >= range.near_q8 - range.near_q8 / 200);
+          CHECK(depth <= range.far_q8 + range.far_q8 / 200);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("band_bytes: rows of whole bytes; a product beyond size_t -> SIZE_MAX") {
+  CHECK(band_bytes(PixelFormat::kMono1, 61, 3) == 24);
+  CHECK(band_bytes(PixelFormat::kGray4, 61, 3) == 93);
+  CHECK(band_bytes(PixelFormat::kGray8, 61, 0) == 0);
+  CHECK(band_bytes(PixelFormat::kRgb565, 320, 240) == 153600);
+  CHECK(band_bytes(PixelFormat::kRgb888, 16384, 16384) == 805306368U);
+  CHECK(band_bytes(PixelFormat::kRgb888, 0, 5) == 0);
+  if constexpr (sizeof(std::size_t) == 4) {
+    CHECK(band_bytes(PixelFormat::kRgb888, 1 << 20, 1 << 20) == SIZE_MAX);
+  } else {
+    CHECK(band_bytes(PixelFormat::kRgb888, 1 << 20, 1 << 20) == std::size_t{3} << 40);
+  }
+  static_assert(render_bytes() >= sizeof(Camera) + sizeof(Shading));
+}

@@ -1,0 +1,587 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/apps.h"
+#include "apps/demo_view.h"
+#include "apps/scene_light.h"
+#include "boards/board_table.h"
+#include "golden/demo_table.h"
+#include "host/simulation.h"
+#include "scene/baking.h"
+#include "scene/random.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/base/crc32.h"
+#include "thimble/picture/render.h"
+
+namespace {
+
+using namespace thimble;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint32_t kFrameStep = 8;
+constexpr int kWandering = 200;
+#else
+constexpr std::uint32_t kFrameStep = 1;
+constexpr int kWandering = 2000;
+#endif
+
+tools::Baked bake_demo(EffectSet effects) {
+  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
+  tools::BakingOptions options;
+  options.effects = {effects == Effect::kNone, effects};
+  options.name = "demo";
+  options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+  return tools::bake_scene(*source, options);
+}
+const tools::Baked& demo_scene() {
+  static const tools::Baked baked = bake_demo(Effect::kNone);
+  return baked;
+}
+const tools::Baked& lit_scene() {
+  static const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kShadows);
+  return baked;
+}
+
+ConstBytes bytes_of(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.data(), bytes.size()};
+}
+
+/// Looks for the solid at the eye with the reference's definition: the voxel that holds the point.
+bool eye_in_solid(const CompactTree& tree, const Vec3Q8& eye) {
+  // A ray straight down that starts in a solid voxel hits with axis -1.
+  Hit hit;
+  REQUIRE(closest_hit(tree, {eye, {0, 0, -1}}, &hit) == Status::kOk);
+  return hit.kind == HitKind::kHit && hit.axis < 0;
+}
+
+/// What an application did on a simulated board.
+struct Run {
+  int status = -1;
+  std::string out;
+  std::string fault;
+  std::vector<host::PackedPicture> pictures;
+  host::PackedPicture last;  ///< what the display shows in the end
+};
+
+/// Runs the demonstration for that many frames; `keys` come over the UART before the frame they stand for.
+Run run_demo(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames,
+             const std::map<std::uint32_t, std::string>& keys = {}, bool connected = false,
+             std::uint32_t hold_fps = 0) {
+  Run run;
+  host::SimulationOptions options;
+  options.board = &board;
+  options.connected = connected;
+  options.scene = scene;
+  options.application = apps::demo;
+  options.hold_fps = hold_fps;
+  host::Simulation simulation(options);
+  for (;;) {
+    const host::Moment moment = simulation.wait(60000);
+    run.out += simulation.take_output();
+    if (moment == host::Moment::kEnded) {
+      break;
+    }
+    if (moment == host::Moment::kNothing) {
+      continue;
+    }
+    const std::uint32_t asked = simulation.frames_asked();
+    if (asked != 0) {
+      run.pictures.push_back(simulation.picture());
+    }
+    const auto typed = keys.find(asked);
+    if (typed != keys.end()) {
+      for (const char key : typed->second) {
+        simulation.type(static_cast<std::uint8_t>(key));
+      }
+    }
+    simulation.answer(asked < frames);
+  }
+  run.status = simulation.status();
+  run.fault = simulation.fault();
+  run.last = simulation.picture();
+  return run;
+}
+
+/// The number behind every `word` at the start of a line: `frame N crc X` -> X by N.
+std::map<std::uint32_t, std::uint32_t> crcs_of(const std::string& out, const std::string& word) {
+  std::map<std::uint32_t, std::uint32_t> result;
+  for (std::size_t from = 0; (from = out.find("\n" + word + " ", from)) != std::string::npos; ++from) {
+    unsigned frame = 0;
+    unsigned crc = 0;
+    if (std::sscanf(out.c_str() + from + 1 + word.size(), " %u crc %x", &frame, &crc) == 2) {
+      result[frame] = crc;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("demo view: sine, angle and length -> those of real numbers") {
+  constexpr double kPi = 3.14159265358979323846;
+  for (std::int32_t angle = -apps::kTurn; angle <= 2 * apps::kTurn; angle += 13) {
+    const double exact = 16384 * std::sin(2 * kPi * angle / apps::kTurn);
+    REQUIRE(std::abs(apps::sine_q14(angle) - exact) < 3);
+    REQUIRE(std::abs(apps::cosine_q14(angle) - 16384 * std::cos(2 * kPi * angle / apps::kTurn)) < 3);
+  }
+  tools::SplitMix64 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const std::int64_t limit = std::int64_t{1} << random.between(1, 25);
+    const auto component = [&] { return random.between(static_cast<int>(-limit), static_cast<int>(limit)); };
+    const std::int64_t x = component();
+    const std::int64_t y = component();
+    const std::int64_t z = component();
+    const auto real = [](std::int64_t value) { return static_cast<double>(value); };
+    REQUIRE(apps::length_of(x, y, z) == static_cast<std::int32_t>(std::sqrt(real(x * x + y * y + z * z))));
+    if (x != 0 || y != 0) {
+      const std::int32_t angle = apps::angle_of(x, y);
+      REQUIRE((angle >= 0 && angle < apps::kTurn));
+      const double off = std::remainder(angle - std::atan2(real(y), real(x)) / (2 * kPi) * apps::kTurn,
+                                        static_cast<double>(apps::kTurn));
+      REQUIRE(std::abs(off) < 4);
+    }
+  }
+  CHECK(apps::angle_of(0, 0) == 0);
+  CHECK(apps::angle_of(5, 0) == 0);
+  CHECK(apps::angle_of(0, 5) == apps::kTurn / 4);
+  CHECK(apps::angle_of(-5, 0) == apps::kTurn / 2);
+  CHECK(apps::angle_of(0, -5) == 3 * apps::kTurn / 4);
+}
+
+TEST_CASE("demo view: a baked camera -> the round begins at its eye and keeps its target and distance") {
+  const BakedScene& scene = demo_scene().scene;
+  REQUIRE(scene.has_camera());
+  const Vec3Q8& eye = scene.camera().eye;
+  const Vec3Q8& target = scene.camera().target;
+  const apps::Orbit orbit = apps::orbit_of(scene);
+  for (const std::uint32_t frame : {0U, 128U, 31U, 100U}) {
+    CAPTURE(frame);
+    Camera camera;
+    REQUIRE(apps::view_at(orbit, scene.tree(), frame, {}, 128, 64, &camera) == Status::kOk);
+    double distance = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (frame % 128 == 0) {
+        CHECK(std::abs(camera.eye()[axis].raw - eye[axis].raw) <= 2);
+      }
+      distance += std::pow(camera.eye()[axis].raw - target[axis].raw, 2);
+    }
+    CHECK(std::abs(std::sqrt(distance) - orbit.distance_q8) < 4);
+  }
+}
+
+TEST_CASE("demo scene: what the firmware shows -> large enough to be a model, small enough for flash") {
+  const CompactTree& tree = demo_scene().scene.tree();
+  CHECK(tree.level() == 6);
+  CHECK(tree.voxel_count() >= 25000);
+  CHECK(tree.size_bytes() <= 2 * tree.voxel_count());
+  CHECK(demo_scene().bytes.size() <= 40 * 1024);
+  const VoxelBox& box = tree.bounds();
+  CHECK(box.max.x - box.min.x == 64);
+  CHECK(box.max.y - box.min.y == 64);
+  CHECK(box.max.z - box.min.z >= 40);
+}
+
+TEST_CASE(
+    "demo view: every frame of the round -> covers nine tenths, moves, voxels of 1 to 6 pixels, eye free") {
+  const BakedScene& scene = demo_scene().scene;
+  const apps::Orbit orbit = apps::orbit_of(scene);
+  std::vector<std::uint8_t> picture(64 * 64);
+  std::vector<std::uint32_t> crcs;
+  double smallest = 1e9;
+  double largest = 0;
+  std::uint64_t least = 8192;
+  for (std::uint32_t frame = 0; frame < apps::kFramesARound; frame += kFrameStep) {
+    CAPTURE(frame);
+    Camera camera;
+    REQUIRE(apps::view_at(orbit, scene.tree(), frame, {}, 128, 64, &camera) == Status::kOk);
+    CHECK_FALSE(eye_in_solid(scene.tree(), camera.eye()));
+    RenderCounts counts;
+    REQUIRE(render_band(scene.tree(), camera, apps::demo_shading(scene.palette()),
+                        {Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64},
+                        &counts) == Status::kOk);
+    CHECK(counts.hits * 10 >= counts.rays * 9);
+    least = std::min(least, counts.hits);
+    crcs.push_back(crc32(bytes_of(picture)));
+    // Pixels that a voxel's side takes, by its distance along the view.
+    const double focal_px =
+        32 / std::tan(scene.camera().fov_degrees.raw / 65536.0 / 2 * 3.14159265358979323846 / 180);
+    for (std::int32_t y = 0; y < 64; y += 3) {
+      for (std::int32_t x = 0; x < 128; x += 3) {
+        Hit hit;
+        REQUIRE(closest_hit(scene.tree(), camera.ray(x, y), &hit) == Status::kOk);
+        if (hit.kind == HitKind::kHit) {
+          const double side_px = focal_px / (planar_depth_q8(hit, camera) / 256.0);
+          smallest = std::min(smallest, side_px);
+          largest = std::max(largest, side_px);
+        }
+      }
+    }
+  }
+  CAPTURE(least);
+  CHECK(smallest >= 0.9);
+  CHECK(largest <= 6.5);
+  std::sort(crcs.begin(), crcs.end());
+  CHECK(std::adjacent_find(crcs.begin(), crcs.end()) == crcs.end());
+}
+
+TEST_CASE("demo view: the golden frames -> the table") {
+  const BakedScene& scene = demo_scene().scene;
+  const apps::Orbit orbit = apps::orbit_of(scene);
+  std::vector<std::uint8_t> picture(64 * 64);
+  const Band band{Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64};
+  CHECK(crc32({scene.tree().bytes(), scene.tree().size_bytes()}) == golden::kDemoTreeCrc32);
+  static_assert(std::size(golden::kDemoFrameCrc32) == apps::kGoldenFrames);
+  for (std::uint32_t i = 0; i < apps::kGoldenFrames; ++i) {
+    CAPTURE(i);
+    Camera camera;
+    REQUIRE(apps::view_at(orbit, scene.tree(), i * apps::kGoldenStep, {}, 128, 64, &camera) == Status::kOk);
+    for (const Width width : {Width::k32, Width::k64}) {
+      REQUIRE(render_band(scene.tree(), camera, apps::demo_shading(scene.palette()), band, nullptr,
+                          {.width = width}) == Status::kOk);
+      CHECK(crc32(bytes_of(picture)) == golden::kDemoFrameCrc32[i]);
+    }
+  }
+}
+
+TEST_CASE("demo light: the golden frames -> the table, by the image's renderer and by the library's") {
+  constexpr EffectSet kSet = Effect::kDirectLight | Effect::kShadows;
+  const BakedScene& scene = lit_scene().scene;
+  CHECK(demo_scene().effects == Effect::kNone);  // for those who ask for it only
+  CHECK(lit_scene().effects == kSet);
+  CHECK(crc32({scene.tree().bytes(), scene.tree().size_bytes()}) == golden::kDemoTreeCrc32);
+  apps::SceneLight light;
+  REQUIRE(apps::open_light(scene, &light) == nullptr);
+  const apps::Orbit orbit = apps::orbit_of(scene);
+  std::vector<std::uint8_t> picture(64 * 64);
+  const Band band{Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64};
+  static_assert(std::size(golden::kDemoLitFrameCrc32) == apps::kGoldenFrames);
+  for (std::uint32_t i = 0; i < apps::kGoldenFrames; ++i) {
+    CAPTURE(i);
+    Camera camera;
+    REQUIRE(apps::view_at(orbit, scene.tree(), i * apps::kGoldenStep, {}, 128, 64, &camera) == Status::kOk);
+    const Shading shading = apps::demo_shading(scene.palette());
+    LitCounts counts;
+    REQUIRE(apps::draw_lit(scene, camera, shading, light, band, &counts) == Status::kOk);
+    CHECK(crc32(bytes_of(picture)) == golden::kDemoLitFrameCrc32[i]);
+    CHECK(counts.rays[static_cast<int>(LitRayKind::kShadow)] > 1000);
+    std::fill(picture.begin(), picture.end(), std::uint8_t{0});
+    REQUIRE(render_lit_band<kSet>(scene.tree(), camera, shading, light.baked.scene, band) == Status::kOk);
+    CHECK(crc32(bytes_of(picture)) == golden::kDemoLitFrameCrc32[i]);
+    // Sensible exposure: neither murk nor glare.
+    double sum = 0;
+    for (const std::uint8_t pair : picture) {
+      sum += (pair >> 4) + (pair & 15);
+    }
+    CHECK(sum / 8192 > 4);
+    CHECK(sum / 8192 < 9);
+  }
+}
+
+TEST_CASE("demo light: a scene baked for it -> a fast frame, a lit one, and none until it moves") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const ConstBytes scene = bytes_of(lit_scene().bytes);
+  const auto crc = [](const host::PackedPicture& picture) { return crc32(bytes_of(picture.bytes)); };
+  const Run run = run_demo(board, scene, 40, {{10, "t"}, {11, "t"}, {20, "l"}, {30, "l"}});
+  CHECK(run.status == 0);
+  CHECK(run.fault == "");
+  REQUIRE(run.pictures.size() == 40);
+  CHECK(crc(run.pictures[0]) == golden::kDemoFrameCrc32[0]);
+  for (std::size_t i = 1; i < 10; ++i) {
+    CHECK(crc(run.pictures[i]) == golden::kDemoLitFrameCrc32[0]);
+  }
+  // Drawn: the fast one, the lit one, one at the same place as it begins to turn, one as it stops, a lit one
+  // there, ten without light, turning, one without and one with light as it stands still again.
+  const auto crcs = crcs_of(run.out, "frame");
+  REQUIRE(crcs.size() == 17);
+  CHECK(crcs.at(2) == golden::kDemoFrameCrc32[0]);
+  CHECK(crcs.at(3) != crcs.at(2));
+  std::size_t lit = 0;
+  for (std::size_t at = 0; (at = run.out.find(" lit\n", at)) != std::string::npos; ++at) {
+    ++lit;
+  }
+  CHECK(lit == 3);
+  // A scene without effects has no light to switch on.
+  const Run plain = run_demo(board, bytes_of(demo_scene().bytes), 3, {{1, "l"}});
+  CHECK(plain.out.find("the scene was baked for no effects") != std::string::npos);
+  CHECK(crcs_of(plain.out, "frame").size() == 3);
+}
+
+TEST_CASE("demo light: p on a lit picture -> sends what is shown") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const Run run = run_demo(board, bytes_of(lit_scene().bytes), 5, {{2, "p"}}, true);
+  const std::string header = "P5\n128 64\n255\n";
+  const std::size_t start = run.out.find(header);
+  REQUIRE(start != std::string::npos);
+  REQUIRE(run.out.size() >= start + header.size() + 128 * 64);
+  const auto& shown = run.pictures[2].bytes;
+  int differ = 0;
+  for (std::size_t i = 0; i < 128 * 64; ++i) {
+    const int level = i % 2 == 0 ? shown[i / 2] >> 4 : shown[i / 2] & 15;
+    differ += static_cast<unsigned char>(run.out[start + header.size() + i]) == level * 17 ? 0 : 1;
+  }
+  CHECK(differ == 0);
+}
+
+TEST_CASE("demo view: any buttons for any time -> a camera, and never one in something solid") {
+  const BakedScene& scene = demo_scene().scene;
+  for (const apps::Orbit& orbit : {apps::orbit_of(scene), apps::orbit_of(scene.tree().bounds())}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      CAPTURE(seed);
+      tools::SplitMix64 random(seed);
+      apps::Steering steering;
+      std::uint32_t held = 0;
+      for (int frame = 0; frame < kWandering; ++frame) {
+        CAPTURE(frame);
+        if (random.below(12) == 0) {
+          held = random.below(32);
+        }
+        apps::steer(held, &steering);
+        Camera camera;
+        REQUIRE(apps::view_at(orbit, scene.tree(), static_cast<std::uint32_t>(frame), steering, 128, 64,
+                              &camera) == Status::kOk);
+        REQUIRE_FALSE(eye_in_solid(scene.tree(), camera.eye()));
+      }
+    }
+  }
+}
+
+TEST_CASE("demo view: each button -> turns, tilts or comes nearer, within limits") {
+  apps::Steering steering;
+  apps::steer(port::kRight, &steering);
+  CHECK(steering.yaw == apps::kTurn / 64);
+  apps::steer(port::kLeft | port::kRight, &steering);
+  CHECK(steering.yaw == apps::kTurn / 64);
+  apps::steer(port::kUp, &steering);
+  CHECK(steering.pitch == apps::kTurn / 128);
+  CHECK(steering.zoom == 0);
+  for (int i = 0; i < 100; ++i) {
+    apps::steer(port::kUp | port::kSelect, &steering);
+  }
+  CHECK(steering.zoom == apps::kNearest);
+  CHECK(steering.pitch == apps::kTurn / 128);
+  for (int i = 0; i < 1000; ++i) {
+    apps::steer(port::kDown, &steering);
+    apps::steer(port::kLeft, &steering);
+  }
+  CHECK(steering.pitch == -apps::kTurn / 4);
+  CHECK((steering.yaw >= 0 && steering.yaw < apps::kTurn));
+}
+
+TEST_CASE(
+    "demo view: a scene without a camera, an empty one, a single voxel -> a round of different pictures") {
+  for (const VoxelBox& box : {VoxelBox{{0, 0, 0}, {0, 0, 0}}, VoxelBox{{9, 9, 9}, {10, 10, 10}}}) {
+    std::vector<std::uint32_t> pool(200);
+    Octree tree;
+    REQUIRE(Octree::make(5, {reinterpret_cast<std::uint8_t*>(pool.data()), pool.size() * 4}, &tree) ==
+            Status::kOk);
+    if (!box.empty()) {
+      REQUIRE(tree.insert(box.min, 1) == Status::kOk);
+    }
+    for (std::uint32_t frame = 0; frame < 4; ++frame) {
+      Camera camera;
+      REQUIRE(apps::view_at(apps::orbit_of(box), tree, frame, {}, 128, 64, &camera) == Status::kOk);
+      Hit hit;
+      REQUIRE(closest_hit(tree, camera.ray(64, 32), &hit) == Status::kOk);
+      CHECK((hit.kind == HitKind::kHit) == !box.empty());
+    }
+  }
+}
+
+TEST_CASE("demo: on every board -> draws within its RAM, the golden frames where the display is 128 x 64") {
+  for (const platform::BoardFacts& board : platform::boards()) {
+    CAPTURE(std::string(board.name));
+    const bool golden_display = board.width_px == 128 && board.format == PixelFormat::kGray4;
+#ifdef __SANITIZE_ADDRESS__
+    const std::uint32_t frames = golden_display ? 18 : 1;
+#else
+    const std::uint32_t frames = golden_display ? 120 : 2;
+#endif
+    const Run run = run_demo(board, bytes_of(demo_scene().bytes), frames);
+    CHECK(run.status == 0);
+    CHECK(run.fault == "");
+    CHECK(run.out.find("scene demo: depth 6 voxels ") != std::string::npos);
+    CHECK(run.pictures.size() == frames);
+    auto crcs = crcs_of(run.out, "frame");
+    CHECK(crcs.size() == frames);
+    for (std::uint32_t i = 0; golden_display && i * apps::kGoldenStep < frames; ++i) {
+      CHECK(crcs[i * apps::kGoldenStep] == golden::kDemoFrameCrc32[i]);
+    }
+  }
+}
+
+TEST_CASE("demo: p over the UART -> the picture on the display as P5; q -> the end, status 0") {
+  for (const char* name : {"lm3s6965evb", "mps2-an500"}) {
+    CAPTURE(std::string(name));
+    const platform::BoardFacts& board = *platform::find_board(name);
+    const Run run = run_demo(board, bytes_of(demo_scene().bytes), 100, {{0, "p"}, {2, "p"}, {3, "xq"}}, true);
+    CHECK(run.status == 0);
+    CHECK(run.pictures.size() == 3);
+    CHECK(crcs_of(run.out, "frame").empty());
+    const std::string header =
+        "P5\n" + std::to_string(board.width_px) + " " + std::to_string(board.height_px) + "\n255\n";
+    const std::size_t start = run.out.find(header);
+    REQUIRE(start != std::string::npos);
+    REQUIRE(run.out.find("P5", start + 1) == std::string::npos);
+    const auto count = static_cast<std::size_t>(board.width_px) * static_cast<std::size_t>(board.height_px);
+    REQUIRE(run.out.size() >= start + header.size() + count);
+    if (board.format == PixelFormat::kGray4) {
+      const auto& shown = run.pictures[1].bytes;
+      std::size_t wrong = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const int nibble = shown[i / 2] >> (i % 2 == 0 ? 4 : 0) & 15;
+        wrong += static_cast<unsigned char>(run.out[start + header.size() + i]) != nibble * 17 ? 1U : 0U;
+      }
+      CHECK(wrong == 0);
+    }
+  }
+}
+
+TEST_CASE("demo: no scene, a damaged one, another kind of bytes -> a message, a cross, status 1") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  std::vector<std::uint8_t> damaged = demo_scene().bytes;
+  damaged[damaged.size() / 2] ^= 0x10;
+  std::vector<std::uint8_t> cut(damaged.begin(), damaged.begin() + 300);
+  struct Case {
+    std::vector<std::uint8_t> bytes;
+    const char* message;
+  };
+  for (const Case& bad : {Case{{}, "no scene"}, Case{damaged, "damaged"}, Case{cut, "damaged"},
+                          Case{std::vector<std::uint8_t>(1000, 0xFF), "damaged"}}) {
+    const Run run = run_demo(board, bytes_of(bad.bytes), 5);
+    CHECK(run.status == 1);
+    CHECK(run.out.find("error: ") != std::string::npos);
+    CHECK(run.out.find(bad.message) != std::string::npos);
+    CHECK(run.pictures.empty());
+    REQUIRE(run.last.bytes.size() == 64 * 64);
+    CHECK(run.last.bytes.front() == 0xF0);
+    CHECK(run.last.bytes[63] == 0x0F);
+    CHECK(run.last.bytes.back() == 0x0F);
+    CHECK(std::count(run.last.bytes.begin(), run.last.bytes.end(), 0) > 3900);
+  }
+}
+
+TEST_CASE(
+    "demo: b over the UART -> spheres until the pool is full, then it coarsens; s -> the baked scene again") {
+  const platform::BoardFacts& board = *platform::find_board("stm32vldiscovery");
+  const auto building = [&] {
+    return run_demo(board, bytes_of(demo_scene().bytes), 24, {{2, "b"}, {20, "s"}});
+  };
+  const Run run = building();
+  CHECK(run.status == 0);
+  CHECK(run.fault == "");
+  CHECK(run.out.find("building in a pool of ") != std::string::npos);
+  const std::size_t full = run.out.find("pool full: voxels ");
+  REQUIRE(full != std::string::npos);
+  // It went on adding solid afterwards.
+  unsigned voxels_full = 0;
+  REQUIRE(std::sscanf(run.out.c_str() + full, "pool full: voxels %u", &voxels_full) == 1);
+  unsigned frame = 0;
+  unsigned crc = 0;
+  unsigned voxels = 0;
+  unsigned nodes = 0;
+  unsigned added = 0;
+  REQUIRE(std::sscanf(run.out.c_str() + run.out.rfind("\nbuild "),
+                      " build %u crc %x voxels %u nodes %u added %u", &frame, &crc, &voxels, &nodes,
+                      &added) == 5);
+  CHECK(frame == 17);
+  CHECK(voxels > voxels_full);
+  CHECK(added > 0);
+  CHECK(voxels < 64 * 64 * 64);
+  // The baked scene begins anew, and all of it is the same the next time.
+  auto frames = crcs_of(run.out.substr(run.out.rfind("\nbuild ")), "frame");
+  CHECK(frames.size() == 4);
+  CHECK(frames[0] == golden::kDemoFrameCrc32[0]);
+  CHECK(building().out == run.out);
+}
+
+TEST_CASE(
+    "demo: a rate is held with a brick map -> every 2nd pixel exact as squares; standing still -> all are") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
+  tools::BakingOptions options;
+  options.brick_map = true;
+  options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+  const tools::Baked baked = tools::bake_scene(*source, options);
+  const Run exact = run_demo(board, bytes_of(baked.bytes), 6, {}, true);
+  CHECK(exact.out.find(" map 0 ") == std::string::npos);
+  // Stopped before frame 3 is drawn, held from the start.
+  const Run held = run_demo(board, bytes_of(baked.bytes), 6, {{3, "t"}, {5, "h"}}, true, 30);
+  CHECK(held.fault.empty());
+  CHECK(held.out.find("holding 30 frames a second") != std::string::npos);
+  REQUIRE(held.pictures.size() == exact.pictures.size());
+  const auto level = [](const host::PackedPicture& picture, int x, int y) {
+    const std::uint8_t pair = picture.bytes[static_cast<std::size_t>(64 * y + x / 2)];
+    return x % 2 == 0 ? pair >> 4 : pair & 15;
+  };
+  for (std::size_t frame = 0; frame < 4; ++frame) {
+    int others = 0;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        others += level(held.pictures[frame], x, y) == level(exact.pictures[frame], x & ~1, y & ~1) ? 0 : 1;
+      }
+    }
+    CAPTURE(frame);
+    CHECK(others == 0);
+  }
+  // It stands where it stood when the frame before was drawn.
+  CHECK(held.pictures[4].bytes == exact.pictures[3].bytes);
+  CHECK(held.pictures[5].bytes == exact.pictures[3].bytes);
+}
+
+TEST_CASE("demo: a rate is held with a tree alone -> refined by what there is time for, exact in the end") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const ConstBytes scene = bytes_of(demo_scene().bytes);
+  const Run exact = run_demo(board, scene, 2);
+  // Too small for a map in RAM beside it, so that rays go through the tree.
+  platform::BoardFacts small = board;
+  small.ram_bytes = 16384;
+  const Run run = run_demo(small, scene, 90, {{1, "ht"}});
+  CHECK(run.fault.empty());
+  CHECK(run.out.find(" map 0 ") != std::string::npos);
+  std::uint32_t before = 128 * 64;
+  int frames = 0;
+  for (std::size_t at = 0; (at = run.out.find(" inexact ", at)) != std::string::npos; ++at) {
+    const auto inexact = static_cast<std::uint32_t>(std::stoul(run.out.substr(at + 9)));
+    CHECK((inexact < before || inexact == 0));
+    before = inexact;
+    ++frames;
+  }
+  CHECK(frames == 89);
+  CHECK(before == 0);
+  CHECK(run.last.bytes == exact.pictures[1].bytes);
+}
+
+TEST_CASE(
+    "demo: the scene built on the board while a rate is held -> the picture of the pool, exact at rest") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const ConstBytes scene = bytes_of(demo_scene().bytes);
+  // The same pool: what holding takes is taken before it is begun in both.
+  const std::uint32_t frames = 260;
+  const Run held = run_demo(board, scene, frames, {{0, "hb"}, {200, "t"}});
+  const Run exact = run_demo(board, scene, frames, {{0, "hbh"}, {200, "t"}});
+  CHECK(held.fault.empty());
+  const std::size_t last = held.out.rfind("build ");
+  REQUIRE(last != std::string::npos);
+  CHECK(held.out.find(" done inexact 0", last) != std::string::npos);
+  CHECK(held.last.bytes == exact.last.bytes);
+}
+
+TEST_CASE("demo: a board that holds no rate, or has no room for a frame -> it says so and goes on") {
+  const ConstBytes scene = bytes_of(demo_scene().bytes);
+  const Run none = run_demo(*platform::find_board("stm32vldiscovery"), scene, 2, {{0, "h"}});
+  CHECK(none.status == 0);
+  CHECK(none.out.find("this board holds no rate of frames") != std::string::npos);
+  platform::BoardFacts small = *platform::find_board("lm3s6965evb");
+  small.ram_bytes = 8192;
+  const Run full = run_demo(small, scene, 2, {{0, "h"}});
+  CHECK(full.status == 0);
+  CHECK(full.out.find("no room for a whole frame") != std::string::npos);
+  CHECK(full.last.bytes == none.last.bytes);
+}

@@ -1,0 +1,355 @@
+// The application `water` on simulated boards: a still scene costs nothing, and what is drawn again is all
+// that can have changed.
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/apps.h"
+#include "apps/demo_view.h"
+#include "apps/dirty_bands.h"
+#include "apps/falling_ball.h"
+#include "apps/moving_water.h"
+#include "boards/board_table.h"
+#include "host/simulation.h"
+#include "port.h"
+#include "scene/baking.h"
+#include "scene/random.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/light/render.h"
+
+namespace {
+
+using namespace thimble;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr const char* kScene = "water,depth=5";
+constexpr bool kIsSlow = true;
+#else
+constexpr const char* kScene = "water";
+constexpr bool kIsSlow = false;
+#endif
+
+const std::vector<std::uint8_t>& baked(const char* text) {
+  static std::map<std::string, std::vector<std::uint8_t>> scenes;
+  std::vector<std::uint8_t>& bytes = scenes[text];
+  if (bytes.empty()) {
+    const auto source = tools::open_scene({.scene = text, .depth = std::nullopt});
+    tools::BakingOptions options;
+    options.name = text;
+    options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+    bytes = tools::bake_scene(*source, options).bytes;
+  }
+  return bytes;
+}
+ConstBytes bytes_of(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.data(), bytes.size()};
+}
+
+struct Counters {
+  unsigned frames = 0;
+  unsigned drawn = 0;
+  unsigned skipped = 0;
+  unsigned steps = 0;
+  unsigned columns = 0;
+  unsigned touches = 0;
+  unsigned splashes = 0;
+  std::string rest;
+};
+
+struct Hand {
+  std::map<std::uint32_t, std::string> keys;       ///< by frame
+  std::map<std::uint32_t, std::uint32_t> buttons;  ///< from that frame on
+};
+
+struct Run {
+  int status = -1;
+  std::string out;
+  std::string fault;
+  std::vector<std::vector<std::uint8_t>> pictures;
+  std::uint64_t rows_sent = 0;
+  std::uint64_t rows_kept = 0;
+  std::vector<Counters> counters;  ///< every line of them
+};
+
+Run run_water(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames, const Hand& hand) {
+  Run run;
+  host::SimulationOptions options;
+  options.board = &board;
+  options.scene = scene;
+  options.application = apps::water;
+  host::Simulation simulation(options);
+  for (host::Moment moment = host::Moment::kNothing; moment != host::Moment::kEnded;) {
+    moment = simulation.wait(60000);
+    run.out += simulation.take_output();
+    if (moment != host::Moment::kAsks) {
+      continue;
+    }
+    const std::uint32_t asked = simulation.frames_asked();
+    if (asked != 0) {
+      run.pictures.push_back(simulation.picture().bytes);
+    }
+    if (const auto typed = hand.keys.find(asked); typed != hand.keys.end()) {
+      for (const char key : typed->second) {
+        simulation.type(static_cast<std::uint8_t>(key));
+      }
+    }
+    if (const auto held = hand.buttons.find(asked); held != hand.buttons.end()) {
+      simulation.set_buttons(held->second);
+    }
+    simulation.answer(asked < frames);
+  }
+  run.status = simulation.status();
+  run.fault = simulation.fault();
+  run.rows_sent = simulation.rows_sent();
+  run.rows_kept = simulation.rows_kept();
+  for (std::size_t at = run.out.find("\nframes "); at != std::string::npos;
+       at = run.out.find("\nframes ", at + 1)) {
+    Counters now;
+    const std::size_t end = run.out.find('\n', at + 1);
+    const std::string line = run.out.substr(at + 1, end - at - 1);
+    REQUIRE(std::sscanf(line.c_str(),
+                        "frames %u bands drawn %u bands skipped %u steps %u columns stepped %u touches %u "
+                        "splashes %u",
+                        &now.frames, &now.drawn, &now.skipped, &now.steps, &now.columns, &now.touches,
+                        &now.splashes) == 7);
+    now.rest = line.substr(line.find(" water "));
+    run.counters.push_back(now);
+  }
+  return run;
+}
+
+platform::BoardFacts board_of(const char* name, std::int32_t width = 0, std::int32_t height = 0) {
+  platform::BoardFacts board = platform::board_for(*platform::find_board(name), "water");
+  if (width != 0) {
+    board.width_px = width;
+    board.height_px = height;
+  }
+  return board;
+}
+
+std::string at_pixel(char what, std::int32_t x, std::int32_t y) {
+  return what + std::to_string(x) + "," + std::to_string(y) + ".";
+}
+
+}  // namespace
+
+TEST_CASE("water app: nobody touches anything -> no column is stepped, one picture is drawn and then none") {
+  const platform::BoardFacts board = board_of("raspi0", 96, 72);
+  const Run run = run_water(board, bytes_of(baked(kScene)), 12, {});
+  CHECK(run.fault.empty());
+  CHECK(run.status == 0);
+  REQUIRE(run.counters.size() == 1);
+  const Counters& counters = run.counters[0];
+  CHECK(counters.frames == 12);
+  CHECK(counters.drawn == 9);
+  CHECK(counters.skipped == 11 * 9);
+  CHECK(counters.steps == 0);
+  CHECK(counters.columns == 0);
+  CHECK(counters.rest.ends_with(" still"));
+  CHECK(run.rows_sent == 72);
+  CHECK(run.rows_kept == 11 * 72);
+  REQUIRE(run.pictures.size() == 12);
+  for (const std::vector<std::uint8_t>& picture : run.pictures) {
+    CHECK(picture == run.pictures[0]);
+  }
+}
+
+TEST_CASE(
+    "water app: water that was touched -> moves, draws the bands that see it, and costs nothing after") {
+  const std::int32_t width = kIsSlow ? 24 : 48;
+  const platform::BoardFacts board = board_of("raspi0", width, width * 3 / 4);
+  Hand hand;
+  hand.keys[2] = at_pixel('@', width / 2, width * 34 / 64);
+  const std::uint32_t frames = 700;
+  hand.keys[frames - 20] = "i";
+  const Run run = run_water(board, bytes_of(baked("water,depth=4")), frames, hand);
+  CHECK(run.status == 0);
+  REQUIRE(run.counters.size() == 2);
+  CHECK(run.counters[0].touches == 1);
+  CHECK(run.counters[0].columns > 1000);
+  CHECK(run.counters[0].rest.ends_with(" still"));
+  // Some bands show only sky and wall: they were drawn once.
+  CHECK(run.counters[0].skipped > frames / 2);
+  // It has come to rest: nothing since then.
+  CHECK(run.counters[1].columns == run.counters[0].columns);
+  CHECK(run.counters[1].steps == run.counters[0].steps);
+  CHECK(run.counters[1].drawn == run.counters[0].drawn);
+  // It looks as before.
+  CHECK(run.pictures[3] != run.pictures[0]);
+  CHECK(run.pictures.back() == run.pictures[0]);
+}
+
+TEST_CASE("water app: touches, drops, rain and a moving camera -> every frame as if all were drawn again") {
+  struct Case {
+    const char* board;
+    const char* scene;
+    std::int32_t width;
+    std::int32_t height;
+  };
+  for (const Case& each : {Case{"raspi0", kScene, 56, 42}, Case{"lm3s6965evb", "water,depth=5", 64, 48},
+                           Case{"raspi0", "water,seed=3,depth=5", 50, 70}}) {
+    platform::BoardFacts board = board_of(each.board, each.width, each.height);
+    CAPTURE(each.scene);
+    CAPTURE(each.board);
+    const std::uint32_t frames = kIsSlow ? 40 : 64;
+    Hand hand;
+    tools::SplitMix64 random(7);
+    const auto pixel = [&](char what) {
+      return at_pixel(what, random.between(0, each.width - 1), random.between(0, each.height - 1));
+    };
+    for (std::uint32_t frame = 3; frame < frames; frame += 5) {
+      hand.keys[frame] = pixel(frame % 10 == 3 ? '@' : '!') + pixel('!');
+    }
+    hand.keys[4] = at_pixel('@', each.width / 2, each.height * 34 / 48);  // water, whatever the others hit
+    hand.keys[frames / 2] += "m";
+    hand.keys[frames * 3 / 4] += "k";
+    hand.buttons[frames / 4] = port::kLeft;
+    hand.buttons[frames / 4 + 3] = 0;
+    hand.buttons[frames / 2] = port::kSelect;
+    hand.buttons[frames / 2 + 1] = port::kSelect | port::kUp;
+    hand.buttons[frames / 2 + 2] = 0;
+    hand.buttons[frames * 7 / 8] = port::kDown;
+    hand.buttons[frames * 7 / 8 + 1] = 0;
+    const Run some = run_water(board, bytes_of(baked(each.scene)), frames, hand);
+    Hand everything = hand;
+    everything.keys[0] = "o";
+    const Run all = run_water(board, bytes_of(baked(each.scene)), frames, everything);
+    CHECK(some.fault.empty());
+    REQUIRE(some.status == 0);
+    REQUIRE(all.status == 0);
+    REQUIRE(some.pictures.size() == frames);
+    REQUIRE(all.pictures.size() == frames);
+    for (std::size_t i = 0; i < frames; ++i) {
+      CAPTURE(i);
+      CHECK(some.pictures[i] == all.pictures[i]);
+    }
+    // The work was not the same.
+    REQUIRE(some.counters.size() == 1);
+    REQUIRE(all.counters.size() == 1);
+    CHECK(all.counters[0].skipped == 0);
+    CHECK(some.counters[0].skipped > 0);
+    CHECK(some.counters[0].drawn + some.counters[0].skipped == all.counters[0].drawn);
+    CHECK(some.counters[0].rest == all.counters[0].rest);
+    CHECK(some.counters[0].splashes > 0);
+    CHECK(some.counters[0].touches > 0);
+  }
+}
+
+TEST_CASE("water app: its first picture -> that of the scene as it was baked, its water at rest") {
+  const platform::BoardFacts board = board_of("raspi0", 96, 72);
+  const std::vector<std::uint8_t>& bytes = baked(kScene);
+  const Run run = run_water(board, bytes_of(bytes), 1, {});
+  BakedScene scene;
+  REQUIRE(BakedScene::open(bytes_of(bytes), &scene) == Status::kOk);
+  BakedLighting lighting;
+  REQUIRE(BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
+          Status::kOk);
+  Camera camera;
+  REQUIRE(apps::view_at(apps::orbit_of(scene), scene.tree(), 0, {}, 96, 72, &camera) == Status::kOk);
+  std::vector<std::uint8_t> pixels(band_bytes(board.format, 96, 72));
+  const Band band{{pixels.data(), pixels.size()}, board.format, 0, 0, 72};
+  REQUIRE(render_lit_band(lighting.effects, scene.tree(), camera, apps::demo_shading(scene.palette()),
+                          lighting.scene, band) == Status::kOk);
+  REQUIRE(run.pictures.size() == 1);
+  CHECK(run.pictures[0] == pixels);
+}
+
+TEST_CASE("water app: bounds of the water that are wider than its waves -> the same picture") {
+  const std::vector<std::uint8_t>& bytes = baked("water,depth=5");
+  BakedScene scene;
+  REQUIRE(BakedScene::open(bytes_of(bytes), &scene) == Status::kOk);
+  BakedLighting lighting;
+  REQUIRE(BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
+          Status::kOk);
+  std::vector<std::uint8_t> memory(1U << 20);
+  Arena arena({memory.data(), memory.size()});
+  apps::MovingWater water;
+  REQUIRE(apps::calm_water(scene.tree(), lighting.scene.water, &arena, &water) == Status::kOk);
+  REQUIRE(water.columns.touch(2000, 1500, 600, 500) == Status::kOk);
+  Camera camera;
+  REQUIRE(apps::view_at(apps::orbit_of(scene), scene.tree(), 0, {}, 60, 45, &camera) == Status::kOk);
+  for (int frame = 0; frame < 6; ++frame) {
+    std::vector<std::uint8_t> pictures[2];
+    for (const bool ever : {false, true}) {
+      lighting.scene.water = apps::surface_of(water, ever);
+      std::vector<std::uint8_t>& pixels = pictures[ever ? 1 : 0];
+      pixels.resize(band_bytes(PixelFormat::kRgb888, 60, 45));
+      const Band band{{pixels.data(), pixels.size()}, PixelFormat::kRgb888, 0, 0, 45};
+      REQUIRE(render_lit_band(lighting.effects, scene.tree(), camera, apps::demo_shading(scene.palette()),
+                              lighting.scene, band) == Status::kOk);
+    }
+    CHECK(pictures[0] == pictures[1]);
+    for (int i = 0; i < 5; ++i) {
+      water.columns.step();
+    }
+  }
+}
+
+TEST_CASE("water app: what it cannot show -> one sentence, status 1") {
+  const auto source = tools::open_scene({.scene = "spheres,depth=4", .depth = std::nullopt});
+  const std::vector<std::uint8_t> dry = tools::bake_scene(*source, {}).bytes;
+  const platform::BoardFacts board = board_of("raspi0", 96, 72);
+  const Run run = run_water(board, bytes_of(dry), 1, {});
+  CHECK(run.status == 1);
+  CHECK(run.out.find("error: the scene holds no water\n") != std::string::npos);
+  platform::BoardFacts small = board;
+  small.ram_bytes = small.stack_bytes + 12000;
+  const Run short_of = run_water(small, bytes_of(baked("water")), 1, {});
+  CHECK(short_of.status == 1);
+  CHECK(short_of.out.find("error: the arena does not hold the water's columns\n") != std::string::npos);
+}
+
+TEST_CASE("dirty bands: a box that rays of a band meet -> the band may see it, from anywhere") {
+  tools::SplitMix64 random(11);
+  int seen = 0;
+  int spared = 0;
+  for (int round = 0; round < (kIsSlow ? 200 : 1500); ++round) {
+    const auto place = [&] {
+      return Vec3Q8{Q8::from_raw(random.between(-12000, 20000)), Q8::from_raw(random.between(-12000, 20000)),
+                    Q8::from_raw(random.between(-12000, 20000))};
+    };
+    const Vec3Q8 eye = place();
+    const Vec3Q8 target = place();
+    Camera camera;
+    const bool is_perspective = random.between(0, 1) != 0;
+    const Status status =
+        is_perspective
+            ? camera.set(PerspectiveView{eye,
+                                         look_at(eye, target),
+                                         {},
+                                         Q16::saturate(random.between(2, 120)),
+                                         24,
+                                         32,
+                                         random.between(0, 3) == 0 ? 10 : 0},
+                         6)
+            : camera.set(
+                  OrthographicView{
+                      eye, look_at(eye, target), {}, Q14::saturate(random.between(20, 90)), 24, 32, 0},
+                  6);
+    if (status != Status::kOk) {
+      continue;
+    }
+    const Vec3Q8 low = place();
+    const std::int32_t size = random.between(1, 4000);
+    const apps::BoxQ8 box{{low.x.raw, low.y.raw, low.z.raw},
+                          {low.x.raw + size, low.y.raw + size, low.z.raw + size}};
+    for (std::int32_t first = 0; first < 32; first += 4) {
+      bool meets = false;
+      for (std::int32_t i = 0; i < 4 * 24; ++i) {
+        apps::BallHit hit;
+        meets = meets || apps::enter_box(camera.ray(i % 24, first + i / 24), box, &hit);
+      }
+      const bool may = apps::band_may_see(camera, first, first + 4, box);
+      CAPTURE(round);
+      CHECK((may || !meets));
+      seen += meets ? 1 : 0;
+      spared += may ? 0 : 1;
+    }
+  }
+  CHECK(seen > 20);
+  CHECK(spared > 2000 / (kIsSlow ? 8 : 1));
+}

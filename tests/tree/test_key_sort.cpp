@@ -1,0 +1,234 @@
+// Building large scenes on a desktop: keys sorted with scratch and threads are those that the core sorts, and
+// the tree made from them is the octree's, byte by byte.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "scene/built_scene.h"
+#include "scene/key_sort.h"
+#include "scene/scene_source.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/tree/morton.h"
+#include "thimble/tree/octree.h"
+
+namespace thimble::tests {
+namespace {
+
+using tools::key_sort_scratch_bytes;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kLists = 10;
+constexpr std::int64_t kMostKeys = 150'000;
+constexpr int kWorlds = 12;
+constexpr std::int64_t kMostVoxels = 20'000;
+#else
+constexpr int kLists = 40;
+constexpr std::int64_t kMostKeys = 600'000;
+constexpr int kWorlds = 60;
+constexpr std::int64_t kMostVoxels = 60'000;
+#endif
+
+// Keys anywhere, in few places, in long runs of equal ones, or in order.
+template <class Key>
+std::vector<Key> random_keys(std::mt19937_64& random, int bits, std::int64_t count) {
+  const std::uint64_t all = (std::uint64_t{1} << bits) - 1;
+  std::vector<Key> keys;
+  const std::int64_t kind = pick(random, 0, 4);
+  const std::uint64_t place = random() & all;
+  const int spread = static_cast<int>(pick(random, 0, bits));
+  for (std::int64_t i = 0; i < count; ++i) {
+    std::uint64_t key = random() & all;
+    switch (kind) {
+      case 1:
+        key = (place & ~((std::uint64_t{1} << spread) - 1)) | (key & ((std::uint64_t{1} << spread) - 1));
+        break;
+      case 2:
+        key %= 100;
+        break;
+      case 3:
+        key = (i % 2 == 0 ? static_cast<std::uint64_t>(i) : all - static_cast<std::uint64_t>(i)) & all;
+        break;
+      default:
+        break;
+    }
+    keys.push_back(static_cast<Key>(key));
+  }
+  return keys;
+}
+
+template <class Key>
+void check_sorted(std::mt19937_64& random, int bits) {
+  const std::int64_t count =
+      pick(random, 0, 3) == 0 ? pick(random, 0, 3000) : pick(random, 60'000, kMostKeys);
+  const std::vector<Key> keys = random_keys<Key>(random, bits, count);
+  std::vector<Key> expected = keys;
+  std::sort(expected.begin(), expected.end());
+  const int threads = static_cast<int>(pick(random, 1, 4));
+  const std::size_t most = key_sort_scratch_bytes(keys.size(), threads);
+  CHECK(most <= keys.size());
+  // All the scratch there may be, some of it, or none.
+  const std::size_t scratch =
+      pick(random, 0, 2) == 0 ? most
+                              : static_cast<std::size_t>(pick(random, 0, static_cast<std::int64_t>(most))) /
+                                    sizeof(Key) * sizeof(Key);
+  HeapBytes room(scratch);
+  std::vector<Key> sorted = keys;
+  tools::sort_keys_fast(Span<Key>(sorted.data(), sorted.size()), bits, room.span(), threads);
+  CAPTURE(bits);
+  CAPTURE(count);
+  CAPTURE(threads);
+  CAPTURE(scratch);
+  CHECK(sorted == expected);
+}
+
+// Voxels held in memory: a source of whatever a test wants.
+class Voxels : public tools::SceneSource {
+ public:
+  struct Voxel {
+    Vec3i at;
+    std::uint8_t material;
+  };
+  Voxels(int level, std::vector<Voxel> voxels, bool single) : voxels_(std::move(voxels)), single_(single) {
+    level_ = level;
+  }
+  std::string kind() const override { return "voxels"; }
+  std::uint64_t points() const override { return voxels_.size(); }
+  bool is_point_set() const override { return true; }
+  bool single_material() const override { return single_; }
+  const tools::Palette& palette() const override { return palette_; }
+  void stream(const tools::VoxelSink& sink, const tools::Progress&) const override {
+    for (const Voxel& voxel : voxels_) {
+      sink(voxel.at.x, voxel.at.y, voxel.at.z, voxel.material);
+    }
+  }
+
+ private:
+  std::vector<Voxel> voxels_;
+  bool single_;
+  tools::Palette palette_{};
+};
+
+// Points, crowds and solid boxes; every third time voxels repeat, with other materials.
+Voxels random_world(std::mt19937_64& random) {
+  const int level = static_cast<int>(pick(random, 1, 12));
+  const std::int32_t side = std::int32_t{1} << level;
+  const bool single = pick(random, 0, 1) == 0;
+  const std::int64_t materials = pick(random, 1, 4);
+  std::vector<Voxels::Voxel> voxels;
+  std::int64_t of_all = -1;  // where it is not a voxel's own
+  const auto add = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    const auto inside = [&](std::int64_t value) {
+      return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, 0, side - 1));
+    };
+    const std::int64_t material = single ? 0 : of_all >= 0 ? of_all : pick(random, 0, materials - 1);
+    voxels.push_back({{inside(x), inside(y), inside(z)}, static_cast<std::uint8_t>(material)});
+  };
+  for (std::int64_t i = pick(random, 0, pick(random, 0, 1) == 0 ? 3000 : kMostVoxels); i > 0; --i) {
+    add(pick(random, 0, side - 1), pick(random, 0, side - 1), pick(random, 0, side - 1));
+  }
+  for (std::int64_t box = pick(random, 0, 3); box > 0; --box) {
+    const std::int64_t size = pick(random, 1, 20);
+    of_all = pick(random, -1, materials - 1);
+    const std::int64_t at[3] = {pick(random, 0, side - 1) & -8, pick(random, 0, side - 1) & -8,
+                                pick(random, 0, side - 1) & -8};
+    for (std::int64_t z = 0; z < size; ++z) {
+      for (std::int64_t y = 0; y < size; ++y) {
+        for (std::int64_t x = 0; x < size; ++x) {
+          add(at[0] + x, at[1] + y, at[2] + z);
+        }
+      }
+    }
+  }
+  if (!voxels.empty() && pick(random, 0, 2) == 0) {
+    for (std::int64_t i = pick(random, 1, 2000); i > 0; --i) {
+      const auto from =
+          voxels[static_cast<std::size_t>(pick(random, 0, static_cast<std::int64_t>(voxels.size()) - 1))];
+      add(from.at.x, from.at.y, from.at.z);
+    }
+  }
+  std::shuffle(voxels.begin(), voxels.end(), random);
+  return Voxels(level, std::move(voxels), single);
+}
+
+// The same scene through the core's octree.
+HeapBytes tree_by_octree(const Voxels& source) {
+  HeapBytes pool(std::size_t{64} << 20);
+  Octree octree;
+  REQUIRE(Octree::make(source.level(), pool.span(), &octree) == Status::kOk);
+  source.stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        const Vec3i at{x, y, z};
+        if (!octree.test(at) || octree.material(at) < material) {
+          REQUIRE(octree.insert(at, material) == Status::kOk);
+        }
+      },
+      {});
+  return compact_of(octree);
+}
+
+}  // namespace
+
+TEST_CASE("key sort: any keys, scratch and number of threads -> what std::sort gives") {
+  const std::uint64_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937_64 random(seed);
+  for (int list = 0; list < kLists; ++list) {
+    check_sorted<std::uint32_t>(random, static_cast<int>(pick(random, 3, 30)));
+    check_sorted<std::uint64_t>(random, static_cast<int>(pick(random, 3, 44)));
+  }
+}
+
+TEST_CASE("key sort: any voxels, repeats, materials and threads -> the tree that the octree gives") {
+  const std::uint64_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937_64 random(seed);
+  for (int world = 0; world < kWorlds; ++world) {
+    CAPTURE(world);
+    const Voxels source = random_world(random);
+    tools::BuildOptions options;
+    options.threads = static_cast<int>(pick(random, 1, 3));
+    options.memory_bytes = std::uint64_t{8} << 20;
+    const tools::BuiltScene built(source, options);
+    const HeapBytes expected = tree_by_octree(source);
+    REQUIRE(built.compact().size_bytes() == expected.view().size);
+    CHECK(std::memcmp(built.compact().bytes(), expected.view().data, expected.view().size) == 0);
+    // The least budget is enough, and gives the same tree.
+    options.memory_bytes = built.least_budget_bytes();
+    const tools::BuiltScene tight(source, options);
+    REQUIRE(tight.compact().size_bytes() == expected.view().size);
+    CHECK(std::memcmp(tight.compact().bytes(), expected.view().data, expected.view().size) == 0);
+  }
+}
+
+TEST_CASE("key sort: many points -> built within twice the bytes of their keys, whatever the threads") {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr std::uint64_t kPoints = 500'000;
+#else
+  constexpr std::uint64_t kPoints = 2'000'000;
+#endif
+  for (const char* const name : {"points:", "cluster:"}) {
+    tools::SceneArguments arguments;
+    arguments.scene = name + std::to_string(kPoints);
+    const auto source = tools::open_scene(arguments);
+    std::vector<std::uint8_t> first;
+    for (const int threads : {1, 2, 5}) {
+      tools::BuildOptions options;
+      options.threads = threads;
+      const tools::BuiltScene built(*source, options);
+      CHECK(built.high_water_bytes() <= 2 * 4 * kPoints);
+      const std::uint8_t* const bytes = built.compact().bytes();
+      if (first.empty()) {
+        first.assign(bytes, bytes + built.compact().size_bytes());
+      }
+      REQUIRE(built.compact().size_bytes() == first.size());
+      CHECK(std::equal(first.begin(), first.end(), bytes));
+    }
+  }
+}
+
+}  // namespace thimble::tests

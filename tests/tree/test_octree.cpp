@@ -1,0 +1,1153 @@
+// The mutable octree, held to a map of voxels, to the canonical tree built from that map by recursion, and to
+// a coarsening that searches the whole tree for the cheapest merge at every step.
+#include "thimble/tree/octree.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace thimble::tools {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kEffort = 1;
+#else
+constexpr int kEffort = 6;
+#endif
+
+using Random = std::mt19937_64;
+/// Morton index -> material.
+using Model = std::map<std::uint64_t, std::uint8_t>;
+
+std::int32_t below(Random& random, std::int32_t bound) {
+  return static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(bound));
+}
+
+std::uint64_t morton(Vec3i p) {
+  std::uint64_t index = 0;
+  for (int bit = 0; bit < kMaxLevel; ++bit) {
+    for (int axis = 0; axis < 3; ++axis) {
+      index |= ((static_cast<std::uint64_t>(p[axis]) >> bit) & 1) << (3 * bit + axis);
+    }
+  }
+  return index;
+}
+
+Vec3i position(std::uint64_t index) {
+  Vec3i p;
+  for (int bit = 0; bit < kMaxLevel; ++bit) {
+    for (int axis = 0; axis < 3; ++axis) {
+      p[axis] |= static_cast<std::int32_t>((index >> (3 * bit + axis)) & 1) << bit;
+    }
+  }
+  return p;
+}
+
+/// A tree as plain as can be.
+struct Ref {
+  int level = 0;
+  std::uint32_t mask = 0;  // 0: solid
+  int material = 0;
+  bool merged = false;
+  std::uint64_t piece = 1;    // volume of the piece that a solid block's material comes from
+  std::vector<Ref> children;  // in octant order
+};
+
+std::uint64_t volume(int level) {
+  return std::uint64_t{1} << (3 * level);
+}
+
+std::size_t count_nodes(const Ref& ref) {
+  std::size_t count = 1;
+  for (const Ref& child : ref.children) {
+    count += count_nodes(child);
+  }
+  return count;
+}
+
+std::uint64_t count_solid(const Ref& ref) {
+  if (ref.mask == 0) {
+    return volume(ref.level);
+  }
+  if (ref.level == 1) {
+    return static_cast<std::uint64_t>(__builtin_popcount(ref.mask));
+  }
+  std::uint64_t total = 0;
+  for (const Ref& child : ref.children) {
+    total += count_solid(child);
+  }
+  return total;
+}
+
+bool collapses(const Ref& ref) {
+  return ref.mask == 255 && ref.children.size() == 8 &&
+         std::all_of(ref.children.begin(), ref.children.end(), [&](const Ref& child) {
+           return child.mask == 0 && child.material == ref.children[0].material &&
+                  child.merged == ref.children[0].merged;
+         });
+}
+
+void make_solid(Ref& ref, int material, bool merged, std::uint64_t piece) {
+  ref.mask = 0;
+  ref.material = material;
+  ref.merged = merged;
+  ref.piece = piece;
+  ref.children.clear();
+}
+
+void normalise(Ref& ref) {
+  for (Ref& child : ref.children) {
+    normalise(child);
+  }
+  if (collapses(ref)) {
+    const Ref first = ref.children[0];
+    std::uint64_t piece = first.merged ? 0 : volume(ref.level);
+    for (const Ref& child : ref.children) {
+      piece = std::max(piece, child.piece);
+    }
+    make_solid(ref, first.material, first.merged, piece);
+  }
+}
+
+/// The canonical tree of the voxels [first, last) of a model, all in one block of `level`.
+Ref canonical(Model::const_iterator first, Model::const_iterator last, int level) {
+  Ref ref;
+  ref.level = level;
+  ref.material = first->second;
+  const bool uniform =
+      std::all_of(first, last, [&](const auto& voxel) { return voxel.second == first->second; });
+  const std::uint64_t start = first->first & ~(volume(level) - 1);
+  if (level == 0) {
+    return ref;
+  }
+  for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    const std::uint64_t end = start + (octant + 1) * volume(level - 1);
+    Model::const_iterator next = first;
+    while (next != last && next->first < end) {
+      ++next;
+    }
+    if (next != first) {
+      ref.mask |= 1U << octant;
+      if (level > 1 || !uniform) {
+        ref.children.push_back(canonical(first, next, level - 1));
+      }
+    }
+    first = next;
+  }
+  ref.piece = static_cast<std::uint64_t>(__builtin_popcount(ref.mask));
+  if (level == 1 && ref.mask == 255 && uniform) {
+    make_solid(ref, ref.material, false, 8);
+  }
+  if (collapses(ref)) {
+    make_solid(ref, ref.children[0].material, false, volume(level));
+  }
+  return ref;
+}
+
+Ref canonical(const Model& model, int level) {
+  return canonical(model.begin(), model.end(), level);
+}
+
+void describe(const Ref& ref, std::string& text) {
+  if (ref.mask == 0) {
+    text += (ref.merged ? "M" : "S") + std::to_string(ref.material);
+    return;
+  }
+  text += "(" + std::to_string(ref.mask);
+  if (ref.children.empty()) {
+    text += ":" + std::to_string(ref.material);
+  }
+  for (const Ref& child : ref.children) {
+    text += " ";
+    describe(child, text);
+  }
+  text += ")";
+}
+
+/// The tree in the pool, read through the public views only.
+Ref read(const Octree& tree, std::uint32_t index, int level) {
+  const Octree::NodeView view = tree.node(index);
+  Ref ref;
+  ref.level = level;
+  ref.mask = view.mask;
+  ref.material = view.material;
+  ref.merged = view.merged;
+  CHECK(view.has_children == (view.first_child != Octree::kNone));
+  CHECK(view.solid() == (view.mask == 0));
+  if (view.has_children) {
+    std::uint32_t next = view.first_child;
+    for (int octant = 0; octant < 8; ++octant) {
+      const std::uint32_t child = tree.child(view, octant);
+      CHECK((child != Octree::kNone) == ((view.mask >> octant & 1) != 0));
+      if (child != Octree::kNone) {
+        CHECK(child == next);
+        ref.children.push_back(read(tree, child, level - 1));
+        next = tree.node(child).next;
+      }
+    }
+    CHECK(next == Octree::kNone);
+  }
+  return ref;
+}
+
+std::string text_of(const Ref& ref) {
+  std::string text;
+  describe(ref, text);
+  return text;
+}
+
+std::string text_of(const Octree& tree) {
+  return tree.empty() ? std::string("empty") : text_of(read(tree, tree.root(), tree.level()));
+}
+
+std::string text_of(const Model& model, int level) {
+  return model.empty() ? std::string("empty") : text_of(canonical(model, level));
+}
+
+std::size_t nodes_of(const Model& model, int level) {
+  return model.empty() ? 0 : count_nodes(canonical(model, level));
+}
+
+/// The tree holds exactly the model, in its canonical form.
+void check_same(const Octree& tree, const Model& model) {
+  CHECK(text_of(tree) == text_of(model, tree.level()));
+  CHECK(tree.voxels() == model.size());
+  CHECK(tree.nodes_used() == nodes_of(model, tree.level()));
+  CHECK(tree.nodes_free() + tree.nodes_used() == tree.capacity());
+  CHECK(tree.nodes_used() <= tree.nodes_high_water());
+  CHECK(tree.nodes_high_water() <= tree.capacity());
+}
+
+void check_holds(const Octree& tree, const Model& model) {
+  std::size_t missing = 0;
+  for (const auto& [index, material] : model) {
+    missing += tree.test(position(index)) ? 0U : 1U;
+  }
+  CHECK(missing == 0);
+}
+
+/// A pool with guard bytes on both sides, which may start at any address.
+class Pool {
+ public:
+  explicit Pool(std::size_t bytes, std::size_t offset = 0)
+      : bytes_(bytes), offset_(offset), storage_(bytes + offset + 2 * kGuard, kPattern) {}
+  static Pool of_nodes(std::size_t nodes) { return Pool(Octree::octree_bytes(nodes)); }
+  Bytes bytes() { return {storage_.data() + kGuard + offset_, bytes_}; }
+  std::vector<std::uint8_t> contents() const { return storage_; }
+  bool intact() const {
+    const auto is_pattern = [](std::uint8_t byte) { return byte == kPattern; };
+    const auto first = storage_.begin() + static_cast<std::ptrdiff_t>(kGuard + offset_);
+    return std::all_of(storage_.begin(), first, is_pattern) &&
+           std::all_of(first + static_cast<std::ptrdiff_t>(bytes_), storage_.end(), is_pattern);
+  }
+
+ private:
+  static constexpr std::size_t kGuard = 32;
+  static constexpr std::uint8_t kPattern = 0xA5;
+  std::size_t bytes_;
+  std::size_t offset_;
+  std::vector<std::uint8_t> storage_;
+};
+
+/// One change of a tree, and the same of a model.
+struct Change {
+  enum class Kind { kInsert, kRemove, kBlock } kind = Kind::kInsert;
+  Vec3i at;
+  std::uint8_t material = 0;
+  int block_level = 0;
+
+  Status apply(Octree& tree) const {
+    switch (kind) {
+      case Kind::kInsert:
+        return tree.insert(at, material);
+      case Kind::kRemove:
+        return tree.remove(at);
+      case Kind::kBlock:
+        break;
+    }
+    return tree.insert_block(at, block_level, material);
+  }
+  void apply(Model& model) const {
+    const std::uint64_t first = morton(at);
+    if (kind == Kind::kRemove) {
+      model.erase(first);
+      return;
+    }
+    const std::uint64_t count = kind == Kind::kBlock ? volume(block_level) : 1;
+    for (std::uint64_t index = first; index < first + count; ++index) {
+      model[index] = material;
+    }
+  }
+};
+
+/// Changes that dwell in one small region for a while, so that blocks fill, split and empty.
+std::vector<Change> random_changes(Random& random, int level, int materials, int count) {
+  std::vector<Change> changes;
+  const int side = 1 << level;
+  Vec3i corner;
+  int spread = side;
+  int remove_share = 40;
+  for (int i = 0; i < count; ++i) {
+    if (i % 64 == 0) {
+      spread = 1 << (1 + below(random, std::min(level, 3)));
+      corner = {below(random, side) & ~(spread - 1), below(random, side) & ~(spread - 1),
+                below(random, side) & ~(spread - 1)};
+      remove_share = below(random, 100);
+    }
+    Change change;
+    change.at = {corner.x + below(random, spread), corner.y + below(random, spread),
+                 corner.z + below(random, spread)};
+    change.material = static_cast<std::uint8_t>(below(random, materials));
+    if (below(random, 100) < remove_share) {
+      change.kind = Change::Kind::kRemove;
+    } else if (below(random, 12) == 0) {
+      change.kind = Change::Kind::kBlock;
+      change.block_level = below(random, std::min(level, 3) + 1);
+      const int mask = ~((1 << change.block_level) - 1);
+      change.at = {change.at.x & mask, change.at.y & mask, change.at.z & mask};
+    }
+    changes.push_back(change);
+  }
+  return changes;
+}
+
+Model random_model(Random& random, int level, int materials, int count) {
+  Model model;
+  for (const Change& change : random_changes(random, level, materials, count)) {
+    change.apply(model);
+  }
+  return model;
+}
+
+void fill(Octree& tree, const Model& model) {
+  for (const auto& [index, material] : model) {
+    REQUIRE(tree.insert(position(index), material) == Status::kOk);
+  }
+}
+
+// --- coarsening, the slow way ---------------------------------------------------------------------------
+
+struct Candidate {
+  Ref* ref = nullptr;
+  std::uint64_t added = 0;
+  std::uint64_t saved = 1;
+};
+
+/// The least added / saved, the first in post-order on a tie.
+void find_cheapest(Ref& ref, Candidate& best) {
+  for (Ref& child : ref.children) {
+    find_cheapest(child, best);
+  }
+  const std::uint64_t saved = count_nodes(ref) - 1;
+  if (saved == 0) {
+    return;
+  }
+  const std::uint64_t added = volume(ref.level) - count_solid(ref);
+  if (best.ref == nullptr || added * best.saved < best.added * saved) {
+    best = {&ref, added, saved};
+  }
+}
+
+/// The largest piece of one material, the first in Morton order on a tie.
+void find_piece(const Ref& ref, std::uint64_t& piece, int& material) {
+  if (ref.children.empty() && ref.piece > piece) {
+    piece = ref.piece;
+    material = ref.material;
+  }
+  for (const Ref& child : ref.children) {
+    find_piece(child, piece, material);
+  }
+}
+
+/// Merges until at most `max_nodes` are left; returns the added volume.
+std::uint64_t coarsen_slowly(Ref& root, std::size_t max_nodes) {
+  std::uint64_t added = 0;
+  while (count_nodes(root) > max_nodes) {
+    Candidate best;
+    find_cheapest(root, best);
+    std::uint64_t piece = 0;
+    int material = 0;
+    find_piece(*best.ref, piece, material);
+    make_solid(*best.ref, material, true, piece);
+    normalise(root);
+    added += best.added;
+  }
+  return added;
+}
+
+/// Whether all that is solid in `inner` is solid in `outer`.
+bool covers(const Ref& outer, const Ref& inner) {
+  if (outer.mask == 0) {
+    return true;
+  }
+  if (inner.mask == 0 || (outer.mask & inner.mask) != inner.mask) {
+    return false;
+  }
+  if (inner.level == 1) {
+    return true;
+  }
+  auto outer_child = outer.children.begin();
+  auto inner_child = inner.children.begin();
+  for (int octant = 0; octant < 8; ++octant) {
+    const bool in_inner = (inner.mask >> octant & 1) != 0;
+    if (in_inner && !covers(*outer_child, *inner_child)) {
+      return false;
+    }
+    inner_child += in_inner ? 1 : 0;
+    outer_child += (outer.mask >> octant & 1) != 0 ? 1 : 0;
+  }
+  return true;
+}
+
+constexpr int kMergedCell = 1000;
+
+/// What each voxel is: -1 empty, else its material, plus kMergedCell in a merged block.
+void flatten(const Ref& ref, std::uint64_t first, std::vector<int>& cells) {
+  if (ref.mask == 0) {
+    for (std::uint64_t index = first; index < first + volume(ref.level); ++index) {
+      cells[index] = ref.material + (ref.merged ? kMergedCell : 0);
+    }
+    return;
+  }
+  auto child = ref.children.begin();
+  for (std::uint64_t octant = 0; octant < 8; ++octant) {
+    if ((ref.mask >> octant & 1) == 0) {
+      continue;
+    }
+    const std::uint64_t start = first + octant * volume(ref.level - 1);
+    if (ref.children.empty()) {
+      cells[start] = ref.material;
+    } else {
+      flatten(*child++, start, cells);
+    }
+  }
+}
+
+std::vector<int> cells_of(const Octree& tree) {
+  std::vector<int> cells(volume(tree.level()), -1);
+  if (!tree.empty()) {
+    flatten(read(tree, tree.root(), tree.level()), 0, cells);
+  }
+  return cells;
+}
+
+}  // namespace
+
+TEST_CASE("octree: random inserts, removals and blocks -> the canonical tree of the model, in every world") {
+  for (int level = 1; level <= 6; ++level) {
+    for (const int materials : {1, 2, 256}) {
+      const std::uint64_t seed = static_cast<std::uint64_t>(level * 1000 + materials);
+      CAPTURE(seed);
+      Random random(seed);
+      Pool pool = Pool::of_nodes(40000);
+      Octree tree;
+      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      Model model;
+      int step = 0;
+      std::size_t wrong = 0;
+      for (const Change& change : random_changes(random, level, materials, 600 * kEffort)) {
+        REQUIRE(change.apply(tree) == Status::kOk);
+        change.apply(model);
+        for (int probe = 0; probe < 4; ++probe) {
+          const int side = 1 << level;
+          const Vec3i at =
+              probe == 0 ? change.at : Vec3i{below(random, side), below(random, side), below(random, side)};
+          const auto found = model.find(morton(at));
+          wrong += tree.test(at) != (found != model.end()) ? 1U : 0U;
+          wrong += tree.material(at) != (found != model.end() ? found->second : -1) ? 1U : 0U;
+        }
+        if (++step % 25 == 0) {
+          check_same(tree, model);
+        }
+      }
+      CHECK(wrong == 0);
+      check_same(tree, model);
+      CHECK(pool.intact());
+      CHECK(tree.solid_added() == 0);
+    }
+  }
+}
+
+TEST_CASE("octree: one set of voxels in any order -> the same tree") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const int level = 2 + static_cast<int>(seed % 4);
+    const Model model = random_model(random, level, 1 + static_cast<int>(seed % 3), 400);
+    std::vector<Voxel> voxels;
+    for (const auto& [index, material] : model) {
+      voxels.push_back({position(index), material});
+    }
+    for (int order = 0; order < 3; ++order) {
+      Pool pool = Pool::of_nodes(20000);
+      Octree tree;
+      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      std::size_t inserted = 0;
+      REQUIRE(tree.insert_all({voxels.data(), voxels.size()}, inserted) == Status::kOk);
+      CHECK(inserted == voxels.size());
+      check_same(tree, model);
+      std::shuffle(voxels.begin(), voxels.end(), random);
+    }
+  }
+}
+
+TEST_CASE(
+    "octree: every pool from no node to enough -> refused exactly when the result does not fit, unchanged") {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const int level = 1 + static_cast<int>(seed % 4);
+    const std::vector<Change> changes =
+        random_changes(random, level, 1 + static_cast<int>(seed % 3), 20 * kEffort);
+    std::size_t enough = 1;
+    Model whole;
+    for (const Change& change : changes) {
+      change.apply(whole);
+      enough = std::max(enough, nodes_of(whole, level));
+    }
+    for (std::size_t nodes = 0; nodes <= enough; ++nodes) {
+      Pool pool = Pool::of_nodes(nodes);
+      Octree tree;
+      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      REQUIRE(tree.capacity() == nodes);
+      Model model;
+      for (const Change& change : changes) {
+        Model changed = model;
+        change.apply(changed);
+        const std::vector<std::uint8_t> before = pool.contents();
+        const std::uint64_t voxels = tree.voxels();
+        const std::uint32_t used = tree.nodes_used();
+        const Status status = change.apply(tree);
+        if (nodes_of(changed, level) <= nodes) {
+          REQUIRE(status == Status::kOk);
+          model = changed;
+        } else {
+          REQUIRE(status == Status::kOutOfMemory);
+          CHECK(pool.contents() == before);
+          CHECK(tree.voxels() == voxels);
+          CHECK(tree.nodes_used() == used);
+        }
+      }
+      check_same(tree, model);
+      CHECK(pool.intact());
+    }
+  }
+}
+
+TEST_CASE(
+    "octree: every number of bytes at every address -> nothing outside is written, and the bound is enough") {
+  Random random(7);
+  const int level = 3;
+  const Model model = random_model(random, level, 2, 60);
+  const std::size_t enough = nodes_of(model, level);
+  for (std::size_t offset = 0; offset < 8; ++offset) {
+    for (std::size_t bytes = 0; bytes <= Octree::octree_bytes(enough); ++bytes) {
+      Pool pool(bytes, offset);
+      Octree tree;
+      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(pool.bytes().data)) % 4;
+      CHECK(tree.capacity() == (bytes < padding ? 0 : (bytes - padding) / 8));
+      bool refused = false;
+      for (const auto& [index, material] : model) {
+        const Status status = tree.insert(position(index), material);
+        refused = refused || status == Status::kOutOfMemory;
+      }
+      CHECK(pool.intact());
+      CHECK(refused == (tree.capacity() < enough));
+      if (bytes == Octree::octree_bytes(enough)) {
+        CHECK_FALSE(refused);
+      }
+      tree.set_coarsen(true);
+      for (const auto& [index, material] : model) {
+        REQUIRE(tree.insert(position(index), material) ==
+                (tree.capacity() > 0 ? Status::kOk : Status::kOutOfMemory));
+      }
+      CHECK(pool.intact());
+      if (tree.capacity() > 0) {
+        check_holds(tree, model);
+      }
+    }
+  }
+  CHECK(Octree::octree_bytes(SIZE_MAX / 2) == SIZE_MAX);
+}
+
+TEST_CASE("octree: a full cube voxel by voxel, in any order -> one node") {
+  const int level = 6;
+  std::vector<std::uint64_t> order(volume(level));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+  }
+  Pool pool = Pool::of_nodes(60000);
+  Octree tree;
+  REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+  for (const std::uint64_t index : order) {
+    REQUIRE(tree.insert(position(index), 9) == Status::kOk);
+  }
+  CHECK(text_of(tree) == "S9");
+  CHECK(tree.nodes_used() == 1);
+  CHECK(tree.used_bytes() == 8);
+  // In Morton order at most 7 finished blocks a level wait beside the path.
+  CHECK(tree.nodes_high_water() <= 8 * level);
+  Random random(3);
+  std::shuffle(order.begin(), order.end(), random);
+  tree.clear();
+  for (const std::uint64_t index : order) {
+    REQUIRE(tree.insert(position(index), 9) == Status::kOk);
+  }
+  CHECK(text_of(tree) == "S9");
+  CHECK(tree.voxels() == volume(level));
+}
+
+TEST_CASE("octree: a full cube of 2^10 a side, of blocks and one of them of voxels -> one node") {
+  const int level = 10;
+  const int block_level = 5;
+  Pool pool = Pool::of_nodes(100000);
+  Octree tree;
+  REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+  std::vector<std::uint64_t> order(volume(level - block_level));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+  }
+  Random random(4);
+  std::shuffle(order.begin(), order.end(), random);
+  for (const std::uint64_t block : order) {
+    const std::uint64_t first = block * volume(block_level);
+    if (block == order.back()) {
+      for (std::uint64_t index = first; index < first + volume(block_level); ++index) {
+        REQUIRE(tree.insert(position(index), 1) == Status::kOk);
+      }
+    } else {
+      REQUIRE(tree.insert_block(position(first), block_level, 1) == Status::kOk);
+    }
+  }
+  CHECK(text_of(tree) == "S1");
+  CHECK(tree.voxels() == std::uint64_t{1} << 30);
+}
+
+TEST_CASE("octree: insert_box -> the voxels of the box and no other") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const int level = 1 + below(random, 5);
+    const int side = 1 << level;
+    VoxelBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min[axis] = below(random, side);
+      box.max[axis] = box.min[axis] + below(random, side + 1 - box.min[axis]);
+    }
+    Model model = random_model(random, level, 2, 100);
+    Pool pool = Pool::of_nodes(40000);
+    Octree tree;
+    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+    fill(tree, model);
+    REQUIRE(tree.insert_box(box, 1) == Status::kOk);
+    for (int z = box.min.z; z < box.max.z; ++z) {
+      for (int y = box.min.y; y < box.max.y; ++y) {
+        for (int x = box.min.x; x < box.max.x; ++x) {
+          model[morton({x, y, z})] = 1;
+        }
+      }
+    }
+    check_same(tree, model);
+  }
+  Pool pool = Pool::of_nodes(1);
+  Octree tree;
+  REQUIRE(Octree::make(12, pool.bytes(), &tree) == Status::kOk);
+  CHECK(tree.insert_box({{0, 0, 0}, {4096, 4096, 4097}}, 1) == Status::kOutOfRange);
+  CHECK(tree.insert_box({{-1, 0, 0}, {4096, 4096, 4096}}, 1) == Status::kOutOfRange);
+  CHECK(tree.empty());
+  CHECK(tree.insert_box({{0, 0, 0}, {4096, 4096, 4096}}, 1) == Status::kOk);
+  CHECK(tree.voxels() == std::uint64_t{1} << 36);
+  CHECK(tree.nodes_used() == 1);
+}
+
+TEST_CASE("octree: everything removed -> no node in use, and the pool serves again without growing") {
+  Random random(11);
+  const int level = 5;
+  Pool pool = Pool::of_nodes(20000);
+  Octree tree;
+  REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+  const Model model = random_model(random, level, 3, 2000);
+  fill(tree, model);
+  const std::uint32_t high_water = tree.nodes_high_water();
+  for (int round = 0; round < 4; ++round) {
+    std::vector<std::uint64_t> order;
+    for (const auto& [index, material] : model) {
+      order.push_back(index);
+    }
+    for (const std::uint64_t index : order) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+    CHECK(tree.empty());
+    CHECK(tree.root() == Octree::kNone);
+    CHECK(tree.nodes_used() == 0);
+    CHECK(tree.used_bytes() == 0);
+    CHECK(tree.voxels() == 0);
+    fill(tree, model);
+    check_same(tree, model);
+  }
+  // Removal from a solid block may split it: a little more than the insertions needed, not four times that.
+  CHECK(tree.nodes_high_water() <= high_water + 8 * level);
+  CHECK(tree.high_water_bytes() == std::size_t{8} * tree.nodes_high_water());
+}
+
+TEST_CASE("octree: arguments out of range -> a status, and nothing happens") {
+  Pool pool = Pool::of_nodes(100);
+  Octree tree;
+  CHECK(Octree::make(0, pool.bytes(), &tree) == Status::kOutOfRange);
+  CHECK(Octree::make(13, pool.bytes(), &tree) == Status::kOutOfRange);
+  CHECK(tree.insert({0, 0, 0}) == Status::kOutOfMemory);
+  REQUIRE(Octree::make(3, pool.bytes(), &tree) == Status::kOk);
+  for (const Vec3i outside :
+       {Vec3i{8, 0, 0}, Vec3i{0, -1, 0}, Vec3i{0, 0, INT32_MIN}, Vec3i{INT32_MAX, 0, 0}}) {
+    CHECK(tree.insert(outside) == Status::kOutOfRange);
+    CHECK(tree.remove(outside) == Status::kOutOfRange);
+    CHECK(tree.insert_block(outside, 1, 0) == Status::kOutOfRange);
+    CHECK_FALSE(tree.test(outside));
+    CHECK(tree.material(outside) == -1);
+  }
+  CHECK(tree.insert_block({0, 0, 0}, 4, 0) == Status::kOutOfRange);
+  CHECK(tree.insert_block({0, 0, 0}, -1, 0) == Status::kOutOfRange);
+  CHECK(tree.insert_block({2, 0, 0}, 2, 0) == Status::kBadArgument);
+  CHECK(tree.remove({1, 2, 3}) == Status::kOk);
+  CHECK(tree.empty());
+  CHECK(tree.node(tree.root()).solid());
+  CHECK(tree.node(7).first_child == Octree::kNone);
+  CHECK(tree.insert_box({{3, 3, 3}, {3, 9, 9}}, 0) == Status::kOk);
+  CHECK(tree.empty());
+  std::size_t inserted = 9;
+  const Voxel voxels[] = {{{1, 1, 1}, 0}, {{2, 2, 2}, 0}, {{8, 0, 0}, 0}, {{3, 3, 3}, 0}};
+  CHECK(tree.insert_all(voxels, inserted) == Status::kOutOfRange);
+  CHECK(inserted == 2);
+  CHECK(tree.voxels() == 2);
+}
+
+TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes, node by node") {
+  for (std::uint64_t seed = 1; seed <= 40U * kEffort; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const int level = 1 + below(random, 5);
+    const int materials = seed % 2 == 0 ? 1 : 3;
+    Model model = random_model(random, level, materials, 10 + below(random, 150));
+    for (int scattered = below(random, 40); scattered > 0; --scattered) {
+      model[random() % volume(level)] = static_cast<std::uint8_t>(below(random, materials));
+    }
+    if (model.empty()) {
+      continue;
+    }
+    const std::size_t all = nodes_of(model, level);
+    Pool step_pool = Pool::of_nodes(all + 8 * static_cast<std::size_t>(level));
+    Octree stepwise;
+    REQUIRE(Octree::make(level, step_pool.bytes(), &stepwise) == Status::kOk);
+    fill(stepwise, model);
+    for (std::size_t max_nodes = all; max_nodes >= 1; max_nodes -= 1 + max_nodes / 8) {
+      CAPTURE(max_nodes);
+      Ref expected = canonical(model, level);
+      const std::uint64_t added = coarsen_slowly(expected, max_nodes);
+      Pool pool = Pool::of_nodes(all + 8 * static_cast<std::size_t>(level));
+      Octree tree;
+      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      fill(tree, model);
+      REQUIRE(tree.coarsen_to(max_nodes) == Status::kOk);
+      REQUIRE(text_of(tree) == text_of(expected));
+      CHECK(tree.nodes_used() == count_nodes(expected));
+      CHECK(tree.solid_added() == added);
+      CHECK(tree.voxels() == model.size() + added);
+      check_holds(tree, model);
+      // In one step or in many, the same.
+      REQUIRE(stepwise.coarsen_to(max_nodes) == Status::kOk);
+      REQUIRE(text_of(stepwise) == text_of(expected));
+      CHECK(stepwise.solid_added() == added);
+      CHECK(pool.intact());
+    }
+  }
+}
+
+TEST_CASE(
+    "octree: edits between coarsenings -> only what was asked for changes, and the tree stays canonical") {
+  for (std::uint64_t seed = 1; seed <= 20U * kEffort; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const int level = 1 + static_cast<int>(seed % 3);
+    const int materials = 1 + static_cast<int>(seed % 4);
+    Pool pool = Pool::of_nodes(10 + static_cast<std::size_t>(below(random, 200)));
+    Octree tree;
+    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+    for (const Change& change : random_changes(random, level, materials, 300)) {
+      std::vector<int> before = cells_of(tree);
+      bool wrong = false;
+      if (below(random, 10) == 0) {
+        const std::uint64_t added = tree.solid_added();
+        const std::uint64_t voxels = tree.voxels();
+        const std::size_t target = 1 + static_cast<std::size_t>(below(random, 60));
+        REQUIRE(tree.coarsen_to(target) == Status::kOk);
+        CHECK(tree.nodes_used() <= target);
+        CHECK(tree.voxels() - voxels == tree.solid_added() - added);
+        const std::vector<int> merged = cells_of(tree);
+        for (std::size_t i = 0; i < merged.size(); ++i) {
+          wrong = wrong || (merged[i] != before[i] && merged[i] < kMergedCell);
+        }
+        before = merged;
+      }
+      const Status status = change.apply(tree);
+      const std::vector<int> after = cells_of(tree);
+      if (status == Status::kOk) {
+        const std::uint64_t first = morton(change.at);
+        const std::uint64_t count =
+            change.kind == Change::Kind::kBlock ? volume(change.block_level) : std::uint64_t{1};
+        for (std::uint64_t index = 0; index < before.size(); ++index) {
+          if (index < first || index >= first + count) {
+            // The other seven of a merged block that lost a voxel are single voxels from then on.
+            const bool neighbour = index / 8 == first / 8 && before[index] >= kMergedCell;
+            wrong = wrong || (neighbour ? after[index] % kMergedCell != before[index] % kMergedCell
+                                        : after[index] != before[index]);
+          } else if (change.kind == Change::Kind::kRemove) {
+            wrong = wrong || after[index] != -1;
+          } else {
+            // Inside a merged block nothing changes.
+            wrong = wrong ||
+                    (after[index] != change.material && (after != before || before[first] < kMergedCell));
+          }
+        }
+      } else {
+        CHECK(status == Status::kOutOfMemory);
+        CHECK(after == before);
+      }
+      CHECK_FALSE(wrong);
+      if (!tree.empty()) {
+        Ref ref = read(tree, tree.root(), level);
+        CHECK(count_nodes(ref) == tree.nodes_used());
+        CHECK(count_solid(ref) == tree.voxels());
+        const std::string text = text_of(ref);
+        normalise(ref);
+        CHECK(text_of(ref) == text);
+      }
+    }
+    CHECK(pool.intact());
+  }
+}
+
+TEST_CASE(
+    "octree: a smaller budget -> a superset of the larger one's solid, as many nodes as allowed or fewer") {
+  Random random(21);
+  const int level = 8;
+  Model model;
+  for (int i = 0; i < 3000; ++i) {
+    const int spread = 1 << (3 + below(random, 5));
+    model[morton({below(random, spread), below(random, 256), below(random, spread)})] = 0;
+  }
+  std::uint64_t last_voxels = 0;
+  Ref last = canonical(model, level);
+  for (std::size_t max_nodes = nodes_of(model, level); max_nodes > 0; max_nodes = max_nodes * 2 / 3) {
+    Pool pool = Pool::of_nodes(20000);
+    Octree tree;
+    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+    fill(tree, model);
+    REQUIRE(tree.coarsen_to(max_nodes) == Status::kOk);
+    CHECK(tree.nodes_used() <= max_nodes);
+    CHECK(tree.voxels() >= last_voxels);
+    CHECK(tree.voxels() == model.size() + tree.solid_added());
+    CHECK(count_solid(read(tree, tree.root(), level)) == tree.voxels());
+    check_holds(tree, model);
+    last_voxels = tree.voxels();
+    const Ref now = read(tree, tree.root(), level);
+    CHECK(covers(now, last));
+    last = now;
+  }
+  CHECK(last_voxels == volume(level));
+}
+
+TEST_CASE(
+    "octree: streaming into a full pool -> every voxel solid, the same tree each time, nothing outside "
+    "written") {
+  for (const std::size_t nodes : {1U, 2U, 3U, 7U, 16U, 40U, 500U, 3000U}) {
+    for (const int materials : {1, 5}) {
+      CAPTURE(nodes);
+      std::string first;
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        Random random(31);
+        Pool pool = Pool::of_nodes(nodes);
+        Octree tree;
+        REQUIRE(Octree::make(8, pool.bytes(), &tree) == Status::kOk);
+        tree.set_coarsen(true);
+        Model model;
+        for (int i = 0; i < 1500 * kEffort; ++i) {
+          const Vec3i at{below(random, 256), below(random, 256), below(random, 32)};
+          const auto material = static_cast<std::uint8_t>(below(random, materials));
+          REQUIRE(tree.insert(at, material) == Status::kOk);
+          REQUIRE(tree.test(at));
+          model[morton(at)] = material;
+        }
+        check_holds(tree, model);
+        const Ref ref = read(tree, tree.root(), 8);
+        CHECK(count_nodes(ref) == tree.nodes_used());
+        CHECK(count_solid(ref) == tree.voxels());
+        CHECK(tree.voxels() <= model.size() + tree.solid_added());
+        CHECK(pool.intact());
+        if (repeat == 0) {
+          first = text_of(ref);
+        } else {
+          CHECK(text_of(ref) == first);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "octree: coarsening asked for in a pool of no node -> out of memory; of one node -> the whole world") {
+  Pool none = Pool::of_nodes(0);
+  Octree tree;
+  REQUIRE(Octree::make(12, none.bytes(), &tree) == Status::kOk);
+  tree.set_coarsen(true);
+  CHECK(tree.insert({1, 2, 3}, 4) == Status::kOutOfMemory);
+  CHECK(tree.empty());
+  Pool one = Pool::of_nodes(1);
+  REQUIRE(Octree::make(12, one.bytes(), &tree) == Status::kOk);
+  tree.set_coarsen(true);
+  CHECK(tree.insert({1, 2, 3}, 4) == Status::kOk);
+  CHECK(text_of(tree) == "M4");
+  CHECK(tree.solid_added() == (std::uint64_t{1} << 36) - 1);
+  // The longest path that fits: 3 nodes of 12.
+  Pool three = Pool::of_nodes(3);
+  REQUIRE(Octree::make(12, three.bytes(), &tree) == Status::kOk);
+  tree.set_coarsen(true);
+  CHECK(tree.insert({1, 2, 3}, 4) == Status::kOk);
+  CHECK(tree.voxels() == volume(10));
+  CHECK(tree.solid_added() == volume(10) - 1);
+  // A world of one voxel node without room for voxel materials.
+  Pool small = Pool::of_nodes(1);
+  REQUIRE(Octree::make(1, small.bytes(), &tree) == Status::kOk);
+  tree.set_coarsen(true);
+  CHECK(tree.insert({1, 0, 0}, 4) == Status::kOk);
+  CHECK(tree.insert({0, 0, 0}, 5) == Status::kOk);
+  CHECK(text_of(tree) == "M5");
+  CHECK(tree.voxels() == 8);
+  CHECK(tree.solid_added() == 6);
+  REQUIRE(Octree::make(1, small.bytes(), &tree) == Status::kOk);
+  tree.set_coarsen(true);
+  CHECK(tree.insert({0, 0, 0}, 4) == Status::kOk);
+  CHECK(tree.insert({1, 0, 0}, 5) == Status::kOk);
+  CHECK(text_of(tree) == "M4");
+  // A full world keeps its material and is marked, because it is no longer exact.
+  REQUIRE(Octree::make(4, one.bytes(), &tree) == Status::kOk);
+  tree.set_coarsen(true);
+  REQUIRE(tree.insert_block({0, 0, 0}, 4, 7) == Status::kOk);
+  CHECK(tree.insert({3, 3, 3}, 8) == Status::kOk);
+  CHECK(text_of(tree) == "M7");
+  CHECK(tree.solid_added() == 0);
+}
+
+TEST_CASE("octree: the largest world, a voxel in each corner -> exact, and coarsened to one block of 2^36") {
+  Pool pool = Pool::of_nodes(200);
+  Octree tree;
+  REQUIRE(Octree::make(12, pool.bytes(), &tree) == Status::kOk);
+  Model model;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3i at{(corner & 1) * 4095, (corner >> 1 & 1) * 4095, (corner >> 2) * 4095};
+    model[morton(at)] = static_cast<std::uint8_t>(corner);
+  }
+  fill(tree, model);
+  check_same(tree, model);
+  CHECK(tree.nodes_used() == 1 + 8 * 11);
+  CHECK(tree.make_room(199) == Status::kOk);
+  CHECK(text_of(tree) == "M0");
+  CHECK(tree.voxels() == std::uint64_t{1} << 36);
+  CHECK(tree.solid_added() == (std::uint64_t{1} << 36) - 8);
+}
+
+TEST_CASE("octree: make_room and coarsen_to -> at least what is asked for, or out of memory and unchanged") {
+  Random random(41);
+  const int level = 4;
+  const Model model = random_model(random, level, 2, 120);
+  const std::size_t all = nodes_of(model, level);
+  for (std::size_t wanted = 0; wanted <= all + 3; ++wanted) {
+    Pool pool = Pool::of_nodes(all + 1);
+    Octree tree;
+    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+    CHECK(tree.make_room(all + 1) == Status::kOk);
+    CHECK(tree.make_room(all + 2) == Status::kOutOfMemory);
+    CHECK(tree.coarsen_to(0) == Status::kOk);
+    fill(tree, model);
+    const std::vector<std::uint8_t> before = pool.contents();
+    const Status status = tree.make_room(wanted);
+    if (wanted <= all) {
+      CHECK(status == Status::kOk);
+      CHECK(tree.nodes_free() >= wanted);
+    } else {
+      CHECK(status == Status::kOutOfMemory);
+    }
+    if (wanted <= 1 || wanted > all) {
+      CHECK(pool.contents() == before);
+      check_same(tree, model);
+    }
+    check_holds(tree, model);
+    CHECK(tree.coarsen_to(0) == Status::kOutOfMemory);
+  }
+}
+
+TEST_CASE("octree: a merged block -> insertion changes nothing, removal splits it into merged blocks") {
+  Pool pool = Pool::of_nodes(100);
+  Octree tree;
+  REQUIRE(Octree::make(3, pool.bytes(), &tree) == Status::kOk);
+  REQUIRE(tree.insert({0, 0, 0}, 3) == Status::kOk);
+  REQUIRE(tree.insert({7, 7, 7}, 4) == Status::kOk);
+  REQUIRE(tree.coarsen_to(1) == Status::kOk);
+  CHECK(text_of(tree) == "M3");
+  CHECK(tree.insert({5, 5, 5}, 9) == Status::kOk);
+  CHECK(tree.insert_block({4, 4, 4}, 2, 9) == Status::kOk);
+  CHECK(text_of(tree) == "M3");
+  CHECK(tree.material({5, 5, 5}) == 3);
+  CHECK(tree.remove({0, 0, 0}) == Status::kOk);
+  CHECK(text_of(tree) == "(255 (255 (254:3) M3 M3 M3 M3 M3 M3 M3) M3 M3 M3 M3 M3 M3 M3)");
+  CHECK(tree.voxels() == 511);
+  CHECK(tree.solid_added() == 510);
+  CHECK(tree.insert({0, 0, 0}, 3) == Status::kOk);
+  CHECK(text_of(tree) == "(255 (255 S3 M3 M3 M3 M3 M3 M3 M3) M3 M3 M3 M3 M3 M3 M3)");
+  // Truly full and merged of one material: merging them again adds nothing, so it comes first.
+  CHECK(tree.make_room(99) == Status::kOk);
+  CHECK(text_of(tree) == "M3");
+  CHECK(tree.solid_added() == 510);
+}
+
+TEST_CASE(
+    "octree: blocks of several materials -> merged before anything is added, with the largest piece's "
+    "material") {
+  Pool pool = Pool::of_nodes(100);
+  Octree tree;
+  REQUIRE(Octree::make(3, pool.bytes(), &tree) == Status::kOk);
+  REQUIRE(tree.insert_block({0, 0, 0}, 2, 1) == Status::kOk);
+  REQUIRE(tree.insert_block({2, 2, 2}, 1, 2) == Status::kOk);
+  REQUIRE(tree.insert({0, 0, 0}, 3) == Status::kOk);
+  REQUIRE(tree.insert({7, 7, 7}, 1) == Status::kOk);
+  CHECK(tree.nodes_used() == 20);
+  REQUIRE(tree.coarsen_to(12) == Status::kOk);
+  CHECK(tree.solid_added() == 0);
+  CHECK(text_of(tree) == "(129 (255 M3 S1 S1 S1 S1 S1 S1 S2) (128 (128:1)))");
+  REQUIRE(tree.coarsen_to(4) == Status::kOk);
+  CHECK(tree.solid_added() == 0);
+  CHECK(text_of(tree) == "(129 M1 (128 (128:1)))");
+  REQUIRE(tree.coarsen_to(3) == Status::kOk);
+  CHECK(text_of(tree) == "(129 M1 M1)");
+  CHECK(tree.solid_added() == 63);
+}
+
+TEST_CASE(
+    "octree: merging makes eight merged blocks of one material -> one block, and edits elsewhere stay "
+    "right") {
+  Pool pool = Pool::of_nodes(200);
+  Octree tree;
+  REQUIRE(Octree::make(3, pool.bytes(), &tree) == Status::kOk);
+  // One 4 x 4 x 4 block of eight voxel nodes, each of material 1 but for its last voxel.
+  for (std::uint64_t index = 0; index < 64; ++index) {
+    REQUIRE(tree.insert(position(index), index % 8 == 7 ? 2 : 1) == Status::kOk);
+  }
+  REQUIRE(tree.insert({7, 7, 7}, 3) == Status::kOk);
+  CHECK(tree.nodes_used() == 1 + 1 + 8 * 9 + 2);
+  REQUIRE(tree.coarsen_to(1 + 1 + 8 + 2) == Status::kOk);
+  CHECK(text_of(tree) == "(129 M1 (128 (128:3)))");
+  CHECK(tree.insert({6, 7, 7}, 3) == Status::kOk);
+  CHECK(text_of(tree) == "(129 M1 (128 (192:3)))");
+  CHECK(tree.solid_added() == 0);
+}
+
+TEST_CASE("octree: pieces of a merged block that was split -> no larger than the block they stand for") {
+  Pool pool = Pool::of_nodes(100);
+  Octree tree;
+  REQUIRE(Octree::make(4, pool.bytes(), &tree) == Status::kOk);
+  // Half the world of material 1, merged; what is left of it after a removal are blocks of 1 to 4^3 voxels.
+  REQUIRE(tree.insert_block({0, 0, 0}, 3, 1) == Status::kOk);
+  REQUIRE(tree.insert({1, 1, 1}, 2) == Status::kOk);
+  REQUIRE(tree.make_room(99) == Status::kOk);
+  REQUIRE(text_of(tree) == "M1");
+  REQUIRE(tree.remove({0, 0, 0}) == Status::kOk);
+  // All but one small merged block in the lowest 4 x 4 x 4 go; then comes a true block as large as that one
+  // was.
+  for (std::uint64_t block = 2; block < 8; ++block) {
+    for (std::uint64_t index = block * 8; index < block * 8 + 8; ++index) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+  }
+  for (std::uint64_t index = 1; index < 8; ++index) {
+    REQUIRE(tree.remove(position(index)) == Status::kOk);
+  }
+  REQUIRE(tree.insert_block({0, 0, 0}, 1, 6) == Status::kOk);
+  CHECK(tree.material({2, 0, 0}) == 1);
+  // A tie of two blocks of eight voxels: the lower one's material.
+  for (std::uint64_t octant = 1; octant < 8; ++octant) {
+    for (std::uint64_t index = octant * 64; index < (octant + 1) * 64; ++index) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+    for (std::uint64_t index = octant * 512; index < (octant + 1) * 512; ++index) {
+      REQUIRE(tree.remove(position(index)) == Status::kOk);
+    }
+  }
+  CHECK(text_of(tree) == "(1 (1 (3 S6 M1)))");
+  REQUIRE(tree.coarsen_to(3) == Status::kOk);
+  CHECK(text_of(tree) == "(1 (1 M6))");
+  // And a block merged from single voxels stays that small a piece: two true voxels outweigh its parts.
+  REQUIRE(Octree::make(2, pool.bytes(), &tree) == Status::kOk);
+  REQUIRE(tree.insert({0, 0, 0}, 3) == Status::kOk);
+  REQUIRE(tree.insert({3, 3, 3}, 4) == Status::kOk);
+  REQUIRE(tree.coarsen_to(1) == Status::kOk);
+  for (std::uint64_t index = 0; index < 8; ++index) {
+    REQUIRE(tree.remove(position(index)) == Status::kOk);
+  }
+  REQUIRE(tree.insert({0, 0, 0}, 6) == Status::kOk);
+  REQUIRE(tree.insert({1, 0, 0}, 6) == Status::kOk);
+  CHECK(text_of(tree) == "(255 (3:6) M3 M3 M3 M3 M3 M3 M3)");
+  REQUIRE(tree.coarsen_to(1) == Status::kOk);
+  CHECK(text_of(tree) == "M6");
+}
+
+TEST_CASE(
+    "octree: coarsening at a price -> the nodes foretold, never more at a higher price, all kept solid") {
+  std::mt19937_64 random(3);
+  std::vector<std::uint8_t> bytes(Octree::octree_bytes(20000));
+  std::vector<Vec3i> voxels;
+  for (int i = 0; i < 1500; ++i) {
+    const auto place = [&] { return static_cast<std::int32_t>(random() % 32); };
+    voxels.push_back({place(), place(), place()});
+  }
+  uint32_t before = UINT32_MAX;
+  for (int step = 0; step < Octree::kPriceSteps; step += 4) {
+    CAPTURE(step);
+    Octree tree;
+    REQUIRE(Octree::make(5, {bytes.data(), bytes.size()}, &tree) == Status::kOk);
+    for (const Vec3i& voxel : voxels) {
+      REQUIRE(tree.insert(voxel) == Status::kOk);
+    }
+    const uint64_t exact_voxels = tree.voxels();
+    const uint32_t exact_nodes = tree.nodes_used();
+    const uint32_t foretold = tree.nodes_at(step);
+    CHECK(tree.nodes_used() == exact_nodes);
+    CHECK(foretold <= before);
+    before = foretold;
+    tree.coarsen_at(step);
+    CHECK(tree.nodes_used() == foretold);
+    CHECK(tree.nodes_at(step) == foretold);
+    CHECK(tree.voxels() == exact_voxels + tree.solid_added());
+    // What was added is at most the price for each node saved: 2^(step / 4 - 27).
+    const double price = std::ldexp(1.0, step / 4 - 27);
+    CHECK(static_cast<double>(tree.solid_added()) <= price * (exact_nodes - tree.nodes_used()));
+    for (const Vec3i& voxel : voxels) {
+      CHECK(tree.test(voxel));
+    }
+    REQUIRE(tree.insert({31, 31, 31}) == Status::kOk);  // still a tree that can be edited
+  }
+  CHECK(before == 1);
+  Octree empty;
+  REQUIRE(Octree::make(5, {bytes.data(), bytes.size()}, &empty) == Status::kOk);
+  CHECK(empty.nodes_at(100) == 0);
+  empty.coarsen_at(100);
+  CHECK(empty.empty());
+}
+
+}  // namespace thimble::tools
