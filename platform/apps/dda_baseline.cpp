@@ -17,8 +17,8 @@ uint32_t scaled(uint32_t distance_q8, uint32_t per_voxel_q16) {
 struct Rays {
   const uint8_t* bits;
   int32_t origin_q8[3];
-  int32_t min[3];
-  int32_t max[3];
+  int32_t low[3];
+  int32_t high[3];
   int32_t stride[3];
 };
 
@@ -30,8 +30,8 @@ int32_t trace_dda(const Rays& rays, const int32_t (&direction)[3]) {
   int32_t axis = 0;
   for (int a = 0; a < 3; ++a) {
     const int32_t d = direction[a];
-    const int32_t below = rays.min[a] * 256 - rays.origin_q8[a];
-    const int32_t above = rays.max[a] * 256 - rays.origin_q8[a];
+    const int32_t below = rays.low[a] * 256 - rays.origin_q8[a];
+    const int32_t above = rays.high[a] * 256 - rays.origin_q8[a];
     if (d == 0) {
       if (below > 0 || above <= 0) {
         return -1;
@@ -68,9 +68,9 @@ int32_t trace_dda(const Rays& rays, const int32_t (&direction)[3]) {
     const int32_t at = rays.origin_q8[a] + static_cast<int32_t>(int64_t{d} * enter >> 20);
     int32_t cell = at >> 8;
     if (enter != 0 && a == axis) {
-      cell = d > 0 ? rays.min[a] : rays.max[a] - 1;
+      cell = d > 0 ? rays.low[a] : rays.high[a] - 1;
     }
-    cell = cell < rays.min[a] ? rays.min[a] : cell >= rays.max[a] ? rays.max[a] - 1 : cell;
+    cell = cell < rays.low[a] ? rays.low[a] : cell >= rays.high[a] ? rays.high[a] - 1 : cell;
     const int32_t plane = (d > 0 ? cell + 1 : cell) * 256 - rays.origin_q8[a];
     next[a] = d == 0 ? kFar : scaled(static_cast<uint32_t>(plane < 0 ? -plane : plane), delta[a]);
     address += cell * rays.stride[a];
@@ -154,8 +154,8 @@ uint32_t draw_dda(const BitWorld& world, const Camera& camera, const uint8_t (&f
   int32_t down[3];
   for (int axis = 0; axis < 3; ++axis) {
     rays.origin_q8[axis] = camera.eye()[axis].raw;
-    rays.min[axis] = world.bounds.min[axis];
-    rays.max[axis] = world.bounds.max[axis];
+    rays.low[axis] = world.bounds.low[axis];
+    rays.high[axis] = world.bounds.high[axis];
     rays.stride[axis] = int32_t{1} << (axis * world.level);
     const Camera::Affine& affine = camera.affine();
     // Half a unit, so that cutting off rounds.

@@ -111,12 +111,12 @@ inline Orbit orbit_of(const SceneCamera& camera) {
 inline Orbit orbit_of(const VoxelBox& box) {
   Orbit orbit;
   const auto middle = [](int32_t low, int32_t high) { return Q8::from_raw((low + high) * (Q8::kOne / 2)); };
-  orbit.camera.target = {middle(box.min.x, box.max.x), middle(box.min.y, box.max.y),
-                         middle(box.min.z, box.max.z)};
+  orbit.camera.target = {middle(box.low.x, box.high.x), middle(box.low.y, box.high.y),
+                         middle(box.low.z, box.high.z)};
   orbit.yaw = kTurn / 20;
   orbit.pitch = kTurn * 26 / 360;
-  orbit.distance_q8 = length_of(int64_t{box.max.x - box.min.x} * 192, int64_t{box.max.y - box.min.y} * 192,
-                                int64_t{box.max.z - box.min.z} * 192) +
+  orbit.distance_q8 = length_of(int64_t{box.high.x - box.low.x} * 192, int64_t{box.high.y - box.low.y} * 192,
+                                int64_t{box.high.z - box.low.z} * 192) +
                       Q8::kOne;
   return orbit;
 }

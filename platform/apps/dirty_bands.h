@@ -91,8 +91,8 @@ class DirtyBands {
 
 /// A box in the air, in 1/256 voxel.
 struct BoxQ8 {
-  Vec3i min;
-  Vec3i max;
+  Vec3i low;
+  Vec3i high;
 };
 
 namespace bands {
@@ -139,9 +139,9 @@ inline bool is_beyond(const Camera& camera, int32_t row, int32_t inner, const Bo
   const Vec3i origin{camera.eye().x.raw + start.x, camera.eye().y.raw + start.y,
                      camera.eye().z.raw + start.z};
   for (int corner = 0; corner < 8; ++corner) {
-    const int64_t at = side(((corner & 1) != 0 ? box.max.x : box.min.x) - origin.x,
-                            ((corner & 2) != 0 ? box.max.y : box.min.y) - origin.y,
-                            ((corner & 4) != 0 ? box.max.z : box.min.z) - origin.z);
+    const int64_t at = side(((corner & 1) != 0 ? box.high.x : box.low.x) - origin.x,
+                            ((corner & 2) != 0 ? box.high.y : box.low.y) - origin.y,
+                            ((corner & 4) != 0 ? box.high.z : box.low.z) - origin.z);
     if (at == 0 || inner_side == 0 || (at > 0) == (inner_side > 0)) {
       return false;
     }

@@ -68,14 +68,14 @@ inline bool enter_box(const Ray& ray, const BoxQ8& box, BallHit* hit) {
     const int32_t along = ray.direction[axis];
     const int32_t from = ray.origin[axis].raw;
     if (along == 0) {
-      if (from < box.min[axis] || from >= box.max[axis]) {
+      if (from < box.low[axis] || from >= box.high[axis]) {
         return false;
       }
       continue;
     }
     const int32_t speed = along < 0 ? -along : along;
-    const int32_t near = along > 0 ? box.min[axis] - from : from - box.max[axis];
-    const int32_t far = along > 0 ? box.max[axis] - from : from - box.min[axis];
+    const int32_t near = along > 0 ? box.low[axis] - from : from - box.high[axis];
+    const int32_t far = along > 0 ? box.high[axis] - from : from - box.low[axis];
     if (int64_t{near} * in_speed > int64_t{in} * speed) {
       in = near;
       in_speed = speed;
@@ -104,8 +104,8 @@ inline bool enter_ball(const Ray& ray, const FallingBall& ball, const BallSize& 
   for (int axis = 0; axis < 3; ++axis) {
     // Half as thick along one axis.
     BoxQ8 box = whole;
-    box.min[axis] += size.half_q8 / 2;
-    box.max[axis] -= size.half_q8 / 2;
+    box.low[axis] += size.half_q8 / 2;
+    box.high[axis] -= size.half_q8 / 2;
     if (enter_box(ray, box, &first) &&
         (!found || int64_t{first.distance} * hit->speed < int64_t{hit->distance} * first.speed)) {
       *hit = first;

@@ -482,7 +482,7 @@ void set_course(Course& course, unsigned mirrored, int c) {
     const bool flipped = (mirrored >> axis & 1U) != 0;
     const int32_t side = frame.side[axis];
     const int32_t origin = frame.camera.eye()[axis].raw;
-    const int32_t near_q8 = (flipped ? box.max[axis] : box.min[axis]) * (4 * Q8::kOne);
+    const int32_t near_q8 = (flipped ? box.high[axis] : box.low[axis]) * (4 * Q8::kOne);
     course.origin[axis] = (flipped ? near_q8 - origin : origin - near_q8) + (axis == c ? 0 : kOutsideQ8);
     course.stride[axis] = flipped ? -stride : stride;
     course.next_brick[axis] = course.stride[axis];
@@ -1056,8 +1056,8 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   Frame frame{tree, map, camera, shading, band.format, 0, {}, {}, {}, {}, {}, {}, {}};
   frame.background = ink_of(band.format, shade(Hit{}, Ray{}, camera, shading));
   for (int axis = 0; axis < 3; ++axis) {
-    frame.side[axis] = map.box().max[axis] - map.box().min[axis];
-    frame.eye[axis] = camera.eye()[axis].raw - map.box().min[axis] * (4 * Q8::kOne);
+    frame.side[axis] = map.box().high[axis] - map.box().low[axis];
+    frame.eye[axis] = camera.eye()[axis].raw - map.box().low[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
   margins_of(camera.affine(), kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);

@@ -54,8 +54,8 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
   int64_t leave_num = 1;
   int64_t leave_den = 0;  // never
   for (int axis = 0; axis < 3; ++axis) {
-    const int64_t low = int64_t{box.min[axis]} * Q8::kOne;
-    const int64_t high = int64_t{box.max[axis]} * Q8::kOne;
+    const int64_t low = int64_t{box.low[axis]} * Q8::kOne;
+    const int64_t high = int64_t{box.high[axis]} * Q8::kOne;
     int64_t before = low - rays.origin_high[axis];   // at least so far to go, for rays that go up
     int64_t through = high - rays.origin_low[axis];  // at most so far
     int64_t slowest = rays.direction_low[axis];

@@ -44,7 +44,7 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     int64_t dot = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const int32_t plane = ((corner >> axis) & 1U) != 0 ? bounds.max[axis] : bounds.min[axis];
+      const int32_t plane = ((corner >> axis) & 1U) != 0 ? bounds.high[axis] : bounds.low[axis];
       dot += int64_t{plane * Q8::kOne - camera.eye()[axis].raw} * forward[axis];
     }
     near_dot = dot < near_dot ? dot : near_dot;

@@ -21,11 +21,11 @@ constexpr uint32_t mask_to(int32_t to) {
 // `box` without what lies outside a field of that size; empty boxes come out with no rows.
 CellBox clipped(const CellBox& box, int32_t width, int32_t height) {
   CellBox result = box;
-  result.min.x = box.min.x < 0 ? 0 : box.min.x;
-  result.min.y = box.min.y < 0 ? 0 : box.min.y;
-  result.max.x = box.max.x > width ? width : box.max.x;
-  result.max.y = box.max.y > height ? height : box.max.y;
-  if (result.min.x >= result.max.x || result.min.y >= result.max.y) {
+  result.low.x = box.low.x < 0 ? 0 : box.low.x;
+  result.low.y = box.low.y < 0 ? 0 : box.low.y;
+  result.high.x = box.high.x > width ? width : box.high.x;
+  result.high.y = box.high.y > height ? height : box.high.y;
+  if (result.low.x >= result.high.x || result.low.y >= result.high.y) {
     return {};
   }
   return result;
@@ -35,7 +35,7 @@ CellBox clipped(const CellBox& box, int32_t width, int32_t height) {
 class Columns {
  public:
   explicit Columns(const CellBox& box)
-      : first_(box.min.x >> 5), last_((box.max.x - 1) >> 5), min_x_(box.min.x), max_x_(box.max.x) {}
+      : first_(box.low.x >> 5), last_((box.high.x - 1) >> 5), min_x_(box.low.x), max_x_(box.high.x) {}
 
   int32_t first() const { return first_; }
   int32_t last() const { return last_; }
@@ -55,14 +55,14 @@ class Columns {
 // false.
 template <class Words, class Visit>
 void for_each_word(Words* words, int32_t height, const CellBox& box, Visit visit) {
-  if (box.min.y >= box.max.y) {
+  if (box.low.y >= box.high.y) {
     return;
   }
   const Columns columns(box);
   for (int32_t column = columns.first(); column <= columns.last(); ++column) {
     const uint32_t mask = columns.mask(column);
     Words* down = words + column * height;
-    for (int32_t y = box.min.y; y < box.max.y; ++y) {
+    for (int32_t y = box.low.y; y < box.high.y; ++y) {
       if (!visit(down[y], mask)) {
         return;
       }
@@ -107,7 +107,7 @@ void for_each_row(const DiscStamp& disc, const Vec2i& corner, int32_t width, int
 uint32_t disc_cells(const DiscStamp& disc) {
   uint32_t cells = 0;
   for_each_row(disc, {0, 0}, kMaxDisc, kMaxDisc, [&cells](const CellBox& span) {
-    cells += static_cast<uint32_t>(span.max.x - span.min.x);
+    cells += static_cast<uint32_t>(span.high.x - span.low.x);
     return true;
   });
   return cells;
@@ -187,7 +187,7 @@ uint32_t BitField::count(const CellBox& box) const {
 bool BitField::first(const CellBox& box, Vec2i* at) const {
   const CellBox inside = clipped(box, width_, height_);
   const Columns columns(inside);
-  for (int32_t y = inside.min.y; y < inside.max.y; ++y) {
+  for (int32_t y = inside.low.y; y < inside.high.y; ++y) {
     for (int32_t column = columns.first(); column <= columns.last(); ++column) {
       const uint32_t found = cells_32(column, y) & columns.mask(column);
       if (found != 0) {
@@ -202,7 +202,7 @@ bool BitField::first(const CellBox& box, Vec2i* at) const {
 bool BitField::first_from_right(const CellBox& box, Vec2i* at) const {
   const CellBox inside = clipped(box, width_, height_);
   const Columns columns(inside);
-  for (int32_t y = inside.min.y; y < inside.max.y; ++y) {
+  for (int32_t y = inside.low.y; y < inside.high.y; ++y) {
     for (int32_t column = columns.last(); column >= columns.first(); --column) {
       const uint32_t found = cells_32(column, y) & columns.mask(column);
       if (found != 0) {

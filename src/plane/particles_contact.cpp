@@ -116,15 +116,15 @@ void ParticleWorld::contacts_at(uint32_t self, const DiscStamp& disc, Vec2i plac
                     {place.x + bits::bit_length(columns), place.y + last + 1}};
   // A ball's square shares cells with the box when its centre, moved by half its diameter less half a cell,
   // lies within that of the box's corner and the box's size and as much again: one comparison an axis.
-  const uint32_t corner_x = static_cast<uint32_t>(box.min.x) << 16;
-  const uint32_t corner_y = static_cast<uint32_t>(box.min.y) << 16;
-  const uint32_t size_x = static_cast<uint32_t>(box.max.x - box.min.x) << 16;
-  const uint32_t size_y = static_cast<uint32_t>(box.max.y - box.min.y) << 16;
+  const uint32_t corner_x = static_cast<uint32_t>(box.low.x) << 16;
+  const uint32_t corner_y = static_cast<uint32_t>(box.low.y) << 16;
+  const uint32_t size_x = static_cast<uint32_t>(box.high.x - box.low.x) << 16;
+  const uint32_t size_y = static_cast<uint32_t>(box.high.y - box.low.y) << 16;
   const CellRange range = cells_around(box, config_.most_diameter / 2);
   // From the side on which the cells lie of the disc: what they belong to is there, and the rest is not
   // looked at then. The order makes no difference to what is found.
-  const bool upwards = box.min.y + box.max.y > 2 * place.y + disc.diameter;
-  const bool leftwards = box.min.x + box.max.x > 2 * place.x + disc.diameter;
+  const bool upwards = box.low.y + box.high.y > 2 * place.y + disc.diameter;
+  const bool leftwards = box.low.x + box.high.x > 2 * place.x + disc.diameter;
   const int32_t line_step = upwards ? -cells_across_ : cells_across_;
   const int32_t cell_step = leftwards ? -1 : 1;
   const uint32_t* line =

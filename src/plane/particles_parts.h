@@ -122,15 +122,15 @@ struct ParticleWorld::Window {
   Vec2i end;  // what was loaded is [base, end)
 
   bool covers(const CellBox& box) const {
-    return ((box.min.x - base.x) | (box.min.y - base.y) | (end.x - box.max.x) | (end.y - box.max.y)) >= 0;
+    return ((box.low.x - base.x) | (box.low.y - base.y) | (end.x - box.high.x) | (end.y - box.high.y)) >= 0;
   }
   // Whether there are any in `box`, which lies in the window.
   bool any_in(const CellBox& box) const {
     uint32_t found = 0;
-    for (int32_t row = box.min.y - base.y; row < box.max.y - base.y; ++row) {
+    for (int32_t row = box.low.y - base.y; row < box.high.y - base.y; ++row) {
       found |= rows[row];
     }
-    return (found >> (box.min.x - base.x)) << (32 - (box.max.x - box.min.x)) != 0;
+    return (found >> (box.low.x - base.x)) << (32 - (box.high.x - box.low.x)) != 0;
   }
   // The cells under a disc at `place`, which lies in the window, as rows from its corner on; which rows have
   // any, as bits.
@@ -202,10 +202,10 @@ inline ParticleWorld::CellRange ParticleWorld::cells_around(const CellBox& box, 
   const auto clamp = [](int32_t value, int32_t limit) {
     return value < 0 ? 0 : value < limit ? value : limit - 1;
   };
-  return {clamp((box.min.x - reach) >> cell_shift_, cells_across_),
-          clamp((box.min.y - reach) >> cell_shift_, cells_down_),
-          clamp((box.max.x - 1 + reach) >> cell_shift_, cells_across_),
-          clamp((box.max.y - 1 + reach) >> cell_shift_, cells_down_)};
+  return {clamp((box.low.x - reach) >> cell_shift_, cells_across_),
+          clamp((box.low.y - reach) >> cell_shift_, cells_down_),
+          clamp((box.high.x - 1 + reach) >> cell_shift_, cells_across_),
+          clamp((box.high.y - 1 + reach) >> cell_shift_, cells_down_)};
 }
 
 inline void ParticleWorld::set_awake_bit(uint32_t id) {

@@ -171,8 +171,8 @@ void ParticleWorld::support_left(const CellBox& box, bool for_good) {
       for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
         const Ball& ball = balls_[id];
         const Vec2i corner = corner_of(ball);
-        if ((ball.flags & kAsleep) == 0 || corner.x > box.max.x || corner.y > box.max.y ||
-            corner.x + ball.diameter < box.min.x || corner.y + ball.diameter < box.min.y) {
+        if ((ball.flags & kAsleep) == 0 || corner.x > box.high.x || corner.y > box.high.y ||
+            corner.x + ball.diameter < box.low.x || corner.y + ball.diameter < box.low.y) {
           continue;
         }
         if (!aslant && held(ball)) {

@@ -40,25 +40,25 @@ constexpr uint32_t kLines[32] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX,
 // The cells of `box`, at most Window::kSide on a side, without those of `disc` at `own`. The box shares cells
 // with the field.
 void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i own, Window* window) const {
-  window->base = box.min;
-  window->end = box.max;
-  const int32_t height = box.max.y - box.min.y;
+  window->base = box.low;
+  window->end = box.high;
+  const int32_t height = box.high.y - box.low.y;
   uint32_t* const out = window->rows;
   // Two words a row, of which one may lie beyond a side: it counts for nothing then, and what is outside is
   // set.
-  const int32_t column = box.min.x >> 5;
-  const int32_t shift = box.min.x & 31;
+  const int32_t column = box.low.x >> 5;
+  const int32_t shift = box.low.x & 31;
   const int32_t back = (32 - shift) & 31;
-  const int32_t after = config_.width - box.min.x;
-  const bool has_next = shift + box.max.x - box.min.x > 32 && column + 1 < field_.columns();
+  const int32_t after = config_.width - box.low.x;
+  const bool has_next = shift + box.high.x - box.low.x > 32 && column + 1 < field_.columns();
   const uint32_t first_mask = column < 0 ? 0 : UINT32_MAX;
   const uint32_t next_mask = has_next ? UINT32_MAX : 0;
   const uint32_t outside =
-      (box.min.x < 0 ? (uint32_t{1} << -box.min.x) - 1 : 0) | (after < 32 ? UINT32_MAX << after : 0);
-  const int32_t top = most(-box.min.y, 0);
-  const int32_t bottom = least(config_.height - box.min.y, height);
-  const Word* const first = words_ + most(column, 0) * config_.height + box.min.y;
-  const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.min.y : first;
+      (box.low.x < 0 ? (uint32_t{1} << -box.low.x) - 1 : 0) | (after < 32 ? UINT32_MAX << after : 0);
+  const int32_t top = most(-box.low.y, 0);
+  const int32_t bottom = least(config_.height - box.low.y, height);
+  const Word* const first = words_ + most(column, 0) * config_.height + box.low.y;
+  const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.low.y : first;
   for (int32_t row = top; row < bottom; row += kLanes) {
     store_rows(out + row, ((load_rows(first + row) & first_mask) >> shift) |
                               ((load_rows(next + row) & next_mask) << back) | outside);
@@ -69,8 +69,8 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   for (int32_t row = bottom; row < height; ++row) {
     out[row] = UINT32_MAX;
   }
-  const int32_t right = own.x - box.min.x;
-  const int32_t down = own.y - box.min.y;
+  const int32_t right = own.x - box.low.x;
+  const int32_t down = own.y - box.low.y;
   if (right >= 0 && down >= 0 && right < Window::kSide && down < Window::kSide) {
     for_rows(disc.diameter, [&](int32_t row) {
       store_rows(out + down + row, load_rows(out + down + row) & ~(load_rows(disc.rows + row) << right));
@@ -490,12 +490,12 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
       const CellBox box{
           {least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
           {most(corner.x, corner_before.x) + disc.diameter, most(corner.y, corner_before.y) + disc.diameter}};
-      const Vec2i size{box.max.x - box.min.x, box.max.y - box.min.y};
+      const Vec2i size{box.high.x - box.low.x, box.high.y - box.low.y};
       if (first_walk || !window->covers(box)) {
         // With room to turn round.
         const int32_t margin =
             least(most(size.x, size.y) - disc.diameter + 1, (Window::kSide - most(size.x, size.y)) >> 1);
-        load_window({{box.min.x - margin, box.min.y - margin}, {box.max.x + margin, box.max.y + margin}},
+        load_window({{box.low.x - margin, box.low.y - margin}, {box.high.x + margin, box.high.y + margin}},
                     disc, own, window);
       }
       const int32_t stretch = left_before.x + left_before.y - left.x - left.y;

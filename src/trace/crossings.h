@@ -39,8 +39,8 @@ struct MirroredRay {
       const bool negative = ray.direction[axis] < 0;
       direction[axis] = negative ? -ray.direction[axis] : ray.direction[axis];
       origin_q8[axis] = negative ? side * Q8::kOne - ray.origin[axis].raw : ray.origin[axis].raw;
-      box_min[axis] = negative ? side - box.max[axis] : box.min[axis];
-      box_max[axis] = negative ? side - box.min[axis] : box.max[axis];
+      box_min[axis] = negative ? side - box.high[axis] : box.low[axis];
+      box_max[axis] = negative ? side - box.low[axis] : box.high[axis];
       if (negative) {
         flip |= 1U << axis;
       }

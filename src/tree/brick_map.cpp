@@ -30,7 +30,7 @@ constexpr uint32_t kChildBits = 24;
 
 struct Header {
   int level;
-  Vec3i min;
+  Vec3i low;
   Vec3i size;
   uint32_t cells;
   uint32_t bricks;
@@ -59,9 +59,9 @@ const char* read_header(ConstBytes bytes, Header* header) {
   const int32_t side = int32_t{1} << (header->level - 2);
   header->cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    header->min[axis] = base[kBoxMinOffset + static_cast<uint32_t>(axis)];
+    header->low[axis] = base[kBoxMinOffset + static_cast<uint32_t>(axis)];
     header->size[axis] = base[kBoxSizeOffset + static_cast<uint32_t>(axis)];
-    if (header->min[axis] + header->size[axis] > side) {
+    if (header->low[axis] + header->size[axis] > side) {
       return "box outside the world";
     }
     header->cells *= static_cast<uint32_t>(header->size[axis]);
@@ -141,8 +141,8 @@ class Builder {
     }
     const VoxelBox& bounds = tree.bounds();
     for (int axis = 0; axis < 3; ++axis) {
-      min_[axis] = bounds.min[axis] >> 2;
-      size_[axis] = tree.empty() ? 0 : ((bounds.max[axis] + 3) >> 2) - min_[axis];
+      min_[axis] = bounds.low[axis] >> 2;
+      size_[axis] = tree.empty() ? 0 : ((bounds.high[axis] + 3) >> 2) - min_[axis];
     }
     cells_ = static_cast<uint32_t>(size_.x * size_.y * size_.z);
   }
@@ -476,9 +476,9 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
   }
   result.origins_ = bytes.data + origins_at(header.cells, header.bricks);
   result.materials_ = bytes.data + materials_at(header.cells, header.bricks, header.mixed);
-  result.box_.min = header.min;
+  result.box_.low = header.low;
   for (int axis = 0; axis < 3; ++axis) {
-    result.box_.max[axis] = header.min[axis] + header.size[axis];
+    result.box_.high[axis] = header.low[axis] + header.size[axis];
   }
   result.size_bytes_ = bits::load32(bytes.data + kSizeOffset);
   result.cells_ = header.cells;

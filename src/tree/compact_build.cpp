@@ -221,8 +221,8 @@ template <class Key>
   counter.shape.solid_blocks = blocks;
   counter.volume = keys.size;
   for (int axis = 0; axis < 3; ++axis) {
-    counter.bounds.min[axis] = morton_voxel(low[axis])[axis];
-    counter.bounds.max[axis] = morton_voxel(high[axis])[axis] + 1;
+    counter.bounds.low[axis] = morton_voxel(low[axis])[axis];
+    counter.bounds.high[axis] = morton_voxel(high[axis])[axis] + 1;
   }
   return counter;
 }
@@ -571,8 +571,8 @@ Status write(Source source, Bytes out, size_t* size, int rank_shift) {
   bits::store32(base + kSolidBlocksOffset, shape.solid_blocks);
   bits::store32(base + kVoxelBitsOffset, shape.voxel_bits);
   for (int axis = 0; axis < 3; ++axis) {
-    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.min[axis]));
-    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.max[axis]));
+    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.low[axis]));
+    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.high[axis]));
   }
   bits::store64(base + kVoxelCountOffset, counter.volume);
   bits::store64(base + kSolidAddedOffset, source.solid_added());

@@ -71,11 +71,11 @@ constexpr void grow_bounds(VoxelBox* box, const Vec3i& corner, int level, unsign
         --high;
       }
     }
-    if (first || low < box->min[axis]) {
-      box->min[axis] = low;
+    if (first || low < box->low[axis]) {
+      box->low[axis] = low;
     }
-    if (first || high > box->max[axis]) {
-      box->max[axis] = high;
+    if (first || high > box->high[axis]) {
+      box->high[axis] = high;
     }
   }
 }

@@ -81,8 +81,8 @@ Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
   result.solid_blocks_ = shape.solid_blocks;
   result.voxel_bits_ = shape.voxel_bits;
   for (int axis = 0; axis < 3; ++axis) {
-    result.bounds_.min[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
-    result.bounds_.max[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
+    result.bounds_.low[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
+    result.bounds_.high[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
   }
   const Sections sections = sections_of(shape);
   result.masks_ = base + sections.masks;

@@ -41,11 +41,11 @@ Status DenseGrid::set(const Vec3i& at, bool solid) {
   }
   const bool first = voxel_count_++ == 0 && bounds_.empty();
   for (int axis = 0; axis < 3; ++axis) {
-    if (first || at[axis] < bounds_.min[axis]) {
-      bounds_.min[axis] = at[axis];
+    if (first || at[axis] < bounds_.low[axis]) {
+      bounds_.low[axis] = at[axis];
     }
-    if (first || at[axis] >= bounds_.max[axis]) {
-      bounds_.max[axis] = at[axis] + 1;
+    if (first || at[axis] >= bounds_.high[axis]) {
+      bounds_.high[axis] = at[axis] + 1;
     }
   }
   return Status::kOk;

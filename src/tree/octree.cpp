@@ -107,11 +107,11 @@ void Octree::grow_bounds(Vec3i corner, int block_level) {
   const bool first = bounds_.empty();
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t low = corner[axis];
-    if (first || low < bounds_.min[axis]) {
-      bounds_.min[axis] = low;
+    if (first || low < bounds_.low[axis]) {
+      bounds_.low[axis] = low;
     }
-    if (first || low + side > bounds_.max[axis]) {
-      bounds_.max[axis] = low + side;
+    if (first || low + side > bounds_.high[axis]) {
+      bounds_.high[axis] = low + side;
     }
   }
 }
@@ -652,8 +652,8 @@ Status Octree::insert_box(const VoxelBox& box, uint8_t material) {
   if (box.empty()) {
     return Status::kOk;
   }
-  const Vec3i last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
-  if (!inside(box.min) || !inside(last)) {
+  const Vec3i last{box.high.x - 1, box.high.y - 1, box.high.z - 1};
+  if (!inside(box.low) || !inside(last)) {
     return Status::kOutOfRange;
   }
   // A walk over aligned blocks in Morton order; a block is its corner and its level, so there is no stack.
@@ -666,8 +666,8 @@ Status Octree::insert_box(const VoxelBox& box, uint8_t material) {
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t low = corner[axis];
       const int32_t high = low + side;
-      apart = apart || low >= box.max[axis] || high <= box.min[axis];
-      within = within && low >= box.min[axis] && high <= box.max[axis];
+      apart = apart || low >= box.high[axis] || high <= box.low[axis];
+      within = within && low >= box.low[axis] && high <= box.high[axis];
     }
     if (!apart && !within) {
       --level;

@@ -359,8 +359,8 @@ void write_header(const CompactTree& tree, const NodeTable& table, const Layout&
   }
   bits::store32(base + kRootOffset, root);
   for (int axis = 0; axis < 3; ++axis) {
-    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(tree.bounds().min[axis]));
-    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(tree.bounds().max[axis]));
+    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(tree.bounds().low[axis]));
+    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(tree.bounds().high[axis]));
   }
   bits::store64(base + kVoxelCountOffset, tree.voxel_count());
   bits::store64(base + kSolidAddedOffset, tree.solid_added());

@@ -94,8 +94,8 @@ Status SharedTree::open(ConstBytes bytes, SharedTree* tree) {
   // Any number will do for safety: it only says how the bytes of a node are read.
   result.level_3_ = result.level_ >= 3 ? bits::load32(base + kLevelsOffset + 4) : result.nodes_end_;
   for (int axis = 0; axis < 3; ++axis) {
-    result.bounds_.min[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
-    result.bounds_.max[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
+    result.bounds_.low[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
+    result.bounds_.high[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
   }
   if ((base[kFlagsOffset] & kManyMaterialsFlag) != 0) {
     result.materials_ = base + ((size_t{result.nodes_end_} + 3) & ~size_t{3});

@@ -43,9 +43,9 @@ struct Sink {
     if (pool != nullptr) {
       return pool->insert_box(box, material);
     }
-    for (int32_t z = box.min.z; z < box.max.z; ++z) {
-      for (int32_t y = box.min.y; y < box.max.y; ++y) {
-        for (int32_t x = box.min.x; x < box.max.x; ++x) {
+    for (int32_t z = box.low.z; z < box.high.z; ++z) {
+      for (int32_t y = box.low.y; y < box.high.y; ++y) {
+        for (int32_t x = box.low.x; x < box.high.x; ++x) {
           const Status status = grid->set({x, y, z});
           if (status != Status::kOk) {
             return status;

@@ -330,9 +330,9 @@ TEST_CASE(
     const std::size_t size = map_bytes.view().size;
     BrickMap map = open_map(map_bytes);
     CHECK(size == map.size_bytes());
-    CHECK(size == brick_map_bytes(static_cast<std::uint32_t>((map.box().max.x - map.box().min.x) *
-                                                             (map.box().max.y - map.box().min.y) *
-                                                             (map.box().max.z - map.box().min.z)),
+    CHECK(size == brick_map_bytes(static_cast<std::uint32_t>((map.box().high.x - map.box().low.x) *
+                                                             (map.box().high.y - map.box().low.y) *
+                                                             (map.box().high.z - map.box().low.z)),
                                   map.brick_count(), map.mixed_count()));
     std::size_t written = 0;
     // Exactly as many bytes on the heap: the sanitizer sees the first beyond.

@@ -141,11 +141,11 @@ class Boxes {
 // Whether the ray meets the least box around all voxels.
 bool meets(const VoxelBox& box, const reference::Ray& ray) {
   std::vector<Voxel> shell;
-  for (int z = box.min.z; z < box.max.z; ++z) {
-    for (int y = box.min.y; y < box.max.y; ++y) {
-      for (int x = box.min.x; x < box.max.x; ++x) {
-        const bool outer = x == box.min.x || x == box.max.x - 1 || y == box.min.y || y == box.max.y - 1 ||
-                           z == box.min.z || z == box.max.z - 1;
+  for (int z = box.low.z; z < box.high.z; ++z) {
+    for (int y = box.low.y; y < box.high.y; ++y) {
+      for (int x = box.low.x; x < box.high.x; ++x) {
+        const bool outer = x == box.low.x || x == box.high.x - 1 || y == box.low.y || y == box.high.y - 1 ||
+                           z == box.low.z || z == box.high.z - 1;
         if (outer) {
           shell.push_back({x, y, z});
         }

@@ -213,8 +213,8 @@ TEST_CASE("depth_range: random cameras and boxes -> the nearest and farthest cor
     for (int axis = 0; axis < 3; ++axis) {
       const int a = between(random, 0, side);
       const int b = between(random, 0, side);
-      box.min[axis] = std::min(a, b);
-      box.max[axis] = std::max(a, b) + (a == b ? 1 : 0);
+      box.low[axis] = std::min(a, b);
+      box.high[axis] = std::max(a, b) + (a == b ? 1 : 0);
     }
     // Forward: the direction itself, or the affine function at the picture's middle.
     double forward[3];
@@ -236,7 +236,7 @@ TEST_CASE("depth_range: random cameras and boxes -> the nearest and farthest cor
       double dot = 0;
       double square = 0;
       for (int axis = 0; axis < 3; ++axis) {
-        const int plane = ((corner >> axis) & 1U) != 0 ? box.max[axis] : box.min[axis];
+        const int plane = ((corner >> axis) & 1U) != 0 ? box.high[axis] : box.low[axis];
         const double offset = plane * 256.0 - camera.eye()[axis].raw;
         dot += offset * forward[axis] / length;
         square += offset * offset;

@@ -58,8 +58,8 @@ using Cells = std::vector<Vec2i>;
 
 Cells cells_of(const CellBox& box) {
   Cells cells;
-  for (int y = box.min.y; y < box.max.y; ++y) {
-    for (int x = box.min.x; x < box.max.x; ++x) {
+  for (int y = box.low.y; y < box.high.y; ++y) {
+    for (int x = box.low.x; x < box.high.x; ++x) {
       cells.push_back({x, y});
     }
   }
@@ -334,7 +334,7 @@ TEST_CASE(
       const auto edge = [&random](int side) { return static_cast<int>(pick(random, -5, side + 5)); };
       CellBox box{{edge(width), edge(height)}, {edge(width), edge(height)}};
       if (turn % 3 == 0) {
-        box.max.y = box.min.y + 1;  // a span
+        box.high.y = box.low.y + 1;  // a span
       }
       const Cells cells = cells_of(box);
       const bool value = pick(random, 0, 2) == 0;

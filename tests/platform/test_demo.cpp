@@ -183,9 +183,9 @@ TEST_CASE("demo scene: what the firmware shows -> large enough to be a model, sm
   CHECK(tree.size_bytes() <= 2 * tree.voxel_count());
   CHECK(demo_scene().bytes.size() <= 40 * 1024);
   const VoxelBox& box = tree.bounds();
-  CHECK(box.max.x - box.min.x == 64);
-  CHECK(box.max.y - box.min.y == 64);
-  CHECK(box.max.z - box.min.z >= 40);
+  CHECK(box.high.x - box.low.x == 64);
+  CHECK(box.high.y - box.low.y == 64);
+  CHECK(box.high.z - box.low.z >= 40);
 }
 
 TEST_CASE(
@@ -382,7 +382,7 @@ TEST_CASE(
     REQUIRE(Octree::make(5, {reinterpret_cast<std::uint8_t*>(pool.data()), pool.size() * 4}, &tree) ==
             Status::kOk);
     if (!box.empty()) {
-      REQUIRE(tree.insert(box.min, 1) == Status::kOk);
+      REQUIRE(tree.insert(box.low, 1) == Status::kOk);
     }
     for (std::uint32_t frame = 0; frame < 4; ++frame) {
       Camera camera;

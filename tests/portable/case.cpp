@@ -70,8 +70,8 @@ bool Check::equal(const Vec3i& got, const Vec3i& wanted, What what) {
 }
 
 bool Check::equal(const VoxelBox& got, const VoxelBox& wanted, What what) {
-  const bool low = equal(got.min, wanted.min, what);
-  return equal(got.max, wanted.max, what) && low;
+  const bool low = equal(got.low, wanted.low, what);
+  return equal(got.high, wanted.high, what) && low;
 }
 
 bool Check::equal(const Rgb8& got, const Rgb8& wanted, What what) {

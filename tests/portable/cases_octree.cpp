@@ -174,9 +174,9 @@ void insert_box_of(Check& check, int index) {
   THIMBLE_REQUIRE(make_grid(check, {8, 8, 8}));
   THIMBLE_REQUIRE(make_pool(check, 300, 3));
   THIMBLE_REQUIRE_OK(check.world.pool.insert_box(box, 1));
-  for (int32_t z = box.min.z; z < box.max.z; ++z) {
-    for (int32_t y = box.min.y; y < box.max.y; ++y) {
-      for (int32_t x = box.min.x; x < box.max.x; ++x) {
+  for (int32_t z = box.low.z; z < box.high.z; ++z) {
+    for (int32_t y = box.low.y; y < box.high.y; ++y) {
+      for (int32_t x = box.low.x; x < box.high.x; ++x) {
         THIMBLE_REQUIRE_OK(check.world.grid.set({x, y, z}));
       }
     }
@@ -462,7 +462,7 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(pool.insert({9, 3, 11}, 1));
        THIMBLE_EQUAL(pool.bounds(), (VoxelBox{{2, 3, 4}, {10, 4, 12}}));
        THIMBLE_REQUIRE_OK(pool.remove({9, 3, 11}));
-       THIMBLE_CHECK(pool.bounds().min == (Vec3i{2, 3, 4}) && pool.bounds().max.x >= 3);
+       THIMBLE_CHECK(pool.bounds().low == (Vec3i{2, 3, 4}) && pool.bounds().high.x >= 3);
      }},
     {"the largest world, a voxel in each corner -> exact", pool_bytes(96),
      [](Check& check, int) {

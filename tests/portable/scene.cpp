@@ -31,13 +31,13 @@ bool build(Check& check, const RayScene& scene) {
   }
   for (int i = 0; i < scene.box_count; ++i) {
     const RayScene::Box& box = scene.boxes[i];
-    const VoxelBox bounds{{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+    const VoxelBox bounds{{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
     if (!check.equal(check.world.pool.insert_box(bounds, 0), Status::kOk, THIMBLE_WHAT("insert_box"))) {
       return false;
     }
-    for (int32_t z = bounds.min.z; dense && z < bounds.max.z; ++z) {
-      for (int32_t y = bounds.min.y; y < bounds.max.y; ++y) {
-        for (int32_t x = bounds.min.x; x < bounds.max.x; ++x) {
+    for (int32_t z = bounds.low.z; dense && z < bounds.high.z; ++z) {
+      for (int32_t y = bounds.low.y; y < bounds.high.y; ++y) {
+        for (int32_t x = bounds.low.x; x < bounds.high.x; ++x) {
           if (check.world.grid.set({x, y, z}) != Status::kOk) {
             return check.that(false, THIMBLE_WHAT("grid.set"));
           }

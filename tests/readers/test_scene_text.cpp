@@ -137,8 +137,8 @@ TEST_CASE("scene text: every statement with all of its clauses -> what it says")
   CHECK_FALSE(scene->materials[1].has_color);
   CHECK(scene->materials[1].surface.mirror == 204);
   REQUIRE(scene->parts.size() == 3);
-  CHECK(scene->parts[0].min == Vec3i{-1, 0, 1});
-  CHECK(scene->parts[0].max == Vec3i{4, 5, 6});
+  CHECK(scene->parts[0].low == Vec3i{-1, 0, 1});
+  CHECK(scene->parts[0].high == Vec3i{4, 5, 6});
   CHECK(scene->parts[1].radius_q8 == 1024);
   const SceneText::Part& model = scene->parts[2];
   CHECK(model.file == "a file.vox");

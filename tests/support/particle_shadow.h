@@ -53,7 +53,7 @@ class ShadowedWorld {
   void erase_box(const CellBox& box) {
     world.erase_box(box);
     for_cells([&](Vec2i at) {
-      if (at.x >= box.min.x && at.x < box.max.x && at.y >= box.min.y && at.y < box.max.y) {
+      if (at.x >= box.low.x && at.x < box.high.x && at.y >= box.low.y && at.y < box.high.y) {
         walls_[index(at)] = 0;
       }
     });

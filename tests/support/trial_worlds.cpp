@@ -312,8 +312,8 @@ std::vector<TrialView> trial_views(const CompactTree& tree, std::int32_t width_p
   Real3 extent{};
   double size = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = box.min[static_cast<int>(axis)];
-    extent[axis] = box.max[static_cast<int>(axis)] - low[axis];
+    low[axis] = box.low[static_cast<int>(axis)];
+    extent[axis] = box.high[static_cast<int>(axis)] - low[axis];
     size = std::max(size, extent[axis]);
   }
   const auto at = [&](double x, double y, double z) {

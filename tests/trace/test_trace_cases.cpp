@@ -104,9 +104,9 @@ TEST_CASE("trace: the rays worked out by hand -> so say the judges, and every st
     Voxels voxels;
     for (int i = 0; i < row.scene->box_count; ++i) {
       const portable::RayScene::Box& box = row.scene->boxes[i];
-      for (int z = box.min[2]; z < box.max[2]; ++z) {
-        for (int y = box.min[1]; y < box.max[1]; ++y) {
-          for (int x = box.min[0]; x < box.max[0]; ++x) {
+      for (int z = box.low[2]; z < box.high[2]; ++z) {
+        for (int y = box.low[1]; y < box.high[1]; ++y) {
+          for (int x = box.low[0]; x < box.high[0]; ++x) {
             voxels.push_back({x, y, z});
           }
         }

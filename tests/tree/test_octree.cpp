@@ -639,8 +639,8 @@ TEST_CASE("octree: insert_box -> the voxels of the box and no other") {
     const int side = 1 << level;
     VoxelBox box;
     for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = below(random, side);
-      box.max[axis] = box.min[axis] + below(random, side + 1 - box.min[axis]);
+      box.low[axis] = below(random, side);
+      box.high[axis] = box.low[axis] + below(random, side + 1 - box.low[axis]);
     }
     Model model = random_model(random, level, 2, 100);
     Pool pool = Pool::of_nodes(40000);
@@ -648,9 +648,9 @@ TEST_CASE("octree: insert_box -> the voxels of the box and no other") {
     REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
     fill(tree, model);
     REQUIRE(tree.insert_box(box, 1) == Status::kOk);
-    for (int z = box.min.z; z < box.max.z; ++z) {
-      for (int y = box.min.y; y < box.max.y; ++y) {
-        for (int x = box.min.x; x < box.max.x; ++x) {
+    for (int z = box.low.z; z < box.high.z; ++z) {
+      for (int y = box.low.y; y < box.high.y; ++y) {
+        for (int x = box.low.x; x < box.high.x; ++x) {
           model[morton({x, y, z})] = 1;
         }
       }

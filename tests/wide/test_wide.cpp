@@ -155,7 +155,7 @@ bool random_camera(std::mt19937_64& random, const Scene& scene, Camera* camera) 
     const VoxelBox& bounds = scene.tree.bounds();
     for (int axis = 0; axis < 3; ++axis) {
       target[axis] = Q8::from_raw(static_cast<std::int32_t>(
-          pick(random, std::int64_t{256} * bounds.min[axis], std::int64_t{256} * bounds.max[axis])));
+          pick(random, std::int64_t{256} * bounds.low[axis], std::int64_t{256} * bounds.high[axis])));
     }
   }
   Vec3i forward = look_at(eye, target);

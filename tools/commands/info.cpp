@@ -139,11 +139,11 @@ void run(const SceneOptions& options) {
     row("points", grouped(source->points()));
   }
   row("solid voxels", grouped(built.voxels()));
-  row("occupied box", box.empty()
-                          ? "none"
-                          : std::to_string(box.min.x) + "," + std::to_string(box.min.y) + "," +
-                                std::to_string(box.min.z) + " to " + std::to_string(box.max.x) + "," +
-                                std::to_string(box.max.y) + "," + std::to_string(box.max.z) + " (exclusive)");
+  row("occupied box", box.empty() ? "none"
+                                  : std::to_string(box.low.x) + "," + std::to_string(box.low.y) + "," +
+                                        std::to_string(box.low.z) + " to " + std::to_string(box.high.x) +
+                                        "," + std::to_string(box.high.y) + "," + std::to_string(box.high.z) +
+                                        " (exclusive)");
 
   const UsedMaterials used = used_materials(*source);
   const LitDescription lit = source->lighting();

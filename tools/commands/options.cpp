@@ -128,7 +128,7 @@ std::array<Real3, 8> corners_of(const VoxelBox& box) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
       corners[corner][static_cast<std::size_t>(axis)] =
-          ((corner >> axis) & 1U) != 0 ? box.max[axis] : box.min[axis];
+          ((corner >> axis) & 1U) != 0 ? box.high[axis] : box.low[axis];
     }
   }
   return corners;

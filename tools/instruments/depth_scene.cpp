@@ -83,7 +83,7 @@ DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, i
     }
   }
   const VoxelBox& box = compact_.bounds();
-  dense_size_ = {std::max(box.max.x, 1), std::max(box.max.y, 1), std::max(box.max.z, 1)};
+  dense_size_ = {std::max(box.high.x, 1), std::max(box.high.y, 1), std::max(box.high.z, 1)};
   // The grid's world, which decides how rays are quantised, must be this one.
   int longest = 0;
   for (int axis = 1; axis < 3; ++axis) {

@@ -684,16 +684,16 @@ class Parser {
       const Word word = line.word();
       said.once(word);
       if (word.text == "from") {
-        part.min = three_wholes(line, "from", -kSceneTextReach, kSceneTextReach);
+        part.low = three_wholes(line, "from", -kSceneTextReach, kSceneTextReach);
       } else if (word.text == "to") {
-        part.max = three_wholes(line, "to", -kSceneTextReach, kSceneTextReach);
+        part.high = three_wholes(line, "to", -kSceneTextReach, kSceneTextReach);
       } else {
         said.unknown(word, "from and to");
       }
     }
     said.need("from", line);
     said.need("to", line);
-    if (VoxelBox{part.min, part.max}.empty()) {
+    if (VoxelBox{part.low, part.high}.empty()) {
       fail_at(place, "this box holds no voxel: each number after to must be above the one after from");
     }
   }

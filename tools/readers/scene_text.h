@@ -51,8 +51,8 @@ struct SceneText {
 
     // Boxes and balls.
     std::size_t material = 0;    ///< index into `materials`
-    Vec3i min;                   ///< box: voxels min .. max - 1
-    Vec3i max;                   ///< box
+    Vec3i low;                   ///< box: voxels low .. high - 1
+    Vec3i high;                  ///< box
     Vec3Q8 center;               ///< ball
     std::int32_t radius_q8 = 0;  ///< ball, at least a voxel
 

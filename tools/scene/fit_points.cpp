@@ -57,7 +57,7 @@ int smallest_level(const PointSurvey& survey) {
   if (survey.unplaceable) {
     refuse(survey.counts_in, *survey.unplaceable, 1 << kLargestLevel);
   }
-  const std::array<double, 3>& max = survey.bounds.max;
+  const std::array<double, 3>& max = survey.bounds.high;
   int level = 1;
   while (level < kLargestLevel && (max[0] >= 1 << level || max[1] >= 1 << level || max[2] >= 1 << level)) {
     ++level;

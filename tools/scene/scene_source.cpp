@@ -146,7 +146,7 @@ class PointScene final : public SceneSource {
     }
     std::array<std::int32_t, 3> result{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      result[axis] = static_cast<std::int32_t>(std::clamp(survey_.bounds.max[axis], 0.0, 4095.0)) + 1;
+      result[axis] = static_cast<std::int32_t>(std::clamp(survey_.bounds.high[axis], 0.0, 4095.0)) + 1;
     }
     return result;
   }
@@ -231,7 +231,7 @@ class BakedFileScene final : public SceneSource {
   LitDescription lighting() const override { return lit_ ? *lit_ : describe_palette(palette_); }
   const BakedScene* baked() const override { return &file_.scene; }
   std::array<std::int32_t, 3> extent() const override {
-    const Vec3i& max = tree().bounds().max;
+    const Vec3i& max = tree().bounds().high;
     return {max.x, max.y, max.z};
   }
   const Palette& palette() const override { return palette_; }

@@ -40,8 +40,8 @@ Vec3i placed(const Placement& placement, const Vec3i& voxel) {
 void grow(VoxelBox* box, const Vec3i& voxel) {
   const bool was_empty = box->empty();
   for (int axis = 0; axis < 3; ++axis) {
-    box->min[axis] = was_empty ? voxel[axis] : std::min(box->min[axis], voxel[axis]);
-    box->max[axis] = was_empty ? voxel[axis] + 1 : std::max(box->max[axis], voxel[axis] + 1);
+    box->low[axis] = was_empty ? voxel[axis] : std::min(box->low[axis], voxel[axis]);
+    box->high[axis] = was_empty ? voxel[axis] + 1 : std::max(box->high[axis], voxel[axis] + 1);
   }
 }
 
@@ -51,21 +51,21 @@ VoxelBox box_of_ball(const SceneText::Part& ball) {
   for (int axis = 0; axis < 3; ++axis) {
     // From the first voxel whose centre lies within to the last.
     const std::int32_t center = ball.center[axis].raw - Q8::kOne / 2;
-    box.min[axis] = -((ball.radius_q8 - center) >> Q8::kBits);
-    box.max[axis] = ((ball.radius_q8 + center) >> Q8::kBits) + 1;
+    box.low[axis] = -((ball.radius_q8 - center) >> Q8::kBits);
+    box.high[axis] = ((ball.radius_q8 + center) >> Q8::kBits) + 1;
   }
   return box;
 }
 
 VoxelBox box_of(const SceneText::Part& part) {
-  return part.kind == SceneText::PartKind::kBox ? VoxelBox{part.min, part.max} : box_of_ball(part);
+  return part.kind == SceneText::PartKind::kBox ? VoxelBox{part.low, part.high} : box_of_ball(part);
 }
 
 VoxelBox cut(const VoxelBox& box, std::int32_t side) {
   VoxelBox result;
   for (int axis = 0; axis < 3; ++axis) {
-    result.min[axis] = std::clamp(box.min[axis], 0, side);
-    result.max[axis] = std::clamp(box.max[axis], 0, side);
+    result.low[axis] = std::clamp(box.low[axis], 0, side);
+    result.high[axis] = std::clamp(box.high[axis], 0, side);
   }
   return result;
 }
@@ -147,9 +147,9 @@ class TextScene final : public SceneSource {
 
   void stream_box(const SceneText::Part& part, std::uint8_t material, const VoxelSink& sink) const {
     const VoxelBox box = cut(box_of(part), side());
-    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
-      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
-        for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
+    for (std::int32_t z = box.low.z; z < box.high.z; ++z) {
+      for (std::int32_t y = box.low.y; y < box.high.y; ++y) {
+        for (std::int32_t x = box.low.x; x < box.high.x; ++x) {
           sink(x, y, z, material);
         }
       }
@@ -164,10 +164,10 @@ class TextScene final : public SceneSource {
       return away * away;
     };
     const std::int64_t reach = std::int64_t{part.radius_q8} * part.radius_q8;
-    for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
-      for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
+    for (std::int32_t z = box.low.z; z < box.high.z; ++z) {
+      for (std::int32_t y = box.low.y; y < box.high.y; ++y) {
         const std::int64_t left = reach - squared(y, 1) - squared(z, 2);
-        for (std::int32_t x = box.min.x; left >= 0 && x < box.max.x; ++x) {
+        for (std::int32_t x = box.low.x; left >= 0 && x < box.high.x; ++x) {
           if (squared(x, 0) <= left) {
             sink(x, y, z, material);
           }
@@ -216,8 +216,8 @@ class TextScene final : public SceneSource {
     model.size = model.model->source->extent();
     const VoxelBox& solid = model.model->solid;
     if (!solid.empty()) {
-      grow(&model.solid, placed(model, solid.min));
-      grow(&model.solid, placed(model, {solid.max.x - 1, solid.max.y - 1, solid.max.z - 1}));
+      grow(&model.solid, placed(model, solid.low));
+      grow(&model.solid, placed(model, {solid.high.x - 1, solid.high.y - 1, solid.high.z - 1}));
     }
   }
 
@@ -241,7 +241,7 @@ class TextScene final : public SceneSource {
     std::int32_t largest = 1;
     TextPlace largest_place{1, 1};
     const auto need = [&](const VoxelBox& box, const TextPlace& place) {
-      const std::int32_t end = std::max({box.max.x, box.max.y, box.max.z});
+      const std::int32_t end = std::max({box.high.x, box.high.y, box.high.z});
       if (!box.empty() && end > largest) {
         largest = end;
         largest_place = place;
@@ -274,8 +274,8 @@ class TextScene final : public SceneSource {
       const VoxelBox& box = model.solid;
       const VoxelBox kept = cut(box, side());
       if (!model.part->crop && !(kept == box)) {
-        fail_at(model.part->place, "the model's voxels from " + corner_text(box.min) + " to " +
-                                       corner_text(box.max) + " leave the world of " +
+        fail_at(model.part->place, "the model's voxels from " + corner_text(box.low) + " to " +
+                                       corner_text(box.high) + " leave the world of " +
                                        std::to_string(side()) + " voxels a side (depth " +
                                        std::to_string(level_) + "); crop cuts them off");
       }
@@ -291,9 +291,9 @@ class TextScene final : public SceneSource {
         fail_at(part.place, "all of this lies outside the world of " + std::to_string(side()) +
                                 " voxels a side (depth " + std::to_string(level_) + ")");
       }
-      const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.max.x - box.min.x) *
-                                   static_cast<std::uint64_t>(box.max.y - box.min.y) *
-                                   static_cast<std::uint64_t>(box.max.z - box.min.z);
+      const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.high.x - box.low.x) *
+                                   static_cast<std::uint64_t>(box.high.y - box.low.y) *
+                                   static_cast<std::uint64_t>(box.high.z - box.low.z);
       primitive_voxels += volume;
       if (primitive_voxels > kMostPrimitiveVoxels) {
         fail_at(part.place, "boxes and balls up to here hold " + grouped(primitive_voxels) +
@@ -306,7 +306,7 @@ class TextScene final : public SceneSource {
   void take(const VoxelBox& box, std::uint64_t voxels) {
     voxels_ += voxels;
     for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
-      extent_[axis] = std::max(extent_[axis], box.max[axis]);
+      extent_[axis] = std::max(extent_[axis], box.high[axis]);
     }
   }
 

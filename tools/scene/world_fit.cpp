@@ -19,8 +19,8 @@ WorldFit::WorldFit(const Bounds& bounds, int level) : center_{}, center_units_{}
   half_units_ = static_cast<double>(middle - 1);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     // Halves before the difference: the extent of finite bounds may be infinite, its half is not.
-    const double low = bounds.min[axis] / 2;
-    const double high = bounds.max[axis] / 2;
+    const double low = bounds.low[axis] / 2;
+    const double high = bounds.high[axis] / 2;
     center_[axis] = low + high;
     center_units_[axis] = high > low ? middle : middle + kUnitsPerVoxel / 2;
     half_extent_ = std::max(half_extent_, high - low);

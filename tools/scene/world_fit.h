@@ -23,8 +23,8 @@ inline constexpr std::int32_t kUnitsPerVoxel = std::int32_t{1} << kUnitBits;
 
 /// The smallest axis-parallel box of the points added.
 struct Bounds {
-  std::array<double, 3> min{};
-  std::array<double, 3> max{};
+  std::array<double, 3> low{};
+  std::array<double, 3> high{};
   bool empty = true;
 
   /// Grows the box; `position` is finite.

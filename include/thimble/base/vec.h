@@ -100,14 +100,14 @@ using Vec3Q8 = Vec3<Q8>;
 inline constexpr int kMinLevel = 1;
 inline constexpr int kMaxLevel = 12;
 
-/// The half-open box of voxels [min, max) on every axis; empty when `min == max` on any.
+/// The half-open box of voxels [low, high) on every axis; empty when `low == high` on any.
 struct VoxelBox {
-  Vec3i min;
-  Vec3i max;
+  Vec3i low;
+  Vec3i high;
 
-  constexpr bool empty() const { return min.x >= max.x || min.y >= max.y || min.z >= max.z; }
+  constexpr bool empty() const { return low.x >= high.x || low.y >= high.y || low.z >= high.z; }
   friend constexpr bool operator==(const VoxelBox& a, const VoxelBox& b) {
-    return a.min == b.min && a.max == b.max;
+    return a.low == b.low && a.high == b.high;
   }
 };
 

@@ -62,10 +62,10 @@ struct Vec2 {
 using Vec2i = Vec2<int32_t>;
 using Vec2Q8 = Vec2<Q8>;
 
-/// The cells [min, max) on both axes; empty when `min >= max` on either.
+/// The cells [low, high) on both axes; empty when `low >= high` on either.
 struct CellBox {
-  Vec2i min;
-  Vec2i max;
+  Vec2i low;
+  Vec2i high;
 };
 
 /// A disc as a set of cells. It is placed by its corner, the cell of least x and y of the square around it,

@@ -30,8 +30,8 @@ void scatter(Scene& scene, const CellBox& box, int count, int least, int most, s
     const int diameter = static_cast<int>(uniform(random, least, most + 1));
     const DiscStamp disc = disc_stamp(diameter);
     // Twice the cell in which the disc's centre lies when it lies as it does, so nothing is rounded.
-    const Vec2i corner{static_cast<int>(uniform(random, box.min.x, box.max.x - diameter + 1)),
-                       static_cast<int>(uniform(random, box.min.y, box.max.y - diameter + 1))};
+    const Vec2i corner{static_cast<int>(uniform(random, box.low.x, box.high.x - diameter + 1)),
+                       static_cast<int>(uniform(random, box.low.y, box.high.y - diameter + 1))};
     // Circles with a pixel between them: those that overlap would gain energy where overlap is pushed out.
     if (field.any(disc_stamp(diameter + 2), {corner.x - 1, corner.y - 1})) {
       continue;
