@@ -19,8 +19,8 @@ struct RayScene {
   uint8_t box_count;
   uint16_t pool_nodes;  ///< what its octree needs at its fullest
   struct Box {
-    int16_t min[3];
-    int16_t max[3];
+    int16_t low[3];
+    int16_t high[3];
   };
   const Box* boxes;
 };
