@@ -8,8 +8,8 @@ namespace thimble::tools {
 
 void Bounds::add(const std::array<double, 3>& position) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    min[axis] = empty ? position[axis] : std::min(min[axis], position[axis]);
-    max[axis] = empty ? position[axis] : std::max(max[axis], position[axis]);
+    low[axis] = empty ? position[axis] : std::min(low[axis], position[axis]);
+    high[axis] = empty ? position[axis] : std::max(high[axis], position[axis]);
   }
   empty = false;
 }
