@@ -148,7 +148,7 @@ Vec3i reflect(const Vec3i& direction, const Vec3i& normal_q14) {
   const int32_t twice_q14 = rounded(d * inverse, 41);
   Vec3i result;
   for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = direction[axis] - rounded(int64_t{twice_q14} * normal_q14[axis], 14);
+    result[axis] = direction[axis] - rounded(wide_product(twice_q14, normal_q14[axis]), 14);
   }
   return result;
 }
@@ -198,7 +198,7 @@ bool refract(const Vec3i& unit, const Vec3i& normal_q14, uint32_t eta_q12, Vec3i
   // D^2 is below 2^57, so 64 D^2 below 2^63; the quotient is at most 64 L.
   const uint32_t normal_square = static_cast<uint32_t>(dot(normal_q14, normal_q14));
   const uint64_t length_square = uint64_t{static_cast<uint32_t>(dot(unit, unit))} << 6;
-  const uint64_t along_square = divide(uint64_t{magnitude_of(d)} * magnitude_of(d) << 6, normal_square);
+  const uint64_t along_square = divide(wide_product_u(magnitude_of(d), magnitude_of(d)) << 6, normal_square);
   const uint32_t square = square_after_q30(length_square, length_square - along_square, eta, 6);
   if (square == 0) {
     return false;
@@ -206,16 +206,17 @@ bool refract(const Vec3i& unit, const Vec3i& normal_q14, uint32_t eta_q12, Vec3i
   // out = eta * unit + h * normal with h = (root * |normal| - eta * D) / N, the root and D taken positive.
   // The normal's length goes under the same root: 2^30 * 2^28 / 2^28.
   const uint32_t root_q15 =
-      root_rounded(static_cast<uint32_t>(shift_rounded(uint64_t{square} * normal_square, 28)));
+      root_rounded(static_cast<uint32_t>(shift_rounded(wide_product_u(square, normal_square), 28)));
   // In Q28 * 4096: 2^31 * 2^10 and 2^14 * 2^28, both below 2^43; times the inverse cut to 2^19.
   const int64_t onward_q40 =
-      (int64_t{root_q15} << 25) - static_cast<int64_t>(uint64_t{magnitude_of(d)} * eta);
+      (int64_t{root_q15} << 25) - static_cast<int64_t>(wide_product_u(magnitude_of(d), eta));
   const int64_t inverse_q47 = inverse_of_square_q56(static_cast<int32_t>(normal_square)) >> 9;
   const int64_t h_q18 = (onward_q40 * inverse_q47) >> 41;  // below 2^43 * 2^19; 2^20 after the shift
   const int64_t h = d < 0 ? -h_q18 : h_q18;
   for (int axis = 0; axis < 3; ++axis) {
     // Q26 times 2^6 and Q32: below 2^36.
-    (*out)[axis] = rounded(int64_t{unit[axis]} * static_cast<int64_t>(eta) * 64 + h * normal_q14[axis], 18);
+    (*out)[axis] =
+        rounded(wide_product(unit[axis], static_cast<int32_t>(eta)) * 64 + h * normal_q14[axis], 18);
   }
   return true;
 }
@@ -280,8 +281,8 @@ int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denom
   const uint32_t high = dividend / component;
   const uint32_t low = ((dividend - high * component) << 12) / component;
   // 2^24 * 2^32, and 2^24 * 2^12 >> 12.
-  const uint64_t distance_q16 = uint64_t{static_cast<uint32_t>(t_numerator)} * high +
-                                ((uint64_t{static_cast<uint32_t>(t_numerator)} * low) >> 12);
+  const uint64_t distance_q16 = wide_product_u(static_cast<uint32_t>(t_numerator), high) +
+                                (wide_product_u(static_cast<uint32_t>(t_numerator), low) >> 12);
   const uint64_t distance = shift_rounded(distance_q16, 16 - scale.exponent);  // the exponent is -14 .. 6
   return distance < INT32_MAX ? static_cast<int32_t>(distance) : INT32_MAX;
 }

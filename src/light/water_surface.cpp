@@ -6,6 +6,7 @@
 #include "thimble/light/water.h"
 
 #include "../base/bits.h"
+#include "../base/wide_arithmetic.h"
 
 namespace thimble {
 namespace {
@@ -20,10 +21,10 @@ struct Time {
   int32_t speed = 1;
 };
 constexpr bool before(const Time& a, const Time& b) {
-  return int64_t{a.distance} * b.speed < int64_t{b.distance} * a.speed;
+  return is_product_less(a.distance, b.speed, b.distance, a.speed);
 }
 constexpr bool same(const Time& a, const Time& b) {
-  return int64_t{a.distance} * b.speed == int64_t{b.distance} * a.speed;
+  return wide_product(a.distance, b.speed) == wide_product(b.distance, a.speed);
 }
 constexpr Time later(const Time& a, const Time& b) {
   return before(a, b) ? b : a;
@@ -113,7 +114,7 @@ struct Walk {
     since = time;
     for (int axis = 0; axis < 2; ++axis) {
       // Where the ray is, times time.speed: 0 .. 2^20 * 2^20, made of two products below 2^43.
-      int64_t rest = int64_t{place[axis]} * time.speed + int64_t{speed[axis]} * time.distance;
+      int64_t rest = wide_product(place[axis], time.speed) + wide_product(speed[axis], time.distance);
       // Just before a plane is the column below it: ceil - 1 of the quotient, for integers.
       rest -= just_before && speed[axis] != 0 ? 1 : 0;
       int32_t number = 0;
@@ -283,8 +284,8 @@ Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y) {
     const bool counts = surface.height_q16(column[0], column[1]) >= 0;
     for (int axis = 0; axis < 2; ++axis) {
       // Weights are 2^16 together, slopes at most 2^17.
-      sum[axis] +=
-          int64_t{weight} * slope_at(surface, counts ? column[0] : own[0], counts ? column[1] : own[1], axis);
+      sum[axis] += wide_product(
+          weight, slope_at(surface, counts ? column[0] : own[0], counts ? column[1] : own[1], axis));
     }
   }
   for (int axis = 0; axis < 2; ++axis) {
@@ -314,8 +315,8 @@ Vec3i water_hit_normal(const WaterSurface& surface, const WaterHit& hit, const V
   }
   const Vec3i normal = water_normal(surface, x, y);
   // 2^15 * 2^20, three times.
-  const int64_t along =
-      int64_t{normal.x} * direction.x + int64_t{normal.y} * direction.y + int64_t{normal.z} * direction.z;
+  const int64_t along = wide_product(normal.x, direction.x) + wide_product(normal.y, direction.y) +
+                        wide_product(normal.z, direction.z);
   const int32_t through = direction[hit.axis] * hit.side;
   return along != 0 && (along < 0) == (through < 0) ? normal : face;
 }
