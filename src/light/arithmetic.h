@@ -4,19 +4,16 @@
 
 #include <stdint.h>
 
+#include "../base/integers.h"
 #include "../base/wide_arithmetic.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/light/optics.h"
 
 namespace thimble::lit {
 
-constexpr uint32_t absolute(int32_t value) {
-  return value < 0 ? 0U - static_cast<uint32_t>(value) : static_cast<uint32_t>(value);
-}
-
 /// |component| / |direction|, 2^14 = 1.
 inline uint32_t cosine_q14(const Vec3i& direction, int axis) {
-  const uint32_t cosine = absolute(unit_q14(direction)[axis]);
+  const uint32_t cosine = magnitude_32(unit_q14(direction)[axis]);
   return cosine < kUnitQ14 ? cosine : kUnitQ14;
 }
 

@@ -6,6 +6,7 @@
 #include "thimble/light/water.h"
 
 #include "../base/bits.h"
+#include "../base/integers.h"
 #include "../base/wide_arithmetic.h"
 
 namespace thimble {
@@ -30,11 +31,7 @@ constexpr Time later(const Time& a, const Time& b) {
   return before(a, b) ? b : a;
 }
 
-constexpr int32_t magnitude_of(int32_t value) {
-  return value < 0 ? -value : value;
-}
-
-struct Walk {
+struct WaterWalk {
   const WaterSurface& water;
   // Relative to the corner; x and y mirrored; in 1/256 voxel.
   int32_t place[3];
@@ -47,10 +44,10 @@ struct Walk {
   Time since;
   uint32_t visits;
 
-  Walk(const WaterSurface& surface, const Vec3Q8& origin, const Vec3i& direction)
+  WaterWalk(const WaterSurface& surface, const Vec3Q8& origin, const Vec3i& direction)
       : water(surface), down(direction.z < 0), cell{0, 0}, height(0), visits(0) {
     for (int axis = 0; axis < 3; ++axis) {
-      speed[axis] = magnitude_of(direction[axis]);
+      speed[axis] = absolute(direction[axis]);
       place[axis] = origin[axis].raw - 256 * surface.corner[axis];
     }
     for (int axis = 0; axis < 2; ++axis) {
@@ -228,7 +225,7 @@ struct Walk {
 };
 
 // Whether the ray is in the water from t = 0 on; the walk then stands in its first column.
-bool starts_inside(Walk& walk) {
+bool starts_inside(WaterWalk& walk) {
   Time enters;
   if (!walk.clip(walk.water.highest_q8, &enters) || enters.distance > 0) {
     return false;
@@ -251,13 +248,14 @@ int32_t slope_at(const WaterSurface& water, int32_t x, int32_t y, int axis) {
   low = low >= 0 ? low : here;
   high = high >= 0 ? high : here;
   const int32_t rise = high - low;
-  const int32_t size = magnitude_of(rise) >> (columns == 2 ? 1 : 0);
+  const int32_t size = absolute(rise) >> (columns == 2 ? 1 : 0);
   const int32_t slope = size > kSteepest ? kSteepest : size;
   return rise < 0 ? -slope : slope;
 }
 
-constexpr int32_t within(int32_t value, int32_t count) {
-  return value < 0 ? 0 : value >= count ? count - 1 : value;
+// The column nearest to `place`.
+constexpr int32_t nearest_column(int32_t place, int32_t count) {
+  return place < 0 ? 0 : place >= count ? count - 1 : place;
 }
 
 }  // namespace
@@ -268,7 +266,8 @@ Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y) {
     return normal;
   }
   const int32_t at[2] = {x.raw - 256 * surface.corner.x, y.raw - 256 * surface.corner.y};
-  const int32_t own[2] = {within(at[0] >> 8, surface.width), within(at[1] >> 8, surface.depth)};
+  const int32_t own[2] = {nearest_column(at[0] >> 8, surface.width),
+                          nearest_column(at[1] >> 8, surface.depth)};
   // The four columns around the point, by their centres.
   const int32_t first[2] = {(at[0] - 128) >> 8, (at[1] - 128) >> 8};
   const int32_t share[2] = {(at[0] - 128) & 255, (at[1] - 128) & 255};
@@ -278,7 +277,7 @@ Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y) {
     int32_t weight = 1;
     for (int axis = 0; axis < 2; ++axis) {
       const bool far = (corner >> axis & 1) != 0;
-      column[axis] = within(first[axis] + (far ? 1 : 0), axis == 0 ? surface.width : surface.depth);
+      column[axis] = nearest_column(first[axis] + (far ? 1 : 0), axis == 0 ? surface.width : surface.depth);
       weight *= far ? share[axis] : 256 - share[axis];
     }
     const bool counts = surface.height_q16(column[0], column[1]) >= 0;
@@ -323,7 +322,7 @@ Vec3i water_hit_normal(const WaterSurface& surface, const WaterHit& hit, const V
 
 bool water_enter(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
   hit->visits = 0;
-  Walk walk(surface, ray.origin, ray.direction);
+  WaterWalk walk(surface, ray.origin, ray.direction);
   Time enters;
   if (!walk.clip(surface.highest_q8, &enters)) {
     return false;
@@ -361,7 +360,7 @@ bool water_enter(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
 
 bool water_leave(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
   hit->visits = 0;
-  Walk walk(surface, ray.origin, ray.direction);
+  WaterWalk walk(surface, ray.origin, ray.direction);
   if (!starts_inside(walk)) {
     hit->visits = walk.visits;
     return false;
@@ -379,7 +378,7 @@ bool water_leave(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
       }
     }
     // The column is left through a side: into water or out of it.
-    Walk next = walk;
+    WaterWalk next = walk;
     if (!next.step(until) || !next.in_water()) {
       walk.visits = next.visits;
       walk.report(until, true, hit);
@@ -395,7 +394,7 @@ bool water_leave(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
 }
 
 bool water_holds(const WaterSurface& surface, const Vec3Q8& point, const Vec3i& direction) {
-  Walk walk(surface, point, direction);
+  WaterWalk walk(surface, point, direction);
   return starts_inside(walk);
 }
 

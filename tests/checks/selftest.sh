@@ -86,7 +86,7 @@ catches() {
 }
 
 fresh
-for name in layering words format headers arduino tidy core.host core.cortex-m0 core.cortex-m3 core.rv32; do
+for name in layering words format headers arduino one_unit tidy core.host core.cortex-m0 core.cortex-m3 core.rv32; do
   passes $name
 done
 
@@ -130,6 +130,9 @@ add include/thimble/lone.h 'constexpr int max(int a, int b) { return a < b ? b :
 catches arduino 'after Arduino'
 add include/thimble/lone.h 'template <int B1> struct Counted {};'
 catches arduino 'after Arduino'
+add src/sum.cpp 'namespace { struct Frame { int left; }; int width(Frame frame) { return frame.left; } } int a() { return width({1}); }'
+add src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame) { return frame.top; } } int b() { return height({2}); }'
+catches one_unit 'one translation unit'
 add src/sum.cpp 'int* nothing() { return 0; }'
 catches tidy 'nullptr'
 
