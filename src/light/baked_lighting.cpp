@@ -3,6 +3,7 @@
 #include "thimble/light/baked_lighting.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble {
@@ -51,13 +52,6 @@ static_assert(offsetof(Surface, kind) == kKind && offsetof(Surface, index_q12) =
 static_assert(offsetof(Light, is_point) == kIsPoint && offsetof(Light, place) == kPlace &&
               offsetof(Light, color_q8) == kColor && offsetof(Light, reach) == kReach);
 static_assert(sizeof(bool) == 1);
-
-const char* fault(uint32_t* place, uint32_t where, const char* text) {
-  if (place != nullptr) {
-    *place = where;
-  }
-  return text;
-}
 
 bool is_surface(const uint8_t* bytes) {
   const uint32_t index = bits::load16(bytes + kIndex);

@@ -86,7 +86,7 @@ catches() {
 }
 
 fresh
-for name in layering words format headers tidy core.host core.cortex-m0 core.cortex-m3 core.rv32; do
+for name in layering words format headers arduino one_unit tidy core.host core.cortex-m0 core.cortex-m3 core.rv32; do
   passes $name
 done
 
@@ -122,6 +122,17 @@ add src/sum.cpp 'int   x   ;'
 catches format 'make format'
 add include/thimble/lone.h 'inline thimble::Vec3i zero() { return {}; }'
 catches headers 'lone.h does not compile alone'
+add include/thimble/lone.h 'struct Low { bool operator==(const Low&) const = default; };'
+catches headers 'lone.h does not compile alone'
+add include/thimble/lone.h 'struct Range { int LOW; };'
+catches arduino 'after Arduino'
+add include/thimble/lone.h 'constexpr int max(int a, int b) { return a < b ? b : a; }'
+catches arduino 'after Arduino'
+add include/thimble/lone.h 'template <int B1> struct Counted {};'
+catches arduino 'after Arduino'
+add src/sum.cpp 'namespace { struct Frame { int left; }; int width(Frame frame) { return frame.left; } } int a() { return width({1}); }'
+add src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame) { return frame.top; } } int b() { return height({2}); }'
+catches one_unit 'one translation unit'
 add src/sum.cpp 'int* nothing() { return 0; }'
 catches tidy 'nullptr'
 
@@ -143,6 +154,8 @@ for target in host cortex-m0 cortex-m3 rv32; do
   catches core.$target 'through a pointer'
   add src/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
   catches core.$target 'not known when compiling'
+  add src/sum.cpp 'bool seldom(int n) { if (n == 0) [[unlikely]] { return true; } auto l = [&]<int k>() { return n == k; }; return l.template operator()<3>(); }'
+  catches core.$target 'does not compile'
   add src/sum.cpp 'int wide(int n) { volatile int a[200]; a[n] = 1; return a[n + 1]; }'
   catches core.$target 'the limit is 512'
   printf 'nothing,*,10\n' >"$tree/stack.csv"

@@ -109,7 +109,10 @@ struct Medium {
   enum Kind : uint8_t { kAir, kSolid, kWaterBody };
   Kind kind = kAir;
   uint8_t material = 0;
-  friend constexpr bool operator==(const Medium&, const Medium&) = default;
+  friend constexpr bool operator==(const Medium& a, const Medium& b) {
+    return a.kind == b.kind && a.material == b.material;
+  }
+  friend constexpr bool operator!=(const Medium& a, const Medium& b) { return !(a == b); }
 };
 
 /// Where a stretch of a ray ends.
