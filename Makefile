@@ -26,7 +26,7 @@ deps-format:
 all: deps-build ## Build the library and the thimble command (build/release)
 	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@cmake --build build/release -- --quiet
-run: all ## Render three scenes within fixed budgets into out/ and print what they took
+run: all ## Render four scenes within fixed budgets into out/ and print what they took
 	@sh tools/run_demo.sh build/release/thimble out
 
 release:
