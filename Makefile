@@ -51,7 +51,7 @@ fuzz:
 # Between edits: no other compiler, no sanitizer, no slow case.
 check: deps-test ## Build what is optimised and run its quick tests: one line a group
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
-	@.ci/build "optimised build" build/release thimble_tests thimble_golden_tests_O2 thimble_golden_tests_O0
+	@.ci/build "optimised build" build/release thimble_tests thimble_golden_tests_O2
 	@sh tests/check.sh build/release
 # One ctest over all builds, so that there is one summary.
 test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzing

@@ -26,7 +26,7 @@ started=$(date +%s%N)
 status=0
 case $group in
   golden)
-    { "$build/thimble_golden_tests_O2" && "$build/thimble_golden_tests_O0" --arena 6144; } >"$log" 2>&1 || status=1
+    { "$build/thimble_golden_tests_O2" && "$build/thimble_golden_tests_O2" --arena 6144; } >"$log" 2>&1 || status=1
     what=$(sed -n 's/.*[^0-9]\([0-9][0-9]* passed\).*/\1/p' "$log" | tr '\n' ',' | sed 's/,$//; s/,/, /')
     ;;
   checks)
