@@ -9,7 +9,7 @@ namespace thimble {
 namespace {
 
 constexpr uint32_t kMagic = uint32_t{kBakedVersion} << 24 | 0x534D54;  // "TMS", then the version
-constexpr uint32_t kMagicMask = 0x00FFFFFF;
+constexpr uint32_t kMagicMask = 0x00FFFFFF;                            // all but the version
 constexpr uint32_t kSizeOffset = 4;
 constexpr uint32_t kChecksumOffset = 8;
 constexpr uint32_t kCountOffset = 12;  // the checksum covers bytes 0..7 and all from here on
@@ -35,6 +35,8 @@ constexpr uint32_t kCameraBytes = 60;
 
 constexpr SectionKind kKinds[] = {SectionKind::kTree,     SectionKind::kPalette, SectionKind::kCamera,
                                   SectionKind::kBrickMap, SectionKind::kName,    SectionKind::kLighting};
+
+constexpr uint32_t kKindCount = sizeof kKinds / sizeof *kKinds;  // they are numbered from 1
 
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
@@ -226,9 +228,7 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
   const uint8_t* base = bytes.data;
   const uint32_t magic = bits::load32(base);
   if (magic != kMagic) {
-    return fault(place, 0,
-                 (magic & kMagicMask) == (kMagic & kMagicMask) ? "baked in another version of the format"
-                                                               : "not a baked scene");
+    return fault(place, 0, ((magic ^ kMagic) & kMagicMask) == 0 ? kAnotherVersion : "not a baked scene");
   }
   const uint32_t size = bits::load32(base + kSizeOffset);
   const uint32_t count = bits::load32(base + kCountOffset);
@@ -255,11 +255,14 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
       return fault(place, entry, "a section outside the bytes or on top of another");
     }
     end = offset + length;
-    if (kind < 32) {
+    if (kind <= kKindCount) {
       if ((seen >> kind & 1U) != 0) {
         return fault(place, entry, "two sections of one kind");
       }
       seen |= 1U << kind;
+    }
+    if (kind - 1 >= kKindCount && (kind & kOptionalKind) == 0) {
+      return fault(place, entry, kAnotherVersion);
     }
     const ConstBytes content{base + offset, length};
     switch (static_cast<SectionKind>(kind)) {

@@ -8,7 +8,8 @@
 namespace thimble {
 namespace {
 
-constexpr uint32_t kMagic = 0x014D4254;  // "TBM", then the version, 1
+constexpr uint32_t kMagic = 0x014D4254;      // "TBM", then the version, 1
+constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
 constexpr uint32_t kLevelOffset = 4;
 constexpr uint32_t kBoxMinOffset = 5;
 constexpr uint32_t kSizeOffset = 8;
@@ -48,8 +49,9 @@ size_t materials_at(uint32_t cells, uint32_t bricks, uint32_t mixed) {
 }
 
 const char* read_header(ConstBytes bytes, Header* header) {
-  if (bytes.size < kBrickMapHeaderBytes || bits::load32(bytes.data) != kMagic) {
-    return "not a brick map of this version";
+  const uint32_t differ = bytes.size < kBrickMapHeaderBytes ? kMagicMask : bits::load32(bytes.data) ^ kMagic;
+  if (differ != 0) {
+    return (differ & kMagicMask) == 0 ? kAnotherVersion : "not a brick map";
   }
   const uint8_t* base = bytes.data;
   header->level = base[kLevelOffset];
