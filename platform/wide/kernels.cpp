@@ -1,4 +1,4 @@
-// What floats decide and what integers decide: see DESIGN.md, "The wide renderer".
+// What floats decide and what integers decide: see README.md beside this file.
 #include "wide/kernels.h"
 
 #include "wide/exact.h"

@@ -10,7 +10,7 @@ namespace thimble {
 namespace {
 
 constexpr uint32_t kSceneMagic = uint32_t{kBakedVersion} << 24 | 0x534D54;  // "TMS", then the version
-constexpr uint32_t kSceneMagicMask = 0x00FFFFFF;
+constexpr uint32_t kSceneMagicMask = 0x00FFFFFF;                            // all but the version
 constexpr uint32_t kSceneSizeOffset = 4;
 constexpr uint32_t kSceneChecksumOffset = 8;
 constexpr uint32_t kSceneCountOffset = 12;  // the checksum covers bytes 0..7 and all from here on
@@ -36,6 +36,8 @@ constexpr uint32_t kCameraBytes = 60;
 
 constexpr SectionKind kKinds[] = {SectionKind::kTree,     SectionKind::kPalette, SectionKind::kCamera,
                                   SectionKind::kBrickMap, SectionKind::kName,    SectionKind::kLighting};
+
+constexpr uint32_t kKindCount = sizeof kKinds / sizeof *kKinds;  // they are numbered from 1
 
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
@@ -221,9 +223,7 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
   const uint32_t magic = bits::load32(base);
   if (magic != kSceneMagic) {
     return fault(place, 0,
-                 (magic & kSceneMagicMask) == (kSceneMagic & kSceneMagicMask)
-                     ? "baked in another version of the format"
-                     : "not a baked scene");
+                 ((magic ^ kSceneMagic) & kSceneMagicMask) == 0 ? kAnotherVersion : "not a baked scene");
   }
   const uint32_t size = bits::load32(base + kSceneSizeOffset);
   const uint32_t count = bits::load32(base + kSceneCountOffset);
@@ -250,11 +250,14 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
       return fault(place, entry, "a section outside the bytes or on top of another");
     }
     end = offset + length;
-    if (kind < 32) {
+    if (kind <= kKindCount) {
       if ((seen >> kind & 1U) != 0) {
         return fault(place, entry, "two sections of one kind");
       }
       seen |= 1U << kind;
+    }
+    if (kind - 1 >= kKindCount && (kind & kOptionalKind) == 0) {
+      return fault(place, entry, kAnotherVersion);
     }
     const ConstBytes content{base + offset, length};
     switch (static_cast<SectionKind>(kind)) {

@@ -38,7 +38,7 @@ constexpr unsigned kHasDepthCue = 4;
 constexpr unsigned kHasWater = 8;
 constexpr unsigned kAllFlags = 15;
 
-// A surface and a light; what the structs of lit_scene.h look like in memory.
+// A surface and a light; what the structs of scene.h look like in memory.
 constexpr uint32_t kKind = 3;
 constexpr uint32_t kIndex = 6;
 constexpr uint32_t kSurfaceBytes = 12;
@@ -130,7 +130,7 @@ const char* BakedLighting::validate(ConstBytes section, int level, uint32_t* pla
     return fault(place, 0, "lighting shorter than its head");
   }
   if (base[kVersion] != kLightingVersion) {
-    return fault(place, kVersion, "lighting in another version of the format");
+    return fault(place, kVersion, kAnotherVersion);
   }
   const uint32_t surfaces = bits::load16(base + kSurfaceCount);
   const uint32_t lights = bits::load16(base + kLightCount);

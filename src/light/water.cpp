@@ -1,4 +1,4 @@
-// Moving water. DESIGN.md ("Water") proves what is claimed here: the energy never grows, heights keep their
+// Moving water. src/light/WATER.md proves what is claimed here: the energy never grows, heights keep their
 // limits, the volume is exact.
 #include "thimble/light/water.h"
 

@@ -1,5 +1,5 @@
 // Frames by bricks: from voxel to voxel through the 64-bit bricks of a map, plane by plane along the axis on
-// which the rays of a tile move fastest. DESIGN.md, "Frames on a chip", derives what is used here.
+// which the rays of a tile move fastest. src/picture/README.md derives what is used here.
 //
 // Everything is mirrored as in crossings.h, so that no direction has a negative component, and relative to
 // the map's box: planes and cells are counted from the side at which the rays come in. Axis c is the one that

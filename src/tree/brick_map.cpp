@@ -8,7 +8,8 @@
 namespace thimble {
 namespace {
 
-constexpr uint32_t kMapMagic = 0x014D4254;  // "TBM", then the version, 1
+constexpr uint32_t kMapMagic = 0x014D4254;      // "TBM", then the version, 1
+constexpr uint32_t kMapMagicMask = 0x00FFFFFF;  // all but the version
 constexpr uint32_t kMapLevelOffset = 4;
 constexpr uint32_t kBoxMinOffset = 5;
 constexpr uint32_t kMapSizeOffset = 8;
@@ -48,8 +49,10 @@ size_t materials_at(uint32_t cells, uint32_t bricks, uint32_t mixed) {
 }
 
 const char* read_map_header(ConstBytes bytes, MapHeader* header) {
-  if (bytes.size < kBrickMapHeaderBytes || bits::load32(bytes.data) != kMapMagic) {
-    return "not a brick map of this version";
+  const uint32_t differ =
+      bytes.size < kBrickMapHeaderBytes ? kMapMagicMask : bits::load32(bytes.data) ^ kMapMagic;
+  if (differ != 0) {
+    return (differ & kMapMagicMask) == 0 ? kAnotherVersion : "not a brick map";
   }
   const uint8_t* base = bytes.data;
   header->level = base[kMapLevelOffset];

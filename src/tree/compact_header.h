@@ -12,7 +12,8 @@ namespace thimble {
 
 namespace compact_header {
 
-inline constexpr uint32_t kMagic = 0x01424D54;  // "TMB", then the version, 1
+inline constexpr uint32_t kMagic = 0x01424D54;      // "TMB", then the version, 1
+inline constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
 inline constexpr uint32_t kLevelOffset = 4;
 inline constexpr uint32_t kRankShiftOffset = 5;
 inline constexpr uint32_t kFlagsOffset = 6;

@@ -17,8 +17,8 @@ const char* read_compact_header(ConstBytes bytes, CompactShape* shape, uint32_t*
     return fault(place, 0, "shorter than a header");
   }
   const uint8_t* base = bytes.data;
-  if (bits::load32(base) != kMagic) {
-    return fault(place, 0, "not a compact tree of this version");
+  if (const uint32_t differ = bits::load32(base) ^ kMagic) {
+    return fault(place, 0, (differ & kMagicMask) == 0 ? kAnotherVersion : "not a compact tree");
   }
   shape->level = base[kLevelOffset];
   shape->rank_shift = base[kRankShiftOffset];

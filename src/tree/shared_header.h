@@ -10,7 +10,8 @@ namespace thimble {
 
 namespace shared_header {
 
-inline constexpr uint32_t kMagic = 0x01474D54;  // "TMG", then the version, 1
+inline constexpr uint32_t kMagic = 0x01474D54;      // "TMG", then the version, 1
+inline constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
 inline constexpr uint32_t kLevelOffset = 4;
 inline constexpr uint32_t kLinkBytesOffset = 5;
 inline constexpr uint32_t kFlagsOffset = 6;

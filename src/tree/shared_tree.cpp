@@ -17,8 +17,8 @@ const char* header_fault(ConstBytes bytes, uint32_t* place) {
     return fault(place, 0, "shorter than a header");
   }
   const uint8_t* base = bytes.data;
-  if (bits::load32(base) != kMagic) {
-    return fault(place, 0, "not a shared tree of this version");
+  if (const uint32_t differ = bits::load32(base) ^ kMagic) {
+    return fault(place, 0, (differ & kMagicMask) == 0 ? kAnotherVersion : "not a shared tree");
   }
   const int level = base[kLevelOffset];
   if (level < kMinLevel || level > kMaxLevel) {

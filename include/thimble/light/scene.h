@@ -9,7 +9,7 @@
 ///
 /// Plain data, without a tree: a few numbers a material, a few a light. An effect is a part of the renderer
 /// that can be left out; `effects_of` reads off the data which ones the scene calls for. Everything is in
-/// integers, so a lit picture is the same on every machine (lit_render.h draws it).
+/// integers, so a lit picture is the same on every machine (render.h draws it).
 #ifndef THIMBLE_LIGHT_SCENE_H
 #define THIMBLE_LIGHT_SCENE_H
 

@@ -1,5 +1,5 @@
 /// @file pixel.h
-/// The parts of lit_render.h: one function an effect, and the loop over the rays of a pixel that calls those
+/// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
 /// which the set names. Not for callers; it is public because the loop is compiled with the caller's set.
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
