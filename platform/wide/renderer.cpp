@@ -99,8 +99,8 @@ class TileDrawer {
   // `others`: null, or those that draw on other rows of the same depths, and take some of ours when they have
   // none left. `next_share`: null, or common to several that share the runs of a list among them, each with
   // depths of its own; not with blocks.
-  TileDrawer(const VoxelLists& lists, const Frame& frame, const Depths& depths, uint8_t* full, bool by_blocks,
-             Batch* batch, Others* others, std::atomic<uint32_t>* next_share = nullptr)
+  TileDrawer(const VoxelLists& lists, const WideFrame& frame, const Depths& depths, uint8_t* full,
+             bool by_blocks, Batch* batch, Others* others, std::atomic<uint32_t>* next_share = nullptr)
       : lists_(lists),
         frame_(frame),
         depths_(depths),
@@ -189,7 +189,7 @@ class TileDrawer {
     finish(frame_, depths_, batch_);
   }
 
-  const Frame& frame() const { return frame_; }
+  const WideFrame& frame() const { return frame_; }
 
   // Of Handover.
   std::atomic<bool> given{false};
@@ -459,7 +459,7 @@ class TileDrawer {
   }
 
   const VoxelLists& lists_;
-  Frame frame_;
+  WideFrame frame_;
   const Depths& depths_;
   uint8_t* full_;  // see all_covered
   bool by_blocks_;
@@ -565,7 +565,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (status != Status::kOk || band.rows == 0) {
     return status;
   }
-  Frame frame;
+  WideFrame frame;
   if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
     return Status::kTooFine;
   }
@@ -583,7 +583,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
 
   Arena arena(workspace);
   const size_t strips = strips_of(camera.width_px());
-  const Painter painter(lists, camera, shading, band);
+  const TilePainter painter(lists, camera, shading, band);
   const auto make_depths = [&] {
     const size_t pixels = strips * static_cast<size_t>(band.rows) * 32;
     const Bytes nearest = arena.take(pixels * sizeof(uint64_t), 64);
@@ -670,7 +670,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
         drawer.draw();
       });
       options.threads->each((band.rows - 1) / kMergedRows + 1, [&](int part) {
-        Frame merged = frame;
+        WideFrame merged = frame;
         merged.tile.y0 += part * kMergedRows;
         merged.tile.y1 = std::min(merged.tile.y0 + kMergedRows, frame.tile.y1);
         for (int thread = 1; thread < threads; ++thread) {
