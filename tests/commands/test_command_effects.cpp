@@ -8,6 +8,7 @@
 
 #include "scene/built_scene.h"
 #include "scene/lit_setup.h"
+#include "scene/scene_source.h"
 #include "support/run_command.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
