@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "benchmarks/textbook_octree.h"
-#include "commands/options.h"
 #include "scene/built_scene.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 #include "thimble/tree/morton.h"
 
@@ -84,7 +84,7 @@ Scene& scene(const std::string& name, tools::StructureKind structure, bool with_
 Camera camera_of(int level, bool orthographic, int direction_bits, int frame) {
   const double side = 1 << level;
   const double drift = 0.003 * side * (frame % kFrames + 1);
-  tools::ViewOptions view;
+  tools::ViewWishes view;
   view.width_px = kWidthPx;
   view.height_px = kHeightPx;
   view.orthographic = orthographic;
@@ -96,7 +96,7 @@ Camera camera_of(int level, bool orthographic, int direction_bits, int frame) {
   } else {
     view.eye = tools::Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
   }
-  return view.camera(level, {});
+  return tools::frame_box(view, level, {}).camera;
 }
 
 std::uint64_t draw_core(const tools::BuiltScene& built, const Camera& camera, Width width,

@@ -12,6 +12,7 @@
 #include "scene/baking.h"
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
+#include "scene/scene_source.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
 #include "thimble/base/crc32.h"

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "commands/options.h"
 #include "readers/oct.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/trace.h"
 #include "thimble/tree/octree.h"
@@ -321,7 +321,7 @@ std::vector<TrialView> trial_views(const CompactTree& tree, std::int32_t width_p
   };
   const auto add = [&](const char* name, std::optional<Real3> eye, std::optional<Real3> target, double fov,
                        std::optional<double> span = std::nullopt) {
-    tools::ViewOptions view;
+    tools::ViewWishes view;
     view.width_px = width_px;
     view.height_px = height_px;
     view.eye = eye;
@@ -334,7 +334,7 @@ std::vector<TrialView> trial_views(const CompactTree& tree, std::int32_t width_p
       view.span = std::max(*span, static_cast<double>(least.raw) / Q14::kOne);
     }
     try {
-      views.push_back({name, view.camera(tree.level(), box)});
+      views.push_back({name, tools::frame_box(view, tree.level(), box).camera});
     } catch (const tools::InputError&) {
       // The core does not take it: too fine, or from too far off.
     }

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "commands/options.h"
 #include "scene/built_scene.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
+#include "scene/wide_renderer.h"
 #include "support/wide_cases.h"
 
 namespace thimble::tests {
@@ -241,18 +242,19 @@ TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the co
     tools::SceneArguments arguments;
     arguments.scene = name;
     tools::BuiltScene built(*tools::open_scene(arguments), {});
-    REQUIRE(built.prepare_wide(800, 600, 1));
+    const auto renderer = tools::WideRenderer::make(&built, 800, 600, 1);
+    REQUIRE(renderer != nullptr);
     const double side = 1 << built.level();
     for (int i = name == names.front() ? 0 : kFrames - 2; i < kFrames; ++i) {
       CAPTURE(name);
       CAPTURE(i);
       const double drift = 0.003 * side * (i + 1);
-      tools::ViewOptions view;
+      tools::ViewWishes view;
       view.orthographic = i == 4;
       view.target = tools::Real3{side / 2 + drift / 3, side / 2, side / 2 + drift / 5};
       view.eye = i == 3 ? tools::Real3{side / 2, side * 0.3, side / 2}
                         : tools::Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
-      const Camera camera = view.camera(built.level(), built.bounds());
+      const Camera camera = tools::frame_box(view, built.level(), built.bounds()).camera;
       Shading shading;
       shading.near_q8 = depth_range(camera, built.bounds()).near_q8;
       shading.far_q8 = depth_range(camera, built.bounds()).far_q8;
@@ -264,7 +266,7 @@ TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the co
       band.pixels = Bytes(ours.data(), ours.size());
       wide::Counts work;
       RenderCounts counts;
-      REQUIRE(built.render_wide(camera, shading, band, &counts, &work) == Status::kOk);
+      REQUIRE(renderer->render(camera, shading, band, &counts, &work) == Status::kOk);
       CHECK(work.exact < work.candidates / 50);  // floats decide nearly all
       band.pixels = Bytes(expected.data(), expected.size());
       RenderCounts expected_counts;
@@ -296,11 +298,11 @@ TEST_CASE("wide: the order is chosen by what boxes hide -> few more tests than p
     for (const bool orthographic : {false, true}) {
       CAPTURE(name);
       CAPTURE(orthographic);
-      tools::ViewOptions view;
+      tools::ViewWishes view;
       view.orthographic = orthographic;
       view.width_px = 400;
       view.height_px = 300;
-      const Camera camera = view.camera(built.level(), built.bounds());
+      const Camera camera = tools::frame_box(view, built.level(), built.bounds()).camera;
       Band band;
       band.format = PixelFormat::kGray8;
       band.rows = 300;

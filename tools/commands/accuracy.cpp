@@ -8,15 +8,18 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/effect_options.h"
+#include "commands/report_files.h"
+#include "commands/scene_options.h"
+#include "commands/view_options.h"
 #include "instruments/accuracy_report.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_case_report.h"
 #include "instruments/simulation_study.h"
-#include "output/output_file.h"
 #include "output/progress.h"
-#include "output/tables.h"
 #include "output/units.h"
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -33,54 +36,13 @@ struct AccuracyCommand {
   std::uint64_t seed = 1;
   std::optional<double> for_ms;
   std::optional<double> for_error;
-  std::string csv_path;
-  std::string json_path;
-  std::string plot_path;
-};
-
-// The files of --csv, --json and --plot: opened before the work begins, so that a folder that is not there is
-// known at once, and named when all of them are whole.
-class Outputs {
- public:
-  explicit Outputs(const AccuracyCommand& command)
-      : paths_{command.csv_path, command.json_path, command.plot_path} {
-    check_distinct(paths_, {&command.scene.arguments.scene, 1});
-    for (std::size_t i = 0; i < files_.size(); ++i) {
-      files_[i] = paths_[i].empty() ? nullptr : std::make_unique<OutputFile>(paths_[i]);
-    }
-  }
-  void write(const JsonRow& rows, const std::string& plot) {
-    const std::array<std::string, 3> texts{csv_of(rows), rows.dump(2) + "\n", plot};
-    for (std::size_t i = 0; i < files_.size(); ++i) {
-      if (files_[i] != nullptr) {
-        files_[i]->write(texts[i]);
-        files_[i]->flush();
-      }
-    }
-    for (const auto& file : files_) {
-      if (file != nullptr) {
-        file->commit();
-      }
-    }
-  }
-  // For people, unless data go to standard output, which want no table between them.
-  void print(const std::string& text) const {
-    if (std::find(paths_.begin(), paths_.end(), "-") == paths_.end()) {
-      OutputFile output("-");
-      output.write(text);
-      output.commit();
-    }
-  }
-
- private:
-  std::array<std::string, 3> paths_;
-  std::array<std::unique_ptr<OutputFile>, 3> files_;
+  ReportPaths files;
 };
 
 void run_scene(const AccuracyCommand& command) {
-  Outputs outputs(command);
+  ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
-  BuiltScene built = command.scene.build(*source, 0, 0);
+  BuiltScene built = command.scene.build(*source);
   AccuracyStudy study;
   {
     ProgressBar bar("measuring", command.scene.quiet);
@@ -91,21 +53,21 @@ void run_scene(const AccuracyCommand& command) {
                              : command.for_error ? answer_for_error(study, *command.for_error)
                                                  : std::string();
   const std::string& scene = command.scene.arguments.scene;
-  outputs.write(accuracy_objects(study),
-                command.plot_path.empty() ? "" : accuracy_plot(study, command.study.axis, scene));
+  files.write(accuracy_objects(study),
+              files.wants_plot() ? accuracy_plot(study, command.study.axis, scene) : "");
   if (!command.scene.quiet) {
     for (const std::string& note : study.notes) {
       std::fprintf(stderr, "note: %s\n", note.c_str());
     }
   }
-  outputs.print(printable(scene) + "\n" + std::to_string(command.study.view.width_px) + "x" +
-                std::to_string(command.study.view.height_px) + ", median of " +
-                std::to_string(command.study.rounds) + " frames each, by turns\n" +
-                accuracy_tables(study, command.study.axis) + answer);
+  files.print(printable(scene) + "\n" + std::to_string(command.study.view.width_px) + "x" +
+              std::to_string(command.study.view.height_px) + ", median of " +
+              std::to_string(command.study.rounds) + " frames each, by turns\n" +
+              accuracy_tables(study, command.study.axis) + answer);
 }
 
 void run_hard(const AccuracyCommand& command) {
-  Outputs outputs(command);
+  ReportFiles files(command.files, command.scene.arguments.scene);
   HardCaseStudy study;
   {
     ProgressBar bar("tracing", command.scene.quiet);
@@ -114,23 +76,23 @@ void run_hard(const AccuracyCommand& command) {
     study.operations = sweep_operations(std::max(command.hard_rays / 5, kLeastCases), command.seed,
                                         [&](double done) { bar.update(0.8 + 0.2 * done); });
   }
-  outputs.write(hard_case_objects(study), "");
-  outputs.print(hard_case_tables(study));
+  files.write(hard_case_objects(study), "");
+  files.print(hard_case_tables(study));
   if (const std::string fault = hard_case_fault(study); !fault.empty()) {
     throw InputError(fault);
   }
 }
 
 void run_simulation(const AccuracyCommand& command) {
-  Outputs outputs(command);
+  ReportFiles files(command.files, command.scene.arguments.scene);
   std::vector<SimulationRow> rows;
   {
     ProgressBar bar("measuring", command.scene.quiet);
     rows =
         study_simulation(*command.simulation, command.study.rounds, [&](double done) { bar.update(done); });
   }
-  outputs.write(simulation_objects(*command.simulation, rows), simulation_plot(*command.simulation, rows));
-  outputs.print(simulation_table(*command.simulation, rows));
+  files.write(simulation_objects(*command.simulation, rows), simulation_plot(*command.simulation, rows));
+  files.print(simulation_table(*command.simulation, rows));
 }
 
 // Options that say what is measured go with few of the others.
@@ -177,6 +139,33 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& typ
         return {};
       },
       help);
+}
+
+void add_file_options(CLI::App& sub, ReportPaths* paths) {
+  add_path_option(
+      sub, "--csv", "FILE.csv", &paths->csv,
+      "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
+      "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
+      "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
+      "per cent being equal), max_depth (0: all), cutoff_px, direction_bits (0: automatic), samples; against "
+      "the reference: wrong_px (of another colour), visible_px (a channel off by more than "
+      "8 of 255), rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; "
+      "rays, "
+      "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
+      "depth_error_max_voxels (of centres' rays that hit in both); lm3s6965evb_instructions (an estimate, "
+      "off by 5 per cent on average on the demonstration); anytime: visits_given, inexact_px, "
+      "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays; light: "
+      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
+      "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
+      "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
+      "(of the others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: "
+      "row (particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), "
+      "steps, work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of "
+      "all steps), unit (of the errors), error_rms, error_median, error_most, front");
+  add_path_option(sub, "--json", "FILE.json", &paths->json,
+                  "the same, an array of objects; null where the CSV is empty");
+  add_path_option(sub, "--plot", "FILE.svg", &paths->plot,
+                  "PSNR against what --against says, the front marked and named");
 }
 
 }  // namespace
@@ -235,51 +224,16 @@ void add_accuracy(CLI::App& app) {
       "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
       "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
       .default_str("time");
-  command->study.view.add_to(*sub, false);
-  add_choice_option(
-      *sub, "--shade", {"depth", "normal", "color", "mono"},
-      [command](std::size_t index) {
-        constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
-                                    ShadeMode::kMono};
-        command->study.shade = kModes[index];
-      },
-      "what is compared: brightness by distance, by the face's direction, palette colours, or hit or not")
-      .default_str("depth");
-  add_text_option(
-      *sub, "--effects", "LIST",
-      [command](const std::string& text) {
-        const auto choice = parse_effects(text);
-        command->study.effects = choice.value_or(EffectChoice{});
-        return choice ? "" : "is not auto, none or a list of " + effect_names();
-      },
+  add_view(*sub, &command->study.view, false);
+  add_shade(
+      *sub, &command->study.shade,
+      "what is compared: brightness by distance, by the face's direction, palette colours, or hit or not");
+  add_effect_list(
+      *sub, &command->study.effects,
       "light whose knobs are turned too (rays of occlusion, rays of rough metal, bounces): auto (what the "
       "scene's materials and lights call for), none, or effects with commas between them: " +
-          effect_names())
-      .default_str("auto");
-  add_path_option(
-      *sub, "--csv", "FILE.csv", &command->csv_path,
-      "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
-      "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
-      "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
-      "per cent being equal), max_depth (0: all), cutoff_px, direction_bits (0: automatic), samples; against "
-      "the reference: wrong_px (of another colour), visible_px (a channel off by more than "
-      "8 of 255), rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; "
-      "rays, "
-      "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
-      "depth_error_max_voxels (of centres' rays that hit in both); lm3s6965evb_instructions (an estimate, "
-      "off by 5 per cent on average on the demonstration); anytime: visits_given, inexact_px, "
-      "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays; light: "
-      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
-      "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
-      "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
-      "(of the others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: "
-      "row (particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), "
-      "steps, work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of "
-      "all steps), unit (of the errors), error_rms, error_median, error_most, front");
-  add_path_option(*sub, "--json", "FILE.json", &command->json_path,
-                  "the same, an array of objects; null where the CSV is empty");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,
-                  "PSNR against what --against says, the front marked and named");
+          effect_names());
+  add_file_options(*sub, &command->files);
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
   when_chosen(*sub, [command, sub] { run(*command, *sub); });
 }

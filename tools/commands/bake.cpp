@@ -7,21 +7,24 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/effect_options.h"
+#include "commands/scene_options.h"
 #include "commands/stats.h"
+#include "commands/view_options.h"
 #include "output/c_header.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/framing.h"
 
 namespace thimble::tools {
 namespace {
 
 struct BakeCommand {
   SceneOptions scene;  // its --memory is the limit of what is written
-  ViewOptions view;
+  ViewWishes view;
   std::string output;
   std::string identifier = kDefaultIdentifier;
   bool as_header = false;
@@ -57,9 +60,11 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   options.brick_map = command.brick_map || command.scene.board != nullptr;
   options.effects = command.effects;
   options.camera = [&command, &source, note](int level, const VoxelBox& bounds) {
-    SceneCamera chosen;
-    command.view.camera(source, level, bounds, note, &chosen);
-    return chosen;
+    Framing framing = frame_scene(command.view, source, level, bounds);
+    if (note != nullptr && !framing.note.empty()) {
+      *note = framing.note;
+    }
+    return framing.kept;
   };
   return options;
 }
@@ -122,17 +127,32 @@ void report(const BakeCommand& command, const Baked& baked, const std::string& n
   std::fputs(text.c_str(), stderr);
 }
 
+Stats stats_of(const BakeCommand& command, const SceneSource& source, const Baked& baked,
+               std::optional<std::uint64_t> limit) {
+  const CompactTree& tree = baked.scene.tree();
+  Stats stats;
+  stats.scene = command.scene.arguments.scene;
+  stats.depth = tree.level();
+  stats.points = source.points();
+  stats.voxels = tree.voxel_count();
+  stats.nodes = tree.node_count();
+  stats.tree_bytes = tree.size_bytes();
+  stats.budget_bytes = limit.value_or(baked.bytes.size());
+  stats.high_water_bytes = baked.work_bytes;
+  stats.solid_added = tree.solid_added();
+  stats.build_seconds = baked.seconds;
+  stats.baked_bytes = baked.bytes.size();
+  stats.baked_crc32 = crc_text(baked.scene.crc32());
+  if (command.scene.board != nullptr) {
+    stats.board = command.scene.board->name;
+  }
+  return stats;
+}
+
 void run(const BakeCommand& given) {
   BakeCommand command = given;
-  command.view.use_display(command.scene.board);
-  const std::array<std::string, 2> outputs{command.output, command.scene.stats_path};
-  check_distinct(outputs, {&command.scene.arguments.scene, 1});
-  // Opened before the work begins, so that a folder that is not there is known at once.
-  OutputFile file(command.output);
-  std::unique_ptr<OutputFile> stats_file;
-  if (!command.scene.stats_path.empty()) {
-    stats_file = std::make_unique<OutputFile>(command.scene.stats_path);
-  }
+  use_display(command.scene.board, &command.view);
+  OutputSet outputs({command.output, command.scene.stats_path}, {command.scene.arguments.scene});
   const auto source = command.scene.open();
   std::string note;
   BakingOptions options = baking_options(command, *source, &note);
@@ -160,36 +180,14 @@ void run(const BakeCommand& given) {
   }
 
   if (command.as_header) {
-    file.write(c_header_text(baked.scene, command.identifier));
+    outputs[0]->write(c_header_text(baked.scene, command.identifier));
   } else {
-    file.write(baked.bytes);
+    outputs[0]->write(baked.bytes);
   }
-  if (stats_file != nullptr) {
-    const CompactTree& tree = baked.scene.tree();
-    Stats stats;
-    stats.scene = command.scene.arguments.scene;
-    stats.depth = tree.level();
-    stats.points = source->points();
-    stats.voxels = tree.voxel_count();
-    stats.nodes = tree.node_count();
-    stats.tree_bytes = tree.size_bytes();
-    stats.budget_bytes = options.limit_bytes.value_or(baked.bytes.size());
-    stats.high_water_bytes = baked.work_bytes;
-    stats.solid_added = tree.solid_added();
-    stats.build_seconds = baked.seconds;
-    stats.baked_bytes = baked.bytes.size();
-    stats.baked_crc32 = crc_text(baked.scene.crc32());
-    if (command.scene.board != nullptr) {
-      stats.board = command.scene.board->name;
-    }
-    stats_file->write(stats_text(stats));
-    stats_file->flush();
+  if (outputs[1] != nullptr) {
+    outputs[1]->write(stats_text(stats_of(command, *source, baked, options.limit_bytes)));
   }
-  file.flush();  // a full disk is found before either takes its name
-  file.commit();
-  if (stats_file != nullptr) {
-    stats_file->commit();
-  }
+  outputs.commit();
   if (!command.scene.quiet) {
     report(command, baked, note);
   }
@@ -228,16 +226,10 @@ void add_bake(CLI::App& app) {
   add_flag(*sub, "--brick-map", &command->brick_map,
            "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
            "as long as all keeps the limit; --board always does");
-  add_text_option(
-      *sub, "--effects", "LIST",
-      [command](const std::string& text) {
-        const auto choice = parse_effects(text);
-        command->effects = choice.value_or(EffectChoice{});
-        return choice ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
-      },
+  add_effect_list(
+      *sub, &command->effects,
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
-      "commas between them; a header states the set as a macro, so that firmware holds no others")
-      .default_str("auto");
+      "commas between them; a header states the set as a macro, so that firmware holds no others");
   add_text_option(
       *sub, "--name", "IDENT",
       [command](const std::string& text) {
@@ -246,7 +238,7 @@ void add_bake(CLI::App& app) {
       },
       "what a header calls the array; its macros begin with the same in capitals")
       .default_str(kDefaultIdentifier);
-  command->view.add_to(*sub);
+  add_view(*sub, &command->view);
   command->scene.add_report(*sub);
   when_chosen(*sub, [command] { run(*command); });
 }

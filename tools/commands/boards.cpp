@@ -4,28 +4,29 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
-#include "output/output_file.h"
+#include "commands/report_files.h"
+#include "commands/scene_options.h"
 #include "output/progress.h"
+#include "output/tables.h"
 #include "output/units.h"
 #include "readers/oct.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/built_scene.h"
+#include "scene/framing.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using platform::BoardFacts;
 
 struct BoardsCommand {
   SceneOptions scene;
-  std::string csv_path;
-  std::string json_path;
+  ReportPaths files;
 };
 
 // The scene in the forms that boards take.
@@ -63,9 +64,7 @@ BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& sourc
   BakingOptions options;
   options.name = scene_name(command.scene.arguments.scene);
   options.camera = [&](int level, const VoxelBox& bounds) {
-    SceneCamera chosen;
-    ViewOptions{}.camera(source, level, bounds, nullptr, &chosen);
-    return chosen;
+    return frame_scene({}, source, level, bounds).kept;
   };
   const Baked baked = bake_scene(source, options, progress);
   // A depth deeper every voxel beside a block becomes a node below the nodes that are there. Few of those
@@ -143,8 +142,8 @@ std::uint64_t building_ram_bytes(const SceneSizes& sizes, const BoardFacts& boar
   return drawing_ram_bytes(board) + sizes.pool_bytes;
 }
 
-Json row_of(const BoardFacts& board, const SceneSizes* sizes) {
-  Json row;
+JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
+  JsonRow row;
   row["board"] = board.name;
   row["title"] = board.title;
   row["core"] = board.cpu;
@@ -174,57 +173,6 @@ Json row_of(const BoardFacts& board, const SceneSizes* sizes) {
   return row;
 }
 
-std::string csv_text(const Json& rows) {
-  std::string text;
-  const auto cell = [](const Json& value) {
-    if (!value.is_string()) {
-      return value.dump();
-    }
-    auto plain = value.get<std::string>();
-    if (plain.find_first_of(",\"\n") == std::string::npos) {
-      return plain;
-    }
-    std::string quoted = "\"";
-    for (const char c : plain) {
-      quoted += c == '"' ? "\"\"" : std::string(1, c);
-    }
-    return quoted + "\"";
-  };
-  for (const auto& [name, value] : rows.front().items()) {
-    text += (text.empty() ? "" : ",") + name;
-  }
-  for (const Json& row : rows) {
-    std::string line;
-    for (const auto& [name, value] : row.items()) {
-      line += (line.empty() ? "" : ",") + cell(value);
-    }
-    text += "\n" + line;
-  }
-  return text + "\n";
-}
-
-using Cells = std::vector<std::string>;
-
-// Columns two blanks apart, as wide as their widest cell; the first `left` of them begin at their left edge.
-std::string table_text(const std::vector<Cells>& rows, std::size_t left) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Cells& cells : rows) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      widths[i] = std::max(widths[i], cells[i].size());
-    }
-  }
-  std::string text;
-  for (const Cells& cells : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::string gap(widths[i] - cells[i].size(), ' ');
-      line += (i == 0 ? "" : "  ") + (i < left ? cells[i] + gap : gap + cells[i]);
-    }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
-
 std::string boards_text() {
   std::vector<Cells> rows{{"board", "core", "picture", "display", "buttons", "RAM", "flash", "stack"}};
   for (const BoardFacts& board : platform::boards()) {
@@ -234,7 +182,7 @@ std::string boards_text() {
                     screen_name(board.screen), std::to_string(board.buttons), grouped(board.ram_bytes),
                     grouped(board.flash_bytes), grouped(board.stack_bytes)});
   }
-  return table_text(rows, 4);
+  return columns_of(rows, 4);
 }
 
 std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
@@ -260,7 +208,7 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
                     yes(building <= board.ram_bytes),
                     depth == 0 ? "-" : (open_end ? ">= " : "") + std::to_string(depth)});
   }
-  text += table_text(rows, 1);
+  text += columns_of(rows, 1);
   text +=
       "\nscene flash: flash less " + grouped(kCodeFlashBytes) +
       " bytes for code; scene: the baked scene's part of it. RAM: renderer, a\nband of " +
@@ -271,43 +219,18 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
 }
 
 void run(const BoardsCommand& command) {
-  const std::array<std::string, 2> outputs{command.csv_path, command.json_path};
-  const bool has_scene = !command.scene.arguments.scene.empty();
-  check_distinct(outputs, {&command.scene.arguments.scene, has_scene ? 1U : 0U});
-  std::array<std::unique_ptr<OutputFile>, 2> files;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    files[i] = outputs[i].empty() ? nullptr : std::make_unique<OutputFile>(outputs[i]);
-  }
+  const std::string& scene = command.scene.arguments.scene;
+  ReportFiles files(command.files, scene);
   std::optional<SceneSizes> sizes;
-  if (has_scene) {
+  if (!scene.empty()) {
     sizes = measure(command);
   }
-  Json rows = Json::array();
+  JsonRow rows = JsonRow::array();
   for (const BoardFacts& board : platform::boards()) {
     rows.push_back(row_of(board, sizes ? &*sizes : nullptr));
   }
-  if (files[0] != nullptr) {
-    files[0]->write(csv_text(rows));
-  }
-  if (files[1] != nullptr) {
-    files[1]->write(rows.dump(2) + "\n");
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->flush();
-    }
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->commit();
-    }
-  }
-  // Whoever has the data go to standard output wants no table between them.
-  if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
-    OutputFile output("-");
-    output.write(boards_text() + (sizes ? scene_text(command, *sizes) : ""));
-    output.commit();
-  }
+  files.write(rows, {});
+  files.print(boards_text() + (sizes ? scene_text(command, *sizes) : ""));
 }
 
 }  // namespace
@@ -323,13 +246,13 @@ void add_boards(CLI::App& app) {
     make_need(*sub, name, "scene");
   }
   add_path_option(
-      *sub, "--csv", "FILE.csv", &command->csv_path,
+      *sub, "--csv", "FILE.csv", &command->files.csv,
       "a line a board: board, title, core, ram_bytes, flash_bytes, stack_bytes, screen, width_px, height_px, "
       "pixel_format, buttons, scene_flash_bytes (flash less code), state_bytes, band_bytes, "
       "drawing_ram_bytes (state, band and stack); with a scene also depth, voxels, baked_bytes, fits_flash, "
       "pool_bytes, building_ram_bytes (those and the pool), builds_in_ram, deepest_depth (0: none tried), "
       "deepest_tried_depth");
-  add_path_option(*sub, "--json", "FILE.json", &command->json_path, "the same, an array of objects");
+  add_path_option(*sub, "--json", "FILE.json", &command->files.json, "the same, an array of objects");
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar");
   when_chosen(*sub, [command] { run(*command); });
 }

@@ -1,6 +1,7 @@
 #include "commands/effect_options.h"
 
 #include "commands/arguments.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -14,16 +15,28 @@ std::string spaced_names() {
   return text;
 }
 
+// What is wrong with `text`, if anything.
+std::string take_effects(const std::string& text, EffectChoice* choice) {
+  const auto parsed = parse_effects(text);
+  *choice = parsed.value_or(EffectChoice{});
+  return parsed ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+}
+
 }  // namespace
+
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help) {
+  add_text_option(
+      app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
+      help)
+      .default_str("auto");
+}
 
 void EffectOptions::add_to(CLI::App& app, const std::string& more) {
   add_text_option(
       app, "--effects", "auto|none|LIST",
       [this](const std::string& text) {
-        const auto parsed = parse_effects(text);
-        choice = parsed.value_or(EffectChoice{});
         given = true;
-        return parsed ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+        return take_effects(text, &choice);
       },
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, or with "
       "commas between them any of " +

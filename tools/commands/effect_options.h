@@ -8,13 +8,14 @@
 #include <string>
 
 #include "scene/lit_description.h"
-#include "scene/scene_source.h"
 
 namespace CLI {
 class App;
 }
 
 namespace thimble::tools {
+
+class SceneSource;
 
 struct EffectOptions {
   EffectChoice choice;
@@ -28,6 +29,9 @@ struct EffectOptions {
   /// The scene's lighting with --bounces for its own.
   LitDescription lighting(const SceneSource& source) const;
 };
+
+/// --effects alone: auto, none or a list.
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help);
 
 }  // namespace thimble::tools
 

@@ -1,16 +1,15 @@
 // thimble effects: which effects a scene calls for, why, and what each costs.
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/report_files.h"
+#include "commands/scene_options.h"
+#include "commands/view_options.h"
 #include "instruments/effects_study.h"
 #include "output/bars.h"
-#include "output/output_file.h"
 #include "output/progress.h"
 #include "output/tables.h"
 #include "output/units.h"
@@ -22,16 +21,8 @@ namespace {
 struct EffectsCommand {
   SceneOptions scene;
   EffectsOptions study;
-  std::string csv_path;
-  std::string json_path;
-  std::string plot_path;
+  ReportPaths files;
 };
-
-std::string fixed(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
 
 // "-1,234"
 std::string signed_count(std::int64_t number) {
@@ -159,49 +150,19 @@ std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
 }
 
 void run(const EffectsCommand& command) {
-  const std::array<std::string, 3> outputs{command.csv_path, command.json_path, command.plot_path};
-  check_distinct(outputs, {&command.scene.arguments.scene, 1});
-  // Opened before the work begins, so that a folder that is not there is known at once.
-  std::array<std::unique_ptr<OutputFile>, 3> files;
-  std::transform(outputs.begin(), outputs.end(), files.begin(), [](const std::string& path) {
-    return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
-  });
+  ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
   EffectsStudy study;
   {
     ProgressBar bar("measuring", command.scene.quiet);
     study = study_effects(*source, command.study, [&](double done) { bar.update(done); });
   }
-  const JsonRow rows = objects(study);
-  if (files[0] != nullptr) {
-    files[0]->write(csv_of(rows));
-  }
-  if (files[1] != nullptr) {
-    files[1]->write(rows.dump(2) + "\n");
-  }
-  if (files[2] != nullptr) {
-    files[2]->write(plot(command, study));
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->flush();
-    }
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->commit();
-    }
-  }
+  files.write(objects(study), files.wants_plot() ? plot(command, study) : "");
   if (!command.scene.quiet && !study.note.empty()) {
     std::fprintf(stderr, "note: %s\n", study.note.c_str());
   }
-  // Whoever has the data go to standard output wants no table between them.
-  if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
-    OutputFile output("-");
-    output.write(printable(command.scene.arguments.scene) + "\n\n" + cost_table(study) + frame_lines(study) +
-                 why_table(study) + rays_table(study));
-    output.commit();
-  }
+  files.print(printable(command.scene.arguments.scene) + "\n\n" + cost_table(study) + frame_lines(study) +
+              why_table(study) + rays_table(study));
 }
 
 }  // namespace
@@ -217,14 +178,14 @@ void add_effects(CLI::App& app) {
       "for costs 0. Direct light is judged between two frames without shadows, which need it.");
   command->scene.add_scene(*sub);
   command->study.effects.add_to(*sub);
-  command->study.view.add_to(*sub);
+  add_view(*sub, &command->study.view);
   add_whole_option(
       *sub, "--frames", "N", 1, 99,
       [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
       "frames timed of each set of effects, by turns")
       .default_str("5");
   add_path_option(
-      *sub, "--csv", "FILE.csv", &command->csv_path,
+      *sub, "--csv", "FILE.csv", &command->files.csv,
       "a line an effect, all eleven: effect, called_for (1 or 0), why (in words), K_rays for K of primary, "
       "shadow, occlusion, mirror, glass, media, water (rays of that kind in a frame with the effect less "
       "those in one without, so below 0 where the effect saves some), rays (of all kinds), node_visits (the "
@@ -232,9 +193,9 @@ void add_effects(CLI::App& app) {
       "(its quartiles), with_ms, without_ms (medians of the frames; empty where not called for), ram_bytes "
       "(state and tables of a lit picture, as render --memory counts them), flash_bytes (on lm3s6965evb, the "
       "image with this effect alone less one with none)");
-  add_path_option(*sub, "--json", "FILE.json", &command->json_path,
+  add_path_option(*sub, "--json", "FILE.json", &command->files.json,
                   "the same, an array of objects; null where the CSV is empty");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "milliseconds a frame, a bar an effect");
+  add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot, "milliseconds a frame, a bar an effect");
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
   when_chosen(*sub, [command] { run(*command); });
 }

@@ -6,12 +6,14 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "output/units.h"
 #include "readers/oct.h"
 #include "scene/board_fit.h"
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -78,6 +80,27 @@ void describe(const LitDescription& lit, const UsedMaterials& used, const Row& r
   row("effects", effects_text(called_for(lit, used)));
 }
 
+// How many materials of each kind.
+std::string describe(const LitDescription& lit, const UsedMaterials& used) {
+  std::array<int, 5> kinds{};
+  int used_count = 0;
+  for (std::size_t index = 0; index < kMaxSurfaces; ++index) {
+    if (used.is[index]) {
+      ++used_count;
+      ++kinds[static_cast<std::size_t>(lit.surfaces[index].kind)];
+    }
+  }
+  std::string materials = std::to_string(used_count);
+  const char* separator = ": ";
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    if (kinds[kind] != 0) {
+      materials += separator + std::to_string(kinds[kind]) + " " + name_of(static_cast<SurfaceKind>(kind));
+      separator = ", ";
+    }
+  }
+  return materials;
+}
+
 // What only a baked scene has.
 template <class Row>
 void describe(const BakedScene& baked, const Row& row) {
@@ -116,17 +139,13 @@ void describe(const BakedScene& baked, const Row& row) {
 }
 
 void run(const SceneOptions& options) {
-  check_distinct({&options.stats_path, 1}, {&options.arguments.scene, 1});
-  std::unique_ptr<OutputFile> stats_file;
-  if (!options.stats_path.empty()) {
-    stats_file = std::make_unique<OutputFile>(options.stats_path);
-  }
+  OutputSet outputs({options.stats_path}, {options.arguments.scene});
   std::string text;
   const auto row = [&](const std::string& label, const std::string& value) {
     text += label + std::string(21 - label.size(), ' ') + value + "\n";
   };
   const auto source = options.open();
-  const BuiltScene built = options.build(*source, 0, 0);
+  const BuiltScene built = options.build(*source);
   const VoxelBox box = built.bounds();
   const double bytes_per_voxel =
       built.voxels() == 0 ? 0 : static_cast<double>(built.tree_bytes()) / static_cast<double>(built.voxels());
@@ -147,23 +166,7 @@ void run(const SceneOptions& options) {
 
   const UsedMaterials used = used_materials(*source);
   const LitDescription lit = source->lighting();
-  std::array<int, 5> kinds{};
-  int used_count = 0;
-  for (std::size_t index = 0; index < kMaxSurfaces; ++index) {
-    if (used.is[index]) {
-      ++used_count;
-      ++kinds[static_cast<std::size_t>(lit.surfaces[index].kind)];
-    }
-  }
-  std::string materials = std::to_string(used_count);
-  const char* separator = ": ";
-  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-    if (kinds[kind] != 0) {
-      materials += separator + std::to_string(kinds[kind]) + " " + name_of(static_cast<SurfaceKind>(kind));
-      separator = ", ";
-    }
-  }
-  row("materials", materials);
+  row("materials", describe(lit, used));
   describe(lit, used, row);
 
   if (built.nodes() != 0) {
@@ -191,7 +194,7 @@ void run(const SceneOptions& options) {
   if (const BakedScene* baked = source->baked()) {
     describe(*baked, row);
   }
-  if (stats_file != nullptr) {
+  if (outputs[0] != nullptr) {
     Stats stats(options.arguments.scene, *source, built);
     if (const BakedScene* baked = source->baked()) {
       stats.baked_bytes = baked->bytes().size;
@@ -200,8 +203,8 @@ void run(const SceneOptions& options) {
     if (options.board != nullptr) {
       stats.board = options.board->name;
     }
-    stats_file->write(stats_text(stats));
-    stats_file->commit();
+    outputs[0]->write(stats_text(stats));
+    outputs.commit();
   }
   OutputFile output("-");
   output.write(text);

@@ -7,9 +7,10 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/report_files.h"
+#include "commands/scene_options.h"
+#include "commands/view_options.h"
 #include "instruments/memory_study.h"
-#include "output/output_file.h"
 #include "output/plot.h"
 #include "output/progress.h"
 #include "output/tables.h"
@@ -32,16 +33,8 @@ constexpr std::uint64_t kPaperDepth = 800;
 struct MemoryCommand {
   SceneOptions scene;
   StudyOptions study;
-  std::string csv_path;
-  std::string json_path;
-  std::string plot_path;
+  ReportPaths files;
 };
-
-std::string fixed(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
 
 // Bytes of a dense grid in which each unit of space holds that.
 std::uint64_t dense_bytes(std::uint64_t units, std::size_t stored) {
@@ -201,15 +194,10 @@ JsonRow budget_objects(const MemoryStudy& study) {
   return rows;
 }
 
-// --- tables for people
-// ---------------------------------------------------------------------------------------
+// --- tables for people -------------------------------------------------------------------------------------
 
 std::string dash_or(const std::optional<double>& value, int digits) {
   return value ? fixed(*value, digits) : "-";
-}
-
-std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
 }
 
 std::string bytes_table(const MemoryStudy& study) {
@@ -360,8 +348,7 @@ std::string budget_table(const MemoryStudy& study) {
          columns_of(rows, 0);
 }
 
-// --- plots
-// ---------------------------------------------------------------------------------------------------
+// --- plots -------------------------------------------------------------------------------------------------
 
 std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
   Plot plot;
@@ -433,13 +420,7 @@ std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) 
 }
 
 void run(const MemoryCommand& command) {
-  const std::array<std::string, 3> outputs{command.csv_path, command.json_path, command.plot_path};
-  check_distinct(outputs, {&command.scene.arguments.scene, 1});
-  // Opened before the work begins, so that a folder that is not there is known at once.
-  std::array<std::unique_ptr<OutputFile>, 3> files;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    files[i] = outputs[i].empty() ? nullptr : std::make_unique<OutputFile>(outputs[i]);
-  }
+  ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
   MemoryStudy study;
   {
@@ -448,38 +429,17 @@ void run(const MemoryCommand& command) {
                          [&](double done) { bar.update(done); });
   }
   const bool sweep = command.study.budget_sweep;
-  const JsonRow rows = sweep ? budget_objects(study) : depth_objects(study);
-  if (files[0] != nullptr) {
-    files[0]->write(csv_of(rows));
-  }
-  if (files[1] != nullptr) {
-    files[1]->write(rows.dump(2) + "\n");
-  }
-  if (files[2] != nullptr) {
-    files[2]->write(sweep ? budget_plot(command, study) : depth_plot(command, study));
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->flush();
-    }
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->commit();
-    }
-  }
+  const std::string plot = !files.wants_plot() ? ""
+                           : sweep             ? budget_plot(command, study)
+                                               : depth_plot(command, study);
+  files.write(sweep ? budget_objects(study) : depth_objects(study), plot);
   if (!command.scene.quiet && !study.note.empty()) {
     std::fprintf(stderr, "note: %s\n", study.note.c_str());
   }
-  // Whoever has the data go to standard output wants no table between them.
-  if (std::find(outputs.begin(), outputs.end(), "-") == outputs.end()) {
-    OutputFile output("-");
-    output.write(printable(command.scene.arguments.scene) + "\n\n" + bytes_table(study) +
-                 stored_table(study) + building_table(study) + picture_table(study) +
-                 (command.study.frames > 0 ? frame_table(study) : "") + boards_table(study) + paper_table() +
-                 (study.budgets.empty() ? "" : budget_table(study)));
-    output.commit();
-  }
+  files.print(printable(command.scene.arguments.scene) + "\n\n" + bytes_table(study) + stored_table(study) +
+              building_table(study) + picture_table(study) +
+              (command.study.frames > 0 ? frame_table(study) : "") + boards_table(study) + paper_table() +
+              (study.budgets.empty() ? "" : budget_table(study)));
 }
 
 }  // namespace
@@ -504,19 +464,12 @@ void add_memory(CLI::App& app) {
       [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
       "frames timed for each depth and structure; 0: none, no times and visits")
       .default_str("3");
-  command->study.view.add_to(*sub);
-  add_choice_option(
-      *sub, "--shade", {"depth", "normal", "color", "mono"},
-      [command](std::size_t index) {
-        constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
-                                    ShadeMode::kMono};
-        command->study.shade = kModes[index];
-      },
-      "what a wrong pixel is: of another brightness by distance, by the face's direction, of another "
-      "palette colour, or hit or not")
-      .default_str("depth");
+  add_view(*sub, &command->study.view);
+  add_shade(*sub, &command->study.shade,
+            "what a wrong pixel is: of another brightness by distance, by the face's direction, of another "
+            "palette colour, or hit or not");
   add_path_option(
-      *sub, "--csv", "FILE.csv", &command->csv_path,
+      *sub, "--csv", "FILE.csv", &command->files.csv,
       "a line a depth: row (depth; or paper, paper_4_gib: the paper's sum, dense columns only), depth, grid "
       "(of the dense grid), units (its cells), stored (what dense_bytes holds a unit; scene: a bit), voxels "
       "(solid), leaves (solid blocks and voxels of a tree), pool_nodes, compact_nodes, dag_nodes; for S of "
@@ -530,9 +483,9 @@ void add_memory(CLI::App& app) {
       "deepest). With --budget-sweep a line a budget: budget_bytes, S_depth (deepest that fits, 0: none), "
       "compact_... and dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, "
       "coarsened_... (errors of the compact tree of the whole depth, coarsened to fit)");
-  add_path_option(*sub, "--json", "FILE.json", &command->json_path,
+  add_path_option(*sub, "--json", "FILE.json", &command->files.json,
                   "the same, an array of objects; null where the CSV is empty");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path,
+  add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot,
                   "bytes against depth; with --budget-sweep mean depth error against budget");
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
   when_chosen(*sub, [command] { run(*command); });

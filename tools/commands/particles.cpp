@@ -9,7 +9,7 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "output/units.h"
 #include "particles/session.h"
 #include "particles/world_files.h"
@@ -60,6 +60,33 @@ void tell_placing(const ParticlesCommand& command, const Placing& placing) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
+// What is written, in the order of the names.
+enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording, kStats };
+
+// All but the recordings, which were written as the world went.
+void write_files(const ParticlesCommand& command, const PopulatedWorld& populated, const PlayResult& result,
+                 const OutputSet& outputs) {
+  const ParticleWorld& world = populated.world();
+  if (outputs[kState] != nullptr) {
+    outputs[kState]->write(state_csv(world));
+  }
+  if (outputs[kField] != nullptr) {
+    write_image(outputs[kField], ImageKind::kPbm, field_image(world.field()));
+  }
+  if (outputs[kFrame] != nullptr) {
+    Image image{world.config().width, world.config().height, PixelFormat::kRgb888, {}};
+    draw_world(populated, &image.pixels);
+    if (command.play.figures_in_files) {
+      draw_figures(image.width_px, image.height_px, result.figures, &image.pixels);
+    }
+    const ImageKind kind = image_kind(command.frame_path).value_or(ImageKind::kPng);
+    write_image(outputs[kFrame], kind, converted(image, pixel_format(kind)));
+  }
+  if (outputs[kStats] != nullptr) {
+    outputs[kStats]->write(particle_stats(populated, result.counts, result.step_seconds));
+  }
+}
+
 void run(const ParticlesCommand& given) {
   ParticlesCommand command = given;
   WorldOptions& world_options = command.world;
@@ -67,16 +94,15 @@ void run(const ParticlesCommand& given) {
     refuse_usage("--min-size", std::to_string(world_options.least_diameter) + " is more than --max-size, " +
                                    std::to_string(world_options.most_diameter));
   }
-  const std::array<std::string, 6> outputs{command.input_recording_path, command.state_path,
-                                           command.field_path,           command.frame_path,
-                                           command.recording_path,       command.stats_path};
-  const std::array<std::string, 2> inputs{command.bodies_path, command.input_path};
-  check_distinct(outputs, inputs);
+  OutputSet outputs({command.input_recording_path, command.state_path, command.field_path, command.frame_path,
+                     command.recording_path, command.stats_path},
+                    {command.bodies_path, command.input_path});
+  command.play.input_recording = outputs[kInputRecording];
+  command.play.recording = outputs[kRecording];
   if (!command.view_given) {
-    bool for_files = command.play.steps.has_value();
-    for (std::size_t i = 1; i < outputs.size(); ++i) {
-      for_files = for_files || !outputs[i].empty();
-    }
+    const bool for_files = command.play.steps || !command.state_path.empty() || !command.field_path.empty() ||
+                           !command.frame_path.empty() || !command.recording_path.empty() ||
+                           !command.stats_path.empty();
     command.play.view = for_files ? host::ScreenKind::kNone : host::ScreenKind::kAuto;
   }
 
@@ -94,18 +120,6 @@ void run(const ParticlesCommand& given) {
       return read_input(load_file(command.input_path, kMostInputBytes).text());
     });
   }
-  const auto open = [](const std::string& path) {
-    return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
-  };
-  const auto input_recording = open(command.input_recording_path);
-  const auto state = open(command.state_path);
-  const auto field = open(command.field_path);
-  const auto frame = open(command.frame_path);
-  const auto recording = open(command.recording_path);
-  const auto stats = open(command.stats_path);
-  command.play.recording = recording.get();
-  command.play.input_recording = input_recording.get();
-
   const auto populated = bodies
                              ? about(command.bodies_path,
                                      [&] { return std::make_unique<PopulatedWorld>(world_options, bodies); })
@@ -120,37 +134,8 @@ void run(const ParticlesCommand& given) {
     throw OutputError(error.what());
   }
 
-  const ParticleWorld& world = populated->world();
-  if (state != nullptr) {
-    state->write(state_csv(world));
-  }
-  if (field != nullptr) {
-    write_image(field.get(), ImageKind::kPbm, field_image(world.field()));
-  }
-  if (frame != nullptr) {
-    Image image{world.config().width, world.config().height, PixelFormat::kRgb888, {}};
-    draw_world(*populated, &image.pixels);
-    if (command.play.figures_in_files) {
-      draw_figures(image.width_px, image.height_px, result.figures, &image.pixels);
-    }
-    const ImageKind kind = image_kind(command.frame_path).value_or(ImageKind::kPng);
-    write_image(frame.get(), kind, converted(image, pixel_format(kind)));
-  }
-  if (stats != nullptr) {
-    stats->write(particle_stats(*populated, result.counts, result.step_seconds));
-  }
-  const std::array files{input_recording.get(), state.get(),     field.get(),
-                         frame.get(),           recording.get(), stats.get()};
-  for (OutputFile* file : files) {
-    if (file != nullptr) {
-      file->flush();
-    }
-  }
-  for (OutputFile* file : files) {
-    if (file != nullptr) {
-      file->commit();
-    }
-  }
+  write_files(command, *populated, result, outputs);
+  outputs.commit();
   if (!command.play.quiet) {
     std::fputs(particle_summary(*populated, result.counts, result.step_seconds).c_str(), stderr);
   }

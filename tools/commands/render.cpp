@@ -6,16 +6,20 @@
 #include <limits>
 #include <memory>
 
+#include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/effect_options.h"
-#include "commands/options.h"
+#include "commands/engine_options.h"
+#include "commands/scene_options.h"
 #include "commands/stats.h"
+#include "commands/view_options.h"
 #include "output/hit_csv.h"
 #include "output/image.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "scene/framing.h"
 #include "scene/lit_setup.h"
 #include "scene/painter.h"
 #include "scene/painting.h"
@@ -26,7 +30,7 @@ namespace {
 struct RenderCommand {
   SceneOptions scene;
   EngineOptions engine;
-  ViewOptions view;
+  ViewWishes view;
   Quality quality;
   EffectOptions effects;
   ShadeMode shade = ShadeMode::kDepth;
@@ -85,11 +89,6 @@ void write_hits(const RenderCommand& command, const QualityFrame& frame, const C
   }
 }
 
-// Opened before the work begins, so that a folder that is not there is known at once.
-std::unique_ptr<OutputFile> open_output(const std::string& path) {
-  return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
-}
-
 [[noreturn]] void fail_camera(const RenderCommand& command) {
   throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
 }
@@ -135,61 +134,162 @@ void check_lit(const RenderCommand& command, EffectSet effects) {
   }
 }
 
+// What light does in the picture. Before the scene is built at least as much as then comes out.
+struct Light {
+  LitDescription lighting;
+  EffectChoice choice;
+  UsedMaterials used;
+  EffectSet effects = Effect::kNone;
+
+  LitScene scene() const { return lit_scene_for(lighting, used, effects); }  // views into `lighting`
+};
+
+Light light_of(const RenderCommand& command, const SceneSource& source) {
+  Light light;
+  light.lighting = command.effects.lighting(source);
+  light.choice = effect_choice(command);
+  light.effects = expected_effects(source, light.lighting, light.choice, &light.used);
+  if (light.effects != Effect::kNone) {
+    check_lit(command, light.effects);
+  }
+  return light;
+}
+
+// What of the budget is kept back for the picture.
+SceneOptions::DrawingBytes drawing_bytes(const RenderCommand& command, const SceneSource& source,
+                                         const Light& light, PixelFormat format) {
+  SceneOptions::DrawingBytes bytes;
+  const std::int32_t width = command.view.width_px;
+  const bool plain = command.quality.plain();
+  const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
+  bytes.band = plain ? band_bytes(format, width, band_rows(command, format)) : quality_bytes;
+  bytes.least_band = plain ? band_bytes(format, width, 1) : quality_bytes;
+  const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
+  bytes.state = in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
+  if (light.effects != Effect::kNone) {
+    // Each thread that draws with effects keeps rays of its own.
+    bytes.state += static_cast<std::uint64_t>(command.engine.threads - 1) * lit_render_bytes(light.effects);
+  }
+  return bytes;
+}
+
 // What a picture is drawn with, whoever draws it.
 struct Subject {
   const RenderCommand& command;
   BuiltScene& built;
-  const QualityFrame& frame;
-  const Camera& camera;
-  const Camera& fine;  ///< `camera` with so many times the pixels as there are samples across one
-  const Shading& shading;
   PixelFormat format;
+  Framing framing;
+  Camera fine;  ///< the same view with so many times the pixels as there are samples across one
+  Shading shading;
+
+  const Camera& camera() const { return framing.camera; }
 };
 
+Subject subject_of(const RenderCommand& command, const SceneSource& source, BuiltScene* built,
+                   PixelFormat format) {
+  Subject subject{command, *built, format, {}, {}, {}};
+  subject.framing = frame_scene(command.view, source, built->level(), built->bounds());
+  subject.fine = command.quality.across == 1 ? subject.framing.camera
+                                             : frame_scene(finer(command.view, command.quality.across),
+                                                           source, built->level(), built->bounds())
+                                                   .camera;
+  subject.shading.mode = command.shade;
+  subject.shading.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
+  const DepthRange range = depth_range(subject.camera(), built->bounds());
+  subject.shading.near_q8 = range.near_q8;
+  subject.shading.far_q8 = range.far_q8;
+  return subject;
+}
+
+Status paint_with(const std::unique_ptr<BandPainter>& painter, const Subject& subject,
+                  const Progress& progress, Painting* painting) {
+  return paint(*painter, subject.camera().width_px(), subject.camera().height_px(), subject.format, progress,
+               painting);
+}
+
 // Throws InputError for a camera whose rays it does not take.
-Painting paint_without_effects(const Subject& subject, const Progress& progress) {
+Painting paint_without_effects(const Subject& subject, const QualityFrame& frame, const Progress& progress) {
   const RenderCommand& command = subject.command;
-  const std::int32_t width = subject.camera.width_px();
-  const std::int32_t height = subject.camera.height_px();
+  const EngineOptions& engine = command.engine;
+  const TraceOptions options = engine.trace_options();
   Painting painting;
-  const auto painted = [&](const std::unique_ptr<Painter>& painter) {
-    return paint(*painter, width, height, subject.format, progress, &painting);
-  };
-  const TraceOptions options = command.engine.trace_options();
   if (!command.quality.plain()) {
-    if (painted(make_quality_painter(subject.built, subject.frame, options)) != Status::kOk) {
+    if (paint_with(make_quality_painter(subject.built, frame, options), subject, progress, &painting) !=
+        Status::kOk) {
       fail_camera(command);
     }
     return painting;
   }
   // With --board the budget is the board's RAM, in which nothing of the host's is to stand unasked.
-  const bool may_be_wide = command.scene.board == nullptr || command.engine.name == "wide";
-  if (may_be_wide && command.engine.prepare(&subject.built, width, height)) {
-    const Status status =
-        painted(make_wide_painter(subject.built, subject.camera, subject.shading, command.engine.threads));
-    if (status == Status::kOk) {
-      return painting;
-    }
-    if (status != Status::kTooFine || command.engine.name != "auto") {
+  const bool may_be_wide = command.scene.board == nullptr || engine.name == "wide";
+  const auto wide = may_be_wide ? engine.wide_renderer(&subject.built, subject.camera().width_px(),
+                                                       subject.camera().height_px())
+                                : nullptr;
+  Status status = Status::kTooFine;
+  if (wide != nullptr) {
+    status = paint_with(make_wide_painter(wide.get(), subject.camera(), subject.shading), subject, progress,
+                        &painting);
+    if (status != Status::kOk && (status != Status::kTooFine || engine.name != "auto")) {
       fail_camera(command);
     }
   }
-  if (painted(make_ray_painter(subject.built, subject.camera, subject.shading, subject.format, options)) !=
-      Status::kOk) {
+  if (status != Status::kOk &&
+      paint_with(make_ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options),
+                 subject, progress, &painting) != Status::kOk) {
     fail_camera(command);
+  }
+  painting.preparation_seconds = wide != nullptr ? wide->seconds() : 0;
+  return painting;
+}
+
+Painting paint_lit(const Subject& subject, const Light& light, const Progress& progress) {
+  LitPicture picture;
+  picture.effects = light.effects;
+  picture.scene = light.scene();
+  picture.across = subject.command.quality.across;
+  picture.threads = subject.command.engine.threads;
+  Painting painting;
+  if (paint_with(make_lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture),
+                 subject, progress, &painting) != Status::kOk) {
+    throw InputError("its lights or surfaces are beyond the limits of a lit picture");
   }
   return painting;
 }
 
-Painting paint_lit(const Subject& subject, const LitPicture& picture, const Progress& progress) {
-  Painting painting;
-  const auto painter =
-      make_lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
-  if (paint(*painter, subject.camera.width_px(), subject.camera.height_px(), subject.format, progress,
-            &painting) != Status::kOk) {
-    throw InputError("its lights or surfaces are beyond the limits of a lit picture");
+std::string crc_of(const std::vector<std::uint8_t>& bytes) {
+  return crc_text(static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size())));
+}
+
+Stats stats_of(const Subject& subject, const SceneSource& source, const Light& light,
+               const Painting& painting) {
+  const RenderCommand& command = subject.command;
+  Stats stats(command.scene.arguments.scene, source, subject.built);
+  stats.build_seconds += painting.preparation_seconds;
+  stats.frame_seconds = painting.seconds;
+  stats.rays = painting.counts.all.rays;
+  stats.hits = painting.counts.all.hits;
+  stats.node_visits = painting.counts.all.node_visits;
+  stats.engine = painting.engine;
+  stats.threads = painting.threads;
+  stats.box_tests = painting.counts.wide.candidates;
+  stats.exact_tests = painting.counts.wide.exact;
+  stats.effects = light.effects;
+  if (light.effects != Effect::kNone) {
+    stats.bounces = light.scene().bounces;
+    stats.lit_counts = painting.counts.lit;
   }
-  return painting;
+  if (!command.quality.plain()) {
+    stats.samples = command.quality.samples();
+    stats.cutoff_px = static_cast<double>(command.quality.cutoff.raw) / Q16::kOne;
+  }
+  if (command.quality.max_depth != 0) {
+    stats.max_depth = command.quality.max_depth;
+  }
+  if (command.scene.board != nullptr) {
+    stats.board = command.scene.board->name;
+    stats.display_crc32 = crc_of(painting.image.pixels);
+  }
+  return stats;
 }
 
 // For a person: what the scene takes, and what came of it.
@@ -218,125 +318,51 @@ void print_summary(const Stats& stats, const std::string& note) {
   }
 }
 
+// From a file to a picture: reader, source, builder, tree, painter, output.
 void run(const RenderCommand& given) {
   RenderCommand command = given;
   check_usage(command);
-  command.view.use_display(command.scene.board);
+  use_display(command.scene.board, &command.view);
+  enum Output : std::size_t { kPicture, kHits, kDepths, kStats };
+  OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},
+                    {command.scene.arguments.scene});
   const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
-  const std::array<std::string, 4> outputs{command.output, command.hits_path, command.depth_path,
-                                           command.scene.stats_path};
-  check_distinct(outputs, {&command.scene.arguments.scene, 1});
-  std::array<std::unique_ptr<OutputFile>, 4> files;
-  std::transform(outputs.begin(), outputs.end(), files.begin(), open_output);
-  const auto& [picture, hits_file, depth_file, stats_file] = files;
-
   // A board's picture is drawn as its display takes it.
   const PixelFormat format =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
-  const std::int32_t width = command.view.width_px;
+
   const auto source = command.scene.open();
-  const bool plain = command.quality.plain();
+  Light light = light_of(command, *source);
 
-  const LitDescription lighting = command.effects.lighting(*source);
-  const EffectChoice choice = effect_choice(command);
-  UsedMaterials used;
-  EffectSet effects = expected_effects(*source, lighting, choice, &used);
-  if (effects != Effect::kNone) {
-    check_lit(command, effects);
-  }
-  const bool in_flash = command.scene.board != nullptr && source->baked() != nullptr;
-  // Each thread that draws with effects keeps rays of its own.
-  const auto more_threads = static_cast<std::uint64_t>(command.engine.threads - 1);
-  const std::uint64_t state_bytes =
-      (effects != Effect::kNone ? more_threads * lit_render_bytes(effects) : 0) +
-      (in_flash ? lit_render_bytes(effects)
-                : lit_state_bytes(lit_scene_for(lighting, used, effects), effects));
-
-  const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
   command.scene.build_threads = command.engine.threads;
-  BuiltScene built = command.scene.build(
-      *source, plain ? band_bytes(format, width, band_rows(command, format)) : quality_bytes,
-      plain ? band_bytes(format, width, 1) : quality_bytes, state_bytes);
-  std::string note;
-  const Camera camera = command.view.camera(*source, built.level(), built.bounds(), &note);
-
-  Shading shading;
-  shading.mode = command.shade;
-  shading.palette = Span<const Rgb8>(built.palette().data(), built.palette().size());
-  const DepthRange range = depth_range(camera, built.bounds());
-  shading.near_q8 = range.near_q8;
-  shading.far_q8 = range.far_q8;
-
-  const NodeColors colors = take_node_colors(&built, command.quality, shading);
-  const Camera fine =
-      command.quality.across == 1
-          ? camera
-          : command.view.finer(command.quality.across).camera(*source, built.level(), built.bounds());
-  const QualityFrame frame(built, command.quality, camera, fine, shading, colors);
-  const Subject subject{command, built, frame, camera, fine, shading, format};
-  LitPicture lit;
-  if (effects != Effect::kNone) {
-    used = used_materials(built.compact());
-    lit.effects = effects = chosen_effects(lighting, used, choice);
-    lit.scene = lit_scene_for(lighting, used, effects);
-    lit.across = command.quality.across;
-    lit.threads = command.engine.threads;
+  BuiltScene built = command.scene.build(*source, drawing_bytes(command, *source, light, format));
+  if (light.effects != Effect::kNone) {
+    light.used = used_materials(built.compact());
+    light.effects = chosen_effects(light.lighting, light.used, light.choice);
   }
+
+  const Subject subject = subject_of(command, *source, &built, format);
+  const NodeColors colors = take_node_colors(&built, command.quality, subject.shading);
+  const QualityFrame frame(built, command.quality, subject.camera(), subject.fine, subject.shading, colors);
   ProgressBar bar("tracing", command.scene.quiet);
-  const auto update = [&](double done) { bar.update(done); };
-  const Painting painting =
-      effects == Effect::kNone ? paint_without_effects(subject, update) : paint_lit(subject, lit, update);
+  const auto progress = [&](double done) { bar.update(done); };
+  const Painting painting = light.effects == Effect::kNone ? paint_without_effects(subject, frame, progress)
+                                                           : paint_lit(subject, light, progress);
   bar.clear();
 
   const Image shown = converted(painting.image, pixel_format(kind));
-  write_image(picture.get(), kind, shown);
-  if (hits_file != nullptr || depth_file != nullptr) {
-    write_hits(command, frame, camera, hits_file.get(), depth_file.get());
+  write_image(outputs[kPicture], kind, shown);
+  if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
+    write_hits(command, frame, subject.camera(), outputs[kHits], outputs[kDepths]);
   }
-
-  Stats stats(command.scene.arguments.scene, *source, built);
-  stats.frame_seconds = painting.seconds;
-  stats.rays = painting.counts.all.rays;
-  stats.hits = painting.counts.all.hits;
-  stats.node_visits = painting.counts.all.node_visits;
-  stats.engine = painting.engine;
-  stats.threads = painting.threads;
-  stats.box_tests = painting.counts.wide.candidates;
-  stats.exact_tests = painting.counts.wide.exact;
-  const std::vector<std::uint8_t> pixels = file_pixels(shown, kind);
-  stats.frame_crc32 = crc_text(static_cast<std::uint32_t>(crc32_z(0, pixels.data(), pixels.size())));
-  stats.effects = effects;
-  if (effects != Effect::kNone) {
-    stats.bounces = lit.scene.bounces;
-    stats.lit_counts = painting.counts.lit;
+  Stats stats = stats_of(subject, *source, light, painting);
+  stats.frame_crc32 = crc_of(file_pixels(shown, kind));
+  if (outputs[kStats] != nullptr) {
+    outputs[kStats]->write(stats_text(stats));
   }
-  if (!plain) {
-    stats.samples = command.quality.samples();
-    stats.cutoff_px = static_cast<double>(command.quality.cutoff.raw) / Q16::kOne;
-  }
-  if (command.quality.max_depth != 0) {
-    stats.max_depth = command.quality.max_depth;
-  }
-  if (command.scene.board != nullptr) {
-    stats.board = command.scene.board->name;
-    stats.display_crc32 = crc_text(
-        static_cast<std::uint32_t>(crc32_z(0, painting.image.pixels.data(), painting.image.pixels.size())));
-  }
-  if (stats_file != nullptr) {
-    stats_file->write(stats_text(stats));
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->flush();  // a full disk is found before any of them takes its name
-    }
-  }
-  for (const auto& file : files) {
-    if (file != nullptr) {
-      file->commit();
-    }
-  }
+  outputs.commit();
   if (!command.scene.quiet) {
-    print_summary(stats, note);
+    print_summary(stats, subject.framing.note);
   }
 }
 
@@ -354,19 +380,11 @@ void add_render(CLI::App& app) {
       },
       "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output")
       .required();
-  command->view.add_to(*sub);
-  add_choice_option(
-      *sub, "--shade", {"depth", "normal", "color", "mono"},
-      [command](std::size_t index) {
-        constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
-                                    ShadeMode::kMono};
-        constexpr std::array kNames{"depth", "normal", "color", "mono"};
-        command->shade = kModes[index];
-        command->shade_name = kNames[index];
-      },
-      "brightness by distance, the face's direction, the palette in one light, or white where anything is; "
-      "given without --effects it draws none")
-      .default_str("depth");
+  add_view(*sub, &command->view);
+  add_shade(*sub, &command->shade,
+            "brightness by distance, the face's direction, the palette in one light, or white where anything "
+            "is; given without --effects it draws none",
+            &command->shade_name);
   add_path_option(
       *sub, "--hits", "FILE.csv", &command->hits_path,
       std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "

@@ -11,17 +11,21 @@
 #include "apps/app_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/effect_options.h"
+#include "commands/engine_options.h"
+#include "commands/scene_options.h"
 #include "commands/sim_session.h"
 #include "commands/stats.h"
+#include "commands/view_options.h"
 #include "output/image.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/picture.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/framing.h"
 #include "scene/wide_frames.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/baked_lighting.h"
@@ -75,8 +79,8 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
   if (const BakedScene* baked = source->baked()) {
     bytes.assign(baked->bytes().begin(), baked->bytes().end());
   } else {
-    ViewOptions view;
-    view.use_display(&board);
+    ViewWishes view;
+    use_display(&board, &view);
     BakingOptions options;
     options.limit_bytes = limit;
     options.coarsen = command.scene.coarsen;
@@ -84,9 +88,7 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.effects = command.effects;
     options.name = scene_name(command.scene.arguments.scene);
     options.camera = [&](int level, const VoxelBox& bounds) {
-      SceneCamera chosen;
-      view.camera(*source, level, bounds, nullptr, &chosen);
-      return chosen;
+      return frame_scene(view, *source, level, bounds).kept;
     };
     ProgressBar bar("baking", command.scene.quiet);
     bytes = bake_scene(*source, options, [&](double done) { bar.update(done); }).bytes;
@@ -207,19 +209,11 @@ void report(const SimCommand& command, const SessionResult& result, const std::s
 }
 
 int run_and_write(SimCommand* command, std::string* sentence) {
-  const std::array<std::string, 3> outputs{command->shot_path, command->record_path,
-                                           command->scene.stats_path};
-  const std::array<std::string, 3> inputs{command->scene.arguments.scene, command->check_path,
-                                          command->keys_path};
-  check_distinct(outputs, inputs);
-  const auto open = [](const std::string& path) {
-    return path.empty() ? nullptr : std::make_unique<OutputFile>(path);
-  };
-  const auto shot_file = open(command->shot_path);
-  const auto recording = open(command->record_path);
-  const auto stats_file = open(command->scene.stats_path);
+  enum Output : std::size_t { kShot, kRecording, kStats };
+  OutputSet outputs({command->shot_path, command->record_path, command->scene.stats_path},
+                    {command->scene.arguments.scene, command->check_path, command->keys_path});
   SessionOptions& session = command->session;
-  session.recording = recording.get();
+  session.recording = outputs[kRecording];
   platform::BoardFacts& board = command->board;
   board = *session.board;
   std::optional<Image> wanted;
@@ -262,29 +256,20 @@ int run_and_write(SimCommand* command, std::string* sentence) {
     *sentence = who + " ended with status " + std::to_string(result.status);
     return result.status;
   }
-  if (result.pictures == 0 && (shot_file != nullptr || wanted || recording != nullptr)) {
+  if (result.pictures == 0 && (outputs[kShot] != nullptr || wanted || outputs[kRecording] != nullptr)) {
     *sentence = who + " drew no picture";
     return 1;
   }
   const Image picture{board.width_px, board.height_px, PixelFormat::kRgb888,
                       host::expand_rgb(result.picture)};
-  if (shot_file != nullptr) {
+  if (outputs[kShot] != nullptr) {
     const ImageKind kind = image_kind(command->shot_path).value_or(ImageKind::kPng);
-    write_image(shot_file.get(), kind, converted(picture, pixel_format(kind)));
-    shot_file->flush();
+    write_image(outputs[kShot], kind, converted(picture, pixel_format(kind)));
   }
-  if (recording != nullptr) {
-    recording->flush();
+  if (outputs[kStats] != nullptr) {
+    outputs[kStats]->write(stats_text(*command, result, engine));
   }
-  if (stats_file != nullptr) {
-    stats_file->write(stats_text(*command, result, engine));
-    stats_file->flush();
-  }
-  for (OutputFile* file : {shot_file.get(), recording.get(), stats_file.get()}) {
-    if (file != nullptr) {
-      file->commit();
-    }
-  }
+  outputs.commit();
   if (wanted) {
     const std::string differs = difference(picture, *wanted);
     if (!differs.empty()) {
@@ -434,15 +419,9 @@ void add_sim(CLI::App& app) {
       "the application (default: water for a scene with water, else " + names.front() + ")");
   add_flag(*sub, "--coarsen", &command->scene.coarsen,
            "when the scene does not fit the flash, merge blocks of voxels until it just does");
-  add_text_option(
-      *sub, "--effects", "LIST",
-      [command](const std::string& text) {
-        const auto choice = parse_effects(text);
-        command->effects = choice.value_or(EffectChoice{});
-        return choice ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
-      },
-      "what the scene is baked for: auto (what it calls for), none, or effects with commas between them")
-      .default_str("auto");
+  add_effect_list(
+      *sub, &command->effects,
+      "what the scene is baked for: auto (what it calls for), none, or effects with commas between them");
   add_display_options(*sub, command);
   add_file_options(*sub, command);
   command->engine.add_board_engines_to(*sub);

@@ -12,13 +12,17 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
-#include "output/output_file.h"
+#include "commands/engine_options.h"
+#include "output/output_set.h"
 #include "output/plot.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "reference/reference.h"
+#include "scene/built_scene.h"
+#include "scene/framing.h"
 #include "scene/generators.h"
+#include "scene/scene_source.h"
+#include "scene/wide_renderer.h"
 
 namespace thimble::tools {
 namespace {
@@ -79,7 +83,7 @@ struct Row {
 Camera camera_of(const TableCommand& command, bool orthographic, int index) {
   const double side = 1 << command.depth;
   const double drift = 0.003 * side * (index + 1);
-  ViewOptions view;
+  ViewWishes view;
   view.width_px = kWidthPx;
   view.height_px = kHeightPx;
   view.orthographic = orthographic;
@@ -90,7 +94,7 @@ Camera camera_of(const TableCommand& command, bool orthographic, int index) {
   } else {
     view.eye = Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
   }
-  return view.camera(command.depth, {});
+  return frame_box(view, command.depth, {}).camera;
 }
 
 // The hit that a ray has by the core, and the picture's pixel beside that hit's colour.
@@ -127,7 +131,7 @@ std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid
 }
 
 Row measure(const TableCommand& command, const BuiltScene& built, const reference::BitGrid& grid,
-            bool is_wide, bool orthographic, std::uint64_t points,
+            WideRenderer* wide, bool orthographic, std::uint64_t points,
             const std::function<void(double)>& progress) {
   const TraceOptions options = command.engine.trace_options();
   std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, kWidthPx, kHeightPx));
@@ -148,8 +152,8 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
     band.pixels = Bytes(pixels.data(), pixels.size());
     band.rows = kHeightPx;
     RenderCounts counts;
-    wide::Counts work;
-    Status status = is_wide ? built.render_wide(camera, shading, band, &counts, &work) : Status::kTooFine;
+    thimble::wide::Counts work;
+    Status status = wide != nullptr ? wide->render(camera, shading, band, &counts, &work) : Status::kTooFine;
     row.engine = command.engine.resolved(status == Status::kOk);
     if (status == Status::kTooFine && command.engine.name != "wide") {
       status = built.render_band(camera, shading, band, &counts, options);
@@ -181,7 +185,7 @@ void print_row(const Row& row) {
   std::fflush(stdout);
 }
 
-void write_json(OutputFile* file, const std::vector<Row>& rows) {
+std::string json_text(const std::vector<Row>& rows) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
     nlohmann::ordered_json object;
@@ -195,11 +199,10 @@ void write_json(OutputFile* file, const std::vector<Row>& rows) {
     object["engine"] = row.engine;
     json.push_back(object);
   }
-  file->write(json.dump(2) + "\n");
-  file->commit();
+  return json.dump(2) + "\n";
 }
 
-void write_plot(OutputFile* file, const TableCommand& command, const std::vector<Row>& rows) {
+std::string plot_text(const TableCommand& command, const std::vector<Row>& rows) {
   Plot plot;
   plot.title = "One frame of 800 x 600 pixels";
   plot.x_label =
@@ -222,21 +225,11 @@ void write_plot(OutputFile* file, const TableCommand& command, const std::vector
     plot.series.push_back(ours);
     plot.series.push_back(paper);
   }
-  file->write(log_plot_text(plot));
-  file->commit();
+  return log_plot_text(plot);
 }
 
 void run(const TableCommand& command) {
-  check_distinct(std::array{command.json_path, command.plot_path}, {});
-  // Opened before the work begins, so that a folder that is not there is known at once.
-  std::unique_ptr<OutputFile> json_file;
-  std::unique_ptr<OutputFile> plot_file;
-  if (!command.json_path.empty()) {
-    json_file = std::make_unique<OutputFile>(command.json_path);
-  }
-  if (!command.plot_path.empty()) {
-    plot_file = std::make_unique<OutputFile>(command.plot_path);
-  }
+  OutputSet outputs({command.json_path, command.plot_path}, {});
   std::printf("%12s  %-12s %10s %10s %9s %9s %11s\n", "points", "projection", "seconds", "paper", "faster",
               "hits", "mismatches");
   std::vector<Row> rows;
@@ -250,7 +243,7 @@ void run(const TableCommand& command) {
     build.memory_bytes.reset();
     build.threads = command.engine.threads;
     BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
-    const bool is_wide = command.engine.prepare(&built, kWidthPx, kHeightPx);
+    const auto wide = command.engine.wide_renderer(&built, kWidthPx, kHeightPx);
     const int side = 1 << command.depth;
     reference::BitGrid grid({side, side, side});
     source->stream(
@@ -260,7 +253,7 @@ void run(const TableCommand& command) {
         [&](double done) { bar.update(0.3 + done * 0.3); });
     std::vector<Row> pair;
     for (const bool orthographic : {false, true}) {
-      pair.push_back(measure(command, built, grid, is_wide, orthographic, points,
+      pair.push_back(measure(command, built, grid, wide.get(), orthographic, points,
                              [&](double done) { bar.update(0.6 + 0.2 * (done + (orthographic ? 1 : 0))); }));
     }
     bar.clear();
@@ -269,12 +262,13 @@ void run(const TableCommand& command) {
       rows.push_back(row);
     }
   }
-  if (json_file != nullptr) {
-    write_json(json_file.get(), rows);
+  if (outputs[0] != nullptr) {
+    outputs[0]->write(json_text(rows));
   }
-  if (plot_file != nullptr) {
-    write_plot(plot_file.get(), command, rows);
+  if (outputs[1] != nullptr) {
+    outputs[1]->write(plot_text(command, rows));
   }
+  outputs.commit();
 }
 
 }  // namespace

@@ -7,15 +7,20 @@
 #include <functional>
 #include <memory>
 
+#include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/options.h"
+#include "commands/engine_options.h"
+#include "commands/scene_options.h"
 #include "commands/stats.h"
+#include "commands/view_options.h"
 #include "output/hit_csv.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -152,16 +157,11 @@ void for_each_ray(const TraceCommand& command, std::string_view text, int level,
 }
 
 void run(const TraceCommand& command) {
-  const std::array<std::string, 2> outputs{command.output, command.scene.stats_path};
-  const std::array<std::string, 2> inputs{command.scene.arguments.scene, command.rays_path};
-  check_distinct(outputs, inputs);
-  OutputFile output(command.output);
-  std::unique_ptr<OutputFile> stats_file;
-  if (!command.scene.stats_path.empty()) {
-    stats_file = std::make_unique<OutputFile>(command.scene.stats_path);
-  }
+  OutputSet outputs({command.output, command.scene.stats_path},
+                    {command.scene.arguments.scene, command.rays_path});
+  OutputFile& output = *outputs[0];
   const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source, 0, 0);
+  const BuiltScene built = command.scene.build(*source);
   FileBytes bytes;
   try {
     bytes = load_file(command.rays_path);
@@ -204,11 +204,10 @@ void run(const TraceCommand& command) {
   });
   stats.frame_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   output.write(lines);
-  output.commit();
-  if (stats_file != nullptr) {
-    stats_file->write(stats_text(stats));
-    stats_file->commit();
+  if (outputs[1] != nullptr) {
+    outputs[1]->write(stats_text(stats));
   }
+  outputs.commit();
 }
 
 }  // namespace

@@ -12,12 +12,6 @@
 namespace thimble::tools {
 namespace {
 
-std::string fixed(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
 // Three digits that count.
 std::string brief(double value) {
   return fixed(value, value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3);
@@ -25,10 +19,6 @@ std::string brief(double value) {
 
 std::string decibels(double psnr_db) {
   return std::isfinite(psnr_db) ? fixed(psnr_db, 2) : "equal";
-}
-
-std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
 }
 
 // Half the distance of the quartiles, of the median.

@@ -27,7 +27,7 @@ class Studio {
       : source_(source), built_(*built), options_(options) {
     shading_.mode = options.shade;
     shading_.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
-    camera_ = options.view.camera(source, built->level(), built->bounds());
+    camera_ = frame_scene(options.view, source, built->level(), built->bounds()).camera;
     const DepthRange range = depth_range(camera_, built->bounds());
     shading_.near_q8 = range.near_q8;
     shading_.far_q8 = range.far_q8;
@@ -38,10 +38,11 @@ class Studio {
 
   // The setting's own cameras, or why there are none. Where the reference frames the scene, so do they.
   Prepared prepare(const Setting& setting) const {
-    ViewOptions view = options_.view;
+    ViewWishes view = options_.view;
     view.direction_bits = setting.direction_bits;
-    const Camera camera = view.camera(source_, built_.level(), built_.bounds());
-    const Camera fine = view.finer(setting.quality.across).camera(source_, built_.level(), built_.bounds());
+    const Camera camera = frame_scene(view, source_, built_.level(), built_.bounds()).camera;
+    const Camera fine =
+        frame_scene(finer(view, setting.quality.across), source_, built_.level(), built_.bounds()).camera;
     return {camera, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
   }
 

@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "commands/options.h"
 #include "instruments/knobs.h"
 #include "instruments/light_studio.h"
+#include "scene/built_scene.h"
+#include "scene/framing.h"
+#include "scene/quality.h"
 
 namespace thimble::tools {
 
@@ -56,7 +58,7 @@ enum class CostAxis : std::uint8_t { kTime, kVisits, kInstructions };
 double cost_of(const AccuracyRow& row, CostAxis axis);
 
 struct AccuracyOptions {
-  ViewOptions view;
+  ViewWishes view;
   ShadeMode shade = ShadeMode::kDepth;
   int rounds = 5;
   CostAxis axis = CostAxis::kTime;  ///< of the Pareto front

@@ -63,10 +63,7 @@ DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, i
   shape_ = compact_shape(pool_);
   const std::size_t size = compact_bytes(shape_);
   compact_bytes_.resize(size);
-  std::size_t written = 0;
-  if (size == 0 ||
-      CompactTree::make(pool_, Bytes(compact_bytes_.data(), size), nullptr, &written) != Status::kOk ||
-      CompactTree::open({compact_bytes_.data(), written}, &compact_) != Status::kOk) {
+  if (size == 0 || CompactTree::make(pool_, Bytes(compact_bytes_.data(), size), &compact_) != Status::kOk) {
     throw InputError("the scene does not go into a compact tree");
   }
   {
@@ -75,10 +72,9 @@ DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, i
     if (status == Status::kOutOfMemory) {
       shared_bytes_.resize(shared_build_.bytes);
       status = SharedTree::make(compact_, Bytes(shared_bytes_.data(), shared_bytes_.size()), work.bytes(),
-                                nullptr, &shared_build_);
+                                &shared_, &shared_build_);
     }
-    if (status != Status::kOk ||
-        SharedTree::open({shared_bytes_.data(), shared_bytes_.size()}, &shared_) != Status::kOk) {
+    if (status != Status::kOk) {
       throw InputError("the scene does not go into a shared tree");
     }
   }

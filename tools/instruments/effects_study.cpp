@@ -9,17 +9,13 @@
 
 #include "boards/effect_flash.h"
 #include "instruments/stopwatch.h"
+#include "output/tables.h"
 #include "scene/built_scene.h"
 #include "scene/lit_setup.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
-
-std::string fixed(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
 
 // "material 3 is metal", "materials 3, 4, 7 are glass"; at most four numbers.
 std::string materials(const LitDescription& lit, const UsedMaterials& used, SurfaceKind kind,
@@ -69,7 +65,9 @@ class Studio {
       : built_(built),
         lit_(options.effects.lighting(source)),
         used_(used_materials(built.compact())),
-        camera_(options.view.camera(source, built.level(), built.bounds(), note)) {
+        framing_(frame_scene(options.view, source, built.level(), built.bounds())),
+        camera_(framing_.camera) {
+    *note = framing_.note;
     shading_.mode = ShadeMode::kColor;
     shading_.palette = Span<const Rgb8>(built.palette().data(), built.palette().size());
     const DepthRange range = depth_range(camera_, built.bounds());
@@ -125,7 +123,8 @@ class Studio {
   const BuiltScene& built_;
   LitDescription lit_;
   UsedMaterials used_;
-  Camera camera_;
+  Framing framing_;
+  const Camera& camera_;
   Shading shading_;
   std::vector<std::uint8_t> pixels_;
   std::map<EffectSet, Variant> variants_;

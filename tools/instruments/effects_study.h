@@ -12,14 +12,14 @@
 #include <string>
 
 #include "commands/effect_options.h"
-#include "commands/options.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 #include "thimble/light/render.h"
 
 namespace thimble::tools {
 
 struct EffectsOptions {
-  ViewOptions view;
+  ViewWishes view;
   EffectOptions effects;
   int frames = 5;  ///< of each set of effects, by turns; at least 1
 };

@@ -6,6 +6,7 @@
 #include "instruments/stopwatch.h"
 #include "scene/baking.h"
 #include "scene/built_scene.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -175,8 +176,9 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
 
   // The deepest one is the judge: all pictures are of its rays, so that nothing but the scene differs.
   DepthScene own(blocks, own_depth, 0, false);
-  SceneCamera chosen;
-  const Camera camera = options.view.camera(source, own_depth, own.compact().bounds(), &study.note, &chosen);
+  const Framing framing = frame_scene(options.view, source, own_depth, own.compact().bounds());
+  const Camera& camera = framing.camera;
+  study.note = framing.note;
   study.pixels =
       static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
   Shading shading;
@@ -190,7 +192,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
   BakedParts parts;
   parts.tree = {own.compact().bytes(), own.compact().size_bytes()};
   parts.palette = {palette.data(), blocks.empty() ? 0 : static_cast<std::size_t>(last_color) + 1};
-  parts.camera = &chosen;
+  parts.camera = &framing.kept;
   parts.name = {reinterpret_cast<const std::uint8_t*>(kept_name.data()), kept_name.size()};
   study.around_tree_bytes = baked_bytes(parts) - own.compact().size_bytes();
 
@@ -210,7 +212,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     part(0.2);
     Camera view;
     if (options.frames > 0) {
-      if (set_camera(scaled(chosen, levels), camera.width_px(), camera.height_px(), depth, &view) ==
+      if (set_camera(scaled(framing.kept, levels), camera.width_px(), camera.height_px(), depth, &view) ==
           Status::kOk) {
         if (row.structures[kDense].bytes <= kMostDenseBytes) {
           scene.make_dense(coarse);
@@ -239,8 +241,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
       std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(own.pool())));
       std::size_t size = 0;
       CompactTree tree;
-      if (CompactTree::make(own.pool(), Bytes(bytes.data(), bytes.size()), nullptr, &size) != Status::kOk ||
-          CompactTree::open({bytes.data(), size}, &tree) != Status::kOk) {
+      if (CompactTree::make(own.pool(), Bytes(bytes.data(), bytes.size()), &tree, &size) != Status::kOk) {
         throw InputError("internal error: a coarsened tree that cannot be written");
       }
       row.coarsened_bytes = size;

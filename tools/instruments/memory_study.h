@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "commands/options.h"
 #include "instruments/depth_scene.h"
 #include "instruments/picture_error.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
@@ -57,7 +57,7 @@ struct BudgetRow {
 };
 
 struct StudyOptions {
-  ViewOptions view;
+  ViewWishes view;
   ShadeMode shade = ShadeMode::kDepth;
   int frames = 3;                             ///< a structure and depth
   bool budget_sweep = false;                  ///< 1 KiB, doubled until the whole scene fits

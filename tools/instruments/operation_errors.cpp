@@ -24,9 +24,9 @@ using namespace sweep;
 // --- Cameras.
 
 struct Axes {
-  Real3 forward;
-  Real3 right;
-  Real3 up;
+  Exact3 forward;
+  Exact3 right;
+  Exact3 up;
   Axes(const Vec3i& forward_view, const Vec3i& up_view) {
     forward = unit(real(forward_view));
     right = unit(cross(forward, real(up_view)));
@@ -75,7 +75,7 @@ Found perspective_rays(Draw& draw, std::uint64_t cases) {
           i < 4 ? (i / 2) * (made.view.height_px - 1) : draw.from32(0, made.view.height_px - 1);
       const Real across = x - (made.view.width_px - 1) / 2.0L;
       const Real above = (made.view.height_px - 1) / 2.0L - y;
-      const Real3 direction = real(made.camera.ray(x, y).direction);
+      const Exact3 direction = real(made.camera.ray(x, y).direction);
       const Real depth = dot(direction, axes.forward);
       const Real off_x = focal * dot(direction, axes.right) / depth - across;
       const Real off_y = focal * dot(direction, axes.up) / depth - above;
@@ -115,10 +115,11 @@ Found parallel_rays(Draw& draw, std::uint64_t cases) {
     const Parallel made = any_parallel(draw);
     const Axes axes(made.view.forward, made.view.up);
     const Real pixel = static_cast<Real>(made.view.span.raw) / Q14::kOne / made.view.width_px;
-    const Real3 eye{made.view.eye.x.raw / 256.0L, made.view.eye.y.raw / 256.0L, made.view.eye.z.raw / 256.0L};
+    const Exact3 eye{made.view.eye.x.raw / 256.0L, made.view.eye.y.raw / 256.0L,
+                     made.view.eye.z.raw / 256.0L};
     Real furthest = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {
-      Real3 point{};
+      Exact3 point{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         point[axis] = ((corner >> axis) & 1U) != 0 ? static_cast<Real>(std::int64_t{1} << made.level) : 0;
       }
@@ -132,12 +133,12 @@ Found parallel_rays(Draw& draw, std::uint64_t cases) {
       const Real across = (x - (made.view.width_px - 1) / 2.0L) * pixel;
       const Real above = ((made.view.height_px - 1) / 2.0L - y) * pixel;
       const Ray ray = made.camera.ray(x, y);
-      const Real3 origin{ray.origin.x.raw / 256.0L, ray.origin.y.raw / 256.0L, ray.origin.z.raw / 256.0L};
-      const Real3 direction = real(ray.direction);
+      const Exact3 origin{ray.origin.x.raw / 256.0L, ray.origin.y.raw / 256.0L, ray.origin.z.raw / 256.0L};
+      const Exact3 direction = real(ray.direction);
       for (const Real depth : {0.0L, furthest}) {
-        const Real3 start = along(origin, eye, -1);
+        const Exact3 start = along(origin, eye, -1);
         const Real t = (depth - dot(start, axes.forward)) / dot(direction, axes.forward);
-        const Real3 point = along(start, direction, t);
+        const Exact3 point = along(start, direction, t);
         found.see(std::hypot(dot(point, axes.right) - across, dot(point, axes.up) - above) / pixel * 65536);
       }
     }
@@ -152,7 +153,7 @@ Found perspective_depth_per_t(Draw& draw, std::uint64_t cases) {
     const Pinhole made = any_pinhole(draw);
     const Axes axes(made.view.forward, made.view.up);
     const Camera::Affine& affine = made.camera.affine();
-    Real3 middle{};
+    Exact3 middle{};
     for (int axis = 0; axis < 3; ++axis) {
       middle[static_cast<std::size_t>(axis)] =
           (static_cast<Real>(affine.base[axis]) +
@@ -229,7 +230,7 @@ Found face_lights(Draw& draw, std::uint64_t cases) {
     const Vec3i toward = any_vector(draw, 14);
     std::uint16_t light[6];
     light_from(toward, light);
-    const Real3 direction = unit(real(toward));
+    const Exact3 direction = unit(real(toward));
     for (std::size_t face = 0; face < 6; ++face) {
       const Real cosine = (face % 2 == 0 ? -1 : 1) * direction[face / 2];
       found.see(light[face] - (141 + 115 * cosine));
@@ -350,8 +351,7 @@ Found node_colors(Draw& draw, std::uint64_t cases) {
     CompactTree tree;
     NodeColors colors;
     if (CompactTree::make(Span<const std::uint64_t>(keys.data(), count), 1, {bytes.data(), bytes.size()},
-                          nullptr, nullptr) != Status::kOk ||
-        CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk ||
+                          &tree) != Status::kOk ||
         NodeColors::make(tree, {palette.data(), count}, {}, {table.data(), table.size()}, &colors) !=
             Status::kOk) {
       found.see(255);

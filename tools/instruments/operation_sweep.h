@@ -11,12 +11,13 @@
 #include <random>
 #include <vector>
 
+#include "readers/real3.h"
 #include "thimble/base/vec.h"
 
 namespace thimble::tools::sweep {
 
 using Real = long double;
-using Real3 = std::array<Real, 3>;
+using Exact3 = std::array<Real, 3>;  // with the products of readers/real3.h
 
 inline constexpr Real kPi = 3.14159265358979323846264338327950288L;
 
@@ -49,24 +50,18 @@ struct Found {
   }
 };
 
-inline Real3 real(const Vec3i& v) {
+inline Exact3 real(const Vec3i& v) {
   return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
-inline Real dot(const Real3& a, const Real3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Real3 cross(const Real3& a, const Real3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline Real3 unit(const Real3& a) {
+inline Exact3 unit(const Exact3& a) {
   const Real length = std::sqrt(dot(a, a));
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 /// a + b * factor
-inline Real3 along(const Real3& a, const Real3& b, Real factor) {
+inline Exact3 along(const Exact3& a, const Exact3& b, Real factor) {
   return {a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor};
 }
-inline Real length(const Real3& a) {
+inline Real length(const Exact3& a) {
   return std::sqrt(dot(a, a));
 }
 

@@ -7,7 +7,7 @@
 namespace thimble::tools::sweep {
 namespace {
 
-Real angle_urad(const Real3& a, const Real3& b) {
+Real angle_urad(const Exact3& a, const Exact3& b) {
   return 1e6L * std::atan2(length(cross(a, b)), dot(a, b));
 }
 
@@ -42,45 +42,45 @@ Found reflections(Draw& draw, std::uint64_t cases) {
   while (found.cases < cases) {
     const Vec3i direction = unit_q14(any_vector(draw, 20));
     const Vec3i normal = unit_q14(any_vector(draw, 20));
-    const Real3 d = real(direction);
-    const Real3 n = real(normal);
-    const Real3 exact = along(d, n, -2 * dot(d, n) / dot(n, n));
+    const Exact3 d = real(direction);
+    const Exact3 n = real(normal);
+    const Exact3 exact = along(d, n, -2 * dot(d, n) / dot(n, n));
     found.see(angle_urad(exact, real(reflect(direction, normal))));
   }
   return found;
 }
 
-Vec3i rounded(const Real3& v) {
+Vec3i rounded(const Exact3& v) {
   return {static_cast<std::int32_t>(std::lround(v[0])), static_cast<std::int32_t>(std::lround(v[1])),
           static_cast<std::int32_t>(std::lround(v[2]))};
 }
 
 // A direction near the critical angle, if there is one, or near grazing.
 Vec3i near_critical(Draw& draw, const Vec3i& normal, std::uint32_t eta) {
-  const Real3 n = unit(real(normal));
+  const Exact3 n = unit(real(normal));
   for (;;) {
-    const Real3 other = real(any_vector(draw, 14));
-    const Real3 side = along(other, n, -dot(other, n));
+    const Exact3 other = real(any_vector(draw, 14));
+    const Exact3 side = along(other, n, -dot(other, n));
     if (length(side) < 100) {
       continue;
     }
     const Real critical = std::min(Real{1}, 4096 / static_cast<Real>(eta));
     const Real sine = std::min(Real{1}, critical + static_cast<Real>(draw.from(-9, 9)) / 10000);
-    const Real3 across = unit(side);
+    const Exact3 across = unit(side);
     const Real cosine = std::sqrt(1 - sine * sine);
     return rounded(
-        along(Real3{across[0] * sine * kUnitQ14, across[1] * sine * kUnitQ14, across[2] * sine * kUnitQ14}, n,
-              cosine * kUnitQ14));
+        along(Exact3{across[0] * sine * kUnitQ14, across[1] * sine * kUnitQ14, across[2] * sine * kUnitQ14},
+              n, cosine * kUnitQ14));
   }
 }
 
 // Snell's law for the very integers given; only where light goes through.
-Real3 snell(const Vec3i& direction, const Vec3i& normal, std::uint32_t eta) {
-  const Real3 d = real(direction);
-  const Real3 n = unit(real(normal));
+Exact3 snell(const Vec3i& direction, const Vec3i& normal, std::uint32_t eta) {
+  const Exact3 d = real(direction);
+  const Exact3 n = unit(real(normal));
   const Real ratio = static_cast<Real>(eta) / 4096;
   const Real before = dot(d, n);
-  const Real3 sideways = along(d, n, -before);
+  const Exact3 sideways = along(d, n, -before);
   const Real square = dot(d, d) - ratio * ratio * dot(sideways, sideways);
   const Real after = std::sqrt(std::max(square, Real{0}));
   return along({sideways[0] * ratio, sideways[1] * ratio, sideways[2] * ratio}, n,

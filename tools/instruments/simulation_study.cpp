@@ -154,12 +154,6 @@ std::vector<SimulationRow> water_rows() {
   return rows;
 }
 
-std::string fixed(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
 }  // namespace
 
 double counted_error(SimulationWorld world, const SimulationRow& row) {

@@ -10,6 +10,7 @@
 #include "scene/built_scene.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
+#include "scene/scene_source.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"
 
@@ -91,8 +92,7 @@ class Assembly {
     }
     result->effects = effects_;
     result->bytes.resize(size);
-    if (BakedScene::make(parts_, {result->bytes.data(), size}, nullptr) != Status::kOk ||
-        BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk) {
+    if (BakedScene::make(parts_, {result->bytes.data(), size}, &result->scene) != Status::kOk) {
       throw InputError("internal error: the scene cannot be baked");
     }
   }

@@ -17,7 +17,7 @@
 namespace thimble::tools {
 namespace {
 
-class LitPainter final : public Painter {
+class LitPainter final : public BandPainter {
  public:
   LitPainter(const BuiltScene& built, const Camera& camera, const Shading& shading, PixelFormat format,
              const LitPicture& picture)
@@ -100,9 +100,9 @@ class LitPainter final : public Painter {
 
 }  // namespace
 
-std::unique_ptr<Painter> make_lit_painter(const BuiltScene& built, const Camera& camera,
-                                          const Shading& shading, PixelFormat format,
-                                          const LitPicture& picture) {
+std::unique_ptr<BandPainter> make_lit_painter(const BuiltScene& built, const Camera& camera,
+                                              const Shading& shading, PixelFormat format,
+                                              const LitPicture& picture) {
   return std::make_unique<LitPainter>(built, camera, shading, format, picture);
 }
 

@@ -4,7 +4,7 @@
 ///   ray painter      the core, ray by ray
 ///   quality painter  the same with several samples a pixel, a cut-off or a depth
 ///   wide painter     object order, with vectors and threads (platform/wide)
-///   lit painter      light, shadows, glass, water: the core's lit_render.h
+///   lit painter      light, shadows, glass, water: the core's light/render.h
 ///
 /// The first three give the same picture where their options are the same.
 #ifndef THIMBLE_TOOLS_SCENE_PAINTER_H
@@ -15,11 +15,11 @@
 
 #include "scene/built_scene.h"
 #include "scene/quality.h"
+#include "scene/wide_renderer.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
-#include "wide/renderer.h"
 
 namespace thimble::tools {
 
@@ -29,9 +29,9 @@ struct PaintCounts {
   LitCounts lit;      ///< of the lit painter by kind of ray, else 0
 };
 
-class Painter {
+class BandPainter {
  public:
-  virtual ~Painter() = default;
+  virtual ~BandPainter() = default;
   /// What draws, as --stats names it.
   virtual const char* engine() const = 0;
   virtual int threads() const { return 1; }
@@ -48,17 +48,17 @@ class Painter {
 // What a painter is made with must live as long as it does.
 
 /// Bands as high as the scene's own has room for.
-std::unique_ptr<Painter> make_ray_painter(const BuiltScene& built, const Camera& camera,
-                                          const Shading& shading, PixelFormat format,
-                                          const TraceOptions& options);
-
-/// A row at a time.
-std::unique_ptr<Painter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
+std::unique_ptr<BandPainter> make_ray_painter(const BuiltScene& built, const Camera& camera,
+                                              const Shading& shading, PixelFormat format,
                                               const TraceOptions& options);
 
-/// After `built.prepare_wide`.
-std::unique_ptr<Painter> make_wide_painter(const BuiltScene& built, const Camera& camera,
-                                           const Shading& shading, int threads);
+/// A row at a time.
+std::unique_ptr<BandPainter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
+                                                  const TraceOptions& options);
+
+/// For pictures of the size that `renderer` was made for.
+std::unique_ptr<BandPainter> make_wide_painter(WideRenderer* renderer, const Camera& camera,
+                                               const Shading& shading);
 
 /// What a lit picture is made of beside tree, camera and shading.
 struct LitPicture {
@@ -71,9 +71,9 @@ struct LitPicture {
 };
 
 /// For compact trees. Formats with fewer than 8 bits a channel are dithered.
-std::unique_ptr<Painter> make_lit_painter(const BuiltScene& built, const Camera& camera,
-                                          const Shading& shading, PixelFormat format,
-                                          const LitPicture& picture);
+std::unique_ptr<BandPainter> make_lit_painter(const BuiltScene& built, const Camera& camera,
+                                              const Shading& shading, PixelFormat format,
+                                              const LitPicture& picture);
 
 }  // namespace thimble::tools
 

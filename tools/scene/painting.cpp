@@ -6,7 +6,7 @@
 
 namespace thimble::tools {
 
-Status paint(Painter& painter, std::int32_t width_px, std::int32_t height_px, PixelFormat format,
+Status paint(BandPainter& painter, std::int32_t width_px, std::int32_t height_px, PixelFormat format,
              const Progress& progress, Painting* painting) {
   *painting = {};
   painting->image = {width_px, height_px, format,

@@ -15,14 +15,15 @@ namespace thimble::tools {
 struct Painting {
   Image image;
   PaintCounts counts;
-  double seconds = 0;  ///< of drawing alone
+  double seconds = 0;              ///< of drawing alone
+  double preparation_seconds = 0;  ///< of what its painter wanted made first; counts as building
   std::string engine;
   int threads = 1;
 };
 
 /// Draws a picture of that size from top to bottom into `painting`, whatever it held. The painter's first
 /// error ends it.
-Status paint(Painter& painter, std::int32_t width_px, std::int32_t height_px, PixelFormat format,
+Status paint(BandPainter& painter, std::int32_t width_px, std::int32_t height_px, PixelFormat format,
              const Progress& progress, Painting* painting);
 
 }  // namespace thimble::tools

@@ -67,7 +67,7 @@ NodeColors take_node_colors(BuiltScene* built, const Quality& quality, const Sha
   if (shading.mode != ShadeMode::kColor || size == 0) {
     return colors;
   }
-  const Bytes table = built->take(size);
+  const Bytes table = built->arena().take(size);
   if (table.empty()) {
     throw InputError(
         "the mean colours of " + grouped(built->compact().node_count()) + " nodes need " + grouped(size) +

@@ -4,7 +4,7 @@
 namespace thimble::tools {
 namespace {
 
-class QualityPainter final : public Painter {
+class QualityPainter final : public BandPainter {
  public:
   QualityPainter(const BuiltScene& built, const QualityFrame& frame, const TraceOptions& options)
       : built_(built), frame_(frame), options_(options) {}
@@ -24,8 +24,8 @@ class QualityPainter final : public Painter {
 
 }  // namespace
 
-std::unique_ptr<Painter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
-                                              const TraceOptions& options) {
+std::unique_ptr<BandPainter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
+                                                  const TraceOptions& options) {
   return std::make_unique<QualityPainter>(built, frame, options);
 }
 

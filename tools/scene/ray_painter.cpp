@@ -6,7 +6,7 @@
 namespace thimble::tools {
 namespace {
 
-class RayPainter final : public Painter {
+class RayPainter final : public BandPainter {
  public:
   RayPainter(const BuiltScene& built, const Camera& camera, const Shading& shading, PixelFormat format,
              const TraceOptions& options)
@@ -35,9 +35,9 @@ class RayPainter final : public Painter {
 
 }  // namespace
 
-std::unique_ptr<Painter> make_ray_painter(const BuiltScene& built, const Camera& camera,
-                                          const Shading& shading, PixelFormat format,
-                                          const TraceOptions& options) {
+std::unique_ptr<BandPainter> make_ray_painter(const BuiltScene& built, const Camera& camera,
+                                              const Shading& shading, PixelFormat format,
+                                              const TraceOptions& options) {
   return std::make_unique<RayPainter>(built, camera, shading, format, options);
 }
 

@@ -6,21 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "readers/source.h"
 #include "scene/lit_description.h"
+#include "scene/scene_arguments.h"
 #include "scene/voxel_sink.h"
 
 namespace thimble::tools {
-
-struct SceneArguments {
-  std::string scene;         ///< a file's path or a generator
-  std::optional<int> depth;  ///< --depth
-  bool as_voxels = false;    ///< --as-voxels
-  bool z_up = false;         ///< --z-up
-};
 
 /// Streams the same voxels as often as it is asked to.
 class SceneSource {

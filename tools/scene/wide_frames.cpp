@@ -6,32 +6,23 @@
 #include "thimble/base/memory.h"
 
 namespace thimble::tools {
-namespace {
-
-constexpr std::size_t kAlignment = 64;  // of the workspace
-
-}  // namespace
-
 bool WideFrames::prepare(const CompactTree& tree, const Camera& camera) {
   if (tree_ == tree.bytes() && width_px_ == camera.width_px() && height_px_ == camera.height_px()) {
-    return is_ready_;
+    return renderer_ != nullptr;
   }
   tree_ = tree.bytes();
   width_px_ = camera.width_px();
   height_px_ = camera.height_px();
-  is_ready_ = false;
+  renderer_.reset();
   const std::size_t list_bytes = wide::VoxelLists::bytes(tree);
-  const std::size_t work_bytes = wide::workspace_bytes(width_px_, height_px_, threads_.count());
+  const std::size_t work_bytes = wide::workspace_bytes(width_px_, height_px_, threads_);
   if (list_bytes > most_bytes_ || work_bytes > most_bytes_ - list_bytes) {
     return false;
   }
-  memory_ = HostMemory(list_bytes + kAlignment + work_bytes);
-  Arena arena(memory_.bytes());
-  if (wide::VoxelLists::make(tree, &arena, &lists_) == Status::kOk) {
-    workspace_ = arena.take(work_bytes, kAlignment);
-    is_ready_ = !workspace_.empty();
-  }
-  return is_ready_;
+  memory_ = HostMemory(list_bytes + WideRenderer::kWorkspaceAlignment + work_bytes);
+  arena_ = Arena(memory_.bytes());
+  renderer_ = WideRenderer::make(tree, &arena_, width_px_, height_px_, threads_);
+  return renderer_ != nullptr;
 }
 
 bool WideFrames::leave(const char* why) {
@@ -47,10 +38,9 @@ bool WideFrames::draw(const CompactTree& tree, const Camera& camera, const Shadi
   if (!prepare(tree, camera)) {
     return leave("no room for --engine wide");
   }
-  wide::Options options;
-  options.threads = &threads_;
-  if (wide::render(lists_, camera, shading, {pixels, format, 0, 0, camera.height_px()}, workspace_, nullptr,
-                   options) != Status::kOk) {
+  wide::Counts work;
+  if (renderer_->render(camera, shading, {pixels, format, 0, 0, camera.height_px()}, nullptr, &work) !=
+      Status::kOk) {
     return leave("--engine wide does not take the rays of this camera");
   }
   ++drawn_;

@@ -5,15 +5,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "host/simulation.h"
 #include "scene/host_memory.h"
+#include "scene/wide_renderer.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/pixel.h"
 #include "thimble/picture/shading.h"
 #include "thimble/tree/compact_tree.h"
-#include "wide/renderer.h"
 
 namespace thimble::tools {
 
@@ -38,7 +39,7 @@ class WideFrames final : public host::FramePainter {
   bool leave(const char* why);
 
   bool insists_;
-  wide::Threads threads_;
+  int threads_;
   std::size_t most_bytes_;
   std::uint32_t drawn_ = 0;
   std::uint32_t left_ = 0;
@@ -46,10 +47,9 @@ class WideFrames final : public host::FramePainter {
   const std::uint8_t* tree_ = nullptr;
   std::int32_t width_px_ = 0;
   std::int32_t height_px_ = 0;
-  bool is_ready_ = false;
   HostMemory memory_;
-  wide::VoxelLists lists_;
-  Bytes workspace_;
+  Arena arena_;
+  std::unique_ptr<WideRenderer> renderer_;  // null where there was no room
 };
 
 }  // namespace thimble::tools

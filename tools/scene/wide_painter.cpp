@@ -1,34 +1,33 @@
-// Object order, with vectors and threads; its workspace is the scene's, its bands are the picture's.
+// Object order, with vectors and threads; its bands are the picture's.
 #include "scene/painter.h"
 
 namespace thimble::tools {
 namespace {
 
-class WidePainter final : public Painter {
+class WidePainter final : public BandPainter {
  public:
-  WidePainter(const BuiltScene& built, const Camera& camera, const Shading& shading, int threads)
-      : built_(built), camera_(camera), shading_(shading), threads_(threads) {}
+  WidePainter(WideRenderer* renderer, const Camera& camera, const Shading& shading)
+      : renderer_(*renderer), camera_(camera), shading_(shading) {}
 
   const char* engine() const override { return "wide"; }
-  int threads() const override { return threads_; }
-  std::int32_t most_rows() const override { return built_.wide_rows(); }
+  int threads() const override { return renderer_.threads(); }
+  std::int32_t most_rows() const override { return renderer_.rows(); }
   Bytes work() const override { return {}; }
   Status draw(const Band& band, PaintCounts* counts) override {
-    return built_.render_wide(camera_, shading_, band, &counts->all, &counts->wide);
+    return renderer_.render(camera_, shading_, band, &counts->all, &counts->wide);
   }
 
  private:
-  const BuiltScene& built_;
+  WideRenderer& renderer_;
   const Camera& camera_;
   const Shading& shading_;
-  int threads_;
 };
 
 }  // namespace
 
-std::unique_ptr<Painter> make_wide_painter(const BuiltScene& built, const Camera& camera,
-                                           const Shading& shading, int threads) {
-  return std::make_unique<WidePainter>(built, camera, shading, threads);
+std::unique_ptr<BandPainter> make_wide_painter(WideRenderer* renderer, const Camera& camera,
+                                               const Shading& shading) {
+  return std::make_unique<WidePainter>(renderer, camera, shading);
 }
 
 }  // namespace thimble::tools

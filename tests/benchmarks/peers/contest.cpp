@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "commands/options.h"
 #include "readers/oct.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 
 namespace thimble::benchmarks {
@@ -40,7 +40,7 @@ double median(std::vector<double> values) {
 Camera contest_camera(int level, bool orthographic, int frame) {
   const double side = 1 << level;
   const double drift = 0.003 * side * (frame % 5 + 1);
-  tools::ViewOptions view;
+  tools::ViewWishes view;
   view.width_px = Contest::kWidthPx;
   view.height_px = Contest::kHeightPx;
   view.orthographic = orthographic;
@@ -51,7 +51,7 @@ Camera contest_camera(int level, bool orthographic, int frame) {
   } else {
     view.eye = tools::Real3{side * 0.2 + drift, -side * 0.62, side * 0.75 - drift / 2};
   }
-  return view.camera(level, {});
+  return tools::frame_box(view, level, {}).camera;
 }
 
 Shading contest_shading(const Camera& camera, const VoxelBox& bounds) {
@@ -87,7 +87,8 @@ Contest::Contest(const std::string& kind, std::uint64_t points, std::uint64_t mo
   arguments.scene = kind + ":" + std::to_string(points);
   const auto source = tools::open_scene(arguments);
   built_ = std::make_unique<tools::BuiltScene>(*source, tools::BuildOptions{});
-  if (!built_->prepare_wide(kWidthPx, kHeightPx, 1)) {
+  renderer_ = tools::WideRenderer::make(built_.get(), kWidthPx, kHeightPx, 1);
+  if (renderer_ == nullptr) {
     throw std::runtime_error("no room for the wide renderer");
   }
   tools::for_each_block(built_->compact(), [&](const Vec3i& at, int level, std::uint8_t) {
@@ -122,7 +123,7 @@ double Contest::draw_wide(const Camera& camera, std::uint64_t* hits) {
   band.rows = kHeightPx;
   RenderCounts counts;
   wide::Counts work;
-  if (built_->render_wide(camera, contest_shading(camera, built_->bounds()), band, &counts, &work) !=
+  if (renderer_->render(camera, contest_shading(camera, built_->bounds()), band, &counts, &work) !=
       Status::kOk) {
     throw std::runtime_error("the wide renderer leaves this view to the core");
   }

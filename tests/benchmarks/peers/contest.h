@@ -12,6 +12,7 @@
 
 #include "benchmarks/peers/peer.h"
 #include "scene/built_scene.h"
+#include "scene/wide_renderer.h"
 
 namespace thimble::benchmarks {
 
@@ -59,6 +60,7 @@ class Contest {
   std::string kind_;
   std::uint64_t points_;
   std::unique_ptr<tools::BuiltScene> built_;
+  std::unique_ptr<tools::WideRenderer> renderer_;
   std::vector<Voxel> voxels_;  // in the tree's order
   struct Rival {
     std::unique_ptr<Peer> peer;

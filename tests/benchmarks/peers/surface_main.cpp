@@ -18,13 +18,14 @@
 #include <random>
 
 #include "benchmarks/peers/peer.h"
-#include "commands/options.h"
 #include "output/output_file.h"
 #include "readers/file_bytes.h"
 #include "readers/oct.h"
 #include "readers/read_any.h"
 #include "scene/built_scene.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
+#include "scene/wide_renderer.h"
 #include "scene/world_fit.h"
 
 namespace thimble::benchmarks {
@@ -168,7 +169,8 @@ int run(int count, char** words) {
   arguments.depth = depth;
   const auto source = tools::open_scene(arguments);
   tools::BuiltScene built(*source, {});
-  if (!built.prepare_wide(kWidthPx, kHeightPx, 1)) {
+  const auto renderer = tools::WideRenderer::make(&built, kWidthPx, kHeightPx, 1);
+  if (renderer == nullptr) {
     throw std::runtime_error("no room for the wide renderer");
   }
   std::vector<Voxel> voxels;
@@ -182,13 +184,13 @@ int run(int count, char** words) {
   });
   // As the gallery's picture sees it, closer.
   const double unit = (1 << depth) / 1024.0;
-  tools::ViewOptions view;
+  tools::ViewWishes view;
   view.width_px = kWidthPx;
   view.height_px = kHeightPx;
   view.eye = tools::Real3{300 * unit, -500 * unit, 560 * unit};
   view.target = tools::Real3{512 * unit, 512 * unit, 470 * unit};
   view.fov_degrees = 44;
-  const Camera camera = view.camera(built.level(), {});
+  const Camera camera = tools::frame_box(view, built.level(), {}).camera;
 
   std::vector<std::unique_ptr<Peer>> peers;
   peers.push_back(make_embree(voxels));
@@ -228,8 +230,7 @@ int run(int count, char** words) {
           band.rows = kHeightPx;
           RenderCounts counts;
           wide::Counts work;
-          if (built.render_wide(camera, shading, band, &counts, &work) != Status::kOk ||
-              counts.hits != hits) {
+          if (renderer->render(camera, shading, band, &counts, &work) != Status::kOk || counts.hits != hits) {
             throw std::runtime_error("the wide renderer's picture is another");
           }
         } else if (engine == 1) {

@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "commands/options.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/chip_cost.h"
 #include "instruments/hard_case_report.h"
 #include "output/scatter.h"
 #include "scene/built_scene.h"
+#include "scene/framing.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "support/run_command.h"
@@ -352,10 +352,10 @@ TEST_CASE(
   arguments.scene = path;
   const auto source = tools::open_scene(arguments);
   const tools::BuiltScene built(*source, {});
-  tools::ViewOptions options;
+  tools::ViewWishes options;
   options.width_px = 24;
   options.height_px = 18;
-  const Camera camera = options.camera(*source, built.level(), built.bounds());
+  const Camera camera = tools::frame_scene(options, *source, built.level(), built.bounds()).camera;
   const auto draw_lit = [&](int occlusion_rays, int roughness_rays, int bounces, std::uint64_t* rays) {
     tools::LitDescription lit = source->lighting();
     for (Surface& surface : lit.surfaces) {

@@ -1,0 +1,311 @@
+// --effects and --bounces of `thimble render`: which effects are drawn, what they take, what they refuse.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/built_scene.h"
+#include "scene/lit_setup.h"
+#include "scene/scene_source.h"
+#include "support/run_command.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/camera.h"
+
+namespace {
+
+using namespace thimble::tests;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+// A little of everything but water.
+constexpr const char* kScene = R"(depth 5
+camera eye -20 -26 34 target 16 16 6 fov 45
+sun toward -5 -9 16
+lamp at 26 6 14 color 255 220 180 reach 12
+occlusion rays 4
+sky zenith 70 120 190
+fog color 200 205 210 density 0.01
+material floor color 170 150 130
+material clear glass color 220 240 235
+material mirror metal color 230 230 230 mirror 0.9
+material glow emit color 255 210 150 emission 1.5
+material mist media color 200 210 220 density 0.05
+box floor from 0 0 0 to 32 32 2
+box clear from 4 4 2 to 12 12 10
+box mirror from 18 20 2 to 28 24 16
+box mist from 14 4 2 to 20 12 9
+ball glow at 26 26 5 radius 3
+)";
+
+struct Picture {
+  std::string bytes;
+  json stats;
+};
+
+Picture render(const std::string& scene, const Words& more, const std::string& ending = ".ppm",
+               const std::string& size = "48x36") {
+  const TemporaryFolder folder;
+  Words words{"render",
+              scene,
+              "--size",
+              size,
+              "--quiet",
+              "-o",
+              folder.path("a" + ending),
+              "--stats",
+              folder.path("a.json")};
+  words.insert(words.end(), more.begin(), more.end());
+  const CommandResult result = run_command(words);
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  return {read_text(folder.path("a" + ending)), json::parse(read_text(folder.path("a.json")))};
+}
+
+void check_refused(const std::string& scene, const Words& more, int status, const Words& named) {
+  const TemporaryFolder folder;
+  Words words{"render", scene, "--size", "48x36", "-o", folder.path("a.ppm")};
+  words.insert(words.end(), more.begin(), more.end());
+  const CommandResult result = run_command(words);
+  INFO(result.describe());
+  CHECK(result.status == status);
+  CHECK(is_one_sentence(result.err));
+  CHECK(folder.names().empty());
+  for (const std::string& name : named) {
+    CAPTURE(name);
+    CHECK(result.err.find(name) != std::string::npos);
+  }
+}
+
+// The pixels that the core gives for a scene with a camera of its own, without the command's help.
+struct Direct {
+  std::string pixels;
+  thimble::LitCounts counts;
+};
+Direct draw_directly(const std::string& scene, thimble::PixelFormat format) {
+  namespace tools = thimble::tools;
+  tools::SceneArguments arguments;
+  arguments.scene = scene;
+  const auto source = tools::open_scene(arguments);
+  const tools::BuiltScene built(*source, {});
+  const tools::LitDescription lit = source->lighting();
+  const thimble::EffectSet effects = tools::called_for(lit, tools::used_materials(built.compact()));
+  thimble::Camera camera;
+  REQUIRE(thimble::set_camera(*source->camera(), 48, 36, built.level(), &camera) == thimble::Status::kOk);
+  thimble::Shading shading;
+  shading.palette = {built.palette().data(), built.palette().size()};
+  Direct direct;
+  direct.pixels.resize(thimble::band_bytes(format, 48, 36));
+  thimble::Band band;
+  band.pixels = {reinterpret_cast<std::uint8_t*>(direct.pixels.data()), direct.pixels.size()};
+  band.format = format;
+  band.rows = 36;
+  REQUIRE(thimble::render_lit_band(effects, built.compact(), camera, shading, lit.lit_scene(), band,
+                                   &direct.counts) == thimble::Status::kOk);
+  return direct;
+}
+
+TEST_CASE("render effects: any number of threads -> the same picture and counts, dithered and sampled too") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  for (const Words& more : {Words{}, {"--samples", "4"}, {"--memory", "64K"}}) {
+    for (const char* ending : {".ppm", ".pbm"}) {
+      const Picture one = render(scene, more, ending, "50x37");
+      CHECK(one.stats["threads"] == 1);
+      for (const char* threads : {"2", "5"}) {
+        CAPTURE(threads);
+        Words words = more;
+        words.insert(words.end(), {"--threads", threads});
+        const Picture many = render(scene, words, ending, "50x37");
+        CHECK(many.bytes == one.bytes);
+        CHECK(many.stats["rays_by_kind"] == one.stats["rays_by_kind"]);
+        CHECK(many.stats["node_visits_by_kind"] == one.stats["node_visits_by_kind"]);
+        CHECK(many.stats["threads"] == std::stoi(threads));
+      }
+    }
+  }
+}
+
+TEST_CASE("render effects: a plain scene -> the very picture of --effects none, and none in --stats") {
+  const Picture plain = render("spheres", {});
+  CHECK(plain.stats["effects"] == json::array());
+  CHECK(!plain.stats.contains("rays_by_kind"));
+  for (const Words& more : {Words{"--effects", "none"}, {"--effects", "auto"}, {"--shade", "depth"}}) {
+    const Picture same = render("spheres", more);
+    CHECK(same.bytes == plain.bytes);
+    CHECK(same.stats["high_water_bytes"] == plain.stats["high_water_bytes"]);
+    CHECK(same.stats["engine"] == plain.stats["engine"]);
+    CHECK(same.stats["node_visits"] == plain.stats["node_visits"]);
+  }
+}
+
+TEST_CASE("render effects: auto -> what the scene calls for; none or a --shade -> a picture without") {
+  const Picture lit = render("water", {});
+  CHECK(lit.stats["effects"] == json({"direct-light", "shadows", "mirror", "glass", "water", "sky"}));
+  CHECK(lit.stats["engine"] == "lit");
+  CHECK(lit.stats["bounces"] == 4);
+  CHECK(lit.stats["rays_by_kind"]["primary"] == 48 * 36);
+  CHECK(lit.stats["rays_by_kind"]["occlusion"] == 0);
+  CHECK(lit.stats["rays_by_kind"]["water"] > 0);
+  std::uint64_t rays = 0;
+  for (const auto& [kind, number] : lit.stats["rays_by_kind"].items()) {
+    rays += number.get<std::uint64_t>();
+  }
+  CHECK(lit.stats["rays"] == rays);
+  CHECK(render("water", {"--effects", "auto"}).bytes == lit.bytes);
+  CHECK(render("water", {"--effects", "auto", "--shade", "color"}).bytes == lit.bytes);
+
+  const Picture none = render("water", {"--effects", "none"});
+  CHECK(none.bytes != lit.bytes);
+  CHECK(render("water", {"--shade", "depth"}).bytes == none.bytes);
+  CHECK(render("water", {"--shade", "depth", "--effects", "auto"}).bytes == none.bytes);
+  const Picture color = render("water", {"--shade", "color"});
+  CHECK(color.stats["effects"] == json::array());
+  CHECK(color.bytes == render("water", {"--shade", "color", "--effects", "none"}).bytes);
+}
+
+TEST_CASE("render effects: a list -> these and no others; --bounces -> no more rays than that") {
+  const Picture two = render("spheres", {"--effects", "shadows,sky"});
+  CHECK(two.stats["effects"] == json({"direct-light", "shadows", "sky"}));
+  CHECK(two.stats["rays_by_kind"]["shadow"] > 0);
+  CHECK(two.stats["rays_by_kind"]["occlusion"] == 0);
+  const Picture darker = render("spheres", {"--effects", "shadows,sky,ambient-occlusion"});
+  CHECK(darker.stats["rays_by_kind"]["occlusion"] > 0);
+  CHECK(darker.bytes != two.bytes);
+
+  std::uint64_t before = 0;
+  for (const char* bounces : {"0", "1", "2", "8"}) {
+    const Picture water = render("water", {"--bounces", bounces});
+    CHECK(std::to_string(water.stats["bounces"].get<int>()) == bounces);
+    const std::uint64_t rays = water.stats["rays"];
+    CHECK(rays > before);
+    before = rays;
+  }
+  // No mirror without a bounce; glass and water let rays go straight on.
+  CHECK(render("water", {"--bounces", "0"}).stats["rays_by_kind"]["mirror"] == 0);
+}
+
+TEST_CASE("render effects: every format -> the pixels that the core gives; greys below a byte are dithered") {
+  const TemporaryFolder folder;
+  for (const std::string& scene : {std::string("water"), folder.write("a.scene", kScene)}) {
+    CAPTURE(scene);
+    const Direct color = draw_directly(scene, thimble::PixelFormat::kRgb888);
+    const Picture ppm = render(scene, {});
+    CHECK(ppm.bytes == "P6\n48 36\n255\n" + color.pixels);
+    CHECK(render(scene, {}, ".pgm").bytes ==
+          "P5\n48 36\n255\n" + draw_directly(scene, thimble::PixelFormat::kGray8).pixels);
+    std::string mono = draw_directly(scene, thimble::PixelFormat::kMono1).pixels;
+    for (char& eight : mono) {
+      eight = static_cast<char>(~eight);  // 1 is black in a .pbm
+    }
+    CHECK(render(scene, {}, ".pbm").bytes == "P4\n48 36\n" + mono);
+    for (int kind = 0; kind < thimble::kLitRayKinds; ++kind) {
+      const char* name = thimble::tools::ray_kind_name(static_cast<thimble::LitRayKind>(kind));
+      CHECK(ppm.stats["rays_by_kind"][name] == color.counts.rays[kind]);
+      CHECK(ppm.stats["node_visits_by_kind"][name] == color.counts.node_visits[kind]);
+    }
+  }
+}
+
+TEST_CASE("render effects: baked, or read again -> the same picture") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  const Picture drawn = render(scene, {});
+  CHECK(drawn.stats["effects"].size() == 9);
+  REQUIRE(run_command({"bake", scene, "--quiet", "-o", folder.path("a.oct")}).status == 0);
+  const Picture baked = render(folder.path("a.oct"), {});
+  CHECK(baked.bytes == drawn.bytes);
+  CHECK(baked.stats["effects"] == drawn.stats["effects"]);
+  CHECK(baked.stats["rays"] == drawn.stats["rays"]);
+}
+
+TEST_CASE("render effects: a short budget -> the same picture in bands of fewer rows, or a sentence") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  const Picture drawn = render(scene, {});
+  // The least budget, by halving.
+  const auto fits = [&](int bytes) {
+    return run_command({"render", scene, "--size", "48x36", "--quiet", "-o", folder.path("b.ppm"), "--memory",
+                        std::to_string(bytes)})
+               .status == 0;
+  };
+  int low = 0;
+  int high = drawn.stats["high_water_bytes"];
+  REQUIRE(fits(high));
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (fits(middle) ? high : low) = middle;
+  }
+  const Picture least = render(scene, {"--memory", std::to_string(high)});
+  CHECK(least.bytes == drawn.bytes);
+  CHECK(least.stats["high_water_bytes"] <= high);
+  CHECK(high < drawn.stats["high_water_bytes"]);
+  check_refused(scene, {"--memory", std::to_string(low)}, 1, {std::to_string(high % 1000), "--memory"});
+  // What the effects keep is in the budget: without them it may be smaller by just that.
+  const Picture plain = render(scene, {"--effects", "none", "--engine", "ray64"});
+  namespace lit = thimble;
+  constexpr lit::EffectSet kAll = lit::Effect::kAll & ~(lit::Effect::kWater | lit::Effect::kDepthCue);
+  const std::size_t tables = 2 * sizeof(lit::Light) + 5 * sizeof(lit::Surface);
+  const std::size_t more = lit::lit_render_bytes(kAll) + tables - lit::render_bytes();
+  const std::size_t difference =
+      drawn.stats["high_water_bytes"].get<std::size_t>() - plain.stats["high_water_bytes"].get<std::size_t>();
+  CHECK(difference + 7 >= more);
+  CHECK(difference <= more + 7);
+}
+
+TEST_CASE("render effects: several samples a pixel -> the mean of the same view drawn larger") {
+  const Picture large = render("water", {});
+  const Picture averaged = render("water", {"--samples", "4"}, ".ppm", "24x18");
+  CHECK(averaged.stats["samples"] == 4);
+  CHECK(averaged.stats["rays"] == large.stats["rays"]);
+  const std::string fine = large.bytes.substr(large.bytes.find("255\n") + 4);
+  const std::string mean = averaged.bytes.substr(averaged.bytes.find("255\n") + 4);
+  REQUIRE(mean.size() == 24U * 18 * 3);
+  int wrong = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const std::size_t x = i / 3 % 24;
+    const std::size_t y = i / 72;
+    unsigned sum = 2;
+    for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{144}, std::size_t{147}}) {
+      sum += static_cast<std::uint8_t>(fine[y * 288 + x * 6 + i % 3 + place]);
+    }
+    wrong += static_cast<std::uint8_t>(mean[i]) == sum / 4 ? 0 : 1;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 2, a sentence, no file") {
+  for (const char* wrong : {"", "shadow", "auto,sky", "sky,", "sky,sky", "Shadows", "none,sky", "all"}) {
+    check_refused("spheres", {"--effects", wrong}, 2,
+                  {std::string("--effects: \"") + wrong + "\"", "auto, none", "ambient-occlusion"});
+  }
+  for (const char* wrong : {"-1", "9", "x", "", "1.5"}) {
+    check_refused("spheres", {"--bounces", wrong}, 2, {"--bounces", "0 to 8"});
+  }
+  for (const Words& more : {Words{"--samples", "4"},
+                            {"--cutoff", "2"},
+                            {"--max-depth", "3"},
+                            {"--effects", "sky"},
+                            {"--bounces", "2"}}) {
+    Words words{"--engine", "wide"};
+    words.insert(words.end(), more.begin(), more.end());
+    check_refused("spheres", words, 2, {"--engine wide", more[0]});
+  }
+  for (const Words& more : {Words{"--structure", "pool"},
+                            {"--structure", "dense"},
+                            {"--engine", "ray32"},
+                            {"--engine", "wide"},
+                            {"--cutoff", "2"},
+                            {"--max-depth", "3"}}) {
+    check_refused("water", more, 2, {more[0], "water", "--effects none"});
+    Words without = more;
+    without.insert(without.end(), {"--effects", "none"});
+    render("water", without);
+  }
+  for (const char* shade : {"depth", "normal", "mono"}) {
+    check_refused("water", {"--shade", shade, "--effects", "sky"}, 2, {std::string("--shade ") + shade});
+  }
+}
+
+}  // namespace

@@ -1,0 +1,73 @@
+#include "commands/engine_options.h"
+
+#include <vector>
+
+#include "commands/arguments.h"
+#include "scene/built_scene.h"
+#include "scene/wide_renderer.h"
+#include "thimble/trace/trace.h"
+
+namespace thimble::tools {
+
+void EngineOptions::add_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "wide", "ray64", "ray32"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      "wide: object order, with vectors and threads, for --structure compact where there is room; ray64, "
+      "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
+      "need more; auto: wide where it can be, but not with --board, else ray64")
+      .default_str("auto");
+  add_whole_option(
+      app, "--threads", "N", 1, wide::kMaxThreads,
+      [this](std::int64_t number) { threads = static_cast<int>(number); },
+      "threads that build, and that draw with the wide engine or with effects")
+      .default_str("1");
+}
+
+void EngineOptions::add_ray_engines_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "ray64", "ray32"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more")
+      .default_str("auto");
+}
+
+std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, std::int32_t width_px,
+                                                           std::int32_t height_px) const {
+  if (name != "auto" && name != "wide") {
+    return nullptr;
+  }
+  auto renderer = WideRenderer::make(built, width_px, height_px, threads);
+  if (renderer == nullptr && name == "wide") {
+    throw InputError(built->structure() == StructureKind::kCompact
+                         ? "no room for --engine wide within --memory"
+                         : "--engine wide draws --structure compact only");
+  }
+  return renderer;
+}
+
+void EngineOptions::add_board_engines_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "wide", "ray64"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      "what draws demo's frames without light; the pictures are the same. wide: object order, with vectors "
+      "and "
+      "threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "
+      "compared; ray64: the core, as on the board (by bricks where the scene has a brick map); auto: wide "
+      "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
+      "applications are always the core's")
+      .default_str("auto");
+  add_whole_option(
+      app, "--threads", "N", 1, wide::kMaxThreads,
+      [this](std::int64_t number) { threads = static_cast<int>(number); },
+      "threads that draw with the wide engine")
+      .default_str("1");
+}
+
+TraceOptions EngineOptions::trace_options() const {
+  TraceOptions options;
+  options.width = name == "ray32" ? Width::k32 : Width::k64;
+  return options;
+}
+
+}  // namespace thimble::tools

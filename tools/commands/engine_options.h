@@ -1,0 +1,43 @@
+/// @file engine_options.h
+/// --engine and --threads: what draws. The pictures are the same.
+#ifndef THIMBLE_TOOLS_COMMANDS_ENGINE_OPTIONS_H
+#define THIMBLE_TOOLS_COMMANDS_ENGINE_OPTIONS_H
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace CLI {
+class App;
+}
+namespace thimble {
+struct TraceOptions;
+}
+
+namespace thimble::tools {
+
+class BuiltScene;
+class WideRenderer;
+
+struct EngineOptions {
+  std::string name = "auto";
+  int threads = 1;
+
+  void add_to(CLI::App& app);
+  /// --engine alone, for subcommands that draw nothing.
+  void add_ray_engines_to(CLI::App& app);
+  /// For applications on a simulated board, where the core draws as the board has it draw.
+  void add_board_engines_to(CLI::App& app);
+  /// For single rays, whatever the engine.
+  TraceOptions trace_options() const;
+  /// The wide renderer for pictures of that size, where it is to draw and there is room for it within the
+  /// scene's budget; else null. Throws InputError when it was asked for by name and cannot be had.
+  std::unique_ptr<WideRenderer> wide_renderer(BuiltScene* built, std::int32_t width_px,
+                                              std::int32_t height_px) const;
+  /// What was used.
+  std::string resolved(bool is_wide) const { return is_wide ? "wide" : name == "ray32" ? "ray32" : "ray64"; }
+};
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,163 @@
+#include "commands/view_options.h"
+
+#include <array>
+#include <cmath>
+
+#include "boards/board_table.h"
+#include "commands/arguments.h"
+#include "scene/framing.h"
+#include "scene/quality.h"
+#include "thimble/picture/shading.h"
+
+namespace thimble::tools {
+namespace {
+
+// "X,Y,Z" as three finite numbers.
+std::optional<Real3> parse_triple(std::string_view text) {
+  Real3 result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t comma = text.find(',');
+    const auto number = parse_real(text.substr(0, comma));
+    if (!number || (comma == std::string_view::npos) != (i == 2)) {
+      return std::nullopt;
+    }
+    result[i] = *number;
+    text.remove_prefix(i == 2 ? text.size() : comma + 1);
+  }
+  return result;
+}
+
+void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value, bool* given,
+                const std::string& help) {
+  add_text_option(
+      app, name, "X,Y,Z",
+      [value, given](const std::string& text) {
+        *value = parse_triple(text);
+        *given = true;
+        return *value ? "" : "is not three numbers X,Y,Z";
+      },
+      help);
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
+  add_text_option(
+      app, "--size", "WxH",
+      [view](const std::string& text) -> std::string {
+        const std::size_t x = text.find('x');
+        const auto width = parse_whole(text.substr(0, x), 1, kMaxPicturePx);
+        const auto height =
+            x == std::string::npos ? std::nullopt : parse_whole(text.substr(x + 1), 1, kMaxPicturePx);
+        if (!width || !height) {
+          return "is not WxH with sides of 1 to " + std::to_string(kMaxPicturePx) + " pixels";
+        }
+        view->width_px = static_cast<std::int32_t>(*width);
+        view->height_px = static_cast<std::int32_t>(*height);
+        view->sized = true;
+        return {};
+      },
+      "the picture's size in pixels (default: " + std::to_string(view->width_px) + "x" +
+          std::to_string(view->height_px) +
+          (has_option(app, "--board") ? ", or the display of --board)" : ")"));
+  add_choice_option(
+      app, "--projection", {"perspective", "orthographic"},
+      [view](std::size_t index) {
+        view->orthographic = index == 1;
+        view->placed = true;
+      },
+      "how rays leave the camera")
+      .default_str("perspective");
+  add_triple(app, "--eye", &view->eye, &view->placed,
+             "where the camera is, in voxels (default: where it sees the whole scene)");
+  add_triple(app, "--target", &view->target, &view->placed,
+             "what it looks at, in voxels (default: the middle of the scene)");
+  add_triple(app, "--up", &view->up, &view->placed,
+             "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
+  add_text_option(
+      app, "--fov", "DEG",
+      [view](const std::string& text) {
+        const auto degrees = parse_real(text);
+        view->fov_degrees = degrees.value_or(0);
+        view->placed = true;
+        return view->fov_degrees >= 1 && view->fov_degrees <= 120 ? "" : "is not a number from 1 to 120";
+      },
+      "perspective: vertical field of view in degrees, 1 to 120")
+      .default_str("60");
+  add_text_option(
+      app, "--span", "V",
+      [view](const std::string& text) {
+        view->span = parse_real(text);
+        view->placed = true;
+        return view->span && *view->span > 0 ? "" : "is not a number above 0";
+      },
+      "orthographic: width of the picture in voxels (default: the whole scene)");
+  if (with_direction_bits) {
+    add_direction_bits(app, &view->direction_bits);
+  }
+}
+
+void use_display(const platform::BoardFacts* board, ViewWishes* view) {
+  if (board != nullptr && !view->sized) {
+    view->width_px = board->width_px;
+    view->height_px = board->height_px;
+  }
+}
+
+void add_direction_bits(CLI::App& app, int* bits) {
+  add_whole_option(
+      app, "--direction-bits", "N", kMinDirectionBits, kMaxDirectionBits,
+      [bits](std::int64_t number) { *bits = static_cast<int>(number); },
+      "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
+}
+
+void add_quality(CLI::App& app, Quality* quality) {
+  add_text_option(
+      app, "--samples", "N",
+      [quality](const std::string& text) {
+        quality->across = 0;
+        const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
+        for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
+          quality->across = *number == across * across ? across : quality->across;
+        }
+        return quality->across != 0 ? "" : "is not 1, 4, 9, 16, 25, 36, 49 or 64";
+      },
+      "samples a pixel, on a regular grid in it, averaged: 1, 4, 9, 16, 25, 36, 49 or 64")
+      .default_str("1");
+  add_text_option(
+      app, "--cutoff", "PX",
+      [quality](const std::string& text) -> std::string {
+        const auto pixels = parse_real(text);
+        if (!pixels || *pixels < 0 || *pixels > kMostCutoffPx) {
+          return "is not a number from 0 to " + std::to_string(kMostCutoffPx);
+        }
+        quality->cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(*pixels * Q16::kOne)));
+        return {};
+      },
+      "stop at blocks of the tree that cover less than PX pixels, in their mean colour; 0 to 64, compact "
+      "structure only")
+      .default_str("0");
+  add_whole_option(
+      app, "--max-depth", "D", kMinLevel, kMaxLevel,
+      [quality](std::int64_t depth) { quality->max_depth = static_cast<int>(depth); },
+      "stop at blocks D levels down in the tree, in their mean colour: the scene as with a depth of D; "
+      "compact structure only");
+}
+
+void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given) {
+  static constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
+                                     ShadeMode::kMono};
+  static const std::vector<std::string> kNames{"depth", "normal", "color", "mono"};
+  add_choice_option(
+      app, "--shade", kNames,
+      [mode, given](std::size_t index) {
+        *mode = kModes[index];
+        if (given != nullptr) {
+          *given = kNames[index];
+        }
+      },
+      help)
+      .default_str("depth");
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,39 @@
+/// @file view_options.h
+/// --size, --projection, --eye and the rest that decides how a scene is seen; scene/framing.h makes a camera
+/// of it.
+#ifndef THIMBLE_TOOLS_COMMANDS_VIEW_OPTIONS_H
+#define THIMBLE_TOOLS_COMMANDS_VIEW_OPTIONS_H
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+namespace thimble {
+enum class ShadeMode : unsigned char;
+namespace platform {
+struct BoardFacts;
+}
+}  // namespace thimble
+
+namespace thimble::tools {
+
+struct Quality;
+struct ViewWishes;
+
+/// All that `view` holds. `with_direction_bits`: --direction-bits too.
+void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits = true);
+/// --direction-bits, for subcommands that have no camera too.
+void add_direction_bits(CLI::App& app, int* bits);
+/// Without --size the picture is as large as the board's; `board` may be null.
+void use_display(const platform::BoardFacts* board, ViewWishes* view);
+
+/// --samples, --cutoff and --max-depth.
+void add_quality(CLI::App& app, Quality* quality);
+
+/// --shade. `given` (may be null) gets its word where it is given.
+void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given = nullptr);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,38 @@
+/// @file output_set.h
+/// The files that one run writes: all of them whole, or none of them there.
+#ifndef THIMBLE_TOOLS_OUTPUT_OUTPUT_SET_H
+#define THIMBLE_TOOLS_OUTPUT_OUTPUT_SET_H
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "output/output_file.h"
+
+namespace thimble::tools {
+
+/// Opened before the work begins, so that a folder that is not there is known at once; named at the end.
+class OutputSet {
+ public:
+  /// An output for each of `paths`; an empty one is not wanted. Throws OutputError when one cannot be opened,
+  /// or when two are one file, or one is among `inputs` (check_distinct).
+  OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
+
+  /// The output of that path, by its place among `paths`; null where there is none.
+  OutputFile* operator[](std::size_t index) const { return files_[index].get(); }
+  /// Flushes all of them, so that a full disk is found before any takes its name; then gives them their
+  /// names. Throws OutputError.
+  void commit();
+  /// For people, on standard output, unless that is among the paths: data want no table between them.
+  void print(std::string_view text) const;
+
+ private:
+  std::vector<std::unique_ptr<OutputFile>> files_;
+  bool has_standard_output_ = false;
+};
+
+}  // namespace thimble::tools
+
+#endif

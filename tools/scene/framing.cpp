@@ -1,0 +1,367 @@
+#include "scene/framing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "output/units.h"
+#include "scene/scene_source.h"
+#include "thimble/trace/ray.h"
+
+namespace thimble::tools {
+namespace {
+
+using Corners = std::array<Real3, 8>;
+
+Real3 unit(const Real3& a) {
+  return scaled(a, 1 / std::sqrt(dot(a, a)));
+}
+
+double largest(const Real3& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+}
+
+// A real vector as integers of 30 bits in the same direction.
+Vec3i to_integers(const Real3& vector) {
+  const double scale = largest(vector);
+  Vec3i result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result[axis] = static_cast<std::int32_t>(
+        std::lround(vector[static_cast<std::size_t>(axis)] / scale * kMaxViewComponent));
+  }
+  return result;
+}
+
+// The other way, components within -1 .. 1.
+Real3 to_reals(const Vec3i& vector) {
+  return scaled({static_cast<double>(vector.x), static_cast<double>(vector.y), static_cast<double>(vector.z)},
+                1.0 / kMaxViewComponent);
+}
+
+Real3 to_reals(const Vec3Q8& point) {
+  return {static_cast<double>(point.x.raw) / Q8::kOne, static_cast<double>(point.y.raw) / Q8::kOne,
+          static_cast<double>(point.z.raw) / Q8::kOne};
+}
+
+std::string text_of(const Real3& v) {
+  return shortest(v[0]) + "," + shortest(v[1]) + "," + shortest(v[2]);
+}
+
+// Where rays may start, on each axis.
+struct Reach {
+  explicit Reach(int level)
+      : low(static_cast<double>(kMinOriginWorlds) * (1 << level)),
+        high(static_cast<double>(kMaxOriginWorlds) * (1 << level)) {}
+  bool holds(double coordinate) const { return coordinate >= low && coordinate <= high; }
+
+  double low;
+  double high;
+};
+
+Vec3Q8 to_q8(const Real3& point, const Reach& reach, const char* what) {
+  Vec3Q8 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double value = point[static_cast<std::size_t>(axis)];
+    if (!reach.holds(value)) {
+      throw InputError(std::string(what) + " " + text_of(point) + " is outside the accepted " +
+                       shortest(reach.low) + " to " + shortest(reach.high) + " (-4 to 5 world sizes)");
+    }
+    result[axis] = Q8::from_raw(static_cast<std::int32_t>(std::lround(value * Q8::kOne)));
+  }
+  return result;
+}
+
+// The nearest point that can be written.
+Vec3Q8 saturated_q8(const Real3& point) {
+  Vec3Q8 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double raw = std::round(point[static_cast<std::size_t>(axis)] * Q8::kOne);
+    result[axis] = Q8::from_raw(static_cast<std::int32_t>(
+        std::clamp(raw, static_cast<double>(INT32_MIN), static_cast<double>(INT32_MAX))));
+  }
+  return result;
+}
+
+Q14 span_q14(double voxels) {
+  if (!(voxels * Q14::kOne <= INT32_MAX)) {
+    throw InputError("a picture " + shortest(voxels) +
+                     " voxels wide is beyond the limit of 131,071 (--span)");
+  }
+  return Q14::from_raw(static_cast<std::int32_t>(std::max(1L, std::lround(voxels * Q14::kOne))));
+}
+
+double voxels_of(Q14 length) {
+  return static_cast<double>(length.raw) / Q14::kOne;
+}
+
+Corners corners_of(const VoxelBox& box) {
+  Corners corners{};
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corners[corner][static_cast<std::size_t>(axis)] =
+          ((corner >> axis) & 1U) != 0 ? box.high[axis] : box.low[axis];
+    }
+  }
+  return corners;
+}
+
+// The picture's axes, of length 1.
+struct Axes {
+  Real3 right;
+  Real3 up;
+  Real3 forward;
+};
+
+// What is looked at, and which way.
+struct Sight {
+  Real3 target;
+  Vec3i forward;  // as the core is given them, so that both mean the same axes
+  Vec3i up;
+  Axes axes;
+};
+
+Sight sight_of(const ViewWishes& wishes, const Reach& reach, const Corners& corners) {
+  Sight sight;
+  sight.target = wishes.target.value_or(scaled(plus(corners[0], corners[7]), 0.5));
+  if (wishes.eye) {
+    to_q8(*wishes.eye, reach, "--eye");
+  }
+  const Real3 direction = wishes.eye ? minus(sight.target, *wishes.eye) : wishes.forward;
+  if (largest(direction) == 0) {
+    throw InputError("--eye and --target are the same point");
+  }
+  if (wishes.up && largest(*wishes.up) == 0) {
+    throw InputError("--up 0,0,0 has no direction");
+  }
+  sight.forward = to_integers(direction);
+  sight.up = wishes.up ? to_integers(*wishes.up) : default_up(sight.forward);
+  const Real3 forward = to_reals(sight.forward);
+  const Real3 up = to_reals(sight.up);
+  if (largest(cross(forward, up)) == 0) {
+    throw InputError("--up is parallel to the direction of view");
+  }
+  sight.axes.forward = unit(forward);
+  sight.axes.right = unit(cross(sight.axes.forward, up));
+  sight.axes.up = cross(sight.axes.right, sight.axes.forward);
+  return sight;
+}
+
+// How a picture opens: the tangent of half its vertical angle, and its width by its height.
+struct Lens {
+  explicit Lens(const ViewWishes& wishes)
+      : aspect(static_cast<double>(wishes.width_px) / wishes.height_px),
+        tan_y(std::tan(wishes.fov_degrees * 3.14159265358979323846 / 360)) {}
+
+  double aspect;
+  double tan_y;
+};
+
+// What it takes to see all corners.
+struct Room {
+  double distance = 0;    // of the eye from the target, in perspective
+  double half_width = 0;  // of a parallel picture
+  double before = 0;      // the farthest corner on the eye's side of the target
+};
+
+Room room_for(const Corners& corners, const Sight& sight, const Lens& lens, double fill) {
+  Room room;
+  for (const Real3& corner : corners) {
+    const Real3 offset = minus(corner, sight.target);
+    const double x = std::abs(dot(offset, sight.axes.right));
+    const double y = std::abs(dot(offset, sight.axes.up));
+    const double z = dot(offset, sight.axes.forward);
+    room.distance =
+        std::max({room.distance, x / (lens.tan_y * lens.aspect * fill) - z, y / (lens.tan_y * fill) - z});
+    room.half_width = std::max({room.half_width, x, y * lens.aspect});
+    room.before = std::max(room.before, -z);
+  }
+  return room;
+}
+
+// The eye at `wanted` from the target, or, where a narrow view would want to stand farther back than rays may
+// start, as far as they may.
+Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
+  const Real3& forward = sight.axes.forward;
+  double distance = wanted;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double limit = forward[axis] > 0 ? reach.low : reach.high;
+    const double back = (sight.target[axis] - limit) / forward[axis];
+    if (forward[axis] != 0 && back >= 0 && back < distance) {
+      distance = back;
+    }
+  }
+  Real3 eye = minus(sight.target, scaled(forward, distance));
+  const bool reachable = std::all_of(sight.target.begin(), sight.target.end(),
+                                     [&](double coordinate) { return reach.holds(coordinate); });
+  if (reachable && distance < wanted) {
+    for (double& coordinate : eye) {  // what rounding may have added
+      coordinate = std::clamp(coordinate, reach.low, reach.high);
+    }
+  }
+  return eye;
+}
+
+bool sees_all(const Corners& corners, const Real3& eye, const Axes& axes, const Lens& lens) {
+  return std::none_of(corners.begin(), corners.end(), [&](const Real3& corner) {
+    const Real3 offset = minus(corner, eye);
+    const double reach_y = dot(offset, axes.forward) * lens.tan_y;
+    return std::abs(dot(offset, axes.up)) > reach_y ||
+           std::abs(dot(offset, axes.right)) > reach_y * lens.aspect;
+  });
+}
+
+void check(Status status, const std::string& advice) {
+  if (status == Status::kBadArgument) {
+    throw InputError("--up is parallel to the direction of view");
+  }
+  if (status != Status::kOk) {
+    throw InputError(std::string("the camera: ") + status_text(status) + ": " + advice);
+  }
+}
+
+Camera perspective_camera(const ViewWishes& wishes, int level, const Sight& sight, const SceneCamera& kept) {
+  PerspectiveView view;
+  view.eye = kept.eye;
+  view.forward = sight.forward;
+  view.up = sight.up;
+  view.fov_degrees = kept.fov_degrees;
+  view.width_px = wishes.width_px;
+  view.height_px = wishes.height_px;
+  view.direction_bits = wishes.direction_bits;
+  Camera camera;
+  const Status status = camera.set(view, level);
+  check(status, status == Status::kTooFine && wishes.direction_bits != 0
+                    ? "directions of " + std::to_string(wishes.direction_bits) +
+                          " bits are too coarse for this picture; leave out --direction-bits"
+                    : "directions of 20 bits cannot be kept within 1/8 pixel; a wider --fov or a smaller "
+                      "--size helps");
+  return camera;
+}
+
+// How far, in pixels, rays lie from where they were wished: the core's bound starts from the eye and the span
+// as it got them, and what rounding them moved is added.
+double moved_px(const ViewWishes& wishes, const Camera& camera, const Sight& sight, const Vec3Q8& eye,
+                Q14 span) {
+  const double pixel = voxels_of(span) / wishes.width_px;
+  double moved = camera.error_bound_px_q16() / 65536.0;
+  if (wishes.eye) {
+    const Real3 rounding = minus(*wishes.eye, to_reals(eye));
+    moved += std::hypot(dot(rounding, sight.axes.right), dot(rounding, sight.axes.up)) / pixel;
+  }
+  if (wishes.span) {
+    moved += std::abs(*wishes.span / wishes.width_px / pixel - 1) *
+             std::hypot(wishes.width_px, wishes.height_px) / 2;
+  }
+  return moved;
+}
+
+// `whole`: the span that shows all. `partial` is set where that much cannot be shown.
+Camera orthographic_camera(const ViewWishes& wishes, int level, const Sight& sight, double whole,
+                           SceneCamera* kept, bool* partial) {
+  constexpr double kMostSpan = 131071;
+  const double least = voxels_of(least_orthographic_span(wishes.width_px, level));
+  *partial = !wishes.span && whole > kMostSpan;
+  OrthographicView view;
+  view.eye = kept->eye;
+  view.forward = sight.forward;
+  view.up = sight.up;
+  view.span = span_q14(wishes.span.value_or(std::min(whole, kMostSpan)));
+  view.width_px = wishes.width_px;
+  view.height_px = wishes.height_px;
+  view.direction_bits = wishes.direction_bits;
+  Camera camera;
+  Status status = camera.set(view, level);
+  if (status == Status::kTooFine && !wishes.span) {
+    view.span = span_q14(least);  // a scene of a few voxels is shown smaller instead
+    status = camera.set(view, level);
+  }
+  // A long thin picture of the whole scene may be wider than rays may start: then it shows less.
+  for (int tries = 0; status == Status::kOutOfRange && !wishes.span && tries < 64; ++tries) {
+    view.span = span_q14(voxels_of(view.span) * 0.8);
+    status = camera.set(view, level);
+    *partial = true;
+  }
+  kept->span = view.span;
+  if (status == Status::kOk && wishes.direction_bits == 0 &&
+      moved_px(wishes, camera, sight, view.eye, view.span) > 0.125) {
+    status = Status::kTooFine;
+  }
+  check(status,
+        status == Status::kTooFine
+            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about "
+              "--span " +
+                  shortest(std::ceil(2 * least * 100) / 100)
+            : "the picture's corners must lie within -4 to 5 world sizes; a smaller --span or another "
+              "--eye helps");
+  return camera;
+}
+
+}  // namespace
+
+Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
+  const std::int32_t side = std::int32_t{1} << level;
+  const Corners corners = corners_of(bounds.empty() ? VoxelBox{{0, 0, 0}, {side, side, side}} : bounds);
+  const Reach reach(level);
+  const Lens lens(wishes);
+  const Sight sight = sight_of(wishes, reach, corners);
+  const Room room = room_for(corners, sight, lens, wishes.fill);
+  const Real3 eye =
+      wishes.eye.value_or(eye_at(sight, wishes.orthographic ? room.before + 1 : room.distance, reach));
+
+  Framing framing;
+  SceneCamera& kept = framing.kept;
+  kept.is_perspective = !wishes.orthographic;
+  kept.direction_bits = static_cast<std::uint8_t>(wishes.direction_bits);
+  kept.eye = to_q8(eye, reach, wishes.eye ? "--eye" : "the eye for this --target,");
+  kept.target = saturated_q8(sight.target);
+  kept.forward = sight.forward;
+  kept.up = wishes.up ? sight.up : Vec3i{};
+  kept.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(std::lround(wishes.fov_degrees * Q16::kOne)));
+  bool partial = false;
+  if (wishes.orthographic) {
+    framing.camera =
+        orthographic_camera(wishes, level, sight, 2 * room.half_width / wishes.fill, &kept, &partial);
+  } else {
+    framing.camera = perspective_camera(wishes, level, sight, kept);
+    // What the margin gives away may be enough to see it all even from too near.
+    partial = !wishes.eye && !sees_all(corners, eye, sight.axes, lens);
+  }
+  if (partial) {
+    framing.note =
+        "the whole scene cannot be seen at once from within -4 to 5 world sizes; a part of it is shown";
+  }
+  return framing;
+}
+
+Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int level, const VoxelBox& bounds) {
+  if (wishes.placed || source.camera() == nullptr) {
+    return frame_box(wishes, level, bounds);
+  }
+  Framing framing;
+  framing.kept = *source.camera();
+  if (wishes.direction_bits != 0) {
+    framing.kept.direction_bits = static_cast<std::uint8_t>(wishes.direction_bits);
+  }
+  const Status status = set_camera(framing.kept, wishes.width_px, wishes.height_px, level, &framing.camera);
+  if (status != Status::kOk) {
+    throw InputError(std::string("the scene's own camera does not suit a picture of ") +
+                     std::to_string(wishes.width_px) + "x" + std::to_string(wishes.height_px) + ": " +
+                     status_text(status) +
+                     "; another --size, or a camera of your own (--eye, --target, --span), helps");
+  }
+  return framing;
+}
+
+ViewWishes finer(const ViewWishes& wishes, int across) {
+  const std::int32_t most = kMaxPicturePx / across;
+  if (wishes.width_px > most || wishes.height_px > most) {
+    throw InputError(std::to_string(across * across) + " samples a pixel want a picture of at most " +
+                     std::to_string(most) + " pixels a side");
+  }
+  ViewWishes fine = wishes;
+  fine.width_px *= across;
+  fine.height_px *= across;
+  return fine;
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,63 @@
+/// @file framing.h
+/// Where a picture is taken from: what is wished of a view, and the camera that shows the scene so.
+///
+/// Geometry in doubles, for framing alone: the core gets integers and makes every ray from them.
+#ifndef THIMBLE_TOOLS_SCENE_FRAMING_H
+#define THIMBLE_TOOLS_SCENE_FRAMING_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "readers/real3.h"
+#include "thimble/bake/baked_scene.h"
+#include "thimble/picture/camera.h"
+
+namespace thimble::tools {
+
+class SceneSource;
+
+/// From which side a scene is seen when nobody says: from the front, left and above.
+inline constexpr Real3 kDefaultForward{0.5, 0.9, -0.45};
+/// The part of the picture that a framed scene fills then.
+inline constexpr double kDefaultFill = 0.94;
+
+/// Points and lengths in voxels. What is not given frames the scene.
+struct ViewWishes {
+  std::int32_t width_px = 800;  ///< 1 .. kMaxPicturePx
+  std::int32_t height_px = 600;
+  /// Whether somebody chose the size; a board's display decides it otherwise.
+  bool sized = false;
+  /// Whether somebody said where the camera is or how it looks; a scene's own camera goes first otherwise.
+  bool placed = false;
+  bool orthographic = false;
+  std::optional<Real3> eye;         ///< else as far back as it takes to see the whole scene
+  std::optional<Real3> target;      ///< else the middle of the scene
+  std::optional<Real3> up;          ///< else `default_up` of the direction of view
+  Real3 forward = kDefaultForward;  ///< the direction of view where there is no eye; any length above 0
+  double fov_degrees = 60;          ///< vertical, 1 .. 120; perspective
+  std::optional<double> span;       ///< width of the picture; orthographic, else the whole scene
+  double fill = kDefaultFill;       ///< of the picture, 0 .. 1, where the scene is framed
+  int direction_bits = 0;           ///< kMinDirectionBits .. kMaxDirectionBits; 0: as many as are needed
+};
+
+/// A view as it came out.
+struct Framing {
+  Camera camera;
+  SceneCamera kept;  ///< the same without the picture's size, as a baked scene keeps it
+  std::string note;  ///< a sentence where not all could be shown that was to be; else empty
+};
+
+/// The camera for what lies in `bounds` (empty: the whole world) of a world of 2^level. A function of its
+/// arguments alone. Throws InputError where rays cannot start or go as wished; the sentence names the option.
+Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds);
+
+/// The camera that the scene brings along, unless `wishes.placed` or it has none; then the one above.
+Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int level, const VoxelBox& bounds);
+
+/// The same view in a picture `across` times as wide and high. Throws InputError beyond the largest size.
+ViewWishes finer(const ViewWishes& wishes, int across);
+
+}  // namespace thimble::tools
+
+#endif

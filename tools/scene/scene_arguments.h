@@ -1,0 +1,25 @@
+/// @file scene_arguments.h
+/// What a command line says of a scene, before anything is opened.
+#ifndef THIMBLE_TOOLS_SCENE_SCENE_ARGUMENTS_H
+#define THIMBLE_TOOLS_SCENE_SCENE_ARGUMENTS_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace thimble::tools {
+
+/// What is opened.
+struct SceneArguments {
+  std::string scene;         ///< a file's path or a generator
+  std::optional<int> depth;  ///< --depth
+  bool as_voxels = false;    ///< --as-voxels
+  bool z_up = false;         ///< --z-up
+};
+
+/// What is built of it, and traced.
+enum class StructureKind : std::uint8_t { kDense, kPool, kCompact };
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,59 @@
+#include "scene/wide_renderer.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "scene/built_scene.h"
+
+namespace thimble::tools {
+
+std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
+                                                 std::int32_t height_px, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t mark = arena->used_bytes();
+  // Asked before the lists are made: what does not fit costs no time.
+  const std::size_t list_bytes = wide::VoxelLists::bytes(tree);
+  const std::int32_t least_rows = std::min(height_px, kLeastRows);
+  const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
+  if (list_bytes > arena->free_bytes() || arena->free_bytes() - list_bytes < workspace(least_rows)) {
+    return nullptr;
+  }
+  wide::VoxelLists lists;
+  if (wide::VoxelLists::make(tree, arena, &lists) != Status::kOk) {
+    return nullptr;
+  }
+  std::int32_t rows = height_px;
+  while (rows > least_rows && workspace(rows) > arena->free_bytes()) {
+    rows = std::max(least_rows, rows / 2);
+  }
+  const Bytes taken = arena->take(workspace(rows), kWorkspaceAlignment);
+  if (taken.empty()) {
+    arena->rewind(mark);
+    return nullptr;
+  }
+  std::unique_ptr<WideRenderer> renderer(new WideRenderer(threads));
+  renderer->lists_ = lists;
+  renderer->workspace_ = taken;
+  renderer->rows_ = rows;
+  renderer->seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return renderer;
+}
+
+std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* built, std::int32_t width_px,
+                                                 std::int32_t height_px, int threads) {
+  return built->structure() == StructureKind::kCompact
+             ? make(built->compact(), &built->arena(), width_px, height_px, threads)
+             : nullptr;
+}
+
+Status WideRenderer::render(const Camera& camera, const Shading& shading, const Band& band,
+                            RenderCounts* counts, wide::Counts* work) {
+  wide::Options options;
+  options.threads = &threads_;
+  wide::Stats stats;
+  const Status status = wide::render(lists_, camera, shading, band, workspace_, counts, options, &stats);
+  work->add(stats.counts);
+  return status;
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,56 @@
+/// @file wide_renderer.h
+/// The wide renderer (platform/wide) made ready for pictures of one size: its lists of voxels and its
+/// workspace in an arena.
+#ifndef THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
+#define THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
+
+#include <cstdint>
+#include <memory>
+
+#include "thimble/base/memory.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
+#include "wide/renderer.h"
+
+namespace thimble::tools {
+
+class BuiltScene;
+
+class WideRenderer {
+ public:
+  static constexpr std::int32_t kLeastRows = 16;
+  static constexpr std::size_t kWorkspaceAlignment = 64;
+
+  /// Makes the lists of `tree`, which outlives the result as `arena` does, and takes a workspace: for all
+  /// rows of pictures of this size, or for as many as there is room for. Null, and nothing taken, when there
+  /// is room for fewer than kLeastRows.
+  static std::unique_ptr<WideRenderer> make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
+                                            std::int32_t height_px, int threads);
+  /// The same within a scene's budget; null also when the scene is no compact tree.
+  static std::unique_ptr<WideRenderer> make(BuiltScene* built, std::int32_t width_px, std::int32_t height_px,
+                                            int threads);
+
+  /// Most rows in a band for `render`.
+  std::int32_t rows() const { return rows_; }
+  int threads() const { return threads_.count(); }
+  /// What making it took.
+  double seconds() const { return seconds_; }
+  /// The pixels of `render_band`; Status::kTooFine for cameras that are left to it. `counts` may be null.
+  Status render(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
+                wide::Counts* work);
+
+ private:
+  explicit WideRenderer(int threads) : threads_(threads) {}
+
+  wide::Threads threads_;
+  wide::VoxelLists lists_;
+  Bytes workspace_;
+  std::int32_t rows_ = 0;
+  double seconds_ = 0;
+};
+
+}  // namespace thimble::tools
+
+#endif
