@@ -24,8 +24,11 @@ using Words = std::vector<std::string>;
 constexpr std::size_t kVersionOffset = 3;
 constexpr std::size_t kMostBytes = 8192;
 
+// A file of the folder beside this one. The compiler may name this file from the build's folder, where the
+// command lies.
 std::string kept(const std::string& name) {
-  return (std::filesystem::path(__FILE__).parent_path() / "versions" / name).string();
+  const std::filesystem::path build = std::filesystem::path(THIMBLE_COMMAND_PATH).parent_path();
+  return (build / std::filesystem::path(__FILE__).parent_path() / "versions" / name).lexically_normal();
 }
 
 ConstBytes bytes_of(const std::string& text) {
