@@ -28,7 +28,7 @@ LEAN = $(if $(wildcard build/release/build.ninja),,-DTHIMBLE_TESTS=OFF -DTHIMBLE
 all: deps-build ## Build the library and the thimble command (build/release)
 	@$(CONFIGURE) -B build/release $(LEAN) >/dev/null
 	@.ci/build "build/release" build/release src/all platform/all tools/all
-run: all ## Render three scenes within fixed budgets into out/ and print what they took
+run: all ## Render four scenes within fixed budgets into out/ and print what they took
 	@sh tools/run_demo.sh build/release/thimble out
 sim: all ## Run the demo as on BOARD=NAME, in a window or the terminal (SCENE=..., SIM_ARGS=...)
 	@build/release/thimble sim $(SCENE) --board $(BOARD) $(SIM_ARGS)
