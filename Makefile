@@ -8,7 +8,7 @@ CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 FORMATTED = find include src platform tools tests \( -name '*.h' -o -name '*.cpp' \) -print
 
 help: ## Say what there is
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' $(MAKEFILE_LIST) | awk -F'|' '{printf "%-16s %s\n", $$1, $$2}'
+	@sed -n 's/^\([a-z-]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | awk -F'\t' '{ printf "  %-22s %s\n", $$1, $$2 }'
 
 deps: ## Install what building, testing and measuring need (apt-get; as root or by sudo)
 	@.ci/deps build tools test boards bench

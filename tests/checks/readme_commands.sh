@@ -1,6 +1,6 @@
 #!/bin/sh
-# The README's commands, as written: each line of an indented or ```sh block that begins with make, thimble or build/
-# runs in a copy of the tree, one after the other, so that a later one finds what an earlier one made. `thimble` is
+# The README's commands, as written: each line of an indented or ```sh block that begins with make, thimble, c++ or
+# build/ runs in a copy of the tree, one after the other, so that a later one finds what an earlier one made. `thimble` is
 # BUILD_DIR/thimble.
 #   Not run: what its comment marks `# hardware` or `# window`; a summary of options (SCENE, [...], A|B).
 #   `make TARGET` is only asked for (make -n), since it builds or tests everything; of `make run` what follows the
@@ -16,10 +16,8 @@ mkdir -p "$work/tree/build/release"
 for entry in * .ci .clang-format; do
   case $entry in build | out) ;; *) [ ! -e "$entry" ] || cp -R "$entry" "$work/tree/" ;; esac
 done
-for program in "$build"/thimble*; do
-  if [ -f "$program" ] && [ -x "$program" ]; then
-    ln -s "$program" "$work/tree/build/release/"
-  fi
+for made in "$build"/thimble "$build"/thimble-fb "$build"/thimble_*_table "$build"/libthimble.a; do
+  [ ! -f "$made" ] || ln -s "$made" "$work/tree/build/release/"
 done
 cd "$work/tree"
 export PATH="$work/tree/build/release:$PATH"
@@ -34,7 +32,7 @@ awk '
     sub(/^\$ /, "")
     line = line $0
     if (line ~ /\\$/) { sub(/\\$/, " ", line); next }
-    if (line ~ /^(make|thimble|build\/)/) print line
+    if (line ~ /^(make|thimble|c\+\+|build\/)/) print line
     line = ""
     next
   }

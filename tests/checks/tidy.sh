@@ -23,7 +23,7 @@ mkdir -p "$build"
 # What only a board's compiler can read is linted by tests/boards/tidy.sh. The largest begin, since they take longest:
 # otherwise one processor waits at the end for such a file.
 ours() {
-  find $folders -name '*.cpp' -print | grep -Ev '^platform/(arch|drivers|example|boards/[^/]+)/' | xargs -r ls -S
+  find $folders -name '*.cpp' -print | grep -Ev '^platform/(arch|drivers|examples|boards/[^/]+)/' | xargs -r ls -S
 }
 if ! ours | xargs -r -P 2 -n 1 clang-tidy -p "$build" --quiet >"$log" 2>"$log.noise"; then
   cat "$log"
