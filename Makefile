@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps all run test bench format tidy clean \
-  firmware emulate flash test-boards test-framebuffer deps-boards deps-build deps-tools deps-test deps-bench deps-format release sanitize clang fuzz
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format all run sim release sanitize clang \
+  fuzz check test bench firmware emulate flash test-boards test-framebuffer format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -23,36 +23,53 @@ deps-boards:
 deps-format:
 	@.ci/deps format
 
+# Only a fresh folder is configured without the tests: CMake removes the objects of what it is told to leave out.
+LEAN = $(if $(wildcard build/release/build.ninja),,-DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF)
 all: deps-build ## Build the library and the thimble command (build/release)
-	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF >/dev/null
-	@cmake --build build/release -- --quiet
-run: all ## Render three scenes within fixed budgets into out/ and print what they took
+	@$(CONFIGURE) -B build/release $(LEAN) >/dev/null
+	@.ci/build "build/release" build/release src/all platform/all tools/all
+run: all ## Render four scenes within fixed budgets into out/ and print what they took
 	@sh tools/run_demo.sh build/release/thimble out
+sim: all ## Run the demo as on BOARD=NAME, in a window or the terminal (SCENE=..., SIM_ARGS=...)
+	@build/release/thimble sim $(SCENE) --board $(BOARD) $(SIM_ARGS)
 
+# What is tested is built in four ways; STEP says which of how many steps this is.
+TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON
 release:
-	@$(CONFIGURE) -B build/release -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON >/dev/null
-	@cmake --build build/release -- --quiet
+	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
+	@.ci/build "$(STEP)optimised build" build/release
 sanitize:
 	@$(CONFIGURE) -B build/sanitize -DTHIMBLE_SANITIZE=ON -DTHIMBLE_GOLDEN=OFF >/dev/null
-	@cmake --build build/sanitize -- --quiet
+	@.ci/build "$(STEP)sanitized build" build/sanitize
 clang:
-	@$(CONFIGURE) -B build/clang -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TOOLS=OFF -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=ON >/dev/null
-	@cmake --build build/clang -- --quiet
+	@$(CONFIGURE) -B build/clang -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TOOLS=OFF -DTHIMBLE_TESTS=OFF \
+	  -DTHIMBLE_GOLDEN=ON >/dev/null
+	@.ci/build "$(STEP)build by clang" build/clang
 fuzz:
 	@$(CONFIGURE) -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_FUZZ=ON >/dev/null
-	@cmake --build build/fuzz --target thimble_fuzzers -- --quiet
+	@.ci/build "$(STEP)fuzzers" build/fuzz thimble_fuzzers
+# Between edits: no other compiler, no sanitizer, no slow case.
+check: deps-test ## Build what is optimised and run its quick tests: one line a group
+	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
+	@.ci/build "optimised build" build/release thimble_tests thimble_golden_tests_O2
+	@sh tests/check.sh build/release
 # One ctest over all builds, so that there is one summary.
 test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzing
-	@$(MAKE) --no-print-directory release sanitize clang fuzz
+	@$(MAKE) --no-print-directory release STEP='[1/5] '
+	@$(MAKE) --no-print-directory sanitize STEP='[2/5] '
+	@$(MAKE) --no-print-directory clang STEP='[3/5] '
+	@$(MAKE) --no-print-directory fuzz STEP='[4/5] '
 	@printf 'subdirs(release sanitize clang fuzz)\n' > build/CTestTestfile.cmake
+	@echo "[5/5] the tests; those that take longest begin"
 	@ctest --test-dir build --output-on-failure -j 2 $(CTEST_ARGS)
 
 bench: deps-bench ## Build and run the benchmarks
-	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF >/dev/null
-	@cmake --build build/release -- --quiet
+	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON $(LEAN) >/dev/null
+	@.ci/build "benchmarks" build/release tests/benchmarks/all
 	@build/release/thimble_benchmarks $(BENCH_ARGS)
 
-# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes, EFFECTS its --effects.
+# BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes, EFFECTS its
+# --effects.
 BOARD ?= lm3s6965evb
 APP ?= demo
 SCENE ?= demo
@@ -72,8 +89,9 @@ test-boards: ## Run the tests of the firmware on every board under QEMU; says fi
 test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says first what it downloads
 	@.ci/deps build tools framebuffer
 	@$(MAKE) --no-print-directory all
-	@$(CONFIGURE) -B build/static -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF -DCMAKE_EXE_LINKER_FLAGS=-static >/dev/null
-	@cmake --build build/static --target thimble_framebuffer -- --quiet
+	@$(CONFIGURE) -B build/static -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF -DCMAKE_EXE_LINKER_FLAGS=-static \
+	  >/dev/null
+	@.ci/build "static build" build/static thimble_framebuffer
 	@mkdir -p build/framebuffer && build/release/thimble bake demo -o build/framebuffer/demo.oct --quiet
 	@sh tests/linux/framebuffer.sh . build/framebuffer build/static/thimble-fb build/framebuffer/demo.oct
 

@@ -15,13 +15,13 @@ endfunction()
 
 # Sets the BOARD_... variables of one board in the caller's scope, and refuses a file that leaves one out.
 macro(thimble_read_board name)
-  foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
-      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT VISITS_A_SECOND CATCHES)
+  set(facts TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
+    FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT VISITS_A_SECOND CATCHES)
+  foreach(fact IN LISTS facts)
     unset(BOARD_${fact})
   endforeach()
   include(${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
-  foreach(fact TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
-      FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT VISITS_A_SECOND CATCHES)
+  foreach(fact IN LISTS facts)
     if(NOT DEFINED BOARD_${fact})
       message(FATAL_ERROR "platform/boards/${name}/board.cmake does not set BOARD_${fact}")
     endif()
@@ -54,8 +54,8 @@ function(thimble_write_board_table file)
     endforeach()
     thimble_capitalise(format ${BOARD_FORMAT})
     thimble_capitalise(screen ${BOARD_DISPLAY})
-    string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, ${BOARD_FLASH_BYTES}, "
-      "${BOARD_STACK_BYTES}, Screen::k${screen}, PixelFormat::k${format}, ${BOARD_WIDTH_PX}, "
+    string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, "
+      "${BOARD_FLASH_BYTES}, ${BOARD_STACK_BYTES}, Screen::k${screen}, PixelFormat::k${format}, ${BOARD_WIDTH_PX}, "
       "${BOARD_HEIGHT_PX}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, {${app_stacks}}},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)

@@ -4,7 +4,7 @@
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
 #   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
-#   THIMBLE_HOLD           whether it then waits for a `q` over the UART, with the last frame on the display (false)
+#   THIMBLE_HOLD           whether it then waits for a `q` over the UART, its last frame shown (false)
 #
 # Says flash, RAM and stack of each image after its link. platform/build.sh calls this.
 set(THIMBLE_APP demo CACHE STRING "Applications to build")
@@ -23,7 +23,8 @@ thimble_read_board(${BOARD_NAME})
 set(THIMBLE_PLATFORM_DIR ${PROJECT_SOURCE_DIR}/platform)
 include(${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/flags.cmake)
 if(NOT DEFINED THIMBLE_BINUTILS_PREFIX)
-  message(FATAL_ERROR "firmware for ${BOARD_NAME} wants --toolchain platform/arch/${BOARD_ARCH}/toolchain.cmake")
+  message(FATAL_ERROR
+    "firmware for ${BOARD_NAME} wants --toolchain platform/arch/${BOARD_ARCH}/toolchain.cmake")
 endif()
 
 # Facts and layout.
@@ -60,10 +61,10 @@ target_compile_options(thimble_firmware_flags INTERFACE ${THIMBLE_ARCH_FLAGS}
   -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections
   # The bound of the stack is computed from the call graph; without -fno-ipa-icf functions vanish from it.
   -fcallgraph-info=su,da -fno-ipa-icf)
-# The core for speed, the rest for size. The demonstration with the core for size, too, takes 1.26 times the instructions
-# a frame on a Cortex-M3, 1.04 on a Cortex-M0 and 1.47 on RV32, for 12 to 18 KB less flash.
-# Scheduling before registers are handed out keeps more values alive than these chips have registers for: 2 per cent of a
-# frame.
+# The core for speed, the rest for size. The demonstration with the core for size, too, takes 1.26 times the
+# instructions a frame on a Cortex-M3, 1.04 on a Cortex-M0 and 1.47 on RV32, for 12 to 18 KB less flash.
+# Scheduling before registers are handed out keeps more values alive than these chips have registers for: 2
+# per cent of a frame.
 target_compile_options(thimble PRIVATE -O2 -fno-schedule-insns)
 target_link_libraries(thimble PRIVATE thimble_firmware_flags)
 
@@ -81,7 +82,8 @@ add_library(thimble_apps STATIC ${sources})
 # They take objects from an arena, whose bytes are aligned as they asked.
 add_library(thimble_app_warnings INTERFACE)
 target_compile_options(thimble_app_warnings INTERFACE -Wno-cast-align)
-# Cases without names and expressions where these would fill the flash: a failure then gives its file and line.
+# Cases without names and expressions where these would fill the flash: a failure then gives its file and
+# line.
 if(BOARD_FLASH_BYTES LESS_EQUAL 131072)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_TERSE_CASES)
 endif()
@@ -95,7 +97,8 @@ foreach(part thimble_port thimble_board thimble_apps)
   target_link_libraries(${part} PRIVATE thimble thimble_firmware_flags thimble_warnings)
 endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
-target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
+target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch
+  ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 # Those that draw a scene with light (apps/scene_light.h).
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp
@@ -105,48 +108,9 @@ target_link_libraries(thimble_apps PRIVATE thimble_app_warnings)
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPERTIES
   COMPILE_OPTIONS -fno-tree-loop-distribute-patterns)
 
-# An image: APP.elf, APP.bin, APP.hex from `ARGN`, with whatever of the libraries that needs.
-function(thimble_add_image app)
-  add_executable(${app} ${ARGN})
-  set_target_properties(${app} PROPERTIES SUFFIX .elf LINK_DEPENDS ${generated}/firmware.ld)
-  target_include_directories(${app} PRIVATE ${THIMBLE_PLATFORM_DIR})
-  set(stack ${BOARD_STACK_BYTES})
-  if(DEFINED BOARD_STACK_BYTES_${app})
-    set(stack ${BOARD_STACK_BYTES_${app}})
-  endif()
-  target_link_options(${app} PRIVATE ${THIMBLE_ARCH_FLAGS} -nostdlib -T ${generated}/firmware.ld
-    -Wl,--defsym=thimble_stack_bytes=${stack}
-    -Wl,--gc-sections,--no-warn-rwx-segments,-Map=${app}.map)
-  target_link_libraries(${app} PRIVATE thimble_firmware_flags thimble_warnings thimble_board thimble_apps thimble
-    thimble_port gcc)
-  add_custom_command(TARGET ${app} POST_BUILD
-    COMMAND ${CMAKE_OBJCOPY} -O binary ${app}.elf ${app}.bin
-    COMMAND ${CMAKE_OBJCOPY} -O ihex ${app}.elf ${app}.hex
-    COMMAND ${CMAKE_COMMAND} -DPREFIX=${THIMBLE_BINUTILS_PREFIX} -DBOARD=${BOARD_NAME} -DAPP=${app}
-      -DFLASH_BYTES=${BOARD_FLASH_BYTES} -DRAM_BYTES=${BOARD_RAM_BYTES} -P ${THIMBLE_PLATFORM_DIR}/memory_table.cmake
-    BYPRODUCTS ${app}.bin ${app}.hex VERBATIM)
-endfunction()
-
+include(${THIMBLE_PLATFORM_DIR}/image.cmake)
 foreach(app IN LISTS THIMBLE_APP)
   thimble_add_image(${app} ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
   target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
 endforeach()
-
-# What effects take of the flash: one source, an image a set (tests/boards/effects.sh). Built by --target effect_images.
-set(sets plain base 0x000 0x001 0x002 0x004 0x008 0x010 0x020 0x040 0x080 0x100 0x200 0x400 0x003 0x0b3 0x7ff)
-foreach(set IN LISTS sets)
-  set(image effects_${set})
-  thimble_add_image(${image} ${PROJECT_SOURCE_DIR}/tests/boards/effect_image.cpp)
-  set_target_properties(${image} PROPERTIES EXCLUDE_FROM_ALL ON)
-  target_compile_options(${image} PRIVATE -Os)
-  target_link_libraries(${image} PRIVATE thimble_app_warnings)
-  if(set STREQUAL "plain")
-    target_compile_definitions(${image} PRIVATE THIMBLE_IMAGE_PLAIN)
-  elseif(set STREQUAL "base")
-    target_compile_definitions(${image} PRIVATE THIMBLE_IMAGE_BASE)
-  else()
-    target_compile_definitions(${image} PRIVATE THIMBLE_IMAGE_EFFECTS=${set})
-  endif()
-  list(APPEND images ${image})
-endforeach()
-add_custom_target(effect_images DEPENDS ${images})
+include(${THIMBLE_PLATFORM_DIR}/effect_images.cmake)

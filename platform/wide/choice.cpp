@@ -6,31 +6,32 @@
 namespace thimble::wide {
 namespace {
 
-// Of so few boxes nothing is worth leaving out.
+// With so few boxes, leaving any out does not pay.
 constexpr uint32_t kFewBoxes = 64;
-// Boxes that are looked at in the time that a cell takes, a hundredth of the frame being for the choice.
+// The work that pays for a look at one cell, when the choice may take a hundredth of the frame.
 constexpr float kWorkPerCell = 12000;
-// In tests of a pixel in flat order, about 0.8 ns. Fitted to the times of 1,199 views, by the time that wrong
-// choices cost: a box in flat order; a test of a box that is drawn row by row, in either order; in blocks a
-// test where tables are looked up, a block that is (its boxes count for nothing besides), a box of another
-// block (but a large one's tests are what counts), and that there are blocks at all.
+// Costs in units of one test of a pixel in flat order, about 0.8 ns. They were fitted to the times of 1,199
+// views, to make the time that wrong choices cost as small as possible. In flat order: a box. In either
+// order: a test of a box that is drawn row by row. In blocks: a test where tables are looked up, a block
+// with a table (whose boxes cost nothing besides), a box of another block (only tests count for a large
+// one), and using blocks at all.
 constexpr float kBox = 0.1F;
 constexpr float kLargeTest = 0.42F;
 constexpr float kTableTest = 0.67F;
 constexpr float kTableBlock = 62;
 constexpr float kBoxInBlock = 0.24F;
 constexpr float kBlocks = 110;
-// Boxes of so many pixels are drawn row by row, in the mean of both orders (kernels.cpp).
+// Boxes of so many pixels are drawn row by row, in the mean of both orders (kernels/runs-inl.h).
 constexpr float kLargePx = 40;
-// Boxes of a block, in the mean, and pixels of a side (renderer.cpp: up to kTableBoxes, kBlockBoxes,
-// kTablePx).
+// The mean numbers of boxes of a block, and pixels of its side (limits in tile_drawer.cpp: kTableBoxes,
+// kBlockBoxes, kTablePx).
 constexpr float kMeanTableBoxes = 800;
 constexpr float kMeanBlockBoxes = 120;
 constexpr float kMeanTablePx = 40;
-// Of a limit that halves sides, where it falls in the mean.
+// Sides are halved until they are below a limit; in the mean they end at so much of it.
 constexpr float kMeanOfMost = 0.7F;
 
-// Within a hundredth, which is enough for a guess, and in a few steps: x is a normal number above 0.
+// Finds the logarithm of a normal number above 0 within a hundredth, in a few steps: enough for a guess.
 float log2_about(float x) {
   uint32_t bits;
   memcpy(&bits, &x, sizeof(bits));
@@ -52,19 +53,19 @@ float power_about(float base, float exponent) {
   return exp2_about(exponent * log2_about(base));
 }
 
-// The tree is cut, all cells a level at a time; those out of sight are left out, and the rest are laid front
-// to back on a raster over the part of the picture that they take, each as a haze as dense as its boxes'
-// faces. What stands before them hides boxes and pixels as if they were strewn at random.
+// Cuts the tree into cells, all a level at a time, and leaves out those out of sight. Lays the others front
+// to back on a raster over the part of the picture that they take, each as a haze as dense as the faces of
+// its boxes. Boxes and pixels are hidden as if all that stands before them were strewn at random.
 class Haze {
  public:
-  Haze(const VoxelLists& lists, const Frame& frame, bool by_rows)
+  Haze(const VoxelLists& lists, const WideFrame& frame, bool by_rows)
       : lists_(lists), frame_(frame), by_rows_(by_rows) {
     for (int axis = 0; axis < 3; ++axis) {
       eye_cell_[axis] = frame.perspective                    ? frame.camera.eye()[axis].raw >> 8
                         : frame.camera.direction()[axis] < 0 ? INT32_MAX
                                                              : INT32_MIN;
     }
-    // Bend is that many times a block's pixels (renderer.cpp: is_flat).
+    // A block's bend is its pixels times this (TileDrawer::is_flat).
     const float bend_per_px = frame.perspective ? frame.norm_w / (4 * frame.reach_x) : 0;
     table_px_ =
         fminf(kMeanTablePx, kMeanOfMost * cbrtf(2 * kMostBentPx / fmaxf(bend_per_px * bend_per_px, 1e-9F)));
@@ -87,9 +88,9 @@ class Haze {
     int level;
     uint32_t corner[3];
     float x0, y0, x1, y1;  // in the picture
-    float side_px;         // of all of it, the longer one
+    float side_px;         // the longer one, of all of the cell
     float voxel_px;        // area of a voxel in its middle
-    float slack_px;        // that is tested besides
+    float slack_px;        // tested besides
     float share;           // of its rectangle that is in the picture
   };
 
@@ -141,7 +142,7 @@ class Haze {
   float boxes_of(const Cell& cell) const {
     return static_cast<float>(lists_.nodes()[cell.node].entries) * cell.share;
   }
-  // Of the faces of its boxes, in pixels.
+  // The area of the faces of its boxes, in pixels.
   float faces_of(const Cell& cell, float area) const { return cell.voxel_px * area * cell.share; }
 
   bool is_cut(const Cell& cell) const {
@@ -188,14 +189,14 @@ class Haze {
     count_ = 1;
     for (int looked = 1;;) {
       int cuts = 0;
-      float work = 0;  // of what is in sight, as far as that is known
+      float work = 0;  // of what is in sight, as far as is known
       for (int i = 0; i < count_; ++i) {
         const Cell& cell = cells_[i];
         cuts += is_cut(cell) ? 1 : 0;
         work += boxes_of(cell) + 6 * faces_of(cell, static_cast<float>(lists_.nodes()[cell.node].face_area));
       }
       const int most = 1 + static_cast<int>(fminf(work / kWorkPerCell, kMostCells));
-      // Half of the children are, about.
+      // About half of the children are in sight.
       if (cuts == 0 || looked + 4 * cuts > most) {
         return;
       }
@@ -257,11 +258,11 @@ class Haze {
         }
       }
       const float before = area > 0 ? open_area / area : 1;
-      // Of what the cell's boxes would cover, so much is open still when they are drawn; and a block is left
-      // out when all of its pixels are covered.
+      // So much of what the cell's boxes would cover is still open when they are drawn. A block is left out
+      // when all of its pixels are covered.
       const float seen = fminf(density > 1e-6F ? before * (1 - left) / density : before, 1);
       const float entries = static_cast<float>(node.entries);
-      // Blocks that are in the picture in part are looked at whole.
+      // A block that is partly in the picture is looked at as a whole.
       const float small_px = cell.side_px * power_about(fmaxf(entries / kMeanBlockBoxes, 1), -1.0F / 3);
       const float whole = (1 + small_px / (cell.x1 - cell.x0)) * (1 + small_px / (cell.y1 - cell.y0));
       const float boxes = entries * fminf(cell.share * whole, 1);
@@ -275,7 +276,8 @@ class Haze {
       float work = tests * seen;
       if (has_table) {
         work *= kTableTest;
-        // As many blocks as cells so large would have, were all cut alike: eight each, or four on a surface.
+        // A cell of that size has so many blocks if each is cut like the cell: into eight, or into four on
+        // a surface.
         const float across = fmaxf(cell.side_px / table_px_, 1);
         const float parts = static_cast<float>(__builtin_popcount(lists_.tree().mask(cell.node)));
         const float table_blocks = parts > 1 ? power_about(across, log2_about(parts)) : 1;
@@ -293,7 +295,7 @@ class Haze {
     }
   }
 
-  // Over the rows that the cell takes.
+  // Spreads work over the rows that the cell takes.
   void spread(const Cell& cell, float work, float (&parts)[Outlook::kParts]) const {
     const float per_row =
         static_cast<float>(Outlook::kParts) / static_cast<float>(frame_.tile.y1 - frame_.tile.y0);
@@ -305,13 +307,14 @@ class Haze {
     }
   }
 
-  // Cells that are cut make way from the end: eight for each of kMostCells / 4 at most, and those.
+  // Room for the children, at most eight for each of kMostCells / 4 cells, and at the end for the cells
+  // that are cut.
   static constexpr int kRoom = 4 * kMostCells;
   const VoxelLists& lists_;
-  const Frame& frame_;
+  const WideFrame& frame_;
   bool by_rows_;
   int32_t eye_cell_[3];
-  float table_px_;  // of blocks that are looked up in tables, in the mean
+  float table_px_;  // mean side of blocks that are looked up in tables
   Cell cells_[kRoom];
   int count_ = 0;
   float flat_ = 0;  // the work of either order
@@ -321,7 +324,7 @@ class Haze {
 
 }  // namespace
 
-Outlook outlook_of(const VoxelLists& lists, const Frame& frame, bool by_rows) {
+Outlook outlook_of(const VoxelLists& lists, const WideFrame& frame, bool by_rows) {
   return lists.entries().size > kFewBoxes ? Haze(lists, frame, by_rows).outlook() : Outlook{};
 }
 

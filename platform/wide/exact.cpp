@@ -13,11 +13,11 @@ uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down)
   return static_cast<uint32_t>(morton_code(place[0], place[1], place[2]));
 }
 
-// Two planes of different axes a and b: with c the box's centre less the origin, the ray passes the lower
-// plane of each before the upper one of the other just when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|). Along
-// an axis with d = 0 it must lie in the slab, lower plane included. Centres are below 2^25 in 1/512 voxel,
-// directions have 20 bits.
-bool meets_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down) {
+// Take planes of two axes a and b, and c, the box's centre less the origin. The ray passes the lower plane
+// of each axis before the upper one of the other exactly when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|).
+// Along an axis with d = 0 the ray must lie between the planes, or in the lower one. Centres are below 2^25
+// in 1/512 voxel, directions have 20 bits.
+bool hits_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down) {
   const int32_t level = level_of(entry);
   const uint32_t corner[3] = {x_of(entry), entry >> 10 & 1023U, entry >> 20 & 1023U};
   const int64_t half = int64_t{256} << level;
@@ -37,7 +37,7 @@ bool meets_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], ui
       }
       continue;
     }
-    // The upper plane, as the ray goes, lies ahead.
+    // The farther plane must lie ahead.
     if ((direction[axis] < 0 ? -center[axis] : center[axis]) <= -half) {
       return false;
     }

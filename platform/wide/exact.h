@@ -1,7 +1,7 @@
 /// @file exact.h
-/// The core's predicate for one ray and one entry, in integers; and how entries are packed.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_EXACT_H
-#define THIMBLE_PLATFORM_HOST_WIDE_EXACT_H
+/// Decides in integers, by the core's rule, whether a ray hits an entry; and says how entries are packed.
+#ifndef THIMBLE_PLATFORM_WIDE_EXACT_H
+#define THIMBLE_PLATFORM_WIDE_EXACT_H
 
 #include <stdint.h>
 
@@ -31,9 +31,10 @@ inline uint32_t mirrored_sum(uint32_t entry, uint32_t down) {
   return sum;
 }
 
-/// Whether the ray spends a positive length, at t >= 0, in the entry of the cube at `cube` (voxels). If so,
-/// `down` gets the axes along which it runs downwards and `key` the entry's key mirrored in them.
-bool meets_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down);
+/// Decides whether the ray spends a positive length, at t >= 0, in the entry of the cube at `cube`
+/// (voxels). If so, `down` gets the axes along which the ray runs downwards, and `key` the entry's key
+/// mirrored in them.
+bool hits_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down);
 
 }  // namespace thimble::wide
 

@@ -5,8 +5,8 @@
 namespace thimble::wide {
 namespace {
 
-// Unit roundoff of a float times the operations that a sum of three products, a subtraction and a division
-// take, doubled.
+// The unit roundoff of a float, times twice the operations of a sum of three products, a subtraction and a
+// division.
 constexpr double kRounding = 16.0 / (1 << 24);
 
 struct Row {
@@ -55,39 +55,39 @@ void store(const Row& row, float (&to)[4]) {
   }
 }
 
-// A 32.32 number as high * 2^20 + low, 0 <= low < 2^20.
+// Splits a 32.32 number into high * 2^20 + low, 0 <= low < 2^20.
 void split(int64_t value, double* high, double* low) {
   *high = static_cast<double>(value >> 20);
   *low = static_cast<double>(value & ((1 << 20) - 1));
 }
 
-}  // namespace
+// The camera's map of pixels, in 1/256 voxel.
+struct Map {
+  double base[3], step_x[3], step_y[3];
+};
 
-bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
+// Stores the map for exact rays.
+Map store_exact(const Camera::Affine& affine, WideFrame* frame) {
   constexpr double kOne = 4294967296.0;  // 2^32
-  frame->tile = tile;
-  frame->camera = camera;
-  frame->perspective = camera.is_perspective();
-  const Camera::Affine& affine = camera.affine();
-  double base[3] = {};
-  double step_x[3] = {};
-  double step_y[3] = {};
-  double eye[3];  // in voxels
+  Map map{};
   for (int axis = 0; axis < 3; ++axis) {
     split(affine.base[axis], &frame->base_high[axis], &frame->base_low[axis]);
     split(affine.step_x[axis], &frame->step_x_high[axis], &frame->step_x_low[axis]);
     split(affine.step_y[axis], &frame->step_y_high[axis], &frame->step_y_low[axis]);
-    base[axis] = static_cast<double>(affine.base[axis]) / kOne;
-    step_x[axis] = static_cast<double>(affine.step_x[axis]) / kOne;
-    step_y[axis] = static_cast<double>(affine.step_y[axis]) / kOne;
-    eye[axis] = camera.eye()[axis].raw / 256.0;
+    map.base[axis] = static_cast<double>(affine.base[axis]) / kOne;
+    map.step_x[axis] = static_cast<double>(affine.step_x[axis]) / kOne;
+    map.step_y[axis] = static_cast<double>(affine.step_y[axis]) / kOne;
   }
+  return map;
+}
 
+// Stores the map for rays in floats, as whole numbers and the rest.
+void store_floats(const Map& map, WideFrame* frame) {
   double whole = 0;
   double rest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double parts[3] = {base[axis], step_x[axis], step_y[axis]};
-    const double times[3] = {1, static_cast<double>(tile.x1), static_cast<double>(tile.y1)};
+    const double parts[3] = {map.base[axis], map.step_x[axis], map.step_y[axis]};
+    const double times[3] = {1, static_cast<double>(frame->tile.x1), static_cast<double>(frame->tile.y1)};
     double whole_sum = 0;
     double rest_sum = 0;
     for (int part = 0; part < 3; ++part) {
@@ -100,45 +100,73 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
     whole = fmax(whole, whole_sum);
     rest = fmax(rest, rest_sum);
   }
-  // Each of the three fractions, products and sums is rounded by half a unit in the last place of at most
-  // `rest`.
+  // Three fractions, products and sums are each rounded by half a unit in the last place of at most `rest`.
   frame->map_error = whole < (1 << 24) ? static_cast<float>(fmin(0.5, rest * 8 / (1 << 24) + 1e-6)) : 0.5F;
+}
 
-  // Rows of the inverse of the matrix whose columns are the map's three vectors: base, step_x and step_y for
-  // a perspective camera, direction, step_x and step_y for an orthographic one (in voxels, not 1/256).
+// The rows of the projection, and the greatest sum of magnitudes that goes into each for a point of the
+// world.
+struct Projection {
+  Row u, v, w;
+  double magnitude[3];
+};
+
+// Inverts the matrix whose columns are the map's three vectors: base, step_x and step_y for a perspective
+// camera, direction, step_x and step_y for an orthographic one, in voxels. Returns false where it has no
+// inverse.
+bool invert(const Camera& camera, Map map, Projection* to) {
+  const bool perspective = camera.is_perspective();
   double along[3];
+  double eye[3];
   for (int axis = 0; axis < 3; ++axis) {
-    if (frame->perspective) {
-      along[axis] = base[axis];
+    eye[axis] = camera.eye()[axis].raw / 256.0;
+    if (perspective) {
+      along[axis] = map.base[axis];
     } else {
       along[axis] = camera.direction()[axis];
-      eye[axis] += base[axis] / 256;
-      step_x[axis] /= 256;
-      step_y[axis] /= 256;
+      eye[axis] += map.base[axis] / 256;
+      map.step_x[axis] /= 256;
+      map.step_y[axis] /= 256;
     }
   }
-  Row u = cross(step_y, along);
-  Row v = cross(along, step_x);
-  Row w = cross(step_x, step_y);
-  const double determinant = dot(w, along);
+  *to = {cross(map.step_y, along), cross(along, map.step_x), cross(map.step_x, map.step_y), {}};
+  const double determinant = dot(to->w, along);
   if (!(fabs(determinant) > 0)) {
     return false;
   }
-  double magnitude[3] = {0, 0, 0};  // of what is summed for a point of the world, at most
-  Row* const rows[3] = {&u, &v, &w};
+  Row* const rows[3] = {&to->u, &to->v, &to->w};
   for (int r = 0; r < 3; ++r) {
     Row& row = *rows[r];
     for (int axis = 0; axis < 3; ++axis) {
       row.of[axis] /= determinant;
     }
-    if (r == 2 && !frame->perspective) {
+    if (r == 2 && !perspective) {
       row = {{0, 0, 0, 1}};
     } else {
       row.of[3] = -dot(row, eye);
     }
-    magnitude[r] = row.norm() * (1 << camera.level()) + fabs(row.of[0] * eye[0]) + fabs(row.of[1] * eye[1]) +
-                   fabs(row.of[2] * eye[2]) + (frame->perspective ? 0 : 1);
+    to->magnitude[r] = row.norm() * (1 << camera.level()) + fabs(row.of[0] * eye[0]) +
+                       fabs(row.of[1] * eye[1]) + fabs(row.of[2] * eye[2]) + (perspective ? 0 : 1);
   }
+  return true;
+}
+
+}  // namespace
+
+bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame) {
+  frame->tile = tile;
+  frame->camera = camera;
+  frame->perspective = camera.is_perspective();
+  const Map map = store_exact(camera.affine(), frame);
+  store_floats(map, frame);
+  Projection projection;
+  if (!invert(camera, map, &projection)) {
+    return false;
+  }
+  const Row& u = projection.u;
+  const Row& v = projection.v;
+  const Row& w = projection.w;
+  const double(&magnitude)[3] = projection.magnitude;
   store(u, frame->u);
   store(v, frame->v);
   store(w, frame->w);
@@ -161,7 +189,8 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   if (!(shrink > 0.5)) {
     return false;
   }
-  // A box's far side is (1 + h |W|_1 / W.c) times as far away as its middle, and moved by as much more.
+  // A box's far side is (1 + h |W|_1 / W.c) times as far away as its centre, and its rays move by as much
+  // more.
   const double farther = 1 + (frame->perspective ? unit / shrink * w.norm() : 0);
   frame->reach_x = static_cast<float>(across * 0.5 * 1.0001 * farther);
   frame->reach_y = static_cast<float>(down * 0.5 * 1.0001 * farther);
@@ -170,8 +199,8 @@ bool make_frame(const Camera& camera, const Tile& tile, Frame* frame) {
   frame->spread_x = static_cast<float>(kRounding * right + 1e-4);
   frame->spread_y = static_cast<float>(kRounding * bottom + 1e-4);
   frame->per_direction = static_cast<float>(0.5 / shrink * 1.0001);
-  // |U - column W|_1 is at least the length of U's part across W; floats must keep it within a
-  // two-thousandth.
+  // |U - column W|_1 is at least the length of U's part across W; it must be that large for floats to keep it
+  // within a two-thousandth.
   const bool is_sound = frame->perspective && rounding_of(u, w, right) < 5e-4 * across_length(u, w) &&
                         rounding_of(v, w, bottom) < 5e-4 * across_length(v, w);
   frame->norm_w = is_sound ? static_cast<float>(w.norm() * 1.0001) : 1e30F;

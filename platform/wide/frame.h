@@ -1,5 +1,5 @@
 /// @file frame.h
-/// What all boxes of a frame are projected and tested with.
+/// The numbers of a frame with which its boxes are projected and tested.
 ///
 /// A camera's rays are rounded affine functions of the pixel (thimble/picture/camera.h). Their inverse,
 /// without the rounding, takes a point to the picture: with c the point less the eye,
@@ -7,8 +7,9 @@
 ///     column = U.c / W.c     row = V.c / W.c        (orthographic: W.c is 1, and c is taken from the base as
 ///     well)
 ///
-/// Which pixels can a box around c with half sides h meet? Let the ray of column P have the direction D + r,
-/// with D the map's own and |r| <= 1/2 on every axis, and meet the point c + e of the box (|e| <= h) at t.
+/// At which pixels may a box around c with half sides h be seen? Let the ray of column P have the direction
+/// D + r, with D the map's own and |r| <= 1/2 on every axis, and pass the point c + e of the box (|e| <= h)
+/// at t.
 /// Since U.D = P and W.D = 1,
 ///
 ///     U.(c + e) - P W.(c + e) = t (U - P W).r,   hence   |column - P| <= k |U - P W|_1   for W.c > 0,
@@ -22,10 +23,10 @@
 ///     |column - P| <= k |U - column W|_1 / (1 - k |W|_1),   where k |W|_1 <= 1/8: 1 / (1 - q) <= 1 + 1.15 q.
 ///
 /// Floating point adds to U.c, V.c and W.c at most `kRounding` times the sum of the magnitudes that went in,
-/// which is added to `reach`. So what floats decide is only which pixels are looked at: a superset. Whether a
-/// ray meets a box is judged on the ray's own integers (kernels.cpp, exact.h).
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
-#define THIMBLE_PLATFORM_HOST_WIDE_FRAME_H
+/// which is added to `reach`. So floats decide only which pixels are looked at: a superset. Whether a ray
+/// hits a box is decided by the ray's own integers (kernels/judge-inl.h, exact.h).
+#ifndef THIMBLE_PLATFORM_WIDE_FRAME_H
+#define THIMBLE_PLATFORM_WIDE_FRAME_H
 
 #include <stdint.h>
 
@@ -42,7 +43,7 @@ struct Tile {
 };
 
 /// Plain data, made once a frame and tile.
-struct Frame {
+struct WideFrame {
   Tile tile;
   bool perspective = false;
 
@@ -78,7 +79,7 @@ struct Frame {
 
 /// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off
 /// that floats do not tell their pixels apart; such frames are drawn ray by ray.
-bool make_frame(const Camera& camera, const Tile& tile, Frame* frame);
+bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame);
 
 }  // namespace thimble::wide
 

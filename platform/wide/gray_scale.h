@@ -1,7 +1,7 @@
 /// @file gray_scale.h
-/// ShadeMode::kDepth as numbers for the kernels: from where a ray enters its box to a grey.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_GRAY_SCALE_H
-#define THIMBLE_PLATFORM_HOST_WIDE_GRAY_SCALE_H
+/// ShadeMode::kDepth as numbers for the kernels, which find greys from where rays enter their boxes.
+#ifndef THIMBLE_PLATFORM_WIDE_GRAY_SCALE_H
+#define THIMBLE_PLATFORM_WIDE_GRAY_SCALE_H
 
 #include <stdint.h>
 
@@ -11,7 +11,7 @@
 namespace thimble::wide {
 
 /// A ray enters its box at t = numerator / (256 * speed), with the speed |direction| along the axis whose
-/// plane is passed last. The core rounds three times (src/shading.cpp):
+/// plane is passed last. The core rounds three times (src/picture/shading.cpp):
 ///
 ///     ratio = floor(dividend / speed)    depth = floor(numerator * ratio * scale)
 ///     grey = 255 - floor((depth - near) * (255 - kFarBrightness) / (far - near)), between its limits
@@ -41,7 +41,7 @@ struct GrayScale {
 
 GrayScale gray_scale_of(const Camera& camera, const Shading& shading);
 
-/// The core's grey of a ray and an entry of one voxel (voxel_lists.h) of the cube at `cube` that it meets.
+/// Finds the core's grey of a ray that hits an entry of one voxel (voxel_lists.h) of the cube at `cube`.
 uint8_t gray_exactly(const Camera& camera, const Shading& shading, const Ray& ray, uint32_t entry,
                      const uint32_t (&cube)[3]);
 

@@ -1,10 +1,11 @@
 /// @file handover.h
-/// Who of several threads draws what: tiles while there are any, then parts of what others still have.
+/// Decides which of several threads draws what: tiles while there are any, then parts of what others still
+/// have.
 ///
 /// Nobody waits for a thread that has not come: whoever comes takes the next tile, a part, or goes. A thread
 /// waits only while another has something left, and that one needs no other to go on.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_HANDOVER_H
-#define THIMBLE_PLATFORM_HOST_WIDE_HANDOVER_H
+#ifndef THIMBLE_PLATFORM_WIDE_HANDOVER_H
+#define THIMBLE_PLATFORM_WIDE_HANDOVER_H
 
 #include <stdint.h>
 
@@ -14,8 +15,8 @@
 
 namespace thimble::wide {
 
-/// Of one frame. `Taker`: what a thread draws with; it has `std::atomic<bool> given` and `Taker* next_taker`,
-/// which are left to this class, and outlives the thread's last call.
+/// Made for one frame. `Taker`: what a thread draws with. It has the members `std::atomic<bool> given` and
+/// `Taker* next_taker`, which only this class uses, and lives until the thread's last call has returned.
 template <typename Taker>
 class Handover {
  public:
@@ -24,8 +25,9 @@ class Handover {
 
   explicit Handover(int tiles) : tiles_(tiles), unfinished_(tiles) {}
 
-  /// The number of a tile that nobody else draws, from 0 up; kGiven: another thread has put a part into
-  /// `taker`; kNothing: all is drawn. Waits while others draw. After a tile and a part: finish().
+  /// Returns the number of a tile that nobody else draws, from 0 up; kGiven when another thread has put a
+  /// part into `taker`; kNothing when all is drawn. Waits while others draw. Call finish() after each tile
+  /// and part.
   int next(Taker* taker) {
     const int tile = next_tile_.fetch_add(1, std::memory_order_relaxed);
     if (tile < tiles_) {
@@ -38,7 +40,7 @@ class Handover {
       waiting_.store(taker, std::memory_order_relaxed);
     }
     while (!taker->given.load(std::memory_order_acquire)) {
-      // Once it is 0 there is nobody who could give, so that takers may be left in the list.
+      // Once it is 0 nobody can give anything, so it does no harm that this taker stays in the list.
       if (unfinished_.load(std::memory_order_acquire) == 0) {
         return kNothing;
       }
@@ -46,13 +48,13 @@ class Handover {
     }
     return kGiven;
   }
-  /// The tile or part that next() returned is drawn, but for what was given away.
+  /// Says that the tile or part that next() returned is drawn, except what was given away.
   void finish() { unfinished_.fetch_sub(1, std::memory_order_acq_rel); }
 
-  /// Whether anybody waits, by a look that costs nothing.
+  /// Whether anybody waits. Costs next to nothing.
   bool is_wanted() const { return waiting_.load(std::memory_order_relaxed) != nullptr; }
-  /// One that waits, for a thread that has something left; null: others were faster. It is to be filled and
-  /// given.
+  /// Takes out one that waits, for a thread that has something left: fill it and give() it. Null when
+  /// others were faster.
   Taker* take() {
     const std::lock_guard<std::mutex> lock(mutex_);
     Taker* const taker = waiting_.load(std::memory_order_relaxed);
@@ -63,10 +65,10 @@ class Handover {
     }
     return taker;
   }
-  /// Nothing of `taker` may be touched any more.
+  /// Lets the taker go on. Afterwards the caller must not touch it.
   static void give(Taker* taker) { taker->given.store(true, std::memory_order_release); }
 
-  /// How many parts were given. When all threads have gone.
+  /// How many parts were given. Call it when all threads have returned.
   uint32_t splits() const { return splits_; }
 
  private:

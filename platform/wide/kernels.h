@@ -1,13 +1,13 @@
 /// @file kernels.h
-/// The loops that run over boxes and pixels, compiled for several instruction sets and chosen when the
-/// program runs (Highway).
+/// The loops that run over boxes and pixels. They are compiled for several instruction sets, and the
+/// program chooses one of them when it runs (Highway). Their sources stand in kernels/.
 ///
-/// A box goes through three stages. It is projected, sixteen boxes at a time, to the rectangle of pixels that
-/// it might cover. Small rectangles become candidates, pairs of a box and a pixel, in a queue that is tested
-/// when it is full; of large ones the rows are tested at once. What is met goes into the picture when it is
-/// nearer than what is there.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
-#define THIMBLE_PLATFORM_HOST_WIDE_KERNELS_H
+/// A box goes through three stages. First it is projected, up to sixteen boxes at a time, to the rectangle
+/// of pixels that it might cover. A small rectangle becomes candidates: pairs of a box and a pixel, in a
+/// queue that is tested when it is full. The rows of a large one are tested at once. A hit is written into
+/// the picture where it is nearer than what is there.
+#ifndef THIMBLE_PLATFORM_WIDE_KERNELS_H
+#define THIMBLE_PLATFORM_WIDE_KERNELS_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -18,20 +18,20 @@
 
 namespace thimble::wide {
 
-/// The nearest box of every pixel so far.
+/// The nearest box of every pixel among those drawn so far.
 ///
 /// A box's key is the Morton code of its lowest corner, mirrored in every axis along which the pixel's ray
-/// runs downwards. Of two boxes of an octree that a ray meets, the one met first has the smaller key: they
-/// part at some node, in which the ray passes the children in the order of their mirrored numbers. So depth
-/// is compared as integers, exactly.
+/// runs downwards. Of two boxes of an octree that a ray hits, the one hit first has the smaller key: at the
+/// node where their paths part, the ray passes the children in the order of their mirrored numbers. So
+/// depths are compared exactly, as integers.
 ///
-/// Where only greys by depth are wanted, of single voxels in one cube, a pixel's grey is found as its ray's
-/// voxel is met, and kept in place of the voxel; and the sum of the voxel's mirrored coordinates in place of
-/// the code, since from voxel to voxel a ray raises one or more of them and lowers none. 3 bytes a pixel
-/// instead of 8, and nothing left to look up.
+/// Where only greys by depth are wanted, of single voxels in one cube, a pixel keeps the grey of its voxel,
+/// which is found when the ray hits it, in place of the voxel's number. In place of the code it keeps the
+/// sum of the voxel's mirrored coordinates: from voxel to voxel a ray raises one or more of them and lowers
+/// none. That takes 3 bytes a pixel instead of 8, and nothing is left to look up.
 ///
-/// The picture is cut into strips of 32 columns, and what is kept of a strip stands row by row: what lies
-/// together in the picture lies together in memory.
+/// The picture is cut into strips of 32 columns, and each strip stands row by row: neighbours in the
+/// picture are neighbours in memory.
 struct Depths {
   uint64_t* nearest;  ///< per pixel: key << kEntryBits | entry; holds something only where `covered` says so
   const GrayScale* gray_scale;  ///< null: `nearest` is in use; else the next three are
@@ -56,7 +56,7 @@ struct Counts {
   uint64_t boxes = 0;       ///< projected
   uint64_t candidates = 0;  ///< pixels whose ray was tested against a box
   uint64_t exact = 0;       ///< of those, how many floats could not tell
-  uint64_t hits = 0;        ///< tests that were met
+  uint64_t hits = 0;        ///< tests that were hits
   uint64_t nodes = 0;       ///< blocks looked at
   uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
 
@@ -91,27 +91,27 @@ struct Boxes {
   alignas(64) uint32_t wide[kRoom];   ///< wide_y << 16 | wide_x
 };
 
-/// Boxes of one voxel with those of four pixels that are not covered and that each might cover.
+/// Boxes of one voxel, each with the open ones among the four pixels that it might cover.
 struct Picked {
   static constexpr size_t kSize = 256;
   static constexpr size_t kRoom = kSize + 64;
   size_t count = 0;
   alignas(64) uint32_t entry[kRoom];
   alignas(64) uint32_t number[kRoom];
-  /// y << 16 | x of the first pixel, each modulo 2^14: it may lie beside the picture. Above x, which of it
-  /// and the one right of it is meant; above y, which of those below them.
+  /// y << 16 | x of the first pixel, each modulo 2^14, since it may lie beside the picture. The two bits
+  /// above x tell which of the upper two pixels are meant, the two above y which of the lower two.
   alignas(64) uint32_t place[kRoom];
 };
 inline constexpr int kPlaceBits = 14;
 static_assert(kMaxPicturePx <= 1 << kPlaceBits);
 
-/// What one thread has under way, from run to run. Less than 32 KiB.
+/// What one thread has under way, also from run to run. Less than 32 KiB.
 struct Batch {
   Picked picked;  ///< not yet paired with their pixels; empty when `boxes` is not
   Boxes boxes;    ///< not yet paired with their pixels
   Pairs waiting;  ///< for the test in floats
   Pairs unclear;  ///< for the exact one
-  // `met` of them were met and are on the way into the picture.
+  // Hits that are not yet written into the picture; `hits` of them.
   alignas(64) uint32_t key[Pairs::kRoom];     ///< within the cube; or the sum of mirrored coordinates
   alignas(64) uint32_t down[Pairs::kRoom];    ///< a bit for each axis along which the ray runs downwards
   alignas(64) uint32_t number[Pairs::kRoom];  ///< of the entry; or its grey
@@ -120,12 +120,12 @@ struct Batch {
   uint64_t cube_value[8];          ///< its corner's key, by `down`
   uint32_t corner[3] = {1, 1, 1};  ///< none yet
   float constant[3];               ///< of u, v and w, for corners within the cube
-  size_t met = 0;
+  size_t hits = 0;
   /// Entries that are wanted soon, up to an end: a line of them is fetched for each vector that is looked at.
   const uint32_t* ahead = nullptr;
   const uint32_t* ahead_end = nullptr;
   Counts counts;
-  /// Whether all of the picture lies in front of `boxes`: of whole runs that said so.
+  /// Whether all of the picture lies in front of `boxes`: they are of whole runs that said so.
   bool all_behind = true;
 };
 static_assert(sizeof(Batch) < 32 * 1024);
@@ -135,18 +135,18 @@ struct Rectangle {
   int32_t x0, y0, x1, y1;
 };
 
-/// Where a cube may be seen, and its middle.
+/// Where a block may be seen, and its centre.
 struct Place {
   Rectangle where;  ///< within the tile
   float column, row;
-  float per_depth;  ///< 1 / W.c of the middle (frame.h); 0 where the cube reaches the eye's plane
+  float per_depth;  ///< 1 / W.c of the centre (frame.h); 0 where the block reaches the eye's plane
   uint32_t unused;
 };
 
 /// A block of the tree: a node and where it may be seen.
 ///
-/// It is written and copied as three vectors of 16 bytes. What is read at once right after it was written in
-/// pieces would wait until these are in the cache.
+/// It is written and copied as three vectors of 16 bytes: a vector that is read right after its parts were
+/// written one by one would wait until they are in the cache.
 struct alignas(16) Block {
   Place place;
   uint32_t node;
@@ -172,35 +172,34 @@ struct Run {
   uint32_t side;
   /// Of the block. Its rectangle holds all pixels of the tile at which any of the boxes may be seen.
   Place place;
-  /// Whether what is in the picture by now lies in front of all of the run, so that covered pixels need no
-  /// look.
+  /// Whether all that is in the picture lies in front of the run, so that its boxes are not tested at
+  /// covered pixels.
   bool behind;
-  /// How large a voxel looks, about, in pixels.
+  /// The side of a voxel on the picture, about, in pixels.
   float voxel_px;
-  /// Whether, besides, each entry lies in front of the ones after it, where any ray meets both. With
+  /// Whether, besides, each entry lies in front of the ones after it, wherever a ray hits both. Only with
   /// `numbers`.
   bool sorted;
 };
 
 /// Draws the boxes of a run. Some may stay in the batch until `finish`.
-void draw_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch);
+void draw_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch);
 /// Draws what waits in the batch.
-void finish(const Frame& frame, const Depths& depths, Batch* batch);
+void finish(const WideFrame& frame, const Depths& depths, Batch* batch);
 
-/// Which boxes of the run may be seen at pixels that are not covered yet: their entries and numbers, in the
-/// order of the run, to `entries` and `numbers`, which have room for run.count + kReadAhead. Returns how
-/// many.
-uint32_t cull_run(const Frame& frame, const Run& run, const Depths& depths, Batch* batch, uint32_t* entries,
-                  uint32_t* numbers);
+/// Finds which boxes of the run may be seen at open pixels. Stores their entries and numbers, in the order
+/// of the run, in `entries` and `numbers`, which have room for run.count + kReadAhead. Returns how many.
+uint32_t cull_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch,
+                  uint32_t* entries, uint32_t* numbers);
 
-/// The children of a block that may be seen, of the octants in `mask`, whose nodes count up from
-/// `first_child`: the nearest last, where `nearest` is the octant nearest to the eye. Returns how many. There
-/// is room for eight.
-int find_children(const Frame& frame, const Block& block, unsigned mask, uint32_t first_child,
+/// Finds the children of a block, of the octants in `mask`, that may be seen. Their nodes count up from
+/// `first_child`, and `nearest` is the octant nearest to the eye, which comes last. Returns how many.
+/// `children` has room for eight.
+int find_children(const WideFrame& frame, const Block& block, unsigned mask, uint32_t first_child,
                   unsigned nearest, Block* children);
 
-/// Puts into rows y0 .. y1 - 1 of `to` what is nearer in those of `from`, the same rows of the same picture
-/// with other boxes.
+/// Merges rows y0 .. y1 - 1 of `from` into those of `to`, keeping what is nearer: both are the same
+/// picture, drawn with different boxes.
 void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to);
 
 /// Pixels and their nearest boxes. Behind the last there is room for a vector.
@@ -209,33 +208,36 @@ struct Pixels {
   uint32_t count = 0;
   bool any_levels = false;                       ///< whether `level` and `voxels` are to be looked at
   alignas(64) uint32_t at[kMostPixels + 64];     ///< where they are in Depths::nearest
-  alignas(64) uint64_t value[kMostPixels + 64];  ///< what is there; three of the next follow from it
+  alignas(64) uint64_t value[kMostPixels + 64];  ///< what is there; `number`, `key` and `cube` are unpacked
+                                                 ///< from it
   alignas(64) int32_t x[kMostPixels + 64];
   alignas(64) int32_t y[kMostPixels + 64];
   alignas(64) uint32_t number[kMostPixels + 64];  ///< of the entry
   alignas(64) uint32_t key[kMostPixels + 64];     ///< the mirrored corner within its cube
   alignas(64) uint32_t cube[kMostPixels + 64];    ///< the same of the cube
   alignas(64) int32_t level[kMostPixels + 64];    ///< log2 of the boxes' sides
-  alignas(64) int32_t voxels[kMostPixels + 64];   ///< 1: what is hit is a voxel of the box, 0: the box
+  alignas(64) int32_t voxels[kMostPixels + 64];   ///< 1: a voxel of the box is hit, 0: the box as a whole
 };
-/// Appends covered pixels of the strip that begins at column `left`, from `row` on, row by row: `at`, `x`,
-/// `y`. Stops at row `end`, or when there may be no room for the next row's. Returns the row that comes next.
+/// Appends the covered pixels of the strip that begins at column `left`, from `row` on, row by row: sets
+/// `at`, `x` and `y`. Stops at row `end`, or when the next row might not fit. Returns the row that comes
+/// next.
 int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels);
-/// Takes the values of the pixels and unpacks them; makes the lanes behind the last pixels too.
+/// Reads the values of the pixels and unpacks them; fills the lanes behind the last pixel too.
 void unpack(const Depths& depths, Pixels* pixels);
-/// What shade() does for ShadeMode::kDepth: `gray[count]`, and room for a vector behind it.
-void find_grays(const Frame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray);
-/// Where greys are kept: those of row `y`, `background` where there is nothing, to `to[width_px]`. Returns
-/// how many there are.
+/// Finds the greys that shade() gives for ShadeMode::kDepth. `gray` has room for `count`, and a vector
+/// behind them.
+void find_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray);
+/// Copies the greys of row `y`, and `background` where there is none, to `to[width_px]`; only where greys
+/// are kept. Returns how many there are.
 uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to);
-/// What face_of() says, as 2 * axis, and 1 more where the face looks towards larger coordinates:
-/// `face[count]`, with the same room.
-void find_faces(const Frame& frame, const Pixels& pixels, uint8_t* face);
+/// Finds the faces that face_of() gives, as 2 * axis, and 1 more where the face looks towards larger
+/// coordinates. `face` has the same room.
+void find_faces(const WideFrame& frame, const Pixels& pixels, uint8_t* face);
 
-/// The name of the instruction set in use: the best one that this machine has.
+/// Names the instruction set in use: the best one that this machine has, unless a test chose another.
 const char* instruction_set();
-/// How many this machine and this build have. `use_instruction_set` takes the one of that number from now on
-/// (for tests; not while anything is drawn), the best one again when it is negative.
+/// For tests, while nothing is drawn. Counts the instruction sets that this machine and this build have;
+/// takes the one of that number from now on, or the best one again where it is negative.
 int instruction_set_count();
 void use_instruction_set(int number);
 

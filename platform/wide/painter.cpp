@@ -7,7 +7,7 @@
 namespace thimble::wide {
 namespace {
 
-// A hit on that face, and a ray for it.
+// Shades a hit on that face, with some ray that could make it.
 Rgb8 color_of_face(unsigned face, uint8_t material, const Camera& camera, const Shading& shading) {
   Hit hit;
   hit.kind = HitKind::kHit;
@@ -20,7 +20,8 @@ Rgb8 color_of_face(unsigned face, uint8_t material, const Camera& camera, const 
 
 }  // namespace
 
-Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band)
+TilePainter::TilePainter(const VoxelLists& lists, const Camera& camera, const Shading& shading,
+                         const Band& band)
     : lists_(lists),
       camera_(camera),
       shading_(shading),
@@ -33,8 +34,8 @@ Painter::Painter(const VoxelLists& lists, const Camera& camera, const Shading& s
   }
 }
 
-const GrayScale* Painter::gray_scale() const {
-  // Where more than one pixel in twenty-five needs another look, one look at the end is less.
+const GrayScale* TilePainter::gray_scale() const {
+  // Where more than one pixel in twenty-five is tested again, finding all greys at the end takes less time.
   constexpr float kMostMargin = 0.02F;
   const bool is_apt = shading_.mode == ShadeMode::kDepth && !lists_.has_blocks() &&
                       lists_.tree().level() <= kCubeLevel && gray_scale_.floats_tell &&
@@ -42,8 +43,8 @@ const GrayScale* Painter::gray_scale() const {
   return is_apt ? &gray_scale_ : nullptr;
 }
 
-// All of the row. In formats of less than a byte, pixels are or'ed into zeros: the covered ones stay 0.
-void Painter::fill_background(uint8_t* to, int32_t y, const Depths& depths) const {
+// Fills the row. In formats of less than a byte, pixels are or'ed into zeros, so covered ones must stay 0.
+void TilePainter::fill_background(uint8_t* to, int32_t y, const Depths& depths) const {
   const int32_t width = camera_.width_px();
   const size_t bytes = row_bytes(band_.format, width);
   const bool is_gray = background_.r == background_.g && background_.g == background_.b;
@@ -60,7 +61,7 @@ void Painter::fill_background(uint8_t* to, int32_t y, const Depths& depths) cons
   }
 }
 
-void Painter::paint(const Frame& frame, const Depths& depths, Pixels* pixels) const {
+void TilePainter::paint(const WideFrame& frame, const Depths& depths, Pixels* pixels) const {
   const uint32_t count = pixels->count;
   unpack(depths, pixels);
   Rgb8 colors[kMostPixels];
@@ -116,7 +117,7 @@ void Painter::paint(const Frame& frame, const Depths& depths, Pixels* pixels) co
   }
 }
 
-uint64_t Painter::paint_grays(const Frame& frame, const Depths& depths) const {
+uint64_t TilePainter::paint_grays(const WideFrame& frame, const Depths& depths) const {
   const int32_t width = camera_.width_px();
   uint64_t hits = 0;
   if (band_.format == PixelFormat::kGray8) {
@@ -146,7 +147,7 @@ uint64_t Painter::paint_grays(const Frame& frame, const Depths& depths) const {
   return hits;
 }
 
-uint64_t Painter::paint_tile(const Frame& frame, const Depths& depths) const {
+uint64_t TilePainter::paint_tile(const WideFrame& frame, const Depths& depths) const {
   if (depths.gray_scale != nullptr) {
     return paint_grays(frame, depths);
   }

@@ -1,7 +1,7 @@
 /// @file painter.h
-/// From the nearest boxes of a row to its pixels, as the core would shade them.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_PAINTER_H
-#define THIMBLE_PLATFORM_HOST_WIDE_PAINTER_H
+/// Paints the pixels of a tile from their nearest boxes, as the core would shade them.
+#ifndef THIMBLE_PLATFORM_WIDE_PAINTER_H
+#define THIMBLE_PLATFORM_WIDE_PAINTER_H
 
 #include "thimble/picture/render.h"
 #include "wide/kernels.h"
@@ -9,21 +9,21 @@
 
 namespace thimble::wide {
 
-/// Made once a frame: tables of all colours that there can be.
-class Painter {
+/// Made once a frame; holds what all its tiles are painted with.
+class TilePainter {
  public:
-  Painter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
+  TilePainter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
 
-  /// For greys that are found as voxels are met (Depths); null where that does not do.
+  /// The scale for greys that are found as voxels are hit (Depths); null where they are found at the end.
   const GrayScale* gray_scale() const;
 
   /// Paints the rows of the frame's tile. Returns how many pixels hold anything.
-  uint64_t paint_tile(const Frame& frame, const Depths& depths) const;
+  uint64_t paint_tile(const WideFrame& frame, const Depths& depths) const;
 
  private:
-  uint64_t paint_grays(const Frame& frame, const Depths& depths) const;
+  uint64_t paint_grays(const WideFrame& frame, const Depths& depths) const;
   void fill_background(uint8_t* line, int32_t y, const Depths& depths) const;
-  void paint(const Frame& frame, const Depths& depths, Pixels* pixels) const;
+  void paint(const WideFrame& frame, const Depths& depths, Pixels* pixels) const;
   uint8_t* line(int32_t y) const {
     return band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
   }

@@ -1,17 +1,17 @@
 /// @file renderer.h
-/// The core's picture, faster: voxels are taken to the pixels that they cover instead of rays to the voxels
-/// that they meet.
+/// Draws the core's picture faster: it takes voxels to the pixels that they cover, where the core takes
+/// rays to the voxels that they hit.
 ///
-/// Same tree in, same picture out, pixel by pixel, for every instruction set and number of threads: every
-/// pair of a ray and a box is judged by the core's own rule on the ray's integers, in floats where their
-/// error bound proves the answer and in integers elsewhere (kernels.cpp). Blocks of the tree are taken front
-/// to back, and left out when all pixels that they could reach are covered.
+/// Every pixel is the core's, for every instruction set and number of threads: whether a ray hits a box is
+/// decided by the core's own rule on the ray's integers, in floats where their error bound proves the
+/// answer and in integers elsewhere (kernels/judge-inl.h). Blocks of the tree are drawn front to back, and
+/// left out when all pixels that they could reach are covered.
 ///
 /// The core does not know of it. It needs the voxel lists (voxel_lists.h), 8 1/8 bytes a pixel, as much again
 /// for each of two to four threads beyond the first, and 32 KiB a thread; where the caller has less to give,
 /// or the camera is beyond what floats resolve, the core's own renderer draws the frame.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_RENDERER_H
-#define THIMBLE_PLATFORM_HOST_WIDE_RENDERER_H
+#ifndef THIMBLE_PLATFORM_WIDE_RENDERER_H
+#define THIMBLE_PLATFORM_WIDE_RENDERER_H
 
 #include "thimble/picture/render.h"
 #include "wide/kernels.h"
@@ -22,9 +22,9 @@ namespace thimble::wide {
 
 /// How boxes are visited. The picture is the same.
 enum class Order : uint8_t {
-  kAuto,    ///< by what the boxes would cover: see Stats::order
-  kFlat,    ///< the list as it stands, but for blocks out of sight
-  kBlocks,  ///< small blocks front to back, leaving out what is covered
+  kAuto,    ///< chosen by what the boxes would cover; Stats::order tells which
+  kFlat,    ///< the list as it stands, without blocks that are out of sight
+  kBlocks,  ///< small blocks front to back, without those that are covered
 };
 
 struct Options {
@@ -38,7 +38,7 @@ struct Stats {
   uint32_t splits = 0;         ///< how often a thread gave some of its rows to one that had none left
 };
 
-/// Bytes that `render` wants as workspace for bands of `rows` rows of this width.
+/// The bytes of workspace that `render` needs for bands of `rows` rows of this width.
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads = 1);
 
 /// Draws the band's rows. `counts` (may be null) is added to: rays, hits, and as node_visits the blocks

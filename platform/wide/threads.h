@@ -1,8 +1,8 @@
 /// @file threads.h
-/// The threads that draw. Whoever draws many frames keeps them: a thread that has to be made ready for each
-/// frame comes a tenth of a millisecond late, and one that drew the frame before is there at once.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_THREADS_H
-#define THIMBLE_PLATFORM_HOST_WIDE_THREADS_H
+/// The threads that draw. Keep them from frame to frame: a thread that has to be woken for each frame comes
+/// a tenth of a millisecond late, and one that drew the frame before is there at once.
+#ifndef THIMBLE_PLATFORM_WIDE_THREADS_H
+#define THIMBLE_PLATFORM_WIDE_THREADS_H
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
@@ -20,8 +20,8 @@ inline constexpr int kMaxThreads = 256;
 /// Not to be copied. One frame at a time.
 class Threads {
  public:
-  /// `count`: with the calling one; 1 .. kMaxThreads, else the nearest of these. More than there are
-  /// processors are no gain, but what was asked for.
+  /// `count` includes the calling thread; 1 .. kMaxThreads, else the nearest of these. More threads than
+  /// processors are made if asked for, but are no gain.
   explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)), arena_(count_) {
     if (count_ > oneapi::tbb::info::default_concurrency()) {
       allowed_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count_));

@@ -9,13 +9,14 @@
 ///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner
 ///     8-aligned
 ///
-/// Where a tree has few solid blocks, so that their voxels are at most an eighth more than its boxes, they
-/// are given as single voxels: lists of nothing else are drawn faster. Not blocks that coarsening made.
+/// Where a tree has so few solid blocks that splitting them into voxels adds at most an eighth to its
+/// boxes, they are given as single voxels, since lists of nothing else are drawn faster. Blocks that
+/// coarsening made stay blocks.
 ///
-/// Every node of the tree covers a run of entries. Nodes of `block_level` and above are kept with their runs,
-/// so that whole blocks can be skipped, or taken front to back.
-#ifndef THIMBLE_PLATFORM_HOST_WIDE_VOXEL_LISTS_H
-#define THIMBLE_PLATFORM_HOST_WIDE_VOXEL_LISTS_H
+/// Every node of the tree covers a run of entries. The lists keep the nodes of `block_level` and above with
+/// their runs, so that whole blocks can be skipped, or drawn front to back.
+#ifndef THIMBLE_PLATFORM_WIDE_VOXEL_LISTS_H
+#define THIMBLE_PLATFORM_WIDE_VOXEL_LISTS_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -29,7 +30,7 @@ namespace thimble::wide {
 /// Worlds above this level are several cubes of entries.
 inline constexpr int kCubeLevel = 10;
 
-/// Behind the entries stand so many zeros, so that vectors of them can be read to the end.
+/// So many zeros stand behind the entries, so that vectors can be read to the end.
 inline constexpr uint32_t kEntriesAhead = 64;
 
 /// A node of the tree at block level or above.
@@ -37,7 +38,7 @@ struct BlockNode {
   uint32_t first_entry;
   uint32_t entries;
   uint32_t first_child;  ///< number of its first child; the mask is the tree's
-  uint32_t face_area;    ///< of a face of every entry, in all, in square voxels, modulo 2^32
+  uint32_t face_area;    ///< the sum over its entries of the area of a face, in square voxels, modulo 2^32
 };
 
 /// The lists of one tree, in bytes that the caller gave. 4 bytes a box, 1 more with many materials, 1 more
@@ -60,7 +61,7 @@ class VoxelLists {
   Span<const uint8_t> merged() const { return merged_; }
   Span<const BlockNode> nodes() const { return nodes_; }
   int block_level() const { return block_level_; }
-  /// Area of a face of every entry, in all, in square voxels.
+  /// The sum over all entries of the area of a face, in square voxels.
   uint64_t face_area() const { return face_area_; }
   /// Whether any entry is more than one voxel.
   bool has_blocks() const { return has_blocks_; }

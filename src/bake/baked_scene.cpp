@@ -3,17 +3,18 @@
 #include "thimble/bake/baked_scene.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "thimble/base/crc32.h"
 
 namespace thimble {
 namespace {
 
-constexpr uint32_t kMagic = uint32_t{kBakedVersion} << 24 | 0x534D54;  // "TMS", then the version
-constexpr uint32_t kMagicMask = 0x00FFFFFF;
-constexpr uint32_t kSizeOffset = 4;
-constexpr uint32_t kChecksumOffset = 8;
-constexpr uint32_t kCountOffset = 12;  // the checksum covers bytes 0..7 and all from here on
-static_assert(kCountOffset + 4 == kBakedHeaderBytes);
+constexpr uint32_t kSceneMagic = uint32_t{kBakedVersion} << 24 | 0x534D54;  // "TMS", then the version
+constexpr uint32_t kSceneMagicMask = 0x00FFFFFF;                            // all but the version
+constexpr uint32_t kSceneSizeOffset = 4;
+constexpr uint32_t kSceneChecksumOffset = 8;
+constexpr uint32_t kSceneCountOffset = 12;  // the checksum covers bytes 0..7 and all from here on
+static_assert(kSceneCountOffset + 4 == kBakedHeaderBytes);
 
 // An entry of the list.
 constexpr uint32_t kEntryKind = 0;
@@ -36,14 +37,9 @@ constexpr uint32_t kCameraBytes = 60;
 constexpr SectionKind kKinds[] = {SectionKind::kTree,     SectionKind::kPalette, SectionKind::kCamera,
                                   SectionKind::kBrickMap, SectionKind::kName,    SectionKind::kLighting};
 
-static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
+constexpr uint32_t kKindCount = sizeof kKinds / sizeof *kKinds;  // they are numbered from 1
 
-const char* fault(uint32_t* place, uint32_t where, const char* text) {
-  if (place != nullptr) {
-    *place = where;
-  }
-  return text;
-}
+static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
 constexpr uint64_t aligned(uint64_t bytes, uint32_t to = kAlign) {
   return (bytes + to - 1) & ~uint64_t{to - 1};
@@ -225,22 +221,21 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
   }
   const uint8_t* base = bytes.data;
   const uint32_t magic = bits::load32(base);
-  if (magic != kMagic) {
+  if (magic != kSceneMagic) {
     return fault(place, 0,
-                 (magic & kMagicMask) == (kMagic & kMagicMask) ? "baked in another version of the format"
-                                                               : "not a baked scene");
+                 ((magic ^ kSceneMagic) & kSceneMagicMask) == 0 ? kAnotherVersion : "not a baked scene");
   }
-  const uint32_t size = bits::load32(base + kSizeOffset);
-  const uint32_t count = bits::load32(base + kCountOffset);
+  const uint32_t size = bits::load32(base + kSceneSizeOffset);
+  const uint32_t count = bits::load32(base + kSceneCountOffset);
   if (size > bytes.size) {
-    return fault(place, kSizeOffset, "truncated");
+    return fault(place, kSceneSizeOffset, "truncated");
   }
   if (count > kMaxSections || size < kBakedHeaderBytes + kBakedEntryBytes * count) {
-    return fault(place, kCountOffset, "a list of sections that does not fit");
+    return fault(place, kSceneCountOffset, "a list of sections that does not fit");
   }
   BakedScene result;
   result.bytes_ = {base, size};
-  result.crc32_ = bits::load32(base + kChecksumOffset);
+  result.crc32_ = bits::load32(base + kSceneChecksumOffset);
 
   // The sections lie in the order of the list, so none overlaps another.
   uint32_t seen = 0;
@@ -255,11 +250,14 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
       return fault(place, entry, "a section outside the bytes or on top of another");
     }
     end = offset + length;
-    if (kind < 32) {
+    if (kind <= kKindCount) {
       if ((seen >> kind & 1U) != 0) {
         return fault(place, entry, "two sections of one kind");
       }
       seen |= 1U << kind;
+    }
+    if (kind - 1 >= kKindCount && (kind & kOptionalKind) == 0) {
+      return fault(place, entry, kAnotherVersion);
     }
     const ConstBytes content{base + offset, length};
     switch (static_cast<SectionKind>(kind)) {
@@ -291,7 +289,7 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
     }
   }
   if (result.tree_.bytes() == nullptr) {
-    return fault(place, kCountOffset, "no tree");
+    return fault(place, kSceneCountOffset, "no tree");
   }
   if (camera_at != 0) {
     // Judged by the world, whose section may stand behind the camera's.
@@ -316,9 +314,9 @@ Status BakedScene::open(ConstBytes bytes, BakedScene* scene) {
     return text;
   }
   const ConstBytes all = scene.bytes_;
-  if (thimble::crc32(all.subspan(kCountOffset), thimble::crc32(all.subspan(0, kChecksumOffset))) !=
+  if (thimble::crc32(all.subspan(kSceneCountOffset), thimble::crc32(all.subspan(0, kSceneChecksumOffset))) !=
       scene.crc32_) {
-    return fault(place, kChecksumOffset, "checksum does not match");
+    return fault(place, kSceneChecksumOffset, "checksum does not match");
   }
   *tree = {scene.tree_.bytes(), scene.tree_.size_bytes()};
   return nullptr;
@@ -331,7 +329,7 @@ const char* BakedScene::validate(ConstBytes bytes, uint32_t* place) {
 }
 
 ConstBytes BakedScene::section(SectionKind kind) const {
-  const uint32_t count = bytes_.size < kBakedHeaderBytes ? 0 : bits::load32(bytes_.data + kCountOffset);
+  const uint32_t count = bytes_.size < kBakedHeaderBytes ? 0 : bits::load32(bytes_.data + kSceneCountOffset);
   for (uint32_t index = 0; index < count && index < kMaxSections; ++index) {
     const uint8_t* entry = bytes_.data + kBakedHeaderBytes + kBakedEntryBytes * index;
     if (bits::load32(entry + kEntryKind) == static_cast<uint32_t>(kind)) {
@@ -373,9 +371,9 @@ Status BakedScene::make(const BakedParts& parts, Bytes to, BakedScene* scene) {
     count += section_bytes(parts, kind) != 0 ? 1U : 0U;
   }
   uint8_t* base = to.data;
-  bits::store32(base, kMagic);
-  bits::store32(base + kSizeOffset, static_cast<uint32_t>(size));
-  bits::store32(base + kCountOffset, count);
+  bits::store32(base, kSceneMagic);
+  bits::store32(base + kSceneSizeOffset, static_cast<uint32_t>(size));
+  bits::store32(base + kSceneCountOffset, count);
   uint8_t* entry = base + kBakedHeaderBytes;
   size_t offset = kBakedHeaderBytes + kBakedEntryBytes * count;
   for (const SectionKind kind : kKinds) {
@@ -398,8 +396,9 @@ Status BakedScene::make(const BakedParts& parts, Bytes to, BakedScene* scene) {
     }
   }
   const ConstBytes all{base, size};
-  bits::store32(base + kChecksumOffset,
-                thimble::crc32(all.subspan(kCountOffset), thimble::crc32(all.subspan(0, kChecksumOffset))));
+  bits::store32(
+      base + kSceneChecksumOffset,
+      thimble::crc32(all.subspan(kSceneCountOffset), thimble::crc32(all.subspan(0, kSceneChecksumOffset))));
   return scene == nullptr ? Status::kOk : open(all, scene);
 }
 

@@ -4,18 +4,16 @@
 
 #include <stdint.h>
 
+#include "../base/integers.h"
+#include "../base/wide_arithmetic.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/light/optics.h"
 
 namespace thimble::lit {
 
-constexpr uint32_t absolute(int32_t value) {
-  return value < 0 ? 0U - static_cast<uint32_t>(value) : static_cast<uint32_t>(value);
-}
-
 /// |component| / |direction|, 2^14 = 1.
 inline uint32_t cosine_q14(const Vec3i& direction, int axis) {
-  const uint32_t cosine = absolute(unit_q14(direction)[axis]);
+  const uint32_t cosine = magnitude_32(unit_q14(direction)[axis]);
   return cosine < kUnitQ14 ? cosine : kUnitQ14;
 }
 
@@ -56,7 +54,7 @@ inline uint32_t stretch_q8(const Ray& ray, const Leg& leg, const Meeting& meetin
 /// clamped to where nothing is left.
 inline constexpr uint32_t kNothingLeft = 20U << 16;
 constexpr uint32_t halvings_q16(uint32_t density_q16, uint32_t length) {
-  const uint64_t halvings = (uint64_t{density_q16} * length) >> 8;
+  const uint64_t halvings = wide_product_u(density_q16, length) >> 8;
   return halvings < kNothingLeft ? static_cast<uint32_t>(halvings) : kNothingLeft;
 }
 
@@ -70,13 +68,12 @@ inline uint32_t left_q16(const Surface& surface, int channel, uint32_t length) {
 }
 /// brightness (up to 2^20) * share (2^16 = 1).
 constexpr uint32_t weighed_32(uint32_t brightness, uint32_t share_q16) {
-  return static_cast<uint32_t>((uint64_t{brightness} * share_q16) >> 16);
+  return static_cast<uint32_t>(wide_product_u(brightness, share_q16) >> 16);
 }
 
 /// Whether one place on a ray comes before another: products below 2^24 * 2^28.
 constexpr bool is_before(const RayPoint& one, const RayPoint& other) {
-  return uint64_t{static_cast<uint32_t>(one.t_numerator)} * static_cast<uint32_t>(other.t_denominator) <
-         uint64_t{static_cast<uint32_t>(other.t_numerator)} * static_cast<uint32_t>(one.t_denominator);
+  return is_product_less(one.t_numerator, other.t_denominator, other.t_numerator, one.t_denominator);
 }
 
 /// Whether rays go through a material, with the effects that are on.

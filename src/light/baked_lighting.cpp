@@ -3,6 +3,7 @@
 #include "thimble/light/baked_lighting.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble {
@@ -37,7 +38,7 @@ constexpr unsigned kHasDepthCue = 4;
 constexpr unsigned kHasWater = 8;
 constexpr unsigned kAllFlags = 15;
 
-// A surface and a light; what the structs of lit_scene.h look like in memory.
+// A surface and a light; what the structs of scene.h look like in memory.
 constexpr uint32_t kKind = 3;
 constexpr uint32_t kIndex = 6;
 constexpr uint32_t kSurfaceBytes = 12;
@@ -51,13 +52,6 @@ static_assert(offsetof(Surface, kind) == kKind && offsetof(Surface, index_q12) =
 static_assert(offsetof(Light, is_point) == kIsPoint && offsetof(Light, place) == kPlace &&
               offsetof(Light, color_q8) == kColor && offsetof(Light, reach) == kReach);
 static_assert(sizeof(bool) == 1);
-
-const char* fault(uint32_t* place, uint32_t where, const char* text) {
-  if (place != nullptr) {
-    *place = where;
-  }
-  return text;
-}
 
 bool is_surface(const uint8_t* bytes) {
   const uint32_t index = bits::load16(bytes + kIndex);
@@ -136,7 +130,7 @@ const char* BakedLighting::validate(ConstBytes section, int level, uint32_t* pla
     return fault(place, 0, "lighting shorter than its head");
   }
   if (base[kVersion] != kLightingVersion) {
-    return fault(place, kVersion, "lighting in another version of the format");
+    return fault(place, kVersion, kAnotherVersion);
   }
   const uint32_t surfaces = bits::load16(base + kSurfaceCount);
   const uint32_t lights = bits::load16(base + kLightCount);

@@ -3,14 +3,12 @@
 #include "thimble/light/optics.h"
 
 #include "../base/bits.h"
+#include "../base/integers.h"
 #include "../base/wide_arithmetic.h"
 
 namespace thimble {
 namespace {
 
-constexpr uint32_t magnitude_of(int32_t value) {
-  return value < 0 ? 0U - static_cast<uint32_t>(value) : static_cast<uint32_t>(value);
-}
 constexpr int32_t signed_as(int32_t sign, uint32_t value) {
   return sign < 0 ? -static_cast<int32_t>(value) : static_cast<int32_t>(value);
 }
@@ -36,9 +34,9 @@ constexpr uint32_t root_rounded(uint32_t value) {
 }
 
 constexpr uint32_t largest_of(const Vec3i& vector) {
-  const uint32_t x = magnitude_of(vector.x);
-  const uint32_t y = magnitude_of(vector.y);
-  const uint32_t z = magnitude_of(vector.z);
+  const uint32_t x = magnitude_32(vector.x);
+  const uint32_t y = magnitude_32(vector.y);
+  const uint32_t z = magnitude_32(vector.z);
   const uint32_t xy = x > y ? x : y;
   return xy > z ? xy : z;
 }
@@ -66,7 +64,7 @@ Scaled scaled(const Vec3i& direction) {
     const uint32_t half = 1U << (result.exponent - 1);
     for (int axis = 0; axis < 3; ++axis) {
       result.direction[axis] =
-          signed_as(direction[axis], (magnitude_of(direction[axis]) + half) >> result.exponent);
+          signed_as(direction[axis], (magnitude_32(direction[axis]) + half) >> result.exponent);
     }
   }
   return result;
@@ -118,9 +116,9 @@ Vec3i shorten(const Vec3i& direction) {
 
 uint32_t length_of(const Vec3i& vector) {
   // 3 * (2^15 - 1)^2 is below 2^32.
-  const uint32_t x = magnitude_of(vector.x);
-  const uint32_t y = magnitude_of(vector.y);
-  const uint32_t z = magnitude_of(vector.z);
+  const uint32_t x = magnitude_32(vector.x);
+  const uint32_t y = magnitude_32(vector.y);
+  const uint32_t z = magnitude_32(vector.z);
   return root_rounded(x * x + y * y + z * z);
 }
 
@@ -132,7 +130,7 @@ Vec3i unit_q14(const Vec3i& direction) {
   }
   for (int axis = 0; axis < 3; ++axis) {
     // Below 2^29 + 2^15.
-    unit[axis] = signed_as(unit[axis], ((magnitude_of(unit[axis]) << 14) + (length >> 1)) / length);
+    unit[axis] = signed_as(unit[axis], ((magnitude_32(unit[axis]) << 14) + (length >> 1)) / length);
   }
   return unit;
 }
@@ -148,7 +146,7 @@ Vec3i reflect(const Vec3i& direction, const Vec3i& normal_q14) {
   const int32_t twice_q14 = rounded(d * inverse, 41);
   Vec3i result;
   for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = direction[axis] - rounded(int64_t{twice_q14} * normal_q14[axis], 14);
+    result[axis] = direction[axis] - rounded(wide_product(twice_q14, normal_q14[axis]), 14);
   }
   return result;
 }
@@ -166,7 +164,7 @@ bool refract(const Vec3i& unit, int axis, uint32_t eta_q12, Vec3i* out) {
     *out = unit;
     return true;
   }
-  const uint32_t along = magnitude_of(unit[axis]);
+  const uint32_t along = magnitude_32(unit[axis]);
   if (along == 0) {
     return false;
   }
@@ -179,7 +177,7 @@ bool refract(const Vec3i& unit, int axis, uint32_t eta_q12, Vec3i* out) {
   for (int other = 0; other < 3; ++other) {
     // Below 2^15 * 2^14 + 2^11; and at least 1 along the axis, so that the ray goes through the face.
     const uint32_t size =
-        other == axis ? (root_q15 + 1) >> 1 : (magnitude_of(unit[other]) * eta + (1U << 11)) >> 12;
+        other == axis ? (root_q15 + 1) >> 1 : (magnitude_32(unit[other]) * eta + (1U << 11)) >> 12;
     (*out)[other] = signed_as(unit[other], size);
   }
   return true;
@@ -198,7 +196,7 @@ bool refract(const Vec3i& unit, const Vec3i& normal_q14, uint32_t eta_q12, Vec3i
   // D^2 is below 2^57, so 64 D^2 below 2^63; the quotient is at most 64 L.
   const uint32_t normal_square = static_cast<uint32_t>(dot(normal_q14, normal_q14));
   const uint64_t length_square = uint64_t{static_cast<uint32_t>(dot(unit, unit))} << 6;
-  const uint64_t along_square = divide(uint64_t{magnitude_of(d)} * magnitude_of(d) << 6, normal_square);
+  const uint64_t along_square = divide(wide_product_u(magnitude_32(d), magnitude_32(d)) << 6, normal_square);
   const uint32_t square = square_after_q30(length_square, length_square - along_square, eta, 6);
   if (square == 0) {
     return false;
@@ -206,16 +204,17 @@ bool refract(const Vec3i& unit, const Vec3i& normal_q14, uint32_t eta_q12, Vec3i
   // out = eta * unit + h * normal with h = (root * |normal| - eta * D) / N, the root and D taken positive.
   // The normal's length goes under the same root: 2^30 * 2^28 / 2^28.
   const uint32_t root_q15 =
-      root_rounded(static_cast<uint32_t>(shift_rounded(uint64_t{square} * normal_square, 28)));
+      root_rounded(static_cast<uint32_t>(shift_rounded(wide_product_u(square, normal_square), 28)));
   // In Q28 * 4096: 2^31 * 2^10 and 2^14 * 2^28, both below 2^43; times the inverse cut to 2^19.
   const int64_t onward_q40 =
-      (int64_t{root_q15} << 25) - static_cast<int64_t>(uint64_t{magnitude_of(d)} * eta);
+      (int64_t{root_q15} << 25) - static_cast<int64_t>(wide_product_u(magnitude_32(d), eta));
   const int64_t inverse_q47 = inverse_of_square_q56(static_cast<int32_t>(normal_square)) >> 9;
   const int64_t h_q18 = (onward_q40 * inverse_q47) >> 41;  // below 2^43 * 2^19; 2^20 after the shift
   const int64_t h = d < 0 ? -h_q18 : h_q18;
   for (int axis = 0; axis < 3; ++axis) {
     // Q26 times 2^6 and Q32: below 2^36.
-    (*out)[axis] = rounded(int64_t{unit[axis]} * static_cast<int64_t>(eta) * 64 + h * normal_q14[axis], 18);
+    (*out)[axis] =
+        rounded(wide_product(unit[axis], static_cast<int32_t>(eta)) * 64 + h * normal_q14[axis], 18);
   }
   return true;
 }
@@ -240,7 +239,7 @@ uint32_t fresnel_q16(int32_t cos_q14, uint32_t r0_q16) {
   if (r0_q16 == 0) {
     return 0;
   }
-  const uint32_t cosine = magnitude_of(cos_q14);
+  const uint32_t cosine = magnitude_32(cos_q14);
   if (cosine == 0 || r0_q16 >= kOneQ16) {
     return kOneQ16;
   }
@@ -280,8 +279,8 @@ int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denom
   const uint32_t high = dividend / component;
   const uint32_t low = ((dividend - high * component) << 12) / component;
   // 2^24 * 2^32, and 2^24 * 2^12 >> 12.
-  const uint64_t distance_q16 = uint64_t{static_cast<uint32_t>(t_numerator)} * high +
-                                ((uint64_t{static_cast<uint32_t>(t_numerator)} * low) >> 12);
+  const uint64_t distance_q16 = wide_product_u(static_cast<uint32_t>(t_numerator), high) +
+                                (wide_product_u(static_cast<uint32_t>(t_numerator), low) >> 12);
   const uint64_t distance = shift_rounded(distance_q16, 16 - scale.exponent);  // the exponent is -14 .. 6
   return distance < INT32_MAX ? static_cast<int32_t>(distance) : INT32_MAX;
 }

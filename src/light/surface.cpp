@@ -31,7 +31,7 @@ Vec3Q8 choose_face(const Frame& frame, const PendingRay& now, Hit* hit) {
     Hit one = *hit;
     one.axis = static_cast<int8_t>(axis);
     one.t_numerator = direction > 0 ? distance : -distance;
-    one.t_denominator = static_cast<int32_t>(absolute(direction)) * Q8::kOne;
+    one.t_denominator = static_cast<int32_t>(magnitude_32(direction)) * Q8::kOne;
     if (direction != 0 &&
         (starts_inside ? distance == 0 && axis != now.axis
                        : one.t_numerator >= 0 && !is_before(point_of(one), point_of(*hit)))) {

@@ -1,8 +1,9 @@
-// Moving water. DESIGN.md ("Water") proves what is claimed here: the energy never grows, heights keep their
+// Moving water. src/light/WATER.md proves what is claimed here: the energy never grows, heights keep their
 // limits, the volume is exact.
 #include "thimble/light/water.h"
 
 #include "../base/bits.h"
+#include "../base/integers.h"
 #include "../base/wide_arithmetic.h"
 #include "thimble/base/crc32.h"
 
@@ -27,22 +28,6 @@ constexpr uint64_t kHardestPush = uint64_t{1} << 26;
 constexpr uint32_t kFourByPiQ16 = 83443;  // 4 / pi
 // How often a push is halved to keep within the limits: less than nothing is left after these.
 constexpr int kAttempts = 34;
-
-constexpr bool within(int32_t value, int32_t limit) {
-  return value >= -limit && value <= limit;
-}
-constexpr int32_t least_of(int32_t a, int32_t b) {
-  return a < b ? a : b;
-}
-constexpr int32_t most_of(int32_t a, int32_t b) {
-  return a > b ? a : b;
-}
-constexpr int32_t magnitude_of(int32_t value) {
-  return value < 0 ? -value : value;
-}
-constexpr int32_t cut(int32_t value, int32_t limit) {
-  return value < -limit ? -limit : value > limit ? limit : value;
-}
 
 bool bit_of(ConstBytes bits, size_t index) {
   return (bits[index >> 3] >> (index & 7) & 1) != 0;
@@ -109,20 +94,20 @@ Status Water::make(const WaterConfig& config, Bytes bytes, Water* water) {
 // The flux from `here` to `there` after it was `flux`. What a column may give or take through one edge is a
 // quarter of what there is or of what there is room for.
 inline int32_t Water::next_flux(int32_t here, int32_t there, int32_t flux) {
-  const int32_t fall = cut(here - there, steepest_);
+  const int32_t fall = clamped(here - there, -steepest_, steepest_);
   // 2^13 * 2^15 + 2^28 + 2^12 at most: below 2^30.
   const int32_t both = 8192 * flux + speed_squared_q12_ * fall;
   // The sum of old and new flux is cut towards zero: that is what never adds energy, and what damps.
-  uint32_t size = static_cast<uint32_t>(magnitude_of(both));
+  uint32_t size = static_cast<uint32_t>(absolute(both));
   size -= ((size >> 10) * damping_q12_) >> 2;  // 2^20 * 2^11
   size >>= 12;
   moving_ = moving_ || size != 0;
   const int32_t wanted = (both < 0 ? -static_cast<int32_t>(size) : static_cast<int32_t>(size)) - flux;
   // Both bounds hold 0, so only the one ahead can be in the way.
   if (wanted >= 0) {
-    return least_of(wanted, least_of(least_of(here - least_, greatest_ - there) >> 2, kMostFlux));
+    return lesser(wanted, lesser(lesser(here - least_, greatest_ - there) >> 2, kMostFlux));
   }
-  return most_of(wanted, -least_of(least_of(there - least_, greatest_ - here) >> 2, kMostFlux));
+  return greater(wanted, -lesser(lesser(there - least_, greatest_ - here) >> 2, kMostFlux));
 }
 
 // Fluxes of columns first .. end - 1 of a row to their neighbours on the right and below. Between blocked
@@ -161,11 +146,11 @@ Water::RowSpan Water::heights_of_row(int32_t y, int32_t first, int32_t end) {
     const int32_t above = y > 0 ? flux_y_[column - static_cast<size_t>(width_)] : 0;
     const int32_t height = heights_[column] + left + above - right - below;
     heights_[column] = height;
-    lowest_ = least_of(lowest_, height);
-    highest_ = most_of(highest_, height);
+    lowest_ = lesser(lowest_, height);
+    highest_ = greater(highest_, height);
     if (height != rest_ || right != 0 || below != 0) {
-      visible_ =
-          visible_ || !within(height - rest_, kStill) || !within(right, kStill) || !within(below, kStill);
+      visible_ = visible_ || !is_within(height - rest_, kStill) || !is_within(right, kStill) ||
+                 !is_within(below, kStill);
       span.first = span.end == 0 ? static_cast<uint16_t>(x) : span.first;
       span.end = static_cast<uint16_t>(x + 1);
     }
@@ -190,14 +175,14 @@ void Water::step() {
     int32_t first = width_;
     int32_t end = 0;
     if (own.first != own.end) {
-      first = most_of(own.first - 1, 0);
-      end = least_of(own.end + 1, width_);
+      first = greater(own.first - 1, 0);
+      end = lesser(own.end + 1, width_);
     }
     const RowSpan others[2] = {above, below};
     for (const RowSpan& other : others) {
       if (other.first != other.end) {
-        first = least_of(first, other.first);
-        end = most_of(end, other.end);
+        first = lesser(first, other.first);
+        end = greater(end, other.end);
       }
     }
     above = own;
@@ -254,7 +239,7 @@ struct Water::Region {
 };
 
 Water::Bowl Water::bowl_at(int32_t x_q8, int32_t y_q8, int32_t radius_q8) {
-  const int32_t radius = most_of(radius_q8, kLeastRadiusQ8);
+  const int32_t radius = greater(radius_q8, kLeastRadiusQ8);
   Bowl bowl;
   bowl.x_q8 = x_q8;
   bowl.y_q8 = y_q8;
@@ -298,17 +283,17 @@ int32_t Water::loss(const Bowl& bowl, int32_t x, int32_t y) const {
 }
 
 Water::Region Water::region(const Bowl& bowl, int32_t radius_q8) const {
-  const int32_t reach = most_of(radius_q8, kLeastRadiusQ8) + 256;
-  return {most_of((bowl.x_q8 - reach) >> 8, 0), least_of(((bowl.x_q8 + reach) >> 8) + 1, width_),
-          most_of((bowl.y_q8 - reach) >> 8, 0), least_of(((bowl.y_q8 + reach) >> 8) + 1, depth_)};
+  const int32_t reach = greater(radius_q8, kLeastRadiusQ8) + 256;
+  return {greater((bowl.x_q8 - reach) >> 8, 0), lesser(((bowl.x_q8 + reach) >> 8) + 1, width_),
+          greater((bowl.y_q8 - reach) >> 8, 0), lesser(((bowl.y_q8 + reach) >> 8) + 1, depth_)};
 }
 
 void Water::wake(const Region& region) {
   for (int32_t y = region.first_y; y < region.end_y; ++y) {
     RowSpan& span = spans_[y];
     const bool was_empty = span.first == span.end;
-    span.first = static_cast<uint16_t>(was_empty ? region.first_x : least_of(span.first, region.first_x));
-    span.end = static_cast<uint16_t>(was_empty ? region.end_x : most_of(span.end, region.end_x));
+    span.first = static_cast<uint16_t>(was_empty ? region.first_x : lesser(span.first, region.first_x));
+    span.end = static_cast<uint16_t>(was_empty ? region.end_x : greater(span.end, region.end_x));
   }
   still_ = false;
   quiet_ = false;
@@ -330,8 +315,8 @@ bool Water::bears(const Bowl& bowl, const Region& region) const {
 }
 
 Status Water::touch(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t depth_q8) {
-  if (!within(x_q8, kFarthestQ8) || !within(y_q8, kFarthestQ8) || radius_q8 < 0 ||
-      radius_q8 > kMostRadiusQ8 || !within(depth_q8, kMostDepthQ8)) {
+  if (!is_within(x_q8, kFarthestQ8) || !is_within(y_q8, kFarthestQ8) || radius_q8 < 0 ||
+      radius_q8 > kMostRadiusQ8 || !is_within(depth_q8, kMostDepthQ8)) {
     return Status::kOutOfRange;
   }
   Bowl bowl = bowl_at(x_q8, y_q8, radius_q8);
@@ -345,7 +330,7 @@ Status Water::touch(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t depth
   const int32_t y = y_q8 >> 8;
   const int32_t trial = 4 * push_at(bowl, x, y) - push_at(bowl, x - 1, y) - push_at(bowl, x + 1, y) -
                         push_at(bowl, x, y - 1) - push_at(bowl, x, y + 1);
-  const uint64_t wanted = static_cast<uint64_t>(magnitude_of(depth_q8)) * 256U * kProbe;  // up to 2^50
+  const uint64_t wanted = static_cast<uint64_t>(absolute(depth_q8)) * 256U * kProbe;  // up to 2^50
   bowl.top = with_sign_of(depth_q8, divide(wanted, static_cast<uint64_t>(trial)));
   for (int attempt = 0; !bears(bowl, reached); ++attempt) {
     if (attempt == kAttempts) {
@@ -358,8 +343,8 @@ Status Water::touch(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t depth
       if (!is_blocked(column, row)) {
         int32_t& height = heights_[index(column, row)];
         height -= loss(bowl, column, row);
-        lowest_ = least_of(lowest_, height);
-        highest_ = most_of(highest_, height);
+        lowest_ = lesser(lowest_, height);
+        highest_ = greater(highest_, height);
       }
     }
   }
@@ -368,8 +353,9 @@ Status Water::touch(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t depth
 }
 
 Status Water::drop(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t mass_q8, int32_t speed_q8) {
-  if (!within(x_q8, kFarthestQ8) || !within(y_q8, kFarthestQ8) || radius_q8 < 0 ||
-      radius_q8 > kMostRadiusQ8 || mass_q8 < 0 || mass_q8 > kMostMassQ8 || !within(speed_q8, kMostSpeedQ8)) {
+  if (!is_within(x_q8, kFarthestQ8) || !is_within(y_q8, kFarthestQ8) || radius_q8 < 0 ||
+      radius_q8 > kMostRadiusQ8 || mass_q8 < 0 || mass_q8 > kMostMassQ8 ||
+      !is_within(speed_q8, kMostSpeedQ8)) {
     return Status::kOutOfRange;
   }
   Bowl bowl = bowl_at(x_q8, y_q8, radius_q8);
@@ -378,7 +364,7 @@ Status Water::drop(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t mass_q
     return Status::kOk;
   }
   // The push adds up to the momentum over the disc: a dome's volume is top * pi / 4 * radius^2. 2^36 * 2^17.
-  const uint64_t momentum = static_cast<uint64_t>(mass_q8) * static_cast<uint64_t>(magnitude_of(speed_q8));
+  const uint64_t momentum = static_cast<uint64_t>(wide_product(mass_q8, absolute(speed_q8)));
   uint64_t top = divide(momentum * kFourByPiQ16, bowl.radius_squared);
   top = top < kHardestPush ? top : kHardestPush;
   bowl.top = with_sign_of(speed_q8, divide(top * kProbe, static_cast<uint64_t>(push(bowl, 0))));
@@ -390,12 +376,12 @@ Status Water::drop(int32_t x_q8, int32_t y_q8, int32_t radius_q8, int32_t mass_q
       const int32_t own = push_at(bowl, x, y);
       const size_t column = index(x, y);
       if (x + 1 < width_ && !is_blocked(x + 1, y)) {
-        flux_x_[column] =
-            static_cast<int16_t>(cut(flux_x_[column] + own - push_at(bowl, x + 1, y), kMostFlux));
+        flux_x_[column] = static_cast<int16_t>(
+            clamped(flux_x_[column] + own - push_at(bowl, x + 1, y), -kMostFlux, kMostFlux));
       }
       if (y + 1 < depth_ && !is_blocked(x, y + 1)) {
-        flux_y_[column] =
-            static_cast<int16_t>(cut(flux_y_[column] + own - push_at(bowl, x, y + 1), kMostFlux));
+        flux_y_[column] = static_cast<int16_t>(
+            clamped(flux_y_[column] + own - push_at(bowl, x, y + 1), -kMostFlux, kMostFlux));
       }
     }
   }
@@ -416,7 +402,7 @@ uint64_t Water::volume_q16() const {
   uint64_t sum = 0;
   const size_t columns = static_cast<size_t>(width_) * static_cast<size_t>(depth_);
   for (size_t column = 0; column < columns; ++column) {
-    sum += static_cast<uint32_t>(most_of(heights_[column], 0));
+    sum += static_cast<uint32_t>(greater(heights_[column], 0));
   }
   return sum;
 }

@@ -6,6 +6,8 @@
 #include "thimble/light/water.h"
 
 #include "../base/bits.h"
+#include "../base/integers.h"
+#include "../base/wide_arithmetic.h"
 
 namespace thimble {
 namespace {
@@ -20,20 +22,16 @@ struct Time {
   int32_t speed = 1;
 };
 constexpr bool before(const Time& a, const Time& b) {
-  return int64_t{a.distance} * b.speed < int64_t{b.distance} * a.speed;
+  return is_product_less(a.distance, b.speed, b.distance, a.speed);
 }
 constexpr bool same(const Time& a, const Time& b) {
-  return int64_t{a.distance} * b.speed == int64_t{b.distance} * a.speed;
+  return wide_product(a.distance, b.speed) == wide_product(b.distance, a.speed);
 }
 constexpr Time later(const Time& a, const Time& b) {
   return before(a, b) ? b : a;
 }
 
-constexpr int32_t magnitude_of(int32_t value) {
-  return value < 0 ? -value : value;
-}
-
-struct Walk {
+struct WaterWalk {
   const WaterSurface& water;
   // Relative to the corner; x and y mirrored; in 1/256 voxel.
   int32_t place[3];
@@ -46,10 +44,10 @@ struct Walk {
   Time since;
   uint32_t visits;
 
-  Walk(const WaterSurface& surface, const Vec3Q8& origin, const Vec3i& direction)
+  WaterWalk(const WaterSurface& surface, const Vec3Q8& origin, const Vec3i& direction)
       : water(surface), down(direction.z < 0), cell{0, 0}, height(0), visits(0) {
     for (int axis = 0; axis < 3; ++axis) {
-      speed[axis] = magnitude_of(direction[axis]);
+      speed[axis] = absolute(direction[axis]);
       place[axis] = origin[axis].raw - 256 * surface.corner[axis];
     }
     for (int axis = 0; axis < 2; ++axis) {
@@ -113,7 +111,7 @@ struct Walk {
     since = time;
     for (int axis = 0; axis < 2; ++axis) {
       // Where the ray is, times time.speed: 0 .. 2^20 * 2^20, made of two products below 2^43.
-      int64_t rest = int64_t{place[axis]} * time.speed + int64_t{speed[axis]} * time.distance;
+      int64_t rest = wide_product(place[axis], time.speed) + wide_product(speed[axis], time.distance);
       // Just before a plane is the column below it: ceil - 1 of the quotient, for integers.
       rest -= just_before && speed[axis] != 0 ? 1 : 0;
       int32_t number = 0;
@@ -227,7 +225,7 @@ struct Walk {
 };
 
 // Whether the ray is in the water from t = 0 on; the walk then stands in its first column.
-bool starts_inside(Walk& walk) {
+bool starts_inside(WaterWalk& walk) {
   Time enters;
   if (!walk.clip(walk.water.highest_q8, &enters) || enters.distance > 0) {
     return false;
@@ -250,13 +248,14 @@ int32_t slope_at(const WaterSurface& water, int32_t x, int32_t y, int axis) {
   low = low >= 0 ? low : here;
   high = high >= 0 ? high : here;
   const int32_t rise = high - low;
-  const int32_t size = magnitude_of(rise) >> (columns == 2 ? 1 : 0);
+  const int32_t size = absolute(rise) >> (columns == 2 ? 1 : 0);
   const int32_t slope = size > kSteepest ? kSteepest : size;
   return rise < 0 ? -slope : slope;
 }
 
-constexpr int32_t within(int32_t value, int32_t count) {
-  return value < 0 ? 0 : value >= count ? count - 1 : value;
+// The column nearest to `place`.
+constexpr int32_t nearest_column(int32_t place, int32_t count) {
+  return place < 0 ? 0 : place >= count ? count - 1 : place;
 }
 
 }  // namespace
@@ -267,7 +266,8 @@ Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y) {
     return normal;
   }
   const int32_t at[2] = {x.raw - 256 * surface.corner.x, y.raw - 256 * surface.corner.y};
-  const int32_t own[2] = {within(at[0] >> 8, surface.width), within(at[1] >> 8, surface.depth)};
+  const int32_t own[2] = {nearest_column(at[0] >> 8, surface.width),
+                          nearest_column(at[1] >> 8, surface.depth)};
   // The four columns around the point, by their centres.
   const int32_t first[2] = {(at[0] - 128) >> 8, (at[1] - 128) >> 8};
   const int32_t share[2] = {(at[0] - 128) & 255, (at[1] - 128) & 255};
@@ -277,14 +277,14 @@ Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y) {
     int32_t weight = 1;
     for (int axis = 0; axis < 2; ++axis) {
       const bool far = (corner >> axis & 1) != 0;
-      column[axis] = within(first[axis] + (far ? 1 : 0), axis == 0 ? surface.width : surface.depth);
+      column[axis] = nearest_column(first[axis] + (far ? 1 : 0), axis == 0 ? surface.width : surface.depth);
       weight *= far ? share[axis] : 256 - share[axis];
     }
     const bool counts = surface.height_q16(column[0], column[1]) >= 0;
     for (int axis = 0; axis < 2; ++axis) {
       // Weights are 2^16 together, slopes at most 2^17.
-      sum[axis] +=
-          int64_t{weight} * slope_at(surface, counts ? column[0] : own[0], counts ? column[1] : own[1], axis);
+      sum[axis] += wide_product(
+          weight, slope_at(surface, counts ? column[0] : own[0], counts ? column[1] : own[1], axis));
     }
   }
   for (int axis = 0; axis < 2; ++axis) {
@@ -314,15 +314,15 @@ Vec3i water_hit_normal(const WaterSurface& surface, const WaterHit& hit, const V
   }
   const Vec3i normal = water_normal(surface, x, y);
   // 2^15 * 2^20, three times.
-  const int64_t along =
-      int64_t{normal.x} * direction.x + int64_t{normal.y} * direction.y + int64_t{normal.z} * direction.z;
+  const int64_t along = wide_product(normal.x, direction.x) + wide_product(normal.y, direction.y) +
+                        wide_product(normal.z, direction.z);
   const int32_t through = direction[hit.axis] * hit.side;
   return along != 0 && (along < 0) == (through < 0) ? normal : face;
 }
 
 bool water_enter(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
   hit->visits = 0;
-  Walk walk(surface, ray.origin, ray.direction);
+  WaterWalk walk(surface, ray.origin, ray.direction);
   Time enters;
   if (!walk.clip(surface.highest_q8, &enters)) {
     return false;
@@ -360,7 +360,7 @@ bool water_enter(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
 
 bool water_leave(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
   hit->visits = 0;
-  Walk walk(surface, ray.origin, ray.direction);
+  WaterWalk walk(surface, ray.origin, ray.direction);
   if (!starts_inside(walk)) {
     hit->visits = walk.visits;
     return false;
@@ -378,7 +378,7 @@ bool water_leave(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
       }
     }
     // The column is left through a side: into water or out of it.
-    Walk next = walk;
+    WaterWalk next = walk;
     if (!next.step(until) || !next.in_water()) {
       walk.visits = next.visits;
       walk.report(until, true, hit);
@@ -394,7 +394,7 @@ bool water_leave(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
 }
 
 bool water_holds(const WaterSurface& surface, const Vec3Q8& point, const Vec3i& direction) {
-  Walk walk(surface, point, direction);
+  WaterWalk walk(surface, point, direction);
   return starts_inside(walk);
 }
 

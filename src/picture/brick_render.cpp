@@ -1,5 +1,5 @@
 // Frames by bricks: from voxel to voxel through the 64-bit bricks of a map, plane by plane along the axis on
-// which the rays of a tile move fastest. DESIGN.md, "Frames on a chip", derives what is used here.
+// which the rays of a tile move fastest. src/picture/README.md derives what is used here.
 //
 // Everything is mirrored as in crossings.h, so that no direction has a negative component, and relative to
 // the map's box: planes and cells are counted from the side at which the rays come in. Axis c is the one that
@@ -14,6 +14,7 @@
 #include "thimble/picture/brick_render.h"
 
 #include "../base/bits.h"
+#include "../base/likely.h"
 
 // Whatever the rest is compiled for, this file is for speed. (gcc has these on a function's or a file's wish;
 // the second saves one instruction in a hundred.)
@@ -243,6 +244,12 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   return static_cast<int32_t>(ink);
 }
 
+// An axis as an argument that is known when compiling.
+template <int kOf>
+struct Along {
+  static constexpr int kAxis = kOf;
+};
+
 // One ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored.
 template <int kC, unsigned kMirrored>
 [[gnu::noinline]] int32_t trace_one(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
@@ -252,12 +259,14 @@ template <int kC, unsigned kMirrored>
   const uint32_t den = d_c << 8;
   const uint32_t at_a = static_cast<uint32_t>(course.origin[kA]) * d_c + course.plane * d_a;
   const uint32_t at_b = static_cast<uint32_t>(course.origin[kB]) * d_c + course.plane * d_b;
-  if (!kDivides && static_cast<int32_t>(at_a | at_b) < 0) [[unlikely]] {
+  if (!kDivides && static_cast<int32_t>(at_a | at_b) < 0) {
+    THIMBLE_UNLIKELY;
     return kAsk;
   }
   const uint32_t cell_a = kDivides ? at_a / den : quotient(at_a, den, &course.inks->near_cell[0]);
   const uint32_t cell_b = kDivides ? at_b / den : quotient(at_b, den, &course.inks->near_cell[1]);
-  if ((cell_a | cell_b) >= 1024) [[unlikely]] {
+  if ((cell_a | cell_b) >= 1024) {
+    THIMBLE_UNLIKELY;
     return static_cast<int32_t>(at_a | at_b) < 0 ? kAsk : kMissed;
   }
   uint32_t rest_a = at_a - (cell_a + 1) * den;
@@ -279,7 +288,8 @@ template <int kC, unsigned kMirrored>
   const auto negative = [](uint32_t value) { return static_cast<int32_t>(value) < 0; };
   const auto solid = [&]() { return (half_at(at, 0) >> shift & 1U) != 0; };
   // To the next voxel; whether it is in the next brick.
-  const auto step = [&]<int kAxis>() {
+  const auto step = [&](auto along) {
+    constexpr int kAxis = decltype(along)::kAxis;
     constexpr int32_t kStep = ((kMirrored >> kAxis & 1U) != 0 ? -1 : 1) * (1 << kPlaceShift[kAxis]);
     const uint32_t own = kAxis == 2 ? row_of(at) : shift & kField<kAxis>;
     if (own == ((kMirrored >> kAxis & 1U) != 0 ? 0U : kField<kAxis>)) {
@@ -301,7 +311,8 @@ template <int kC, unsigned kMirrored>
   };
 
 enter:  // a brick, by a plane of `axis`
-  if ((left & kSpecial) != 0) [[unlikely]] {
+  if ((left & kSpecial) != 0) {
+    THIMBLE_UNLIKELY;
     if ((left & kLeft) != 0) {
       return kMissed;
     }
@@ -355,7 +366,7 @@ between:
     }
     goto tie;
   }
-  if (step.template operator()<kC>()) {
+  if (step(Along<kC>{})) {
     axis = kC;
     goto enter;
   }
@@ -367,7 +378,7 @@ between:
 cross_a:
   rest_a -= den;
   axis = kA;
-  if (step.template operator()<kA>()) {
+  if (step(Along<kA>{})) {
     goto enter;
   }
   if (solid()) {
@@ -377,7 +388,7 @@ cross_a:
 cross_b:
   rest_b -= den;
   axis = kB;
-  if (step.template operator()<kB>()) {
+  if (step(Along<kB>{})) {
     goto enter;
   }
   if (solid()) {
@@ -388,19 +399,19 @@ tie:                                 // planes crossed together: no time is spen
   if (rest_a == 0 || rest_b == 0) {  // with the plane of c
     if (rest_a == 0) {
       rest_a -= den;
-      step.template operator()<kA>();
+      step(Along<kA>{});
     }
     if (rest_b == 0) {
       rest_b -= den;
-      step.template operator()<kB>();
+      step(Along<kB>{});
     }
-    step.template operator()<kC>();
+    step(Along<kC>{});
     axis = kC;
   } else {
     rest_a -= den;
     rest_b -= den;
-    step.template operator()<kA>();
-    step.template operator()<kB>();
+    step(Along<kA>{});
+    step(Along<kB>{});
     axis = kA;
     if (!course.exact_ties) {
       return kAsk;
@@ -410,7 +421,8 @@ tie:                                 // planes crossed together: no time is spen
 
 hit:
   // Entered by a plane of c, and perhaps by others at the same t: the lowest axis counts.
-  if (axis == kC && (rest_a == 0U - den || rest_b == 0U - den)) [[unlikely]] {
+  if (axis == kC && (rest_a == 0U - den || rest_b == 0U - den)) {
+    THIMBLE_UNLIKELY;
     const bool a = rest_a == 0U - den && d_a != 0;
     const bool b = rest_b == 0U - den && d_b != 0;
     if ((a || b) && !course.exact_ties) {

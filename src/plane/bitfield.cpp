@@ -1,5 +1,5 @@
 // The bit field: boxes and discs by word masks, rays row by row, normals by filling the outside.
-// DESIGN.md, "The bit field", says why the words lie as they do and derives the bounds of the rays.
+// src/plane/README.md says why the words lie as they do and derives the bounds of the rays.
 #include "thimble/plane/bitfield.h"
 
 #include "../base/bits.h"

@@ -10,23 +10,6 @@ namespace {
 constexpr int32_t kFarthest = 4 * kMaxFieldSide;
 constexpr int kRandomPlaces = 64;
 
-constexpr bool within(int32_t value, int32_t limit) {
-  return value >= -limit && value <= limit;
-}
-constexpr int32_t cut(int32_t value, int32_t limit) {
-  return value < -limit ? -limit : value > limit ? limit : value;
-}
-
-// Between 0.97 and 1.03 times the length.
-constexpr int32_t length_of(Vec2i v) {
-  const int32_t x = v.x < 0 ? -v.x : v.x;
-  const int32_t y = v.y < 0 ? -v.y : v.y;
-  const int32_t larger = x > y ? x : y;
-  const int32_t smaller = x > y ? y : x;
-  const int32_t slanted = larger - (larger >> 3) + (smaller >> 1);
-  return larger > slanted ? larger : slanted;
-}
-
 // Gravity a substep, to the nearest, halves away from zero.
 constexpr int32_t part_of(int32_t value, int32_t parts_log2) {
   const int32_t size = value < 0 ? -value : value;
@@ -39,8 +22,8 @@ constexpr int32_t part_of(int32_t value, int32_t parts_log2) {
 Status ParticleWorld::make(const ParticleConfig& config, Bytes bytes, ParticleWorld* world) {
   const size_t needed = particles_bytes(config);
   if (needed == 0 || config.least_diameter < 1 || config.least_diameter > config.most_diameter ||
-      config.restitution_q16 > 65536 || !within(config.gravity_q16.x, kMaxAccelerationQ16) ||
-      !within(config.gravity_q16.y, kMaxAccelerationQ16) || config.substeps_log2 < 0 ||
+      config.restitution_q16 > 65536 || !is_within(config.gravity_q16.x, kMaxAccelerationQ16) ||
+      !is_within(config.gravity_q16.y, kMaxAccelerationQ16) || config.substeps_log2 < 0 ||
       config.substeps_log2 > 4 || config.subpixel_bits < 1 || config.subpixel_bits > 15) {
     return Status::kOutOfRange;
   }
@@ -148,9 +131,9 @@ uint32_t ParticleWorld::random_below(uint32_t limit) {
 
 Status ParticleWorld::spawn(int32_t x_q16, int32_t y_q16, int32_t vx_q16, int32_t vy_q16, int32_t diameter,
                             uint32_t* id) {
-  if (diameter < 1 || diameter > config_.most_diameter || !within(vx_q16, kMaxSpeedQ16) ||
-      !within(vy_q16, kMaxSpeedQ16) || !within(x_q16, (kMaxFieldSide + 1) << 16) ||
-      !within(y_q16, (kMaxFieldSide + 1) << 16)) {
+  if (diameter < 1 || diameter > config_.most_diameter || !is_within(vx_q16, kMaxSpeedQ16) ||
+      !is_within(vy_q16, kMaxSpeedQ16) || !is_within(x_q16, (kMaxFieldSide + 1) << 16) ||
+      !is_within(y_q16, (kMaxFieldSide + 1) << 16)) {
     return Status::kOutOfRange;
   }
   const DiscStamp disc = small_disc(diameter);
@@ -300,8 +283,8 @@ uint32_t ParticleWorld::ball_at(Vec2i at) const {
 }
 
 Status ParticleWorld::set_velocity(uint32_t id, int32_t vx_q16, int32_t vy_q16) {
-  if (id >= id_limit_ || balls_[id].diameter == 0 || !within(vx_q16, kMaxSpeedQ16) ||
-      !within(vy_q16, kMaxSpeedQ16)) {
+  if (id >= id_limit_ || balls_[id].diameter == 0 || !is_within(vx_q16, kMaxSpeedQ16) ||
+      !is_within(vy_q16, kMaxSpeedQ16)) {
     return Status::kOutOfRange;
   }
   wake(id);
@@ -337,8 +320,8 @@ void ParticleWorld::brush(Vec2i from, Vec2i to, int32_t diameter, bool solid) {
   }
   const DiscStamp disc = disc_stamp(diameter);
   const int32_t half = (disc.diameter - 1) / 2;
-  const Vec2i a{cut(from.x, kFarthest), cut(from.y, kFarthest)};
-  const Vec2i b{cut(to.x, kFarthest), cut(to.y, kFarthest)};
+  const Vec2i a{clamped(from.x, -kFarthest, kFarthest), clamped(from.y, -kFarthest, kFarthest)};
+  const Vec2i b{clamped(to.x, -kFarthest, kFarthest), clamped(to.y, -kFarthest, kFarthest)};
   const Vec2i step{b.x < a.x ? -1 : 1, b.y < a.y ? -1 : 1};
   const Vec2i run{(b.x - a.x) * step.x, (b.y - a.y) * step.y};
   const int32_t longer = run.x > run.y ? run.x : run.y;
@@ -373,7 +356,7 @@ void ParticleWorld::brush(Vec2i from, Vec2i to, int32_t diameter, bool solid) {
 // --- Forces
 
 Status ParticleWorld::set_gravity(Vec2i gravity_q16) {
-  if (!within(gravity_q16.x, kMaxAccelerationQ16) || !within(gravity_q16.y, kMaxAccelerationQ16)) {
+  if (!is_within(gravity_q16.x, kMaxAccelerationQ16) || !is_within(gravity_q16.y, kMaxAccelerationQ16)) {
     return Status::kOutOfRange;
   }
   if (gravity_q16 == config_.gravity_q16) {
@@ -381,7 +364,7 @@ Status ParticleWorld::set_gravity(Vec2i gravity_q16) {
   }
   config_.gravity_q16 = gravity_q16;
   pulled_ = gravity_q16 != Vec2i{};
-  const int32_t strength = length_of(gravity_q16);
+  const int32_t strength = rough_length(gravity_q16);
   rest_speed_ = 2 * strength + (strength >> 1);
   gravity_part_ = {part_of(gravity_q16.x, config_.substeps_log2),
                    part_of(gravity_q16.y, config_.substeps_log2)};

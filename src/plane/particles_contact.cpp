@@ -13,6 +13,7 @@
 // lighter's is what keeps the momentum, rounded to the nearest likewise. So on each axis the momentum of the
 // pair is kept to within half the lighter's mass times 2^-16 cells a step, and magnitudes know no
 // handedness: a mirrored collision gives the mirrored result.
+#include "../base/wide_arithmetic.h"
 #include "particles_parts.h"
 
 namespace thimble {
@@ -24,13 +25,6 @@ constexpr int32_t kAxisNormal = int32_t{1} << kAxisShift;
 constexpr int kFactorBits = 24;
 // The rest_speed_ of a gravity of half a cell a step a step.
 constexpr int32_t kStrongRestSpeed = 5 * 65536 / 4;
-
-constexpr uint32_t magnitude(int32_t value) {
-  return value < 0 ? 0U - static_cast<uint32_t>(value) : static_cast<uint32_t>(value);
-}
-constexpr uint64_t magnitude(int64_t value) {
-  return value < 0 ? 0U - static_cast<uint64_t>(value) : static_cast<uint64_t>(value);
-}
 
 constexpr int width_of(uint64_t value) {
   const uint32_t high = static_cast<uint32_t>(value >> 32);
@@ -68,8 +62,8 @@ constexpr int32_t held_within_limit(int64_t speed) {
 // The longer component with kNormalBits bits, the components cut towards zero; along an axis it is
 // kAxisNormal.
 constexpr Vec2i short_normal(Vec2i v) {
-  const uint32_t x = magnitude(v.x);
-  const uint32_t y = magnitude(v.y);
+  const uint32_t x = magnitude_32(v.x);
+  const uint32_t y = magnitude_32(v.y);
   if (x == 0 || y == 0) {
     const auto unit = [](int32_t part) { return part < 0 ? -kAxisNormal : part > 0 ? kAxisNormal : 0; };
     return {unit(v.x), unit(v.y)};
@@ -79,16 +73,6 @@ constexpr Vec2i short_normal(Vec2i v) {
     return static_cast<int32_t>(excess > 0 ? size >> excess : size << -excess);
   };
   return {v.x < 0 ? -resized(x) : resized(x), v.y < 0 ? -resized(y) : resized(y)};
-}
-
-// Between 0.97 and 1.03 times the length, both for balls (kNormalBits) and for velocities.
-constexpr int32_t length_of(Vec2i v) {
-  const int32_t x = v.x < 0 ? -v.x : v.x;
-  const int32_t y = v.y < 0 ? -v.y : v.y;
-  const int32_t larger = x > y ? x : y;
-  const int32_t smaller = x > y ? y : x;
-  const int32_t slanted = larger - (larger >> 3) + (smaller >> 1);
-  return larger > slanted ? larger : slanted;
 }
 
 // The sign of mass_a * a + mass_b * b, for |a|, |b| below 2^62 and masses below 2^16.
@@ -179,20 +163,20 @@ Vec2i ParticleWorld::wall_normal(uint32_t self, Vec2i offset, Vec2i own) const {
   if (offset.x == 0 || offset.y == 0) {
     return {-offset.x, -offset.y};
   }
-  constexpr int32_t kReach = 2;
-  constexpr int32_t kMostRows = kMaxSmallDisc + 2 * kReach;
+  constexpr int32_t kWallReach = 2;
+  constexpr int32_t kMostRows = kMaxSmallDisc + 2 * kWallReach;
   const DiscStamp disc = small_disc(balls_[self].diameter);
   const Vec2i corner = corner_of(balls_[self]);
-  const int32_t size = disc.diameter + 2 * kReach;
-  const Vec2i from{corner.x - kReach, corner.y - kReach};
+  const int32_t size = disc.diameter + 2 * kWallReach;
+  const Vec2i from{corner.x - kWallReach, corner.y - kWallReach};
   uint32_t rows[kMostRows];
   for (int32_t row = 0; row < size; ++row) {
-    // The disc's rows, widened by kReach on all sides.
+    // The disc's rows, widened by kWallReach on all sides.
     uint32_t mask = 0;
-    for (int32_t dy = -kReach; dy <= kReach; ++dy) {
-      const uint32_t line = disc.rows[row - kReach + dy];
-      const int32_t reach = kReach - (dy < 0 ? -dy : dy);
-      for (int32_t dx = kReach - reach; dx <= kReach + reach; ++dx) {
+    for (int32_t dy = -kWallReach; dy <= kWallReach; ++dy) {
+      const uint32_t line = disc.rows[row - kWallReach + dy];
+      const int32_t reach = kWallReach - (dy < 0 ? -dy : dy);
+      for (int32_t dx = kWallReach - reach; dx <= kWallReach + reach; ++dx) {
         mask |= line << dx;
       }
     }
@@ -319,7 +303,7 @@ void ParticleWorld::bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i aw
   } else {
     ++counters_.wall_hits;
   }
-  const bool slow = pulled_ && -along <= int64_t{rest_speed_} * length_of(n);
+  const bool slow = pulled_ && -along <= int64_t{rest_speed_} * rough_length(n);
   const bool gentle =
       slow || (pulled_ && ball.still >= kLastingSteps && (other == nullptr || other->still >= kLastingSteps));
   if (gentle && other != nullptr && (other->flags & (kAsleep | kGrounded)) != 0) {
@@ -357,8 +341,8 @@ void ParticleWorld::push(Ball& ball, Ball* other, Vec2i normal, int64_t along, u
   const bool ball_is_heavier = other != nullptr && mass >= other_mass;
   const uint32_t heavier = other == nullptr ? 1 : ball_is_heavier ? mass : other_mass;
   const uint32_t lighter = other == nullptr ? 1 : ball_is_heavier ? other_mass : mass;
-  const uint32_t nx = magnitude(normal.x);
-  const uint32_t ny = magnitude(normal.y);
+  const uint32_t nx = magnitude_32(normal.x);
+  const uint32_t ny = magnitude_32(normal.y);
 
   uint64_t size[2];
   if (other == nullptr && (nx == 0 || ny == 0)) {

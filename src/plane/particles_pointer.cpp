@@ -9,23 +9,19 @@ constexpr int32_t kMostRadius = 1024;
 constexpr int kDragShift = 2;
 constexpr int32_t kDragSpeedQ16 = 32 << 16;
 
-constexpr int32_t cut(int32_t value, int32_t low, int32_t high) {
-  return value < low ? low : value > high ? high : value;
-}
-
 }  // namespace
 
 void ParticleWorld::set_pointer(PointerMode mode, Vec2i at, int32_t radius, int32_t strength_q16) {
-  const Vec2i place{cut(at.x, -kMaxFieldSide, 2 * kMaxFieldSide),
-                    cut(at.y, -kMaxFieldSide, 2 * kMaxFieldSide)};
+  const Vec2i place{clamped(at.x, -kMaxFieldSide, 2 * kMaxFieldSide),
+                    clamped(at.y, -kMaxFieldSide, 2 * kMaxFieldSide)};
   if (mode != pointer_mode_) {
     pointer_before_ = place;
     dragged_ = mode == PointerMode::kDrag ? ball_at(place) : kNoBall;
   }
   pointer_mode_ = mode;
   pointer_ = place;
-  pointer_radius_ = cut(radius, 1, kMostRadius);
-  pointer_strength_ = cut(strength_q16, 0, kMaxAccelerationQ16);
+  pointer_radius_ = clamped(radius, 1, kMostRadius);
+  pointer_strength_ = clamped(strength_q16, 0, kMaxAccelerationQ16);
 }
 
 void ParticleWorld::apply_pointer() {

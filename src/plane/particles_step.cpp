@@ -17,17 +17,8 @@ constexpr int32_t kShortWidth = 24;
 constexpr size_t kFarFieldBytes = 256 * 1024;
 constexpr uint32_t kLookAhead = 8;
 
-constexpr int32_t sign_of(int32_t value) {
+constexpr int32_t towards(int32_t value) {
   return value < 0 ? -1 : 1;
-}
-constexpr uint32_t magnitude(int32_t value) {
-  return value < 0 ? 0U - static_cast<uint32_t>(value) : static_cast<uint32_t>(value);
-}
-constexpr int32_t least(int32_t a, int32_t b) {
-  return a < b ? a : b;
-}
-constexpr int32_t most(int32_t a, int32_t b) {
-  return a > b ? a : b;
 }
 
 // kLines + 16 - n: n full words, then empty ones.
@@ -55,9 +46,9 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   const uint32_t next_mask = has_next ? UINT32_MAX : 0;
   const uint32_t outside =
       (box.low.x < 0 ? (uint32_t{1} << -box.low.x) - 1 : 0) | (after < 32 ? UINT32_MAX << after : 0);
-  const int32_t top = most(-box.low.y, 0);
-  const int32_t bottom = least(config_.height - box.low.y, height);
-  const Word* const first = words_ + most(column, 0) * config_.height + box.low.y;
+  const int32_t top = greater(-box.low.y, 0);
+  const int32_t bottom = lesser(config_.height - box.low.y, height);
+  const Word* const first = words_ + greater(column, 0) * config_.height + box.low.y;
   const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.low.y : first;
   for (int32_t row = top; row < bottom; row += kLanes) {
     store_rows(out + row, ((load_rows(first + row) & first_mask) >> shift) |
@@ -76,8 +67,8 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
       store_rows(out + down + row, load_rows(out + down + row) & ~(load_rows(disc.rows + row) << right));
     });
   } else if (right > -Window::kSide && right < Window::kSide) {
-    const int32_t last = least(disc.diameter, height - down);
-    for (int32_t row = most(0, -down); row < last; ++row) {
+    const int32_t last = lesser(disc.diameter, height - down);
+    for (int32_t row = greater(0, -down); row < last; ++row) {
       out[down + row] &= ~(right < 0 ? disc.rows[row] >> -right : disc.rows[row] << right);
     }
   }
@@ -347,7 +338,7 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   }
   if (kPulled) {
     if ((gone.x | gone.y) != 0) {
-      const auto cut = [](int32_t cells) { return least(most(cells, -100), 100); };
+      const auto cut = [](int32_t cells) { return clamped(cells, -100, 100); };
       if (config_.substeps_log2 == 0) {
         // The sums begin within the reach of the last step: they cannot leave a byte.
         const Vec2i cells{cut(gone.x), cut(gone.y)};
@@ -383,7 +374,7 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
     collide(id, blocked, window, own);
     const auto rest_of = [&blocked, this](int32_t velocity) {
       const int32_t whole = displacement(velocity);
-      const uint64_t part = (uint64_t{magnitude(whole)} * blocked.left_q16) >> 16;
+      const uint64_t part = (uint64_t{magnitude_32(whole)} * blocked.left_q16) >> 16;
       const int32_t size =
           static_cast<int32_t>(static_cast<uint32_t>(part) & ~(static_cast<uint32_t>(unit_) - 1));
       return whole < 0 ? -size : size;
@@ -405,9 +396,9 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
     return;
   }
   const DiscStamp disc = small_disc(ball.diameter);
-  const Vec2i low{least(corner.x, own.x), least(corner.y, own.y)};
-  if (most(corner.x, own.x) - low.x + disc.diameter > kShortWidth ||
-      most(corner.y, own.y) - low.y + disc.diameter > kBlock) {
+  const Vec2i low{lesser(corner.x, own.x), lesser(corner.y, own.y)};
+  if (greater(corner.x, own.x) - low.x + disc.diameter > kShortWidth ||
+      greater(corner.y, own.y) - low.y + disc.diameter > kBlock) {
     field_.clear_inside(disc, own);
     field_.set_inside(disc, corner);
     return;
@@ -428,14 +419,14 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
   ball->y += way.y;
   const Vec2i goal = corner_of(*ball);
   // Boundaries still to be crossed. As a centre never lies on one, they are as many as the corner goes cells.
-  Vec2i left{static_cast<int32_t>(magnitude(goal.x - corner.x)),
-             static_cast<int32_t>(magnitude(goal.y - corner.y))};
+  Vec2i left{static_cast<int32_t>(magnitude_32(goal.x - corner.x)),
+             static_cast<int32_t>(magnitude_32(goal.y - corner.y))};
   if ((left.x | left.y) == 0) {
     return blocked;
   }
   const Vec2i crossings = left;
-  const Vec2i sign{sign_of(way.x), sign_of(way.y)};
-  const Vec2i length{static_cast<int32_t>(magnitude(way.x)), static_cast<int32_t>(magnitude(way.y))};
+  const Vec2i sign{towards(way.x), towards(way.y)};
+  const Vec2i length{static_cast<int32_t>(magnitude_32(way.x)), static_cast<int32_t>(magnitude_32(way.y))};
   // Distance to the first boundary, odd.
   const int32_t half = disc.diameter * 32768;
   const Vec2i first{32768 - sign.x * (start.x - corner.x * 65536 - half),
@@ -487,14 +478,14 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
           take(next_axes());
         }
       }
-      const CellBox box{
-          {least(corner.x, corner_before.x), least(corner.y, corner_before.y)},
-          {most(corner.x, corner_before.x) + disc.diameter, most(corner.y, corner_before.y) + disc.diameter}};
+      const CellBox box{{lesser(corner.x, corner_before.x), lesser(corner.y, corner_before.y)},
+                        {greater(corner.x, corner_before.x) + disc.diameter,
+                         greater(corner.y, corner_before.y) + disc.diameter}};
       const Vec2i size{box.high.x - box.low.x, box.high.y - box.low.y};
       if (first_walk || !window->covers(box)) {
         // With room to turn round.
-        const int32_t margin =
-            least(most(size.x, size.y) - disc.diameter + 1, (Window::kSide - most(size.x, size.y)) >> 1);
+        const int32_t margin = lesser(greater(size.x, size.y) - disc.diameter + 1,
+                                      (Window::kSide - greater(size.x, size.y)) >> 1);
         load_window({{box.low.x - margin, box.low.y - margin}, {box.high.x + margin, box.high.y + margin}},
                     disc, own, window);
       }
@@ -539,7 +530,7 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
   const int axis = (blocked.axes & (Blocked::kX | Blocked::kCorner)) != 0 ? 0 : 1;
   const uint32_t reached =
       static_cast<uint32_t>(first[axis]) + (static_cast<uint32_t>(crossings[axis] - left[axis]) << 16);
-  const int excess = most(bits::bit_length(static_cast<uint32_t>(length[axis])) - 16, 0);
+  const int excess = greater(bits::bit_length(static_cast<uint32_t>(length[axis])) - 16, 0);
   const uint32_t came_q16 = ((reached >> excess) << 16) / (static_cast<uint32_t>(length[axis]) >> excess);
   blocked.left_q16 = 65536U - came_q16;
   blocked.sign = sign;
@@ -552,7 +543,7 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
         ~(static_cast<uint32_t>(unit_) - 1);
     const int32_t reach = 32768 - (unit_ >> 1);
     const int32_t offset = start[a] + sign[a] * static_cast<int32_t>(part) - middle;
-    return middle + least(most(offset, -reach), reach);
+    return middle + clamped(offset, -reach, reach);
   };
   ball->x = place(0);
   ball->y = place(1);

@@ -1,5 +1,5 @@
 // Where a ray goes among the planes of the voxel lattice: the arithmetic of tracing, in 32 or 64 bits with
-// the same answers. Internal to src/. DESIGN.md, "Tracing", derives the bounds.
+// the same answers. Internal to src/. src/trace/README.md derives the bounds.
 //
 // It works on a mirrored ray, whose direction has no negative component: the axes with a negative one are
 // reflected in the middle of the world, which turns the half-open rule for them around as it must (a ray that

@@ -8,12 +8,13 @@
 namespace thimble {
 namespace {
 
-constexpr uint32_t kMagic = 0x014D4254;  // "TBM", then the version, 1
-constexpr uint32_t kLevelOffset = 4;
+constexpr uint32_t kMapMagic = 0x014D4254;      // "TBM", then the version, 1
+constexpr uint32_t kMapMagicMask = 0x00FFFFFF;  // all but the version
+constexpr uint32_t kMapLevelOffset = 4;
 constexpr uint32_t kBoxMinOffset = 5;
-constexpr uint32_t kSizeOffset = 8;
-constexpr uint32_t kChecksumOffset = 12;
-constexpr uint32_t kChecksumStart = 16;
+constexpr uint32_t kMapSizeOffset = 8;
+constexpr uint32_t kMapChecksumOffset = 12;
+constexpr uint32_t kMapChecksumStart = 16;
 constexpr uint32_t kTreeChecksumOffset = 16;
 constexpr uint32_t kBoxSizeOffset = 20;
 constexpr uint32_t kBricksOffset = 24;
@@ -28,7 +29,7 @@ constexpr uint32_t kUniform = 0xFF00;
 constexpr uint32_t kOriginBytes = 12;
 constexpr uint32_t kChildBits = 24;
 
-struct Header {
+struct MapHeader {
   int level;
   Vec3i low;
   Vec3i size;
@@ -47,12 +48,14 @@ size_t materials_at(uint32_t cells, uint32_t bricks, uint32_t mixed) {
   return origins_at(cells, bricks) + kOriginBytes * size_t{mixed};
 }
 
-const char* read_header(ConstBytes bytes, Header* header) {
-  if (bytes.size < kBrickMapHeaderBytes || bits::load32(bytes.data) != kMagic) {
-    return "not a brick map of this version";
+const char* read_map_header(ConstBytes bytes, MapHeader* header) {
+  const uint32_t differ =
+      bytes.size < kBrickMapHeaderBytes ? kMapMagicMask : bits::load32(bytes.data) ^ kMapMagic;
+  if (differ != 0) {
+    return (differ & kMapMagicMask) == 0 ? kAnotherVersion : "not a brick map";
   }
   const uint8_t* base = bytes.data;
-  header->level = base[kLevelOffset];
+  header->level = base[kMapLevelOffset];
   if (header->level < kMinBrickMapLevel || header->level > kMaxBrickMapLevel) {
     return "level out of range";
   }
@@ -67,7 +70,7 @@ const char* read_header(ConstBytes bytes, Header* header) {
     header->cells *= static_cast<uint32_t>(header->size[axis]);
   }
   header->bricks = bits::load16(base + kBricksOffset);
-  const uint32_t size = bits::load32(base + kSizeOffset);
+  const uint32_t size = bits::load32(base + kMapSizeOffset);
   header->mixed = bits::load16(base + kMixedOffset);
   if (header->bricks == 0 || header->mixed >= header->bricks ||
       size != brick_map_bytes(header->cells, header->bricks, header->mixed)) {
@@ -133,9 +136,9 @@ uint8_t material_in_node(const CompactTree& tree, uint32_t node, unsigned bit) {
 }
 
 // A map in the making: directory and bricks as they will be, sources from the end of the bytes downwards.
-class Builder {
+class MapBuilder {
  public:
-  Builder(const CompactTree& tree, Bytes out) : tree_(tree), out_(out) {
+  MapBuilder(const CompactTree& tree, Bytes out) : tree_(tree), out_(out) {
     for (uint16_t& number : solid_) {
       number = 0;
     }
@@ -221,7 +224,7 @@ class Builder {
 
   // Depth first over the nodes of level 2 and up.
   Status place_all() {
-    struct Frame {
+    struct OpenNode {
       uint32_t child;
       uint8_t mask;
       uint8_t next;
@@ -259,7 +262,7 @@ class Builder {
         }
         stack[level] = {tree_.first_child(node), static_cast<uint8_t>(mask), 0};
       }
-      Frame& frame = stack[level];
+      OpenNode& frame = stack[level];
       while (frame.next < 8 && (frame.mask >> frame.next & 1) == 0) {
         ++frame.next;
       }
@@ -426,18 +429,18 @@ class Builder {
       *material++ = 0;
     }
     uint8_t* base = out_.data;
-    bits::store32(base, kMagic);
-    base[kLevelOffset] = static_cast<uint8_t>(tree_.level());
+    bits::store32(base, kMapMagic);
+    base[kMapLevelOffset] = static_cast<uint8_t>(tree_.level());
     for (int axis = 0; axis < 3; ++axis) {
       base[kBoxMinOffset + static_cast<uint32_t>(axis)] = static_cast<uint8_t>(min_[axis]);
       base[kBoxSizeOffset + static_cast<uint32_t>(axis)] = static_cast<uint8_t>(size_[axis]);
     }
-    bits::store32(base + kSizeOffset, static_cast<uint32_t>(size));
+    bits::store32(base + kMapSizeOffset, static_cast<uint32_t>(size));
     bits::store32(base + kTreeChecksumOffset, bits::load32(tree_.bytes() + compact_header::kChecksumOffset));
     bits::store32(base + kBricksOffset, bricks_);
     bits::store32(base + kMixedOffset, mixed_);
-    bits::store32(base + kChecksumOffset,
-                  crc32({base + kChecksumStart, size - kChecksumStart}, crc32({base, kChecksumOffset})));
+    bits::store32(base + kMapChecksumOffset, crc32({base + kMapChecksumStart, size - kMapChecksumStart},
+                                                   crc32({base, kMapChecksumOffset})));
     *written = size;
     return Status::kOk;
   }
@@ -459,8 +462,8 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
   if (!aligned(bytes.data)) {
     return Status::kBadArgument;
   }
-  Header header{};
-  if (read_header(bytes, &header) != nullptr) {
+  MapHeader header{};
+  if (read_map_header(bytes, &header) != nullptr) {
     return Status::kDamaged;
   }
   BrickMap result;
@@ -480,7 +483,7 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
   for (int axis = 0; axis < 3; ++axis) {
     result.box_.high[axis] = header.low[axis] + header.size[axis];
   }
-  result.size_bytes_ = bits::load32(bytes.data + kSizeOffset);
+  result.size_bytes_ = bits::load32(bytes.data + kMapSizeOffset);
   result.cells_ = header.cells;
   result.brick_count_ = header.bricks;
   result.mixed_count_ = header.mixed;
@@ -491,13 +494,13 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
 }
 
 const char* BrickMap::validate(ConstBytes bytes) {
-  Header header{};
-  if (const char* text = read_header(bytes, &header)) {
+  MapHeader header{};
+  if (const char* text = read_map_header(bytes, &header)) {
     return text;
   }
   const uint8_t* base = bytes.data;
-  const ConstBytes checked{base + kChecksumStart, bits::load32(base + kSizeOffset) - kChecksumStart};
-  if (crc32(checked, crc32({base, kChecksumOffset})) != bits::load32(base + kChecksumOffset)) {
+  const ConstBytes checked{base + kMapChecksumStart, bits::load32(base + kMapSizeOffset) - kMapChecksumStart};
+  if (crc32(checked, crc32({base, kMapChecksumOffset})) != bits::load32(base + kMapChecksumOffset)) {
     return "checksum does not match";
   }
   for (uint32_t cell = 0; cell < header.cells; ++cell) {
@@ -516,7 +519,7 @@ Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t*
     return Status::kBadArgument;
   }
   size_t written = 0;
-  const Status status = Builder(tree, out).run(&written);
+  const Status status = MapBuilder(tree, out).run(&written);
   if (status != Status::kOk) {
     return status;
   }

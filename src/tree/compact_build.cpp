@@ -10,8 +10,6 @@
 namespace thimble {
 namespace {
 
-using namespace compact_header;
-
 // Finds the shape, volume, bounds and materials of what a walk shows it.
 struct Counter {
   CompactShape shape;
@@ -34,7 +32,7 @@ struct Counter {
     ++shape.solid_blocks;
     shape.merged = shape.merged || merged;
     volume += uint64_t{1} << (3 * level);
-    grow_bounds(&bounds, corner, level, 0);
+    grow_box(&bounds, corner, level, 0);
     see_material(material);
   }
   void voxels(const Vec3i& corner, unsigned mask, const uint8_t (&materials)[8]) {
@@ -45,7 +43,7 @@ struct Counter {
     }
     shape.voxel_bits += count;
     volume += count;
-    grow_bounds(&bounds, corner, 1, mask);
+    grow_box(&bounds, corner, 1, mask);
     for (unsigned octant = 0; octant < 8; ++octant) {
       if (((mask >> octant) & 1U) != 0) {
         see_material(materials[octant]);
@@ -301,7 +299,7 @@ template <class Key>
 }
 
 // The nodes of either tree, as the walk below reads them.
-struct PoolNodes {
+struct PoolReader {
   const Octree& octree;
 
   int level() const { return octree.level(); }
@@ -324,7 +322,7 @@ struct PoolNodes {
     }
   }
 };
-struct CompactNodes {
+struct CompactReader {
   const CompactTree& tree;
 
   int level() const { return tree.level(); }
@@ -358,7 +356,7 @@ struct CompactNodes {
 template <class Nodes, class Sink>
 void walk_tree(const Nodes& nodes, const Vec3i& origin, int level, Sink* sink) {
   // stack[k]: of the node of level k on the path, the children not yet visited.
-  struct Frame {
+  struct OpenNode {
     uint32_t next_child;
     uint8_t octants;
   } stack[kMaxLevel + 1];
@@ -390,7 +388,7 @@ void walk_tree(const Nodes& nodes, const Vec3i& origin, int level, Sink* sink) {
     if (at == 0 || at > nodes.level()) {  // nothing is left (and level 0 never has children)
       return;
     }
-    Frame& frame = stack[at];
+    OpenNode& frame = stack[at];
     const unsigned octant = static_cast<unsigned>(__builtin_ctz(frame.octants));
     frame.octants = static_cast<uint8_t>(frame.octants & (frame.octants - 1U));
     index = frame.next_child;
@@ -410,7 +408,7 @@ struct OctreeSource {
   uint64_t solid_added() const { return octree.solid_added(); }
   template <class Sink>
   void walk_level(int level, Sink* sink) const {
-    walk_tree(PoolNodes{octree}, Vec3i{}, level, sink);
+    walk_tree(PoolReader{octree}, Vec3i{}, level, sink);
   }
 };
 
@@ -465,7 +463,7 @@ struct PartsSource {
         origin[axis] *= int32_t{1} << part_level;
       }
       if (above == 0) {
-        walk_tree(CompactNodes{parts[first]}, origin, level, sink);
+        walk_tree(CompactReader{parts[first]}, origin, level, sink);
       } else if (uniform(first, count)) {
         sink->solid(origin, level, parts[first].block_material(0), parts[first].is_merged(0));
       } else {
@@ -508,7 +506,7 @@ void write_nodes(const KeySource<Key>& source, Writer* writer) {
   source.write_nodes(writer);
 }
 
-void write_directory(const CompactShape& shape, uint8_t* base, const Sections& at) {
+void write_directory(const CompactShape& shape, uint8_t* base, const CompactSections& at) {
   const bool block_ranks = shape.many_materials && shape.solid_blocks != 0;
   uint32_t children = 0;
   uint32_t solid_blocks = 0;
@@ -528,6 +526,7 @@ void write_directory(const CompactShape& shape, uint8_t* base, const Sections& a
 
 template <class Source>
 Status write(Source source, Bytes out, size_t* size, int rank_shift) {
+  using namespace compact_header;
   if (rank_shift < kMinRankShift || rank_shift > kMaxRankShift) {
     return Status::kOutOfRange;
   }
@@ -546,7 +545,7 @@ Status write(Source source, Bytes out, size_t* size, int rank_shift) {
   }
 
   uint8_t* base = out.data;
-  const Sections at = sections_of(shape);
+  const CompactSections at = sections_of(shape);
   // Everything behind the masks starts as 0: padding, and bits that are set one by one.
   for (size_t i = at.masks + shape.nodes; i < bytes; ++i) {
     base[i] = 0;

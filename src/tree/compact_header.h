@@ -8,9 +8,12 @@
 
 #include "thimble/tree/compact_tree.h"
 
-namespace thimble::compact_header {
+namespace thimble {
 
-inline constexpr uint32_t kMagic = 0x01424D54;  // "TMB", then the version, 1
+namespace compact_header {
+
+inline constexpr uint32_t kMagic = 0x01424D54;      // "TMB", then the version, 1
+inline constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
 inline constexpr uint32_t kLevelOffset = 4;
 inline constexpr uint32_t kRankShiftOffset = 5;
 inline constexpr uint32_t kFlagsOffset = 6;
@@ -31,8 +34,10 @@ inline constexpr unsigned kManyMaterialsFlag = 1;
 inline constexpr unsigned kMergedFlag = 2;
 inline constexpr unsigned kKnownFlags = kManyMaterialsFlag | kMergedFlag;
 
+}  // namespace compact_header
+
 // Where each section starts, in bytes from the front. Only valid for a shape whose compact_bytes is not 0.
-struct Sections {
+struct CompactSections {
   size_t masks;
   size_t ranks;
   size_t merged;
@@ -40,11 +45,11 @@ struct Sections {
   size_t materials;
 };
 
-constexpr Sections sections_of(const CompactShape& shape) {
+constexpr CompactSections sections_of(const CompactShape& shape) {
   const size_t nodes = shape.nodes;
   const size_t blocks =
       (nodes >> shape.rank_shift) + ((nodes & ((size_t{1} << shape.rank_shift) - 1)) != 0 ? 1 : 0);
-  Sections at{};
+  CompactSections at{};
   at.masks = kCompactHeaderBytes;
   at.ranks = at.masks + ((nodes + 3) & ~size_t{3});
   at.merged = at.ranks + 4 * blocks;
@@ -55,7 +60,7 @@ constexpr Sections sections_of(const CompactShape& shape) {
 
 // Grows `box` (all zero at first) by what is solid in the node of `level` at `corner`: all of it for mask 0,
 // else the voxels of a level-1 mask.
-constexpr void grow_bounds(VoxelBox* box, const Vec3i& corner, int level, unsigned mask) {
+constexpr void grow_box(VoxelBox* box, const Vec3i& corner, int level, unsigned mask) {
   // Which of the lower and upper halves hold a voxel: bits of the mask with that axis' bit of the octant 0
   // or 1.
   constexpr unsigned kUpper[3] = {0xAA, 0xCC, 0xF0};
@@ -80,6 +85,6 @@ constexpr void grow_bounds(VoxelBox* box, const Vec3i& corner, int level, unsign
   }
 }
 
-}  // namespace thimble::compact_header
+}  // namespace thimble
 
 #endif

@@ -3,29 +3,22 @@
 #include "thimble/tree/compact_tree.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "compact_header.h"
 #include "thimble/base/crc32.h"
 
 namespace thimble {
 namespace {
 
-using namespace compact_header;
-
-const char* fault(uint32_t* place, uint32_t where, const char* text) {
-  if (place != nullptr) {
-    *place = where;
-  }
-  return text;
-}
-
 // The header's fields as a shape, or a phrase saying which field is wrong.
-const char* read_header(ConstBytes bytes, CompactShape* shape, uint32_t* place) {
+const char* read_compact_header(ConstBytes bytes, CompactShape* shape, uint32_t* place) {
+  using namespace compact_header;
   if (bytes.size < kCompactHeaderBytes) {
     return fault(place, 0, "shorter than a header");
   }
   const uint8_t* base = bytes.data;
-  if (bits::load32(base) != kMagic) {
-    return fault(place, 0, "not a compact tree of this version");
+  if (const uint32_t differ = bits::load32(base) ^ kMagic) {
+    return fault(place, 0, (differ & kMagicMask) == 0 ? kAnotherVersion : "not a compact tree");
   }
   shape->level = base[kLevelOffset];
   shape->rank_shift = base[kRankShiftOffset];
@@ -66,8 +59,9 @@ const char* read_header(ConstBytes bytes, CompactShape* shape, uint32_t* place) 
 }  // namespace
 
 Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
+  using namespace compact_header;
   CompactShape shape;
-  if (read_header(bytes, &shape, nullptr) != nullptr) {
+  if (read_compact_header(bytes, &shape, nullptr) != nullptr) {
     return Status::kDamaged;
   }
   const uint8_t* base = bytes.data;
@@ -84,7 +78,7 @@ Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
     result.bounds_.low[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
     result.bounds_.high[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
   }
-  const Sections sections = sections_of(shape);
+  const CompactSections sections = sections_of(shape);
   result.masks_ = base + sections.masks;
   result.ranks_ = base + sections.ranks;
   if (shape.merged) {
@@ -101,9 +95,11 @@ Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
 }
 
 uint64_t CompactTree::voxel_count() const {
+  using namespace compact_header;
   return base_ == nullptr ? 0 : bits::load64(base_ + kVoxelCountOffset);
 }
 uint64_t CompactTree::solid_added() const {
+  using namespace compact_header;
   return base_ == nullptr ? 0 : bits::load64(base_ + kSolidAddedOffset);
 }
 
@@ -156,8 +152,9 @@ uint8_t CompactTree::voxel_material(uint32_t number) const {
 }
 
 const char* CompactTree::validate(ConstBytes bytes, uint32_t* place) {
+  using namespace compact_header;
   CompactShape shape;
-  if (const char* text = read_header(bytes, &shape, place)) {
+  if (const char* text = read_compact_header(bytes, &shape, place)) {
     return text;
   }
   const uint8_t* base = bytes.data;
@@ -215,7 +212,7 @@ const char* CompactTree::validate(ConstBytes bytes, uint32_t* place) {
   // Volume and bounds, depth first; the structure is sound by now.
   uint64_t volume = 0;
   VoxelBox bounds;
-  struct Frame {
+  struct OpenNode {
     uint32_t first_child;
     uint8_t mask;
     uint8_t next;
@@ -230,14 +227,14 @@ const char* CompactTree::validate(ConstBytes bytes, uint32_t* place) {
         const uint8_t mask = tree.masks_[node];
         if (mask == 0 || level == 1) {
           volume += mask == 0 ? uint64_t{1} << (3 * level) : bits::popcount8(mask);
-          grow_bounds(&bounds, corner, level, mask);
+          grow_box(&bounds, corner, level, mask);
           arrive = false;
           ++level;
           continue;
         }
         stack[level] = {tree.first_child(node), mask, 0};
       }
-      Frame& frame = stack[level];
+      OpenNode& frame = stack[level];
       while (frame.next < 8 && ((frame.mask >> frame.next) & 1) == 0) {
         ++frame.next;
       }

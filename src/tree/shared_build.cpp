@@ -9,8 +9,6 @@
 namespace thimble {
 namespace {
 
-using namespace shared_header;
-
 // Walks over a compact tree's nodes from the root down in Morton order. All counts are made from the masks,
 // level by level, so that a damaged tree can neither lead outside nor round in circles: each node is visited
 // once.
@@ -145,14 +143,14 @@ class NodeTable {
 
   // As a visitor of the walk.
   void enter(int level, uint8_t mask) {
-    Frame& frame = frames_[level];
-    frame = Frame{};
+    OpenNode& frame = frames_[level];
+    frame = OpenNode{};
     frame.mask = mask;
   }
   void block(int level, bool merged, uint8_t) { add(level + 1, 0, merged, 1); }
   void voxels(uint8_t mask, uint32_t) { add(2, mask, false, bits::popcount8(mask)); }
   bool leave(int level) {
-    const Frame& frame = frames_[level];
+    const OpenNode& frame = frames_[level];
     const uint32_t* children = way_ + 8 * level;
     const uint32_t head =
         uint32_t{frame.mask} | uint32_t{frame.merged} << 8 | static_cast<uint32_t>(level) << 16;
@@ -215,7 +213,7 @@ class NodeTable {
   uint32_t* record(uint32_t number) const { return records_ + (number - 1); }
 
  private:
-  struct Frame {
+  struct OpenNode {
     uint32_t leaves = 0;
     uint8_t mask = 0;
     uint8_t merged = 0;  // octants that are merged blocks
@@ -241,7 +239,7 @@ class NodeTable {
   }
   // Another child of the node of `level` that the walk is in.
   void add(int level, uint32_t child, bool merged, uint32_t leaves) {
-    Frame& frame = frames_[level];
+    OpenNode& frame = frames_[level];
     if (merged) {
       // The octant is that of the set bit of the mask which this child is.
       uint32_t left = frame.mask;
@@ -262,7 +260,7 @@ class NodeTable {
   uint32_t capacity_ = 0;
   uint32_t used_ = 0;
   uint32_t count_ = 0;
-  Frame frames_[kMaxLevel + 2];
+  OpenNode frames_[kMaxLevel + 2];
 };
 
 // The materials, as they come.
@@ -338,6 +336,7 @@ uint8_t* write_node(const NodeTable& table, const Layout& layout, const uint32_t
 // All but magic and checksum, and the list of levels.
 void write_header(const CompactTree& tree, const NodeTable& table, const Layout& layout, uint32_t leaves,
                   size_t size, uint8_t* base) {
+  using namespace shared_header;
   const int level = tree.level();
   bits::store32(base, kMagic);
   base[kLevelOffset] = static_cast<uint8_t>(level);
@@ -372,6 +371,7 @@ void write_header(const CompactTree& tree, const NodeTable& table, const Layout&
 
 Status SharedTree::make(const CompactTree& tree, Bytes out, Bytes work, SharedTree* shared,
                         SharedBuild* build) {
+  using namespace shared_header;
   NodeTable table;
   if (!table.init(work)) {
     return Status::kOutOfMemory;

@@ -6,9 +6,12 @@
 
 #include "thimble/tree/shared_tree.h"
 
-namespace thimble::shared_header {
+namespace thimble {
 
-inline constexpr uint32_t kMagic = 0x01474D54;  // "TMG", then the version, 1
+namespace shared_header {
+
+inline constexpr uint32_t kMagic = 0x01474D54;      // "TMG", then the version, 1
+inline constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
 inline constexpr uint32_t kLevelOffset = 4;
 inline constexpr uint32_t kLinkBytesOffset = 5;
 inline constexpr uint32_t kFlagsOffset = 6;
@@ -32,11 +35,13 @@ inline constexpr unsigned kManyMaterialsFlag = 1;
 inline constexpr unsigned kMergedFlag = 2;
 inline constexpr unsigned kKnownFlags = kManyMaterialsFlag | kMergedFlag;
 
+}  // namespace shared_header
+
 // Bytes that hold every number up to `most`, 1 .. 4.
 constexpr unsigned bytes_for(uint32_t most) {
   return most < 0x100U ? 1 : most < 0x10000U ? 2 : most < 0x1000000U ? 3 : 4;
 }
 
-}  // namespace thimble::shared_header
+}  // namespace thimble
 
 #endif

@@ -3,29 +3,22 @@
 #include "thimble/tree/shared_tree.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "shared_header.h"
 #include "thimble/base/crc32.h"
 
 namespace thimble {
 namespace {
 
-using namespace shared_header;
-
-const char* fault(uint32_t* place, uint32_t where, const char* text) {
-  if (place != nullptr) {
-    *place = where;
-  }
-  return text;
-}
-
 // What is wrong with the header, or nullptr. Everything that later reads rely on is looked at here.
 const char* header_fault(ConstBytes bytes, uint32_t* place) {
+  using namespace shared_header;
   if (bytes.size < kSharedHeaderBytes) {
     return fault(place, 0, "shorter than a header");
   }
   const uint8_t* base = bytes.data;
-  if (bits::load32(base) != kMagic) {
-    return fault(place, 0, "not a shared tree of this version");
+  if (const uint32_t differ = bits::load32(base) ^ kMagic) {
+    return fault(place, 0, (differ & kMagicMask) == 0 ? kAnotherVersion : "not a shared tree");
   }
   const int level = base[kLevelOffset];
   if (level < kMinLevel || level > kMaxLevel) {
@@ -74,6 +67,7 @@ const char* header_fault(ConstBytes bytes, uint32_t* place) {
 }  // namespace
 
 Status SharedTree::open(ConstBytes bytes, SharedTree* tree) {
+  using namespace shared_header;
   if (header_fault(bytes, nullptr) != nullptr) {
     return Status::kDamaged;
   }
@@ -105,9 +99,11 @@ Status SharedTree::open(ConstBytes bytes, SharedTree* tree) {
 }
 
 uint64_t SharedTree::voxel_count() const {
+  using namespace shared_header;
   return base_ == nullptr ? 0 : bits::load64(base_ + kVoxelCountOffset);
 }
 uint64_t SharedTree::solid_added() const {
+  using namespace shared_header;
   return base_ == nullptr ? 0 : bits::load64(base_ + kSolidAddedOffset);
 }
 
@@ -233,6 +229,7 @@ uint8_t SharedTree::material(const Vec3i& voxel) const {
 }
 
 const char* SharedTree::validate(ConstBytes bytes, Bytes work, uint32_t* place) {
+  using namespace shared_header;
   if (const char* text = header_fault(bytes, place)) {
     return text;
   }

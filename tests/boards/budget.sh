@@ -29,7 +29,7 @@ found=$(grep -Ex "$forbidden" "$symbols" | tr '\n' ' ' || true)
 
 IFS=, read -r _ _ flash ram stack _ <"$work/$app.memory.csv"
 painted=$(sed -n 's/^stack: \([0-9]*\) of [0-9]* bytes used.*/\1/p' "$log" | tail -n 1)
-graphs=$(find "$work/CMakeFiles/$app.dir" "$work"/CMakeFiles/thimble*.dir -name '*.ci')
+graphs=$(find "$work/CMakeFiles/$app.dir" "$work"/CMakeFiles/thimble*.dir "$work/src" -name '*.ci')
 bound_log=$work/$app.stack
 if "$THIMBLE_FIRMWARE/stack_bound" --image thimble_run thimble_systick "$symbols" $graphs >"$bound_log" 2>"$bound_log.err"; then
   bound=$(head -n 1 "$bound_log")

@@ -29,7 +29,7 @@ for board in $boards; do
   echo "$(($(fact WIDTH_PX) * $(fact HEIGHT_PX))) $board"
 done | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/board.sh" || failed=1
 
-sh "$here/example.sh" "$work/example" || failed=1
+sh "$here/examples.sh" "$work/examples" || failed=1
 case " $boards " in
   *lm3s6965evb*)
     sh "$here/effects.sh" || failed=1

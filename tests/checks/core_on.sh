@@ -35,7 +35,7 @@ mkdir -p "$work"
 # Without -fno-ipa-icf two equal functions share a body and one of them vanishes from the call graph.
 for source in $(find src -name '*.cpp' | sort); do
   object=$(echo "${source#src/}" | tr / _)
-  if ! ${prefix}g++ -std=c++20 $flags -fno-ipa-icf -fcallgraph-info=su,da -Wall -Wextra -Werror -nostdinc++ -Iinclude \
+  if ! ${prefix}g++ -std=c++17 -Wpedantic $flags -fno-ipa-icf -fcallgraph-info=su,da -Wall -Wextra -Werror -nostdinc++ -Iinclude \
     -c "$source" -o "$work/${object%.cpp}.o"; then
     echo "core_on: $source does not compile for $target" >&2
     exit 1

@@ -13,9 +13,10 @@ log=$work/log
 # A small sound tree, made anew for each case.
 fresh() {
   rm -rf "$tree"
-  mkdir -p "$tree/include/thimble" "$tree/src" "$tree/tools" "$tree/platform" "$tree/tests/reference"
+  mkdir -p "$tree/include/thimble/base" "$tree/include/thimble/tree" "$tree/src/base" "$tree/src/tree" \
+    "$tree/tools" "$tree/platform/apps" "$tree/platform/examples" "$tree/tests/reference" "$tree/tests/portable"
   cp "$here/../../.clang-format" "$here/../../.clang-tidy" "$tree/"
-  cat >"$tree/include/thimble/sum.h" <<'H'
+  cat >"$tree/include/thimble/base/sum.h" <<'H'
 /// new float double: words in comments do not count.
 #ifndef THIMBLE_SUM_H
 #define THIMBLE_SUM_H
@@ -28,8 +29,8 @@ int32_t sum(const int32_t* values, int32_t count);
 
 #endif
 H
-  cat >"$tree/src/sum.cpp" <<'C'
-#include "thimble/sum.h"
+  cat >"$tree/src/base/sum.cpp" <<'C'
+#include "thimble/base/sum.h"
 
 namespace thimble {
 int32_t sum(const int32_t* values, int32_t count) {
@@ -41,10 +42,33 @@ int32_t sum(const int32_t* values, int32_t count) {
 }
 }  // namespace thimble
 C
-  printf '#include "thimble/sum.h"\n' >"$tree/tools/tool.cpp"
+  printf '#include "thimble/base/sum.h"\n' >"$tree/tools/tool.cpp"
   printf '#include <vector>\n' >"$tree/tests/reference/judge.cpp"
   printf 'pattern,target,limit_bytes\n*,*,512\n' >"$tree/stack.csv"
+  printf 'hello:\n\t@echo hello\n' >"$tree/Makefile"
+  cat >"$tree/platform/examples/sum.cpp" <<'C'
+// platform/examples/sum.cpp
+#include <stdio.h>
+
+int main() {
+  puts("none");
 }
+C
+  {
+    printf '# [Sum](src/base/sum.cpp)\n\n    make hello   # says so\n    thimble -o made\n    thimble made # a file that is there\n'
+    printf '    thimble --window     # window\n\n```cpp\n'
+    cat "$tree/platform/examples/sum.cpp"
+    printf '```\n'
+  } >"$tree/README.md"
+}
+# What stands for the command: makes what -o names, and wants to find what else is named.
+mkdir -p "$work/bin"
+cat >"$work/bin/thimble" <<'C'
+#!/bin/sh
+case $1 in -o) echo made >"$2" ;; --window) exit 1 ;; *) [ -e "$1" ] ;; esac
+C
+chmod +x "$work/bin/thimble"
+ar rc "$work/libempty.a"
 # Adds to a file of the tree.
 add() { printf '%s\n' "$2" >>"$tree/$1"; }
 check() {
@@ -54,6 +78,8 @@ check() {
       cp "$here/tidy_tree.cmake" "$tree/CMakeLists.txt"
       sh "$here/tidy.sh" "$tree" "$work/tidy" src
       ;;
+    readme_program) sh "$here/readme_program.sh" "$tree" "$work/program" "$work/libempty.a" ;;
+    readme_commands) sh "$here/readme_commands.sh" "$tree" "$work/bin" "$work/commands" ;;
     *) sh "$here/$1.sh" "$tree" ;;
   esac >"$log" 2>&1
 }
@@ -86,72 +112,148 @@ catches() {
 }
 
 fresh
-for name in layering words format headers tidy core.host core.cortex-m0 core.cortex-m3 core.rv32; do
+for name in layering words format headers arduino one_unit tidy core.host core.cortex-m0 core.cortex-m3 core.rv32 sizes links \
+  readme_program readme_commands; do
   passes $name
 done
 
 fresh
-add include/thimble/sum.h '#include <string.h>'
-catches layering 'public header includes more'
-add src/sum.cpp '#include <vector>'
-catches layering 'src includes more'
-add src/secret.h ''
-add tools/tool.cpp '#include "secret.h"'
+add include/thimble/base/sum.h '#include <string.h>'
+catches layering 'the core includes more'
+add src/base/sum.cpp '#include <vector>'
+catches layering 'the core includes more'
+add src/tree/tree.cpp '#include "../base/sum.h"'
+add src/base/sum.h ''
+passes layering
+add src/tree/node.h ''
+add src/base/sum.cpp '#include "../tree/node.h"'
+catches layering 'src/base/ sees only itself and the rooms below it'
+add include/thimble/tree/node.h ''
+add include/thimble/base/sum.h '#include "../tree/node.h"'
+catches layering 'include/thimble/base/ sees only itself'
+add include/thimble/base/vec.h ''
+add include/thimble/base/sum.h '#include "thimble/base/vec.h"'
+catches layering 'from where it stands'
+mkdir -p "$tree/src/attic"
+add src/attic/old.cpp ''
+catches layering 'is no room'
+add src/lone.cpp ''
+catches layering 'stand in rooms'
+add tools/tool.cpp '#include "thimble/base/detail/sum.h"'
+catches layering "the core's own"
+add tools/tool.cpp '#include "../src/base/sum.h"'
 catches layering 'never src'
-add platform/port.cpp '#include "../src/sum.h"'
+add platform/port.cpp '#include "../src/base/sum.h"'
 catches layering 'never src'
 add platform/port.cpp '#include "portable/case.h"'
 catches layering 'platform sees no test'
-mkdir -p "$tree/platform/apps" "$tree/tests/portable"
 add platform/apps/selftest.cpp '#include "portable/case.h"'
-add tests/portable/case.h '#include "thimble/sum.h"'
+add tests/portable/case.h '#include "thimble/base/sum.h"'
 passes layering
 add platform/apps/selftest.cpp '#include "support/heap.h"'
 catches layering 'platform sees no test'
-mkdir -p "$tree/tests/portable"
 add tests/portable/case.h '#include <vector>'
 catches layering 'the cases that run on boards'
-add tests/reference/judge.cpp '#include "thimble/sum.h"'
+add tests/reference/judge.cpp '#include "thimble/base/sum.h"'
 catches layering 'shares no code'
 
+# lines COUNT TEXT
+lines() {
+  awk -v count="$1" -v text="$2" 'BEGIN { for (i = 0; i < count; ++i) print text }'
+}
+add tools/tool.cpp "$(lines 800 '// nothing')"
+catches sizes 'longer than 800 lines'
+add tools/CMakeLists.txt "$(lines 121 '# nothing')"
+catches sizes 'longer than 120 lines'
+add README.md "$(lines 150 nothing)"
+catches sizes 'longer than 150 lines'
+add README.md "$(lines 23 'five ' | tr -d '\n')"
+catches sizes 'wider than 110 columns'
+add README.md "$(lines 55 'é ' | tr -d '\n')"
+passes sizes
+# 98 lines between its first and its last are a hundred; what stands around a function does not count.
+long_function() {
+  add src/base/sum.cpp "namespace a { struct S { $(lines 60 'int g() const;')"
+  add src/base/sum.cpp "  S(const char* text)
+      : a{text},
+        b{'{'} {"
+  add src/base/sum.cpp "$(lines "$1" '    if (a) { f("}"); }')"
+  add src/base/sum.cpp "  }
+$(lines 60 'int g() const;')
+}; }"
+}
+long_function 96
+passes sizes
+long_function 97
+catches sizes 'longer than 100 lines'
+add README.md '[There](src/gone.cpp#here)'
+catches links 'src/gone.cpp'
+add platform/examples/sum.cpp '// more'
+catches readme_program 'is not the text of'
+sed -i 's/none/many/' "$tree/README.md"
+catches readme_program 'is not the text of'
+sed -i 's/puts/put/' "$tree/README.md" "$tree/platform/examples/sum.cpp"
+catches readme_program 'does not compile'
+sed -i 's/sum\.cpp$/gone.cpp/' "$tree/README.md"
+catches readme_program 'not there'
+sed -i 's/^```cpp/```/' "$tree/README.md"
+catches readme_program 'blocks of C++'
+add README.md '    thimble gone.vox   # a scene'
+catches readme_commands 'thimble gone.vox'
+add README.md '    make unheard-of'
+catches readme_commands 'make unheard-of'
+
 for fault in 'float x;' 'int* p = new int;' 'auto y = std::move(x);' 'virtual void f();' '/* a */ double z; // b'; do
-  add src/sum.cpp "$fault"
+  add src/base/sum.cpp "$fault"
   catches words 'must do without'
 done
-add src/sum.cpp 'int   x   ;'
+add src/base/sum.cpp 'int   x   ;'
 catches format 'make format'
 add include/thimble/lone.h 'inline thimble::Vec3i zero() { return {}; }'
 catches headers 'lone.h does not compile alone'
-add src/sum.cpp 'int* nothing() { return 0; }'
+add include/thimble/lone.h 'struct Low { bool operator==(const Low&) const = default; };'
+catches headers 'lone.h does not compile alone'
+add include/thimble/lone.h 'struct Range { int LOW; };'
+catches arduino 'after Arduino'
+add include/thimble/lone.h 'struct Range { int max() const; };'
+catches arduino 'after Arduino'
+add include/thimble/lone.h 'template <int B1> struct Counted {};'
+catches arduino 'after Arduino'
+add src/base/sum.cpp 'namespace { struct Frame { int left; }; int width(Frame frame) { return frame.left; } } int a() { return width({1}); }'
+add src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame) { return frame.top; } } int b() { return height({2}); }'
+catches one_unit 'one translation unit'
+add src/base/sum.cpp 'int* nothing() { return 0; }'
 catches tidy 'nullptr'
 
 for target in host cortex-m0 cortex-m3 rv32; do
-  add src/sum.cpp 'extern "C" void* malloc(__SIZE_TYPE__); void* get(unsigned n) { return malloc(n); }'
+  add src/base/sum.cpp 'extern "C" void* malloc(__SIZE_TYPE__); void* get(unsigned n) { return malloc(n); }'
   catches core.$target 'needs malloc'
-  add src/sum.cpp 'int counter = 3; int next() { return ++counter; }'
+  add src/base/sum.cpp 'int counter = 3; int next() { return ++counter; }'
   catches core.$target 'no writable data'
-  add src/sum.cpp 'int tally; int next() { return ++tally; }'
+  add src/base/sum.cpp 'int tally; int next() { return ++tally; }'
   catches core.$target 'no writable data'
-  add src/sum.cpp 'int from(); int from() { volatile int x = 1; return x; } extern const int kValue; const int kValue = from();'
+  add src/base/sum.cpp 'int from(); int from() { volatile int x = 1; return x; } extern const int kValue; const int kValue = from();'
   catches core.$target 'run no constructors'
-  add src/sum.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
+  add src/base/sum.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
   catches core.$target 'is recursive'
-  add src/sum.cpp 'int odd(int n); __attribute__((noinline)) int even(int n) { return n == 0 ? 1 : odd(n - 1) + 2; }'
-  add src/sum.cpp '__attribute__((noinline)) int odd(int n) { return n == 0 ? 0 : even(n - 1) + 3; }'
+  add src/base/sum.cpp 'int odd(int n); __attribute__((noinline)) int even(int n) { return n == 0 ? 1 : odd(n - 1) + 2; }'
+  add src/base/sum.cpp '__attribute__((noinline)) int odd(int n) { return n == 0 ? 0 : even(n - 1) + 3; }'
   catches core.$target 'is recursive'
-  add src/sum.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
+  add src/base/sum.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
   catches core.$target 'through a pointer'
-  add src/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
+  add src/base/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
   catches core.$target 'not known when compiling'
-  add src/sum.cpp 'int wide(int n) { volatile int a[200]; a[n] = 1; return a[n + 1]; }'
+  add src/base/sum.cpp 'bool seldom(int n) { if (n == 0) [[unlikely]] { return true; } auto l = [&]<int k>() { return n == k; }; return l.template operator()<3>(); }'
+  catches core.$target 'does not compile'
+  add src/base/sum.cpp 'int wide(int n) { volatile int a[200]; a[n] = 1; return a[n + 1]; }'
   catches core.$target 'the limit is 512'
   printf 'nothing,*,10\n' >"$tree/stack.csv"
   catches core.$target 'no row'
 done
 for target in cortex-m0 cortex-m3 rv32; do
-  add src/sum.cpp 'int64_t divide(int64_t a, int64_t b) { return a / b; }'
+  add src/base/sum.cpp 'int64_t divide(int64_t a, int64_t b) { return a / b; }'
   catches core.$target 'divmod\|divdi3'
-  add src/sum.cpp 'double scale(double a) { return a * 3; }'
+  add src/base/sum.cpp 'double scale(double a) { return a * 3; }'
   catches core.$target 'dmul\|muldf3'
 done
 

@@ -1,8 +1,8 @@
 # The build of selftest.sh's small tree: just enough for clang-tidy to know its flags.
 cmake_minimum_required(VERSION 3.20)
 project(tree LANGUAGES CXX)
-set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-file(GLOB sources src/*.cpp)
+file(GLOB_RECURSE sources src/*.cpp)
 add_library(tree ${sources})
 target_include_directories(tree PRIVATE include)

@@ -113,7 +113,7 @@ struct Plain {
     return a.height == b.height && a.flux[0] == b.flux[0] && a.flux[1] == b.flux[1];
   }
 
-  // The energy that DESIGN.md proves not to grow, times 4096: |q|^2 + k |h|^2 + k q.(Gh).
+  // The energy that src/light/WATER.md proves not to grow, times 4096: |q|^2 + k |h|^2 + k q.(Gh).
   Wide energy(const WaterConfig& config) const {
     const Wide speed = std::int64_t{config.wave_speed_q6} * config.wave_speed_q6;
     Wide sum = 0;
@@ -331,7 +331,7 @@ TEST_CASE("water: disturbed and left alone -> comes to rest exactly flat, and co
 }
 
 TEST_CASE(
-    "water: about to be laid flat -> nothing that can be seen is left, or the bound of DESIGN.md holds") {
+    "water: about to be laid flat -> nothing that can be seen is left, or the bound of WATER.md holds") {
   for (const std::int32_t damping : {0, 4, 24, 200}) {
     for (const std::int32_t speed : {kMinWaveSpeedQ6, 20, kMaxWaveSpeedQ6}) {
       CAPTURE(damping);

@@ -13,7 +13,7 @@
 
 namespace thimble::tests {
 
-/// What opens of a lighting section keeps every limit of lit_scene.h.
+/// What opens of a lighting section keeps every limit of light/scene.h.
 inline const char* use_lighting(const BakedLighting& lighting, int level) {
   const LitScene& scene = lighting.scene;
   const std::int32_t side = 1 << level;

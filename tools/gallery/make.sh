@@ -1,6 +1,7 @@
 #!/bin/sh
-# Renders the pictures of the README into this folder. make.sh THIMBLE DATA_DIR
-# DATA_DIR holds the files named below; stars.xyz is made from the star catalogue as the README shows.
+# Renders the pictures of the READMEs into this folder. make.sh THIMBLE DATA_DIR
+# DATA_DIR holds the files named below; stars.xyz is made from the star catalogue as tools/README.md shows. The scenes of
+# this folder are in the repository; castle.py makes scenes/castle.vox again.
 set -eu
 thimble=$1
 data=$2
@@ -11,17 +12,15 @@ $thimble render spheres --depth 9 $size --eye -130,-300,520 --target 256,256,262
 $thimble render spheres --depth 9 $size --projection orthographic --span 860 -o "$out/spheres-orthographic.png"
 $thimble render cluster:1000000 $size --eye 40,-420,900 --target 512,512,470 --fov 48 -o "$out/cluster.png"
 $thimble render "$data/vox/ephtracy/monu10.vox" $size --shade color --fov 30 -o "$out/monu10.png"
-$thimble render "$data/vox/ephtracy/nature.vox" $size --shade color --fov 30 -o "$out/nature.png"
-$thimble render "$data/vox/ogt/test_groups.vox" $size --shade color --eye 20,-62,48 --target 43,4,25 --fov 52 \
-  -o "$out/test_groups.png"
 $thimble render "$data/mesh/dragon_vrip_res2.ply.gz" --depth 10 $size --shade depth --eye 300,-760,620 \
   --target 512,512,425 --fov 44 -o "$out/dragon.png"
-$thimble render "$data/cloud/building.ply" $size --shade depth --fov 32 -o "$out/building.png"
 $thimble render "$data/nbody/galaxy_littleendian.dat" $size --shade color --eye 100,60,700 --target 256,256,256 \
   -o "$out/galaxy.png"
 $thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --target 512,512,512 --fov 44 -o "$out/stars.png"
-# Lit by what their texts say.
 scenes="$out/scenes"
+$thimble render "$scenes/castle.vox" $size --samples 9 --shade color --effects direct-light,shadows,sky,ambient-occlusion \
+  --eye 2,-118,72 --target 40,40,29 --fov 32 -o "$out/castle.png"
+# Lit by what their texts say.
 for scene in lagoon glass room; do
   $thimble render "$scenes/$scene.scene" $size --samples 9 -o "$out/$scene.png"
 done
@@ -31,14 +30,19 @@ $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
 # What the OLED shows with light, magnified (ImageMagick).
-for picture in demo room; do
-  scene=demo
-  [ $picture = demo ] || scene=$out/scenes/$picture.scene
+$thimble bake "$scenes/castle.vox" --board lm3s6965evb --eye 2,-98,50 --target 40,38,27 --fov 28 \
+  --effects direct-light,shadows,sky --quiet -o "$out/castle.oct" 2>/dev/null
+for picture in castle demo room; do
   effects=auto
-  [ $picture != demo ] || effects=direct-light,shadows
+  case $picture in
+    castle) scene=$out/castle.oct ;;
+    demo) scene=demo effects=direct-light,shadows ;;
+    room) scene=$scenes/room.scene ;;
+  esac
   $thimble sim "$scene" --effects $effects --board lm3s6965evb --display none --frames 2 --quiet --shot "$out/oled-$picture.png" >/dev/null
   convert "$out/oled-$picture.png" -filter point -resize 300% "$out/oled-$picture.png"
 done
+rm "$out/castle.oct"
 $thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 100 --fps 25 --keys "$out/waves.keys" --quiet \
   --record "$out/waves.y4m" >/dev/null
 ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
@@ -46,7 +50,7 @@ ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=l
 rm "$out/waves.y4m"
 # simulator.png is the window of: thimble sim demo
 
-# The studies of the README. Their titles are the names of the files, so they run where these lie.
+# The studies of tools/README.md. Their titles are the names of the files, so they run where these lie.
 plots=$(cd "$out" && pwd)
 case $thimble in */*) thimble=$(cd "$(dirname "$thimble")" && pwd)/$(basename "$thimble") ;; esac
 (

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "thimble/light/baked_lighting.h"
 
@@ -19,6 +20,14 @@ std::uint32_t load32(std::span<const std::uint8_t> bytes, std::size_t at) {
          static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
 }
 
+// `kAnotherVersion`, with what this version does not know.
+InputError another_version(const std::string& unknown) {
+  const std::string_view text = kAnotherVersion;
+  const std::size_t colon = text.find(':');
+  return InputError(std::string(text.substr(0, colon)) + " (" + unknown + ")" +
+                    std::string(text.substr(colon)));
+}
+
 }  // namespace
 
 bool looks_like_oct(std::span<const std::uint8_t> bytes) {
@@ -32,9 +41,8 @@ Source read_oct(const SharedBytes& file, const Progress&) {
     throw InputError("not a scene baked by thimble bake (its first bytes are not TMS)");
   }
   if (bytes.size() > kVersionOffset && bytes[kVersionOffset] != kBakedVersion) {
-    throw InputError("baked in version " + std::to_string(bytes[kVersionOffset]) +
-                     " of the format, this command reads version " + std::to_string(kBakedVersion) +
-                     "; bake it again");
+    throw another_version(std::to_string(bytes[kVersionOffset]) + "; this one reads " +
+                          std::to_string(kBakedVersion));
   }
   if (bytes.size() >= kBakedHeaderBytes && load32(bytes, kSizeOffset) != bytes.size()) {
     throw InputError("holds " + std::to_string(bytes.size()) + " bytes, its header says " +
@@ -44,6 +52,10 @@ Source read_oct(const SharedBytes& file, const Progress&) {
   const ConstBytes view{bytes.data(), bytes.size()};
   std::uint32_t place = 0;
   if (const char* fault = BakedScene::validate(view, &place)) {
+    if (fault == std::string_view(kAnotherVersion)) {
+      throw another_version("with a section of kind " + std::to_string(load32(bytes, place)) +
+                            ", which this one does not know");
+    }
     throw InputError("damaged at " + std::to_string(place) + ": " + fault);
   }
   BakedFile result;
@@ -54,8 +66,11 @@ Source read_oct(const SharedBytes& file, const Progress&) {
   // The core leaves this to whoever draws light; here the whole file must be sound.
   const ConstBytes lighting = result.scene.section(SectionKind::kLighting);
   if (lighting.data != nullptr) {
-    const char* fault = BakedLighting::validate(lighting, result.scene.tree().level(), &place);
-    if (fault != nullptr) {
+    if (const char* fault = BakedLighting::validate(lighting, result.scene.tree().level(), &place)) {
+      if (fault == std::string_view(kAnotherVersion)) {
+        throw another_version("lighting of version " + std::to_string(lighting.data[place]) +
+                              "; this one reads " + std::to_string(kLightingVersion));
+      }
       throw InputError("damaged at " +
                        std::to_string(static_cast<std::size_t>(lighting.data - view.data) + place) + ": " +
                        fault);

@@ -43,8 +43,8 @@ struct Baked {
 };
 
 /// Bakes `source`. With `coarsen` and a limit that the exact tree does not keep, blocks are merged in the
-/// order of law 1 (octree.h) until it does: what is left of the limit is then less than 1/1024 of it, or than
-/// one merge saves. Throws InputError.
+/// order of law 1 (src/LAWS.md) until it does: what is left of the limit is then less than 1/1024 of it, or
+/// than one merge saves. Throws InputError.
 Baked bake_scene(const SceneSource& source, const BakingOptions& options, const Progress& progress = {});
 
 /// What a baked scene is called: a file's name without its folder, a generator as it is written.

@@ -22,7 +22,8 @@
 
 namespace thimble {
 
-/// The version of the format that is written and read.
+/// The version of the format that is written, and the only one that is read. src/FORMAT.md, "Versions", says
+/// when it goes up.
 inline constexpr uint8_t kBakedVersion = 1;
 /// Bytes before the list of sections, and bytes of the list for each of them.
 inline constexpr size_t kBakedHeaderBytes = 16;
@@ -33,7 +34,11 @@ inline constexpr uint32_t kMaxSections = 16;
 inline constexpr size_t kMaxPaletteColors = 256;
 inline constexpr size_t kMaxNameBytes = 255;
 
-/// What a section holds. A reader passes over the kinds that it does not know.
+/// The bit that marks a kind whose section changes no picture. A reader passes over a kind with it that it
+/// does not know, and refuses the scene for an unknown kind without it.
+inline constexpr uint32_t kOptionalKind = uint32_t{1} << 31;
+
+/// What a section holds. 0 is no kind.
 enum class SectionKind : uint32_t {
   kTree = 1,      ///< the compact tree (exactly one)
   kPalette = 2,   ///< r, g, b a material, up to 256
@@ -88,14 +93,14 @@ class BakedScene {
   /// Looks at the header, the list of sections and what each must hold; does not read the tree's nodes, so
   /// its cost does not grow with the scene. A scene that opens is safe to trace, whatever its bytes say.
   /// `bytes` may go on behind the scene.
-  /// Errors, which leave `*scene` as it was: kDamaged (not a baked scene, another version, sections that do
-  /// not lie within the bytes, overlap or are missing, a tree that does not open, a camera that no view could
-  /// be made of).
+  /// Errors, which leave `*scene` as it was: kDamaged (not a baked scene, another version, a section that
+  /// this version does not know and that is not optional, sections that do not lie within the bytes, overlap
+  /// or are missing, a tree that does not open, a camera that no view could be made of).
   static Status open(ConstBytes bytes, BakedScene* scene);
 
   /// Reads every byte once: what `open` looks at, the CRC-32, the tree. Returns nullptr for a sound scene,
-  /// otherwise a short English phrase saying what is wrong. `place` (may be null) gets the offset of the
-  /// field or section concerned, or the number of the tree's node.
+  /// otherwise a short English phrase saying what is wrong (kAnotherVersion among them). `place` (may be
+  /// null) gets the offset of the field or section concerned, or the number of the tree's node.
   static const char* validate(ConstBytes bytes, uint32_t* place = nullptr);
   /// The same for the scene opened: kOk or kDamaged. A board does it at its start.
   Status validate() const { return validate(bytes_) == nullptr ? Status::kOk : Status::kDamaged; }

@@ -15,7 +15,7 @@ enum class [[nodiscard]] Status : uint8_t{
     kOutOfRange,   ///< a coordinate, a direction or a size lies beyond a stated limit
     kBadArgument,  ///< an argument contradicts itself (zero direction, up parallel to the view, no pixels)
     kTooFine,      ///< a picture so fine that its rays could not be kept within 1/8 pixel
-    kDamaged,      ///< bytes that are no valid compact tree
+    kDamaged,      ///< bytes that are not what they should be, or of another version
     kStepLimit,    ///< a ray was stopped by the step limit before its answer was known
 };
 
@@ -39,6 +39,10 @@ constexpr const char* status_text(Status status) {
   }
   return "unknown status";
 }
+
+/// What `validate` says of bytes that are sound as far as it knows, but were written by a version of this
+/// library whose format it does not read. `open` says kDamaged, as of any bytes that it cannot use.
+inline constexpr char kAnotherVersion[] = "made by another version of thimble: bake it again";
 
 }  // namespace thimble
 

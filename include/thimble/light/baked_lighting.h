@@ -18,7 +18,7 @@
 
 namespace thimble {
 
-/// The version of the section that is written and read.
+/// The version of the section that is written, and the only one that is read (src/FORMAT.md, "Versions").
 inline constexpr uint8_t kLightingVersion = 1;
 /// Bytes before the tables of surfaces and lights.
 inline constexpr size_t kLightingHeadBytes = 64;
@@ -30,7 +30,7 @@ size_t lighting_bytes(const LitScene& scene);
 
 struct BakedLighting {
   /// `surfaces` and `lights` lie in the section's bytes; `water` is at rest. Every number is within the
-  /// limits of lit_scene.h.
+  /// limits of scene.h.
   LitScene scene;
   /// What the scene was baked for: the effects that it calls for, or those that somebody chose. A firmware
   /// image reads the same set from the header that `thimble bake` generates, when it is compiled.

@@ -9,7 +9,7 @@
 ///
 /// Every function rounds magnitudes, so mirrored or turned input gives mirrored or turned output. The bounds
 /// named `...Error...` are those of the function against exact arithmetic on the very integers that it is
-/// given; tests/test_optics.cpp sweeps each against long double. Nothing here divides 64 bits. What takes
+/// given; test_optics.cpp sweeps each against long double. Nothing here divides 64 bits. What takes
 /// more than a few dozen instructions says so.
 ///
 /// Sources: Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994 (reflectance); Shirley

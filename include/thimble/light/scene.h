@@ -9,7 +9,7 @@
 ///
 /// Plain data, without a tree: a few numbers a material, a few a light. An effect is a part of the renderer
 /// that can be left out; `effects_of` reads off the data which ones the scene calls for. Everything is in
-/// integers, so a lit picture is the same on every machine (lit_render.h draws it).
+/// integers, so a lit picture is the same on every machine (render.h draws it).
 #ifndef THIMBLE_LIGHT_SCENE_H
 #define THIMBLE_LIGHT_SCENE_H
 
@@ -121,7 +121,10 @@ struct Surface {
   PackedU16 density_q8 = 64;
   /// kEmit: brightness added, 256 = the albedo itself.
   PackedU16 emission_q8 = 256;
-  friend constexpr bool operator==(const Surface&, const Surface&) = default;
+  friend constexpr bool operator==(const Surface& a, const Surface& b) {
+    return a.albedo == b.albedo && a.kind == b.kind && a.roughness == b.roughness && a.mirror == b.mirror &&
+           a.index_q12 == b.index_q12 && a.density_q8 == b.density_q8 && a.emission_q8 == b.emission_q8;
+  }
 };
 static_assert(sizeof(Surface) == 12 && alignof(Surface) == 1);
 inline constexpr uint16_t kMinIndexQ12 = 4096;      ///< 1: vacuum
@@ -142,7 +145,10 @@ struct Light {
   PackedU16 color_q8[3] = {256, 256, 256};
   /// Point: the distance in voxels at which a quarter is left (brightness = color / (1 + d / reach)^2).
   PackedU16 reach = 32;
-  friend constexpr bool operator==(const Light&, const Light&) = default;
+  friend constexpr bool operator==(const Light& a, const Light& b) {
+    return a.is_point == b.is_point && a.place == b.place && a.color_q8[0] == b.color_q8[0] &&
+           a.color_q8[1] == b.color_q8[1] && a.color_q8[2] == b.color_q8[2] && a.reach == b.reach;
+  }
 };
 static_assert(sizeof(Light) == 21 && alignof(Light) == 1);
 
@@ -151,21 +157,27 @@ struct Sky {
   Rgb8 zenith{70, 120, 190};
   Rgb8 horizon{200, 215, 230};
   Rgb8 ground{142, 138, 134};
-  friend constexpr bool operator==(const Sky&, const Sky&) = default;
+  friend constexpr bool operator==(const Sky& a, const Sky& b) {
+    return a.zenith == b.zenith && a.horizon == b.horizon && a.ground == b.ground;
+  }
 };
 
 struct Fog {
   Rgb8 color{200, 205, 210};
   /// Light halves `density_q16 / 65536` times a voxel; 0 is no fog.
   uint32_t density_q16 = 0;
-  friend constexpr bool operator==(const Fog&, const Fog&) = default;
+  friend constexpr bool operator==(const Fog& a, const Fog& b) {
+    return a.color == b.color && a.density_q16 == b.density_q16;
+  }
 };
 
 struct Occlusion {
   uint8_t rays = 0;        ///< 0 (none), 4, 8, 16 or 32 a hit, in a fixed pattern round the face
   uint8_t strength = 255;  ///< 255: a closed pit is black
   uint16_t reach = 8;      ///< voxels; what is farther away does not darken
-  friend constexpr bool operator==(const Occlusion&, const Occlusion&) = default;
+  friend constexpr bool operator==(const Occlusion& a, const Occlusion& b) {
+    return a.rays == b.rays && a.strength == b.strength && a.reach == b.reach;
+  }
 };
 
 /// Everything besides tree, camera and `Shading`. A default one is a plain scene: `effects_of` gives none.

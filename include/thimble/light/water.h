@@ -28,8 +28,8 @@
 ///
 /// A step is one unit of time; a column is one voxel wide. Waves run with `wave_speed_q6` columns a step. The
 /// scheme is staggered (fluxes first, from the heights; then heights, from the fluxes), its energy in the
-/// sense of `src/DESIGN.md` never grows whatever the rounding, and a mirrored or turned world stays the exact
-/// image of the other. All of it is integers: the same calls give the same `state_crc32` on every machine.
+/// sense of src/light/WATER.md never grows whatever the rounding, and a mirrored or turned world stays the
+/// exact image of the other. All are integers: the same calls give one `state_crc32` on every machine.
 ///
 /// Blocked columns (islands, walls) hold no water and reflect, as the border does. No volume passes between
 /// basins that they part.
@@ -193,9 +193,9 @@ class Water {
   void step();
   /// Whether every column is at the rest level and nothing flows. Once all heights are within 1/1024 voxel of
   /// the rest level and all fluxes below that a step, or the last two steps have taken nothing from the
-  /// energy any more, the water is laid to rest exactly: flat, at the level of `init`, volume kept. What is
-  /// laid flat is less than can be seen in the first case and bounded by DESIGN.md in the second. With
-  /// damping 0 that may take for ever.
+  /// energy any more, the water is laid to rest exactly: flat, at the level of `make`, volume kept. What is
+  /// laid flat is less than can be seen in the first case and bounded by src/light/WATER.md in the second.
+  /// With damping 0 that may take for ever.
   bool is_still() const { return still_; }
   /// Steps that did something, and columns whose height they worked out.
   uint32_t steps_done() const { return steps_done_; }

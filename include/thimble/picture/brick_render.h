@@ -11,9 +11,9 @@
 /// sizes. Cheapest are bands of many rows that start at a multiple of kBrickTilePx, in pictures whose width
 /// is a multiple of 16. kDepth costs a division a pixel.
 ///
-/// Cost: some 360 instructions a pixel on a Cortex-M3, 650 on a Cortex-M0 (src/DESIGN.md, "Frames on a
-/// chip"). Stack: 3 KiB (tests/budgets/stack.csv), most of it colours and the state of a tile. Code: some 45
-/// KB.
+/// Cost: some 360 instructions a pixel on a Cortex-M3, 650 on a Cortex-M0 (src/picture/README.md,
+/// "Frames on a chip"). Stack: 3 KiB (tests/budgets/stack.csv), most of it colours and the state of a tile.
+/// Code: some 45 KB.
 #ifndef THIMBLE_PICTURE_BRICK_RENDER_H
 #define THIMBLE_PICTURE_BRICK_RENDER_H
 

@@ -27,8 +27,8 @@
 /// Everything is integers, so the same calls give the same state (`state_crc32`) on every machine. A world
 /// that is mirrored or turned by quarters, with the same balls by the same numbers, stays the exact image of
 /// the other (give odd positions in Q16: see `spawn`). A single world that is its own mirror image does not
-/// stay so once balls meet on the mirror line, because balls move one after the other; src/DESIGN.md says
-/// more, and where the constants below come from.
+/// stay so once balls meet on the mirror line, because balls move one after the other; src/plane/PARTICLES.md
+/// says more, and where the constants below come from.
 #ifndef THIMBLE_PLANE_PARTICLES_H
 #define THIMBLE_PLANE_PARTICLES_H
 

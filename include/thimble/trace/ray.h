@@ -3,7 +3,7 @@
 ///
 /// A point of the ray is origin + t * direction, t >= 0, in voxels. The origin is given in 1/256 voxel, the
 /// direction in integers; that is the whole definition, so the answer is a fact of integer arithmetic and the
-/// same on every machine (DESIGN.md, "A ray").
+/// same on every machine (src/trace/README.md, "A ray").
 ///
 /// Voxel (i,j,k) is the half-open box [i,i+1) x [j,j+1) x [k,k+1). A ray hits a solid voxel when it spends a
 /// positive length inside; it does not hit what it touches in a point only. A ray that runs within a face or

@@ -6,8 +6,8 @@
 /// tree; the tree is asked only for the material of what was hit, and only in bricks that show more than one.
 ///
 /// Like the tree, a map is bytes: position-independent, little-endian, baked into flash or built at start in
-/// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout, src/DESIGN.md,
-/// "Frames on a chip", the reasons.
+/// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout,
+/// src/picture/README.md, "Frames on a chip", the reasons.
 ///
 /// What it does not do: change with the tree (build it anew), or serve worlds beyond level 8.
 #ifndef THIMBLE_TREE_BRICK_MAP_H
@@ -52,8 +52,8 @@ class BrickMap {
 
   /// Looks at `bytes` (at least the map; more may follow), which start at a multiple of 8. Reads the header
   /// and the directory, about ten instructions a cell: from then on nothing outside the bytes is read,
-  /// whatever the rest of them holds (law 4). `kDamaged` for bytes that are no map, `kBadArgument` for an
-  /// odd address; `map` is then as it was.
+  /// whatever the rest of them holds (src/LAWS.md, law 4). `kDamaged` for bytes that are no map,
+  /// `kBadArgument` for an odd address; `map` is then as it was.
   static Status open(ConstBytes bytes, BrickMap* map);
 
   /// Reads every byte once. Returns nullptr for a sound map, otherwise a short English phrase.

@@ -61,7 +61,7 @@ constexpr size_t compact_bytes(const CompactShape& shape) {
 /// A view of a compact tree's bytes, which outlive it. Copy it freely.
 ///
 /// `open` checks the header and that all sections lie within the bytes: from then on tracing reads nothing
-/// outside them and ends, whatever they hold (law 4). Whether the picture is right is `validate`'s question.
+/// outside them and ends, whatever they hold (src/LAWS.md, law 4). `validate` says if all is right.
 class CompactTree {
  public:
   CompactTree() = default;
@@ -108,7 +108,7 @@ class CompactTree {
   uint32_t node_count() const { return node_count_; }
   /// Solid volume in voxels, merged blocks included.
   uint64_t voxel_count() const;
-  /// Voxels that coarsening added (law 1), 0 for an exact tree.
+  /// Voxels that coarsening added (src/LAWS.md, law 1), 0 for an exact tree.
   uint64_t solid_added() const;
   bool many_materials() const { return materials_ != nullptr; }
   bool merged() const { return merged_bits_ != nullptr; }

@@ -74,9 +74,9 @@ struct SharedBuild {
 
 /// A view of a shared tree's bytes, which outlive it. Copy it freely.
 ///
-/// `open` checks the header; whatever the other bytes hold, tracing reads nothing outside them and ends (law
-/// 4): every link is compared with the bytes that hold nodes, and each step goes down one level. Whether the
-/// picture is right is `validate`'s question.
+/// `open` checks the header; whatever the other bytes hold, tracing reads nothing outside them and ends
+/// (src/LAWS.md, law 4): every link is compared with the bytes that hold nodes, and each step goes down one
+/// level. Whether the picture is right is `validate`'s question.
 class SharedTree {
  public:
   SharedTree() = default;
@@ -116,7 +116,7 @@ class SharedTree {
   uint32_t leaf_count() const { return leaf_count_; }
   /// Solid volume in voxels, merged blocks included.
   uint64_t voxel_count() const;
-  /// Voxels that coarsening added (law 1), 0 for an exact tree.
+  /// Voxels that coarsening added (src/LAWS.md, law 1), 0 for an exact tree.
   uint64_t solid_added() const;
   bool many_materials() const { return materials_ != nullptr; }
   bool merged() const { return merged_bytes_ != 0; }

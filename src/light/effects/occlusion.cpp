@@ -22,7 +22,7 @@ void occlude(Frame& frame, const Spot& spot, Color* light) {
     if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
       // All directions of the pattern have one length, 7 bits; the numerator has 23.
       // A face is only entered along its axis; inside a voxel t is 0, whatever it is divided by.
-      const uint32_t along = hit.axis < 0 ? 0 : absolute(ray.direction[hit.axis]);
+      const uint32_t along = hit.axis < 0 ? 0 : magnitude_32(ray.direction[hit.axis]);
       const uint32_t component = along == 0 ? 1 : along;
       const uint32_t distance_q8 = static_cast<uint32_t>(hit.t_numerator) * kOcclusionLength / component;
       const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;

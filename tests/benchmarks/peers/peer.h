@@ -28,7 +28,7 @@ inline constexpr Voxel kNoVoxel{UINT16_MAX, UINT16_MAX, UINT16_MAX};
 
 /// A camera, and where its greys begin and end.
 struct View {
-  wide::Frame frame;
+  wide::WideFrame frame;
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
   float depth_per_t = 0;  ///< in 1/256 voxel
@@ -52,7 +52,7 @@ struct FloatRay {
 inline FloatRay ray_of(const View& view, std::int32_t x, std::int32_t y) {
   // Adding and taking off 1.5 * 2^23 rounds to the nearest integer.
   constexpr float kRounder = 12582912.0F;
-  const wide::Frame& frame = view.frame;
+  const wide::WideFrame& frame = view.frame;
   const auto column = static_cast<float>(x);
   const auto row = static_cast<float>(y);
   FloatRay ray;

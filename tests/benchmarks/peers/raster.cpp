@@ -28,7 +28,7 @@ class Raster : public Peer {
   struct Reach {
     float x, y;
   };
-  static Reach reach_of(const wide::Frame& frame, float column, float row, float per_depth) {
+  static Reach reach_of(const wide::WideFrame& frame, float column, float row, float per_depth) {
     const float k = 0.5F * per_depth + frame.per_direction * (1 + frame.half_w * per_depth);
     const float r = k * frame.norm_w;
     if (!frame.perspective || r > 0.125F) {
@@ -48,7 +48,7 @@ class Raster : public Peer {
 
   template <bool kPerspective>
   void draw_boxes(const View& view, std::uint8_t* gray, Voxel* ids) {
-    const wide::Frame& frame = view.frame;
+    const wide::WideFrame& frame = view.frame;
     const auto last_x = static_cast<float>(view.width_px - 1);
     const auto last_y = static_cast<float>(view.height_px - 1);
     for (const Voxel voxel : voxels_) {

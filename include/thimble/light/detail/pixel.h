@@ -1,5 +1,5 @@
 /// @file pixel.h
-/// The parts of lit_render.h: one function an effect, and the loop over the rays of a pixel that calls those
+/// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
 /// which the set names. Not for callers; it is public because the loop is compiled with the caller's set.
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
@@ -109,7 +109,10 @@ struct Medium {
   enum Kind : uint8_t { kAir, kSolid, kWaterBody };
   Kind kind = kAir;
   uint8_t material = 0;
-  friend constexpr bool operator==(const Medium&, const Medium&) = default;
+  friend constexpr bool operator==(const Medium& a, const Medium& b) {
+    return a.kind == b.kind && a.material == b.material;
+  }
+  friend constexpr bool operator!=(const Medium& a, const Medium& b) { return !(a == b); }
 };
 
 /// Where a stretch of a ray ends.

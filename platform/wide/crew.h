@@ -1,0 +1,43 @@
+/// @file crew.h
+/// The threads of one frame at work.
+#ifndef THIMBLE_PLATFORM_WIDE_CREW_H
+#define THIMBLE_PLATFORM_WIDE_CREW_H
+
+#include "wide/painter.h"
+#include "wide/renderer.h"
+#include "wide/tile_drawer.h"
+#include "wide/tiles.h"
+#include "wide/workspace.h"
+
+namespace thimble::wide {
+
+/// Draws and paints a frame, either tile by tile in one picture, or with a picture for each thread.
+class Crew {
+ public:
+  /// `threads`: null for the calling one alone.
+  Crew(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter, const Workspace& workspace)
+      : threads_(threads), task_(task), painter_(painter), workspace_(workspace) {}
+
+  /// Every thread draws and paints tiles, then parts of others' tiles, until there are none. Returns how many
+  /// pixels hold anything. `splits`: how many parts changed hands.
+  uint64_t draw_tiles(const Tiles& tiles, uint32_t* splits) const;
+  /// Every thread draws its share of the list in a picture of its own; then these are merged and painted.
+  /// Returns how many pixels hold anything.
+  uint64_t draw_copies() const;
+  /// What all threads counted.
+  Counts counts() const;
+
+ private:
+  int thread_count() const { return threads_ == nullptr ? 1 : threads_->count(); }
+  uint64_t draw_some(const Tiles& tiles, int thread, TileDrawer::Others* others) const;
+  uint64_t merge_and_paint(int part) const;
+
+  Threads* threads_;
+  const TileDrawer::Task& task_;
+  const TilePainter& painter_;
+  const Workspace& workspace_;
+};
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,299 @@
+/// @file large-inl.h
+/// Draws boxes that cover many pixels, row by row.
+#if defined(THIMBLE_WIDE_KERNELS_LARGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef THIMBLE_WIDE_KERNELS_LARGE_INL_H_
+#undef THIMBLE_WIDE_KERNELS_LARGE_INL_H_
+#else
+#define THIMBLE_WIDE_KERNELS_LARGE_INL_H_
+#endif
+
+#include "wide/exact.h"
+#include "wide/kernels.h"
+#include "wide/kernels/pairs-inl.h"
+#include "wide/kernels/project-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace thimble::wide::HWY_NAMESPACE {
+namespace {
+
+// The test of one vector of pixels of a row.
+struct RowTest {
+  uint32_t* word;  // of coverage, which holds the pixels from bit `shift` on
+  uint32_t shift;
+  size_t first;           // where the first pixel is in Depths::nearest
+  uint32_t hits;          // a bit a pixel: those that floats say are hit
+  bool same;              // whether their rays all run the same way; mostly they do
+  uint32_t down;          // then which way, else anything
+  uint32_t axis_down[3];  // the hits whose rays run downwards along an axis
+
+  HWY_INLINE void set_directions(const Aims& aims) {
+    const F32 d;
+    same = true;
+    down = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      axis_down[axis] = bits_of(d, hn::Lt(aims.direction[axis], hn::Zero(d))) & hits;
+      same = same && (axis_down[axis] == 0 || axis_down[axis] == hits);
+      down |= axis_down[axis] != 0 ? 1U << axis : 0U;
+    }
+  }
+  HWY_INLINE uint32_t down_of(uint32_t lane) const {
+    return (axis_down[0] >> lane & 1U) | (axis_down[1] >> lane & 1U) << 1 | (axis_down[2] >> lane & 1U) << 2;
+  }
+};
+
+// A box that covers many pixels, and how hits on it are written straight into the picture.
+template <bool kGray>
+class LargeBox {
+ public:
+  HWY_INLINE LargeBox(uint32_t entry, uint32_t number, const Depths& depths, Batch* batch)
+      : depths_(depths), batch_(batch), entry_(entry), number_(number) {}
+
+  // Tests pixels in integers that floats could not tell: those of the row from column `x` on in `unclear`.
+  HWY_INLINE void put_unclear(const WideFrame& frame, int32_t x, int32_t y, uint32_t unclear,
+                              const RowTest& test) {
+    for (; unclear != 0; unclear &= unclear - 1) {
+      const int32_t lane = __builtin_ctz(unclear);
+      uint32_t key = 0;
+      uint32_t down = 0;
+      ++batch_->counts.exact;
+      const Ray ray = frame.camera.ray(x + lane, y);
+      if (hits_exactly(ray, entry_, batch_->corner, &key, &down)) {
+        const uint8_t gray =
+            kGray ? gray_exactly(frame.camera, *depths_.shading, ray, entry_, batch_->corner) : uint8_t{0};
+        put(test, static_cast<uint32_t>(lane),
+            kGray ? mirrored_sum(entry_, down) : value_of(*batch_, key, down, number_), gray);
+        ++batch_->counts.hits;
+      }
+    }
+  }
+
+  // Writes hits with their greys, where sums of mirrored coordinates decide which voxel is nearer.
+  HWY_INLINE void put_grays(const RowTest& test, const uint8_t* grays) {
+    HWY_ALIGN uint32_t sums[64];
+    if (test.same) {
+      find_value(test.down);
+    }
+    for (uint32_t left = test.same ? 0 : test.hits; left != 0; left &= left - 1) {
+      const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(left));
+      sums[lane] = static_cast<uint32_t>(value_for(test.down_of(lane)));
+    }
+    const U32 du;
+    const hn::Rebind<uint8_t, U32> bytes;
+    const hn::Rebind<uint16_t, U32> shorts;
+    uint8_t* const to_gray = depths_.gray + test.first;
+    uint16_t* const to_sum = depths_.nearest_sum + test.first;
+    const auto sum = test.same ? hn::Set(du, static_cast<uint32_t>(value_)) : hn::Load(du, sums);
+    const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, to_gray)), hn::Zero(du));
+    const auto before = hn::PromoteTo(du, hn::LoadU(shorts, to_sum));
+    const auto is_less = hn::Or(is_new, hn::Lt(sum, before));
+    const uint32_t taken = test.hits & bits_of(du, is_less);
+    const uint8_t mask_bits[8] = {static_cast<uint8_t>(taken), static_cast<uint8_t>(taken >> 8),
+                                  static_cast<uint8_t>(taken >> 16), static_cast<uint8_t>(taken >> 24)};
+    hn::BlendedStore(hn::DemoteTo(shorts, hn::BitCast(I32(), sum)), hn::LoadMaskBits(shorts, mask_bits),
+                     shorts, to_sum);
+    hn::BlendedStore(hn::Load(bytes, grays), hn::LoadMaskBits(bytes, mask_bits), bytes, to_gray);
+    if (depths_.marks) {
+      *test.word |= test.hits << test.shift;
+    }
+  }
+
+  // Writes hits where values of Depths::nearest decide.
+  HWY_INLINE void put_values(const RowTest& test) {
+    const U64 d64;
+    const int32_t lanes = static_cast<int32_t>(hn::Lanes(F32()));
+    const int32_t lanes64 = static_cast<int32_t>(hn::Lanes(d64));
+    const uint32_t before = *test.word >> test.shift & test.hits;
+    if (test.same && before == 0) {
+      find_value(test.down);
+      *test.word |= test.hits << test.shift;
+      const auto values = hn::Set(d64, value_);
+      for (int32_t part = 0; part < lanes; part += lanes64) {
+        const uint8_t mask_bits[8] = {static_cast<uint8_t>(test.hits >> part & ((1U << lanes64) - 1))};
+        hn::BlendedStore(values, hn::LoadMaskBits(d64, mask_bits), d64,
+                         depths_.nearest + test.first + static_cast<size_t>(part));
+      }
+      return;
+    }
+    for (uint32_t left = test.hits; left != 0; left &= left - 1) {
+      const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(left));
+      put(test, lane, value_for(test.down_of(lane)), 0);
+    }
+  }
+
+ private:
+  uint64_t value_for(uint32_t down) const {
+    if (kGray) {
+      return uint64_t{mirrored_sum(entry_, down)};
+    }
+    const uint32_t corner[3] = {x_of(entry_), entry_ >> 10 & kWithin, entry_ >> 20 & kWithin};
+    return value_of(*batch_, mirrored_key(corner, level_of(entry_), down), down, number_);
+  }
+  // Sets value_, which mostly is the last one's.
+  HWY_INLINE void find_value(uint32_t down) {
+    if (down != known_down_) {
+      known_down_ = down;
+      value_ = value_for(down);
+    }
+  }
+
+  // Writes the pixel of one lane where the value is less than what is there.
+  HWY_INLINE void put(const RowTest& test, uint32_t lane, uint64_t value, uint8_t gray) const {
+    const uint32_t bit = uint32_t{1} << (test.shift + lane);
+    const size_t at = test.first + lane;
+    if (kGray) {
+      if (depths_.gray[at] == 0 || value < depths_.nearest_sum[at]) {
+        depths_.nearest_sum[at] = static_cast<uint16_t>(value);
+        depths_.gray[at] = gray;
+      }
+    } else if ((*test.word & bit) == 0 || value < depths_.nearest[at]) {
+      depths_.nearest[at] = value;
+    }
+    if (depths_.marks) {
+      *test.word |= bit;
+    }
+  }
+
+  const Depths& depths_;
+  Batch* batch_;
+  uint32_t entry_;
+  uint32_t number_;
+  uint32_t known_down_ = 8;  // of value_; none yet
+  uint64_t value_ = 0;
+};
+
+// Draws a box that covers many pixels along the rows of its rectangle, a vector of pixels at a time.
+// `reject`: skips covered pixels.
+template <bool kPerspective, bool kGray>
+HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t number,
+                                const Rectangle& where, bool reject, const Depths& depths, Batch* batch) {
+  const F32 d;
+  const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+  const uint32_t all_lanes = lanes == 32 ? UINT32_MAX : (uint32_t{1} << lanes) - 1;
+  const hn::Vec<F32> low[3] = {hn::Set(d, static_cast<float>(x_of(entry))),
+                               hn::Set(d, static_cast<float>(entry >> 10 & kWithin)),
+                               hn::Set(d, static_cast<float>(entry >> 20 & kWithin))};
+  const auto half = hn::Set(d, static_cast<float>(256 << level_of(entry)));
+  float origin[3];
+  origin_of(frame, *batch, origin);
+  LargeBox<kGray> box(entry, number, depths, batch);
+  for (int32_t y = where.y0; y < where.y1; ++y) {
+    for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
+      uint32_t wanted = all_lanes;
+      wanted &= x < where.x0 ? UINT32_MAX << (where.x0 - x) : UINT32_MAX;
+      wanted &= where.x1 - x < lanes ? (uint32_t{1} << (where.x1 - x)) - 1 : UINT32_MAX;
+      RowTest test;
+      test.shift = static_cast<uint32_t>(x) & 31U;
+      test.word = depths.covered + depths.word(x, y);
+      test.first = 32 * depths.word(x, y) + test.shift;
+      if (reject) {
+        wanted &= ~(*test.word >> test.shift);
+      }
+      if (wanted == 0) {
+        continue;
+      }
+      batch->counts.candidates += static_cast<unsigned>(__builtin_popcount(wanted));
+      const Aims aims = aims_of<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
+                                              hn::Set(d, static_cast<float>(y)), low, half);
+      const Verdict verdict = judge<kPerspective>(frame, aims, half);
+      test.hits = bits_of(d, verdict.hit) & wanted;
+      uint32_t unclear = bits_of(d, hn::Or(verdict.unclear, aims.unclear)) & wanted;
+      HWY_ALIGN uint8_t grays[64];
+      if (kGray) {
+        auto no_gray = hn::Lt(half, hn::Zero(d));
+        const hn::Rebind<uint8_t, I32> bytes;
+        const auto found = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
+        hn::Store(hn::DemoteTo(bytes, hn::BitCast(I32(), found)), bytes, grays);
+        unclear |= bits_of(d, no_gray) & test.hits;
+      }
+      test.hits &= ~unclear;
+      box.put_unclear(frame, x, y, unclear, test);
+      if (test.hits == 0) {
+        continue;
+      }
+      batch->counts.hits += static_cast<unsigned>(__builtin_popcount(test.hits));
+      test.set_directions(aims);
+      if (kGray) {
+        box.put_grays(test, grays);
+      } else {
+        box.put_values(test);
+      }
+    }
+  }
+}
+
+template <bool kPerspective>
+void draw_large(const WideFrame& frame, uint32_t entry, uint32_t number, const Rectangle& where, bool reject,
+                const Depths& depths, Batch* batch) {
+  depths.gray_scale != nullptr
+      ? draw_large_in<kPerspective, true>(frame, entry, number, where, reject, depths, batch)
+      : draw_large_in<kPerspective, false>(frame, entry, number, where, reject, depths, batch);
+}
+
+// Tells whether a box that crosses the eye's plane may be seen through the tile: not when it lies wholly
+// outside one of the tile's four sides. In doubles: few boxes come here.
+bool crosses_tile(const WideFrame& frame, const double (&center)[3], double side) {
+  const double slack_x = static_cast<double>(frame.slack_x) + 1;
+  const double slack_y = static_cast<double>(frame.slack_y) + 1;
+  const double edge[4] = {frame.tile.x0 - slack_x, frame.tile.x1 + slack_x, frame.tile.y0 - slack_y,
+                          frame.tile.y1 + slack_y};
+  for (int s = 0; s < 4; ++s) {
+    const float(&row)[4] = s < 2 ? frame.u : frame.v;
+    const double sign = (s & 1) != 0 ? -1 : 1;
+    const auto plane = [&](int i) {
+      return sign * (static_cast<double>(row[i]) - edge[s] * static_cast<double>(frame.w[i]));
+    };
+    double distance = plane(3);
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double normal = plane(axis);
+      distance += normal * center[axis];
+      reach += (normal < 0 ? -normal : normal) * side * 0.5;
+    }
+    const double rounding = static_cast<double>(s < 2 ? frame.rounding_x : frame.rounding_y);
+    if (distance + reach + 2 * rounding < 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Draws the boxes of a vector that are in `mask`: large ones, and ones that cross the eye's plane.
+template <bool kPerspective>
+HWY_NOINLINE void draw_large_of(const WideFrame& frame, const Run& run, uint32_t at, const Projected& boxes,
+                                hn::Mask<F32> mask, bool reject_all, bool* written, const Depths& depths,
+                                Batch* batch) {
+  const F32 d;
+  const I32 di;
+  HWY_ALIGN int32_t x0[64], x1[64], y0[64], y1[64];
+  hn::Store(hn::ConvertTo(di, boxes.low_x), di, x0);
+  hn::Store(hn::ConvertTo(di, hn::Add(boxes.low_x, boxes.wide_x)), di, x1);
+  hn::Store(hn::ConvertTo(di, boxes.low_y), di, y0);
+  hn::Store(hn::ConvertTo(di, hn::Add(boxes.low_y, boxes.wide_y)), di, y1);
+  const uint32_t in_plane = kPerspective ? bits_of(d, boxes.crossing) : 0;
+  for (uint32_t bits = bits_of(d, mask); bits != 0; bits &= bits - 1) {
+    const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(bits));
+    const uint32_t box = run.entries[at + lane];
+    const uint32_t number = run.numbers == nullptr ? run.first + at + lane : run.numbers[at + lane];
+    Rectangle where{x0[lane], y0[lane], x1[lane] + 1, y1[lane] + 1};
+    if (kPerspective && (in_plane >> lane & 1U) != 0) {
+      const double box_side = 1 << level_of(box);
+      const double center[3] = {run.corner[0] + x_of(box) + box_side / 2,
+                                run.corner[1] + (box >> 10 & kWithin) + box_side / 2,
+                                run.corner[2] + (box >> 20 & kWithin) + box_side / 2};
+      if (!crosses_tile(frame, center, box_side)) {
+        continue;
+      }
+      ++batch->counts.crossing;
+      where = {frame.tile.x0, frame.tile.y0, frame.tile.x1, frame.tile.y1};
+    }
+    draw_large<kPerspective>(frame, box, number, where, reject_all || (run.behind && !*written), depths,
+                             batch);
+    *written = true;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,340 @@
+#include "wide/tile_drawer.h"
+
+#include <algorithm>
+
+#include "wide/choice.h"
+#include "wide/coverage.h"
+
+namespace thimble::wide {
+namespace {
+
+// Runs of more boxes than this are cut up, in either order, so that blocks out of sight are not projected.
+constexpr uint32_t kFlatBoxes = 4096;
+constexpr uint32_t kBlockBoxes = 320;
+// Blocks of at most so many pixels a side are drawn whole: they hide too little for a cut to pay.
+constexpr int32_t kTinyPx = 16;
+constexpr uint32_t kTinyBoxes = 1024;
+// The limits of blocks that are looked up in tables.
+constexpr uint32_t kTableBoxes = 1900;
+constexpr int32_t kTablePx = 56;
+constexpr float kMostBend = 0.24F;
+// Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
+constexpr float kSortedPx = 6.0F;
+constexpr float kSortedVoxelPx = 8.0F;  // where all are single voxels
+constexpr uint32_t kRunsPerShare = 2;
+constexpr uint32_t kMostLines = 64;
+// Tiles with fewer rows, or fewer remaining boxes, are not split.
+constexpr int32_t kLeastRows = 2 * kPatchRows;
+constexpr float kLeastWork = 4000;
+
+int32_t width_of(const Rectangle& where) {
+  return std::max(where.x1 - where.x0, where.y1 - where.y0);
+}
+
+bool touches_edge(const Rectangle& where, const Tile& tile) {
+  return where.x0 == tile.x0 || where.y0 == tile.y0 || where.x1 == tile.x1 || where.y1 == tile.y1;
+}
+
+}  // namespace
+
+TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
+                       std::atomic<uint32_t>* next_share)
+    : lists_(task.lists),
+      frame_(task.frame),
+      depths_(depths),
+      full_(full),
+      by_blocks_(task.by_blocks),
+      batch_(batch),
+      others_(others),
+      next_share_(next_share),
+      share_(next_share == nullptr ? 0 : (*next_share)++) {
+  const Camera& camera = frame_.camera;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Rays of a parallel camera come from beyond the world.
+    eye_cell_[axis] = camera.is_perspective()        ? camera.eye()[axis].raw >> 8
+                      : camera.direction()[axis] < 0 ? INT32_MAX
+                                                     : INT32_MIN;
+  }
+}
+
+void TileDrawer::start(int32_t y0, int32_t y1) {
+  frame_.tile.y0 = y0;
+  frame_.tile.y1 = y1;
+  const CompactTree& tree = lists_.tree();
+  if (!tree.empty()) {
+    // The root, as the first child of a world twice as large.
+    Block world{};
+    world.level = static_cast<uint16_t>(tree.level() + 1);
+    depth_ = find_children(frame_, world, 1, 0, 0, stack_);
+  }
+}
+
+void TileDrawer::draw() {
+  while (depth_ > 0) {
+    if (others_ != nullptr && others_->is_wanted()) {
+      split();
+      if (depth_ == 0) {
+        break;
+      }
+    }
+    const Block block = stack_[--depth_];
+    ++batch_->counts.nodes;
+    if (is_hidden(block)) {
+      continue;
+    }
+    const BlockNode& node = lists_.nodes()[block.node];
+    const unsigned mask = lists_.tree().mask(block.node);
+    if (!is_leaf(block, node, mask)) {
+      push_children(block, node, mask);
+    } else if (is_ours()) {
+      enqueue(block, node);
+    }
+  }
+  while (ahead_count_ != 0) {
+    batch_->ahead_end = batch_->ahead;
+    draw_oldest();
+  }
+  finish(frame_, depths_, batch_);
+}
+
+// Whether all pixels of the block are known to be covered. Blocks with tables are looked up as they are
+// drawn, if they are small.
+bool TileDrawer::is_hidden(const Block& block) const {
+  return by_blocks_ && (!has_table(block) || width_of(block.place.where) > kTablePx) &&
+         all_covered(depths_, block.place.where, full_);
+}
+
+bool TileDrawer::has_table(const Block& block) const {
+  return by_blocks_ && !lists_.has_blocks() && voxel_px(block) < kTableVoxelPx;
+}
+
+// Whether the block is drawn as one run.
+bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mask) const {
+  if (mask == 0 || block.level <= lists_.block_level()) {
+    return true;
+  }
+  const int32_t widest = width_of(block.place.where);
+  uint32_t most = by_blocks_ || touches_edge(block.place.where, frame_.tile) ? kBlockBoxes : kFlatBoxes;
+  if (has_table(block)) {
+    if (widest > kTablePx || !is_flat(block)) {
+      return false;
+    }
+    most = kTableBoxes;
+  }
+  if (widest <= kTinyPx) {
+    most = std::max(most, kTinyBoxes);
+  }
+  return node.entries <= most && block.level <= kCubeLevel;
+}
+
+// Whether perspective bends the block so little that a table serves: `bend` is how much its nearer half looks
+// larger than its farther one, and its square how far the centre moves.
+bool TileDrawer::is_flat(const Block& block) const {
+  const float bend = frame_.norm_w * static_cast<float>(1 << block.level) * 0.5F * block.place.per_depth;
+  return !frame_.perspective ||
+         (bend <= kMostBend &&
+          0.5F * static_cast<float>(width_of(block.place.where)) * bend * bend <= kMostBentPx);
+}
+
+// The side of a voxel of the block on the picture, about, in pixels.
+float TileDrawer::voxel_px(const Block& block) const {
+  return block.place.per_depth == 0 ? 1e9F : 2 * frame_.reach_x * block.place.per_depth;
+}
+
+unsigned TileDrawer::nearest_octant(const Block& block) const {
+  const int32_t side = int32_t{1} << (block.level - 1);
+  unsigned octant = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    octant |= eye_cell_[axis] >= block.corner[axis] + side ? 1U << axis : 0U;
+  }
+  return octant;
+}
+
+// Whether the next run is one of ours. All threads come by the same runs in the same order. Each takes the
+// next free share when its last one is done, so every run is drawn once.
+bool TileDrawer::is_ours() {
+  if (next_share_ == nullptr) {
+    return true;
+  }
+  const uint32_t share = run_++ / kRunsPerShare;
+  if (share > share_) {
+    share_ = (*next_share_)++;
+  }
+  return share == share_;
+}
+
+// Pushes the children that may be seen; the last one pushed is the first one drawn.
+void TileDrawer::push_children(const Block& block, const BlockNode& node, unsigned mask) {
+  Block* const children = stack_ + depth_;
+  const int count = find_children(frame_, block, mask, node.first_child, nearest_octant(block), children);
+  for (int child = 0; child < count; ++child) {
+    __builtin_prefetch(&lists_.nodes()[children[child].node]);
+  }
+  depth_ += count;
+}
+
+// Puts a block into the ring. Its boxes are fetched while those of the blocks before it are drawn.
+void TileDrawer::enqueue(const Block& block, const BlockNode& node) {
+  ahead_[(ahead_first_ + ahead_count_++) % kAhead] = block;
+  if (ahead_count_ < kAhead) {
+    fetch(node, 0);
+    return;
+  }
+  const uint32_t* const first = lists_.entries().data + node.first_entry;
+  batch_->ahead = first;
+  batch_->ahead_end = first + node.entries;
+  draw_oldest();
+  fetch(node, static_cast<uint32_t>(batch_->ahead - first) / 16);
+}
+
+// Prefetches the boxes of a block, except the first `done` cache lines.
+void TileDrawer::fetch(const BlockNode& node, uint32_t done) const {
+  const uint32_t* entries = lists_.entries().data + node.first_entry;
+  for (uint32_t line = done; 16 * line < node.entries && line < kMostLines; ++line) {
+    __builtin_prefetch(entries + 16 * line);
+  }
+}
+
+void TileDrawer::draw_oldest() {
+  const Block& block = ahead_[ahead_first_];
+  ahead_first_ = (ahead_first_ + 1) % kAhead;
+  --ahead_count_;
+  // What lay before it may have been drawn since. Small ones are looked up as they are drawn.
+  if (by_blocks_ && width_of(block.place.where) > kTablePx &&
+      all_covered(depths_, block.place.where, full_)) {
+    return;
+  }
+  draw_block(block, lists_.nodes()[block.node]);
+}
+
+void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
+  Run run;
+  run.entries = lists_.entries().data + node.first_entry;
+  run.numbers = nullptr;
+  run.count = node.entries;
+  run.first = node.first_entry;
+  run.unit = !lists_.has_blocks();
+  run.place = block.place;
+  run.behind = by_blocks_;
+  run.sorted = false;
+  run.voxel_px = voxel_px(block);
+  run.side = uint32_t{1} << block.level;
+  if (block.level > kCubeLevel) {
+    draw_cubes(block, node, &run);
+    return;
+  }
+  const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    run.corner[axis] = block.corner[axis] & ~cube;
+    run.block[axis] = block.corner[axis] & cube;
+  }
+  const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(node.face_area);
+  const float sorted_px = run.unit ? kSortedVoxelPx : kSortedPx;
+  const bool is_large = face_px >= sorted_px * sorted_px * static_cast<float>(node.entries);
+  if (by_blocks_ && run.count > 1 && run.count <= SortedRun::kMostBoxes && is_large &&
+      !sorted_.cull_and_sort(frame_, block, eye_cell_, depths_, batch_, &run)) {
+    return;
+  }
+  draw_run(frame_, run, depths_, batch_);
+}
+
+// Draws a solid block of several cubes, which has an entry for each, in Morton order.
+void TileDrawer::draw_cubes(const Block& block, const BlockNode& node, Run* run) {
+  run->behind = false;
+  run->count = 1;
+  for (uint32_t piece = 0; piece < node.entries; ++piece) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const uint32_t place = (piece >> axis & 1U) | (piece >> (3 + axis) & 1U) << 1;
+      run->corner[axis] = block.corner[axis] + (place << kCubeLevel);
+    }
+    draw_run(frame_, *run, depths_, batch_);
+    ++run->entries;
+    ++run->first;
+  }
+}
+
+// Gives the lower rows, with about half of the work that is left, to a thread that waits.
+void TileDrawer::split() {
+  const Tile& tile = frame_.tile;
+  if (tile.y1 - tile.y0 < kLeastRows) {
+    return;
+  }
+  const int32_t cut = middle_row();
+  const float all = work_above(tile.y1);
+  const float above = work_above(cut);
+  if (all < kLeastWork || above < all / 16 || above > all * 15 / 16) {
+    return;
+  }
+  TileDrawer* const taker = others_->take();
+  if (taker == nullptr) {
+    return;
+  }
+  // What waits in the batch is drawn now: from here on the rows are the taker's.
+  finish(frame_, depths_, batch_);
+  std::rotate(ahead_, ahead_ + ahead_first_, ahead_ + kAhead);
+  ahead_first_ = 0;
+  taker->frame_.tile = {tile.x0, cut, tile.x1, tile.y1};
+  taker->take_blocks(*this);
+  frame_.tile.y1 = cut;
+  take_blocks(*this);
+  Others::give(taker);
+}
+
+// Takes the blocks of `from`, which may be this drawer, as far as they are in our rows. Its ring begins at 0.
+void TileDrawer::take_blocks(const TileDrawer& from) {
+  const auto take = [&](const Block* blocks, uint32_t count, Block* to) {
+    uint32_t taken = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      Block block = blocks[i];
+      Rectangle& where = block.place.where;
+      where.y0 = std::max(where.y0, frame_.tile.y0);
+      where.y1 = std::min(where.y1, frame_.tile.y1);
+      if (where.y0 < where.y1) {
+        to[taken++] = block;
+      }
+    }
+    return taken;
+  };
+  depth_ = static_cast<int>(take(from.stack_, static_cast<uint32_t>(from.depth_), stack_));
+  ahead_count_ = take(from.ahead_, from.ahead_count_, ahead_);
+  ahead_first_ = 0;
+}
+
+// Finds the first row of a patch, but not the tile's first, with about half of the work above it.
+int32_t TileDrawer::middle_row() const {
+  const int32_t origin = depths_.first_row;
+  const float half = work_above(frame_.tile.y1) / 2;
+  int32_t low = (frame_.tile.y0 - origin) / kPatchRows + 1;
+  int32_t high = (frame_.tile.y1 - origin - 1) / kPatchRows;
+  while (low < high) {
+    const int32_t middle = (low + high) / 2;
+    // Half a patch more: the cut that is nearest.
+    if (work_above(origin + middle * kPatchRows + kPatchRows / 2) < half) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return origin + low * kPatchRows;
+}
+
+// Estimates how many of the remaining boxes lie above the row: a block has its boxes evenly in all of its
+// rows.
+float TileDrawer::work_above(int32_t y) const {
+  float work = 0;
+  const auto add = [&](const Block& block) {
+    const Rectangle& where = block.place.where;
+    const float part = static_cast<float>(std::clamp(y, where.y0, where.y1) - where.y0) /
+                       static_cast<float>(where.y1 - where.y0);
+    work += part * static_cast<float>(lists_.nodes()[block.node].entries);
+  };
+  for (int i = 0; i < depth_; ++i) {
+    add(stack_[i]);
+  }
+  for (uint32_t i = 0; i < ahead_count_; ++i) {
+    add(ahead_[(ahead_first_ + i) % kAhead]);
+  }
+  return work;
+}
+
+}  // namespace thimble::wide

@@ -1,0 +1,90 @@
+/// @file tile_drawer.h
+/// Draws the boxes of one tile of the picture: walks the tree, skips blocks that cannot be seen, and hands
+/// runs of boxes to the kernels.
+#ifndef THIMBLE_PLATFORM_WIDE_TILE_DRAWER_H
+#define THIMBLE_PLATFORM_WIDE_TILE_DRAWER_H
+
+#include <atomic>
+
+#include "wide/handover.h"
+#include "wide/kernels.h"
+#include "wide/sorted_run.h"
+#include "wide/voxel_lists.h"
+
+namespace thimble::wide {
+
+/// What one thread draws with: one tile after the other, or parts of them.
+class TileDrawer {
+ public:
+  using Others = Handover<TileDrawer>;
+
+  /// What all threads of a frame draw alike.
+  struct Task {
+    const VoxelLists& lists;
+    const WideFrame& frame;
+    bool by_blocks;
+  };
+
+  /// `full`: see all_covered(); may be null without blocks. `others`: null, or the threads that draw other
+  /// rows of the same depths and take some of ours when they have none left. `next_share`: null, or common to
+  /// several threads that share the runs of a list among them, each with depths of its own; not with blocks.
+  TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
+             std::atomic<uint32_t>* next_share = nullptr);
+
+  /// Begins a tile: these rows of the picture.
+  void start(int32_t y0, int32_t y1);
+  /// Draws what was started or given, but for what is given away meanwhile. Afterwards the frame's tile is
+  /// what was drawn.
+  void draw();
+
+  const WideFrame& frame() const { return frame_; }
+
+  // Of Handover.
+  std::atomic<bool> given{false};
+  TileDrawer* next_taker = nullptr;
+
+ private:
+  static constexpr uint32_t kAhead = 8;
+
+  bool is_leaf(const Block& block, const BlockNode& node, unsigned mask) const;
+  bool is_hidden(const Block& block) const;
+  bool has_table(const Block& block) const;
+  bool is_flat(const Block& block) const;
+  float voxel_px(const Block& block) const;
+  unsigned nearest_octant(const Block& block) const;
+  bool is_ours();
+
+  void push_children(const Block& block, const BlockNode& node, unsigned mask);
+  void enqueue(const Block& block, const BlockNode& node);
+  void fetch(const BlockNode& node, uint32_t done) const;
+  void draw_oldest();
+  void draw_block(const Block& block, const BlockNode& node);
+  void draw_cubes(const Block& block, const BlockNode& node, Run* run);
+
+  void split();
+  void take_blocks(const TileDrawer& from);
+  int32_t middle_row() const;
+  float work_above(int32_t y) const;
+
+  const VoxelLists& lists_;
+  WideFrame frame_;
+  const Depths& depths_;
+  uint8_t* full_;
+  bool by_blocks_;
+  Batch* batch_;
+  Others* others_;
+  std::atomic<uint32_t>* next_share_;
+  uint32_t share_;
+  uint32_t run_ = 0;
+  int32_t eye_cell_[3];
+  int depth_ = 0;  ///< of stack_
+  Block stack_[7 * kMaxLevel + 8];
+  Block ahead_[kAhead];  ///< blocks whose boxes are being fetched, a ring in the order of drawing
+  uint32_t ahead_first_ = 0;
+  uint32_t ahead_count_ = 0;
+  SortedRun sorted_;
+};
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,41 @@
+#include "wide/tiles.h"
+
+#include "wide/coverage.h"
+
+namespace thimble::wide {
+
+Tiles::Tiles(int32_t rows, int threads, const float (&work)[Outlook::kParts]) : end_{rows} {
+  if (threads == 1) {
+    return;
+  }
+  float all = 0;
+  for (const float part : work) {
+    all += part;
+  }
+  // Rows take some time by themselves: they are cleared and painted.
+  const float each = 0.03F * all / Outlook::kParts + 1e-6F;
+  all += each * Outlook::kParts;
+  count_ = 0;
+  float done = 0;
+  int part = 0;
+  for (int32_t last = 0; last < rows;) {
+    const float wanted = all * static_cast<float>(count_ + 1) / static_cast<float>(threads);
+    while (part < Outlook::kParts && done + work[part] + each <= wanted) {
+      done += work[part] + each;
+      ++part;
+    }
+    float at = static_cast<float>(part);
+    if (part < Outlook::kParts) {
+      at += (wanted - done) / (work[part] + each);
+    }
+    // Sums that are no numbers make one tile of what is left.
+    at = at >= 0 && at < Outlook::kParts ? at : Outlook::kParts;
+    const int32_t row = static_cast<int32_t>(at * static_cast<float>(rows) / Outlook::kParts);
+    int32_t end = (row + kPatchRows / 2) / kPatchRows * kPatchRows;
+    end = end <= last ? last + kPatchRows : end;
+    last = end < rows && count_ + 1 < threads ? end : rows;
+    end_[count_++] = last;
+  }
+}
+
+}  // namespace thimble::wide

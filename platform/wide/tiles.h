@@ -1,0 +1,28 @@
+/// @file tiles.h
+/// Cuts the picture into tiles of whole rows, one for each thread.
+#ifndef THIMBLE_PLATFORM_WIDE_TILES_H
+#define THIMBLE_PLATFORM_WIDE_TILES_H
+
+#include "wide/choice.h"
+#include "wide/threads.h"
+
+namespace thimble::wide {
+
+/// Tiles of about the same work. Few, since boxes on a seam are looked at on both sides.
+class Tiles {
+ public:
+  /// `work`: of equal parts of the rows, from the first down.
+  Tiles(int32_t rows, int threads, const float (&work)[Outlook::kParts]);
+
+  int count() const { return count_; }
+  int32_t begin(int tile) const { return tile == 0 ? 0 : end_[tile - 1]; }
+  int32_t end(int tile) const { return end_[tile]; }
+
+ private:
+  int count_ = 1;
+  int32_t end_[kMaxThreads];
+};
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,56 @@
+/// @file workspace.h
+/// The workspace of one frame, laid out: pictures, patches and batches.
+#ifndef THIMBLE_PLATFORM_WIDE_WORKSPACE_H
+#define THIMBLE_PLATFORM_WIDE_WORKSPACE_H
+
+#include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
+#include "wide/kernels.h"
+
+namespace thimble::wide {
+
+/// The most threads that draw a picture of their own each. More pictures are more than caches hold.
+inline constexpr int kMostCopies = 4;
+
+class Workspace {
+ public:
+  struct Layout {
+    int32_t width_px;
+    int32_t first_row;
+    int32_t rows;
+    int threads;
+    int copies;  ///< of the picture: 1 .. kMostCopies
+    bool by_blocks;
+    const GrayScale* gray_scale;  ///< null: without greys
+    const Shading* shading;
+  };
+  /// What a layout takes at most.
+  static size_t bytes(int32_t width_px, int32_t rows, int threads);
+
+  /// `memory` has room for bytes(). Batches are made empty; pictures and patches are to be cleared.
+  Workspace(Bytes memory, const Layout& layout);
+
+  const Depths& depths(int copy) const { return depths_[copy]; }
+  Batch* batch(int thread) const { return batches_ + thread; }
+  /// See all_covered().
+  uint8_t* full_patches() const { return full_patches_; }
+
+  /// Clears rows of a picture, from row `y` of the picture on.
+  void clear(const Depths& depths, int32_t y, int32_t rows) const;
+  /// Clears the patches of rows of the workspace; `first` counts from its first row and is a multiple of
+  /// kPatchRows.
+  void clear_patches(int32_t first, int32_t rows) const;
+
+ private:
+  Depths make_depths(const Layout& layout, Arena* arena) const;
+
+  size_t strips_;
+  int32_t rows_;
+  Depths depths_[kMostCopies];
+  uint8_t* full_patches_;
+  Batch* batches_;
+};
+
+}  // namespace thimble::wide
+
+#endif

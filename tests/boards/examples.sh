@@ -1,0 +1,86 @@
+#!/bin/sh
+# platform/examples as somebody else would build them, with their own flags. On this machine they draw, where a baked
+# scene's picture must be the command's own; for chips they compile.
+# examples.sh WORK_DIR [TARGET...]     TARGETs: host cortex-m0 rv32 (default: all)
+set -eu
+cd "$(dirname "$0")/../.."
+work=$1
+shift
+targets=${*:-host cortex-m0 rv32}
+thimble=${THIMBLE:-build/release/thimble}
+library=${LIBTHIMBLE:-build/release/libthimble.a}
+core='-std=c++20 -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections -fdata-sections
+  -Iinclude -Wall -Wextra -Wpedantic -Werror'
+fail() {
+  echo "examples: FAILED: $1" >&2
+  exit 1
+}
+names=$(cd platform/examples && for folder in */; do echo "${folder%/}"; done)
+lines=$(grep -c '' platform/examples/ball/main.cpp)
+[ "$lines" -le 40 ] || fail "ball has grown to $lines lines"
+
+# bake NAME SCENE [OPTION...]: scene.h for that example, and the same as a file.
+bake() {
+  name=$1
+  shift
+  mkdir -p "$work/$name"
+  for ending in h oct; do
+    "$thimble" bake "$@" --size 128x64 -o "$work/$name/scene.$ending" --quiet 2>/dev/null
+  done
+}
+bake baked_scene tools/gallery/scenes/castle.vox --effects none
+bake lit_room tools/gallery/scenes/room.scene
+
+# grays FILE: how many greys a picture of 8192 bytes has.
+grays() {
+  tail -c 8192 "$1" | od -An -v -tu1 -w1 | sort -u | grep -c .
+}
+# like NAME MOST OPTION...: the example's picture is that of `thimble render`, to MOST of 255.
+like() {
+  name=$1
+  most=$2
+  shift 2
+  "$thimble" render "$work/$name/scene.oct" --size 128x64 "$@" -o "$work/$name/command.pgm" --quiet 2>/dev/null
+  cmp -l "$work/$name/picture.pgm" "$work/$name/command.pgm" | awk -v most="$most" '
+    function octal(text,   i, value) { for (i = 1; i <= length(text); i++) { value = value * 8 + substr(text, i, 1) } return value }
+    { difference = octal($2) - octal($3); if (difference < -most || difference > most) { worse++ } }
+    END { if (worse > 0) { print worse " pixels differ by more than " most; exit 1 } }' >&2 ||
+    fail "$name draws another picture than the command"
+}
+
+# compile COMPILER FLAGS NAME OBJECT
+compile() {
+  # shellcheck disable=SC2086
+  $1 $core $2 -I"$work/$3" -c "platform/examples/$3/main.cpp" -o "$4" || fail "$3 does not compile with $1"
+}
+for target in $targets; do
+  for name in $names; do
+    mkdir -p "$work/$name"
+    object=$work/$name/$target.o
+    case $target in
+      cortex-m0) compile arm-none-eabi-g++ '-mcpu=cortex-m0 -mthumb -Os -nostdinc++' "$name" "$object" ;;
+      rv32)
+        compile riscv64-unknown-elf-g++ '-march=rv32imac -misa-spec=2.2 -mabi=ilp32 -Os -nostdinc++' "$name" "$object"
+        ;;
+      host)
+        compile g++ -O2 "$name" "$object"
+        display=
+        [ "$name" = ball ] || display=platform/examples/display_host.cpp
+        g++ -std=c++20 -O1 -o "$work/$name/run" "$object" $display "$library"
+        frames=1
+        case $name in particles | water) frames=40 ;; esac
+        "$work/$name/run" $frames >"$work/$name/picture.pgm" || fail "$name ends with status $?"
+        case $name in
+          ball) [ "$(grep -c '[*#]' "$work/ball/picture.pgm")" -gt 16 ] || fail "ball draws none" ;;
+          particles) [ "$(grays "$work/particles/picture.pgm")" = 2 ] || fail "particles draws no balls" ;;
+          water) [ "$(grays "$work/water/picture.pgm")" -ge 8 ] || fail "water draws no water" ;;
+          # 16 greys are 17 apart: plain pictures take the nearest, lit ones are dithered.
+          baked_scene) like baked_scene 9 --shade color ;;
+          lit_room) like lit_room 17 ;;
+        esac
+        ;;
+      *) fail "no such target: $target" ;;
+    esac
+  done
+done
+echo "examples:" $names: drawn as they should be or compiled for $targets

@@ -1,0 +1,81 @@
+// Scenes and frames for the tests of the wide renderer, and the same picture by it and by the core.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/tree/octree.h"
+#include "wide/renderer.h"
+
+namespace thimble::tests {
+
+// Sanitized builds take a tenth of the cases, and as long.
+#ifdef __SANITIZE_ADDRESS__
+constexpr int many_or_few(int /*many*/, int few) {
+  return few;
+}
+#else
+constexpr int many_or_few(int many, int /*few*/) {
+  return many;
+}
+#endif
+
+// A tree and its lists, in exactly the bytes that are asked for.
+struct WideScene {
+  std::string what;
+  int level = 0;
+  std::unique_ptr<HeapBytes> bytes;
+  std::unique_ptr<HeapBytes> list_bytes;
+  CompactTree tree;
+  wide::VoxelLists lists;
+};
+
+// What `fill` puts into an octree of this level.
+WideScene make_scene(int level, const std::function<void(Octree*)>& fill,
+                     std::size_t pool_bytes = std::size_t{4} << 20);
+WideScene random_scene(std::mt19937_64& random);
+Vec3i random_voxel(std::mt19937_64& random, std::int64_t low, std::int64_t high);
+
+struct FrameCase {
+  Camera camera;
+  Shading shading;
+  Band band;
+  std::vector<Rgb8> palette;
+};
+
+// A frame of any kind; false where the core refuses the camera that was drawn.
+bool random_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* frame);
+// Sets the depths between which greys are spread to those of the scene.
+void set_depth_range(const WideScene& scene, FrameCase* frame);
+std::size_t band_size(const FrameCase& frame);
+
+// The band by the wide renderer; nothing where it leaves the frame to the core.
+std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const FrameCase& frame,
+                                                   const wide::Options& options,
+                                                   std::uint64_t* hits = nullptr,
+                                                   wide::Stats* stats = nullptr);
+std::vector<std::uint8_t> draw_core(const WideScene& scene, const FrameCase& frame, std::uint64_t* hits);
+std::size_t count_different(const std::vector<std::uint8_t>& ours, const std::vector<std::uint8_t>& expected);
+
+// Kept from frame to frame, as programs that draw films do.
+wide::Threads* threads_of(int count);
+int thread_count(const wide::Options& options);
+wide::Options options_of(int threads, wide::Order order);
+wide::Options random_options(std::mt19937_64& random);
+// Takes one of those that this machine has.
+void use_random_instruction_set(std::mt19937_64& random);
+
+// Takes the best instruction set again in the end.
+struct BestInstructionSet {
+  ~BestInstructionSet() { wide::use_instruction_set(-1); }
+};
+
+}  // namespace thimble::tests

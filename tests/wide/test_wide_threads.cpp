@@ -1,0 +1,154 @@
+// The wide renderer with several threads: every pixel is the core's, whoever draws it.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <ctime>
+
+#include "support/wide_cases.h"
+
+namespace thimble::tests {
+namespace {
+
+// A view of a cloud in a corner of a world of level 9: from before it, from above, from within, or parallel.
+void look_at_corner(int view_number, std::int32_t width, std::int32_t height, FrameCase* frame) {
+  if (view_number < 3) {
+    PerspectiveView view;
+    const Vec3i eyes[] = {{700, -300, 260}, {80, 90, 480}, {80, 80, 80}};
+    for (int axis = 0; axis < 3; ++axis) {
+      view.eye[axis] = Q8::from_raw(256 * eyes[view_number][axis] + 77);
+    }
+    view.forward = view_number == 1 ? Vec3i{3, 1, -30} : Vec3i{-7, 10, 0};
+    view.fov_degrees = Q16::from_raw(70 << 16);
+    view.width_px = width;
+    view.height_px = height;
+    REQUIRE(frame->camera.set(view, 9) == Status::kOk);
+  } else {
+    OrthographicView view;
+    view.eye = {Q8::from_raw(900 << 8), Q8::from_raw(-(400 << 8)), Q8::from_raw(300 << 8)};
+    view.forward = {-7, 10, -1};
+    view.span = Q14::from_raw(600 << 14);
+    view.width_px = width;
+    view.height_px = height;
+    REQUIRE(frame->camera.set(view, 9) == Status::kOk);
+  }
+  frame->shading.mode = view_number == 1 ? ShadeMode::kNormal : ShadeMode::kDepth;
+  frame->band.first_row = view_number == 2 ? 5 : 0;
+  frame->band.rows = height - 3 * frame->band.first_row;
+}
+
+}  // namespace
+
+TEST_CASE("wide: several threads with a picture each -> put together, every pixel is the core's") {
+  const BestInstructionSet after;
+  constexpr int kFrames = many_or_few(24, 2);
+  std::mt19937_64 random(77);
+  const auto fill = [&](Octree* octree) {
+    for (int i = 0; i < 200000; ++i) {
+      const Vec3i at = random_voxel(random, 0, 511);
+      REQUIRE(octree->insert(at, static_cast<std::uint8_t>(pick(random, 1, 3))) == Status::kOk);
+    }
+  };
+  const WideScene scene = make_scene(9, fill, std::size_t{24} << 20);
+  int drawn = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    frame.shading.mode = i % 2 == 0 ? ShadeMode::kDepth : ShadeMode::kColor;
+    wide::use_instruction_set(i % wide::instruction_set_count());
+    std::uint64_t expected_hits = 0;
+    const auto expected = draw_core(scene, frame, &expected_hits);
+    for (const int threads : {2, 3, 4}) {
+      CAPTURE(i);
+      CAPTURE(threads);
+      CAPTURE(wide::instruction_set());
+      const wide::Options options = options_of(threads, wide::Order::kFlat);
+      std::uint64_t hits = 0;
+      const auto ours = draw_wide(scene, frame, options, &hits);
+      if (ours) {
+        CHECK(*ours == expected);
+        CHECK(hits == expected_hits);
+        ++drawn;
+      }
+    }
+  }
+  CHECK(drawn >= kFrames);
+}
+
+TEST_CASE("wide: work in some rows, several threads -> parts change hands, every pixel is the core's") {
+  constexpr int kRepeats = many_or_few(10, 3);
+  constexpr std::int64_t kPoints = many_or_few(900000, 100000);
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t first_clock = std::clock();
+  std::uint64_t splits = 0;
+  for (const bool has_blocks : {false, true}) {
+    CAPTURE(has_blocks);
+    std::mt19937_64 random(has_blocks ? 31 : 30);
+    const auto fill = [&](Octree* octree) {
+      for (std::int64_t n = 0; n < kPoints; ++n) {
+        const std::int64_t most = n % 100 == 0 ? 511 : 300;
+        const Vec3i at = random_voxel(random, 0, most);
+        if (has_blocks && n % 50 == 0) {
+          REQUIRE(octree->insert_block({at.x & ~3, at.y & ~3, at.z & ~3}, 2, 1) == Status::kOk);
+        } else if (has_blocks || (at.x & at.y & at.z & 1) == 0) {
+          REQUIRE(octree->insert(at, 1) == Status::kOk);
+        }
+      }
+    };
+    const WideScene scene = make_scene(9, fill, std::size_t{64} << 20);
+    REQUIRE(scene.lists.has_blocks() == has_blocks);
+    for (int v = 0; v < 4; ++v) {
+      CAPTURE(v);
+      // Large pictures take long enough for other threads to come, whatever else the machine does.
+      for (const int scale : {1, 5}) {
+        CAPTURE(scale);
+        FrameCase frame;
+        look_at_corner(v, scale * 200, scale * 280, &frame);
+        set_depth_range(scene, &frame);
+        wide::Options options;
+        options.order = wide::Order::kBlocks;
+        std::uint64_t expected_hits = 0;
+        std::optional<std::vector<std::uint8_t>> expected;
+        if (scale == 1) {
+          expected = draw_core(scene, frame, &expected_hits);
+        } else {
+          expected = draw_wide(scene, frame, options, &expected_hits);
+        }
+        CHECK(expected_hits > 3000);
+        for (const int threads : {2, 3, 8}) {
+          CAPTURE(threads);
+          options.threads = threads_of(threads);
+          int wrong = 0;
+          // The first large ones again and again, until there was a processor for the other thread.
+          const auto is_early = [&] {
+            return std::chrono::steady_clock::now() - start < std::chrono::seconds(10);
+          };
+          for (int i = 0; i < (scale == 1 ? kRepeats : 2) || (scale != 1 && splits == 0 && is_early()); ++i) {
+            std::uint64_t hits = 0;
+            wide::Stats stats;
+            const auto ours = draw_wide(scene, frame, options, &hits, &stats);
+            wrong += ours == expected && hits == expected_hits ? 0 : 1;
+            splits += stats.splits;
+          }
+          CHECK(wrong == 0);
+        }
+      }
+    }
+  }
+  // Other programs may have left us one processor all the time.
+  const std::chrono::duration<double> clock_time = std::chrono::steady_clock::now() - start;
+  const double processor_time = static_cast<double>(std::clock() - first_clock) / CLOCKS_PER_SEC;
+  const bool was_alone = processor_time < 1.1 * clock_time.count();
+  CHECK((splits > 0 || was_alone));
+  if (splits == 0) {
+    MESSAGE("never two processors at a time: no rows changed hands");
+  }
+}
+
+TEST_CASE("wide: numbers of threads that cannot be -> the nearest that can") {
+  CHECK(wide::Threads(-1).count() == 1);
+  CHECK(wide::Threads(wide::kMaxThreads + 1).count() == wide::kMaxThreads);
+}
+
+}  // namespace thimble::tests
