@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "output/units.h"
-#include "readers/real3.h"
 #include "readers/text.h"
 #include "thimble/light/baked_lighting.h"
 #include "thimble/trace/ray.h"
@@ -205,6 +204,8 @@ std::int32_t whole(Line& line, const std::string& what, std::int32_t low, std::i
   }
   return static_cast<std::int32_t>(value);
 }
+
+using Real3 = std::array<double, 3>;
 
 Real3 three_reals(Line& line, const std::string& what, double low, double high) {
   Real3 result{};
