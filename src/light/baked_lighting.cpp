@@ -38,7 +38,7 @@ constexpr unsigned kHasDepthCue = 4;
 constexpr unsigned kHasWater = 8;
 constexpr unsigned kAllFlags = 15;
 
-// A surface and a light; what the structs of lit_scene.h look like in memory.
+// A surface and a light; what the structs of scene.h look like in memory.
 constexpr uint32_t kKind = 3;
 constexpr uint32_t kIndex = 6;
 constexpr uint32_t kSurfaceBytes = 12;
