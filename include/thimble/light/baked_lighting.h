@@ -4,8 +4,8 @@
 /// Apart from baked_scene.h, so that a program that draws no light links none of this:
 ///
 ///     BakedLighting lighting;
-///     if (BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
-///     kOk) ...
+///     const ConstBytes bytes = scene.section(SectionKind::kLighting);
+///     if (BakedLighting::open(bytes, scene.tree().level(), &lighting) == Status::kOk) ...
 #ifndef THIMBLE_LIGHT_BAKED_LIGHTING_H
 #define THIMBLE_LIGHT_BAKED_LIGHTING_H
 
@@ -30,7 +30,7 @@ size_t lighting_bytes(const LitScene& scene);
 
 struct BakedLighting {
   /// `surfaces` and `lights` lie in the section's bytes; `water` is at rest. Every number is within the
-  /// limits of lit_scene.h.
+  /// limits of scene.h.
   LitScene scene;
   /// What the scene was baked for: the effects that it calls for, or those that somebody chose. A firmware
   /// image reads the same set from the header that `thimble bake` generates, when it is compiled.
