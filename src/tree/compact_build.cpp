@@ -600,13 +600,11 @@ Status CompactTree::make(const Octree& octree, Bytes out, CompactTree* tree, siz
 }
 
 Status CompactTree::make(const Octree& octree, Arena& arena, CompactTree* tree, int rank_shift) {
-  const size_t mark = arena.used_bytes();
-  const Bytes bytes = arena.take(compact_bytes(compact_shape(octree, rank_shift)));
-  const Status status = make(octree, bytes, tree, nullptr, rank_shift);
-  if (status != Status::kOk) {
-    arena.rewind(mark);
+  if (rank_shift < kMinRankShift || rank_shift > kMaxRankShift) {
+    return Status::kOutOfRange;
   }
-  return status;
+  return make_in(arena, compact_bytes(compact_shape(octree, rank_shift)), alignof(uint64_t),
+                 [&](Bytes bytes) { return make(octree, bytes, tree, nullptr, rank_shift); });
 }
 
 Status CompactTree::make(Span<const CompactTree> parts, Bytes out, CompactTree* tree, size_t* size,

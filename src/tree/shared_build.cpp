@@ -107,7 +107,7 @@ class NodeTable {
   static constexpr uint32_t kHeaderWords = 3;
 
   // False when the workspace is too small for any tree.
-  bool init(Bytes work) {
+  bool set(Bytes work) {
     const size_t past = reinterpret_cast<size_t>(work.data) & (alignof(uint32_t) - 1);
     work = work.subspan(past == 0 ? 0 : alignof(uint32_t) - past);
     size_t words = work.size / 4;
@@ -373,7 +373,7 @@ Status SharedTree::make(const CompactTree& tree, Bytes out, Bytes work, SharedTr
                         SharedBuild* build) {
   using namespace shared_header;
   NodeTable table;
-  if (!table.init(work)) {
+  if (!table.set(work)) {
     return Status::kOutOfMemory;
   }
   MortonWalk walk(tree);

@@ -1,22 +1,27 @@
 /// @file memory.h
-/// A pointer and a count: how every function of the core is handed memory.
+/// How every function of the core is handed memory: a span, or an arena that hands out spans.
 ///
-/// The core includes no C++ library header (the RISC-V toolchain has none), so it brings its own span. It
-/// does not own what it points to.
+/// The core includes no C++ library header (the RISC-V toolchain has none), so it brings its own span.
 ///
-/// One block of the caller's bytes, handed out front to back. The only allocator of the project's core.
+/// How things come to be, everywhere in the core:
 ///
-/// Nothing is ever given back on its own; `rewind` drops everything taken since a mark. `used_bytes` and
-/// `high_water_bytes` are always known.
+///   open   looks at bytes that hold the thing already, and writes nothing: CompactTree::open(bytes, &tree)
+///   make   builds the thing in memory that it is given, bytes or an arena: Octree::make(level, bytes, &tree)
+///   set    takes values: camera.set(view, level)
+///
+/// All of them answer with a `Status`; on anything but `kOk` the thing is as it was, and so is an arena. An
+/// arena gives `make` exactly the bytes that the thing takes, and the padding before them that it wants.
 #ifndef THIMBLE_BASE_MEMORY_H
 #define THIMBLE_BASE_MEMORY_H
 
 #include <stddef.h>
 #include <stdint.h>
 
+#include "status.h"
+
 namespace thimble {
 
-/// `size` elements starting at `data`. An empty span may have a null `data`.
+/// `size` elements starting at `data`, which it does not own. An empty span may have a null `data`.
 template <class T>
 struct Span {
   T* data = nullptr;
@@ -46,6 +51,10 @@ struct Span {
 using Bytes = Span<uint8_t>;
 using ConstBytes = Span<const uint8_t>;
 
+/// One block of the caller's bytes, handed out front to back. The only allocator of the core.
+///
+/// Nothing is ever given back on its own; `rewind` drops everything taken since a mark. `used_bytes` and
+/// `high_water_bytes` are always known.
 class Arena {
  public:
   constexpr Arena() = default;
@@ -95,6 +104,18 @@ class Arena {
   size_t used_ = 0;
   size_t high_water_ = 0;
 };
+
+/// `make` in an arena: the status of `make_in_bytes(bytes)`, which gets `size` bytes of the arena, or an empty
+/// span when they do not fit. On anything but `kOk` the arena is as it was, its high water included.
+template <class Make>
+Status make_in(Arena& arena, size_t size, size_t alignment, Make make_in_bytes) {
+  const Arena before = arena;
+  const Status status = make_in_bytes(arena.take(size, alignment));
+  if (status != Status::kOk) {
+    arena = before;
+  }
+  return status;
+}
 
 }  // namespace thimble
 

@@ -1,7 +1,7 @@
 /// @file vec.h
-/// Strong fixed-point numbers: an `int32_t` that knows where its binary point is.
+/// Fixed-point numbers, and positions, directions and boxes made of three numbers.
 ///
-/// Formats in use
+/// A fixed-point number is an `int32_t` that knows where its binary point is. Formats in use
 ///   Q8   (24.8)   positions of rays, 1/256 voxel, about +-8.3 million voxels
 ///   Q14  (18.14)  lengths of a camera (camera.h), 1/16384 voxel, up to 131,072 voxels
 ///   Q16  (16.16)  angles in degrees, lengths in voxels, about +-32,768
@@ -11,7 +11,7 @@
 /// conversion between formats, or from and to integers. There is no multiplication here: where the core
 /// multiplies, it does so on raw integers with the bound of the product written beside it.
 ///
-/// Three components and two: positions, directions, sizes. World axes are right-handed, z up:
+/// World axes are right-handed, z up:
 ///
 ///        z
 ///        |  y

@@ -4,8 +4,8 @@
 /// Apart from baked_scene.h, so that a program that draws no light links none of this:
 ///
 ///     BakedLighting lighting;
-///     if (BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
-///     kOk) ...
+///     const ConstBytes bytes = scene.section(SectionKind::kLighting);
+///     if (BakedLighting::open(bytes, scene.tree().level(), &lighting) == Status::kOk) ...
 #ifndef THIMBLE_LIGHT_BAKED_LIGHTING_H
 #define THIMBLE_LIGHT_BAKED_LIGHTING_H
 

@@ -5,8 +5,8 @@
 /// The set is a constant when compiling. `render_lit_band<Effect::kDirectLight | Effect::kShadows>` is a
 /// renderer that has never heard of glass: the linker finds nothing of it to keep. With `Effect::kNone` it is
 /// `render_band`. A program that learns of its scene only when it runs calls the function with the set as an
-/// argument, which picks one of the renderers that the library holds (lit_dispatch.cpp: 32, by the effects
-/// that trace rays; a firmware image that does not call it has none of them).
+/// argument, which picks one of the renderers that the library holds (dispatch.cpp: 32, by the effects that
+/// trace rays; a firmware image that does not call it has none of them).
 ///
 /// A pixel is a function of tree, camera, shading, scene and set alone, in integers: bands of any height, in
 /// any order, on any machine give the same picture. `Shading::mode` is not looked at (a lit picture shows

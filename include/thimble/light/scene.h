@@ -1,10 +1,4 @@
 /// @file scene.h
-/// Numbers as the bytes of a file hold them: little-endian, at any address. A struct made of these and of
-/// bytes has the same layout on every machine and no padding, so tables in flash are used where they lie.
-///
-/// They convert to plain integers and back by themselves. Reading one is a load a byte and a shift on chips
-/// that load only aligned words (Cortex-M0: 4 instructions for 16 bits, 10 for 32), else a single load.
-///
 /// What light does in a scene: surfaces, lights, sky, fog, water, and the set of effects that follows.
 ///
 /// Plain data, without a tree: a few numbers a material, a few a light. An effect is a part of the renderer
@@ -22,6 +16,12 @@
 #include "water.h"
 
 namespace thimble {
+
+// Numbers as the bytes of a file hold them: little-endian, at any address. A struct made of these and of
+// bytes has the same layout on every machine and no padding, so tables in flash are used where they lie.
+//
+// They convert to plain integers and back by themselves. Reading one is a load a byte and a shift on chips
+// that load only aligned words (Cortex-M0: 4 instructions for 16 bits, 10 for 32), else a single load.
 
 /// 16 bits without a sign.
 class PackedU16 {
@@ -202,6 +202,36 @@ struct LitScene {
 /// null: all) tells which materials occur in the tree, so that one that only the palette holds calls for
 /// nothing.
 EffectSet effects_of(const LitScene& scene, const bool (*used)[256] = nullptr);
+
+/// What a ray was sent for. kGlassRay and kWaterRay: reflected or refracted at such a boundary; kMediaRay:
+/// not a ray of its own but a stretch of one, from where it left a cloud (or glass of index 1) straight on.
+enum class LitRayKind : uint8_t {
+  kPrimary,
+  kShadow,
+  kOcclusion,
+  kMirrorRay,
+  kGlassRay,
+  kMediaRay,
+  kWaterRay
+};
+inline constexpr int kLitRayKinds = 7;
+
+/// What a renderer did. An effect that is not in the set counts 0.
+struct LitCounts {
+  uint64_t rays[kLitRayKinds] = {};
+  uint64_t hits[kLitRayKinds] = {};  ///< of these, met something solid
+  /// Nodes whose mask was read (`Hit::visits`), cells walked through inside clear solids, columns of water.
+  uint64_t node_visits[kLitRayKinds] = {};
+  uint64_t step_limited = 0;        ///< rays stopped by `LitOptions::max_visits`; they count as misses
+  uint32_t pending_high_water = 0;  ///< most rays of a pixel that waited to be followed at once
+};
+
+struct LitOptions {
+  /// A ray is stopped where it would visit one more node than this.
+  uint32_t max_visits = UINT32_MAX;
+  /// Ordered dither (Bayer, 8 x 8) in formats with fewer than 8 bits a channel.
+  bool dither = true;
+};
 
 }  // namespace thimble
 

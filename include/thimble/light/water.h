@@ -1,6 +1,8 @@
 /// @file water.h
-/// The geometry of water for a ray: columns of any height, hit by the exact rule. A plain view; whether the
-/// heights move (water.h) is nothing to it, and water that never moves is one level and no array.
+/// Water in columns: its geometry for a ray (`WaterSurface`), and how it moves (`Water`).
+///
+/// The geometry: columns of any height, hit by the exact rule. A plain view; whether the heights move is
+/// nothing to it, and water that never moves is one level and no array.
 ///
 ///            ___      column (i, j) is the half-open box
 ///      _____|   |__   [x + i, x + i + 1) x [y + j, y + j + 1) x [z, z + height), height in 1/256 voxel,
@@ -147,7 +149,7 @@ struct WaterConfig {
   ConstBytes blocked;          ///< a bit a column, row by row, the lowest bit first; empty: none is blocked
 };
 
-/// Bytes for `init` at any address: 8 a column (height 4, two fluxes of 2) and 4 a row; 0 when a side is out
+/// Bytes for `make` at any address: 8 a column (height 4, two fluxes of 2) and 4 a row; 0 when a side is out
 /// of range. 32 x 32: 8,323; 64 x 64: 33,027.
 constexpr size_t water_bytes(int32_t width, int32_t depth) {
   if (width < 1 || width > kMaxWaterSide || depth < 1 || depth > kMaxWaterSide) {
@@ -164,6 +166,11 @@ class Water {
   /// `kBadArgument`: `blocked` has not (width * depth + 7) / 8 bytes. `kOutOfMemory`: fewer than
   /// `water_bytes`. Anything but `kOk` leaves `water` and `bytes` as they were.
   static Status make(const WaterConfig& config, Bytes bytes, Water* water);
+  /// The same in an arena, which gives `water_bytes`; after an error it is as it was.
+  static Status make(const WaterConfig& config, Arena& arena, Water* water) {
+    return make_in(arena, water_bytes(config.width, config.depth), alignof(uint32_t),
+                   [&](Bytes bytes) { return make(config, bytes, water); });
+  }
 
   // --- Disturbance. Points are relative to the first column's corner, in 1/256 voxel: column (i, j) is the
   // square from 256 * i, 256 * j on. A disturbance that is a mirror image, or turned by quarters, does the

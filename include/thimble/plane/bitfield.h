@@ -239,6 +239,11 @@ class BitField {
   /// when `bytes` is too small, `kBadArgument` when its address is not a multiple of 4; `field` and `bytes`
   /// are then untouched.
   static Status make(int32_t width, int32_t height, Bytes bytes, BitField* field);
+  /// The same in an arena, which gives just those bytes; after an error it is as it was.
+  static Status make(int32_t width, int32_t height, Arena& arena, BitField* field) {
+    return make_in(arena, bitfield_bytes(width, height), alignof(uint32_t),
+                   [&](Bytes bytes) { return make(width, height, bytes, field); });
+  }
 
   int32_t width() const { return width_; }
   int32_t height() const { return height_; }

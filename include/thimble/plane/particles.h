@@ -2,8 +2,7 @@
 /// The paper's particle world: balls in a bit field, where a collision costs the same however many there are.
 ///
 ///     (0, 0) +--------------------> x     800 x 600 cells, one bit each; gravity is a vector, and the
-///     default
-///            |     o                      pulls down the picture (+y). Nothing leaves the box.
+///            |     o                      default pulls down the picture (+y). Nothing leaves the box.
 ///            |        ()   /   wall
 ///            v   o        /               one step = one unit of time; speeds are in cells a step
 ///            y  ()()o  O /o
@@ -15,12 +14,10 @@
 /// an index of square cells. At all times, after every call:
 ///
 /// * the field is the union of the walls and of the discs of all balls, and no disc shares a cell with
-/// another
-///   or with a wall;
+///   another or with a wall;
 /// * every disc lies inside the box;
 /// * a ball asleep under gravity is held: its disc moved by one cell along the axis on which gravity pulls
-/// most
-///   (either, where it pulls the same on both) meets the box, a wall or another ball; `is_held` is that
+///   most (either, where it pulls the same on both) meets the box, a wall or another ball; `is_held` is that
 ///   predicate, exactly. What holds it has its centre further along that axis, so support ends at a wall or
 ///   at the box.
 ///
@@ -172,6 +169,11 @@ class ParticleWorld {
   /// of `config` beyond its limits, `kOutOfMemory` when `bytes` is too small; `world` and `bytes` are then
   /// untouched. A box of no cells is a world that stays empty. Cost: clears the bytes.
   static Status make(const ParticleConfig& config, Bytes bytes, ParticleWorld* world);
+  /// The same in an arena, which gives just those bytes; after an error it is as it was.
+  static Status make(const ParticleConfig& config, Arena& arena, ParticleWorld* world) {
+    return make_in(arena, particles_bytes(config), alignof(uint32_t),
+                   [&](Bytes bytes) { return make(config, bytes, world); });
+  }
 
   const ParticleConfig& config() const { return config_; }
   const BitField& field() const { return field_; }

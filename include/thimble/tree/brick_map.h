@@ -60,12 +60,12 @@ class BrickMap {
   static const char* validate(ConstBytes bytes);
 
   /// Makes the map of `tree` at the front of `out` (at a multiple of 8) and opens it as `map` (null: only the
-  /// bytes are wanted); `size` (may be null) gets its bytes. While it is
-  /// being made it takes 2 bytes a brick more, and 8 for each that turns out to be solid through and of one
-  /// material. Errors: `kOutOfRange` (level, more than kMaxBricks - 1 bricks or 65,280 nodes of level 2, 2^24
-  /// nodes), `kOutOfMemory`, `kBadArgument` (odd address). What `out` then holds is not a map. One pass over
-  /// the tree, some 2,000 instructions a brick on its surface, and cells times bricks that are shared or
-  /// renumbered; stack below 900 bytes.
+  /// bytes are wanted); `size` (may be null) gets its bytes. While it is being made it takes 2 bytes a brick
+  /// more, and 8 for each that turns out to be solid through and of one material. Errors: `kOutOfRange`
+  /// (level, more than kMaxBricks - 1 bricks or 65,280 nodes of level 2, 2^24 nodes), `kOutOfMemory`,
+  /// `kBadArgument` (odd address). What `out` then holds is not a map. One pass over the tree, some 2,000
+  /// instructions a brick on its surface, and cells times bricks that are shared or renumbered; stack below
+  /// 900 bytes.
   static Status make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size = nullptr);
 
   /// Whether it was made from that tree, by its checksum.

@@ -38,6 +38,10 @@ class DenseGrid {
   /// `kOutOfRange` for a size beyond the limits, `kOutOfMemory` when `bytes` is too small; `grid` and `bytes`
   /// are then untouched.
   static Status make(const Vec3i& size, Bytes bytes, DenseGrid* grid);
+  /// The same in an arena, which gives just those bytes; after an error it is as it was.
+  static Status make(const Vec3i& size, Arena& arena, DenseGrid* grid) {
+    return make_in(arena, dense_grid_bytes(size), 1, [&](Bytes bytes) { return make(size, bytes, grid); });
+  }
 
   /// Marks voxel `at` as solid or empty. `kOutOfRange` outside the grid.
   Status set(const Vec3i& at, bool solid = true);

@@ -10,8 +10,7 @@
 ///
 ///   a solid block    no children: solid through, one material, at any level
 ///   an inner node    level >= 2: a mask of the octants that hold something; the children form a singly
-///   linked
-///                    chain in octant order, so octant o is popcount(mask & ((1 << o) - 1)) links along it
+///                    linked chain in octant order: octant o is popcount(mask & ((1 << o) - 1)) links along
 ///   a voxel node     level 1: the mask's bits are the 2 x 2 x 2 voxels themselves. One material serves all;
 ///                    only when they differ does a chain of level-0 nodes, one a voxel, hang on it
 ///
@@ -95,13 +94,9 @@ class Octree {
   /// The same with room for `nodes` nodes, of which the arena gives octree_bytes(nodes). Errors: also
   /// `kOutOfMemory`; the arena is then as it was, too.
   static Status make(int level, size_t nodes, Arena& arena, Octree* octree) {
-    const size_t mark = arena.used_bytes();
-    const Bytes bytes = arena.take(octree_bytes(nodes), alignof(uint32_t));
-    const Status status = nodes != 0 && bytes.empty() ? Status::kOutOfMemory : make(level, bytes, octree);
-    if (status != Status::kOk) {
-      arena.rewind(mark);
-    }
-    return status;
+    return make_in(arena, octree_bytes(nodes), alignof(uint32_t), [&](Bytes bytes) {
+      return nodes != 0 && bytes.empty() ? Status::kOutOfMemory : make(level, bytes, octree);
+    });
   }
 
   /// Empties the tree, in constant time: also the high water and the added volume start from 0 again.

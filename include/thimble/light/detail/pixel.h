@@ -1,6 +1,6 @@
 /// @file pixel.h
 /// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
-/// which the set names. Not for callers; it is public because the loop is compiled with the caller's set.
+/// which the set names. Not for callers; it is here because the loop is compiled with the caller's set.
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
 /// since the weights of a pixel's rays never add up to more than 1.
@@ -21,39 +21,7 @@
 #include "../scene.h"
 #include "../water.h"
 
-namespace thimble {
-
-/// What a ray was sent for. kGlassRay and kWaterRay: reflected or refracted at such a boundary; kMediaRay:
-/// not a ray of its own but a stretch of one, from where it left a cloud (or glass of index 1) straight on.
-enum class LitRayKind : uint8_t {
-  kPrimary,
-  kShadow,
-  kOcclusion,
-  kMirrorRay,
-  kGlassRay,
-  kMediaRay,
-  kWaterRay
-};
-inline constexpr int kLitRayKinds = 7;
-
-/// What a renderer did. An effect that is not in the set counts 0.
-struct LitCounts {
-  uint64_t rays[kLitRayKinds] = {};
-  uint64_t hits[kLitRayKinds] = {};  ///< of these, met something solid
-  /// Nodes whose mask was read (`Hit::visits`), cells walked through inside clear solids, columns of water.
-  uint64_t node_visits[kLitRayKinds] = {};
-  uint64_t step_limited = 0;        ///< rays stopped by `LitOptions::max_visits`; they count as misses
-  uint32_t pending_high_water = 0;  ///< most rays of a pixel that waited to be followed at once
-};
-
-struct LitOptions {
-  /// A ray is stopped where it would visit one more node than this.
-  uint32_t max_visits = UINT32_MAX;
-  /// Ordered dither (Bayer, 8 x 8) in formats with fewer than 8 bits a channel.
-  bool dither = true;
-};
-
-namespace lit {
+namespace thimble::lit {
 
 /// One step of 8 bits in a colour's units; kWhite is 255 of them.
 inline constexpr uint32_t kLevel = 64;
@@ -149,7 +117,7 @@ struct LightRay {
   RayPoint place;  ///< where a point light is on the ray
 };
 
-// --- the band: lit_band.cpp ------------------------------------------------------------------------------
+// --- the band: band.cpp ----------------------------------------------------------------------------------
 
 Status draw_plain(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
                   LitCounts* counts, const LitOptions& options);
@@ -159,7 +127,7 @@ void clear_row(const Frame& frame, const Band& band, uint8_t* line);
 void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32_t y, const Color& color);
 void add_counts(const LitCounts& from, LitCounts* to);
 
-// --- what a ray meets, what a face gets: lit_surface.cpp -------------------------------------------------
+// --- what a ray meets, what a face gets: surface.cpp -----------------------------------------------------
 
 void count_ray(Frame& frame, LitRayKind kind);
 void count_result(Frame& frame, LitRayKind kind, HitKind result, uint32_t visits);
@@ -392,8 +360,6 @@ Status draw(Frame frame, const Band& band, LitCounts* counts) {
   return Status::kOk;
 }
 
-}  // namespace lit
-
-}  // namespace thimble
+}  // namespace thimble::lit
 
 #endif
