@@ -1,6 +1,10 @@
 /// @file wide_arithmetic.h
-/// Quotients, roots and wide products for set-up code, in shifts, additions and 32-bit multiplications only:
-/// a small core has no instruction for more, and the compiler's library for it is large and slow.
+/// The 64-bit products of the tracing path, and the quotients, roots and products of set-up code.
+///
+/// Products of two 32-bit numbers have a name each, so that one place decides how a chip computes them; as
+/// they stand the compiler does: one instruction on most chips, a call of its library on a Cortex-M0.
+/// Everything else takes only shifts, additions and these products: a small core has no instruction for more,
+/// and the compiler's library for it is large and slow.
 ///
 /// Every loop runs at most 64 times. Results are exact or round to nearest as stated, on magnitudes: callers
 /// keep signs apart, which makes mirrored input give mirrored output.
@@ -10,6 +14,18 @@
 #include <stdint.h>
 
 namespace thimble {
+
+/// a * b, exactly.
+constexpr int64_t wide_product(int32_t a, int32_t b) {
+  return int64_t{a} * b;
+}
+constexpr uint64_t wide_product_u(uint32_t a, uint32_t b) {
+  return uint64_t{a} * b;
+}
+/// Whether a * b < c * d, exactly: which of the fractions a / d and c / b is the lesser, for b and d above 0.
+constexpr bool is_product_less(int32_t a, int32_t b, int32_t c, int32_t d) {
+  return wide_product(a, b) < wide_product(c, d);
+}
 
 /// Number of bits up to the highest 1 of `value`; 0 for 0.
 constexpr int bit_width(uint64_t value) {
@@ -82,8 +98,8 @@ constexpr uint32_t square_root_rounded(uint64_t value) {
 /// The integer nearest to a * b / 2^shift, up to 2^-10 of a unit: `a` below 2^63, `shift` 42 .. 94. The
 /// 95-bit product is cut to its upper 63 bits before it is rounded.
 constexpr uint64_t multiply_shifted(uint64_t a, uint32_t b, int shift) {
-  const uint64_t high = (a >> 32) * b;
-  const uint64_t low = (a & UINT32_MAX) * b;
+  const uint64_t high = wide_product_u(static_cast<uint32_t>(a >> 32), b);
+  const uint64_t low = wide_product_u(static_cast<uint32_t>(a), b);
   return shift_rounded(high + (low >> 32), shift - 32);
 }
 
