@@ -57,15 +57,13 @@ template <class Int, class Unsigned>
 
 Status trace_cut(const CompactTree& tree, const Ray& ray, const Cutoff& cutoff, const TraceOptions& options,
                  CutHit* hit, PathCache* cache) {
-  Status status = check_ray(ray, tree.level());
+  const Status status = check_ray(ray, tree.level());
   if (status != Status::kOk) {
     return status;
   }
   bool narrow = false;
-  status = choose_width(
-      options.width, [&] { return accepts_32(ray, tree.level()); }, &narrow);
-  if (status != Status::kOk) {
-    return status;
+  if (!choose_width(options.width, &narrow, [&] { return accepts_32(ray, tree.level()); })) {
+    return Status::kOutOfRange;
   }
   const MirroredRay mirrored(ray, int32_t{1} << tree.level(), tree.bounds());
   *hit =

@@ -78,14 +78,17 @@ struct NodeStep {
 // The lowest corner of the node of `level` on the way down from `world_level`.
 template <class Step>
 static Vec3i corner_of(const Step (&stack)[kMaxLevel + 1], int level, int world_level) {
-  Vec3i corner;
+  uint32_t x = 0;
+  uint32_t y = 0;
+  uint32_t z = 0;
   for (int above = world_level; above > level; --above) {
-    const unsigned octant = stack[above].octant;
-    corner.x |= static_cast<int32_t>((octant & 1U) << (above - 1));
-    corner.y |= static_cast<int32_t>(((octant >> 1) & 1U) << (above - 1));
-    corner.z |= static_cast<int32_t>(((octant >> 2) & 1U) << (above - 1));
+    const uint32_t octant = stack[above].octant;
+    x = x << 1 | (octant & 1U);
+    y = y << 1 | (octant >> 1 & 1U);
+    z = z << 1 | octant >> 2;
   }
-  return corner;
+  return {static_cast<int32_t>(x << level), static_cast<int32_t>(y << level),
+          static_cast<int32_t>(z << level)};
 }
 
 // Goes down from a node of `level` that is solid through to the voxel that the ray enters it by. `inside`:

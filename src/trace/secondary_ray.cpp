@@ -297,15 +297,13 @@ MirroredRay in_all_of(int level, const Ray& ray) {
                                                  const RayPoint& from, Search search, Width width,
                                                  bool* in_world, MediumExit* exit) {
   const int level = tree.level();
-  Status status = begin_at(ray, level, from, &search);
+  const Status status = begin_at(ray, level, from, &search);
   if (status != Status::kOk) {
     return status;
   }
   bool narrow = false;
-  status = choose_width(
-      width, [&] { return accepts_32_from(ray, level, search); }, &narrow);
-  if (status != Status::kOk) {
-    return status;
+  if (!choose_width(width, &narrow, [&] { return accepts_32_from(ray, level, search); })) {
+    return Status::kOutOfRange;
   }
   const MirroredRay mirrored = in_all_of(level, ray);
   *in_world = narrow ? walk<int32_t, uint32_t>(tree, mirrored, search, exit)

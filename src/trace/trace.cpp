@@ -137,15 +137,13 @@ template <class Target>
 Status trace(const Target& target, const Ray& ray, const TraceOptions& options, bool any, Hit* hit,
              PathCache* cache) {
   const int level = target.level();
-  Status status = check_ray(ray, level);
+  const Status status = check_ray(ray, level);
   if (status != Status::kOk) {
     return status;
   }
   bool narrow = false;
-  status = choose_width(
-      options.width, [&] { return accepts_32(ray, level); }, &narrow);
-  if (status != Status::kOk) {
-    return status;
+  if (!choose_width(options.width, &narrow, [&] { return accepts_32(ray, level); })) {
+    return Status::kOutOfRange;
   }
   // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
   const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());

@@ -11,12 +11,15 @@ namespace thimble {
 inline constexpr bool kPrefers32 = sizeof(void*) <= 4;
 
 // Chooses the arithmetic of a ray. `accepted` says whether 32 bits suffice for it; it is called only where
-// that matters. kOutOfRange where 32 bits are wanted and do not suffice.
+// that matters. False where 32 bits are wanted and do not suffice.
 template <class Accepted>
-[[gnu::always_inline]] inline Status choose_width(Width wanted, const Accepted& accepted, bool* narrow) {
-  const bool must = wanted == Width::k32;
-  *narrow = (must || (kPrefers32 && wanted == Width::kAuto)) && accepted();
-  return must && !*narrow ? Status::kOutOfRange : Status::kOk;
+[[gnu::always_inline]] inline bool choose_width(Width wanted, bool* narrow, const Accepted& accepted) {
+  if (wanted == Width::k64 || (wanted == Width::kAuto && !kPrefers32)) {
+    *narrow = false;
+    return true;
+  }
+  *narrow = accepted();
+  return *narrow || wanted == Width::kAuto;
 }
 
 }  // namespace thimble
