@@ -5,7 +5,7 @@
 
 #include "../base/wide_arithmetic.h"
 #include "../trace/path_cache.h"
-#include "ray_range.h"
+#include "band.h"
 
 namespace thimble {
 namespace {
@@ -174,13 +174,6 @@ Materials materials_of(const DenseGrid&) {
   return {0, 0};
 }
 
-void rays_of_corners(const Camera& camera, Ray (&corners)[4]) {
-  for (unsigned corner = 0; corner < 4; ++corner) {
-    corners[corner] = camera.ray((corner & 1U) != 0 ? camera.width_px() - 1 : 0,
-                                 (corner & 2U) != 0 ? camera.height_px() - 1 : 0);
-  }
-}
-
 }  // namespace
 
 template <class Structure>
@@ -200,7 +193,7 @@ Status AnytimeFrame::make_any(const Structure& structure, uint32_t reserve, cons
   row_bytes_ = row_bytes(format, width);
   bit_row_bytes_ = row_bytes(PixelFormat::kMono1, width);
   picture_ = memory.data;
-  exact_ = memory.data + row_bytes_ * static_cast<size_t>(height);
+  exact_ = memory.data + band_bytes(format, width, height);
   counts_ = {};
   spent_ = 0;
   left_ = 0;
@@ -213,10 +206,8 @@ Status AnytimeFrame::make_any(const Structure& structure, uint32_t reserve, cons
   x_ = kPasses[0].step;
   y_ = kPasses[0].step;
   clear();
-  Ray corners[4];
-  rays_of_corners(camera_, corners);
   const Materials materials = materials_of(structure);
-  find_range(corners, materials.low, materials.high);
+  find_range(materials.low, materials.high);
   mark_misses(structure.bounds());
   return Status::kOk;
 }
@@ -245,7 +236,7 @@ void AnytimeFrame::clear() {
 }
 
 // Every colour that a pixel may get: the background, and what is hit by the faces that some ray can enter by.
-void AnytimeFrame::find_range(const Ray (&corners)[4], uint32_t materials_low, uint32_t materials_high) {
+void AnytimeFrame::find_range(uint32_t materials_low, uint32_t materials_high) {
   GrayRange range;
   range.add(background_, format_);
   if (shading_.mode == ShadeMode::kDepth) {
@@ -255,9 +246,9 @@ void AnytimeFrame::find_range(const Ray (&corners)[4], uint32_t materials_low, u
     gray_range_ = static_cast<uint8_t>(range.range(format_));
     return;
   }
-  RayRange rays(corners[0], corners[1]);
-  rays.add(corners[2]);
-  rays.add(corners[3]);
+  RayRange rays(corner_ray(camera_, 0), corner_ray(camera_, 1));
+  rays.add(corner_ray(camera_, 2));
+  rays.add(corner_ray(camera_, 3));
   // One material beyond the palette stands for all of them.
   const uint32_t beyond = static_cast<uint32_t>(least(256, static_cast<uint32_t>(shading_.palette.size)));
   const uint32_t last = shading_.mode == ShadeMode::kColor ? least(materials_high, beyond) : materials_low;
@@ -425,14 +416,9 @@ Status AnytimeFrame::refine_any(const Structure& structure, uint32_t max_visits,
   if (picture_ == nullptr || camera_.level() != structure.level()) {
     return Status::kBadArgument;
   }
-  if (width == Width::k32) {
-    Ray corners[4];
-    rays_of_corners(camera_, corners);
-    for (const Ray& corner : corners) {
-      if (!accepts_32(corner, structure.level())) {
-        return Status::kBadArgument;
-      }
-    }
+  const Status status = check_width(camera_, structure.level(), width);
+  if (status != Status::kOk) {
+    return status;
   }
   left_ += max_visits;
   PathCache cache;

@@ -39,7 +39,7 @@ constexpr uint64_t kMustPxQ16 = 8192;
 using Wide = Vec3<int64_t>;
 
 /// Forward, right and up of the picture: orthonormal, in 1/2^30.
-struct Frame {
+struct ViewFrame {
   Vec3i forward;
   Vec3i right;
   Vec3i up;
@@ -56,9 +56,8 @@ bool has_view_components(const Vec3i& vector) {
 
 /// a x b, exactly: below 2^62 for view components.
 Wide cross(const Vec3i& a, const Vec3i& b) {
-  const auto product = [](int32_t left, int32_t right) { return static_cast<int64_t>(left) * right; };
-  return {product(a.y, b.z) - product(a.z, b.y), product(a.z, b.x) - product(a.x, b.z),
-          product(a.x, b.y) - product(a.y, b.x)};
+  return {wide_product(a.y, b.z) - wide_product(a.z, b.y), wide_product(a.z, b.x) - wide_product(a.x, b.z),
+          wide_product(a.x, b.y) - wide_product(a.y, b.x)};
 }
 
 /// The largest |component|.
@@ -91,7 +90,7 @@ Vec3i unit_q30(const Wide& vector) {
 }
 
 /// Checks the vectors of a view and makes its frame.
-Status make_frame(const Vec3i& forward, const Vec3i& given_up, Frame& frame) {
+Status make_frame(const Vec3i& forward, const Vec3i& given_up, ViewFrame& frame) {
   if (!has_view_components(forward) || !has_view_components(given_up)) {
     return Status::kOutOfRange;
   }
@@ -173,7 +172,7 @@ Status Camera::set(const PerspectiveView& view, int level) {
   if (view.fov_degrees < kMinFov || view.fov_degrees > kMaxFov || !is_origin(view.eye, level)) {
     return Status::kOutOfRange;
   }
-  Frame frame;
+  ViewFrame frame;
   status = make_frame(view.forward, view.up, frame);
   if (status != Status::kOk) {
     return status;
@@ -288,7 +287,7 @@ uint64_t world_depth_q8(const Vec3Q8& eye, const Vec3i& unit_forward, int level)
   int64_t depth_q38 = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t corner_q8 = unit_forward[axis] > 0 ? Q8::kOne << level : 0;
-    depth_q38 += static_cast<int64_t>(unit_forward[axis]) * (corner_q8 - eye[axis].raw);
+    depth_q38 += wide_product(unit_forward[axis], corner_q8 - eye[axis].raw);
   }
   return depth_q38 <= 0 ? 0 : static_cast<uint64_t>(depth_q38 >> 30) + 1;
 }
@@ -306,7 +305,7 @@ Status Camera::set(const OrthographicView& view, int level) {
   if (!is_origin(view.eye, level)) {
     return Status::kOutOfRange;
   }
-  Frame frame;
+  ViewFrame frame;
   status = make_frame(view.forward, view.up, frame);
   if (status != Status::kOk) {
     return status;

@@ -5,7 +5,9 @@
 
 #include <stdint.h>
 
+#include "../base/wide_arithmetic.h"
 #include "thimble/base/vec.h"
+#include "thimble/picture/camera.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble {
@@ -42,6 +44,12 @@ struct RayRange {
   }
 };
 
+// The ray of a corner of the picture: bit 0 the right ones, bit 1 the lower ones.
+inline Ray corner_ray(const Camera& camera, unsigned corner) {
+  return camera.ray((corner & 1U) != 0 ? camera.width_px() - 1 : 0,
+                    (corner & 2U) != 0 ? camera.height_px() - 1 : 0);
+}
+
 // Whether certainly none of the rays meets `box`: on some axis all start beyond it and none turns to it, or
 // the soonest that any enters it on one axis is later than the last that any leaves it on another. Times are
 // fractions of a distance (below 2^24) and a direction (below 2^20), compared by cross multiplication.
@@ -49,24 +57,24 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
   if (box.empty()) {
     return true;
   }
-  int64_t enter_num = 0;
-  int64_t enter_den = 1;
-  int64_t leave_num = 1;
-  int64_t leave_den = 0;  // never
+  int32_t enter_num = 0;
+  int32_t enter_den = 1;
+  int32_t leave_num = 1;
+  int32_t leave_den = 0;  // never
   for (int axis = 0; axis < 3; ++axis) {
-    const int64_t low = int64_t{box.low[axis]} * Q8::kOne;
-    const int64_t high = int64_t{box.high[axis]} * Q8::kOne;
-    int64_t before = low - rays.origin_high[axis];   // at least so far to go, for rays that go up
-    int64_t through = high - rays.origin_low[axis];  // at most so far
-    int64_t slowest = rays.direction_low[axis];
-    int64_t fastest = rays.direction_high[axis];
+    const int32_t low = box.low[axis] * Q8::kOne;
+    const int32_t high = box.high[axis] * Q8::kOne;
+    int32_t before = low - rays.origin_high[axis];   // rays that go up have at least so far to go
+    int32_t through = high - rays.origin_low[axis];  // and at most so far
+    int32_t slowest = rays.direction_low[axis];
+    int32_t fastest = rays.direction_high[axis];
     if (fastest < 0) {  // all go down: the same, mirrored
       before = rays.origin_low[axis] - high;
       through = rays.origin_high[axis] - low;
-      slowest = -int64_t{rays.direction_high[axis]};
-      fastest = -int64_t{rays.direction_low[axis]};
+      slowest = -rays.direction_high[axis];
+      fastest = -rays.direction_low[axis];
     } else if (slowest <= 0) {  // both ways, or along: nothing is known of leaving
-      const int64_t above = rays.origin_low[axis] - high;
+      const int32_t above = rays.origin_low[axis] - high;
       if (above > before) {
         before = above;
         fastest = -slowest;
@@ -77,7 +85,7 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
       if (fastest == 0) {
         return true;
       }
-      if (before * enter_den > enter_num * fastest) {
+      if (is_product_less(enter_num, fastest, before, enter_den)) {
         enter_num = before;
         enter_den = fastest;
       }
@@ -86,13 +94,13 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
       if (through <= 0) {
         return true;
       }
-      if (through * leave_den < leave_num * slowest) {
+      if (is_product_less(through, leave_den, leave_num, slowest)) {
         leave_num = through;
         leave_den = slowest;
       }
     }
   }
-  return enter_num * leave_den >= leave_num * enter_den;
+  return !is_product_less(enter_num, leave_den, leave_num, enter_den);
 }
 
 }  // namespace thimble

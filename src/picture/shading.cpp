@@ -62,7 +62,7 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
 void light_from(const Vec3i& toward_light, uint16_t (&face_light)[6]) {
   uint64_t square = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    square += static_cast<uint64_t>(int64_t{toward_light[axis]} * toward_light[axis]);
+    square += static_cast<uint64_t>(wide_product(toward_light[axis], toward_light[axis]));
   }
   // The root is taken of the square times 2^16 to keep 8 more bits of it.
   const int32_t length_q8 = static_cast<int32_t>(square_root_rounded(square << 16));
@@ -98,7 +98,7 @@ int32_t planar_depth_q8(const Hit& hit, const Camera& camera) {
   }
   const int shift = 32 - bits::bit_length(depth_per_t);
   const uint32_t ratio = (depth_per_t << shift) / direction;
-  const uint64_t depth = (uint64_t{static_cast<uint32_t>(hit.t_numerator)} * ratio) >> (shift + 8);
+  const uint64_t depth = wide_product_u(static_cast<uint32_t>(hit.t_numerator), ratio) >> (shift + 8);
   return depth < INT32_MAX ? static_cast<int32_t>(depth) : INT32_MAX;
 }
 

@@ -21,9 +21,34 @@
 #include <stdint.h>
 
 #include "../base/bits.h"
+#include "../base/wide_arithmetic.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble {
+
+// A distance times a direction's component, or the like: the products of tracing, all of which go through
+// here, in its width.
+template <class Int>
+constexpr Int product(int32_t a, int32_t b);
+template <>
+constexpr int32_t product<int32_t>(int32_t a, int32_t b) {
+  return a * b;
+}
+template <>
+constexpr int64_t product<int64_t>(int32_t a, int32_t b) {
+  return wide_product(a, b);
+}
+
+template <class Unsigned>
+struct SignedOf;
+template <>
+struct SignedOf<uint32_t> {
+  using Type = int32_t;
+};
+template <>
+struct SignedOf<uint64_t> {
+  using Type = int64_t;
+};
 
 // A ray with its negative axes reflected, and the box it is clipped to, reflected likewise.
 struct MirroredRay {
@@ -67,9 +92,8 @@ struct MirroredRay {
 
 // Octants as bits of a byte, changed from the mirrored numbering to the tree's or back: octant o moves to
 // o ^ flip. Works on all bytes of a word at once.
-template <class Word>
-constexpr Word mirrored_octants(Word octants, unsigned flip) {
-  constexpr Word kBytes = static_cast<Word>(~Word{0}) / 0xFFU;
+constexpr uint32_t mirrored_octants(uint32_t octants, unsigned flip) {
+  constexpr uint32_t kBytes = 0x01010101U;
   if ((flip & 1U) != 0) {
     octants = (octants & kBytes * 0x55U) << 1 | (octants >> 1 & kBytes * 0x55U);
   }
@@ -95,7 +119,7 @@ constexpr uint32_t octants_from(unsigned octant) {
 // these units moving a plane by half a node always changes an order by the same amount, so everything that
 // the state is compared with is made once a ray. The ray crosses the node, so the state lies between 0 and
 // twice the sum of the two amounts, at every level: below 2 * R * D < 2^32 for a ray that `accepts_32` takes,
-// below 2^42 for others. Its products wrap around, the state does not.
+// below 2^42 for others. So it is unsigned: the difference of its two products may pass 2^31, and no more.
 template <class Unsigned>
 class NodePath {
  public:
@@ -193,10 +217,10 @@ class NodePath {
     }
 
     Unsigned start(const MirroredRay& ray, int level) const {
-      const Unsigned d_a = static_cast<Unsigned>(ray.direction[kA]);
-      const Unsigned d_b = static_cast<Unsigned>(ray.direction[kB]);
-      return static_cast<Unsigned>(ray.distance(kA, int32_t{1} << level)) * d_b -
-             static_cast<Unsigned>(ray.distance(kB, 0)) * d_a;
+      using Int = typename SignedOf<Unsigned>::Type;
+      const Int upper = product<Int>(ray.distance(kA, int32_t{1} << level), ray.direction[kB]);
+      const Int lower = product<Int>(ray.distance(kB, 0), ray.direction[kA]);
+      return static_cast<Unsigned>(upper) - static_cast<Unsigned>(lower);
     }
     uint32_t octants(Unsigned state) const {
       // Written out, since gcc -O2 would make a loop of it.
@@ -229,16 +253,16 @@ class Crossings {
 
   explicit Crossings(const MirroredRay& ray)
       : ray_(ray),
-        d_{ray.direction.x, ray.direction.y, ray.direction.z},
+        d_(ray.direction),
         none_{ray.direction.x == 0, ray.direction.y == 0, ray.direction.z == 0} {}
 
   // Whether the ray spends a positive length in its box; it then enters it at t = num / den (times 256).
-  bool enter_box(Int* num, Int* den) const {
+  bool enter_box(int32_t* num, int32_t* den) const {
     *num = 0;
     *den = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const Int low = ray_.distance(axis, ray_.box_min[axis]);
-      if (low > 0 && (d_[axis] == 0 || low * *den > *num * d_[axis])) {
+      const int32_t low = ray_.distance(axis, ray_.box_min[axis]);
+      if (low > 0 && (d_[axis] == 0 || product<Int>(low, *den) > product<Int>(*num, d_[axis]))) {
         if (d_[axis] == 0) {
           return false;
         }
@@ -247,8 +271,8 @@ class Crossings {
       }
     }
     for (int axis = 0; axis < 3; ++axis) {
-      const Int high = ray_.distance(axis, ray_.box_max[axis]);
-      if (high <= 0 || (d_[axis] != 0 && high * *den <= *num * d_[axis])) {
+      const int32_t high = ray_.distance(axis, ray_.box_max[axis]);
+      if (high <= 0 || (d_[axis] != 0 && product<Int>(high, *den) <= product<Int>(*num, d_[axis]))) {
         return false;
       }
     }
@@ -257,11 +281,11 @@ class Crossings {
 
   // The cell in which the ray goes on from t = num / den (times 256), in a world of 2^level that it is in
   // then.
-  Vec3i cell_at(Int num, Int den, int level) const {
+  Vec3i cell_at(int32_t num, int32_t den, int level) const {
     Vec3i cell;
     for (int axis = 0; axis < 3; ++axis) {
       for (int32_t bit = int32_t{1} << (level - 1); bit != 0; bit >>= 1) {
-        if (ray_.distance(axis, cell[axis] | bit) * den <= num * d_[axis]) {
+        if (product<Int>(ray_.distance(axis, cell[axis] | bit), den) <= product<Int>(num, d_[axis])) {
           cell[axis] |= bit;
         }
       }
@@ -272,8 +296,10 @@ class Crossings {
   // The orders of plane `at.x` against plane `at.y`, and so on. The products stay within the bounds; so does
   // the difference when the planes meet a node that the ray crosses.
   Orders orders(const Vec3i& at) const {
-    const Vec3<Int> s{ray_.distance(0, at.x), ray_.distance(1, at.y), ray_.distance(2, at.z)};
-    return {s.x * d_.y - s.y * d_.x, s.y * d_.z - s.z * d_.y, s.z * d_.x - s.x * d_.z};
+    const Vec3i s{ray_.distance(0, at.x), ray_.distance(1, at.y), ray_.distance(2, at.z)};
+    return {product<Int>(s.x, d_.y) - product<Int>(s.y, d_.x),
+            product<Int>(s.y, d_.z) - product<Int>(s.z, d_.y),
+            product<Int>(s.z, d_.x) - product<Int>(s.x, d_.z)};
   }
 
   // The axes on which the ray leaves a cell (bit a = axis a), all of them when it crosses several of its
@@ -291,22 +317,22 @@ class Crossings {
   }
   // From the upper planes of a cell to those of the next one beyond `crossed`.
   void advance(unsigned crossed, Orders* orders) const {
-    const Int x = (crossed & 1U) != 0 ? Q8::kOne : 0;
-    const Int y = (crossed & 2U) != 0 ? Q8::kOne : 0;
-    const Int z = (crossed & 4U) != 0 ? Q8::kOne : 0;
-    orders->xy += x * d_.y - y * d_.x;
-    orders->yz += y * d_.z - z * d_.y;
-    orders->zx += z * d_.x - x * d_.z;
+    const int32_t x = (crossed & 1U) != 0 ? Q8::kOne : 0;
+    const int32_t y = (crossed & 2U) != 0 ? Q8::kOne : 0;
+    const int32_t z = (crossed & 4U) != 0 ? Q8::kOne : 0;
+    orders->xy += product<Int>(x, d_.y) - product<Int>(y, d_.x);
+    orders->yz += product<Int>(y, d_.z) - product<Int>(z, d_.y);
+    orders->zx += product<Int>(z, d_.x) - product<Int>(x, d_.z);
   }
 
   // The axis of the face by which the ray enters the box with its lowest corner at `corner`: the lower plane
   // crossed last, the lowest axis on a tie; -1 when the ray starts inside.
   int entered(const Vec3i& corner) const {
     int axis = -1;
-    Int last = 0;
+    int32_t last = 0;
     for (int a = 0; a < 3; ++a) {
-      const Int s = ray_.distance(a, corner[a]);
-      if (s > 0 && (axis < 0 || s * d_[axis] > last * d_[a])) {
+      const int32_t s = ray_.distance(a, corner[a]);
+      if (s > 0 && (axis < 0 || product<Int>(s, d_[axis]) > product<Int>(last, d_[a]))) {
         axis = a;
         last = s;
       }
@@ -316,8 +342,8 @@ class Crossings {
 
  private:
   const MirroredRay& ray_;
-  Vec3<Int> d_;     // direction
-  Vec3<Int> none_;  // 1 where it is 0
+  Vec3i d_;     // direction
+  Vec3i none_;  // 1 where it is 0
 };
 
 }  // namespace thimble

@@ -6,6 +6,7 @@
 #include "../base/bits.h"
 #include "../base/wide_arithmetic.h"
 #include "crossings.h"
+#include "width.h"
 
 namespace thimble {
 namespace {
@@ -20,7 +21,7 @@ struct Search {
 };
 
 template <class Path>
-struct Step {
+struct SearchStep {
   typename Path::State state;
   uint32_t link;  // the first child
   uint8_t mask;
@@ -46,10 +47,11 @@ uint32_t child_number(uint32_t link, uint8_t mask, unsigned octant) {
 
 // Whether the mirrored ray is in the world right after t = num / den.
 template <class Int>
-bool in_world(const MirroredRay& ray, int32_t side, Int num, Int den) {
+bool in_world(const MirroredRay& ray, int32_t side, int32_t num, int32_t den) {
   for (int axis = 0; axis < 3; ++axis) {
-    const Int way = num * ray.direction[axis];
-    if (ray.distance(axis, 0) * den > way || ray.distance(axis, side) * den <= way) {
+    const Int way = product<Int>(num, ray.direction[axis]);
+    if (product<Int>(ray.distance(axis, 0), den) > way ||
+        product<Int>(ray.distance(axis, side), den) <= way) {
       return false;
     }
   }
@@ -58,9 +60,9 @@ bool in_world(const MirroredRay& ray, int32_t side, Int num, Int den) {
 
 // One walk of one ray in one width.
 template <class Int, class Unsigned>
-class Walk {
+class SearchWalk {
  public:
-  Walk(const CompactTree& tree, const MirroredRay& ray)
+  SearchWalk(const CompactTree& tree, const MirroredRay& ray)
       : tree_(tree),
         ray_(ray),
         level_(tree.level()),
@@ -88,7 +90,7 @@ class Walk {
     }
     return corner;
   }
-  uint8_t voxel_material(const Step<Path>& step, unsigned octant) const {
+  uint8_t voxel_material(const SearchStep<Path>& step, unsigned octant) const {
     return tree_.many_materials() ? tree_.voxel_material(child_number(step.link, step.mask, octant))
                                   : tree_.uniform_material();
   }
@@ -100,11 +102,11 @@ class Walk {
   Crossings<Int> crossings_;
   Path path_;
   Vec3i start_;  // the cell in which the search begins; mirrored
-  Step<Path> stack_[kMaxLevel + 1];
+  SearchStep<Path> stack_[kMaxLevel + 1];
 };
 
 template <class Int, class Unsigned>
-void Walk<Int, Unsigned>::report_cell(const Vec3i& corner, int level, Hit* hit) const {
+void SearchWalk<Int, Unsigned>::report_cell(const Vec3i& corner, int level, Hit* hit) const {
   const int axis = crossings_.entered(corner);
   hit->kind = HitKind::kHit;
   hit->axis = static_cast<int8_t>(axis);
@@ -119,8 +121,8 @@ void Walk<Int, Unsigned>::report_cell(const Vec3i& corner, int level, Hit* hit) 
 }
 
 template <class Int, class Unsigned>
-void Walk<Int, Unsigned>::report(typename Path::State state, Vec3i corner, int level, bool inside,
-                                 bool merged, Hit* hit) const {
+void SearchWalk<Int, Unsigned>::report(typename Path::State state, Vec3i corner, int level, bool inside,
+                                       bool merged, Hit* hit) const {
   for (; level > 0 && !merged; --level) {
     uint32_t octants = mirrored_octants(path_.octants(state), ray_.flip);
     const unsigned start = octant_of(start_, level);
@@ -136,20 +138,20 @@ void Walk<Int, Unsigned>::report(typename Path::State state, Vec3i corner, int l
 }
 
 template <class Int, class Unsigned>
-void Walk<Int, Unsigned>::leave_world(Hit* hit) const {
-  Int num = 0;
-  Int den = 0;
+void SearchWalk<Int, Unsigned>::leave_world(Hit* hit) const {
+  int32_t num = 0;
+  int32_t den = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const Int distance = ray_.distance(axis, side_);
-    const Int direction = ray_.direction[axis];
-    if (direction != 0 && (den == 0 || distance * den < num * direction)) {
+    const int32_t distance = ray_.distance(axis, side_);
+    const int32_t direction = ray_.direction[axis];
+    if (direction != 0 && (den == 0 || product<Int>(distance, den) < product<Int>(num, direction))) {
       num = distance;
       den = direction;
     }
   }
   Vec3i cell = crossings_.cell_at(num, den, level_);
   for (int axis = 0; axis < 3; ++axis) {
-    if (ray_.distance(axis, side_) * den <= num * ray_.direction[axis]) {
+    if (product<Int>(ray_.distance(axis, side_), den) <= product<Int>(num, ray_.direction[axis])) {
       cell[axis] = side_;
     }
   }
@@ -157,9 +159,9 @@ void Walk<Int, Unsigned>::leave_world(Hit* hit) const {
 }
 
 template <class Int, class Unsigned>
-bool Walk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
-  const Int num = search.numerator;
-  const Int den = search.denominator;
+bool SearchWalk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
+  const int32_t num = search.numerator;
+  const int32_t den = search.denominator;
   if (!in_world<Int>(ray_, side_, num, den)) {
     return false;
   }
@@ -179,7 +181,7 @@ bool Walk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
       return true;
     }
     ++hit->visits;
-    Step<Path>& arrived = stack_[level];
+    SearchStep<Path>& arrived = stack_[level];
     arrived.rest = 0;
     if (index >= tree_.node_count()) {  // an empty or a damaged tree
       if (search.medium) {
@@ -217,7 +219,7 @@ bool Walk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
         level = static_cast<int>(bits::lowest_bit(pending));
         inside = false;  // what holds the start comes first
       }
-      Step<Path>& step = stack_[level];
+      SearchStep<Path>& step = stack_[level];
       const unsigned octant = bits::lowest_bit(step.rest);
       step.rest = static_cast<uint8_t>(step.rest & (step.rest - 1));
       step.octant = static_cast<uint8_t>(octant);
@@ -251,7 +253,7 @@ bool Walk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
 template <class Int, class Unsigned>
 [[gnu::noinline]] bool walk(const CompactTree& tree, const MirroredRay& ray, const Search& search,
                             MediumExit* exit) {
-  Walk<Int, Unsigned> walk(tree, ray);
+  SearchWalk<Int, Unsigned> walk(tree, ray);
   if (!walk.run(search, exit)) {
     return false;
   }
@@ -261,9 +263,6 @@ template <class Int, class Unsigned>
   }
   return true;
 }
-
-// Chips with 32-bit registers take the narrow path whenever they may.
-constexpr bool kPrefer32 = sizeof(void*) <= 4;
 
 // A ray as the walk takes it, or what is wrong with it.
 Status begin_at(const Ray& ray, int level, const RayPoint& from, Search* search) {
@@ -302,13 +301,9 @@ MirroredRay in_all_of(int level, const Ray& ray) {
   if (status != Status::kOk) {
     return status;
   }
-  bool narrow = width == Width::k32;
-  if (narrow || (kPrefer32 && width == Width::kAuto)) {
-    const bool accepted = accepts_32_from(ray, level, search);
-    if (narrow && !accepted) {
-      return Status::kOutOfRange;
-    }
-    narrow = accepted;
+  bool narrow = false;
+  if (!choose_width(width, &narrow, [&] { return accepts_32_from(ray, level, search); })) {
+    return Status::kOutOfRange;
   }
   const MirroredRay mirrored = in_all_of(level, ray);
   *in_world = narrow ? walk<int32_t, uint32_t>(tree, mirrored, search, exit)
@@ -332,7 +327,7 @@ MirroredRay in_all_of(int level, const Ray& ray) {
 
 // Whether the hit's t is below that of the point: 31 bits times 28 and 23 times 31.
 bool earlier(const Hit& hit, const RayPoint& point) {
-  return int64_t{hit.t_numerator} * point.t_denominator < int64_t{point.t_numerator} * hit.t_denominator;
+  return is_product_less(hit.t_numerator, point.t_denominator, point.t_numerator, hit.t_denominator);
 }
 
 // For a ray that is not in the world at `from`: it comes to it after that, or has left it.
@@ -380,11 +375,11 @@ Vec3Q8 start_on_plane(const Ray& ray, int axis, int32_t plane_q8, const Vec3i& l
     }
     // From the lower bound to the exact point, times the divisor: two products of 24 and 20 bits.
     const int32_t low = low_q8[other];
-    const int64_t offset = int64_t{ray.origin[other].raw - low} * static_cast<int64_t>(divisor) +
-                           int64_t{way} * ray.direction[other];
+    const int64_t offset = wide_product(ray.origin[other].raw - low, static_cast<int32_t>(divisor)) +
+                           wide_product(way, ray.direction[other]);
     const uint32_t range = static_cast<uint32_t>(high_q8[other] - low);
     uint32_t steps = 0;
-    if (offset >= static_cast<int64_t>(uint64_t{range} * divisor)) {
+    if (offset >= static_cast<int64_t>(wide_product_u(range, divisor))) {
       steps = range - 1;
     } else if (offset > UINT32_MAX) {
       steps = static_cast<uint32_t>(divide(static_cast<uint64_t>(offset), divisor));

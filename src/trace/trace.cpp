@@ -1,12 +1,12 @@
-// The traversal: from each node to those of its children that the ray passes through, in the order in which
-// it does. One loop for all trees and widths; the arithmetic is in crossings.h, the nodes behind the two
-// small adaptors below.
+// Traces a ray through each of the structures. The loop for all trees is in descent.h, the arithmetic in
+// crossings.h; what differs between the trees is behind the small adaptors below.
 #include "thimble/trace/trace.h"
 
 #include "../base/bits.h"
 #include "crossings.h"
 #include "descent.h"
 #include "path_cache.h"
+#include "width.h"
 
 namespace thimble {
 namespace {
@@ -65,115 +65,13 @@ struct SharedNodes {
   uint8_t voxel_material(uint32_t, uint8_t, unsigned) const { return tree.uniform_material(); }
 };
 
-struct Request {
-  uint32_t max_visits;
-  bool any;  // only the kind is wanted
-};
-
-// The children along the ray's path, in order, are the set bits of (mask & path) from the lowest up: in the
-// mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
-// through empty octants: it takes the next bit, or goes up to the next level that has one left.
-template <class Nodes, class Int, class Unsigned>
-Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request,
-                DirectionPath<Unsigned>* cache) {
-  Hit hit;
-  const Crossings<Int> crossings(ray);
-  Int num;
-  Int den;
-  if (nodes.empty() || !crossings.enter_box(&num, &den)) {
-    return hit;
-  }
-
-  const int world_level = nodes.level();
-  const int32_t side = int32_t{1} << world_level;
-  using Path = NodePath<Unsigned>;
-  const Path& path = cache->path(ray, world_level);
-  Step<Path> stack[kMaxLevel + 1];
-  uint32_t pending = 0;  // bit k: stack[k].rest is not 0
-  typename Path::State state = path.start(ray, world_level);
-  uint32_t index = nodes.root();
-  int level = world_level;
-  // While the node holds the ray's origin, only the octants ahead of it are on the ray.
-  bool inside = ray.within(side);
-
-  // Each turn arrives at the node `index` of `level`. The ray passes at most 3 * 2^k nodes of a level whose
-  // nodes are 1/2^k of the world.
-  for (uint32_t visits = 0;;) {
-    if (visits == request.max_visits) {
-      hit.kind = HitKind::kStepLimit;
-      hit.visits = visits;
-      return hit;
-    }
-    ++visits;
-    NodeRef node;
-    if (!nodes.load(index, &node)) {
-      hit.visits = visits;
-      return hit;
-    }
-    const bool solid = node.mask == 0;
-    uint32_t rest = path.octants(state) & node.mask;
-    if (rest != 0) {
-      rest = mirrored_octants(rest, ray.flip);
-      if (inside) {
-        rest &= octants_from(ray.origin_octant(level));
-      }
-    }
-    if (solid || (level == 1 && rest != 0)) {
-      hit.kind = HitKind::kHit;
-      hit.visits = visits;
-      if (request.any) {
-        return hit;
-      }
-      if (!solid) {  // a voxel
-        const unsigned octant = bits::lowest_bit(rest);
-        hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
-        stack[level].octant = static_cast<uint8_t>(octant);
-        level = 0;
-      } else {
-        hit.material = nodes.block_material(index);
-        if (!nodes.merged(index)) {
-          descend_to_voxel(path, ray, state, level, inside, stack);
-          level = 0;
-        }
-      }
-      report(ray, side, crossings, corner_of(stack, level, world_level), level, &hit);
-      return hit;
-    }
-
-    if (rest == 0) {  // up to the next level that has a child left
-      if (pending == 0) {
-        hit.visits = visits;
-        return hit;
-      }
-      level = static_cast<int>(bits::lowest_bit(pending));
-      inside = false;  // what holds the origin comes first
-      state = stack[level].state;
-      node = stack[level].node;
-      rest = stack[level].rest;
-    } else {
-      nodes.find_children(index, &node);
-      stack[level].state = state;
-      stack[level].node = node;
-    }
-    const unsigned octant = bits::lowest_bit(rest);
-    rest &= rest - 1;
-    stack[level].octant = static_cast<uint8_t>(octant);
-    stack[level].rest = static_cast<uint8_t>(rest);
-    pending = (pending & ~(uint32_t{1} << level)) | static_cast<uint32_t>(rest != 0) << level;
-    inside = inside && octant == ray.origin_octant(level);
-    index = nodes.child(node, octant ^ ray.flip);
-    state = path.child(state, octant);
-    --level;
-  }
-}
-
 // The dense grid has no empty space to skip: from voxel to voxel.
 template <class Int>
 Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& request) {
   Hit hit;
   const Crossings<Int> crossings(ray);
-  Int num;
-  Int den;
+  int32_t num;
+  int32_t den;
   if (grid.voxel_count() == 0 || !crossings.enter_box(&num, &den)) {
     return hit;
   }
@@ -211,17 +109,20 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request,
                            DirectionPath<Unsigned>* cache) {
-  return walk_octree<CompactNodes, Int, Unsigned>(CompactNodes{tree}, ray, request, cache);
+  GoesThrough stop;
+  return walk_octree<Int>(CompactNodes{tree}, ray, request, stop, cache);
 }
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request,
                            DirectionPath<Unsigned>* cache) {
-  return walk_octree<PoolNodes, Int, Unsigned>(PoolNodes{tree}, ray, request, cache);
+  GoesThrough stop;
+  return walk_octree<Int>(PoolNodes{tree}, ray, request, stop, cache);
 }
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const SharedTree& tree, const MirroredRay& ray, const Request& request,
                            DirectionPath<Unsigned>* cache) {
-  Hit hit = walk_octree<SharedNodes, Int, Unsigned>(SharedNodes{tree}, ray, request, cache);
+  GoesThrough stop;
+  Hit hit = walk_octree<Int>(SharedNodes{tree}, ray, request, stop, cache);
   if (hit.kind == HitKind::kHit && !request.any && tree.many_materials()) {
     hit.material = tree.material(hit.voxel);
   }
@@ -232,9 +133,6 @@ Hit walk(const DenseGrid& grid, const MirroredRay& ray, const Request& request, 
   return walk_grid<Int>(grid, ray, request);
 }
 
-// Chips with 32-bit registers take the narrow path whenever they may.
-constexpr bool kPrefer32 = sizeof(void*) <= 4;
-
 template <class Target>
 Status trace(const Target& target, const Ray& ray, const TraceOptions& options, bool any, Hit* hit,
              PathCache* cache) {
@@ -243,13 +141,9 @@ Status trace(const Target& target, const Ray& ray, const TraceOptions& options, 
   if (status != Status::kOk) {
     return status;
   }
-  bool narrow = options.width == Width::k32;
-  if (narrow || (kPrefer32 && options.width == Width::kAuto)) {
-    const bool accepted = accepts_32(ray, level);
-    if (narrow && !accepted) {
-      return Status::kOutOfRange;
-    }
-    narrow = accepted;
+  bool narrow = false;
+  if (!choose_width(options.width, &narrow, [&] { return accepts_32(ray, level); })) {
+    return Status::kOutOfRange;
   }
   // A grid too is reflected in the middle of the world that holds it, whose planes the bounds are made for.
   const MirroredRay mirrored(ray, int32_t{1} << level, target.bounds());

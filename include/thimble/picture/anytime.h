@@ -1,10 +1,10 @@
 /// @file anytime.h
 /// A frame that is refined from coarse to fine, and is a whole picture whenever it stops.
 ///
-///     AnytimeFrame frame;
-///     AnytimeFrame::make(tree, camera, shading, format, memory, &frame);  // memory: anytime_bytes(width,
-///     height, format) while (!frame.done() && time_is_left()) {
-///       frame.refine(tree, 2000);                            // 2,000 node visits more
+///     AnytimeFrame frame;  // works in `memory`: anytime_bytes(width, height, format)
+///     AnytimeFrame::make(tree, camera, shading, format, memory, &frame);
+///     while (!frame.done() && time_is_left()) {
+///       frame.refine(tree, 2000);  // 2,000 node visits more
 ///     }
 ///     flush(frame.band(0, height));
 ///
@@ -30,9 +30,10 @@
 /// that, is kept for the next call. The picture therefore depends on the sum of what was given and on nothing
 /// else: refine(a) and refine(b) give the picture of refine(a + b).
 ///
-/// What is certain about it while it is not done, and never grows with more work:
-///   - `inexact()` pixels may differ from the exact picture, no others;
-///   - each of them by at most `gray_range()` greys (gray_of what a display shows, 0..255): what lies between
+/// Two bounds hold while it is not done, and never grow with more work:
+///   - only `inexact()` pixels may differ from the exact picture;
+///   - each of them differs by at most `gray_range()` greys (gray_of what a display shows, 0..255): what lies
+///   between
 ///     the darkest and the brightest that this shading, palette, format and the faces that can be seen allow.
 ///     The background counts. So the mean absolute error of the picture is at most inexact * gray_range /
 ///     pixels greys (`mean_error_bound_q8`), the mean squared error at most inexact * gray_range^2 / pixels.
@@ -67,7 +68,7 @@ constexpr size_t anytime_bytes(int32_t width_px, int32_t height_px, PixelFormat 
 
 class AnytimeFrame {
  public:
-  /// Takes up a frame: the picture is background, nothing is traced, what was left of a frame before is
+  /// Begins a frame: the picture is background, nothing is traced, what was left of a frame before is
   /// forgotten. `memory` (any alignment) and the palette outlive the frame's use; the camera is copied.
   /// Cost: the bytes of the picture, and two rays' set-up for each 8 x 8 pixels; for kColor six products a
   /// palette colour. No node is visited.
@@ -81,7 +82,7 @@ class AnytimeFrame {
 
   /// Goes on with what was left over and `max_visits` more. kOk, whether that sufficed or not; also when
   /// there is nothing left to do. The structure is that of `make`.
-  /// Errors, with nothing changed: kBadArgument (nothing begun, a tree of another level, Width::k32 for rays
+  /// Errors, with nothing changed: kBadArgument (no frame made, a tree of another level, Width::k32 for rays
   /// that it does not take).
   /// Stack: that of a ray and 500 bytes (tests/budgets/stack.csv).
   Status refine(const CompactTree& tree, uint32_t max_visits, Width width = Width::kAuto);
@@ -127,7 +128,7 @@ class AnytimeFrame {
   template <class Structure>
   Status refine_any(const Structure& structure, uint32_t max_visits, Width width);
   void clear();
-  void find_range(const Ray (&corners)[4], uint32_t materials_low, uint32_t materials_high);
+  void find_range(uint32_t materials_low, uint32_t materials_high);
   void mark_misses(const VoxelBox& bounds);
   bool next_sample();
   void take_sample(Rgb8 color);

@@ -2,8 +2,8 @@
 /// The picture of render.h in a thirteenth of the instructions, for chips that draw frames: a compact tree
 /// with a brick map beside it.
 ///
-/// The pixels are those of `render_band` for the tree, bit for bit, whatever camera, shading, format and
-/// band: what the fast way does not take goes the other's way, ray by ray or as a whole. Nothing is kept
+/// The pixels are those of `render_band` for the tree, bit for bit, whatever the camera, shading, format and
+/// band: what the fast way does not take is drawn by the other, ray by ray or as a whole. Nothing is kept
 /// between bands, so bands may be drawn in any order and side by side.
 ///
 /// The fast way takes perspective cameras whose products of distances and directions fit in 32 bits
@@ -11,9 +11,9 @@
 /// sizes. Cheapest are bands of many rows that start at a multiple of kBrickTilePx, in pictures whose width
 /// is a multiple of 16. kDepth costs a division a pixel.
 ///
-/// Cost: some 360 instructions a pixel on a Cortex-M3, 650 on a Cortex-M0 (src/picture/README.md,
-/// "Frames on a chip"). Stack: 3 KiB (tests/budgets/stack.csv), most of it colours and the state of a tile.
-/// Code: some 45 KB.
+/// Cost: some 360 instructions a pixel on a Cortex-M3, 650 on a Cortex-M0 (src/picture/README.md, "Frames on a
+/// chip"). Stack: 3 KiB (tests/budgets/stack.csv), most of it colours and the state of a tile. Code: about
+/// 40 KB.
 #ifndef THIMBLE_PICTURE_BRICK_RENDER_H
 #define THIMBLE_PICTURE_BRICK_RENDER_H
 

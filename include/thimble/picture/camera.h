@@ -115,7 +115,7 @@ class Camera {
   using Vec3Q32 = Vec3<int64_t>;
 
   /// base + px * step_x + py * step_y, in 32.32 fixed point, |value| < 2^56 on the picture. Round it with
-  /// `Camera::round`.
+  /// `Camera::rounded`.
   struct Affine {
     Vec3Q32 base;
     Vec3Q32 step_x;

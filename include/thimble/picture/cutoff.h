@@ -1,15 +1,6 @@
 /// @file cutoff.h
-/// The mean colour of every node of a tree, for hits that stop above the voxels (cutoff.h).
-///
-/// The colour of a node is the mean of the palette's colours over all voxels that are solid in it, each
-/// counted once, channel by channel in the palette's own numbers; a voxel within a block counts as one. It is
-/// rounded once, to 5, 6 and 5 bits, and not again on the way up: the sums are exact. So the table is a
-/// function of the tree's voxels and the palette alone.
-///
-/// In trees of one material all means are that material's colour, and no table is needed.
-///
-/// Detail that no pixel shows is left out: tracing that stops at a node which covers less than a given part
-/// of a pixel, and colours it by the mean of what it holds.
+/// Leaves out detail that no pixel shows: tracing stops at a node that covers less than a given part of a
+/// pixel, and colours it by the mean of what it holds.
 ///
 /// What is solid for a ray, exactly. Let c be the axis of the direction's largest component (the lowest axis
 /// on a tie). A node of the tree, a cube of 2^level voxels with level >= 1, is *cut* when
@@ -31,6 +22,12 @@
 ///
 /// Source: the idea of stopping where a node is smaller than a pixel is that of Crassin, Neyret, Lefebvre and
 /// Eisemann, "GigaVoxels", I3D 2009, and of Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010.
+///
+/// The colour of a node is the mean of the palette's colours over all voxels that are solid in it, each
+/// counted once, channel by channel in the palette's own numbers; a voxel within a block counts as one. It is
+/// rounded once, to 5, 6 and 5 bits, and not again on the way up: the sums are exact. So the table of colours
+/// is a function of the tree's voxels and the palette alone. In trees of one material all means are that
+/// material's colour, and no table is needed.
 ///
 /// Firmware that does not call this holds none of it.
 #ifndef THIMBLE_PICTURE_CUTOFF_H
@@ -65,7 +62,7 @@ inline size_t node_colors_bytes(const CompactTree& tree) {
 /// of 5 bits, 255 / 62, and half a unit for the way back to 8 bits.
 inline constexpr int kNodeColorError = 5;
 
-/// A view of the table's bytes, which outlive it. Copy it freely.
+/// The mean colours of all nodes of a tree: a view of the table's bytes, which outlive it. Copy it freely.
 class NodeColors {
  public:
   /// No table.
@@ -88,7 +85,7 @@ class NodeColors {
   uint32_t nodes_ = 0;
 };
 
-/// The largest cut-off, in pixels: 64 of a picture with 8 x 8 samples each (samples.h).
+/// The largest cut-off, in pixels: 64 of a picture with 8 x 8 samples each (render.h).
 inline constexpr Q16 kMaxCutoff = Q16::saturate(512);
 /// How far `reach_q8` may lie above the real number 256 |d_c| / (w * pixels), in its own units (1/256 of a
 /// node's side): rounding up to the next integer takes up to 1, the factor's 2^-29 the rest for distances

@@ -48,10 +48,22 @@ struct Band {
   int32_t rows = 0;
 };
 
-/// Bytes for `rows` rows of `width_px` pixels without gaps; SIZE_MAX when size_t cannot say it.
+/// Rows that a format keeps together: a band starts at a multiple of them and holds one, unless it ends with
+/// the picture. 1 for all formats that there are.
+constexpr int32_t band_row_multiple(PixelFormat) {
+  return 1;
+}
+/// `rows` (at least 0), rounded up to that multiple.
+constexpr int32_t whole_rows(PixelFormat format, int32_t rows) {
+  const int32_t multiple = band_row_multiple(format);
+  return (rows + multiple - 1) / multiple * multiple;
+}
+
+/// Bytes for `rows` rows of `width_px` pixels without gaps, the rows rounded up to what the format keeps
+/// together; SIZE_MAX when size_t cannot say it.
 constexpr size_t band_bytes(PixelFormat format, int32_t width_px, int32_t rows) {
   const size_t one = row_bytes(format, width_px);
-  const size_t count = static_cast<size_t>(rows);
+  const size_t count = static_cast<size_t>(whole_rows(format, rows));
   return one != 0 && count > SIZE_MAX / one ? SIZE_MAX : one * count;
 }
 
@@ -69,7 +81,8 @@ constexpr size_t render_bytes() {
 
 /// Draws the band. `counts` (may be null) is added to. The camera was set up for the structure's level.
 /// Errors, with nothing drawn: kBadArgument (camera without pixels or for another level, rows outside the
-/// picture, stride too small, Width::k32 for rays that it does not take), kOutOfMemory (pixels too small).
+/// picture or no multiple of `band_row_multiple`, stride too small, Width::k32 for rays that it does not
+/// take), kOutOfMemory (pixels too small).
 Status render_band(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band,
                    RenderCounts* counts = nullptr, const TraceOptions& options = {});
 Status render_band(const Octree& tree, const Camera& camera, const Shading& shading, const Band& band,

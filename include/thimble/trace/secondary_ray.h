@@ -7,11 +7,10 @@
 /// low .. high - 1/256, low and high being the block's planes (so its point belongs to the block it was hit
 /// on).
 ///
-///           |              A ray that runs away from the plane spends no length on the far side, by the
-///     out   |   block      rule of ray.h, so a reflected ray cannot hit what it leaves: no acne, by
-///     definition
-///     <-----*              and not by luck. One that runs into it starts in the block, unless it starts on
-///           |              another of its planes and leaves through that at once.
+///           |              A ray that runs away from the plane spends no length on the far side, by
+///     out   |   block      the rule of ray.h. So a reflected ray cannot hit what it leaves: no acne, by
+///     <-----*              definition and not by luck. One that runs into the plane starts in the
+///           |              block, unless it starts on another of its planes and leaves by that at once.
 ///         plane
 ///
 /// Which of the two it does is a question about the sign of one component (`leaves_face`, `enters_face`). A

@@ -1,0 +1,242 @@
+// All rays of a tile at once: which way they go, and the first slab of voxels in which one of them may meet
+// something. Internal to src/.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
+#define THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
+
+#include "course.h"
+
+namespace thimble::bricks {
+namespace {
+
+// The directions of a tile: for each axis the least and the greatest, and what the rays have in common.
+struct Fan {
+  Vec3i low;
+  Vec3i high;
+  int c = 0;              // the fastest axis
+  unsigned mirrored = 0;  // bit a: most rays go down on axis a
+  unsigned mixed = 0;     // bit a: not all of them go the same way
+
+  // Directions lie from value + least to value + greatest (`margins_of`).
+  Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
+    int32_t most = -1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int32_t at = static_cast<int32_t>(value[axis] >> 16);
+      low[axis] = (at + least[axis]) >> 16;
+      high[axis] = (at + greatest[axis]) >> 16;
+      const int32_t sum = low[axis] + high[axis];
+      if (sum < 0) {
+        mirrored |= 1U << axis;
+        mixed |= high[axis] >= 0 ? 1U << axis : 0U;
+      } else {
+        mixed |= low[axis] < 0 ? 1U << axis : 0U;
+      }
+      const int32_t size = sum < 0 ? -sum : sum;
+      if (size > most) {
+        most = size;
+        c = axis;
+      }
+    }
+  }
+  // Whether all rays go the same way along c.
+  bool usable() const { return (mixed >> c & 1U) == 0 && low[c] != 0; }
+};
+
+// Finds what the rounded directions of a tile lie between, as 16.16 numbers to be added to its first pixel's
+// affine function in 16.16. The sum is cut off afterwards; one unit of 2^-16 either way makes up for what was
+// cut off before.
+void margins_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Vec3i* low, Vec3i* high) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int64_t across = affine.step_x[axis] * (across_px - 1);
+    const int64_t down = affine.step_y[axis] * (down_px - 1);
+    const int64_t least = (across < 0 ? across : 0) + (down < 0 ? down : 0);
+    const int64_t greatest = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+    // Halves go away from zero: half a unit below may be rounded down.
+    (*low)[axis] = static_cast<int32_t>(least >> 16) + 0x8000 - 1;
+    (*high)[axis] = static_cast<int32_t>(greatest >> 16) + 0x8000 + 2;
+  }
+}
+
+// Slopes of a beam are in 1/1024, so positions in 1/2^18 voxel.
+constexpr int kSlopeBits = 10;
+constexpr int kCellShift = kSlopeBits + 8;
+constexpr int kBrickShift = kCellShift + 2;
+// A beam may be so many bricks wide; one that is wider ends there, which is early but right.
+constexpr int32_t kBeamBricks = 4;
+
+// Where all rays of a fan are on one axis within a slab of voxels, from low to high in the box's own
+// coordinates.
+struct Shadow {
+  int32_t low;
+  int32_t high;
+  int32_t low_step;  // to the next slab
+  int32_t high_step;
+  int32_t low_more;  // what a further slab adds to the shadow at its lower end, at most 0
+  int32_t high_more;
+
+  void advance(int32_t voxels) {
+    low += voxels * low_step;
+    high += voxels * high_step;
+  }
+  // The first and the last brick of the next `voxels` slabs.
+  int32_t first_brick(int32_t voxels) const {
+    const int32_t first = (low + (voxels - 1) * low_more) >> kBrickShift;
+    return first < 0 ? 0 : first;
+  }
+  int32_t last_brick(int32_t voxels) const { return (high + (voxels - 1) * high_more) >> kBrickShift; }
+  // The cells of this slab as bits, from cell `base` on. The last is below 4 * kBeamBricks; both ends may be
+  // negative.
+  uint32_t cells_from(int32_t base) const {
+    const int32_t from = (low >> kCellShift) - base;
+    const int32_t to = (high >> kCellShift) - base;
+    const int32_t first = from < 0 ? 0 : from;
+    return to < first ? 0U : (2U << to) - (1U << first);
+  }
+};
+
+// The fan along c: its slowest and fastest ray, the distance from the origin to the first slab's plane, which
+// may lie behind it, and the same not below 0.
+struct AlongC {
+  int32_t low;
+  int32_t high;
+  int32_t plane;
+  int32_t ahead;
+};
+
+// The first slab may begin behind the origin: then the bounds start from whichever is wider.
+[[gnu::always_inline]] inline Shadow shadow_of(const BrickFrame& frame, const Fan& fan, const AlongC& c,
+                                               int axis) {
+  const int32_t low = fan.low[axis] * (1 << kSlopeBits);
+  const int32_t high = fan.high[axis] * (1 << kSlopeBits);
+  const int32_t low_slope = low / (low < 0 ? c.low : c.high) - 1;
+  const int32_t high_slope = high / (high < 0 ? c.high : c.low) + 1;
+  const int32_t from = frame.eye[axis] * (1 << kSlopeBits);
+  const int32_t low_step = low_slope * Q8::kOne;
+  const int32_t high_step = high_slope * Q8::kOne;
+  const int32_t low_more = low_step < 0 ? low_step : 0;
+  const int32_t high_more = high_step > 0 ? high_step : 0;
+  return Shadow{from + (low_slope < 0 ? c.ahead : c.plane) * low_slope - 1 + low_more,
+                from + (high_slope < 0 ? c.plane : c.ahead) * high_slope + 1 + high_more,
+                low_step,
+                high_step,
+                low_more,
+                high_more};
+}
+
+// Four bits as rows or as halfwords: bit y becomes bit 4 y, bit z all of halfword z.
+constexpr uint16_t kRows[16] = {0x0000, 0x0001, 0x0010, 0x0011, 0x0100, 0x0101, 0x0110, 0x0111,
+                                0x1000, 0x1001, 0x1010, 0x1011, 0x1100, 0x1101, 0x1110, 0x1111};
+constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
+
+// A brick in the way of a beam, and where its cells begin, counted from those of the beam's first brick.
+struct NearBrick {
+  const uint8_t* bits;
+  int32_t a;
+  int32_t b;
+};
+
+// Whether something is solid in the brick's layer `own` on c, among the cells that are set in `in_a` and
+// `in_b`.
+template <int kC>
+[[gnu::always_inline]] inline bool any_solid(const uint8_t* bits, uint32_t own, uint32_t in_a,
+                                             uint32_t in_b) {
+  if (kC == 2) {
+    return (half_at(bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b])) != 0;
+  }
+  const uint32_t rows = (word_at(bits, 0) & kHalves[in_b & 3U]) | (word_at(bits, 4) & kHalves[in_b >> 2]);
+  const uint32_t wanted = kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own;
+  return ((rows | rows >> 16) & wanted) != 0;
+}
+
+// Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of
+// slabs when there is none. `course` is the fan's; it learns whether rays may wait outside of the box there.
+template <int kC>
+[[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
+  constexpr int kA = kOtherA<kC>;
+  constexpr int kB = kOtherB<kC>;
+  course.waiting = kWaiting;
+  const BrickFrame& frame = *course.frame;
+  const int32_t slabs = 4 * frame.side[kC];
+  const int32_t origin = course.origin[kC];
+  const int32_t nearest = origin < 0 ? 0 : origin >> 8;
+  slab = slab < nearest ? nearest : slab;
+  if (slab >= slabs) {
+    return slabs;
+  }
+  const bool flipped = (course.mirrored >> kC & 1U) != 0;
+  const int32_t plane = slab * Q8::kOne - origin;
+  const AlongC c{flipped ? -fan.high[kC] : fan.low[kC], flipped ? -fan.low[kC] : fan.high[kC], plane,
+                 plane < 0 ? 0 : plane};
+  if (fan.high[kA] > 2 * c.low || fan.low[kA] < -2 * c.low || fan.high[kB] > 2 * c.low ||
+      fan.low[kB] < -2 * c.low) {
+    return slab;
+  }
+  Shadow a = shadow_of(frame, fan, c, kA);
+  Shadow b = shadow_of(frame, fan, c, kB);
+  const int32_t last_a = frame.side[kA] - 1;
+  const int32_t last_b = frame.side[kB] - 1;
+  const int32_t stride_a = frame.stride[kA];
+  const int32_t stride_b = frame.stride[kB];
+  const uint8_t* directory = course.directory;
+  while (slab < slabs) {
+    // What of the slab of bricks is left, and the bricks that the rays may pass through there.
+    const int32_t voxels = 4 - (slab & 3);
+    const int32_t from_a = a.first_brick(voxels);
+    const int32_t from_b = b.first_brick(voxels);
+    int32_t to_a = a.last_brick(voxels);
+    int32_t to_b = b.last_brick(voxels);
+    if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
+      return slab;
+    }
+    to_a = to_a > last_a ? last_a : to_a;
+    to_b = to_b > last_b ? last_b : to_b;
+    // Those of them that are not empty.
+    NearBrick bricks[kBeamBricks * kBeamBricks];
+    NearBrick* bricks_end = bricks;
+    const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
+    int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
+    for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
+      int32_t cell = row;
+      for (int32_t i = from_a; i <= to_a; ++i, cell += stride_a) {
+        const uint32_t number = half_at(directory, cell);
+        if (number != 0) {
+          *bricks_end++ = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
+        }
+      }
+    }
+    if (bricks_end == bricks) {
+      a.advance(voxels);
+      b.advance(voxels);
+      slab += voxels;
+      continue;
+    }
+    // Voxel by voxel.
+    const int32_t base_a = 4 * from_a;
+    const int32_t base_b = 4 * from_b;
+    for (const int32_t end = slab + voxels; slab < end; ++slab, a.advance(1), b.advance(1)) {
+      const uint32_t cells_a = a.cells_from(base_a);
+      const uint32_t cells_b = b.cells_from(base_b);
+      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
+      for (const NearBrick* near = bricks; near != bricks_end; ++near) {
+        if (any_solid<kC>(near->bits, own, cells_a >> near->a & 15U, cells_b >> near->b & 15U)) {
+          // Where both ends are within the box no ray waits outside.
+          const bool outside =
+              a.low < 0 || b.low < 0 || a.high >> kBrickShift > last_a || b.high >> kBrickShift > last_b;
+          course.waiting = outside ? kWaiting : 0;
+          return slab;
+        }
+      }
+    }
+  }
+  return slabs;
+}
+
+int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
+  return course.c == 0   ? first_slab<0>(course, fan, slab)
+         : course.c == 1 ? first_slab<1>(course, fan, slab)
+                         : first_slab<2>(course, fan, slab);
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

@@ -1,0 +1,323 @@
+// One ray, from voxel to voxel through the bricks, plane by plane along its fastest axis. Internal to src/.
+//
+// Everything is mirrored as in crossings.h, so that no direction has a negative component, and relative to
+// the map's box: planes and cells are counted from the side at which the rays come in. Axis c is the one that
+// a tile's rays move fastest on, a and b are the others. Between two planes of c a ray crosses few planes of
+// a and b. For each of the two it keeps its position on the plane of c that is reached next:
+//
+//   rest_a = P_a - (cell_a + 1) * den       P_a = o_a * d_c + s_c * d_a, the position times den = 256 * d_c
+//
+// A rest is negative as long as the ray is still in its cell there; adding 256 * d_a goes on to the next
+// plane of c. When it becomes positive the ray crosses a plane of a before that plane of c, at 0 together
+// with it. Which of a and b comes first when both do: rest_a * d_b against rest_b * d_a, since rest / d is
+// the time that is left.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
+#define THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
+
+#include "inks.h"
+
+namespace thimble::bricks {
+namespace {
+
+// Answers that are not inks.
+constexpr int32_t kMissed = -1;
+constexpr int32_t kAsk = -2;  // only closest_hit knows
+// No answer yet.
+constexpr int32_t kGoOn = 0;
+
+#if defined(__arm__) && !defined(__ARM_FEATURE_IDIV)
+constexpr bool kDivides = false;
+#else
+constexpr bool kDivides = true;
+#endif
+
+// Divides for a core without a divider: dividend / divisor, both below 2^31. It starts from the last
+// quotient, from which that of a neighbouring ray is a step or two away.
+uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t* last) {
+  uint32_t result = *last;
+  int32_t rest = static_cast<int32_t>(dividend - result * divisor);
+  for (int step = 0;; ++step) {
+    if (step == 6) {
+      result = dividend / divisor;
+      break;
+    }
+    if (rest < 0) {
+      rest += static_cast<int32_t>(divisor);
+      --result;
+    } else if (rest >= static_cast<int32_t>(divisor)) {
+      rest -= static_cast<int32_t>(divisor);
+      ++result;
+    } else {
+      break;
+    }
+  }
+  // Kept small, so that the next product stays below 2^31.
+  *last = result & 1023U;
+  return result;
+}
+
+constexpr bool is_negative(uint32_t value) {
+  return static_cast<int32_t>(value) < 0;
+}
+constexpr bool is_positive(uint32_t value) {
+  return static_cast<int32_t>(value) > 0;
+}
+
+// A ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored. Everything is inlined into
+// `trace_one`, where the members become registers.
+template <int kC, unsigned kMirrored>
+class BrickRay {
+ public:
+  [[gnu::always_inline]] BrickRay(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c)
+      : course_(course), d_a_(d_a), d_b_(d_b), d_c_(d_c), den_(d_c << 8) {}
+
+  // Returns the ink of what the ray hits, kMissed or kAsk.
+  [[gnu::always_inline]] int32_t trace() {
+    const int32_t answer = start();
+    if (answer != kGoOn) {
+      return answer;
+    }
+    const uint32_t go_a = d_a_ << 8;
+    const uint32_t go_b = d_b_ << 8;
+
+  enter:  // a brick, by a plane of axis_
+    if (seldom((left_ & kSpecial) != 0)) {
+      if ((left_ & kLeft) != 0) {
+        return kMissed;
+      }
+      if (!begin_brick()) {
+        return kAsk;
+      }
+      goto entered;
+    }
+    at_ = brick_at(half_at(course_.directory, cell_));
+  entered:
+    if (solid()) {
+      goto hit;
+    }
+    if (axis_ != kC) {
+      goto between;
+    }
+  slab:  // from plane to plane of c
+    rest_a_ += go_a;
+    rest_b_ += go_b;
+  between:
+    if (!is_negative(rest_a_ & rest_b_)) {
+      if (is_positive(rest_a_)) {
+        if (is_positive(rest_b_)) {
+          const uint32_t time_a = rest_a_ * d_b_;
+          const uint32_t time_b = rest_b_ * d_a_;
+          if (time_a < time_b) {
+            goto cross_b;
+          }
+          if (time_a == time_b) {
+            goto tie;
+          }
+        }
+        goto cross_a;
+      }
+      if (is_positive(rest_b_)) {
+        goto cross_b;
+      }
+      goto tie;
+    }
+    if (step<kC>()) {
+      axis_ = kC;
+      goto enter;
+    }
+    if (!solid()) {
+      goto slab;
+    }
+    axis_ = kC;
+    goto hit;
+  cross_a:
+    rest_a_ -= den_;
+    axis_ = kA;
+    if (step<kA>()) {
+      goto enter;
+    }
+    if (solid()) {
+      goto hit;
+    }
+    goto between;
+  cross_b:
+    rest_b_ -= den_;
+    axis_ = kB;
+    if (step<kB>()) {
+      goto enter;
+    }
+    if (solid()) {
+      goto hit;
+    }
+    goto between;
+  tie:
+    if (!cross_together()) {
+      return kAsk;
+    }
+    goto enter;
+  hit:
+    return name_axis() ? ink() : kAsk;
+  }
+
+ private:
+  static constexpr int kA = kOtherA<kC>;
+  static constexpr int kB = kOtherB<kC>;
+  static constexpr bool mirrored(int axis) { return (kMirrored >> axis & 1U) != 0; }
+  static constexpr uint32_t flip(int axis) { return mirrored(axis) ? 3U : 0U; }
+
+  // Finds the cell that the ray starts in.
+  [[gnu::always_inline]] int32_t start() {
+    const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
+    const uint32_t at_b = static_cast<uint32_t>(course_.origin[kB]) * d_c_ + course_.plane * d_b_;
+    if (seldom(!kDivides && is_negative(at_a | at_b))) {
+      return kAsk;
+    }
+    const uint32_t cell_a = kDivides ? at_a / den_ : quotient(at_a, den_, &course_.inks->near_cell[0]);
+    const uint32_t cell_b = kDivides ? at_b / den_ : quotient(at_b, den_, &course_.inks->near_cell[1]);
+    if (seldom((cell_a | cell_b) >= 1024)) {
+      return is_negative(at_a | at_b) ? kAsk : kMissed;
+    }
+    rest_a_ = at_a - (cell_a + 1) * den_;
+    rest_b_ = at_b - (cell_b + 1) * den_;
+    left_ = course_.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
+    cell_ = course_.start + static_cast<int32_t>(cell_a >> 2) * course_.stride[kA] +
+            static_cast<int32_t>(cell_b >> 2) * course_.stride[kB];
+    const uint32_t in_a = ((cell_a & 3U) ^ flip(kA)) << kPlaceShift[kA];
+    const uint32_t in_b = ((cell_b & 3U) ^ flip(kB)) << kPlaceShift[kB];
+    shift_ = in_a | (kB == 2 ? course_.first : in_b);
+    at_ = course_.bricks + (kB == 2 ? in_b : course_.first);
+    axis_ = kC;
+    return kGoOn;
+  }
+
+  // The halfword of brick `number` that lies where at_ lies in its brick.
+  [[gnu::always_inline]] const uint8_t* brick_at(uint32_t number) const {
+    return course_.bricks + 8 * number + row_of(at_);
+  }
+  [[gnu::always_inline]] bool solid() const { return (half_at(at_, 0) >> shift_ & 1U) != 0; }
+
+  // Enters a brick where it is not as usual: the ray has left the box, or waits outside of it, or starts
+  // here.
+  [[gnu::always_inline]] bool begin_brick() {
+    if ((left_ & kInside) != 0) {
+      rest_a_ -= course_.behind * d_a_;
+      rest_b_ -= course_.behind * d_b_;
+    }
+    // 512 - bricks is the near side: below it the ray waits.
+    const Vec3i& side = course_.frame->side;
+    uint32_t number = 0;
+    if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
+                                    count_of(left_, kB) >= 512U - static_cast<uint32_t>(side[kB]))) {
+      left_ &= ~kWaiting;
+      number = half_at(course_.directory, cell_);
+    }
+    at_ = brick_at(number);
+    if ((left_ & kInside) != 0 && solid()) {
+      return false;
+    }
+    left_ &= ~kInside;
+    return true;
+  }
+
+  // Goes to the next voxel on an axis; returns whether that is in the next brick.
+  template <int kAxis>
+  [[gnu::always_inline]] bool step() {
+    constexpr int32_t kStep = (mirrored(kAxis) ? -1 : 1) * (1 << kPlaceShift[kAxis]);
+    const uint32_t own = kAxis == 2 ? row_of(at_) : shift_ & kField<kAxis>;
+    if (own == (mirrored(kAxis) ? 0U : kField<kAxis>)) {
+      if (kAxis == 2) {
+        at_ += 6 - 2 * static_cast<int32_t>(own);
+      } else {
+        shift_ ^= kField<kAxis>;
+      }
+      left_ += uint32_t{1} << 10 * kAxis;
+      cell_ += course_.next_brick[kAxis];
+      return true;
+    }
+    if (kAxis == 2) {
+      at_ += kStep;
+    } else {
+      shift_ += static_cast<uint32_t>(kStep);
+    }
+    return false;
+  }
+
+  // Crosses planes that the ray reaches at the same time: it spends none between them. False when closest_hit
+  // must say what it hits.
+  [[gnu::always_inline]] bool cross_together() {
+    if (rest_a_ == 0 || rest_b_ == 0) {  // with the plane of c
+      if (rest_a_ == 0) {
+        rest_a_ -= den_;
+        step<kA>();
+      }
+      if (rest_b_ == 0) {
+        rest_b_ -= den_;
+        step<kB>();
+      }
+      step<kC>();
+      axis_ = kC;
+      return true;
+    }
+    rest_a_ -= den_;
+    rest_b_ -= den_;
+    step<kA>();
+    step<kB>();
+    axis_ = kA;
+    return course_.exact_ties;
+  }
+
+  // Names the face of the hit: a voxel entered by a plane of c may be entered by others at the same t, and
+  // then the lowest axis counts. False when closest_hit must.
+  [[gnu::always_inline]] bool name_axis() {
+    if (seldom(axis_ == kC && (rest_a_ == 0U - den_ || rest_b_ == 0U - den_))) {
+      const bool a = rest_a_ == 0U - den_ && d_a_ != 0;
+      const bool b = rest_b_ == 0U - den_ && d_b_ != 0;
+      if ((a || b) && !course_.exact_ties) {
+        return false;
+      }
+      if (kA < kC && a) {
+        axis_ = kA;
+      } else if (kB < kC && b) {
+        axis_ = kB;
+      }
+    }
+    return true;
+  }
+
+  [[gnu::always_inline]] int32_t ink() const {
+    const uint32_t voxel = static_cast<uint32_t>(at_ - course_.bricks) * 8 + shift_;
+    const uint32_t face = static_cast<uint32_t>(2 * axis_) + (kMirrored >> axis_ & 1U);
+    const uint32_t key = voxel << 3 | face;
+    const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
+    if (seen.key == key) {
+      return static_cast<int32_t>(seen.ink);
+    }
+    if (course_.frame->shading.mode != ShadeMode::kDepth) {
+      return look_up(course_, voxel, axis_);
+    }
+    return depth_ink(course_, axis_, left_, voxel, axis_ == kA ? d_a_ : axis_ == kB ? d_b_ : d_c_);
+  }
+
+  const Course& course_;
+  const uint32_t d_a_;
+  const uint32_t d_b_;
+  const uint32_t d_c_;
+  const uint32_t den_;
+  uint32_t rest_a_;
+  uint32_t rest_b_;
+  uint32_t left_;      // counts of bricks
+  int32_t cell_;       // offset in the directory
+  uint32_t shift_;     // the voxel's place: x and y
+  const uint8_t* at_;  // and z: its halfword
+  int axis_;           // of the plane that was crossed last
+};
+
+template <int kC, unsigned kMirrored>
+[[gnu::noinline]] int32_t trace_one(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+  return BrickRay<kC, kMirrored>(course, d_a, d_b, d_c).trace();
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

@@ -1,0 +1,108 @@
+// What rays of one frame have in common, and what those of one direction's signs and fastest axis have.
+// Internal to src/.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_COURSE_H
+#define THIMBLE_SRC_PICTURE_BRICKS_COURSE_H
+
+#include "layout.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::bricks {
+namespace {
+
+struct Inks;
+
+// What all pixels of a band share.
+struct BrickFrame {
+  const CompactTree& tree;
+  const BrickMap& map;
+  const Camera& camera;
+  const Shading& shading;
+  PixelFormat format;
+  uint32_t background;
+  Vec3i side;    // of the box, in bricks
+  Vec3i stride;  // of the directory, in bytes
+  Vec3i eye;     // from the box's lowest corner, in 1/256 voxel
+  // Added to a tile's first direction these give the least and the greatest of the whole tile, see `Fan`.
+  Vec3i tile_low;
+  Vec3i tile_high;
+  Vec3i quad_low;
+  Vec3i quad_high;
+};
+
+// What all rays share whose directions have the same signs and the same fastest axis. Where they start
+// changes from tile to tile.
+struct Course {
+  const BrickFrame* frame;
+  Inks* inks;
+  int32_t origin[3];  // mirrored; on a and b kOutsideQ8 beyond
+  const uint8_t* directory;
+  const uint8_t* bricks;
+  int32_t stride[3];      // of the directory, in bytes
+  int32_t next_brick[3];  // the same again, so that the compiler does not keep it in a register throughout
+  uint32_t flip[3];       // 3 where mirrored
+  uint32_t face[3];
+  int32_t base;        // offset in the directory, in bytes, of slab 0
+  uint32_t base_left;  // counts of bricks of slab 0
+  int c;               // the fastest axis
+  unsigned mirrored;   // bit a: axis a is mirrored
+  bool exact_ties;     // a voxel entered through an edge is what is hit, not a part of a merged block
+  // Where the rays start.
+  uint32_t waiting;  // kWaiting where they may start outside of the box
+  uint32_t plane;    // distance from the origin, in 1/256 voxel
+  uint32_t behind;   // distance back to the plane of c before the origin, where that lies between two planes
+  uint32_t first;    // the voxel on c, in place
+  int32_t start;     // offset in the directory, without a and b
+  uint32_t left;     // counts of bricks, without a and b
+  // The camera's affine function, mirrored.
+  Camera::Vec3Q32 step_x;
+  Camera::Vec3Q32 step_y;
+};
+
+// Sets all but where the rays start.
+void set_course(Course& course, unsigned mirrored, int c) {
+  const BrickFrame& frame = *course.frame;
+  const VoxelBox& box = frame.map.box();
+  course.c = c;
+  course.mirrored = mirrored;
+  course.base = 0;
+  course.base_left = 0;
+  int32_t stride = 2;
+  const Camera::Affine& affine = frame.camera.affine();
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool flipped = (mirrored >> axis & 1U) != 0;
+    const int32_t side = frame.side[axis];
+    const int32_t origin = frame.camera.eye()[axis].raw;
+    const int32_t near_q8 = (flipped ? box.high[axis] : box.low[axis]) * (4 * Q8::kOne);
+    course.origin[axis] = (flipped ? near_q8 - origin : origin - near_q8) + (axis == c ? 0 : kOutsideQ8);
+    course.stride[axis] = flipped ? -stride : stride;
+    course.next_brick[axis] = course.stride[axis];
+    const int32_t from = axis == c ? 0 : -kOutsideCells / 4;
+    course.base += (flipped ? (side - 1) * stride : 0) + course.stride[axis] * from;
+    course.base_left += static_cast<uint32_t>(512 - side + from) << 10 * axis;
+    course.flip[axis] = flipped ? 3 : 0;
+    course.face[axis] = static_cast<uint32_t>(2 * axis) + (flipped ? 1U : 0U);
+    course.step_x[axis] = flipped ? -affine.step_x[axis] : affine.step_x[axis];
+    course.step_y[axis] = flipped ? -affine.step_y[axis] : affine.step_y[axis];
+    stride *= side;
+  }
+}
+
+// Lets the rays start in the slab of voxels `slab` along c.
+void set_start(Course& course, int32_t slab) {
+  const int32_t distance = slab * Q8::kOne - course.origin[course.c];
+  course.plane = distance > 0 ? static_cast<uint32_t>(distance) : 0;
+  course.behind = distance > 0 ? 0 : static_cast<uint32_t>(-distance);
+  course.first = ((static_cast<uint32_t>(slab) & 3U) ^ course.flip[course.c]) << kPlaceShift[course.c];
+  course.start = course.base + course.stride[course.c] * (slab >> 2);
+  course.left = (course.base_left + (static_cast<uint32_t>(slab >> 2) << 10 * course.c)) | course.waiting |
+                (distance <= 0 ? kInside : 0);
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

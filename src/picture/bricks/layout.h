@@ -1,0 +1,66 @@
+// How voxels lie in the bricks of a map, and how a ray counts its way from brick to brick. Internal to src/.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_LAYOUT_H
+#define THIMBLE_SRC_PICTURE_BRICKS_LAYOUT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/base/vec.h"
+
+namespace thimble::bricks {
+namespace {
+
+// The two axes besides the fastest one, c; a is the lower of them.
+template <int kC>
+constexpr int kOtherA = kC == 0 ? 1 : 0;
+template <int kC>
+constexpr int kOtherB = kC == 2 ? 1 : 2;
+
+// A ray may start this many cells outside of the box on axes a and b.
+constexpr int32_t kOutsideCells = 64;
+constexpr int32_t kOutsideQ8 = kOutsideCells * Q8::kOne;
+
+// Bricks are counted in one word, ten bits an axis: each field is 512 - (bricks from here to the far side).
+// Bit 9 of a field is set when the ray has left the box. Bit 31 is set while the ray may not have come into
+// the box, bit 30 while it is in the slab of voxels that it starts in.
+constexpr uint32_t kLeft = uint32_t{1} << 9 | uint32_t{1} << 19 | uint32_t{1} << 29;
+constexpr uint32_t kWaiting = uint32_t{1} << 31;
+constexpr uint32_t kInside = uint32_t{1} << 30;
+constexpr uint32_t kSpecial = kLeft | kWaiting | kInside;
+
+constexpr uint32_t count_of(uint32_t counts, int axis) {
+  return counts >> 10 * axis & 0x3FFU;
+}
+
+// The directory and the bricks are read as halfwords and words: they lie at multiples of 4.
+using Half [[gnu::may_alias]] = uint16_t;
+using Word [[gnu::may_alias]] = uint32_t;
+
+uint32_t half_at(const uint8_t* bytes, int32_t offset) {
+  // Through void: compilers for small chips warn of a cast that promises an alignment.
+  return *static_cast<const Half*>(static_cast<const void*>(bytes + offset));
+}
+uint32_t word_at(const uint8_t* bytes, int32_t offset) {
+  return *static_cast<const Word*>(static_cast<const void*>(bytes + offset));
+}
+
+// A voxel's place in its brick: x and y are a shift within a halfword, z is the address of the halfword. Each
+// axis has two bits, shifted by this.
+constexpr int kPlaceShift[3] = {0, 2, 1};
+template <int kAxis>
+constexpr uint32_t kField = 3U << kPlaceShift[kAxis];
+
+// The z part of the place, from the address of the halfword: bricks lie at multiples of 8.
+uint32_t row_of(const uint8_t* at) {
+  return static_cast<uint32_t>(reinterpret_cast<size_t>(at)) & 6U;
+}
+
+// Tells the compiler which way a branch mostly goes.
+[[gnu::always_inline]] constexpr bool seldom(bool condition) {
+  return __builtin_expect(static_cast<long>(condition), 0) != 0;
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

@@ -1,0 +1,320 @@
+// Paints a band tile by tile: each tile looks along its beam, each quad of a tile traces its rays from there.
+// Internal to src/.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_PAINTER_H
+#define THIMBLE_SRC_PICTURE_BRICKS_PAINTER_H
+
+#include "beam.h"
+#include "brick_ray.h"
+#include "thimble/picture/brick_render.h"
+#include "thimble/trace/trace.h"
+
+namespace thimble::bricks {
+namespace {
+
+// A rectangle of the picture that lies in one tile.
+struct Tile {
+  int32_t x0;
+  int32_t x1;
+  int32_t y0;
+  int32_t y1;
+};
+
+// Tiles are kBrickTilePx high.
+constexpr int32_t kTileAcrossPx = 16;
+// Quads are the smallest tiles.
+constexpr int32_t kQuadAcrossPx = 4;
+constexpr int32_t kQuadDownPx = 4;
+constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;
+
+// Traces one ray through the tree: what the bricks leave open.
+int32_t ask(const BrickFrame& frame, int32_t x, int32_t y, RenderCounts* counts) {
+  const Ray ray = frame.camera.ray(x, y);
+  Hit hit;
+  if (closest_hit_32(frame.tree, ray, &hit) != Status::kOk) {
+    return kMissed;
+  }
+  counts->node_visits += hit.visits;
+  if (hit.kind != HitKind::kHit) {
+    return kMissed;
+  }
+  return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
+}
+
+// The axes that a course mirrors, as a type: what is compiled once for each.
+template <unsigned kAxes>
+struct Mirrored {
+  static constexpr unsigned kMirrored = kAxes;
+};
+template <class Call>
+[[gnu::always_inline]] inline int32_t with_mirrored(unsigned mirrored, const Call& call) {
+  switch (mirrored) {
+    case 0:
+      return call(Mirrored<0>{});
+    case 1:
+      return call(Mirrored<1>{});
+    case 2:
+      return call(Mirrored<2>{});
+    case 3:
+      return call(Mirrored<3>{});
+    case 4:
+      return call(Mirrored<4>{});
+    case 5:
+      return call(Mirrored<5>{});
+    case 6:
+      return call(Mirrored<6>{});
+    default:
+      return call(Mirrored<7>{});
+  }
+}
+
+// Traces one ray of direction `d`, whose signs are the course's.
+template <int kC>
+int32_t trace_by_signs(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+  return with_mirrored(course.mirrored, [&](auto axes) {
+    return trace_one<kC, decltype(axes)::kMirrored>(course, d_a, d_b, d_c);
+  });
+}
+int32_t trace_along(const Course& course, const Vec3i& d) {
+  const auto size = [](int32_t value) { return static_cast<uint32_t>(value < 0 ? -value : value); };
+  const uint32_t x = size(d.x);
+  const uint32_t y = size(d.y);
+  const uint32_t z = size(d.z);
+  return course.c == 0   ? trace_by_signs<0>(course, y, z, x)
+         : course.c == 1 ? trace_by_signs<1>(course, x, z, y)
+                         : trace_by_signs<2>(course, x, y, z);
+}
+
+unsigned signs_of(const Vec3i& d) {
+  return (d.x < 0 ? 1U : 0U) | (d.y < 0 ? 2U : 0U) | (d.z < 0 ? 4U : 0U);
+}
+
+// Traces a quad with rays of one course. The mirrored affine function `from` (and a half) is positive all
+// over it, so rounding is cutting off. Returns a negative number when any answer is no ink.
+template <int kC, unsigned kMirrored>
+[[gnu::noinline]] int32_t trace_quad(const Course& course, const Camera::Vec3Q32& from, int32_t across,
+                                     int32_t down, int32_t* inks) {
+  constexpr int kA = kOtherA<kC>;
+  constexpr int kB = kOtherB<kC>;
+  Vec3<uint64_t> row{static_cast<uint64_t>(from.x), static_cast<uint64_t>(from.y),
+                     static_cast<uint64_t>(from.z)};
+  int32_t all = 0;
+  for (; down > 0; --down) {
+    uint64_t a = row[kA];
+    uint64_t b = row[kB];
+    uint64_t c = row[kC];
+    for (const int32_t* end = inks + across; inks != end; ++inks) {
+      const int32_t ink =
+          trace_one<kC, kMirrored>(course, static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b >> 32),
+                                   static_cast<uint32_t>(c >> 32));
+      *inks = ink;
+      all |= ink;
+      a += static_cast<uint64_t>(course.step_x[kA]);
+      b += static_cast<uint64_t>(course.step_x[kB]);
+      c += static_cast<uint64_t>(course.step_x[kC]);
+    }
+    row.x += static_cast<uint64_t>(course.step_y.x);
+    row.y += static_cast<uint64_t>(course.step_y.y);
+    row.z += static_cast<uint64_t>(course.step_y.z);
+  }
+  return all;
+}
+
+template <int kC>
+int32_t trace_quad_by_signs(const Course& course, const Camera::Vec3Q32& from, int32_t across, int32_t down,
+                            int32_t* inks) {
+  return with_mirrored(course.mirrored, [&](auto axes) {
+    return trace_quad<kC, decltype(axes)::kMirrored>(course, from, across, down, inks);
+  });
+}
+
+// Draws the tiles of one band.
+class BrickPainter {
+ public:
+  BrickPainter(const BrickFrame& frame, Inks& inks, uint8_t* first_line, size_t stride, int32_t first_row,
+               RenderCounts* counts)
+      : frame_(frame), first_line_(first_line), stride_(stride), first_row_(first_row), counts_(counts) {
+    course_.frame = &frame;
+    course_.inks = &inks;
+    course_.directory = frame.map.directory();
+    course_.bricks = frame.map.bricks();
+    course_.exact_ties = !frame.tree.merged();
+    set_course(course_, 0, 0);
+  }
+
+  void draw_tile(const Tile& tile) {
+    if (frame_.map.empty()) {
+      fill(tile);
+      return;
+    }
+    Camera::Vec3Q32 value;
+    const Camera::Affine& affine = frame_.camera.affine();
+    for (int axis = 0; axis < 3; ++axis) {
+      value[axis] = affine.base[axis] + tile.x0 * affine.step_x[axis] + tile.y0 * affine.step_y[axis];
+    }
+    const Fan fan(value, frame_.tile_low, frame_.tile_high);
+    int32_t slab = 0;
+    if (fan.usable()) {
+      use(fan.mirrored, fan.c);
+      slab = first_slab_along(course_, fan, 0);
+      if (slab == 4 * frame_.side[fan.c]) {
+        fill(tile);
+        return;
+      }
+    }
+    Camera::Vec3Q32 row = value;
+    for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
+      Camera::Vec3Q32 at = row;
+      for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
+        const Tile quad{x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
+                        y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1};
+        draw_quad(quad, at, fan, slab);
+        for (int axis = 0; axis < 3; ++axis) {
+          at[axis] += kQuadAcrossPx * affine.step_x[axis];
+        }
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        row[axis] += kQuadDownPx * affine.step_y[axis];
+      }
+    }
+  }
+
+ private:
+  // Makes the course one of these signs and this fastest axis.
+  void use(unsigned mirrored, int c) {
+    if (mirrored != course_.mirrored || c != course_.c) {
+      set_course(course_, mirrored, c);
+    }
+  }
+
+  void draw_quad(const Tile& quad, const Camera::Vec3Q32& value, const Fan& tile_fan, int32_t slab) {
+    const Fan fan(value, frame_.quad_low, frame_.quad_high);
+    const bool usable = fan.usable();
+    if (usable) {
+      use(fan.mirrored, fan.c);
+      slab = first_slab_along(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0);
+      if (slab == 4 * frame_.side[fan.c]) {
+        fill(quad);
+        return;
+      }
+      set_start(course_, slab);
+    }
+    int32_t inks[kQuadPixels];
+    const int32_t across = quad.x1 - quad.x0;
+    const int32_t down = quad.y1 - quad.y0;
+    if (!usable || fan.mixed != 0) {
+      trace_mixed(value, usable ? fan.c : -1, slab, across, down, inks);
+      answer(quad, inks);
+    } else {
+      Camera::Vec3Q32 from;
+      for (int axis = 0; axis < 3; ++axis) {
+        from[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
+      }
+      const int32_t all = fan.c == 0   ? trace_quad_by_signs<0>(course_, from, across, down, inks)
+                          : fan.c == 1 ? trace_quad_by_signs<1>(course_, from, across, down, inks)
+                                       : trace_quad_by_signs<2>(course_, from, across, down, inks);
+      if (all < 0) {
+        answer(quad, inks);
+      }
+    }
+    store(quad, inks);
+  }
+
+  // Traces a quad whose rays do not all go the same way, so each takes a course of its own; `c` is the
+  // fastest axis, or -1 when there is none, which leaves all to `answer`.
+  [[gnu::noinline]] void trace_mixed(const Camera::Vec3Q32& value, int c, int32_t slab, int32_t across,
+                                     int32_t down, int32_t* inks) {
+    const Camera::Affine& affine = frame_.camera.affine();
+    Camera::Vec3Q32 row = value;
+    for (; down > 0; --down) {
+      Camera::Vec3Q32 at = row;
+      for (int32_t i = 0; i < across; ++i) {
+        *inks = kAsk;
+        if (c >= 0) {
+          const Vec3i d{Camera::rounded(at.x), Camera::rounded(at.y), Camera::rounded(at.z)};
+          const unsigned signs = signs_of(d);
+          if (signs != course_.mirrored) {
+            set_course(course_, signs, c);
+            set_start(course_, slab);
+          }
+          *inks = trace_along(course_, d);
+        }
+        ++inks;
+        for (int axis = 0; axis < 3; ++axis) {
+          at[axis] += affine.step_x[axis];
+        }
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        row[axis] += affine.step_y[axis];
+      }
+    }
+  }
+
+  uint8_t* line_of(int32_t y) const { return first_line_ + stride_ * static_cast<size_t>(y - first_row_); }
+
+  void store(const Tile& quad, const int32_t* inks) {
+    const int32_t across = quad.x1 - quad.x0;
+    uint8_t* line = line_of(quad.y0);
+    if (frame_.format == PixelFormat::kGray4 && across == kQuadAcrossPx) {
+      line += quad.x0 >> 1;
+      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+        for (int32_t i = 0; i < kQuadAcrossPx / 2; ++i, inks += 2) {
+          line[i] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);  // NOLINT: all of a quad are set
+        }
+      }
+      return;
+    }
+    for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+      for (int32_t x = quad.x0; x < quad.x1; ++x) {
+        store_ink(line, x, y, frame_.format, static_cast<uint32_t>(*inks++));
+      }
+    }
+  }
+
+  // Turns the answers that are no inks into inks: asks the tree where only it knows, and takes the background
+  // for what is missed.
+  [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
+    for (int32_t y = quad.y0; y < quad.y1; ++y) {
+      for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
+        if (*inks == kAsk) {  // NOLINT: all of a quad are set
+          *inks = ask(frame_, x, y, counts_);
+        }
+        if (*inks < 0) {
+          *inks = static_cast<int32_t>(frame_.background);
+          ++misses_;
+        }
+      }
+    }
+  }
+
+  void fill(const Tile& tile) {
+    const bool whole = frame_.format == PixelFormat::kGray4 && (tile.x1 - tile.x0) % kQuadAcrossPx == 0;
+    for (int32_t y = tile.y0; y < tile.y1; ++y) {
+      uint8_t* line = line_of(y);
+      for (int32_t x = tile.x0; x < tile.x1; x += whole ? 2 : 1) {
+        if (whole) {
+          line[x >> 1] = static_cast<uint8_t>(frame_.background * 17);
+        } else {
+          store_ink(line, x, y, frame_.format, frame_.background);
+        }
+      }
+    }
+    misses_ += static_cast<uint32_t>((tile.y1 - tile.y0) * (tile.x1 - tile.x0));
+  }
+
+ public:
+  uint32_t misses() const { return misses_; }
+
+ private:
+  const BrickFrame& frame_;
+  uint8_t* first_line_;
+  size_t stride_;
+  int32_t first_row_;
+  RenderCounts* counts_;
+  uint32_t misses_ = 0;
+  Course course_;
+};
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif
