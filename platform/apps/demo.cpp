@@ -105,12 +105,10 @@ void show_cross(Arena* arena) {
   }
 }
 
-[[gnu::noinline]] int refuse(Arena* arena, const char* why) {
-  put("error: ");
-  put(why);
-  put("\n");
+[[gnu::noinline]] int refuse_with_cross(Arena* arena, const char* why) {
+  const int status = refuse(why);
   show_cross(arena);
-  return 1;
+  return status;
 }
 
 Status draw(const Demo& demo, const Band& band) {
@@ -456,14 +454,14 @@ int demo() {
   Arena whole(port::arena());
   Demo* const demo = place<Demo>(&whole);
   if (demo == nullptr) {
-    return refuse(&whole, "the arena is too small");
+    return refuse_with_cross(&whole, "the arena is too small");
   }
   demo->arena = whole;
   if (const char* wrong = open_scene(&demo->shown)) {
-    return refuse(&demo->arena, wrong);
+    return refuse_with_cross(&demo->arena, wrong);
   }
   if (const char* wrong = open_light(demo->shown.scene, &demo->light)) {
-    return refuse(&demo->arena, wrong);
+    return refuse_with_cross(&demo->arena, wrong);
   }
   open_map(&demo->shown, &demo->arena);
   tell_board_and_scene("demo", demo->shown);
@@ -478,7 +476,7 @@ int demo() {
   }
   demo->band = demo->arena.take(row * static_cast<size_t>(demo->band_rows));
   if (demo->band.empty()) {
-    return refuse(&demo->arena, "the arena does not hold a row of the picture");
+    return refuse_with_cross(&demo->arena, "the arena does not hold a row of the picture");
   }
   show_baked(demo);
   demo->lights = demo->light.effects() != Effect::kNone;
@@ -513,7 +511,7 @@ int demo() {
     }
     demo->changed = demo->turns;
     if (status != Status::kOk) {
-      return refuse(&demo->arena, status_text(status));
+      return refuse_with_cross(&demo->arena, status_text(status));
     }
     if (demo->tells_crc) {
       tell_frame(*demo, crc);
