@@ -271,13 +271,6 @@ void tell_ratio(const char* name, uint32_t other, uint32_t cost) {
   }
 }
 
-int refuse(const char* why) {
-  put("error: ");
-  put(why);
-  put("\n");
-  return 1;
-}
-
 }  // namespace
 
 int bench() {

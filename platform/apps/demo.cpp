@@ -105,12 +105,10 @@ void show_cross(Arena* arena) {
   }
 }
 
-[[gnu::noinline]] int refuse(Arena* arena, const char* why) {
-  put("error: ");
-  put(why);
-  put("\n");
+[[gnu::noinline]] int refuse_with_cross(Arena* arena, const char* why) {
+  const int status = refuse(why);
   show_cross(arena);
-  return 1;
+  return status;
 }
 
 Status draw(const Demo& demo, const Band& band) {
@@ -125,47 +123,34 @@ Status draw(const Demo& demo, const Band& band) {
   return draw_scene(demo.shown, demo.camera, demo.shading, band);
 }
 
-/// Draws and flushes a frame; `crc` gets that of its bytes.
-[[gnu::noinline]] Status draw_frame(const Demo& demo, uint32_t* crc) {
+/// The rows of the picture from `y` on that the band's memory holds, those before `end`.
+Band band_at(const Demo& demo, int32_t y, int32_t end) {
   const port::Display& screen = display();
-  *crc = 0;
-  for (int32_t y = 0; y < screen.height_px; y += demo.band_rows) {
-    const int32_t left = screen.height_px - y;
-    Band band{demo.band, screen.format, 0, y, left < demo.band_rows ? left : demo.band_rows};
-    band.pixels = demo.band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
-    const Status status = draw(demo, band);
-    if (status != Status::kOk) {
-      return status;
-    }
-    port::flush(band);
-    if (demo.tells_crc) {
-      *crc = crc32(band.pixels, *crc);
-    }
-  }
-  return Status::kOk;
+  const int32_t rows = end - y < demo.band_rows ? end - y : demo.band_rows;
+  return {demo.band.subspan(0, band_bytes(screen.format, screen.width_px, rows)), screen.format, 0, y, rows};
 }
 
-/// A frame with light. A hand on the buttons need not wait for it: the rest of it is then a fast one.
-[[gnu::noinline]] Status draw_lit_frame(Demo* demo, uint32_t* crc) {
-  const port::Display& screen = display();
-  const uint32_t start = port::instructions();
-  demo->is_lit = true;
+void flush(const Demo& demo, const Band& band, uint32_t* crc) {
+  port::flush(band);
+  if (demo.tells_crc) {
+    *crc = crc32(band.pixels, *crc);
+  }
+}
+
+/// Draws and flushes a frame; `crc` gets that of its bytes. A hand on the buttons need not wait for one with
+/// light: the rest of it is then a fast one.
+[[gnu::noinline]] Status draw_frame(Demo* demo, uint32_t* crc) {
+  const int32_t height = display().height_px;
   *crc = 0;
-  for (int32_t y = 0; y < screen.height_px; y += demo->band_rows) {
-    const int32_t left = screen.height_px - y;
-    Band band{demo->band, screen.format, 0, y, left < demo->band_rows ? left : demo->band_rows};
-    band.pixels = demo->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
-    demo->is_lit = demo->is_lit && port::buttons() == 0;
+  for (int32_t y = 0; y < height; y += demo->band_rows) {
+    const Band band = band_at(*demo, y, height);
+    demo->is_lit = kCanLight && demo->is_lit && port::buttons() == 0;
     const Status status = draw(*demo, band);
     if (status != Status::kOk) {
       return status;
     }
-    port::flush(band);
-    if (demo->tells_crc) {
-      *crc = crc32(band.pixels, *crc);
-    }
+    flush(*demo, band, crc);
   }
-  demo->lit_instructions = port::instructions() - start;
   return Status::kOk;
 }
 
@@ -190,18 +175,14 @@ Status draw(const Demo& demo, const Band& band) {
     const int32_t last = (thin_y + rows) * step;
     const int32_t end = last < screen.height_px ? last : screen.height_px;
     for (int32_t y = thin_y * step; y < end; y += demo->band_rows) {
-      Band band{demo->band, screen.format, 0, y, end - y < demo->band_rows ? end - y : demo->band_rows};
-      band.pixels = demo->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+      const Band band = band_at(*demo, y, end);
       const size_t row = row_bytes(screen.format, screen.width_px);
       for (int32_t i = 0; i < band.rows; ++i) {
         const auto from = static_cast<size_t>((y + i) / step - thin_y);
         widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i,
                   band.pixels.data + static_cast<size_t>(i) * row);
       }
-      port::flush(band);
-      if (demo->tells_crc) {
-        *crc = crc32(band.pixels, *crc);
-      }
+      flush(*demo, band, crc);
     }
   }
   return Status::kOk;
@@ -244,7 +225,7 @@ Status draw(const Demo& demo, const Band& band) {
     return draw_thinned(demo, step, crc);
   }
   demo->inexact = 0;
-  return draw_frame(*demo, crc);
+  return draw_frame(demo, crc);
 }
 
 /// The grey of a pixel as the display shows it, 0..255.
@@ -433,13 +414,14 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 }
 
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
-  if constexpr (kCanLight) {
-    if (lights) {
-      return draw_lit_frame(demo, crc);
-    }
+  demo->is_lit = lights;
+  if (kCanLight && lights) {
+    const uint32_t start = port::instructions();
+    const Status status = draw_frame(demo, crc);
+    demo->lit_instructions = port::instructions() - start;
+    return status;
   }
-  demo->is_lit = false;
-  return kCanHold && demo->holds ? draw_held(demo, crc) : draw_frame(*demo, crc);
+  return kCanHold && demo->holds ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
 
 void tell_frame(const Demo& demo, uint32_t crc) {
@@ -472,14 +454,14 @@ int demo() {
   Arena whole(port::arena());
   Demo* const demo = place<Demo>(&whole);
   if (demo == nullptr) {
-    return refuse(&whole, "the arena is too small");
+    return refuse_with_cross(&whole, "the arena is too small");
   }
   demo->arena = whole;
   if (const char* wrong = open_scene(&demo->shown)) {
-    return refuse(&demo->arena, wrong);
+    return refuse_with_cross(&demo->arena, wrong);
   }
   if (const char* wrong = open_light(demo->shown.scene, &demo->light)) {
-    return refuse(&demo->arena, wrong);
+    return refuse_with_cross(&demo->arena, wrong);
   }
   open_map(&demo->shown, &demo->arena);
   tell_board_and_scene("demo", demo->shown);
@@ -494,7 +476,7 @@ int demo() {
   }
   demo->band = demo->arena.take(row * static_cast<size_t>(demo->band_rows));
   if (demo->band.empty()) {
-    return refuse(&demo->arena, "the arena does not hold a row of the picture");
+    return refuse_with_cross(&demo->arena, "the arena does not hold a row of the picture");
   }
   show_baked(demo);
   demo->lights = demo->light.effects() != Effect::kNone;
@@ -529,7 +511,7 @@ int demo() {
     }
     demo->changed = demo->turns;
     if (status != Status::kOk) {
-      return refuse(&demo->arena, status_text(status));
+      return refuse_with_cross(&demo->arena, status_text(status));
     }
     if (demo->tells_crc) {
       tell_frame(*demo, crc);

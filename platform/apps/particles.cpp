@@ -149,13 +149,6 @@ void steer(Game* game) {
   return true;
 }
 
-int refuse(const char* why) {
-  put("error: ");
-  put(why);
-  put("\n");
-  return 1;
-}
-
 }  // namespace
 
 int particles() {

@@ -75,6 +75,14 @@ inline void put_hex(uint32_t number) {
   port::write({digits, 8});
 }
 
+/// Says why an application cannot go on; its exit status.
+[[gnu::noinline]] inline int refuse(const char* why) {
+  put("error: ");
+  put(why);
+  put("\n");
+  return 1;
+}
+
 }  // namespace thimble::apps
 
 #endif

@@ -85,13 +85,6 @@ const CompactTree& tree_of(const Pool& pool) {
   return pool.shown.scene.tree();
 }
 
-[[gnu::noinline]] int refuse(const char* why) {
-  put("error: ");
-  put(why);
-  put("\n");
-  return 1;
-}
-
 void put_fact(const char* name, uint64_t number) {
   put(name);
   put_number(number);

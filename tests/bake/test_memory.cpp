@@ -155,29 +155,6 @@ TEST_CASE("arena: more than is left -> an empty span and nothing changed") {
   CHECK(none.capacity_bytes() == 0);
 }
 
-TEST_CASE("arena: rewind, notes -> room again, the high water stays") {
-  Guarded bytes(100);
-  Arena arena(bytes.span());
-  REQUIRE(arena.take(10, 1).size == 10);
-  const std::size_t mark = arena.used_bytes();
-  REQUIRE(arena.take(50, 1).size == 50);
-  CHECK(arena.high_water_bytes() == 60);
-  arena.rewind(mark);
-  CHECK(arena.used_bytes() == 10);
-  CHECK(arena.high_water_bytes() == 60);
-  arena.rewind(90);  // never forwards
-  CHECK(arena.used_bytes() == 10);
-  arena.note_scratch(40);
-  CHECK(arena.high_water_bytes() == 60);
-  arena.note_scratch(80);
-  CHECK(arena.high_water_bytes() == 90);
-  CHECK(arena.used_bytes() == 10);
-  CHECK(arena.rest().size == 90);
-  CHECK(arena.take(90, 1).size == 90);
-  CHECK(arena.high_water_bytes() == 100);
-  CHECK(bytes.intact());
-}
-
 TEST_CASE("memory: build, compact, render, sort with the global allocator trapped -> no call") {
   static std::array<std::uint8_t, 32768> pool_bytes;
   static std::array<std::uint8_t, 8192> tree_bytes;

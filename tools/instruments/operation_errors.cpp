@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <type_traits>
 
 #include "thimble/base/vec.h"
 #include "thimble/picture/camera.h"
@@ -34,15 +35,20 @@ struct Axes {
   }
 };
 
-struct Pinhole {
-  PerspectiveView view;
+template <class View>
+struct Seen {
+  View view;
   Camera camera;
   int level = 0;
 };
+using Pinhole = Seen<PerspectiveView>;
+using Parallel = Seen<OrthographicView>;
 // Random cameras with automatic bits; those that cannot be are drawn again.
-Pinhole any_pinhole(Draw& draw) {
+template <class View>
+Seen<View> any_camera(Draw& draw) {
+  constexpr bool kIsPinhole = std::is_same_v<View, PerspectiveView>;
   for (;;) {
-    Pinhole made;
+    Seen<View> made;
     made.level = draw.from32(kMinLevel, kMaxLevel);
     const std::int64_t world = std::int64_t{Q8::kOne} << made.level;
     for (int axis = 0; axis < 3; ++axis) {
@@ -50,13 +56,31 @@ Pinhole any_pinhole(Draw& draw) {
     }
     made.view.forward = any_vector(draw, 30);
     made.view.up = default_up(made.view.forward);
-    made.view.fov_degrees = Q16::from_raw(draw.from32(kMinFov.raw, kMaxFov.raw));
+    if constexpr (kIsPinhole) {
+      made.view.fov_degrees = Q16::from_raw(draw.from32(kMinFov.raw, kMaxFov.raw));
+    }
     made.view.width_px = draw.any_size(11);
     made.view.height_px = draw.any_size(11);
+    if constexpr (!kIsPinhole) {
+      made.view.span = Q14::from_raw(draw.any_size(31));
+    }
     if (made.camera.set(made.view, made.level) == Status::kOk) {
       return made;
     }
   }
+}
+// The picture's corners, then pixels anywhere.
+struct Pixel {
+  std::int32_t x;
+  std::int32_t y;
+};
+template <class View>
+Pixel pixel_of(Draw& draw, const View& view, int number) {
+  if (number < 4) {
+    return {(number % 2) * (view.width_px - 1), (number / 2) * (view.height_px - 1)};
+  }
+  const std::int32_t x = draw.from32(0, view.width_px - 1);
+  return {x, draw.from32(0, view.height_px - 1)};
 }
 
 constexpr int kPixelsACamera = 16;
@@ -64,15 +88,12 @@ constexpr int kPixelsACamera = 16;
 Found perspective_rays(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Pinhole made = any_pinhole(draw);
+    const Pinhole made = any_camera<PerspectiveView>(draw);
     const Axes axes(made.view.forward, made.view.up);
     const Real focal = made.view.height_px / 2.0L /
                        std::tan(static_cast<Real>(made.view.fov_degrees.raw) / Q16::kOne * kPi / 360);
     for (int i = 0; i < kPixelsACamera; ++i) {
-      const std::int32_t x =
-          i < 4 ? (i % 2) * (made.view.width_px - 1) : draw.from32(0, made.view.width_px - 1);
-      const std::int32_t y =
-          i < 4 ? (i / 2) * (made.view.height_px - 1) : draw.from32(0, made.view.height_px - 1);
+      const auto [x, y] = pixel_of(draw, made.view, i);
       const Real across = x - (made.view.width_px - 1) / 2.0L;
       const Real above = (made.view.height_px - 1) / 2.0L - y;
       const Exact3 direction = real(made.camera.ray(x, y).direction);
@@ -85,34 +106,10 @@ Found perspective_rays(Draw& draw, std::uint64_t cases) {
   return found;
 }
 
-struct Parallel {
-  OrthographicView view;
-  Camera camera;
-  int level = 0;
-};
-Parallel any_parallel(Draw& draw) {
-  for (;;) {
-    Parallel made;
-    made.level = draw.from32(kMinLevel, kMaxLevel);
-    const std::int64_t world = std::int64_t{Q8::kOne} << made.level;
-    for (int axis = 0; axis < 3; ++axis) {
-      made.view.eye[axis] = Q8::from_raw(draw.from32(-4 * world, 5 * world));
-    }
-    made.view.forward = any_vector(draw, 30);
-    made.view.up = default_up(made.view.forward);
-    made.view.width_px = draw.any_size(11);
-    made.view.height_px = draw.any_size(11);
-    made.view.span = Q14::from_raw(draw.any_size(31));
-    if (made.camera.set(made.view, made.level) == Status::kOk) {
-      return made;
-    }
-  }
-}
-
 Found parallel_rays(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Parallel made = any_parallel(draw);
+    const Parallel made = any_camera<OrthographicView>(draw);
     const Axes axes(made.view.forward, made.view.up);
     const Real pixel = static_cast<Real>(made.view.span.raw) / Q14::kOne / made.view.width_px;
     const Exact3 eye{made.view.eye.x.raw / 256.0L, made.view.eye.y.raw / 256.0L,
@@ -126,10 +123,7 @@ Found parallel_rays(Draw& draw, std::uint64_t cases) {
       furthest = std::max(furthest, dot(along(point, eye, -1), axes.forward));
     }
     for (int i = 0; i < kPixelsACamera; ++i) {
-      const std::int32_t x =
-          i < 4 ? (i % 2) * (made.view.width_px - 1) : draw.from32(0, made.view.width_px - 1);
-      const std::int32_t y =
-          i < 4 ? (i / 2) * (made.view.height_px - 1) : draw.from32(0, made.view.height_px - 1);
+      const auto [x, y] = pixel_of(draw, made.view, i);
       const Real across = (x - (made.view.width_px - 1) / 2.0L) * pixel;
       const Real above = ((made.view.height_px - 1) / 2.0L - y) * pixel;
       const Ray ray = made.camera.ray(x, y);
@@ -150,7 +144,7 @@ Found parallel_rays(Draw& draw, std::uint64_t cases) {
 Found perspective_depth_per_t(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Pinhole made = any_pinhole(draw);
+    const Pinhole made = any_camera<PerspectiveView>(draw);
     const Axes axes(made.view.forward, made.view.up);
     const Camera::Affine& affine = made.camera.affine();
     Exact3 middle{};
@@ -169,7 +163,7 @@ Found perspective_depth_per_t(Draw& draw, std::uint64_t cases) {
 Found parallel_depth_per_t(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Parallel made = any_parallel(draw);
+    const Parallel made = any_camera<OrthographicView>(draw);
     const Axes axes(made.view.forward, made.view.up);
     found.see(made.camera.depth_per_t_q8() - 256 * dot(real(made.camera.direction()), axes.forward));
   }
@@ -182,7 +176,7 @@ Found parallel_depth_per_t(Draw& draw, std::uint64_t cases) {
 Found planar_depths(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Pinhole made = any_pinhole(draw);
+    const Pinhole made = any_camera<PerspectiveView>(draw);
     for (int i = 0; i < kPixelsACamera; ++i) {
       Hit hit;
       hit.kind = HitKind::kHit;
@@ -204,7 +198,7 @@ Found planar_depths(Draw& draw, std::uint64_t cases) {
 Found depth_shades(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Pinhole made = any_pinhole(draw);
+    const Pinhole made = any_camera<PerspectiveView>(draw);
     for (int i = 0; i < kPixelsACamera; ++i) {
       Hit hit;
       hit.kind = HitKind::kHit;
@@ -312,7 +306,7 @@ Found fixed_numbers(Draw& draw, std::uint64_t cases) {
 Found cutoff_reaches(Draw& draw, std::uint64_t cases) {
   Found found;
   while (found.cases < cases) {
-    const Pinhole made = any_pinhole(draw);
+    const Pinhole made = any_camera<PerspectiveView>(draw);
     const Q16 pixels = Q16::from_raw(draw.any_size(25));
     Cutoff cutoff;
     if (cutoff.set(made.camera, pixels) != Status::kOk) {

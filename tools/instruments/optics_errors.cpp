@@ -11,22 +11,22 @@ Real angle_urad(const Exact3& a, const Exact3& b) {
   return 1e6L * std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-Found shortened(Draw& draw, std::uint64_t cases) {
+// How far a direction of `change` is from the one that it was made of.
+Found turned_by(Draw& draw, std::uint64_t cases, Vec3i (*change)(const Vec3i&)) {
   Found found;
   while (found.cases < cases) {
     const Vec3i direction = any_vector(draw, 20);
-    found.see(angle_urad(real(direction), real(shorten(direction))));
+    found.see(angle_urad(real(direction), real(change(direction))));
   }
   return found;
 }
 
+Found shortened(Draw& draw, std::uint64_t cases) {
+  return turned_by(draw, cases, [](const Vec3i& direction) { return shorten(direction); });
+}
+
 Found unit_angles(Draw& draw, std::uint64_t cases) {
-  Found found;
-  while (found.cases < cases) {
-    const Vec3i direction = any_vector(draw, 20);
-    found.see(angle_urad(real(direction), real(unit_q14(direction))));
-  }
-  return found;
+  return turned_by(draw, cases, [](const Vec3i& direction) { return unit_q14(direction); });
 }
 
 Found unit_lengths(Draw& draw, std::uint64_t cases) {

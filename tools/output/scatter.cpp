@@ -33,13 +33,13 @@ std::string dot(double x, double y, double radius, const std::string& style) {
 }
 
 // Where the axes begin and end: x at a 1, 2 or 5 of a decade, y at multiples of `step`.
-struct Frame {
+struct Scales {
   std::vector<double> x_ticks;
   double low = 0;
   double high = 1;
   double step = 1;
 
-  explicit Frame(const std::vector<std::pair<double, double>>& points) {
+  explicit Scales(const std::vector<std::pair<double, double>>& points) {
     double x_low = 1;
     double x_high = 1;
     double y_low = 0;
@@ -139,7 +139,7 @@ std::string scatter_text(const Scatter& scatter) {
   for (const Cloud& cloud : scatter.clouds) {
     points.insert(points.end(), cloud.points.begin(), cloud.points.end());
   }
-  const Frame frame(points);
+  const Scales scales(points);
   const bool infinite = std::any_of(points.begin(), points.end(),
                                     [](const auto& point) { return !std::isfinite(point.second); });
   const std::size_t legend_rows = (scatter.clouds.size() + 3) / 4;
@@ -160,13 +160,13 @@ std::string scatter_text(const Scatter& scatter) {
       "#3a3f45 } .axis, .front, .ring { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" height=\"100%\" "
       "class=\"ground\"/>\n";
   svg += label(kWidth / 2, 26, "middle", scatter.title, " font-size=\"15\"");
-  for (const double tick : frame.x_ticks) {
-    const double x = frame.x_at(tick);
+  for (const double tick : scales.x_ticks) {
+    const double x = scales.x_at(tick);
     svg += line(x, kTop, x, kPlotBottom, "grid") + label(x, kPlotBottom + 18, "middle", rounded(tick));
   }
-  for (int i = 0; frame.low + i * frame.step <= frame.high + frame.step / 2; ++i) {
-    const double value = frame.low + i * frame.step;
-    const double y = frame.y_at(value);
+  for (int i = 0; scales.low + i * scales.step <= scales.high + scales.step / 2; ++i) {
+    const double value = scales.low + i * scales.step;
+    const double y = scales.y_at(value);
     svg += line(kLeft, y, kWidth - kRight, y, "grid") + label(kLeft - 8, y + 4, "end", rounded(value));
   }
   svg += line(kLeft, kTop, kLeft, kPlotBottom, "axis") +
@@ -181,7 +181,7 @@ std::string scatter_text(const Scatter& scatter) {
   if (!scatter.front.empty()) {
     svg += "<polyline class=\"front\" points=\"";
     for (const FrontPoint& point : scatter.front) {
-      svg += number(frame.x_at(point.x)) + "," + number(frame.y_at(point.y)) + " ";
+      svg += number(scales.x_at(point.x)) + "," + number(scales.y_at(point.y)) + " ";
     }
     svg += "\"/>\n";
   }
@@ -190,12 +190,12 @@ std::string scatter_text(const Scatter& scatter) {
     if (scatter.clouds[i].joined) {
       svg += "<polyline fill=\"none\" stroke=\"" + std::string(kColors[i % kColors.size()]) + "\" points=\"";
       for (const auto& [x, y] : scatter.clouds[i].points) {
-        svg += number(frame.x_at(x)) + "," + number(frame.y_at(y)) + " ";
+        svg += number(scales.x_at(x)) + "," + number(scales.y_at(y)) + " ";
       }
       svg += "\"/>\n";
     }
     for (const auto& [x, y] : scatter.clouds[i].points) {
-      svg += dot(frame.x_at(x), frame.y_at(y), 4, fill);
+      svg += dot(scales.x_at(x), scales.y_at(y), 4, fill);
     }
     const double column = kLeft + static_cast<double>(i % 4) * (kWidth - kLeft - kRight) / 4;
     const std::size_t legend_row = i / 4;
@@ -207,13 +207,13 @@ std::string scatter_text(const Scatter& scatter) {
   }
   std::vector<std::pair<double, double>> rings;
   for (const FrontPoint& point : scatter.front) {
-    rings.emplace_back(frame.x_at(point.x), frame.y_at(point.y));
+    rings.emplace_back(scales.x_at(point.x), scales.y_at(point.y));
   }
   Numbers numbers(rings);
   for (std::size_t i = 0; i < scatter.front.size(); ++i) {
     const FrontPoint& point = scatter.front[i];
-    const double x = frame.x_at(point.x);
-    const double y = frame.y_at(point.y);
+    const double x = scales.x_at(point.x);
+    const double y = scales.y_at(point.y);
     svg += dot(x, y, 6, "class=\"ring\"");
     svg += numbers.label_at(x, y, std::to_string(i + 1));
     const std::size_t name_column = i / name_rows;

@@ -185,81 +185,66 @@ void Player::change_reach(Tool tool, std::int32_t steps) {
 }
 
 void Player::take_key(const std::string& key) {
-  ParticleWorld& world = world_->world();
-  const auto strength = [&] { return std::max(std::abs(strong_gravity_.x), std::abs(strong_gravity_.y)); };
-  const auto set_sizes = [&](std::int32_t least, std::int32_t most) {
-    if (world.set_diameters(least, most) == Status::kOk) {
-      settings_.least_diameter = least;
-      settings_.most_diameter = most;
-    }
-  };
-  const auto add_bounciness = [&](int hundredths) {
-    const long bounciness = std::clamp(std::lround(100 * settings_.bounciness) + hundredths, 0L, 100L);
-    settings_.bounciness = static_cast<double>(bounciness) / 100;
-    static_cast<void>(world.set_restitution(restitution_q16(settings_.bounciness)));
-  };
-  const auto add_gravity = [&](std::int32_t more) {
-    const std::int32_t size = std::clamp(strength() + more, kGravityStepQ16, kMaxAccelerationQ16);
-    const auto sign = [](std::int32_t value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); };
-    set_gravity({sign(strong_gravity_.x) * size, sign(strong_gravity_.y) * size});
-  };
+  const std::int32_t strength = std::max(std::abs(strong_gravity_.x), std::abs(strong_gravity_.y));
   if (key == "left" || key == "right") {
-    set_gravity({key == "left" ? -strength() : strength(), 0});
-    return;
-  }
-  if (key == "up" || key == "down") {
-    set_gravity({0, key == "up" ? -strength() : strength()});
-    return;
-  }
-  if (key == "space") {
+    set_gravity({key == "left" ? -strength : strength, 0});
+  } else if (key == "up" || key == "down") {
+    set_gravity({0, key == "up" ? -strength : strength});
+  } else if (key == "space") {
     is_paused_ = !is_paused_;
-    return;
-  }
-  if (key == "escape") {
+  } else if (key == "escape") {
     has_ended_ = true;
-    return;
+  } else if (key.size() == 1 && key[0] >= '1' && key[0] <= '6') {
+    tool_ = static_cast<Tool>(key[0] - '1');
+  } else if (key.size() == 1) {
+    change_setting(key[0]);
+    command(key[0]);
   }
-  if (key.size() != 1) {
-    return;
+}
+
+void Player::set_sizes(std::int32_t least, std::int32_t most) {
+  if (world_->world().set_diameters(least, most) == Status::kOk) {
+    settings_.least_diameter = least;
+    settings_.most_diameter = most;
   }
-  switch (key[0]) {
-    case '1':
-    case '2':
-    case '3':
-    case '4':
-    case '5':
-    case '6':
-      tool_ = static_cast<Tool>(key[0] - '1');
-      break;
+}
+
+void Player::add_bounciness(int hundredths) {
+  const long bounciness = std::clamp(std::lround(100 * settings_.bounciness) + hundredths, 0L, 100L);
+  settings_.bounciness = static_cast<double>(bounciness) / 100;
+  static_cast<void>(world_->world().set_restitution(restitution_q16(settings_.bounciness)));
+}
+
+void Player::add_gravity(std::int32_t more) {
+  const std::int32_t strength = std::max(std::abs(strong_gravity_.x), std::abs(strong_gravity_.y));
+  const std::int32_t size = std::clamp(strength + more, kGravityStepQ16, kMaxAccelerationQ16);
+  const auto sign = [](std::int32_t value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); };
+  set_gravity({sign(strong_gravity_.x) * size, sign(strong_gravity_.y) * size});
+}
+
+// A small letter is less, a capital more.
+void Player::change_setting(char key) {
+  const int sign = key >= 'A' && key <= 'Z' ? 1 : -1;
+  switch (key) {
     case '[':
-      change_reach(tool_, -1);
-      break;
     case ']':
-      change_reach(tool_, 1);
+      change_reach(tool_, key == '[' ? -1 : 1);
       break;
     case 'n':
-      set_sizes(settings_.least_diameter - 1, settings_.most_diameter);
-      break;
     case 'N':
-      set_sizes(settings_.least_diameter + 1, settings_.most_diameter);
+      set_sizes(settings_.least_diameter + sign, settings_.most_diameter);
       break;
     case 'm':
-      set_sizes(settings_.least_diameter, settings_.most_diameter - 1);
-      break;
     case 'M':
-      set_sizes(settings_.least_diameter, settings_.most_diameter + 1);
+      set_sizes(settings_.least_diameter, settings_.most_diameter + sign);
       break;
     case 'b':
-      add_bounciness(-5);
-      break;
     case 'B':
-      add_bounciness(5);
+      add_bounciness(5 * sign);
       break;
     case 'c':
-      set_count(std::int64_t{world.count()} - kCountStep);
-      break;
     case 'C':
-      set_count(std::int64_t{world.count()} + kCountStep);
+      set_count(std::int64_t{world_->world().count()} + sign * kCountStep);
       break;
     case 'e':
       rate_ = std::max(rate_ - std::max(1, rate_ / 5), 1);
@@ -268,14 +253,20 @@ void Player::take_key(const std::string& key) {
       rate_ = std::min(rate_ + std::max(1, rate_ / 4), kMostRate);
       break;
     case 'g':
-      add_gravity(-kGravityStepQ16);
-      break;
     case 'G':
-      add_gravity(kGravityStepQ16);
+      add_gravity(sign * kGravityStepQ16);
       break;
     case '0':
       set_gravity(settings_.gravity_q16 == Vec2i{} ? strong_gravity_ : Vec2i{});
       break;
+    default:
+      break;
+  }
+}
+
+void Player::command(char key) {
+  ParticleWorld& world = world_->world();
+  switch (key) {
     case '.':
       is_paused_ = true;
       makes_one_ = true;

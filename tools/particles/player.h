@@ -61,6 +61,11 @@ class Player {
   bool is_held() const { return held_button_ != 0; }
   Tool held_tool() const;
   void take_key(const std::string& key);
+  void change_setting(char key);
+  void command(char key);
+  void set_sizes(std::int32_t least, std::int32_t most);
+  void add_bounciness(int hundredths);
+  void add_gravity(std::int32_t more);
   void change_reach(Tool tool, std::int32_t steps);
   void press(const InputEvent& event);
   void set_count(std::int64_t count);

@@ -32,8 +32,7 @@ bool looks_like_off(std::span<const std::uint8_t> bytes);
 /// Memory: 24 bytes a vertex, 15 more with colour (12 of them only while reading), 12 a triangle. The counts
 /// are held against the bytes that follow before anything is allocated.
 /// @throws InputError  naming the line: no keyword, a count that the bytes cannot hold, a file that ends
-/// early,
-///   a word that is no finite number, an index that is no vertex
+///   early, a word that is no finite number, an index that is no vertex
 Source read_off(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools

@@ -4,8 +4,7 @@
 /// What is read: any elements and properties of any scalar type (old names such as `uchar`, new ones such as
 /// `uint8`) and lists anywhere; of these are used
 /// - element `vertex`: x, y, z; and red, green, blue (also `diffuse_red` ..., or `r`, `g`, `b`) when all
-/// three
-///   are there: integers from 0 to 255 (ushort: 0 to 65535), float and double from 0 to 1, clamped;
+///   three are there: integers from 0 to 255 (ushort: 0 to 65535), float and double from 0 to 1, clamped;
 /// - element `face`: the list `vertex_indices` or `vertex_index`, a polygon;
 /// - element `tristrips`: a list of the same name, strips separated by -1.
 /// All else is passed over, colours of faces included. A file with faces or strips becomes a mesh, any other

@@ -98,8 +98,7 @@ struct SceneText {
 
 /// Parses the whole file.
 /// @throws InputError  naming line and column: a word that is not known, one that is missing, a number that
-/// is
-///   none, not finite or out of its range, something said twice, a name that is not defined, more than a
+///   is none, not finite or out of its range, something said twice, a name that is not defined, more than a
 ///   limit above, bytes that are not UTF-8; and a file that shows nothing
 Source read_scene_text(const SharedBytes& file, const Progress& progress = {});
 

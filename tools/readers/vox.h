@@ -45,9 +45,8 @@ inline constexpr std::uint64_t kVoxPlacedVoxelLimit = std::uint64_t{1} << 31;
 ///
 /// @param progress  called every few hundred kilobytes and with 1 at the end; may be empty; may throw
 /// @throws InputError  wrong magic or version; no model; a chunk, string or count that leaves its place; a
-/// side
-///   over 256; a voxel outside its model; a scene graph without node 0, with an id used twice, a missing node
-///   or model or a cycle; a rotation byte that is none; any of the limits above
+///   side over 256; a voxel outside its model; a scene graph without node 0, with an id used twice, a missing
+///   node or model or a cycle; a rotation byte that is none; any of the limits above
 std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress = {});
 
 }  // namespace thimble::tools

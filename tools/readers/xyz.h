@@ -36,9 +36,8 @@ namespace thimble::tools {
 /// Checks the whole file once; the result keeps `file` and parses it anew for each `for_each`, so that no
 /// memory depends on the number of points. `CloudPoint::line` is the line in the file.
 /// @throws InputError  naming the line: a column that is missing, empty or no number, a coordinate that is
-/// not
-///   finite, a colour out of range, a number of columns that differs; an announced number of points that is
-///   wrong; no points at all
+///   not finite, a colour out of range, a number of columns that differs; an announced number of points that
+///   is wrong; no points at all
 Source read_xyz(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -21,15 +20,19 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/measure.h"
 #include "benchmarks/particles/engine.h"
 
 namespace thimble::benchmarks {
 namespace {
 
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+double seconds_of_steps(Engine& engine, int steps) {
+  const auto work = [&] {
+    for (int i = 0; i < steps; ++i) {
+      engine.step();
+    }
+  };
+  return seconds_of(work, kProgramClock);
 }
 
 std::string number(double value, int digits = 3) {
@@ -218,11 +221,7 @@ std::vector<Timed> race(const Scene& scene, const std::vector<std::string>& name
   }
   for (int done = 0; done < steps; done += turn) {
     for (Timed& timed : engines) {
-      const double start = processor_seconds();
-      for (int i = 0; i < turn; ++i) {
-        timed.engine->step();
-      }
-      timed.seconds += processor_seconds() - start;
+      timed.seconds += seconds_of_steps(*timed.engine, turn);
     }
   }
   return engines;
@@ -370,12 +369,8 @@ void quality(const std::string& csv) {
         ++steps;
       }
       const bool sleeps = heap->asleep() == static_cast<std::size_t>(balls);
-      const double from = processor_seconds();
       const int rest_steps = sleeps ? 100000 : 300;
-      for (int i = 0; i < rest_steps; ++i) {
-        heap->step();
-      }
-      const double us = 1e6 * (processor_seconds() - from) / rest_steps;
+      const double us = 1e6 * seconds_of_steps(*heap, rest_steps) / rest_steps;
       const auto state = heap->balls();
       const bool first = balls == 693;
       table.add({name, std::to_string(balls), first ? number(energy, 7) : "", first ? number(overlap) : "",
@@ -418,14 +413,15 @@ void accuracy(const std::string& csv) {
   // States at the marks, and the time.
   const auto run = [&](Engine& engine, double* seconds) {
     std::vector<std::vector<BallState>> states;
-    const double start = processor_seconds();
-    for (int i = 1; i <= marks.back(); ++i) {
-      engine.step();
-      if (std::find(marks.begin(), marks.end(), i) != marks.end()) {
-        states.push_back(engine.balls());
+    const auto steps = [&] {
+      for (int i = 1; i <= marks.back(); ++i) {
+        engine.step();
+        if (std::find(marks.begin(), marks.end(), i) != marks.end()) {
+          states.push_back(engine.balls());
+        }
       }
-    }
-    *seconds = processor_seconds() - start;
+    };
+    *seconds = seconds_of(steps, kProgramClock);
     return states;
   };
   double seconds = 0;
@@ -509,10 +505,7 @@ int main_of(const std::vector<std::string>& arguments) {
 }  // namespace thimble::benchmarks
 
 int main(int argument_count, char** arguments) {
-  try {
+  return thimble::benchmarks::run_program("thimble_particle_table", [&] {
     return thimble::benchmarks::main_of({arguments, arguments + argument_count});
-  } catch (const std::exception& error) {
-    std::cerr << "thimble_particle_table: " << error.what() << '\n';
-    return 1;
-  }
+  });
 }

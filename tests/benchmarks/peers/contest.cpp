@@ -3,11 +3,11 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include <ctime>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
 
+#include "output/output_file.h"
 #include "readers/oct.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
@@ -18,23 +18,33 @@ namespace {
 // Who takes longer draws a single frame.
 constexpr double kSlowSeconds = 0.2;
 
-// Of this thread: libraries keep idle ones.
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 Voxel voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) {
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
 }
 
 }  // namespace
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+std::vector<Voxel> voxels_of(const tools::BuiltScene& built) {
+  std::vector<Voxel> voxels;
+  tools::for_each_block(built.compact(), [&](const Vec3i& at, int level, std::uint8_t) {
+    const std::int32_t side = std::int32_t{1} << level;
+    for (std::int32_t i = 0; i < side * side * side; ++i) {
+      voxels.push_back(voxel_at(at.x + i % side, at.y + i / side % side, at.z + i / side / side));
+    }
+  });
+  return voxels;
+}
+
+Band gray_band(std::vector<std::uint8_t>* pixels, std::int32_t rows) {
+  return {Bytes(pixels->data(), pixels->size()), PixelFormat::kGray8, 0, 0, rows};
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  if (!path.empty()) {
+    tools::OutputFile file(path);
+    file.write(text);
+    file.commit();
+  }
 }
 
 Camera contest_camera(int level, bool orthographic, int frame) {
@@ -91,12 +101,7 @@ Contest::Contest(const std::string& kind, std::uint64_t points, std::uint64_t mo
   if (renderer_ == nullptr) {
     throw std::runtime_error("no room for the wide renderer");
   }
-  tools::for_each_block(built_->compact(), [&](const Vec3i& at, int level, std::uint8_t) {
-    const std::int32_t side = std::int32_t{1} << level;
-    for (std::int32_t i = 0; i < side * side * side; ++i) {
-      voxels_.push_back(voxel_at(at.x + i % side, at.y + i / side % side, at.z + i / side / side));
-    }
-  });
+  voxels_ = voxels_of(*built_);
   // What they keep a voxel, about, while they build; and what a grid of bits takes in any case.
   struct Maker {
     std::unique_ptr<Peer> (*make)(const std::vector<Voxel>&);
@@ -108,41 +113,34 @@ Contest::Contest(const std::string& kind, std::uint64_t points, std::uint64_t mo
     if (maker.bytes > most_bytes) {
       continue;
     }
-    const double start = processor_seconds();
-    if (auto peer = maker.make(voxels_)) {
-      rivals_.push_back({std::move(peer), processor_seconds() - start});
+    Rival rival;
+    rival.build_seconds = seconds_of([&] { rival.peer = maker.make(voxels_); });
+    if (rival.peer != nullptr) {
+      rivals_.push_back(std::move(rival));
     }
   }
 }
 
 double Contest::draw_wide(const Camera& camera, std::uint64_t* hits) {
-  const double start = processor_seconds();
-  Band band;
-  band.pixels = Bytes(pixels_.data(), pixels_.size());
-  band.format = PixelFormat::kGray8;
-  band.rows = kHeightPx;
-  RenderCounts counts;
-  wide::Counts work;
-  if (renderer_->render(camera, contest_shading(camera, built_->bounds()), band, &counts, &work) !=
-      Status::kOk) {
-    throw std::runtime_error("the wide renderer leaves this view to the core");
-  }
-  *hits = counts.hits;
-  return processor_seconds() - start;
+  return seconds_of([&] {
+    RenderCounts counts;
+    wide::Counts work;
+    if (renderer_->render(camera, contest_shading(camera, built_->bounds()), gray_band(&pixels_, kHeightPx),
+                          &counts, &work) != Status::kOk) {
+      throw std::runtime_error("the wide renderer leaves this view to the core");
+    }
+    *hits = counts.hits;
+  });
 }
 
 double Contest::draw_core(const Camera& camera) {
-  const double start = processor_seconds();
-  Band band;
-  band.pixels = Bytes(pixels_.data(), pixels_.size());
-  band.format = PixelFormat::kGray8;
-  band.rows = kHeightPx;
-  RenderCounts counts;
-  if (built_->render_band(camera, contest_shading(camera, built_->bounds()), band, &counts, {}) !=
-      Status::kOk) {
-    throw std::runtime_error("the core does not take the rays of this view");
-  }
-  return processor_seconds() - start;
+  return seconds_of([&] {
+    RenderCounts counts;
+    if (built_->render_band(camera, contest_shading(camera, built_->bounds()), gray_band(&pixels_, kHeightPx),
+                            &counts, {}) != Status::kOk) {
+      throw std::runtime_error("the core does not take the rays of this view");
+    }
+  });
 }
 
 Result Contest::run(bool orthographic, int frames) {
@@ -172,10 +170,10 @@ Result Contest::run(bool orthographic, int frames) {
       if (frame > 0 && seconds[2 + i].front() > kSlowSeconds) {
         continue;
       }
-      const double start = processor_seconds();
-      const View view(camera, shading.near_q8, shading.far_q8);
-      rivals_[i].peer->draw(view, pixels_.data(), nullptr);
-      seconds[2 + i].push_back(processor_seconds() - start);
+      seconds[2 + i].push_back(seconds_of([&] {
+        const View view(camera, shading.near_q8, shading.far_q8);
+        rivals_[i].peer->draw(view, pixels_.data(), nullptr);
+      }));
     }
   }
   // One frame more is judged, not timed: by the voxels, and this renderer's and the core's by their pixels.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/measure.h"
 #include "benchmarks/peers/peer.h"
 #include "scene/built_scene.h"
 #include "scene/wide_renderer.h"
@@ -64,7 +65,7 @@ class Contest {
   std::vector<Voxel> voxels_;  // in the tree's order
   struct Rival {
     std::unique_ptr<Peer> peer;
-    double build_seconds;
+    double build_seconds = 0;
   };
   std::vector<Rival> rivals_;
   std::vector<std::uint8_t> pixels_;
@@ -75,8 +76,15 @@ class Contest {
 Camera contest_camera(int level, bool orthographic, int frame);
 /// Depth shading between the planes that bound the scene.
 Shading contest_shading(const Camera& camera, const VoxelBox& bounds);
-/// The middle one, or the upper of two.
-double median(std::vector<double> values);
+/// Every voxel of the tree, in its order.
+std::vector<Voxel> voxels_of(const tools::BuiltScene& built);
+/// All of a picture in greys.
+Band gray_band(std::vector<std::uint8_t>* pixels, std::int32_t rows);
+inline const char* projection(bool orthographic) {
+  return orthographic ? "orthographic" : "perspective";
+}
+/// The whole file or, after an error, none; nothing where `path` is empty.
+void write_text(const std::string& path, const std::string& text);
 
 /// The machine in words: processor, caches, memory, system, compiler, instruction set in use.
 std::vector<std::pair<std::string, std::string>> machine();

@@ -13,11 +13,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <exception>
 #include <stdexcept>
 
-#include "output/output_file.h"
+#include "benchmarks/peers/contest.h"
 #include "support/trial_worlds.h"
 #include "wide/renderer.h"
 
@@ -29,18 +27,6 @@ constexpr std::int32_t kHeightPx = 600;
 constexpr double kSlowSeconds = 0.2;
 constexpr double kMost = 1.3;
 constexpr std::size_t kWorstRows = 12;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 enum Engine : std::size_t { kAuto, kFlat, kBlocks, kCore, kEngines };
 
@@ -70,9 +56,7 @@ class Table {
     row.camera = view.name;
     row.voxels = world.tree().voxel_count();
     row.boxes = world.lists().entries().size;
-    const DepthRange range = depth_range(view.camera, world.tree().bounds());
-    shading_.near_q8 = range.near_q8;
-    shading_.far_q8 = range.far_q8;
+    shading_ = contest_shading(view.camera, world.tree().bounds());
     std::vector<double> seconds[kEngines];
     // What takes a millisecond is drawn more often: a median of few would be the clock's.
     int turns = frames;
@@ -110,33 +94,27 @@ class Table {
   }
 
  private:
-  Band band_of(std::vector<std::uint8_t>* pixels) const {
-    Band band;
-    band.pixels = Bytes(pixels->data(), pixels->size());
-    band.format = PixelFormat::kGray8;
-    band.rows = kHeightPx;
-    return band;
-  }
-
   Status draw_wide(const tests::TrialWorld& world, const Camera& camera, wide::Order order, double* seconds,
                    wide::Stats* stats, std::vector<std::uint8_t>* pixels) {
     wide::Options options;
     options.order = order;
-    const double start = processor_seconds();
-    const Status status = wide::render(world.lists(), camera, shading_, band_of(pixels),
-                                       Bytes(workspace_.data(), workspace_.size()), nullptr, options, stats);
-    *seconds = processor_seconds() - start;
+    Status status = Status::kOk;
+    *seconds = seconds_of([&] {
+      status = wide::render(world.lists(), camera, shading_, gray_band(pixels, kHeightPx),
+                            Bytes(workspace_.data(), workspace_.size()), nullptr, options, stats);
+    });
     return status;
   }
 
   double draw_core(const tests::TrialWorld& world, const Camera& camera, std::uint64_t* hits) {
-    RenderCounts counts;
-    const double start = processor_seconds();
-    if (render_band(world.tree(), camera, shading_, band_of(&pictures_[kCore]), &counts) != Status::kOk) {
-      throw std::runtime_error("the core does not take the rays of a view");
-    }
-    *hits = counts.hits;
-    return processor_seconds() - start;
+    return seconds_of([&] {
+      RenderCounts counts;
+      if (render_band(world.tree(), camera, shading_, gray_band(&pictures_[kCore], kHeightPx), &counts) !=
+          Status::kOk) {
+        throw std::runtime_error("the core does not take the rays of a view");
+      }
+      *hits = counts.hits;
+    });
   }
 
   Shading shading_;
@@ -278,11 +256,7 @@ int run(int count, char** words) {
   }
   print_worst("auto over the better order", rows, &Row::choice);
   print_worst("auto over the core", rows, &Row::against_core);
-  if (!csv_path.empty()) {
-    tools::OutputFile file(csv_path);
-    file.write(csv_text(rows));
-    file.commit();
-  }
+  write_text(csv_path, csv_text(rows));
   const bool equal = std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.wrong; });
   std::printf("\n%s\n", equal ? "all pictures are the core's" : "PICTURES DIFFER from the core's");
   return equal ? 0 : 1;
@@ -292,10 +266,6 @@ int run(int count, char** words) {
 }  // namespace thimble::benchmarks
 
 int main(int count, char** words) {
-  try {
-    return thimble::benchmarks::run(count, words);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "thimble_engine_table: %s\n", error.what());
-    return 1;
-  }
+  return thimble::benchmarks::run_program("thimble_engine_table",
+                                          [&] { return thimble::benchmarks::run(count, words); });
 }

@@ -10,13 +10,11 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "benchmarks/peers/contest.h"
-#include "output/output_file.h"
 #include "output/plot.h"
 
 namespace thimble::benchmarks {
@@ -34,13 +32,9 @@ struct Choice {
   std::string bytes_plot_path;
 };
 
-const char* projection(const Result& result) {
-  return result.orthographic ? "orthographic" : "perspective";
-}
-
 void print(const Result& result) {
   std::printf("%-8s%12llu  %-12s", result.scene.c_str(), static_cast<unsigned long long>(result.points),
-              projection(result));
+              projection(result.orthographic));
   for (const Entrant& entrant : result.entrants) {
     std::printf("  %s %.3f ms", entrant.name.c_str(), entrant.ms);
     if (entrant.differing_px != 0) {
@@ -64,7 +58,7 @@ std::string csv_text(const std::vector<Result>& results) {
       char line[320];
       std::snprintf(line, sizeof(line), "%s,%llu,%llu,%s,%llu,\"%s\",%.4f,%.3f,%llu,%llu,%d,%.2f\n",
                     result.scene.c_str(), static_cast<unsigned long long>(result.points),
-                    static_cast<unsigned long long>(result.voxels), projection(result),
+                    static_cast<unsigned long long>(result.voxels), projection(result.orthographic),
                     static_cast<unsigned long long>(result.hits), entrant.name.c_str(), entrant.ms,
                     entrant.build_seconds, static_cast<unsigned long long>(entrant.bytes),
                     static_cast<unsigned long long>(entrant.differing_px),
@@ -85,7 +79,7 @@ std::string json_text(const std::vector<Result>& results) {
     nlohmann::ordered_json row{{"scene", result.scene},
                                {"points", result.points},
                                {"voxels", result.voxels},
-                               {"projection", projection(result)},
+                               {"projection", projection(result.orthographic)},
                                {"hits", result.hits}};
     for (const Entrant& entrant : result.entrants) {
       row["engines"].push_back({{"engine", entrant.name},
@@ -188,14 +182,6 @@ std::string bytes_plot(const std::vector<const Result*>& rows) {
   return tools::log_plot_text(plot);
 }
 
-void write(const std::string& path, const std::string& text) {
-  if (!path.empty()) {
-    tools::OutputFile file(path);
-    file.write(text);
-    file.commit();
-  }
-}
-
 int run(int count, char** words) {
   Choice choice;
   CLI::App app("This renderer beside what could be used instead");
@@ -220,13 +206,13 @@ int run(int count, char** words) {
         print(results.back());
       }
       // Rows are written as they come: the last ones take long.
-      write(choice.csv_path, csv_text(results));
-      write(choice.json_path, json_text(results));
+      write_text(choice.csv_path, csv_text(results));
+      write_text(choice.json_path, json_text(results));
     }
   }
   if (!results.empty()) {
-    write(choice.plot_path, time_plot(plotted_rows(results)));
-    write(choice.bytes_plot_path, bytes_plot(plotted_rows(results)));
+    write_text(choice.plot_path, time_plot(plotted_rows(results)));
+    write_text(choice.bytes_plot_path, bytes_plot(plotted_rows(results)));
   }
   return 0;
 }
@@ -235,10 +221,6 @@ int run(int count, char** words) {
 }  // namespace thimble::benchmarks
 
 int main(int count, char** words) {
-  try {
-    return thimble::benchmarks::run(count, words);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "thimble_peer_table: %s\n", error.what());
-    return 1;
-  }
+  return thimble::benchmarks::run_program("thimble_peer_table",
+                                          [&] { return thimble::benchmarks::run(count, words); });
 }

@@ -13,11 +13,9 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
-#include <exception>
 #include <random>
 
-#include "benchmarks/peers/peer.h"
+#include "benchmarks/peers/contest.h"
 #include "output/output_file.h"
 #include "readers/file_bytes.h"
 #include "readers/oct.h"
@@ -34,12 +32,6 @@ namespace {
 constexpr std::int32_t kWidthPx = 1920;
 constexpr std::int32_t kHeightPx = 1080;
 constexpr int kTurns = 3;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Ray to_core(const FloatRay& from) {
   Ray ray;
@@ -154,6 +146,30 @@ void trace_core(const tools::BuiltScene& built, const Kind& kind, std::vector<fl
   }
 }
 
+// Draws the picture of the primary rays, which must have so many hits.
+void draw_wide(tools::WideRenderer* renderer, const VoxelBox& bounds, const Camera& camera, std::size_t hits,
+               std::vector<std::uint8_t>* pixels) {
+  RenderCounts counts;
+  wide::Counts work;
+  if (renderer->render(camera, contest_shading(camera, bounds), gray_band(pixels, kHeightPx), &counts,
+                       &work) != Status::kOk ||
+      counts.hits != hits) {
+    throw std::runtime_error("the wide renderer's picture is another");
+  }
+}
+
+// Rays whose `t` is not what the core found.
+std::size_t count_wrong(const Kind& kind, const std::vector<float>& t) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const float ours = kind.expected[i];
+    const bool same = (t[i] < 1e30F) == (ours < 1e30F) &&
+                      (kind.any || !(ours < 1e30F) || std::abs(t[i] - ours) <= 1e-4F * ours);
+    wrong += same ? 0U : 1U;
+  }
+  return wrong;
+}
+
 int run(int count, char** words) {
   std::string path;
   std::string csv_path;
@@ -173,15 +189,7 @@ int run(int count, char** words) {
   if (renderer == nullptr) {
     throw std::runtime_error("no room for the wide renderer");
   }
-  std::vector<Voxel> voxels;
-  tools::for_each_block(built.compact(), [&](const Vec3i& at, int level, std::uint8_t) {
-    const std::int32_t side = std::int32_t{1} << level;
-    for (std::int32_t i = 0; i < side * side * side; ++i) {
-      voxels.push_back({static_cast<std::uint16_t>(at.x + i % side),
-                        static_cast<std::uint16_t>(at.y + i / side % side),
-                        static_cast<std::uint16_t>(at.z + i / side / side)});
-    }
-  });
+  const std::vector<Voxel> voxels = voxels_of(built);
   // As the gallery's picture sees it, closer.
   const double unit = (1 << depth) / 1024.0;
   tools::ViewWishes view;
@@ -215,37 +223,21 @@ int run(int count, char** words) {
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(kWidthPx) * kHeightPx);
     for (int turn = 0; turn < kTurns; ++turn) {
       for (std::size_t engine = 0; engine < engines; ++engine) {
-        const double start = processor_seconds();
-        if (engine == 0) {
-          if (kind.any) {
-            continue;  // it draws pictures only
-          }
-          Shading shading;
-          const DepthRange range = depth_range(camera, built.bounds());
-          shading.near_q8 = range.near_q8;
-          shading.far_q8 = range.far_q8;
-          Band band;
-          band.pixels = Bytes(pixels.data(), pixels.size());
-          band.format = PixelFormat::kGray8;
-          band.rows = kHeightPx;
-          RenderCounts counts;
-          wide::Counts work;
-          if (renderer->render(camera, shading, band, &counts, &work) != Status::kOk || counts.hits != hits) {
-            throw std::runtime_error("the wide renderer's picture is another");
-          }
-        } else if (engine == 1) {
-          trace_core(built, kind, &t);
-        } else {
-          peers[engine - 2]->trace(kind.rays, kind.any, t.data());
+        if (engine == 0 && kind.any) {
+          continue;  // it draws pictures only
         }
-        best[engine] = std::min(best[engine], processor_seconds() - start);
-        if (engine >= 2 && turn == 0) {
-          for (std::size_t i = 0; i < t.size(); ++i) {
-            const float ours = kind.expected[i];
-            const bool same = (t[i] < 1e30F) == (ours < 1e30F) &&
-                              (kind.any || !(ours < 1e30F) || std::abs(t[i] - ours) <= 1e-4F * ours);
-            wrong[engine] += same ? 0U : 1U;
+        const double seconds = seconds_of([&] {
+          if (engine == 0) {
+            draw_wide(renderer.get(), built.bounds(), camera, hits, &pixels);
+          } else if (engine == 1) {
+            trace_core(built, kind, &t);
+          } else {
+            peers[engine - 2]->trace(kind.rays, kind.any, t.data());
           }
+        });
+        best[engine] = std::min(best[engine], seconds);
+        if (engine >= 2 && turn == 0) {
+          wrong[engine] = count_wrong(kind, t);
         }
       }
     }
@@ -264,11 +256,7 @@ int run(int count, char** words) {
              std::to_string(hits) + "," + std::to_string(rate) + "," + std::to_string(wrong[engine]) + "\n";
     }
   }
-  if (!csv_path.empty()) {
-    tools::OutputFile file(csv_path);
-    file.write(csv);
-    file.commit();
-  }
+  write_text(csv_path, csv);
   return 0;
 }
 
@@ -276,10 +264,6 @@ int run(int count, char** words) {
 }  // namespace thimble::benchmarks
 
 int main(int count, char** words) {
-  try {
-    return thimble::benchmarks::run(count, words);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "thimble_surface_table: %s\n", error.what());
-    return 1;
-  }
+  return thimble::benchmarks::run_program("thimble_surface_table",
+                                          [&] { return thimble::benchmarks::run(count, words); });
 }

@@ -7,13 +7,10 @@
 // A frame is 800 x 600 pixels with depth shading. The median of the frames counts, and all pictures are
 // compared. Wants processors that are idle: the clock does not know who else uses them.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
-#include <exception>
 #include <stdexcept>
 
 #include "benchmarks/peers/contest.h"
-#include "output/output_file.h"
 #include "scene/scene_source.h"
 #include "wide/renderer.h"
 
@@ -27,10 +24,6 @@ struct Choice {
   int frames = 40;
   std::string csv_path;
 };
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class ThreadTable {
  public:
@@ -84,19 +77,16 @@ class ThreadTable {
   double draw(const Camera& camera, wide::Threads* threads) {
     workspace_.resize(std::max(
         workspace_.size(), wide::workspace_bytes(Contest::kWidthPx, Contest::kHeightPx, threads->count())));
-    Band band;
-    band.pixels = Bytes(pixels_.data(), pixels_.size());
-    band.format = PixelFormat::kGray8;
-    band.rows = Contest::kHeightPx;
     wide::Options options;
     options.threads = threads;
     const Shading shading = contest_shading(camera, built_->bounds());
-    const double start = seconds_now();
-    if (wide::render(lists_, camera, shading, band, Bytes(workspace_.data(), workspace_.size()), nullptr,
-                     options) != Status::kOk) {
-      throw std::runtime_error("the wide renderer leaves this view to the core");
-    }
-    return seconds_now() - start;
+    const auto frame = [&] {
+      if (wide::render(lists_, camera, shading, gray_band(&pixels_, Contest::kHeightPx),
+                       Bytes(workspace_.data(), workspace_.size()), nullptr, options) != Status::kOk) {
+        throw std::runtime_error("the wide renderer leaves this view to the core");
+      }
+    };
+    return seconds_of(frame, kWallClock);
   }
 
   std::unique_ptr<tools::BuiltScene> built_;
@@ -124,17 +114,16 @@ int run(int count, char** words) {
     for (const std::uint64_t points : choice.points) {
       ThreadTable table(scene, points);
       for (const bool orthographic : {false, true}) {
-        const char* const projection = orthographic ? "orthographic" : "perspective";
         const std::vector<double> ms = table.run(orthographic, choice.frames, threads);
         std::printf("%-8s%12llu  %-12s  1 thread %.3f ms", scene.c_str(),
-                    static_cast<unsigned long long>(points), projection, ms[0]);
+                    static_cast<unsigned long long>(points), projection(orthographic), ms[0]);
         for (std::size_t i = 0; i < threads.size(); ++i) {
           if (i > 0) {
             std::printf("  %d threads %.3f ms, %.2f x", threads[i], ms[i], ms[0] / ms[i]);
           }
           char line[160];
           std::snprintf(line, sizeof(line), "%s,%llu,%s,%d,%.4f,%.3f\n", scene.c_str(),
-                        static_cast<unsigned long long>(points), projection, threads[i], ms[i],
+                        static_cast<unsigned long long>(points), projection(orthographic), threads[i], ms[i],
                         ms[0] / ms[i]);
           csv += line;
         }
@@ -143,11 +132,7 @@ int run(int count, char** words) {
       }
     }
   }
-  if (!choice.csv_path.empty()) {
-    tools::OutputFile file(choice.csv_path);
-    file.write(csv);
-    file.commit();
-  }
+  write_text(choice.csv_path, csv);
   return 0;
 }
 
@@ -155,10 +140,6 @@ int run(int count, char** words) {
 }  // namespace thimble::benchmarks
 
 int main(int count, char** words) {
-  try {
-    return thimble::benchmarks::run(count, words);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "thimble_thread_table: %s\n", error.what());
-    return 1;
-  }
+  return thimble::benchmarks::run_program("thimble_thread_table",
+                                          [&] { return thimble::benchmarks::run(count, words); });
 }
