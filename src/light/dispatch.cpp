@@ -24,8 +24,9 @@ Status choose_surroundings(const Frame& frame, const Band& band, LitCounts* coun
   }
 }
 
+// Not inlined: the frame of all renderers together would be larger than that of each.
 template <EffectSet kChosen>
-Status choose_mirror(const Frame& frame, const Band& band, LitCounts* counts) {
+[[gnu::noinline]] Status choose_mirror(const Frame& frame, const Band& band, LitCounts* counts) {
   return (frame.effects & Effect::kMirror) != 0
              ? choose_surroundings<kChosen | Effect::kMirror>(frame, band, counts)
              : choose_surroundings<kChosen>(frame, band, counts);

@@ -222,8 +222,9 @@ class MapBuilder {
     }
   }
 
-  // Depth first over the nodes of level 2 and up.
-  Status place_all() {
+  // Depth first over the nodes of level 2 and up. Not inlined, nor is `share_uniform`: their frames would lie
+  // below that of whatever opens the finished map.
+  [[gnu::noinline]] Status place_all() {
     struct OpenNode {
       uint32_t child;
       uint8_t mask;
@@ -310,7 +311,7 @@ class MapBuilder {
 
   // Where all that can be seen of a brick has one material, its source says so; where such a brick is solid
   // through, it is the shared one of that material.
-  void share_uniform() {
+  [[gnu::noinline]] void share_uniform() {
     Vec3i at;
     for (uint32_t index = 0; index < cells_; ++index) {
       const uint32_t number = bits::load16(cell(index));

@@ -54,7 +54,7 @@ names='0x001 kDirectLight
 ///     kLitBaseFlashBytes + the bytes of each effect in SET
 ///
 /// or less, since effects share parts: all eleven take kAllEffectsFlashBytes. An effect that SET does not
-/// name takes nothing; with kNoEffects the image is the other one, byte for byte (the same test compares
+/// name takes nothing; with Effect::kNone the image is the other one, byte for byte (the same test compares
 /// them).
 #ifndef THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
 #define THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
@@ -73,8 +73,8 @@ TEXT
   cat <<'TEXT'
 struct EffectFlash {
   EffectSet effect;  ///< one
-  /// The image with this effect alone less the one with the base alone. kShadows, which need kDirectLight:
-  /// with both, less the one with kDirectLight.
+  /// The image with this effect alone less the one with the base alone. Effect::kShadows, which need
+  /// Effect::kDirectLight: with both, less the one with Effect::kDirectLight.
   uint32_t bytes;
 };
 // clang-format off
@@ -82,8 +82,8 @@ inline constexpr EffectFlash kEffectFlash[] = {
 TEXT
   echo "$names" | while read -r set name; do
     case $name in
-      kShadows) echo "    {$name, $(($(size_of 0x003) - $(size_of 0x001)))}," ;;
-      *) echo "    {$name, $(($(size_of "$set") - base))}," ;;
+      kShadows) echo "    {Effect::$name, $(($(size_of 0x003) - $(size_of 0x001)))}," ;;
+      *) echo "    {Effect::$name, $(($(size_of "$set") - base))}," ;;
     esac
   done
   cat <<'TEXT'

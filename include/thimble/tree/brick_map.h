@@ -65,7 +65,7 @@ class BrickMap {
   /// (level, more than kMaxBricks - 1 bricks or 65,280 nodes of level 2, 2^24 nodes), `kOutOfMemory`,
   /// `kBadArgument` (odd address). What `out` then holds is not a map. One pass over the tree, some 2,000
   /// instructions a brick on its surface, and cells times bricks that are shared or renumbered; stack below
-  /// 900 bytes.
+  /// 1 KiB.
   static Status make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size = nullptr);
 
   /// Whether it was made from that tree, by its checksum.
