@@ -27,7 +27,7 @@ status=0
 case $group in
   golden)
     { "$build/thimble_golden_tests_O2" && "$build/thimble_golden_tests_O2" --arena 6144; } >"$log" 2>&1 || status=1
-    what=$(sed -n 's/.*[^0-9]\([0-9][0-9]* passed\).*/\1/p' "$log" | tr '\n' ',' | sed 's/,$//; s/,/, /')
+    what='all frames and cases, then those that 6 KiB hold'
     ;;
   checks)
     : >"$log"
@@ -45,7 +45,8 @@ case $group in
     what=$quick
     ;;
   *)
-    slow=$(sed -n 's/,/\\,/g; s/^\([^#].*\)$/\1,/p' tests/slow_cases.txt | tr -d '\n')
+    # A comma would end a name.
+    slow=$(sed -n 's/,/*/g; s/^\([^#].*\)$/\1*,/p' tests/slow_cases.txt | tr -d '\n')
     "$build/thimble_tests" --source-file="*/$group/test_*" ${slow:+"--test-case-exclude=$slow"} >"$log" 2>&1 || status=1
     what=$(sed -n 's/^\[doctest\] test cases: *\([0-9]*\) .*/\1 cases/p' "$log")
     case $what in '' | '0 cases') status=1 ;; esac
