@@ -79,12 +79,13 @@ void TileDrawer::draw() {
     }
     const Block block = stack_[--depth_];
     ++batch_->counts.nodes;
-    if (is_hidden(block)) {
+    const bool is_tabled = has_table(block);
+    if (is_hidden(block, is_tabled)) {
       continue;
     }
     const BlockNode& node = lists_.nodes()[block.node];
     const unsigned mask = lists_.tree().mask(block.node);
-    if (!is_leaf(block, node, mask)) {
+    if (!is_leaf(block, node, mask, is_tabled)) {
       push_children(block, node, mask);
     } else if (is_ours()) {
       enqueue(block, node);
@@ -99,8 +100,8 @@ void TileDrawer::draw() {
 
 // Whether all pixels of the block are known to be covered. Blocks with tables are looked up as they are
 // drawn, if they are small.
-bool TileDrawer::is_hidden(const Block& block) const {
-  return by_blocks_ && (!has_table(block) || width_of(block.place.where) > kTablePx) &&
+bool TileDrawer::is_hidden(const Block& block, bool is_tabled) const {
+  return by_blocks_ && (!is_tabled || width_of(block.place.where) > kTablePx) &&
          all_covered(depths_, block.place.where, full_);
 }
 
@@ -109,13 +110,13 @@ bool TileDrawer::has_table(const Block& block) const {
 }
 
 // Whether the block is drawn as one run.
-bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mask) const {
+bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mask, bool is_tabled) const {
   if (mask == 0 || block.level <= lists_.block_level()) {
     return true;
   }
   const int32_t widest = width_of(block.place.where);
   uint32_t most = by_blocks_ || touches_edge(block.place.where, frame_.tile) ? kBlockBoxes : kFlatBoxes;
-  if (has_table(block)) {
+  if (is_tabled) {
     if (widest > kTablePx || !is_flat(block)) {
       return false;
     }
@@ -127,8 +128,8 @@ bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mas
   return node.entries <= most && block.level <= kCubeLevel;
 }
 
-// Whether perspective bends the block so little that a table serves: `bend` is how much its nearer half looks
-// larger than its farther one, and its square how far the centre moves.
+// Whether perspective bends the block so little that a table serves: it moves places by about `bend` of the
+// block's size, and the centre by the square of that.
 bool TileDrawer::is_flat(const Block& block) const {
   const float bend = frame_.norm_w * static_cast<float>(1 << block.level) * 0.5F * block.place.per_depth;
   return !frame_.perspective ||

@@ -46,8 +46,8 @@ class TileDrawer {
  private:
   static constexpr uint32_t kAhead = 8;
 
-  bool is_leaf(const Block& block, const BlockNode& node, unsigned mask) const;
-  bool is_hidden(const Block& block) const;
+  bool is_leaf(const Block& block, const BlockNode& node, unsigned mask, bool is_tabled) const;
+  bool is_hidden(const Block& block, bool is_tabled) const;
   bool has_table(const Block& block) const;
   bool is_flat(const Block& block) const;
   float voxel_px(const Block& block) const;
