@@ -21,7 +21,7 @@
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "support/xml_elements.h"
 #include "thimble/light/render.h"
 
@@ -60,16 +60,8 @@ Json rows_of(const TemporaryFolder& folder, const Words& words, std::string* out
   return Json::parse(read_text(folder.path("a.json")));
 }
 
-void check_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = run_command(with({"accuracy"}, words));
-  CAPTURE(result.describe());
-  CHECK(result.status == status);
-  CHECK(result.out.empty());
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
+void check_accuracy_refused(const Words& words, int status, const Words& named) {
+  check_refused(with({"accuracy"}, words), status, named);
 }
 
 double decibels(const Json& row) {
@@ -288,8 +280,8 @@ TEST_CASE(
     REQUIRE(best != nullptr);
     CHECK(answer_of(out) == (*best)["options"]);
   }
-  check_refused(with(kView, {"--rounds", "1", "--for-ms", "1e-7", "--csv", folder.path("no.csv")}), 1,
-                {"1e-07 ms", "fastest"});
+  check_accuracy_refused(with(kView, {"--rounds", "1", "--for-ms", "1e-7", "--csv", folder.path("no.csv")}),
+                         1, {"1e-07 ms", "fastest"});
   CHECK(folder.names() == Words{"a.json"});
 }
 
@@ -425,7 +417,7 @@ TEST_CASE(
   for (const Json& row : rows_of(folder, with(view, {"--effects", "none"}))) {
     CHECK(row["row"] != "light");
   }
-  check_refused({"spheres", "--effects", "magic"}, 2, {"--effects", "\"magic\""});
+  check_accuracy_refused({"spheres", "--effects", "magic"}, 2, {"--effects", "\"magic\""});
 }
 
 TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near what was counted there") {
@@ -449,26 +441,26 @@ TEST_CASE("accuracy: empty and smallest worlds, the smallest picture -> rows, no
 
 TEST_CASE("accuracy: wrong options and files -> a sentence, and no file") {
   const TemporaryFolder folder;
-  check_refused({}, 2, {"SCENE"});
-  check_refused({"spheres", "--for-ms", "1", "--for-error", "1"}, 2, {"--for-ms", "--for-error"});
-  check_refused({"spheres", "--for-ms", "0"}, 2, {"--for-ms", "\"0\"", "above 0"});
-  check_refused({"spheres", "--for-ms", "nan"}, 2, {"--for-ms", "\"nan\""});
-  check_refused({"spheres", "--for-ms", "soon"}, 2, {"--for-ms", "\"soon\""});
-  check_refused({"spheres", "--for-error", "-1"}, 2, {"--for-error", "\"-1\""});
-  check_refused({"spheres", "--for-error", "1x"}, 2, {"--for-error", "\"1x\""});
-  check_refused({"spheres", "--rounds", "0"}, 2, {"--rounds", "\"0\""});
-  check_refused({"spheres", "--size", "0x3"}, 2, {"--size"});
-  check_refused({"spheres", "--against", "luck"}, 2, {"--against"});
-  check_refused({"spheres", "--samples", "4"}, 2, {"--samples"});
-  check_refused({"spheres", "--rays", "4"}, 2, {"--rays", "--hard-cases"});
-  check_refused({"spheres", "--hard-cases"}, 2, {"--hard-cases", "SCENE"});
-  check_refused({"--hard-cases", "--size", "8x8"}, 2, {"--hard-cases", "--size"});
-  check_refused({"--hard-cases", "--rays", "0"}, 2, {"--rays", "\"0\""});
-  check_refused({"nothing.vox"}, 1, {"nothing.vox"});
-  check_refused({"spheres", "--csv", "-", "--json", "-"}, 1, {"standard output"});
-  check_refused({"spheres", "--csv", "/no/such/a.csv"}, 1, {"/no/such/a.csv"});
-  check_refused({"spheres", "--eye", "1,2,3", "--target", "1,2,3", "--csv", folder.path("a.csv")}, 1,
-                {"--eye"});
+  check_accuracy_refused({}, 2, {"SCENE"});
+  check_accuracy_refused({"spheres", "--for-ms", "1", "--for-error", "1"}, 2, {"--for-ms", "--for-error"});
+  check_accuracy_refused({"spheres", "--for-ms", "0"}, 2, {"--for-ms", "\"0\"", "above 0"});
+  check_accuracy_refused({"spheres", "--for-ms", "nan"}, 2, {"--for-ms", "\"nan\""});
+  check_accuracy_refused({"spheres", "--for-ms", "soon"}, 2, {"--for-ms", "\"soon\""});
+  check_accuracy_refused({"spheres", "--for-error", "-1"}, 2, {"--for-error", "\"-1\""});
+  check_accuracy_refused({"spheres", "--for-error", "1x"}, 2, {"--for-error", "\"1x\""});
+  check_accuracy_refused({"spheres", "--rounds", "0"}, 2, {"--rounds", "\"0\""});
+  check_accuracy_refused({"spheres", "--size", "0x3"}, 2, {"--size"});
+  check_accuracy_refused({"spheres", "--against", "luck"}, 2, {"--against"});
+  check_accuracy_refused({"spheres", "--samples", "4"}, 2, {"--samples"});
+  check_accuracy_refused({"spheres", "--rays", "4"}, 2, {"--rays", "--hard-cases"});
+  check_accuracy_refused({"spheres", "--hard-cases"}, 2, {"--hard-cases", "SCENE"});
+  check_accuracy_refused({"--hard-cases", "--size", "8x8"}, 2, {"--hard-cases", "--size"});
+  check_accuracy_refused({"--hard-cases", "--rays", "0"}, 2, {"--rays", "\"0\""});
+  check_accuracy_refused({"nothing.vox"}, 1, {"nothing.vox"});
+  check_accuracy_refused({"spheres", "--csv", "-", "--json", "-"}, 1, {"standard output"});
+  check_accuracy_refused({"spheres", "--csv", "/no/such/a.csv"}, 1, {"/no/such/a.csv"});
+  check_accuracy_refused({"spheres", "--eye", "1,2,3", "--target", "1,2,3", "--csv", folder.path("a.csv")}, 1,
+                         {"--eye"});
   CHECK(folder.names().empty());
 }
 
@@ -540,10 +532,10 @@ TEST_CASE("accuracy --simulation water -> heights nearer to the finest grid with
     }
   }
   CHECK(elements_of(read_text(folder.path("w.svg"))) > 30);
-  check_refused({"--simulation", "fire"}, 2, {"--simulation", "\"fire\""});
-  check_refused({"--simulation", "water", "spheres"}, 2, {"--simulation", "SCENE"});
-  check_refused({"--simulation", "water", "--for-ms", "3"}, 2, {"--simulation", "--for-ms"});
-  check_refused({"--simulation", "water", "--hard-cases"}, 2, {"--simulation", "--hard-cases"});
+  check_accuracy_refused({"--simulation", "fire"}, 2, {"--simulation", "\"fire\""});
+  check_accuracy_refused({"--simulation", "water", "spheres"}, 2, {"--simulation", "SCENE"});
+  check_accuracy_refused({"--simulation", "water", "--for-ms", "3"}, 2, {"--simulation", "--for-ms"});
+  check_accuracy_refused({"--simulation", "water", "--hard-cases"}, 2, {"--simulation", "--hard-cases"});
 }
 
 TEST_CASE("accuracy --hard-cases: every case and tracer -> ours 0, theirs counted, sums that are right") {

@@ -6,29 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "support/run_command.h"
+#include "support/check_command.h"
 
 namespace {
 
 using namespace thimble::tests;
 using Words = std::vector<std::string>;
-
-void check_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = run_command(words);
-  std::string line;
-  for (const std::string& word : words) {
-    line += word + " ";
-  }
-  CAPTURE(line);
-  CAPTURE(result.describe());
-  CHECK(result.status == status);
-  CHECK(result.out.empty());
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
-}
 
 }  // namespace
 

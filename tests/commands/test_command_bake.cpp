@@ -13,7 +13,7 @@
 #include "boards/board_table.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "thimble/bake/baked_scene.h"
 
 namespace {
@@ -37,23 +37,6 @@ CommandResult check_ok(const Words& words) {
   CAPTURE(line);
   REQUIRE(result.status == 0);
   return result;
-}
-
-void check_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = run_command(words);
-  std::string line;
-  for (const std::string& word : words) {
-    line += word + " ";
-  }
-  CAPTURE(line);
-  CAPTURE(result.describe());
-  CHECK(result.status == status);
-  CHECK(result.out.empty());
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
 }
 
 nlohmann::json json_of(const std::string& path) {

@@ -10,7 +10,7 @@
 #include "boards/board_table.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 
 namespace {
 
@@ -36,18 +36,6 @@ std::string table(const Words& words) {
     CHECK((line.size() <= 100 || line == words.front()));
   }
   return result.out;
-}
-
-void check_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = run_command(words);
-  CAPTURE(result.describe());
-  CHECK(result.status == status);
-  CHECK(result.out.empty());
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
 }
 
 // The line that begins with `name` and a blank, in the part of the text after `from`.

@@ -13,7 +13,7 @@
 #include "boards/board_table.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "support/subtree_count.h"
 #include "support/xml_elements.h"
 
@@ -42,18 +42,6 @@ Json rows_of(const TemporaryFolder& folder, Words words) {
   words.insert(words.end(), {"--json", folder.path("m.json")});
   memory(words);
   return Json::parse(read_text(folder.path("m.json")));
-}
-
-void check_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = run_command(words);
-  CAPTURE(result.describe());
-  CHECK(result.status == status);
-  CHECK(result.out.empty());
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
 }
 
 std::string text_of_voxels(const std::vector<reference::Voxel>& voxels) {

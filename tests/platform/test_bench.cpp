@@ -8,8 +8,8 @@
 #include "apps/demo_view.h"
 #include "boards/board_table.h"
 #include "golden/demo_table.h"
-#include "host/simulation.h"
 #include "scene/baking.h"
+#include "support/simulated_run.h"
 
 namespace {
 
@@ -24,9 +24,7 @@ std::vector<std::uint8_t> baked(const std::string& scene) {
   return tools::bake_scene(*source, options).bytes;
 }
 
-struct BenchRun {
-  int status = -1;
-  std::string out;
+struct BenchRun : tests::SimulatedRun {
   std::map<std::string, std::string> values;  ///< the lines `name,value`
 };
 
@@ -35,17 +33,8 @@ BenchRun run_bench(const char* board, const std::vector<std::uint8_t>& scene) {
   options.board = platform::find_board(board);
   options.scene = {scene.data(), scene.size()};
   options.application = apps::bench;
-  host::Simulation simulation(options);
-  BenchRun run;
-  for (host::Moment moment = host::Moment::kNothing; moment != host::Moment::kEnded;) {
-    moment = simulation.wait(60000);
-    run.out += simulation.take_output();
-    if (moment == host::Moment::kAsks) {
-      simulation.answer(true);
-    }
-  }
-  run.status = simulation.status();
-  CHECK(simulation.fault() == "");
+  BenchRun run{tests::run_simulated(options, UINT32_MAX), {}};
+  CHECK(run.fault == "");
   for (std::size_t from = 0; from < run.out.size();) {
     const std::size_t to = std::min(run.out.find('\n', from), run.out.size());
     const std::string line = run.out.substr(from, to - from);

@@ -13,9 +13,9 @@
 #include "apps/scene_light.h"
 #include "boards/board_table.h"
 #include "golden/demo_table.h"
-#include "host/simulation.h"
 #include "scene/baking.h"
 #include "scene/random.h"
+#include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/crc32.h"
 #include "thimble/picture/render.h"
@@ -61,52 +61,19 @@ bool eye_in_solid(const CompactTree& tree, const Vec3Q8& eye) {
   return hit.kind == HitKind::kHit && hit.axis < 0;
 }
 
-/// What an application did on a simulated board.
-struct Run {
-  int status = -1;
-  std::string out;
-  std::string fault;
-  std::vector<host::PackedPicture> pictures;
-  host::PackedPicture last;  ///< what the display shows in the end
-};
+using Run = tests::SimulatedRun;
 
 /// Runs the demonstration for that many frames; `keys` come over the UART before the frame they stand for.
 Run run_demo(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames,
              const std::map<std::uint32_t, std::string>& keys = {}, bool connected = false,
              std::uint32_t hold_fps = 0) {
-  Run run;
   host::SimulationOptions options;
   options.board = &board;
   options.connected = connected;
   options.scene = scene;
   options.application = apps::demo;
   options.hold_fps = hold_fps;
-  host::Simulation simulation(options);
-  for (;;) {
-    const host::Moment moment = simulation.wait(60000);
-    run.out += simulation.take_output();
-    if (moment == host::Moment::kEnded) {
-      break;
-    }
-    if (moment == host::Moment::kNothing) {
-      continue;
-    }
-    const std::uint32_t asked = simulation.frames_asked();
-    if (asked != 0) {
-      run.pictures.push_back(simulation.picture());
-    }
-    const auto typed = keys.find(asked);
-    if (typed != keys.end()) {
-      for (const char key : typed->second) {
-        simulation.type(static_cast<std::uint8_t>(key));
-      }
-    }
-    simulation.answer(asked < frames);
-  }
-  run.status = simulation.status();
-  run.fault = simulation.fault();
-  run.last = simulation.picture();
-  return run;
+  return tests::run_simulated(options, frames, {keys, {}});
 }
 
 /// The number behind every `word` at the start of a line: `frame N crc X` -> X by N.

@@ -12,55 +12,22 @@
 #include "apps/particles_world.h"
 #include "boards/board_table.h"
 #include "golden/particles_table.h"
-#include "host/simulation.h"
 #include "port.h"
+#include "support/simulated_run.h"
 
 namespace {
 
 using namespace thimble;
 
-struct Hand {
-  std::map<std::uint32_t, std::string> keys;       ///< by frame
-  std::map<std::uint32_t, std::uint32_t> buttons;  ///< from that frame on
-};
-
-struct Run {
-  int status = -1;
-  std::string out;
-  std::string fault;
-  std::vector<host::PackedPicture> pictures;
-};
+using tests::Hand;
+using Run = tests::SimulatedRun;
 
 Run run_app(const char* board, std::uint32_t frames, const Hand& hand = {}) {
-  Run run;
   host::SimulationOptions options;
   const platform::BoardFacts facts = platform::board_for(*platform::find_board(board), "particles");
   options.board = &facts;
   options.application = apps::particles;
-  host::Simulation simulation(options);
-  for (host::Moment moment = host::Moment::kNothing; moment != host::Moment::kEnded;) {
-    moment = simulation.wait(60000);
-    run.out += simulation.take_output();
-    if (moment != host::Moment::kAsks) {
-      continue;
-    }
-    const std::uint32_t asked = simulation.frames_asked();
-    if (asked != 0) {
-      run.pictures.push_back(simulation.picture());
-    }
-    if (const auto typed = hand.keys.find(asked); typed != hand.keys.end()) {
-      for (const char key : typed->second) {
-        simulation.type(static_cast<std::uint8_t>(key));
-      }
-    }
-    if (const auto held = hand.buttons.find(asked); held != hand.buttons.end()) {
-      simulation.set_buttons(held->second);
-    }
-    simulation.answer(asked < frames);
-  }
-  run.status = simulation.status();
-  run.fault = simulation.fault();
-  return run;
+  return tests::run_simulated(options, frames, hand);
 }
 
 /// Every `steps N crc X` in order.

@@ -12,11 +12,11 @@
 #include "apps/demo_view.h"
 #include "boards/board_table.h"
 #include "host/drawn_frame.h"
-#include "host/simulation.h"
 #include "readers/source.h"
 #include "scene/baking.h"
 #include "scene/wide_frames.h"
 #include "support/run_command.h"
+#include "support/simulated_run.h"
 #include "thimble/base/crc32.h"
 #include "thimble/picture/render.h"
 
@@ -80,11 +80,8 @@ const std::vector<std::uint8_t>& spheres() {
 }
 
 // A run of an application whose frames `painter` draws; what its wait throws comes through.
-struct Simulated {
-  int status = -1;
-  std::string fault;
+struct Simulated : tests::SimulatedRun {
   std::uint32_t crc = 0;  ///< of all pictures, one after the other
-  host::MemoryUse use;
 };
 
 Simulated simulate(int (*application)(), host::FramePainter* painter, std::uint32_t frames,
@@ -94,23 +91,10 @@ Simulated simulate(int (*application)(), host::FramePainter* painter, std::uint3
   options.scene = {spheres().data(), spheres().size()};
   options.application = application;
   options.painter = painter;
-  host::Simulation simulation(options);
-  for (const char key : typed) {
-    simulation.type(static_cast<std::uint8_t>(key));
+  Simulated ran{tests::run_simulated(options, frames, {{{0, typed}}, {}})};
+  for (const host::PackedPicture& picture : ran.pictures) {
+    ran.crc = crc32({picture.bytes.data(), picture.bytes.size()}, ran.crc);
   }
-  Simulated ran;
-  for (host::Moment moment = host::Moment::kNothing; moment != host::Moment::kEnded;) {
-    moment = simulation.wait(60000);
-    simulation.take_output();
-    if (moment == host::Moment::kAsks) {
-      const std::vector<std::uint8_t>& picture = simulation.picture().bytes;
-      ran.crc = crc32({picture.data(), picture.size()}, ran.crc);
-      simulation.answer(simulation.frames_asked() < frames);
-    }
-  }
-  ran.status = simulation.status();
-  ran.fault = simulation.fault();
-  ran.use = simulation.use();
   return ran;
 }
 

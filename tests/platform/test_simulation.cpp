@@ -296,6 +296,7 @@ TEST_CASE(
 
 TEST_CASE("simulation: status, buttons and UART -> what the application returns, sees and says") {
   const auto echo = [] {
+    static_cast<void>(port::running(0));  // until the bytes are there
     for (int byte = port::read(); byte >= 0; byte = port::read()) {
       say(std::string(1, static_cast<char>(byte)) + "!");
     }

@@ -13,10 +13,10 @@
 #include "apps/falling_ball.h"
 #include "apps/moving_water.h"
 #include "boards/board_table.h"
-#include "host/simulation.h"
 #include "port.h"
 #include "scene/baking.h"
 #include "scene/random.h"
+#include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
@@ -60,52 +60,18 @@ struct Counters {
   std::string rest;
 };
 
-struct Hand {
-  std::map<std::uint32_t, std::string> keys;       ///< by frame
-  std::map<std::uint32_t, std::uint32_t> buttons;  ///< from that frame on
-};
+using tests::Hand;
 
-struct Run {
-  int status = -1;
-  std::string out;
-  std::string fault;
-  std::vector<std::vector<std::uint8_t>> pictures;
-  std::uint64_t rows_sent = 0;
-  std::uint64_t rows_kept = 0;
+struct Run : tests::SimulatedRun {
   std::vector<Counters> counters;  ///< every line of them
 };
 
 Run run_water(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames, const Hand& hand) {
-  Run run;
   host::SimulationOptions options;
   options.board = &board;
   options.scene = scene;
   options.application = apps::water;
-  host::Simulation simulation(options);
-  for (host::Moment moment = host::Moment::kNothing; moment != host::Moment::kEnded;) {
-    moment = simulation.wait(60000);
-    run.out += simulation.take_output();
-    if (moment != host::Moment::kAsks) {
-      continue;
-    }
-    const std::uint32_t asked = simulation.frames_asked();
-    if (asked != 0) {
-      run.pictures.push_back(simulation.picture().bytes);
-    }
-    if (const auto typed = hand.keys.find(asked); typed != hand.keys.end()) {
-      for (const char key : typed->second) {
-        simulation.type(static_cast<std::uint8_t>(key));
-      }
-    }
-    if (const auto held = hand.buttons.find(asked); held != hand.buttons.end()) {
-      simulation.set_buttons(held->second);
-    }
-    simulation.answer(asked < frames);
-  }
-  run.status = simulation.status();
-  run.fault = simulation.fault();
-  run.rows_sent = simulation.rows_sent();
-  run.rows_kept = simulation.rows_kept();
+  Run run{tests::run_simulated(options, frames, hand), {}};
   for (std::size_t at = run.out.find("\nframes "); at != std::string::npos;
        at = run.out.find("\nframes ", at + 1)) {
     Counters now;
@@ -153,8 +119,8 @@ TEST_CASE("water app: nobody touches anything -> no column is stepped, one pictu
   CHECK(run.rows_sent == 72);
   CHECK(run.rows_kept == 11 * 72);
   REQUIRE(run.pictures.size() == 12);
-  for (const std::vector<std::uint8_t>& picture : run.pictures) {
-    CHECK(picture == run.pictures[0]);
+  for (const host::PackedPicture& picture : run.pictures) {
+    CHECK(picture.bytes == run.pictures[0].bytes);
   }
 }
 
@@ -179,8 +145,8 @@ TEST_CASE(
   CHECK(run.counters[1].steps == run.counters[0].steps);
   CHECK(run.counters[1].drawn == run.counters[0].drawn);
   // It looks as before.
-  CHECK(run.pictures[3] != run.pictures[0]);
-  CHECK(run.pictures.back() == run.pictures[0]);
+  CHECK(run.pictures[3].bytes != run.pictures[0].bytes);
+  CHECK(run.pictures.back().bytes == run.pictures[0].bytes);
 }
 
 TEST_CASE("water app: touches, drops, rain and a moving camera -> every frame as if all were drawn again") {
@@ -225,7 +191,7 @@ TEST_CASE("water app: touches, drops, rain and a moving camera -> every frame as
     REQUIRE(all.pictures.size() == frames);
     for (std::size_t i = 0; i < frames; ++i) {
       CAPTURE(i);
-      CHECK(some.pictures[i] == all.pictures[i]);
+      CHECK(some.pictures[i].bytes == all.pictures[i].bytes);
     }
     // The work was not the same.
     REQUIRE(some.counters.size() == 1);
@@ -255,7 +221,7 @@ TEST_CASE("water app: its first picture -> that of the scene as it was baked, it
   REQUIRE(render_lit_band(lighting.effects, scene.tree(), camera, apps::demo_shading(scene.palette()),
                           lighting.scene, band) == Status::kOk);
   REQUIRE(run.pictures.size() == 1);
-  CHECK(run.pictures[0] == pixels);
+  CHECK(run.pictures[0].bytes == pixels);
 }
 
 TEST_CASE("water app: bounds of the water that are wider than its waves -> the same picture") {
