@@ -76,7 +76,7 @@ inline void put_hex(uint32_t number) {
 }
 
 /// Says why an application cannot go on; its exit status.
-[[gnu::noinline]] inline int refuse(const char* why) {
+inline int refuse(const char* why) {
   put("error: ");
   put(why);
   put("\n");
