@@ -406,37 +406,37 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
   Shift(words_, config_.height, disc, own, low, {corner.x - own.x, corner.y - own.y}).put();
 }
 
-// Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
-// between cells are crossed in their exact order along the line; both at once where it goes through a corner.
-// `first_walk`: the window is not loaded yet. `looked`: something is known to be near the way.
-ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, bool looked,
-                                           Window* window) {
-  const DiscStamp disc = small_disc(ball->diameter);
-  Blocked blocked;
-  Vec2i corner = corner_of(*ball);
-  const Vec2i start{ball->x, ball->y};
-  ball->x += way.x;
-  ball->y += way.y;
-  const Vec2i goal = corner_of(*ball);
-  // Boundaries still to be crossed. As a centre never lies on one, they are as many as the corner goes cells.
-  Vec2i left{static_cast<int32_t>(magnitude_32(goal.x - corner.x)),
-             static_cast<int32_t>(magnitude_32(goal.y - corner.y))};
-  if ((left.x | left.y) == 0) {
-    return blocked;
-  }
-  const Vec2i crossings = left;
-  const Vec2i sign{towards(way.x), towards(way.y)};
-  const Vec2i length{static_cast<int32_t>(magnitude_32(way.x)), static_cast<int32_t>(magnitude_32(way.y))};
-  // Distance to the first boundary, odd.
-  const int32_t half = disc.diameter * 32768;
-  const Vec2i first{32768 - sign.x * (start.x - corner.x * 65536 - half),
-                    32768 - sign.y * (start.y - corner.y * 65536 - half)};
-  // Positive: the next boundary across y comes first.
-  int64_t order = int64_t{first.x} * length.y - int64_t{first.y} * length.x;
-  const int64_t order_x = int64_t{length.y} << 16;
-  const int64_t order_y = int64_t{length.x} << 16;
+// A line along which a disc moves, and the boundaries between cells that its corner has still to cross on it.
+struct ParticleWorld::Line {
+  Vec2i start;      // the centre
+  Vec2i sign;       // which way it goes
+  Vec2i length;     // how far
+  Vec2i first;      // distance to the first boundary, odd
+  Vec2i crossings;  // boundaries in all
+  Vec2i left;       // still to be crossed
+  Vec2i corner;     // of the disc, where it stands
+  int64_t order;    // positive: the next boundary across y comes first
+  int64_t order_x;  // what crossing one adds or takes
+  int64_t order_y;
+
+  // As a centre never lies on a boundary, they are as many as the corner goes cells.
+  Line(Vec2i from, Vec2i way, Vec2i corner_from, Vec2i corner_to, int32_t half)
+      : start(from),
+        sign{towards(way.x), towards(way.y)},
+        length{static_cast<int32_t>(magnitude_32(way.x)), static_cast<int32_t>(magnitude_32(way.y))},
+        first{32768 - sign.x * (from.x - corner_from.x * 65536 - half),
+              32768 - sign.y * (from.y - corner_from.y * 65536 - half)},
+        crossings{static_cast<int32_t>(magnitude_32(corner_to.x - corner_from.x)),
+                  static_cast<int32_t>(magnitude_32(corner_to.y - corner_from.y))},
+        left(crossings),
+        corner(corner_from),
+        order(int64_t{first.x} * length.y - int64_t{first.y} * length.x),
+        order_x(int64_t{length.y} << 16),
+        order_y(int64_t{length.x} << 16) {}
+
+  bool done() const { return (left.x | left.y) == 0; }
   // Which boundary comes next, as bits of Blocked.
-  const auto next_axes = [&]() -> uint32_t {
+  uint32_t next_axes() const {
     if (left.x == 0) {
       return Blocked::kY;
     }
@@ -444,8 +444,8 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
       return Blocked::kX;
     }
     return order < 0 ? Blocked::kX : order > 0 ? Blocked::kY : Blocked::kX | Blocked::kY;
-  };
-  const auto take = [&](uint32_t axes) {
+  }
+  void take(uint32_t axes) {
     if ((axes & Blocked::kX) != 0) {
       --left.x;
       order += order_x;
@@ -456,7 +456,44 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
       order -= order_y;
       corner.y += sign.y;
     }
-  };
+  }
+  // What part of the line ends at the next boundary across `axis`, of 65536.
+  uint32_t part_q16(int axis) const {
+    const uint32_t reached =
+        static_cast<uint32_t>(first[axis]) + (static_cast<uint32_t>(crossings[axis] - left[axis]) << 16);
+    const int excess = greater(bits::bit_length(static_cast<uint32_t>(length[axis])) - 16, 0);
+    return ((reached >> excess) << 16) / (static_cast<uint32_t>(length[axis]) >> excess);
+  }
+  // The centre after that part, in whole units: on the way, but within the cell in which the disc stands, and
+  // short of a boundary.
+  int32_t place(int axis, uint32_t came_q16, int32_t half, int32_t unit) const {
+    const int32_t middle = corner[axis] * 65536 + half;
+    const uint32_t part =
+        static_cast<uint32_t>((uint64_t{static_cast<uint32_t>(length[axis])} * came_q16) >> 16) &
+        ~(static_cast<uint32_t>(unit) - 1);
+    const int32_t reach = 32768 - (unit >> 1);
+    const int32_t offset = start[axis] + sign[axis] * static_cast<int32_t>(part) - middle;
+    return middle + clamped(offset, -reach, reach);
+  }
+};
+
+// Moves a ball along the line of `way` as far as its disc is free, and says what ended it. The boundaries
+// between cells are crossed in their exact order along the line; both at once where it goes through a corner.
+// `first_walk`: the window is not loaded yet. `looked`: something is known to be near the way.
+ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, bool first_walk, bool looked,
+                                           Window* window) {
+  const DiscStamp disc = small_disc(ball->diameter);
+  const int32_t half = disc.diameter * 32768;
+  const Vec2i from = corner_of(*ball);
+  const Vec2i start{ball->x, ball->y};
+  ball->x += way.x;
+  ball->y += way.y;
+  const Vec2i goal = corner_of(*ball);
+  Blocked blocked;
+  if (goal == from) {
+    return blocked;
+  }
+  Line line(start, way, from, goal, half);
   const auto free_at = [&](Vec2i place) {
     ++counters_.mask_tests;
     return window->is_free(disc, place);
@@ -467,20 +504,20 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
     if (careful == 0) {
       // The next stretch of the way, at one look; when something is there, it is gone again cell by cell.
       careful = kStride;
-      const Vec2i left_before = left;
-      const Vec2i corner_before = corner;
-      const int64_t order_before = order;
-      if (left.x + left.y <= kStride) {
-        corner = goal;
-        left = {0, 0};
+      const Vec2i left_before = line.left;
+      const Vec2i corner_before = line.corner;
+      const int64_t order_before = line.order;
+      if (line.left.x + line.left.y <= kStride) {
+        line.corner = goal;
+        line.left = {0, 0};
       } else {
-        for (int32_t i = 0; i < kStride && (left.x | left.y) != 0; ++i) {
-          take(next_axes());
+        for (int32_t i = 0; i < kStride && !line.done(); ++i) {
+          line.take(line.next_axes());
         }
       }
-      const CellBox box{{lesser(corner.x, corner_before.x), lesser(corner.y, corner_before.y)},
-                        {greater(corner.x, corner_before.x) + disc.diameter,
-                         greater(corner.y, corner_before.y) + disc.diameter}};
+      const CellBox box{{lesser(line.corner.x, corner_before.x), lesser(line.corner.y, corner_before.y)},
+                        {greater(line.corner.x, corner_before.x) + disc.diameter,
+                         greater(line.corner.y, corner_before.y) + disc.diameter}};
       const Vec2i size{box.high.x - box.low.x, box.high.y - box.low.y};
       if (first_walk || !window->covers(box)) {
         // With room to turn round.
@@ -489,64 +526,50 @@ ParticleWorld::Blocked ParticleWorld::walk(Ball* ball, Vec2i way, Vec2i own, boo
         load_window({{box.low.x - margin, box.low.y - margin}, {box.high.x + margin, box.high.y + margin}},
                     disc, own, window);
       }
-      const int32_t stretch = left_before.x + left_before.y - left.x - left.y;
+      const int32_t stretch = left_before.x + left_before.y - line.left.x - line.left.y;
       if (stretch > 2 && !looked && !window->any_in(box)) {
-        if ((left.x | left.y) == 0) {
+        if (line.done()) {
           return blocked;
         }
         careful = 0;
         continue;
       }
-      left = left_before;
-      corner = corner_before;
-      order = order_before;
+      line.left = left_before;
+      line.corner = corner_before;
+      line.order = order_before;
     }
     --careful;
-    axes = next_axes();
-    if (!free_at({corner.x + ((axes & Blocked::kX) != 0 ? sign.x : 0),
-                  corner.y + ((axes & Blocked::kY) != 0 ? sign.y : 0)})) {
+    axes = line.next_axes();
+    if (!free_at({line.corner.x + ((axes & Blocked::kX) != 0 ? line.sign.x : 0),
+                  line.corner.y + ((axes & Blocked::kY) != 0 ? line.sign.y : 0)})) {
       break;
     }
-    take(axes);
-    if ((left.x | left.y) == 0) {
+    line.take(axes);
+    if (line.done()) {
       return blocked;
     }
   }
   blocked.axes = axes;
   if (axes == (Blocked::kX | Blocked::kY)) {
-    const bool free_x = free_at({corner.x + sign.x, corner.y});
-    const bool free_y = free_at({corner.x, corner.y + sign.y});
+    const bool free_x = free_at({line.corner.x + line.sign.x, line.corner.y});
+    const bool free_y = free_at({line.corner.x, line.corner.y + line.sign.y});
     if (free_x && free_y) {
       blocked.axes = Blocked::kCorner;
     } else if (free_x) {
-      take(Blocked::kX);
+      line.take(Blocked::kX);
       blocked.axes = Blocked::kY;
     } else if (free_y) {
-      take(Blocked::kY);
+      line.take(Blocked::kY);
       blocked.axes = Blocked::kX;
     }
   }
   // How far it came: to the boundary that it could not cross.
-  const int axis = (blocked.axes & (Blocked::kX | Blocked::kCorner)) != 0 ? 0 : 1;
-  const uint32_t reached =
-      static_cast<uint32_t>(first[axis]) + (static_cast<uint32_t>(crossings[axis] - left[axis]) << 16);
-  const int excess = greater(bits::bit_length(static_cast<uint32_t>(length[axis])) - 16, 0);
-  const uint32_t came_q16 = ((reached >> excess) << 16) / (static_cast<uint32_t>(length[axis]) >> excess);
+  const uint32_t came_q16 = line.part_q16((blocked.axes & (Blocked::kX | Blocked::kCorner)) != 0 ? 0 : 1);
   blocked.left_q16 = 65536U - came_q16;
-  blocked.sign = sign;
-  blocked.corner = corner;
-  const auto place = [&](int a) {
-    // On the way, but within the cell in which the disc stands, and short of a boundary.
-    const int32_t middle = corner[a] * 65536 + half;
-    const uint32_t part =
-        static_cast<uint32_t>((uint64_t{static_cast<uint32_t>(length[a])} * came_q16) >> 16) &
-        ~(static_cast<uint32_t>(unit_) - 1);
-    const int32_t reach = 32768 - (unit_ >> 1);
-    const int32_t offset = start[a] + sign[a] * static_cast<int32_t>(part) - middle;
-    return middle + clamped(offset, -reach, reach);
-  };
-  ball->x = place(0);
-  ball->y = place(1);
+  blocked.sign = line.sign;
+  blocked.corner = line.corner;
+  ball->x = line.place(0, came_q16, half, unit_);
+  ball->y = line.place(1, came_q16, half, unit_);
   return blocked;
 }
 

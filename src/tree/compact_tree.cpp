@@ -56,6 +56,54 @@ const char* read_compact_header(ConstBytes bytes, CompactShape* shape, uint32_t*
   return nullptr;
 }
 
+// The solid voxels of a tree whose masks are sound, depth first; `bounds` gets the least box that holds them.
+uint64_t solid_volume(const CompactTree& tree, VoxelBox* bounds) {
+  if (tree.empty()) {
+    return 0;
+  }
+  struct OpenNode {
+    uint32_t first_child;
+    uint8_t mask;
+    uint8_t next;
+  } stack[kMaxLevel + 1];
+  uint64_t volume = 0;
+  Vec3i corner;
+  bool arrive = true;
+  uint32_t node = 0;
+  int level = tree.level();
+  while (level <= tree.level()) {
+    if (arrive) {
+      const uint8_t mask = tree.mask(node);
+      if (mask == 0 || level == 1) {
+        volume += mask == 0 ? uint64_t{1} << (3 * level) : bits::popcount8(mask);
+        grow_box(bounds, corner, level, mask);
+        arrive = false;
+        ++level;
+        continue;
+      }
+      stack[level] = {tree.first_child(node), mask, 0};
+    }
+    OpenNode& open = stack[level];
+    while (open.next < 8 && ((open.mask >> open.next) & 1) == 0) {
+      ++open.next;
+    }
+    if (open.next == 8) {
+      arrive = false;
+      ++level;
+      continue;
+    }
+    const unsigned octant = open.next++;
+    --level;
+    node = open.first_child++;
+    const int32_t side = int32_t{1} << level;
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
+    }
+    arrive = true;
+  }
+  return volume;
+}
+
 }  // namespace
 
 Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
@@ -209,51 +257,8 @@ const char* CompactTree::validate(ConstBytes bytes, uint32_t* place) {
     return fault(place, kSolidBlocksOffset, "wrong number of solid blocks");
   }
 
-  // Volume and bounds, depth first; the structure is sound by now.
-  uint64_t volume = 0;
   VoxelBox bounds;
-  struct OpenNode {
-    uint32_t first_child;
-    uint8_t mask;
-    uint8_t next;
-  } stack[kMaxLevel + 1];
-  Vec3i corner;
-  int level = shape.level;
-  if (shape.nodes != 0) {
-    bool arrive = true;
-    uint32_t node = 0;
-    while (level <= shape.level) {
-      if (arrive) {
-        const uint8_t mask = tree.masks_[node];
-        if (mask == 0 || level == 1) {
-          volume += mask == 0 ? uint64_t{1} << (3 * level) : bits::popcount8(mask);
-          grow_box(&bounds, corner, level, mask);
-          arrive = false;
-          ++level;
-          continue;
-        }
-        stack[level] = {tree.first_child(node), mask, 0};
-      }
-      OpenNode& frame = stack[level];
-      while (frame.next < 8 && ((frame.mask >> frame.next) & 1) == 0) {
-        ++frame.next;
-      }
-      if (frame.next == 8) {
-        arrive = false;
-        ++level;
-        continue;
-      }
-      const unsigned octant = frame.next++;
-      --level;
-      node = frame.first_child++;
-      const int32_t side = int32_t{1} << level;
-      for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
-      }
-      arrive = true;
-    }
-  }
-  if (volume != tree.voxel_count()) {
+  if (solid_volume(tree, &bounds) != tree.voxel_count()) {
     return fault(place, kVoxelCountOffset, "wrong voxel count");
   }
   if (!(bounds == tree.bounds())) {

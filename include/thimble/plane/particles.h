@@ -271,6 +271,7 @@ class ParticleWorld {
   using Ball = particle_detail::Ball;
   struct Blocked;
   struct Contacts;
+  struct Line;
   struct Window;
 
   // particles.cpp: places and lists.
