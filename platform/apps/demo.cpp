@@ -141,7 +141,7 @@ void flush(const Demo& demo, const Band& band, uint32_t* crc) {
 /// light: the rest of it is then a fast one.
 [[gnu::noinline]] Status draw_frame(Demo* demo, uint32_t* crc) {
   const int32_t height = display().height_px;
-  const uint32_t start = port::instructions();
+  const uint32_t start = kCanLight ? port::instructions() : 0;
   *crc = 0;
   for (int32_t y = 0; y < height; y += demo->band_rows) {
     const Band band = band_at(*demo, y, height);
@@ -422,7 +422,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
   demo->is_lit = lights;
-  return kCanHold && demo->holds && !lights ? draw_held(demo, crc) : draw_frame(demo, crc);
+  return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
 
 void tell_frame(const Demo& demo, uint32_t crc) {
