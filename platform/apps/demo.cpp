@@ -70,7 +70,7 @@ struct Demo : Placed {
   SceneLight light;
   bool lights = false;            ///< when it stands still
   bool is_lit = false;            ///< the picture that is shown
-  uint32_t lit_instructions = 0;  ///< of the last lit frame, where they are counted
+  uint32_t lit_instructions = 0;  ///< of the last frame that was lit to its end, where they are counted
 
   // The scene that is built here.
   bool builds = false;
@@ -124,7 +124,7 @@ Status draw(const Demo& demo, const Band& band) {
 }
 
 /// The rows of the picture from `y` on that the band's memory holds, those before `end`.
-Band band_at(const Demo& demo, int32_t y, int32_t end) {
+[[gnu::noinline]] Band band_at(const Demo& demo, int32_t y, int32_t end) {
   const port::Display& screen = display();
   const int32_t rows = end - y < demo.band_rows ? end - y : demo.band_rows;
   return {demo.band.subspan(0, band_bytes(screen.format, screen.width_px, rows)), screen.format, 0, y, rows};
@@ -141,15 +141,22 @@ void flush(const Demo& demo, const Band& band, uint32_t* crc) {
 /// light: the rest of it is then a fast one.
 [[gnu::noinline]] Status draw_frame(Demo* demo, uint32_t* crc) {
   const int32_t height = display().height_px;
+  const uint32_t start = kCanLight ? port::instructions() : 0;
   *crc = 0;
   for (int32_t y = 0; y < height; y += demo->band_rows) {
     const Band band = band_at(*demo, y, height);
     demo->is_lit = kCanLight && demo->is_lit && port::buttons() == 0;
-    const Status status = draw(*demo, band);
+    // Light is drawn from here: the less stands on the stack the better.
+    const Status status = kCanLight && demo->is_lit
+                              ? draw_lit(demo->shown.scene, demo->camera, demo->shading, demo->light, band)
+                              : draw(*demo, band);
     if (status != Status::kOk) {
       return status;
     }
     flush(*demo, band, crc);
+  }
+  if (kCanLight && demo->is_lit) {
+    demo->lit_instructions = port::instructions() - start;
   }
   return Status::kOk;
 }
@@ -415,13 +422,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
 
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
   demo->is_lit = lights;
-  if (kCanLight && lights) {
-    const uint32_t start = port::instructions();
-    const Status status = draw_frame(demo, crc);
-    demo->lit_instructions = port::instructions() - start;
-    return status;
-  }
-  return kCanHold && demo->holds ? draw_held(demo, crc) : draw_frame(demo, crc);
+  return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
 
 void tell_frame(const Demo& demo, uint32_t crc) {
