@@ -110,7 +110,7 @@ class ListWriter {
     enter(level);
     for (;;) {
       Visit& visit = visits_[level];
-      if (visit.mask != 0) {
+      if (visit.mask != 0 && level > 0) {  // at level 0 there is none: nothing enters it with children
         const unsigned octant = static_cast<unsigned>(__builtin_ctz(visit.mask));
         visit.mask &= visit.mask - 1;
         --level;
