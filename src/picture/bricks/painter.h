@@ -138,7 +138,7 @@ class BrickPainter {
     course_.directory = frame.map.directory();
     course_.bricks = frame.map.bricks();
     course_.exact_ties = !frame.tree.merged();
-    set_course(course_, 0, 0);
+    set_course(course_, 0, 0);  // NOLINT: where rays start is set_start's
   }
 
   void draw_tile(const Tile& tile) {
