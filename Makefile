@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format all run sim release sanitize clang \
-  fuzz check test bench firmware emulate flash test-boards test-framebuffer format tidy clean
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim release sanitize clang \
+  fuzz check test coverage bench firmware emulate flash test-boards test-framebuffer format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -22,6 +22,8 @@ deps-boards:
 	@.ci/deps build tools boards
 deps-format:
 	@.ci/deps format
+deps-coverage:
+	@.ci/deps coverage
 
 # Only a fresh folder is configured without the tests: CMake removes the objects of what it is told to leave out.
 LEAN = $(if $(wildcard build/release/build.ninja),,-DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF)
@@ -62,6 +64,11 @@ test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzin
 	@printf 'subdirs(release sanitize clang fuzz)\n' > build/CTestTestfile.cmake
 	@echo "[5/5] the tests; those that take longest begin"
 	@ctest --test-dir build --output-on-failure -j 2 $(CTEST_ARGS)
+
+coverage: deps-test deps-coverage ## Count the lines and branches of src that the tests take, by room
+	@$(CONFIGURE) -B build/release $(TESTED) -DTHIMBLE_COVERAGE=ON >/dev/null
+	@.ci/build "the core that counts" build/release thimble_tests_covered thimble_golden_tests_covered
+	@sh tests/coverage.sh build/release
 
 bench: deps-bench ## Build and run the benchmarks
 	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON $(LEAN) >/dev/null
