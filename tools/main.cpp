@@ -83,9 +83,12 @@ void occupy_standard_descriptors() {
 
 int main(int argc, char** argv) {
   occupy_standard_descriptors();
-  std::signal(SIGINT, clean_up_and_die);
-  std::signal(SIGTERM, clean_up_and_die);
-  std::signal(SIGHUP, clean_up_and_die);
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+    // Whoever started us with a signal ignored (nohup, a shell's background job) wants it ignored.
+    if (std::signal(signal_number, clean_up_and_die) == SIG_IGN) {
+      std::signal(signal_number, SIG_IGN);
+    }
+  }
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of the write, with a sentence
   std::signal(SIGXFSZ, SIG_IGN);  // and so is the limit on a file's size
 
@@ -114,13 +117,14 @@ int main(int argc, char** argv) {
   std::string sentence;
   int status = kInputStatus;
   try {
-    app.parse(argc, argv);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+      app.exit(help);  // prints it
+    }
     thimble::tools::check_standard_output();
     return 0;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      return app.exit(error);  // --help
-    }
     sentence = usage_sentence(app, error, argc, argv);
     status = kUsageStatus;
   } catch (const thimble::tools::InputError& error) {

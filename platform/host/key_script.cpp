@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <utility>
 
 #include "port.h"
@@ -96,6 +97,10 @@ KeyScript::Step step_of(std::string_view line) {
   const std::string_view number = trimmed(line.substr(0, colon));
   KeyScript::Step step;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), step.frame);
+  if (error == std::errc::result_out_of_range) {
+    throw KeyScriptError("frame " + std::string(number) + " is beyond " +
+                         std::to_string(std::numeric_limits<std::uint32_t>::max()) + ", the last");
+  }
   if (colon == std::string_view::npos || error != std::errc{} || end != number.data() + number.size()) {
     throw KeyScriptError("a line is FRAME: down|up BUTTON... or FRAME: type TEXT");
   }

@@ -206,7 +206,11 @@ TerminalMode::TerminalMode(int descriptor) {
   for (const int number : kCrashing) {
     install_end(number);
   }
-  install(SIGTSTP, on_stop);
+  struct sigaction& stop = now.previous[SIGTSTP];
+  ::sigaction(SIGTSTP, nullptr, &stop);
+  if (stop.sa_handler != SIG_IGN) {
+    install(SIGTSTP, on_stop);
+  }
   install(SIGCONT, on_continue);
   install(SIGWINCH, on_resize);
   enter();

@@ -70,7 +70,11 @@ void restore_console() {
 void take_console() {
   atexit(restore_console);
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-    handle(signal_number, on_end);
+    // Whoever started us with a signal ignored (nohup, a shell's background job) wants it ignored.
+    struct sigaction before {};
+    if (sigaction(signal_number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
+      handle(signal_number, on_end);
+    }
   }
   for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
     handle(signal_number, on_fault);

@@ -300,9 +300,16 @@ void ParticleWorld::draw_box(const CellBox& box) {
 }
 
 void ParticleWorld::erase_box(const CellBox& box) {
-  field_.clear(box);
-  stamp_balls(box);
-  support_left(box, true);
+  // What lies in the field: the sums of its corners and the balls' reach then stay far below 2^31.
+  const CellBox inside{{box.low.x < 0 ? 0 : box.low.x, box.low.y < 0 ? 0 : box.low.y},
+                       {box.high.x > config_.width ? config_.width : box.high.x,
+                        box.high.y > config_.height ? config_.height : box.high.y}};
+  if (inside.low.x >= inside.high.x || inside.low.y >= inside.high.y) {
+    return;
+  }
+  field_.clear(inside);
+  stamp_balls(inside);
+  support_left(inside, true);
 }
 
 void ParticleWorld::draw_wall(Vec2i from, Vec2i to, int32_t diameter) {

@@ -210,13 +210,11 @@ struct ParticleWorld::Contacts {
 };
 
 inline ParticleWorld::CellRange ParticleWorld::cells_around(const CellBox& box, int32_t reach) const {
-  const auto clamp = [](int32_t value, int32_t limit) {
-    return value < 0 ? 0 : value < limit ? value : limit - 1;
-  };
-  return {clamp((box.low.x - reach) >> cell_shift_, cells_across_),
-          clamp((box.low.y - reach) >> cell_shift_, cells_down_),
-          clamp((box.high.x - 1 + reach) >> cell_shift_, cells_across_),
-          clamp((box.high.y - 1 + reach) >> cell_shift_, cells_down_)};
+  const auto first = [](int32_t value) { return value < 0 ? 0 : value; };
+  const auto last = [](int32_t value, int32_t limit) { return value < limit ? value : limit - 1; };
+  return {first((box.low.x - reach) >> cell_shift_), first((box.low.y - reach) >> cell_shift_),
+          last((box.high.x - 1 + reach) >> cell_shift_, cells_across_),
+          last((box.high.y - 1 + reach) >> cell_shift_, cells_down_)};
 }
 
 inline void ParticleWorld::set_awake_bit(uint32_t id) {

@@ -72,9 +72,6 @@ void ParticleWorld::apply_pointer() {
           cells_around({{pointer_.x, pointer_.y}, {pointer_.x + 1, pointer_.y + 1}}, pointer_radius_);
       for (int32_t y = range.y0; y <= range.y1; ++y) {
         for (int32_t x = range.x0; x <= range.x1; ++x) {
-          if (cells_across_ == 0 || cells_down_ == 0) {
-            break;
-          }
           for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall;) {
             const uint32_t next = balls_[id].next;
             const int64_t dx = (balls_[id].x >> 16) - pointer_.x;
@@ -99,9 +96,6 @@ void ParticleWorld::apply_pointer() {
 // middle and at the rim. strength * distance * (radius - distance) * 4 / radius^2, with one 32-bit division a
 // step.
 void ParticleWorld::pull_balls(int32_t sign) {
-  if (cells_across_ == 0 || cells_down_ == 0) {
-    return;
-  }
   const int32_t radius = pointer_radius_;
   // 4 * strength / radius^2 in 2^-24, kept within 2^31.
   const uint32_t square = static_cast<uint32_t>(radius) * static_cast<uint32_t>(radius);

@@ -161,7 +161,7 @@ void ParticleWorld::rest(uint32_t id) {
 // held a sleeper on the other axis may be gone, so it wakes to find out; but not for what only stirs in its
 // hollow (not `for_good`).
 void ParticleWorld::support_left(const CellBox& box, bool for_good) {
-  if (!pulled_ || asleep_ == 0 || cells_across_ == 0 || cells_down_ == 0) {
+  if (!pulled_ || asleep_ == 0) {
     return;
   }
   const bool aslant = for_good && config_.gravity_q16.x != 0 && config_.gravity_q16.y != 0;

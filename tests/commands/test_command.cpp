@@ -303,6 +303,65 @@ TEST_CASE("command: success over a file -> replaced whole, its mode and a link t
   CHECK(folder.names() == Words{"link.ppm", "p.ppm"});
 }
 
+TEST_CASE("command: a link that leads to nothing yet -> stays, and what it leads to is made") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path("there"));
+  std::filesystem::create_symlink("there/second", folder.path("first"));
+  std::filesystem::create_symlink("p.ppm", folder.path("there/second"));
+  std::filesystem::create_symlink("round", folder.path("round"));
+  CHECK(run_command({"render", "spheres", "--size", "4x3", "-o", folder.path("first"), "--quiet"}).status ==
+        1);  // the ending is what is typed
+  CHECK(folder.names() == Words{"first", "round", "there"});
+  std::filesystem::rename(folder.path("first"), folder.path("first.ppm"));
+  const CommandResult result =
+      run_command({"render", "spheres", "--size", "4x3", "-o", folder.path("first.ppm"), "--quiet"});
+  CHECK_MESSAGE(result.status == 0, result.describe());
+  CHECK(std::filesystem::is_symlink(folder.path("first.ppm")));
+  CHECK(std::filesystem::is_symlink(folder.path("there/second")));
+  CHECK(read_text(folder.path("there/p.ppm")).size() == std::string("P6\n4 3\n255\n").size() + 36);
+  std::filesystem::rename(folder.path("round"), folder.path("round.ppm"));
+  std::filesystem::create_symlink("round.ppm", folder.path("round"));
+  check_refused({"render", "spheres", "-o", folder.path("round.ppm")}, 1, {"round.ppm"});
+}
+
+TEST_CASE("command: signals that whoever started us ignores -> stay ignored; killed -> nothing left") {
+  const TemporaryFolder folder;
+  // The command waits for rays, and gets them when the signal has been sent.
+  const auto run = [&](const std::string& before, const std::string& signal) {
+    const std::string script =
+        "cd " + folder.path() + " && rm -f rays out.csv && mkfifo rays && (" + before +
+        " exec " THIMBLE_COMMAND_PATH " trace spheres --rays rays -o out.csv --quiet) & child=$!; cd " +
+        folder.path() + "; while ! test -p rays; do :; done; exec 3>rays; kill -" + signal +
+        " $child; (printf '0,0,0,1,1,1\\n' >&3) 2>/dev/null; exec 3>&-; wait $child";
+    CommandLimits limits;
+    limits.program = "/bin/sh";
+    return run_command({"-c", script}, limits);
+  };
+  for (const char* const signal : {"HUP", "INT", "TERM"}) {
+    CAPTURE(signal);
+    const CommandResult ignored = run("trap '' " + std::string(signal) + ";", signal);
+    CHECK_MESSAGE(ignored.status == 0, ignored.describe());
+    CHECK(folder.names() == Words{"out.csv", "rays"});
+  }
+  for (const char* const signal : {"HUP", "TERM", "KILL"}) {
+    CAPTURE(signal);
+    const CommandResult ended = run("", signal);
+    CHECK_MESSAGE(ended.status > 128, ended.describe());
+    CHECK(folder.names() == Words{"rays"});
+  }
+}
+
+TEST_CASE("command: help that cannot be written -> said, and status 1") {
+  CommandLimits full;
+  full.output_path = "/dev/full";
+  for (const Words& words : {Words{"--help"}, Words{"render", "--help"}}) {
+    const CommandResult result = run_command(words, full);
+    CHECK(result.status == 1);
+    CHECK_MESSAGE(result.err.find("standard output: cannot be written") != std::string::npos,
+                  result.describe());
+  }
+}
+
 TEST_CASE("command: an output that is an input or another output -> refused, nothing lost") {
   const TemporaryFolder folder;
   const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");

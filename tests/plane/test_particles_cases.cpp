@@ -83,9 +83,36 @@ TEST_CASE("particles: a box of no cells, or smaller than the ball -> stays empty
       shadow.world.step();
     }
     shadow.world.erase_wall({0, 0}, {50, 50}, 5);
+    shadow.world.erase_box({{0, 0}, {50, 50}});
+    shadow.world.erase_box({{INT32_MIN, INT32_MIN}, {INT32_MAX, INT32_MAX}});
     CHECK(shadow.world.count() == 0);
     CHECK(shadow.world.ball_at({0, 0}) == kNoBall);
   }
+}
+
+TEST_CASE(
+    "particles: any box drawn and erased, to the ends of what a number can say -> walls go, balls stay") {
+  const std::int32_t ends[] = {INT32_MIN, INT32_MIN + 1, -1000000,      -1,       0, 7, 30, 40,
+                               41,        1000000,       INT32_MAX - 1, INT32_MAX};
+  ShadowedWorld shadow(box(40, 30, 12));
+  shadow.fill(12, q16(1));
+  for (int step = 0; step < 300; ++step) {
+    shadow.world.step();
+  }
+  for (const std::int32_t x0 : ends) {
+    for (const std::int32_t x1 : ends) {
+      for (const std::int32_t y0 : {INT32_MIN, -5, 3, 29, INT32_MAX}) {
+        for (const std::int32_t y1 : {INT32_MIN, 2, 12, 30, INT32_MAX}) {
+          shadow.world.draw_box({{x0, y0}, {x1, y1}});
+          shadow.world.erase_box({{x0, y0}, {x1, y1}});
+          REQUIRE(shadow.fault() == "");
+        }
+      }
+    }
+  }
+  shadow.world.erase_box({{INT32_MIN, INT32_MIN}, {INT32_MAX, INT32_MAX}});
+  CHECK(shadow.world.count() == 12);
+  run(shadow, 50);
 }
 
 TEST_CASE("particles: room for no ball, and for one -> works") {

@@ -443,7 +443,7 @@ TEST_CASE("key script: lines that are none -> an error that names the line and t
       {"0: type \\q", "a backslash"},
       {"0: type \\x4", "two hexadecimal digits"},
       {"0: type \\xZZ", "two hexadecimal digits"},
-      {"99999999999: up up", "line 1: a line is"},
+      {"99999999999: up up", "line 1: frame 99999999999 is beyond 4294967295, the last"},
       {"0: type a\\", "a backslash"},
   };
   for (const auto& [text, words] : cases) {

@@ -39,6 +39,27 @@ void remember(const std::string& name) {
   }
 }
 
+// Short, so that any name that the target has will do.
+constexpr const char* kTemporary = ".thimble-XXXXXX";
+
+std::string name_of_open(int descriptor) {
+  return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+// Where a chain of links leads, whether or not something stands at its end: the links stay.
+std::string followed(const std::string& path) {
+  std::filesystem::path at = path;
+  for (int links = 0; links < 64; ++links) {
+    std::error_code is_no_link;
+    const std::filesystem::path next = std::filesystem::read_symlink(at, is_no_link);
+    if (is_no_link) {
+      break;
+    }
+    at = at.parent_path() / next;  // `next` alone where it begins at the root
+  }
+  return at.string();
+}
+
 void forget(const std::string& name) {
   for (Slot& slot : slots()) {
     if (slot.named && name == slot.name.data()) {
@@ -111,6 +132,9 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   }
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (!exists && errno != ENOENT) {
+    fail(errno);
+  }
   if (exists && S_ISDIR(info.st_mode)) {
     fail(EISDIR);
   }
@@ -119,22 +143,9 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   } else if (exists && ::access(path.c_str(), W_OK) != 0) {
     fail(errno);
   } else {
-    // Beside the target, so that renaming it is one step; short, so that any name the target has will do.
-    if (exists) {
-      if (char* const real = ::realpath(path.c_str(), nullptr)) {
-        target_ = real;
-        std::free(real);
-      }
-    }
-    temporary_ = target_.substr(0, target_.rfind('/') + 1) + ".thimble-XXXXXX";
-    const int descriptor = ::mkstemp(temporary_.data());
-    if (descriptor < 0) {
-      temporary_.clear();
-      fail(errno);
-    }
-    remember(temporary_);
-    // mkstemp makes private files; the result gets the mode that any new file would, or that of the file it
-    // replaces.
+    target_ = followed(path);
+    const int descriptor = open_unfinished();
+    // The result gets the mode that any new file would, or that of the file it replaces.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     if (::fchmod(descriptor, exists ? info.st_mode & 07777U : 0666U & ~mask) != 0) {
@@ -145,6 +156,57 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   if (file_ == nullptr) {
     fail(errno);
   }
+}
+
+// A file beside the target, so that the renaming is one step. Where the system can, it has no name until it is
+// finished, so that nothing is left of it even when the program is killed.
+int OutputFile::open_unfinished() {
+  const std::string folder = target_.substr(0, target_.rfind('/') + 1);
+  const int nameless = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (nameless >= 0 && ::access(name_of_open(nameless).c_str(), F_OK) == 0) {
+    is_nameless_ = true;
+    return nameless;
+  }
+  if (nameless >= 0) {
+    ::close(nameless);  // without /proc it could never get a name
+  }
+  temporary_ = folder + kTemporary;
+  const int descriptor = ::mkstemp(temporary_.data());
+  if (descriptor < 0) {
+    temporary_.clear();
+    fail(errno);
+  }
+  remember(temporary_);
+  return descriptor;
+}
+
+// Gives what was written a name of its own, which `commit` changes into the target's: a link cannot replace
+// what stands there.
+void OutputFile::name_unfinished() {
+  const std::string open_file = name_of_open(::fileno(file_));
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    // mkstemp chooses a free name; its file makes way at once. Whoever takes the name in between sends us on.
+    std::string name = target_.substr(0, target_.rfind('/') + 1) + kTemporary;
+    const int taken = ::mkstemp(name.data());
+    if (taken < 0) {
+      fail(errno);
+    }
+    ::close(taken);
+    remember(name);
+    temporary_ = name;
+    ::unlink(name.c_str());
+    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      is_nameless_ = false;
+      return;
+    }
+    const int error = errno;
+    forget(name);
+    temporary_.clear();
+    if (error != EEXIST) {
+      fail(error);
+    }
+  }
+  fail(EEXIST);
 }
 
 OutputFile::~OutputFile() {
@@ -182,6 +244,9 @@ void OutputFile::commit() {
   flush();
   if (file_ == stdout) {
     return;
+  }
+  if (is_nameless_) {
+    name_unfinished();
   }
   std::FILE* file = file_;
   file_ = nullptr;

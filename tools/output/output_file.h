@@ -1,6 +1,6 @@
 /// @file output_file.h
-/// Files that are either complete or not there: bytes go to a temporary name beside the target, which takes
-/// the target's name at the end.
+/// Files that are either complete or not there: bytes go to a file beside the target that has no name, or a
+/// temporary one where the system cannot do without, and takes the target's name at the end.
 #ifndef THIMBLE_TOOLS_OUTPUT_OUTPUT_FILE_H
 #define THIMBLE_TOOLS_OUTPUT_OUTPUT_FILE_H
 
@@ -19,7 +19,7 @@ class OutputError : public std::runtime_error {
 };
 
 /// One output. `-` is standard output, written straight on. What exists and is no regular file (a device, a
-/// pipe) is written to directly too. A symbolic link stays one: the file that it leads to is replaced.
+/// pipe) is written to directly too. A symbolic link stays one: the file that it leads to is replaced, or made.
 class OutputFile {
  public:
   /// Opens `path` for writing. Throws OutputError (no such folder, no permission, ...).
@@ -39,10 +39,13 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail(int error);
+  int open_unfinished();
+  void name_unfinished();
 
   std::string path_;
   std::string target_;     ///< `path_` behind symbolic links
-  std::string temporary_;  ///< empty when written to directly
+  std::string temporary_;  ///< empty when written to directly, or while the file has no name
+  bool is_nameless_ = false;
   std::FILE* file_ = nullptr;
 };
 

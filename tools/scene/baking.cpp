@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <string_view>
 
 #include "readers/oct.h"
 #include "scene/built_scene.h"
@@ -43,6 +44,30 @@ std::string cut_off(std::string text) {
     text.resize(size);
   }
   return text;
+}
+
+// Bytes of the character of UTF-8 that `text` begins with; 0 when it begins with none.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const std::size_t bytes = byte(0) < 0x80    ? 1
+                            : byte(0) < 0xC2  ? 0
+                            : byte(0) < 0xE0  ? 2
+                            : byte(0) < 0xF0  ? 3
+                            : byte(0) <= 0xF4 ? 4
+                                              : 0;
+  if (bytes > text.size()) {
+    return 0;
+  }
+  for (std::size_t at = 1; at < bytes; ++at) {
+    if ((byte(at) & 0xC0U) != 0x80U) {
+      return 0;
+    }
+  }
+  // Characters have one spelling, surrogates are none, and the last is U+10FFFF.
+  const bool is_wrong =
+      bytes > 2 && ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) >= 0xA0) ||
+                    (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) >= 0x90));
+  return is_wrong ? 0 : bytes;
 }
 
 // The parts of a baked scene around a tree.
@@ -265,7 +290,14 @@ std::string scene_name(const std::string& scene) {
   if (parse_generator(scene)) {
     return scene;
   }
-  return std::filesystem::path(scene).filename().string();
+  const std::string name = std::filesystem::path(scene).filename().string();
+  std::string utf8;
+  for (std::string_view rest = name; !rest.empty();) {
+    const std::size_t bytes = character_bytes(rest);
+    utf8 += bytes == 0 ? std::string_view("\xEF\xBF\xBD") : rest.substr(0, bytes);
+    rest.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return utf8;
 }
 
 }  // namespace thimble::tools

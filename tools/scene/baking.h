@@ -47,7 +47,8 @@ struct Baked {
 /// than one merge saves. Throws InputError.
 Baked bake_scene(const SceneSource& source, const BakingOptions& options, const Progress& progress = {});
 
-/// What a baked scene is called: a file's name without its folder, a generator as it is written.
+/// What a baked scene is called: a file's name without its folder, a generator as it is written. UTF-8: a byte
+/// that is none becomes U+FFFD.
 std::string scene_name(const std::string& scene);
 
 }  // namespace thimble::tools

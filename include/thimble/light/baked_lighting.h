@@ -41,7 +41,8 @@ struct BakedLighting {
   /// would refuse it (the bytes are then of no use).
   static Status make(const BakedLighting& lighting, int level, Bytes to);
 
-  /// Looks at every number of a section in a world of 2^level, at most 256 surfaces and 100 lights.
+  /// Looks at every number of a section in a world of 2^level (1 .. kMaxLevel, in all three), at most 256
+  /// surfaces and 100 lights.
   /// `kDamaged`, with `*lighting` as it was: no section (no bytes), another version, tables that are not as
   /// long as they should be, a number beyond its limits. Safe for any bytes.
   static Status open(ConstBytes section, int level, BakedLighting* lighting);

@@ -118,7 +118,8 @@ bool water_holds(const WaterSurface& surface, const Vec3Q8& point, const Vec3i& 
 /// Normal of the surface at a point above the columns, world coordinates in 1/256 voxel: between the centres
 /// of columns the slopes are interpolated, so that there are no facets; at walls they are one-sided, and
 /// blocked columns do not count. z is 2^14; x and y are at most 2^15 in magnitude (a slope of 2). Still
-/// water: (0, 0, 2^14). It bends the light only: what is hit is the column.
+/// water: (0, 0, 2^14). It bends the light only: what is hit is the column. `x` and `y` lie where a ray may
+/// start (`check_ray`), or anywhere nearer; beyond the water the nearest column's slope holds.
 Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y);
 
 /// Normal for light at a hit, out of the water, of length 2^14 .. 2^16: of the surface, also at the upright

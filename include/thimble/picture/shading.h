@@ -52,7 +52,9 @@ inline constexpr int kFaceLightError = 2;
 inline constexpr int kLitChannelError = 1;
 
 /// The near and far planes for `camera` that just hold `bounds`, a box in the world: distances of its nearest
-/// and farthest corner, rounded down. Near is at least 0, far at least one voxel beyond near.
+/// and farthest corner, rounded down. Near is at least 0, far at least one voxel beyond near. The corners of
+/// `bounds` are 0 .. 2^kMaxLevel; an empty box and a camera that was never set have the range of a
+/// DepthRange{}.
 struct DepthRange {
   int32_t near_q8 = 0;
   int32_t far_q8 = 256;

@@ -215,7 +215,7 @@ class ParticleWorld {
 
   // --- Walls. Cells of balls are never changed: a wall drawn over a ball leaves out the ball's cells.
 
-  /// Fills the cells of `box`.
+  /// Fills the cells of `box`, any box: what lies outside the field is passed over.
   void draw_box(const CellBox& box);
   /// A disc of `diameter` cells drawn along the line from cell to cell; 1 gives a line that is a wall.
   /// Coordinates within +-4 * kMaxFieldSide, others are cut to that. Cost: a disc for each cell of the line.
@@ -224,6 +224,7 @@ class ParticleWorld {
   /// Clears walls (not balls) under the same brush, and wakes balls that rested on them.
   void erase_wall(Vec2i from, Vec2i to, int32_t diameter);
   void erase_wall(Vec2i at, int32_t diameter) { erase_wall(at, at, diameter); }
+  /// Clears the walls in `box`, any box: what lies outside the field is passed over.
   void erase_box(const CellBox& box);
 
   // --- Forces

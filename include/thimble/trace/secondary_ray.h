@@ -123,7 +123,8 @@ Status any_hit_before_32(const CompactTree& tree, const Ray& ray, const RayPoint
 
 /// The ray from `start` towards a point: its direction has at most `direction_bits` (2 .. 20) bits a
 /// component, rounded to nearest (a turn below 2^-(direction_bits - 1) rad), and `place` gets the t at which
-/// it is at the point, to that rounding. False when both are equal.
+/// it is at the point, to that rounding. False when both are equal. Start and point lie where a ray may start
+/// (`check_ray`) in a world of at most 2^kMaxLevel.
 bool ray_towards(const Vec3Q8& start, const Vec3Q8& point, int direction_bits, Ray* ray, RayPoint* place);
 
 }  // namespace thimble

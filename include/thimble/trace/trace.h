@@ -37,8 +37,8 @@ struct TraceOptions {
 /// Whether the 32-bit path may trace `ray` in a world of 2^level: with R the largest distance on any axis
 /// from the origin to a plane of the world (in 1/256 voxel) and D the largest direction component, the bits
 /// of R and of D are at most 31 together, so that every product of the two stays below 2^31. A world of 64
-/// seen from within two world sizes takes directions of 16 bits, one of 512 takes 13. The ray also passes
-/// `check_ray`.
+/// seen from within two world sizes takes directions of 16 bits, one of 512 takes 13. For rays that pass
+/// `check_ray` in that world, and levels 1 .. kMaxLevel; it asks neither.
 bool accepts_32(const Ray& ray, int level);
 
 /// The solid voxel entered first. `hit` is always written on `kOk`; `kOutOfRange` and `kBadArgument` are

@@ -1,0 +1,151 @@
+/// @file odd_values.h
+/// Arguments that nobody means: ends of what a number can say, powers of two and their neighbours, bytes
+/// that are
+/// too few, damaged views. The tests of this folder call every public function of the core with them, under
+/// AddressSanitizer and UndefinedBehaviorSanitizer (the `sanitize` build), and check what a header promises
+/// of a
+/// call that is refused.
+///
+/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 goes on
+/// with other
+/// seeds for that long in each test.
+#ifndef THIMBLE_TESTS_MISUSE_ODD_VALUES_H
+#define THIMBLE_TESTS_MISUSE_ODD_VALUES_H
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "thimble/base/memory.h"
+#include "thimble/base/vec.h"
+
+namespace thimble::tests {
+
+class OddValues {
+ public:
+  explicit OddValues(std::uint64_t seed) : engine_(seed) {}
+
+  std::uint64_t bits() { return engine_(); }
+  bool one_in(std::uint64_t n) { return bits() % n == 0; }
+  /// Any number from low to high, both among them, the ends more often than others.
+  std::int64_t between(std::int64_t low, std::int64_t high) {
+    switch (bits() % 6) {
+      case 0:
+        return low;
+      case 1:
+        return high;
+      default:
+        return low + static_cast<std::int64_t>(bits() % (static_cast<std::uint64_t>(high - low) + 1));
+    }
+  }
+  std::int32_t between_32(std::int32_t low, std::int32_t high) {
+    return static_cast<std::int32_t>(between(low, high));
+  }
+  /// Any value of the type: its ends, those of others, zero, powers of two, and what stands beside them.
+  template <class T>
+  T any() {
+    using Limits = std::numeric_limits<T>;
+    const auto beside = static_cast<std::uint64_t>(bits() % 3) - 1;
+    std::uint64_t value = 0;
+    switch (bits() % 8) {
+      case 0:
+        value = static_cast<std::uint64_t>(Limits::min());
+        break;
+      case 1:
+        value = static_cast<std::uint64_t>(Limits::max());
+        break;
+      case 2:
+        break;
+      case 3:
+        value = bits() % 16;
+        break;
+      case 4:
+        value = std::uint64_t{1} << bits() % 64;
+        break;
+      case 5:
+        value = 0 - (std::uint64_t{1} << bits() % 64);
+        break;
+      case 6:
+        value = bits() % 5000;
+        break;
+      default:
+        return static_cast<T>(bits() >> bits() % 64);
+    }
+    return static_cast<T>(value + beside);
+  }
+  Vec3i any_vector() { return {any<std::int32_t>(), any<std::int32_t>(), any<std::int32_t>()}; }
+  Vec3i vector_between(std::int32_t low, std::int32_t high) {
+    return {between_32(low, high), between_32(low, high), between_32(low, high)};
+  }
+  Vec3Q8 any_point() {
+    return {Q8::from_raw(any<std::int32_t>()), Q8::from_raw(any<std::int32_t>()),
+            Q8::from_raw(any<std::int32_t>())};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Bytes on the heap, exactly as many as said, so that a sanitizer sees the first one beyond; none is null.
+class ExactBytes {
+ public:
+  ExactBytes() = default;
+  explicit ExactBytes(std::size_t size)
+      : data_(size == 0 ? nullptr : new std::uint8_t[size]()), size_(size) {}
+  explicit ExactBytes(ConstBytes from) : ExactBytes(from.size) {
+    std::copy(from.begin(), from.end(), data_.get());
+  }
+
+  Bytes bytes() { return {data_.get(), size_}; }
+  ConstBytes bytes() const { return {data_.get(), size_}; }
+
+ private:
+  std::unique_ptr<std::uint8_t[]> data_;
+  std::size_t size_ = 0;
+};
+
+/// A size at, about or below what is needed, never above a mebibyte: what is asked for may be terabytes.
+inline std::size_t odd_size(OddValues& odd, std::size_t needed) {
+  constexpr std::size_t kMost = std::size_t{1} << 20;
+  const std::size_t beside = needed + static_cast<std::size_t>(odd.between(0, 4)) - 2;
+  const std::size_t size = odd.one_in(8) ? static_cast<std::size_t>(odd.bits() % 4096) : beside;
+  return std::min(size, kMost);
+}
+
+/// Some bytes changed, or cut off.
+inline ExactBytes damaged(OddValues& odd, ConstBytes sound) {
+  const std::size_t size = odd.one_in(4) ? odd.bits() % (sound.size + 1) : sound.size;
+  ExactBytes bytes(sound.subspan(0, size));
+  for (std::uint64_t count = odd.bits() % 8; count > 0 && size > 0; --count) {
+    // Headers, at the front, decide most.
+    const std::size_t at = odd.one_in(2) ? odd.bits() % size : odd.bits() % std::min<std::size_t>(size, 96);
+    bytes.bytes()[at] = odd.any<std::uint8_t>();
+  }
+  return bytes;
+}
+
+/// Calls `round(odd)` `rounds` times, each with values of its own; longer where THIMBLE_MISUSE_SECONDS says
+/// so.
+template <class Round>
+void misuse(std::uint64_t seed, int rounds, Round round) {
+  const char* const given = std::getenv("THIMBLE_MISUSE_SECONDS");
+  const double seconds = given == nullptr ? 0 : std::atof(given);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto goes_on = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < seconds;
+  };
+  for (std::uint64_t number = 0; number < static_cast<std::uint64_t>(rounds) || goes_on(); ++number) {
+    OddValues odd(seed * 1000003 + number);
+    round(odd);
+  }
+}
+
+}  // namespace thimble::tests
+
+#endif

@@ -1,0 +1,168 @@
+/// @file odd_worlds.h
+/// Trees, cameras, bands and rays for the tests of this folder: sound, empty, damaged, or of any numbers at
+/// all.
+#ifndef THIMBLE_TESTS_MISUSE_ODD_WORLDS_H
+#define THIMBLE_TESTS_MISUSE_ODD_WORLDS_H
+
+#include <cstdint>
+
+#include <doctest/doctest.h>
+
+#include "misuse/odd_values.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/ray.h"
+#include "thimble/trace/secondary_ray.h"
+#include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
+
+namespace thimble::tests {
+
+/// One world in each of the structures; the compact and shared bytes may be damaged afterwards.
+struct OddWorld {
+  ExactBytes pool, grid_bytes, compact_bytes, shared_bytes;
+  Octree octree;
+  DenseGrid grid;
+  CompactTree compact;
+  SharedTree shared;
+
+  explicit OddWorld(OddValues& odd, int level) {
+    const std::int32_t side = std::int32_t{1} << level;
+    pool = ExactBytes(Octree::octree_bytes(6000));
+    REQUIRE(Octree::make(level, pool.bytes(), &octree) == Status::kOk);
+    grid_bytes = ExactBytes(dense_grid_bytes({side, side, side}));
+    REQUIRE(DenseGrid::make({side, side, side}, grid_bytes.bytes(), &grid) == Status::kOk);
+    const bool one_material = odd.one_in(2);
+    for (std::uint64_t count = odd.bits() % 80; count > 0; --count) {
+      const Vec3i at = odd.vector_between(0, side - 1);
+      REQUIRE(octree.insert(at, one_material ? 1 : static_cast<std::uint8_t>(odd.bits() % 5)) == Status::kOk);
+      REQUIRE(grid.set(at) == Status::kOk);
+    }
+    if (odd.one_in(3)) {
+      REQUIRE(octree.insert_block({0, side / 2, 0}, level - 1, 2) == Status::kOk);
+    }
+    if (odd.one_in(3) && !octree.empty()) {
+      (void)octree.coarsen_to(1 + octree.nodes_used() / 2);
+    }
+    std::size_t size = 0;
+    (void)CompactTree::make(octree, Bytes(), nullptr, &size);
+    compact_bytes = ExactBytes(size);
+    REQUIRE(CompactTree::make(octree, compact_bytes.bytes(), &compact) == Status::kOk);
+    const CompactShape shape = compact_shape(octree);
+    ExactBytes room(shared_tree_bytes(shape));
+    ExactBytes work(shared_work_bytes(shape.nodes));
+    SharedBuild build;
+    REQUIRE(SharedTree::make(compact, room.bytes(), work.bytes(), &shared, &build) == Status::kOk);
+    shared_bytes = ExactBytes(ConstBytes(room.bytes()).subspan(0, build.bytes));
+    REQUIRE(SharedTree::open(shared_bytes.bytes(), &shared) == Status::kOk);
+  }
+
+  /// Writes over what the two views read behind their headers, which stay.
+  void damage(OddValues& odd) {
+    for (int i = 0; i < 6; ++i) {
+      for (ExactBytes* bytes : {&compact_bytes, &shared_bytes}) {
+        const std::size_t size = bytes->bytes().size;
+        if (size > kSharedHeaderBytes) {
+          bytes->bytes()[kSharedHeaderBytes + odd.bits() % (size - kSharedHeaderBytes)] =
+              odd.any<std::uint8_t>();
+        }
+      }
+    }
+  }
+};
+
+/// A ray that `check_ray` takes in a world of 2^level, most of them hard: lattice points, diagonals, insides.
+inline Ray good_ray(OddValues& odd, int level) {
+  const std::int32_t side = Q8::kOne << level;
+  const bool on_lattice = odd.one_in(2);
+  Ray ray;
+  do {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t at = odd.one_in(2) ? odd.between_32(kMinOriginWorlds * side, kMaxOriginWorlds * side)
+                                            : odd.between_32(0, side);
+      ray.origin[axis] = Q8::from_raw(on_lattice ? at & ~255 : at);
+      ray.direction[axis] =
+          odd.one_in(2) ? odd.between_32(-1, 1) : odd.between_32(-kMaxDirection, kMaxDirection);
+    }
+  } while (ray.direction == Vec3i{});
+  return ray;
+}
+
+/// Any ray at all, or a good one.
+inline Ray odd_ray(OddValues& odd, int level) {
+  return odd.one_in(2) ? Ray{odd.any_point(), odd.any_vector()} : good_ray(odd, level);
+}
+
+inline TraceOptions odd_options(OddValues& odd) {
+  return {odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), static_cast<Width>(odd.bits() % 3)};
+}
+
+/// A camera set to any numbers; one without pixels where they are refused. At most 40 x 40 pixels are drawn.
+inline Camera odd_camera(OddValues& odd, int level) {
+  const std::int32_t side = Q8::kOne << level;
+  const bool sane = !odd.one_in(3);
+  const auto point = [&] {
+    return Vec3Q8{Q8::from_raw(odd.between_32(-4 * side, 5 * side)),
+                  Q8::from_raw(odd.between_32(-4 * side, 5 * side)),
+                  Q8::from_raw(odd.between_32(-4 * side, 5 * side))};
+  };
+  const Vec3Q8 eye = sane ? point() : odd.any_point();
+  const Vec3i forward =
+      sane ? odd.one_in(2) ? look_at(eye, point()) : odd.vector_between(-3, 3) : odd.any_vector();
+  const Vec3i up = sane && odd.one_in(2) ? Vec3i{} : odd.any_vector();
+  const auto size = [&] { return sane ? odd.between_32(1, 40) : odd.any<std::int32_t>(); };
+  const int bits = sane ? odd.one_in(2) ? 0 : odd.between_32(8, 20) : odd.any<std::int32_t>();
+  const int world = odd.one_in(8) ? odd.any<std::int32_t>() : level;
+  Camera camera;
+  Status status = Status::kOk;
+  if (odd.one_in(2)) {
+    const Q16 fov = sane ? Q16::from_raw(odd.between_32(kMinFov.raw, kMaxFov.raw))
+                         : Q16::from_raw(odd.any<std::int32_t>());
+    status = camera.set(PerspectiveView{eye, forward, up, fov, size(), size(), bits}, world);
+  } else {
+    const Q14 span =
+        sane ? Q14::from_raw(odd.between_32(1, 1 << 22)) : Q14::from_raw(odd.any<std::int32_t>());
+    status = camera.set(OrthographicView{eye, forward, up, span, size(), size(), bits}, world);
+  }
+  if (status != Status::kOk) {
+    CHECK(camera.width_px() == 0);
+  } else if (camera.width_px() > 64 || camera.height_px() > 64) {
+    (void)camera.ray(camera.width_px() - 1, camera.height_px() - 1);
+    return Camera();
+  }
+  return camera;
+}
+
+inline Shading odd_shading(OddValues& odd, Span<const Rgb8> palette) {
+  Shading shading;
+  shading.mode = static_cast<ShadeMode>(odd.bits() % 4);
+  shading.palette = palette.subspan(0, odd.bits() % (palette.size + 1));
+  shading.near_q8 = odd.any<std::int32_t>();
+  shading.far_q8 = odd.any<std::int32_t>();
+  return shading;
+}
+
+/// A band of any numbers over `pixels`, which it sizes about as needed.
+inline Band odd_band(OddValues& odd, const Camera& camera, ExactBytes* pixels) {
+  Band band;
+  band.format = static_cast<PixelFormat>(odd.bits() % 5);
+  const bool sane = !odd.one_in(3);
+  band.first_row = sane ? odd.between_32(0, std::max(camera.height_px() - 1, 0)) : odd.any<std::int32_t>();
+  band.rows = sane ? odd.between_32(0, camera.height_px() - band.first_row) : odd.any<std::int32_t>();
+  const std::size_t row = row_bytes(band.format, camera.width_px());
+  band.stride_bytes = odd.one_in(2) ? 0 : sane ? row + odd.bits() % 9 : odd.any<std::size_t>();
+  const std::size_t stride = band.stride_bytes == 0 ? row : band.stride_bytes;
+  const std::size_t rows = band.rows > 0 ? static_cast<std::size_t>(band.rows) : 0;
+  const std::size_t needed = rows == 0 || stride > 100000 || rows > 10000 ? 64 : stride * (rows - 1) + row;
+  *pixels = ExactBytes(odd_size(odd, needed));
+  band.pixels = pixels->bytes();
+  return band;
+}
+
+}  // namespace thimble::tests
+
+#endif

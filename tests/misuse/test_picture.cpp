@@ -1,0 +1,173 @@
+// Every public function of picture with any camera, shading, band and tree: refused with nothing drawn, or
+// drawn
+// within the band.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "misuse/odd_worlds.h"
+#include "thimble/picture/anytime.h"
+#include "thimble/picture/brick_render.h"
+#include "thimble/picture/cutoff.h"
+#include "thimble/picture/pixel.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+const Rgb8 kPalette[] = {{1, 2, 3}, {250, 0, 0}, {0, 250, 0}, {0, 0, 250}};
+const Span<const Rgb8> kColors(kPalette);
+
+// Draws by `draw`; what is refused leaves the pixels alone.
+template <class Draw>
+void draw_band(OddValues& odd, const Camera& camera, Draw draw) {
+  ExactBytes pixels;
+  const Band band = odd_band(odd, camera, &pixels);
+  const std::uint8_t filled = odd.any<std::uint8_t>();
+  std::fill(pixels.bytes().begin(), pixels.bytes().end(), filled);
+  if (draw(band) != Status::kOk) {
+    CHECK(std::all_of(pixels.bytes().begin(), pixels.bytes().end(),
+                      [&](std::uint8_t byte) { return byte == filled; }));
+  }
+}
+
+void refine(OddValues& odd, const CompactTree& tree, const Camera& camera, const Shading& shading) {
+  const auto format = static_cast<PixelFormat>(odd.bits() % 5);
+  ExactBytes memory(odd_size(odd, anytime_bytes(camera.width_px(), camera.height_px(), format)));
+  AnytimeFrame frame;
+  (void)frame.refine(tree, odd.any<std::uint32_t>());
+  if (AnytimeFrame::make(tree, camera, shading, format, memory.bytes(), &frame) == Status::kOk) {
+    for (int i = 0; i < 4; ++i) {
+      (void)frame.refine(tree, odd.one_in(2) ? odd.any<std::uint32_t>() : 500,
+                         static_cast<Width>(odd.bits() % 3));
+      (void)frame.mean_error_bound_q8();
+      (void)frame.band(odd.any<std::int32_t>(), odd.any<std::int32_t>());
+      CHECK(frame.inexact() <= frame.pixels());
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "misuse: any camera, shading and band over sound and damaged trees -> refused or drawn in the band") {
+  misuse(20, 700, [](OddValues& odd) {
+    const int level = odd.between_32(kMinLevel, 6);
+    OddWorld world(odd, level);
+    ExactBytes map_bytes(most_brick_map_bytes(std::max(level, kMinBrickMapLevel)));
+    BrickMap map;
+    (void)BrickMap::make(world.compact, map_bytes.bytes(), &map);
+    if (odd.one_in(2)) {
+      world.damage(odd);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const Camera camera = odd_camera(odd, level);
+      const Shading shading = odd_shading(odd, kColors);
+      const TraceOptions options = odd_options(odd);
+      RenderCounts counts;
+      RenderCounts* const counted = odd.one_in(2) ? &counts : nullptr;
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band(world.compact, camera, shading, band, counted, options);
+      });
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band(world.octree, camera, shading, band, counted, options);
+      });
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band(world.shared, camera, shading, band, counted, options);
+      });
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band(world.grid, camera, shading, band, counted, options);
+      });
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band_32(world.compact, camera, shading, band, counted, options.max_visits);
+      });
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band(world.compact, map, camera, shading, band, counted);
+      });
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band_32(world.compact, map, camera, shading, band, counted);
+      });
+      (void)draws_fast(map, camera);
+      Cutoff cutoff;
+      (void)cutoff.set(camera, odd.one_in(2) ? Q16::from_raw(odd.any<std::int32_t>())
+                                             : Q16::from_raw(odd.between_32(0, kMaxCutoff.raw)));
+      (void)cutoff.set_level(odd.one_in(2) ? odd.any<std::int32_t>() : odd.between_32(0, kMaxLevel));
+      ExactBytes color_bytes(odd_size(odd, node_colors_bytes(world.compact)));
+      NodeColors colors;
+      (void)NodeColors::make(world.compact, kColors, {9, 9, 9}, color_bytes.bytes(), &colors);
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band_cut(world.compact, camera, shading, cutoff, colors, band, counted, options);
+      });
+      CutHit cut;
+      (void)closest_hit_cut(world.compact, odd_ray(odd, level), cutoff, &cut, options);
+      refine(odd, world.compact, camera, shading);
+      (void)depth_range(camera, world.compact.bounds());
+    }
+  });
+}
+
+TEST_CASE("misuse: any map under a tree -> refused, or drawn within the band") {
+  misuse(21, 400, [](OddValues& odd) {
+    const int level = odd.between_32(kMinBrickMapLevel, 6);
+    OddWorld world(odd, level);
+    ExactBytes map_bytes(most_brick_map_bytes(level));
+    BrickMap map;
+    std::size_t size = 0;
+    if (BrickMap::make(world.compact, map_bytes.bytes(), &map, &size) != Status::kOk) {
+      return;
+    }
+    // Behind the checksum of its tree everything may be wrong.
+    ExactBytes bad(ConstBytes(map_bytes.bytes()).subspan(0, size));
+    for (int i = 0; i < 8; ++i) {
+      bad.bytes()[odd.one_in(2) && size > 32 ? 32 + odd.bits() % (size - 32) : odd.bits() % size] =
+          odd.any<std::uint8_t>();
+    }
+    BrickMap opened;
+    if (BrickMap::open(bad.bytes(), &opened) != Status::kOk) {
+      return;
+    }
+    for (int i = 0; i < 4; ++i) {
+      const Camera camera = odd_camera(odd, level);
+      const Shading shading = odd_shading(odd, kColors);
+      draw_band(odd, camera,
+                [&](const Band& band) { return render_band(world.compact, opened, camera, shading, band); });
+    }
+  });
+}
+
+TEST_CASE("misuse: samples, colours and pixels of any numbers -> refused, or within their bytes") {
+  misuse(22, 4000, [](OddValues& odd) {
+    const int across = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, kMaxSamplesAcross + 1);
+    const std::int32_t width = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 70);
+    const auto format = static_cast<PixelFormat>(odd.bits() % 5);
+    const bool small = across >= 0 && across <= 16 && width >= 0 && width <= 1000;
+    ExactBytes fine(odd_size(odd, small ? samples_bytes(width, across) : 64));
+    ExactBytes row(odd_size(odd, small ? row_bytes(format, width) : 64));
+    (void)average_samples(fine.bytes(), across, width, odd.any<std::int32_t>(), format, row.bytes());
+
+    Hit hit;
+    hit.kind = static_cast<HitKind>(odd.bits() % 3);
+    hit.axis = static_cast<std::int8_t>(odd.between(-1, 2));
+    hit.material = odd.any<std::uint8_t>();
+    hit.t_numerator = odd.between_32(0, 1 << 23);
+    const Ray ray = good_ray(odd, 6);
+    hit.t_denominator =
+        hit.axis < 0 || ray.direction[hit.axis] == 0 ? 1 : 256 * std::abs(ray.direction[hit.axis]);
+    const Camera camera = odd_camera(odd, 6);
+    (void)shade(hit, ray, camera, odd_shading(odd, kColors));
+    (void)planar_depth_q8(hit, camera);
+    (void)face_of(hit, ray.direction);
+    std::uint16_t face_light[6];
+    Vec3i towards = odd.vector_between(-(1 << 14), 1 << 14);
+    towards.x |= 1;
+    light_from(towards, face_light);
+    if (camera.width_px() != 0) {
+      const Camera thin = camera.thinned(odd.between_32(1, 100));
+      (void)thin.ray(thin.width_px() - 1, thin.height_px() - 1);
+    }
+    (void)look_at(odd.any_point(), odd.any_point());
+  });
+}

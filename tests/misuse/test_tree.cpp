@@ -1,0 +1,312 @@
+// Every public function of base and tree with arguments that nobody means: refused, or done, and inside the
+// bytes.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "misuse/odd_values.h"
+#include "thimble/base/crc32.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/morton.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+// What every view of nodes may be asked, whatever its bytes hold.
+template <class Tree>
+void ask(const Tree& tree) {
+  (void)tree.level();
+  (void)tree.voxel_count();
+  (void)tree.solid_added();
+  (void)tree.bounds();
+  (void)tree.uniform_material();
+}
+
+void ask_nodes(OddValues& odd, const CompactTree& tree) {
+  ask(tree);
+  for (int i = 0; i < 8 && tree.node_count() != 0; ++i) {
+    const auto index = static_cast<std::uint32_t>(odd.between(0, std::int64_t{tree.node_count()} - 1));
+    (void)tree.mask(index);
+    (void)tree.first_child(index);
+    (void)tree.is_merged(index);
+    (void)tree.block_material(index);
+    (void)tree.blocks_before(index);
+    (void)tree.material_of_block(odd.any<std::uint32_t>());
+    (void)tree.voxel_material(odd.any<std::uint32_t>());
+  }
+}
+
+void ask_nodes(OddValues& odd, const SharedTree& tree) {
+  ask(tree);
+  (void)tree.bytes_with_materials();
+  std::uint32_t node = tree.root();
+  for (int i = 0; i < 16; ++i) {
+    (void)tree.material(odd.any_vector());
+    std::uint8_t mask = 0;
+    if (!tree.load(odd.one_in(4) ? odd.any<std::uint32_t>() : node, &mask)) {
+      node = tree.root();
+      continue;
+    }
+    if (mask != 0 && (node & SharedTree::kInline) == 0) {
+      const auto octant = static_cast<unsigned>(odd.bits() % 8);
+      node = (mask >> octant & 1U) != 0 ? tree.child(node, mask, octant) : tree.root();
+    }
+  }
+}
+
+// Changes an octree with anything, in a pool of any size.
+void change(OddValues& odd, Octree& octree) {
+  const std::int32_t side = std::int32_t{1} << octree.level();
+  const auto place = [&] { return odd.one_in(3) ? odd.any_vector() : odd.vector_between(0, side - 1); };
+  const std::uint64_t before = octree.voxels();
+  Status status = Status::kOk;
+  switch (odd.bits() % 11) {
+    case 0:
+      octree.clear();
+      CHECK(octree.empty());
+      return;
+    case 1:
+      octree.set_coarsen(odd.one_in(2));
+      return;
+    case 2:
+    case 3:
+      status = octree.insert(place(), odd.any<std::uint8_t>());
+      break;
+    case 4:
+      status = octree.insert_block(place(), odd.any<std::int32_t>() % 16, odd.any<std::uint8_t>());
+      break;
+    case 5: {
+      const int level = odd.between_32(0, octree.level());
+      Vec3i corner = odd.vector_between(0, side - 1);
+      for (int axis = 0; axis < 3; ++axis) {
+        corner[axis] = corner[axis] >> level << level;
+      }
+      status = octree.insert_block(corner, level, odd.any<std::uint8_t>());
+      break;
+    }
+    case 6: {
+      // Boxes that leave the world, and small ones: a large one takes time in proportion to its surface.
+      VoxelBox box{place(), place()};
+      if (octree.level() > 6) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (box.low[axis] >= 0 && box.low[axis] < side && box.high[axis] > box.low[axis]) {
+            box.high[axis] = std::min(box.high[axis], box.low[axis] + 20);
+          }
+        }
+      }
+      (void)octree.insert_box(box, odd.any<std::uint8_t>());
+      return;
+    }
+    case 7:
+      status = octree.remove(place());
+      break;
+    case 8:
+      (void)octree.make_room(odd.any<std::size_t>());
+      return;
+    case 9:
+      (void)octree.coarsen_to(odd.any<std::size_t>());
+      return;
+    default:
+      (void)octree.nodes_at(odd.any<std::int32_t>());
+      octree.coarsen_at(odd.any<std::int32_t>());
+      return;
+  }
+  if (status == Status::kOutOfRange || status == Status::kBadArgument) {
+    CHECK(octree.voxels() == before);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("misuse: dense grid -> refused or done, inside its bytes") {
+  misuse(1, 4000, [](OddValues& odd) {
+    const Vec3i size = odd.one_in(3) ? odd.any_vector() : odd.vector_between(-1, 40);
+    ExactBytes bytes(odd_size(odd, dense_grid_bytes(size)));
+    DenseGrid grid;
+    const Status status = DenseGrid::make(size, bytes.bytes(), &grid);
+    CHECK((status == Status::kOk) ==
+          (dense_grid_bytes(size) != 0 && bytes.bytes().size >= dense_grid_bytes(size)));
+    for (int i = 0; i < 8; ++i) {
+      const Vec3i at = odd.one_in(2) ? odd.any_vector() : odd.vector_between(-1, 40);
+      const Status set = grid.set(at, odd.one_in(2));
+      CHECK((set == Status::kOk) == grid.contains(at));
+      (void)grid.test(at);
+    }
+  });
+}
+
+TEST_CASE("misuse: octree -> refused or done, inside its pool, and its compact tree is sound") {
+  misuse(2, 1500, [](OddValues& odd) {
+    const int level = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(kMinLevel, kMaxLevel);
+    const std::size_t nodes = odd.one_in(4) ? 0 : odd.bits() % 400;
+    ExactBytes pool(odd_size(odd, Octree::octree_bytes(nodes)));
+    Octree octree;
+    const Status status = Octree::make(level, pool.bytes(), &octree);
+    CHECK((status == Status::kOk) == (level >= kMinLevel && level <= kMaxLevel));
+    for (int i = 0; i < 60; ++i) {
+      change(odd, octree);
+      CHECK(octree.nodes_used() <= octree.capacity());
+      (void)octree.test(odd.any_vector());
+      (void)octree.material(odd.any_vector());
+      const Octree::NodeView node = octree.node(odd.one_in(2) ? odd.any<std::uint32_t>() : octree.root());
+      if (!octree.empty()) {
+        (void)octree.child(node, static_cast<int>(odd.bits() % 8));
+      }
+    }
+    const int shift = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(kMinRankShift, kMaxRankShift);
+    std::size_t size = 0;
+    ExactBytes none;
+    CompactTree tree;
+    if (CompactTree::make(octree, none.bytes(), nullptr, &size, shift) == Status::kOutOfRange) {
+      CHECK((shift < kMinRankShift || shift > kMaxRankShift));
+      return;
+    }
+    ExactBytes out(odd_size(odd, size));
+    const Status made = CompactTree::make(octree, out.bytes(), &tree, &size, shift);
+    CHECK((made == Status::kOk) == (out.bytes().size >= size));
+    if (made == Status::kOk) {
+      CHECK(CompactTree::validate(out.bytes()) == nullptr);
+      CHECK(tree.voxel_count() == octree.voxels());
+      ask_nodes(odd, tree);
+    }
+  });
+}
+
+TEST_CASE("misuse: a pool that something else wrote over -> no read or write outside it") {
+  misuse(3, 600, [](OddValues& odd) {
+    ExactBytes pool(Octree::octree_bytes(1 + odd.bits() % 200));
+    Octree octree;
+    REQUIRE(Octree::make(odd.between_32(kMinLevel, 6), pool.bytes(), &octree) == Status::kOk);
+    for (int i = 0; i < 40; ++i) {
+      change(odd, octree);
+    }
+    for (int i = 0; i < 8; ++i) {
+      pool.bytes()[odd.bits() % pool.bytes().size] = odd.any<std::uint8_t>();
+    }
+    // Reading alone is promised to stay inside (law 4 is about what is baked; a pool belongs to its program).
+    for (int i = 0; i < 50; ++i) {
+      (void)octree.node(odd.any<std::uint32_t>());
+    }
+  });
+}
+
+TEST_CASE("misuse: keys and parts to compact trees -> refused or done, inside their bytes") {
+  misuse(4, 1500, [](OddValues& odd) {
+    const int level = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(kMinLevel, 10);
+    const int bits = level >= 1 && level <= 10 ? 3 * level : 30;
+    std::vector<std::uint32_t> keys(odd.bits() % 60);
+    for (std::uint32_t& key : keys) {
+      key = static_cast<std::uint32_t>(odd.bits() & ((std::uint64_t{1} << bits) - 1));
+    }
+    sort_keys(Span<std::uint32_t>(keys.data(), keys.size()), bits);
+    CHECK(std::is_sorted(keys.begin(), keys.end()));
+    keys.resize(unique_keys(Span<std::uint32_t>(keys.data(), keys.size())));
+    std::size_t size = 0;
+    ExactBytes none;
+    const int shift = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(kMinRankShift, kMaxRankShift);
+    const Span<const std::uint32_t> span(keys.data(), keys.size());
+    if (CompactTree::make(span, level, odd.any<std::uint8_t>(), none.bytes(), nullptr, &size, shift) !=
+        Status::kOutOfMemory) {
+      return;
+    }
+    ExactBytes out(odd_size(odd, size));
+    CompactTree tree;
+    const Status made =
+        CompactTree::make(span, level, odd.any<std::uint8_t>(), out.bytes(), &tree, &size, shift);
+    CHECK((made == Status::kOk) == (out.bytes().size >= size));
+    if (made != Status::kOk) {
+      return;
+    }
+    CHECK(tree.voxel_count() == keys.size());
+    std::vector<CompactTree> parts(odd.one_in(3) ? odd.bits() % 70 : 8, tree);
+    if (!parts.empty() && odd.one_in(3)) {
+      parts[odd.bits() % parts.size()] = CompactTree();
+    }
+    ExactBytes joined(odd_size(odd, size * parts.size() + 4096));
+    CompactTree whole;
+    if (CompactTree::make(Span<const CompactTree>(parts.data(), parts.size()), joined.bytes(), &whole,
+                          &size) == Status::kOk) {
+      CHECK(CompactTree::validate(joined.bytes()) == nullptr);
+    }
+  });
+}
+
+TEST_CASE("misuse: damaged compact, shared and brick bytes -> opened or refused, never read beyond") {
+  ExactBytes pool(Octree::octree_bytes(4000));
+  Octree octree;
+  REQUIRE(Octree::make(5, pool.bytes(), &octree) == Status::kOk);
+  OddValues odd_scene(5);
+  for (int i = 0; i < 300; ++i) {
+    REQUIRE(octree.insert(odd_scene.vector_between(0, 31), static_cast<std::uint8_t>(i % 3)) == Status::kOk);
+  }
+  REQUIRE(octree.insert_block({16, 0, 8}, 3, 2) == Status::kOk);
+  std::size_t size = 0;
+  ExactBytes none;
+  REQUIRE(CompactTree::make(octree, none.bytes(), nullptr, &size) == Status::kOutOfMemory);
+  ExactBytes compact(size);
+  CompactTree tree;
+  REQUIRE(CompactTree::make(octree, compact.bytes(), &tree) == Status::kOk);
+  const CompactShape shape = compact_shape(octree);
+  ExactBytes shared_bytes(shared_tree_bytes(shape));
+  ExactBytes work(shared_work_bytes(shape.nodes));
+  SharedTree shared;
+  SharedBuild build;
+  REQUIRE(SharedTree::make(tree, shared_bytes.bytes(), work.bytes(), &shared, &build) == Status::kOk);
+  ExactBytes map_bytes(most_brick_map_bytes(5));
+  BrickMap map;
+  std::size_t map_size = 0;
+  REQUIRE(BrickMap::make(tree, map_bytes.bytes(), &map, &map_size) == Status::kOk);
+
+  misuse(6, 4000, [&](OddValues& odd) {
+    const ExactBytes bad = damaged(odd, compact.bytes().subspan(0, size));
+    std::uint32_t place = 0;
+    (void)CompactTree::validate(bad.bytes(), odd.one_in(2) ? &place : nullptr);
+    CompactTree opened;
+    if (CompactTree::open(bad.bytes(), &opened) == Status::kOk) {
+      ask_nodes(odd, opened);
+      // Whatever is made of it stays inside its bytes too.
+      ExactBytes out(odd_size(odd, shared_tree_bytes(shape)));
+      ExactBytes scratch(odd_size(odd, shared_work_bytes(opened.node_count())));
+      SharedTree second;
+      if (SharedTree::make(opened, out.bytes(), scratch.bytes(), &second) == Status::kOk) {
+        ask_nodes(odd, second);
+      }
+      ExactBytes bricks(
+          odd_size(odd, opened.level() <= kMaxBrickMapLevel && opened.level() >= kMinBrickMapLevel
+                            ? most_brick_map_bytes(opened.level())
+                            : 64));
+      BrickMap made;
+      if (BrickMap::make(opened, bricks.bytes(), &made) == Status::kOk) {
+        CHECK(made.belongs_to(opened));
+      }
+    }
+    const ExactBytes bad_shared = damaged(odd, shared_bytes.bytes().subspan(0, build.bytes));
+    ExactBytes check(odd_size(odd, shared_check_bytes(bad_shared.bytes().size)));
+    (void)SharedTree::validate(bad_shared.bytes(), check.bytes(), odd.one_in(2) ? &place : nullptr);
+    SharedTree opened_shared;
+    if (SharedTree::open(bad_shared.bytes(), &opened_shared) == Status::kOk) {
+      ask_nodes(odd, opened_shared);
+    }
+    const ExactBytes bad_map = damaged(odd, map_bytes.bytes().subspan(0, map_size));
+    (void)BrickMap::validate(bad_map.bytes());
+    BrickMap opened_map;
+    if (BrickMap::open(bad_map.bytes(), &opened_map) == Status::kOk) {
+      (void)opened_map.belongs_to(tree);
+      for (int i = 0; i < 8 && opened_map.brick_count() > 1; ++i) {
+        (void)opened_map.material(
+            tree, static_cast<std::uint32_t>(odd.between(1, std::int64_t{opened_map.brick_count()} - 1)),
+            static_cast<unsigned>(odd.bits() % 64));
+      }
+    }
+    (void)crc32(bad.bytes(), odd.any<std::uint32_t>());
+    (void)morton_voxel(odd.any<std::uint64_t>());
+    (void)morton_code(odd.any<std::uint32_t>(), odd.any<std::uint32_t>(), odd.any<std::uint32_t>());
+  });
+}
