@@ -95,6 +95,8 @@ int main(int argc, char** argv) {
       "thimble");
   app.require_subcommand(1);
   app.formatter(thimble::tools::help_formatter());
+  app.set_version_flag("--version", thimble::tools::version_text,
+                       "print version, commit, and what this build and this machine have");
   thimble::tools::add_all_commands(app);
   app.footer("thimble SUBCOMMAND --help describes each.");
   for (CLI::App* command : app.get_subcommands({})) {
@@ -119,7 +121,7 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
-      return app.exit(error);  // --help
+      return app.exit(error);  // --help, --version
     }
     sentence = usage_sentence(app, error, argc, argv);
     status = kUsageStatus;
