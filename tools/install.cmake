@@ -1,7 +1,7 @@
 # What `make install` and the .deb have besides the library: the command, its scenes, its manual page, completions.
 install(TARGETS thimble_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY gallery/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble
-  FILES_MATCHING PATTERN "*.scene" PATTERN "*.vox")
+  FILES_MATCHING PATTERN "*.scene" PATTERN "*.vox" PATTERN "*.vox.gz")
 
 # The manual page comes from the description that --help prints.
 set(manual ${PROJECT_BINARY_DIR}/generated/thimble.1.gz)

@@ -120,6 +120,10 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   return app.add_subcommand(name, description);
 }
 
+void hide_command(CLI::App& command) {
+  command.group("");
+}
+
 void when_chosen(CLI::App& command, std::function<void()> action) {
   command.callback(std::move(action));
 }

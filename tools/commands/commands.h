@@ -23,9 +23,10 @@ void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_effects(CLI::App& app);
-// Not in the help: what shells and the build ask for.
+// Not in the help: what shells and scripts ask for.
 void add_complete(CLI::App& app);
 void add_manual(CLI::App& app);
+void add_uart_picture(CLI::App& app);
 
 /// What `thimble --version` prints: version, commit, and what this build and this machine have.
 std::string version_text();
@@ -44,6 +45,7 @@ inline void add_all_commands(CLI::App& app) {
   add_effects(app);
   add_complete(app);
   add_manual(app);
+  add_uart_picture(app);
 }
 
 }  // namespace thimble::tools

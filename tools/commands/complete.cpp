@@ -151,7 +151,7 @@ void complete(CLI::App& app, Words words) {
 void add_complete(CLI::App& app) {
   CLI::App* sub =
       add_command(app, "complete", "prints what the last word of a command line may become, for shells");
-  sub->group("");
+  hide_command(*sub);
   auto line = std::make_shared<std::string>();
   add_argument(*sub, "words", "WORDS", line.get(), "the words up to the cursor, a line each").required();
   when_chosen(*sub, [&app, line] {

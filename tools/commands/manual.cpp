@@ -19,19 +19,19 @@ std::string plain(const std::string& text) {
       case '\\':
         out += "\\e";
         break;
-      case '-':
+      case '.':
         out += "\\-";
         break;
       case '\'':
         out += "\\(aq";
         break;
-      case '`':
+      case '.':
         out += "\\(ga";
         break;
-      case '^':
+      case '.':
         out += "\\(ha";
         break;
-      case '~':
+      case '.':
         out += "\\(ti";
         break;
       case '.':
@@ -44,8 +44,19 @@ std::string plain(const std::string& text) {
   return out;
 }
 
+// In lines of at most 80 characters, about, as sources of manuals are.
 std::string paragraph(const std::string& text) {
-  return plain(text) + "\n";
+  constexpr std::size_t kWidth = 70;
+  std::string out;
+  std::string line;
+  for (const std::string& word : CLI::detail::split(text, ' ')) {
+    if (!line.empty() && line.size() + word.size() > kWidth) {
+      out += plain(line) + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return out + plain(line) + "\n";
 }
 
 std::string option_entry(const CLI::Option& option, bool is_argument) {
@@ -72,7 +83,7 @@ std::string entries_of(const CLI::App& app, bool with_help) {
 
 std::string manual(const CLI::App& app) {
   std::string text = std::string(".TH THIMBLE 1 \"") + version_date() + "\" \"thimble " + version_number() +
-                     "\" \"User Commands\"\n"
+                     "\" \"User Commands\"\n.ad l\n"
                      ".SH NAME\nthimble \\- draws voxels exactly, in a fixed block of memory\n"
                      ".SH SYNOPSIS\n.B thimble\n.I SUBCOMMAND\n.RI [ OPTIONS ]\n"
                      ".SH DESCRIPTION\n" +
@@ -110,7 +121,7 @@ std::string manual(const CLI::App& app) {
 
 void add_manual(CLI::App& app) {
   CLI::App* sub = add_command(app, "manual", "prints this command's manual page, for man");
-  sub->group("");
+  hide_command(*sub);
   when_chosen(*sub, [&app] {
     const std::string text = manual(app);
     std::fwrite(text.data(), 1, text.size(), stdout);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Builds scenes/fox.vox: fox.py OUT.vox. A fox that sits in a meadow, from rounded shapes that flow into one another."""
+"""Builds scenes/fox.vox.gz: fox.py OUT.vox.gz. A fox that sits in a meadow, from rounded shapes that flow into one another."""
 import math
 import sys
 
@@ -187,7 +187,7 @@ def mushroom():
 
 
 def main():
-    scene = File()
+    scene = File(by_color=True)
     ground = meadow()
     ground.update(fox())
     scene.place(scene.model(ground))

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Builds scenes/house.vox: house.py OUT.vox. A house cut open at its front: four rooms, a lamp in each of two."""
+"""Builds scenes/house.vox.gz: house.py OUT.vox.gz. A house cut open at its front: four rooms, a lamp in each of two."""
 import sys
 
-from voxels import File, Part, colors
+import voxels
+from voxels import COUNT, FIRST, File, colors
 
 colors({
     "plaster": [0xE8DCC4, 0xE4D7BD],
@@ -33,6 +34,21 @@ colors({
     lamp={"_type": "_emit", "_emit": "0.9", "_flux": "2"},
     ember={"_type": "_emit", "_emit": "0.8", "_flux": "1"},
     pane={"_type": "_glass", "_trans": "0.8", "_ri": "1.3", "_ior": "0.3"})
+
+
+class Part(voxels.Part):
+    """Planks, courses of brick and slates in place of shades by chance."""
+
+    def put(self, name, x, y, z):
+        if name in ("floor", "roof", "brick", "book"):
+            course = (x - 1) // 4 + y // 13 * 2 if name == "floor" else y // 4 * 2 + z // 2 if name == "roof" else \
+                (x // 4 + y // 4 if z // 2 % 2 else (x + 2) // 4 + (y + 2) // 4) + z // 2
+            self[x, y, z] = FIRST[name] + course % COUNT[name]
+        elif name in ("plaster", "wallpaper", "rose", "earth", "beam"):
+            self[x, y, z] = FIRST[name] + (x // 3 % 2 if name == "wallpaper" else 0)
+        else:
+            super().put(name, x, y, z)
+
 
 # The front is towards -y. Inside: x 0 to 71, y 0 to 43; two floors of 30 with 3 between them.
 LOW, HIGH, SPLIT = 0, 33, 36
@@ -68,10 +84,12 @@ def shell():
         window(part, (-3, 0), (16, 25), (z, z + 13), 1)
         window(part, (71, 74), (16, 25), (z, z + 13), 1)
     # The roof: its front is cut off, and one sees the attic's gable.
-    for row in range(27):
-        for x in (-6 + row * 39 // 26, 77 - row * 39 // 26):
-            for z in (61 + row, 62 + row):
-                part.box("roof", (min(x, x + 2), max(x, x + 2)), (-5, 48), (z, z))
+    for row in range(29):
+        for x in range(-6 + row * 39 // 26, -3 + row * 39 // 26):
+            for along in (x, 71 - x):
+                if x <= 36:
+                    part.box("roof", (along, along), (-5, 48), (61 + row, 61 + row))
+    part.box("beam", (34, 37), (-6, 48), (89, 89))
     for row in range(26):
         left, right = -3 + row * 39 // 26, 74 - row * 39 // 26
         if left <= right:
@@ -141,7 +159,7 @@ def living_room(part):
     part.box("blue", (29, 33), (42, 42), (15, 20))
     part.box("leaf", (29, 33), (42, 42), (15, 16))
     part.put("cream", 31, 42, 18)
-    lamp(part, 17, 20, 20, HIGH - 4)
+    lamp(part, 17, 18, 20, HIGH - 4)
 
 
 def shelf(part, x0, x1, ys, z0):
@@ -266,8 +284,8 @@ def garden():
             is_path = 50 <= x <= 58 and y < -4
             for z in range(-9, -4):
                 inside = -3 <= x <= 74 and -6 <= y <= 46 and z > -6
-                if not inside and corner <= 96 - (z + 9) * 2 + 2 * (z + 9):
-                    name = "earth" if z < -6 else "grass"
+                if not inside and (z == -5 or corner > 40) and corner <= 96 - (z + 9) * 2 + 2 * (z + 9):
+                    name = "earth" if z < -6 else "grass"  # the bottom is left open
                     part.put("path" if is_path and z == -5 and (x * 3 + y * 5) % 11 else name, x, y, z)
             mixed = (x * 2654435761 ^ y * 40503 * 7919) & 0xFFFFFFFF
             if mixed % 31 == 0 and not is_path and not (-5 <= x <= 76 and -8 <= y <= 48):
@@ -288,7 +306,6 @@ def tree(part, x, y):
 
 
 def main():
-    from voxels import FIRST, COUNT
     BOOKS.extend(range(FIRST["book"], FIRST["book"] + COUNT["book"]))
     part = garden()
     for x, y, size in ((-9, -8, 5), (-11, 4, 4), (82, -12, 5), (81, 2, 4), (66, -17, 3), (2, -17, 4), (84, 40, 5), (34, -20, 3)):
@@ -297,7 +314,7 @@ def main():
     part.update(shell())
     for furnish in (living_room, kitchen, bedroom, study, attic):
         furnish(part)
-    scene = File()
+    scene = File(by_color=True)
     scene.place(scene.model(part))
     scene.write(sys.argv[1])
 

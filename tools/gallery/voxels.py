@@ -1,4 +1,5 @@
 """What the scripts of this folder build their scenes with: colours, parts of voxels, and the .vox file."""
+import gzip
 import struct
 
 FIRST = {}  # name -> the first palette index of its shades
@@ -75,9 +76,11 @@ def pairs(*values):
 
 
 class File:
-    def __init__(self):
+    def __init__(self, by_color=False):
         self.models = []
         self.instances = []  # model, translation, quarter turns
+        # Colour by colour a file takes less room when it is compressed.
+        self.order = (lambda one: (one[1], one[0][::-1])) if by_color else (lambda one: one[0][::-1])
 
     def model(self, part):
         """Adds a model and returns its number and middle. Sides are even, so that the middle is a corner of voxels."""
@@ -86,7 +89,7 @@ class File:
         high = [max(place[axis] for place in voxels) for axis in range(3)]
         size = [(high[axis] - low[axis] + 2) & ~1 for axis in range(3)]
         data = b"".join(struct.pack("4B", x - low[0], y - low[1], z - low[2], color)
-                        for (x, y, z), color in sorted(voxels.items(), key=lambda one: one[0][::-1]))
+                        for (x, y, z), color in sorted(voxels.items(), key=self.order))
         self.models.append(chunk(b"SIZE", struct.pack("<3i", *size)) +
                            chunk(b"XYZI", struct.pack("<i", len(voxels)) + data))
         return len(self.models) - 1, [low[axis] + size[axis] // 2 for axis in range(3)]
@@ -115,5 +118,6 @@ class File:
         materials = b"".join(chunk(b"MATL", struct.pack("<i", index) + pairs(*properties.items()))
                              for index, properties in sorted(MATERIALS.items()))
         main = b"".join(self.models) + nodes + chunk(b"RGBA", colors) + materials
+        whole = b"VOX " + struct.pack("<i", 150) + chunk(b"MAIN", b"", main)
         with open(name, "wb") as file:
-            file.write(b"VOX " + struct.pack("<i", 150) + chunk(b"MAIN", b"", main))
+            file.write(gzip.compress(whole, 9, mtime=0) if name.endswith(".gz") else whole)

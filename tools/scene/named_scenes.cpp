@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <system_error>
 
 #include "readers/source.h"
@@ -13,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Where both are there, the text comes first: it has the model, a camera and light.
-constexpr std::array<const char*, 2> kEndings{".scene", ".vox"};
+constexpr std::array<std::string_view, 3> kEndings{".scene", ".vox", ".vox.gz"};
 // From the program to the root of the tree: build/release, and room for a deeper folder.
 constexpr int kMostParents = 6;
 
@@ -43,10 +44,11 @@ std::map<std::string, std::string> known_scenes() {
   std::map<std::string, std::string> known;
   const fs::path folder = scene_folder();
   std::error_code error;
-  for (const char* ending : kEndings) {
+  for (const std::string_view ending : kEndings) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-      if (entry->path().extension() == ending) {
-        known.try_emplace(entry->path().stem().string(), entry->path().string());
+      const std::string file = entry->path().filename().string();
+      if (file.size() > ending.size() && file.ends_with(ending)) {
+        known.try_emplace(file.substr(0, file.size() - ending.size()), entry->path().string());
       }
     }
   }
