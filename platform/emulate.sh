@@ -10,6 +10,10 @@ board=$1
 app=$2
 shift 2
 . platform/board_facts.sh
+if [ -n "${SHOT:-}" ] && [ "$app" != demo ]; then
+  echo "thimble: SHOT asks the application demo for its picture, not $app" >&2
+  exit 2
+fi
 image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app.elf
 if [ ! -f "$image" ]; then
   echo "thimble: $image is not there; make firmware BOARD=$board APP=$app builds it" >&2
@@ -22,10 +26,6 @@ run() {
 }
 
 if [ -n "${SHOT:-}" ]; then
-  if [ "$app" != demo ]; then
-    echo "thimble: SHOT asks the application demo for its picture, not $app" >&2
-    exit 2
-  fi
   folder=$(mktemp -d)
   machine=
   trap '[ -z "$machine" ] || kill $machine 2>/dev/null || true; rm -rf "$folder"' EXIT

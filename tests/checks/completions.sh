@@ -42,7 +42,7 @@ ASK
   if command -v script >/dev/null 2>&1; then
     printf 'source %s\nthimble vers\tion-of-nothing\nthimble --vers\t\nexit\n' "$root/tools/completions/thimble.bash" |
       script -qec 'bash --norc --noprofile -i' /dev/null >"$work/terminal" 2>&1 || true
-    if ! grep -q '^thimble [0-9]' "$work/terminal"; then
+    if ! grep -q '^wide renderer' "$work/terminal"; then
       cat "$work/terminal" >&2
       echo "completions: bash at a terminal does not complete thimble --vers" >&2
       failed=1

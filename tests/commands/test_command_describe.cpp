@@ -121,11 +121,13 @@ TEST_CASE("command: the manual -> every subcommand and option of --help, no empt
 
 TEST_CASE("command: completion -> every subcommand and option of --help, and values where a value is due") {
   const Words names = subcommands();
-  CHECK(completed({""}) == names);
-  CHECK(completed({"rend"}) == Words{"render"});
+  const Words first = completed({""});
+  CHECK(holds(completed({"rend"}), "render"));
+  CHECK_FALSE(holds(completed({"rend"}), "trace"));
   CHECK(holds(completed({"--"}), "--version"));
   for (const std::string& name : names) {
     CAPTURE(name);
+    CHECK(holds(first, name));
     const Words offered = completed({name, "--"});
     for (const std::string& option : options_of(name)) {
       CAPTURE(option);
@@ -156,9 +158,11 @@ TEST_CASE("command: completion -> every subcommand and option of --help, and val
 
 TEST_CASE("command: a scene by its name -> the one that comes along, unless a file has that name") {
   const TemporaryFolder folder;
+  CommandLimits here;
+  here.directory = folder.path();
   for (const char* name : {"castle", "fox", "house", "lagoon", "ship"}) {
     CAPTURE(name);
-    const CommandResult result = run_command({"info", name}, {.directory = folder.path()});
+    const CommandResult result = run_command({"info", name}, here);
     CAPTURE(result.describe());
     CHECK(result.status == 0);
     CHECK(result.out.find("compact tree         sound") != std::string::npos);
@@ -167,7 +171,7 @@ TEST_CASE("command: a scene by its name -> the one that comes along, unless a fi
   check_refused({"info", "castle.scene"}, 1, {"castle.scene: ", "No such file"});
   check_refused({"info", "./castle"}, 1, {"./castle: ", "No such file"});
   folder.write("castle", "ply\n");
-  const CommandResult own = run_command({"info", "castle"}, {.directory = folder.path()});
+  const CommandResult own = run_command({"info", "castle"}, here);
   CHECK(own.status == 1);
   CHECK(own.err.starts_with("thimble: castle: "));
   CHECK(own.err.find("scene of that name") == std::string::npos);

@@ -12,6 +12,7 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "scene/generators.h"
 #include "scene/named_scenes.h"
 
 namespace thimble::tools {
@@ -50,8 +51,8 @@ void offer_scenes(const std::string& before, Answer* answer) {
   for (const std::string& name : scene_names()) {
     answer->offer(before + name, "a scene that comes with Thimble");
   }
-  for (const char* name : {"demo", "spheres", "water", "points:1000000", "cluster:1000000"}) {
-    answer->offer(before + name, "a generator");
+  for (const std::string& example : generator_examples()) {
+    answer->offer(before + example, "a generator");
   }
   Answer::offer_files();
 }
@@ -71,8 +72,8 @@ void offer_values(CLI::Option* option, const std::string& before, const std::str
   }
   if (type == "SCENE") {
     offer_scenes(before, answer);
-  } else if (words.empty() && (type.find("FILE") != std::string::npos ||
-                               type.find('.') != std::string::npos || type == "SCRIPT" || type == "REF")) {
+  } else if (words.empty() &&
+             (type.find("FILE") != std::string::npos || type == "SCRIPT" || type == "REF" || type == "LOG")) {
     Answer::offer_files();
   }
 }
@@ -128,6 +129,9 @@ void complete(CLI::App& app, Words words) {
     for (const CLI::App* sub :
          app.get_subcommands([](CLI::App* each) { return !each->get_group().empty(); })) {
       answer.offer(sub->get_name(), sub->get_description());
+    }
+    if (subcommand_named(app, "view") != nullptr) {
+      offer_scenes("", &answer);  // `thimble SCENE` is short for it
     }
     return;
   }

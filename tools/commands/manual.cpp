@@ -19,19 +19,19 @@ std::string plain(const std::string& text) {
       case '\\':
         out += "\\e";
         break;
-      case '.':
+      case '-':
         out += "\\-";
         break;
       case '\'':
         out += "\\(aq";
         break;
-      case '.':
+      case '`':
         out += "\\(ga";
         break;
-      case '.':
+      case '^':
         out += "\\(ha";
         break;
-      case '.':
+      case '~':
         out += "\\(ti";
         break;
       case '.':

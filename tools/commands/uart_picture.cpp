@@ -1,6 +1,6 @@
 // thimble uart-picture: the picture in what a board sent over its UART, among its other lines. `make emulate SHOT=...`
 // asks for it, and it does for the log of a terminal that a real board hangs on.
-#include <cctype>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
