@@ -1,7 +1,8 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim release sanitize clang \
-  fuzz check test coverage bench firmware emulate flash test-boards test-framebuffer format tidy clean
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim install deb \
+  release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-framebuffer \
+  format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -34,6 +35,15 @@ run: all ## Render four scenes within fixed budgets into out/ and print what the
 	@sh tools/run_demo.sh build/release/thimble out
 sim: all ## Run the demo as on BOARD=NAME, in a window or the terminal (SCENE=..., SIM_ARGS=...)
 	@build/release/thimble sim $(SCENE) --board $(BOARD) $(SIM_ARGS)
+
+# DESTDIR is another root, for packages.
+PREFIX ?= /usr/local
+DESTDIR ?=
+install: all ## Install command, library, scenes, manual, completions (PREFIX=/usr/local, DESTDIR=...)
+	@DESTDIR="$(DESTDIR)" cmake --install build/release --prefix "$(PREFIX)" --strip >/dev/null
+	@echo "installed in $(DESTDIR)$(PREFIX)"
+deb: all ## Make a Debian package of what `make install` installs (build/release/thimble_*.deb)
+	@sh tools/package.sh build/release
 
 # What is tested is built in four ways; STEP says which of how many steps this is.
 TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON
@@ -80,7 +90,7 @@ bench: deps-bench ## Build and run the benchmarks
 BOARD ?= lm3s6965evb
 APP ?= demo
 SCENE ?= demo
-export FRAMES EFFECTS
+export FRAMES EFFECTS SHOT CRC
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
 	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"

@@ -1,6 +1,8 @@
 #!/bin/sh
 # Runs an image under QEMU, the UART on stdin and stdout; the exit status is the application's.
 #   emulate.sh BOARD APP [QEMU ARGUMENTS...]      (-display gtk shows the display)
+# In the environment: SHOT=PICTURE asks the demonstration for its picture over the UART, writes it (.png, .ppm, .pgm,
+# .pbm) and ends; CRC=1 shows the lines that the demonstration writes for each frame where the board has no display.
 # -icount: time is counted in instructions, so every run is the same.
 set -eu
 cd "$(dirname "$0")/.."
@@ -8,10 +10,66 @@ board=$1
 app=$2
 shift 2
 . platform/board_facts.sh
+if [ -n "${SHOT:-}" ] && [ "$app" != demo ]; then
+  echo "thimble: SHOT asks the application demo for its picture, not $app" >&2
+  exit 2
+fi
 image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app.elf
 if [ ! -f "$image" ]; then
   echo "thimble: $image is not there; make firmware BOARD=$board APP=$app builds it" >&2
   exit 1
 fi
-exec $(fact QEMU) -icount "shift=$(fact ICOUNT_SHIFT)" -display none -monitor none -serial stdio \
-  -semihosting-config enable=on,target=native -kernel "$image" "$@"
+qemu="$(fact QEMU) -icount shift=$(fact ICOUNT_SHIFT) -display none -monitor none -serial stdio"
+semihosting=enable=on,target=native
+run() {
+  exec $qemu -semihosting-config $semihosting -kernel "$image" "$@"
+}
+
+if [ -n "${SHOT:-}" ]; then
+  folder=$(mktemp -d)
+  machine=
+  trap '[ -z "$machine" ] || kill $machine 2>/dev/null || true; rm -rf "$folder"' EXIT
+  trap 'exit 130' INT TERM HUP
+  mkfifo "$folder/keys"
+  (run "$@") <"$folder/keys" >"$folder/log" 2>"$folder/noise" &
+  machine=$!
+  exec 3>"$folder/keys"
+  # What is sent before the UART is on is lost, so that it is asked until the picture begins to come: ten minutes at most.
+  try=0
+  until build/release/thimble uart-picture "$folder/log" -o "$SHOT" 2>"$folder/why"; do
+    try=$((try + 1))
+    if [ $try -gt 3000 ] || ! kill -0 $machine 2>/dev/null; then
+      cat "$folder/noise" >&2
+      grep -a '^error: ' "$folder/log" >&2 || true
+      sed 's/^thimble: [^:]*: /thimble: no picture came: /' "$folder/why" >&2
+      exit 1
+    fi
+    # Asked once a second: a picture is more than the UART sends at once.
+    if [ $((try % 5)) = 1 ] && ! grep -aqs '^P5' "$folder/log"; then
+      printf p >&3 2>/dev/null || true
+    fi
+    sleep 0.2
+  done
+  echo "thimble: $SHOT shows what the display of $board would"
+  exit 0
+fi
+
+if [ "$app" != demo ] || [ "$(fact DISPLAY)" != none ]; then
+  run "$@"
+fi
+echo "thimble: $board has no display: the key q or Ctrl-C ends; a picture: make emulate BOARD=$board SHOT=picture.png" >&2
+if [ -n "${CRC:-}" ]; then
+  run "$@"
+fi
+# A line a frame is nothing that somebody reads. The last line of the pipe is QEMU's exit status.
+exec 4>&1
+status=$(
+  {
+    {
+      ended=0
+      (run "$@") 3>&- 4>&- || ended=$?
+      echo $ended >&3
+    } | grep -a --line-buffered -vE '^(frame|build) [0-9]+ crc ' >&4 3>&- || true
+  } 3>&1
+)
+exit "$status"

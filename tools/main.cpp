@@ -98,6 +98,8 @@ int main(int argc, char** argv) {
       "thimble");
   app.require_subcommand(1);
   app.formatter(thimble::tools::help_formatter());
+  app.set_version_flag("--version", thimble::tools::version_text,
+                       "print version, commit, and what this build and this machine have");
   thimble::tools::add_all_commands(app);
   app.footer("thimble SUBCOMMAND --help describes each.");
   for (CLI::App* command : app.get_subcommands({})) {

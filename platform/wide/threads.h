@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <optional>
 
-namespace thimble::wide {
+#include "wide/limits.h"
 
-inline constexpr int kMaxThreads = 256;
+namespace thimble::wide {
 
 /// Not to be copied. One frame at a time.
 class Threads {

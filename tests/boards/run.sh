@@ -36,6 +36,9 @@ case " $boards " in
     sh "$here/own_scene.sh" || failed=1
     ;;
 esac
+case " $boards " in
+  *microbit*) sh "$here/emulate.sh" || failed=1 ;;
+esac
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1
 

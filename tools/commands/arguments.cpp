@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kHelpColumn = 30;
 constexpr std::size_t kHelpWidth = 100;
+constexpr char kOffered[] = "offered";  // the name of a check that keeps words
 
 // `text` broken at blanks so that no line is wider than the help, the first one beginning at `column`.
 std::string wrapped(const std::string& text, std::size_t column) {
@@ -53,22 +54,7 @@ class HelpFormatter final : public CLI::Formatter {
     return entry(sub->get_name(), sub->get_description());
   }
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
-    std::string label = is_positional ? option->get_type_name() : option->get_name(false, true);
-    const std::size_t comma = label.find(',');
-    if (comma != std::string::npos) {
-      label.insert(comma + 1, " ");
-    }
-    if (!is_positional && option->get_type_size() != 0) {
-      label += " " + option->get_type_name();
-    }
-    std::string text = option->get_description();
-    if (!option->get_default_str().empty()) {
-      text += " (default: " + option->get_default_str() + ")";
-    }
-    if (option->get_required() && !is_positional) {
-      text += " (required)";
-    }
-    return entry(label, text);
+    return entry(label_of(*option, is_positional), description_of(*option, is_positional));
   }
   std::string make_usage(const CLI::App* app, std::string name) const override {
     std::string usage = "Usage: " + name;
@@ -120,8 +106,22 @@ Option& Option::required() {
   return *this;
 }
 
+Option& Option::offers(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : "|") + word;
+  }
+  // Kept with the option as a check that is never made, which the help does not show.
+  option_->check(CLI::Validator(text).name(kOffered).active(false));
+  return *this;
+}
+
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description) {
   return app.add_subcommand(name, description);
+}
+
+void hide_command(CLI::App& command) {
+  command.group("");
 }
 
 void when_chosen(CLI::App& command, std::function<void()> action) {
@@ -235,6 +235,48 @@ void refuse_usage(const std::string& name, const std::string& what) {
 
 void refuse_usage(const std::string& what) {
   throw CLI::ValidationError(what);
+}
+
+std::vector<std::string> words_offered(CLI::Option* option) {
+  std::string text = option->get_type_name();
+  try {
+    CLI::Validator* kept = option->get_validator(kOffered);
+    text = kept->active(true).get_description();
+    kept->active(false);
+  } catch (const CLI::OptionNotFound&) {
+    // None were given.
+  }
+  std::vector<std::string> words;
+  for (const std::string& word : CLI::detail::split(text, '|')) {
+    const bool is_name = std::none_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+    if (text.find('|') != std::string::npos && !(is_name && CLI::detail::to_lower(word) != word)) {
+      words.push_back(word);
+    }
+  }
+  return words;
+}
+
+std::string label_of(const CLI::Option& option, bool is_argument) {
+  std::string label = is_argument ? option.get_type_name() : option.get_name(false, true);
+  const std::size_t comma = label.find(',');
+  if (comma != std::string::npos) {
+    label.insert(comma + 1, " ");
+  }
+  if (!is_argument && option.get_type_size() != 0) {
+    label += " " + option.get_type_name();
+  }
+  return label;
+}
+
+std::string description_of(const CLI::Option& option, bool is_argument) {
+  std::string text = option.get_description();
+  if (!option.get_default_str().empty()) {
+    text += " (default: " + option.get_default_str() + ")";
+  }
+  if (option.get_required() && !is_argument) {
+    text += " (required)";
+  }
+  return text;
 }
 
 std::shared_ptr<CLI::FormatterBase> help_formatter() {

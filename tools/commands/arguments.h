@@ -1,8 +1,8 @@
 /// @file arguments.h
 /// Command-line options whose errors are sentences, and help that fits a terminal. The subcommands add their
 /// options through these instead of CLI11's typed ones, which accept NaN and print limits with 300 digits.
-/// Only arguments.cpp and main.cpp see CLI11 itself, whose headers take longer to compile and to lint than
-/// any subcommand does.
+/// Only arguments.cpp, main.cpp and what walks all options (complete.cpp, manual.cpp) see CLI11 itself, whose
+/// headers take longer to compile and to lint than any subcommand does.
 #ifndef THIMBLE_TOOLS_COMMANDS_ARGUMENTS_H
 #define THIMBLE_TOOLS_COMMANDS_ARGUMENTS_H
 
@@ -35,6 +35,8 @@ class Option {
   /// What the help names as the default.
   Option& default_str(const std::string& text);
   Option& required();
+  /// Words that a shell completes the value to, besides those that the type's name tells.
+  Option& offers(const std::vector<std::string>& words);
 
  private:
   CLI::Option* option_;
@@ -42,6 +44,8 @@ class Option {
 
 /// A subcommand of `app`, which keeps it.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description);
+/// Leaves it out of the help: scripts call it.
+void hide_command(CLI::App& command);
 /// What the subcommand does, once all options are read.
 void when_chosen(CLI::App& command, std::function<void()> action);
 
@@ -83,6 +87,14 @@ std::vector<std::string> options_given(const CLI::App& app);
 /// Ends the command as wrong usage (status 2): "`name`: `what`", or `what` alone.
 [[noreturn]] void refuse_usage(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_usage(const std::string& what);
+
+/// What was given to Option::offers, else what the type's name tells: those words of `a|b|NAME` that are not in
+/// capitals.
+std::vector<std::string> words_offered(CLI::Option* option);
+/// How the help shows an option: "-o, --output FILE", or an argument's "SCENE".
+std::string label_of(const CLI::Option& option, bool is_argument);
+/// Its description, with its default, and whether it must be given.
+std::string description_of(const CLI::Option& option, bool is_argument);
 
 /// Help in lines of at most 100 characters.
 std::shared_ptr<CLI::FormatterBase> help_formatter();

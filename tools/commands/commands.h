@@ -3,6 +3,8 @@
 #ifndef THIMBLE_TOOLS_COMMANDS_COMMANDS_H
 #define THIMBLE_TOOLS_COMMANDS_COMMANDS_H
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -21,6 +23,13 @@ void add_sim(CLI::App& app);
 void add_particles(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_effects(CLI::App& app);
+// Not in the help: what shells and scripts ask for.
+void add_complete(CLI::App& app);
+void add_manual(CLI::App& app);
+void add_uart_picture(CLI::App& app);
+
+/// What `thimble --version` prints: version, commit, and what this build and this machine have.
+std::string version_text();
 
 inline void add_all_commands(CLI::App& app) {
   add_render(app);
@@ -34,6 +43,9 @@ inline void add_all_commands(CLI::App& app) {
   add_particles(app);
   add_accuracy(app);
   add_effects(app);
+  add_complete(app);
+  add_manual(app);
+  add_uart_picture(app);
 }
 
 }  // namespace thimble::tools

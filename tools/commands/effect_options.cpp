@@ -1,5 +1,8 @@
 #include "commands/effect_options.h"
 
+#include <sstream>
+#include <vector>
+
 #include "commands/arguments.h"
 #include "scene/scene_source.h"
 
@@ -15,6 +18,15 @@ std::string spaced_names() {
   return text;
 }
 
+std::vector<std::string> offered() {
+  std::vector<std::string> words{"auto", "none"};
+  std::istringstream names(effect_names());
+  for (std::string name; std::getline(names, name, ',');) {
+    words.push_back(name);
+  }
+  return words;
+}
+
 // What is wrong with `text`, if anything.
 std::string take_effects(const std::string& text, EffectChoice* choice) {
   const auto parsed = parse_effects(text);
@@ -28,7 +40,8 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
   add_text_option(
       app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
       help)
-      .default_str("auto");
+      .default_str("auto")
+      .offers(offered());
 }
 
 void EffectOptions::add_to(CLI::App& app, const std::string& more) {
@@ -41,7 +54,8 @@ void EffectOptions::add_to(CLI::App& app, const std::string& more) {
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, or with "
       "commas between them any of " +
           spaced_names() + more)
-      .default_str("auto");
+      .default_str("auto")
+      .offers(offered());
   add_whole_option(
       app, "--bounces", "N", 0, kMaxBounces,
       [this](std::int64_t number) { bounces = static_cast<std::uint8_t>(number); },

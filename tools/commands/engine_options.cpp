@@ -6,13 +6,25 @@
 #include "scene/built_scene.h"
 #include "scene/wide_renderer.h"
 #include "thimble/trace/trace.h"
+#include "wide/limits.h"
 
 namespace thimble::tools {
+namespace {
+
+// Refuses what this build was made without.
+void choose(const std::string& name, std::string* chosen) {
+  if (name == "wide" && WideRenderer::instruction_sets().empty()) {
+    refuse_usage("--engine", "\"wide\" is not in this build (-DTHIMBLE_WIDE=OFF); auto and ray64 are");
+  }
+  *chosen = name;
+}
+
+}  // namespace
 
 void EngineOptions::add_to(CLI::App& app) {
   static const std::vector<std::string> kNames{"auto", "wide", "ray64", "ray32"};
   add_choice_option(
-      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
       "wide: object order, with vectors and threads, for --structure compact where there is room; ray64, "
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64")
@@ -49,7 +61,7 @@ std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, st
 void EngineOptions::add_board_engines_to(CLI::App& app) {
   static const std::vector<std::string> kNames{"auto", "wide", "ray64"};
   add_choice_option(
-      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
+      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
       "what draws demo's frames without light; the pictures are the same. wide: object order, with vectors "
       "and "
       "threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "

@@ -12,10 +12,11 @@
 namespace thimble::tools {
 
 void SceneOptions::add_scene(CLI::App& app, bool required) {
-  Option scene =
-      add_argument(app, "scene", "SCENE", &arguments.scene,
-                   "a file (.vox .ply .obj .off .xyz .csv .scene .oct, a Gadget-1 snapshot, .gz of any) or a "
-                   "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L");
+  Option scene = add_argument(
+      app, "scene", "SCENE", &arguments.scene,
+      "a file (.vox .ply .obj .off .xyz .csv .scene .oct, a Gadget-1 snapshot, .gz of any) or a "
+      "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L; or the name "
+      "of a scene that comes with Thimble, such as castle");
   if (required) {
     scene.required();
   }
@@ -73,8 +74,10 @@ void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64
 
 void add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
   std::string names;
+  std::vector<std::string> all;
   for (const platform::BoardFacts& each : platform::boards()) {
     names += (names.empty() ? "" : ", ") + std::string(each.name);
+    all.emplace_back(each.name);
   }
   add_text_option(
       app, "--board", "NAME",
@@ -82,7 +85,8 @@ void add_board(CLI::App& app, const platform::BoardFacts** board, const std::str
         *board = platform::find_board(text.c_str());
         return *board != nullptr ? std::string() : "is not a board; there are " + names;
       },
-      help + "; " + names);
+      help + "; " + names)
+      .offers(all);
 }
 
 std::unique_ptr<SceneSource> SceneOptions::open() const {

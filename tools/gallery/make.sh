@@ -1,7 +1,7 @@
 #!/bin/sh
 # Renders the pictures of the READMEs into this folder. make.sh THIMBLE DATA_DIR
 # DATA_DIR holds the files named below; stars.xyz is made from the star catalogue as tools/README.md shows. The scenes of
-# this folder are in the repository; castle.py makes scenes/castle.vox again.
+# this folder are in the repository; castle.py and the other scripts make scenes/ again.
 set -eu
 thimble=$1
 data=$2
@@ -20,8 +20,10 @@ $thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --targe
 scenes="$out/scenes"
 $thimble render "$scenes/castle.vox" $size --samples 9 --shade color --effects direct-light,shadows,sky,ambient-occlusion \
   --eye 2,-118,72 --target 40,40,29 --fov 32 -o "$out/castle.png"
+$thimble render "$scenes/fox.vox.gz" $size --samples 9 --shade color --effects direct-light,shadows,sky,ambient-occlusion \
+  --eye 20,-110,75 --target 42,42,38 --fov 36 -o "$out/fox.png"
 # Lit by what their texts say.
-for scene in lagoon glass room; do
+for scene in house lagoon ship glass room; do
   $thimble render "$scenes/$scene.scene" $size --samples 9 -o "$out/$scene.png"
 done
 $thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-light,shadows,ambient-occlusion,sky,glass,media \

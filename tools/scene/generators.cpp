@@ -447,6 +447,16 @@ std::optional<GeneratorSpec> parse_generator(const std::string& text) {
   return spec;
 }
 
+std::vector<std::string> generator_examples() {
+  std::vector<std::string> examples;
+  for (const Name& name : kNames) {
+    examples.emplace_back(name.text);
+    examples.back() +=
+        name.kind == GeneratorKind::kPoints || name.kind == GeneratorKind::kCluster ? ":1000000" : "";
+  }
+  return examples;
+}
+
 void generate(const GeneratorSpec& spec, const VoxelSink& sink) {
   switch (spec.kind) {
     case GeneratorKind::kPoints:

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "readers/source.h"
 #include "scene/lit_description.h"
@@ -45,6 +46,9 @@ int default_depth(GeneratorKind kind);
 /// What `text` asks for. Nothing when the part before the first `:` or `,` is not one of the five names, so
 /// that it may be a file (`points.xyz`). InputError when the name is one of them and the rest is wrong.
 std::optional<GeneratorSpec> parse_generator(const std::string& text);
+
+/// Each generator as one may write it: points:1000000, cluster:1000000, spheres, ...
+std::vector<std::string> generator_examples();
 
 /// Streams the scene. `points` and `cluster` call `sink` exactly `count` times, positions may repeat, all
 /// material 0. The others call it for solid voxels: `spheres` once for each ball that holds the

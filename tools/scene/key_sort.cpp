@@ -1,12 +1,9 @@
 #include "scene/key_sort.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 
+#include "scene/workers.h"
 #include "thimble/tree/morton.h"
 
 namespace thimble::tools {
@@ -120,15 +117,8 @@ void sort_all(Span<Key> keys, int key_bits, Bytes scratch, int threads) {
     return;
   }
   const std::size_t share = room.size / static_cast<std::size_t>(threads);
-  // More threads than processors are no gain, but what was asked for.
-  const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(threads));
-  oneapi::tbb::task_arena arena(threads);
-  arena.execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, kBuckets, [&](std::size_t bucket) {
-      const auto slot = static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index());
-      sort_one(bucket, room.subspan(slot * share, share));
-    });
+  each_task(kBuckets, threads, [&](std::size_t bucket, std::size_t worker) {
+    sort_one(bucket, room.subspan(worker * share, share));
   });
 }
 

@@ -1,10 +1,5 @@
 // Lit pictures in bands of the scene's memory. Several samples a pixel are rows of the finer camera,
 // averaged. A pixel is a function of the scene alone, so threads take rows as they come.
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -12,6 +7,7 @@
 
 #include "scene/lit_setup.h"
 #include "scene/painter.h"
+#include "scene/workers.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tools {
@@ -51,29 +47,20 @@ class LitPainter final : public BandPainter {
       return draw_rows(band, counts);
     }
     const std::size_t line = row_bytes(band.format, camera_.width_px());
-    const auto threads = static_cast<std::size_t>(picture_.threads);
-    std::vector<LitCounts> of_threads(threads);
+    std::vector<LitCounts> of_workers(static_cast<std::size_t>(picture_.threads));
     std::atomic<Status> worst{Status::kOk};
-    const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-    oneapi::tbb::task_arena workers(picture_.threads);
-    workers.execute([&] {
-      oneapi::tbb::parallel_for(
-          oneapi::tbb::blocked_range<std::int32_t>(0, band.rows, 1),
-          [&](const oneapi::tbb::blocked_range<std::int32_t>& rows) {
-            const auto thread =
-                static_cast<std::size_t>(oneapi::tbb::this_task_arena::current_thread_index());
-            Band part = band;
-            part.first_row += rows.begin();
-            part.rows = static_cast<std::int32_t>(rows.size());
-            part.pixels = band.pixels.subspan(line * static_cast<std::size_t>(rows.begin()));
-            const Status status = draw_rows(part, &of_threads[thread]);
-            if (status != Status::kOk) {
-              worst.store(status);
-            }
-          },
-          oneapi::tbb::simple_partitioner());
-    });
-    for (const LitCounts& part : of_threads) {
+    const auto draw_row = [&](std::size_t row, std::size_t worker) {
+      Band part = band;
+      part.first_row += static_cast<std::int32_t>(row);
+      part.rows = 1;
+      part.pixels = band.pixels.subspan(line * row);
+      const Status status = draw_rows(part, &of_workers[worker]);
+      if (status != Status::kOk) {
+        worst.store(status);
+      }
+    };
+    each_task(static_cast<std::size_t>(band.rows), picture_.threads, draw_row);
+    for (const LitCounts& part : of_workers) {
       add_counts(part, counts);
     }
     return worst;

@@ -8,6 +8,7 @@
 #include "readers/read_any.h"
 #include "scene/fit_points.h"
 #include "scene/generators.h"
+#include "scene/named_scenes.h"
 #include "scene/palette.h"
 #include "scene/text_scene.h"
 #include "scene/voxelise.h"
@@ -266,7 +267,11 @@ std::array<std::int32_t, 3> SceneSource::extent() const {
 }
 
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress) {
-  return open_scene(arguments, nullptr, progress);
+  SceneArguments found = arguments;
+  if (!parse_generator(arguments.scene)) {
+    found.scene = scene_path(arguments.scene);
+  }
+  return open_scene(found, nullptr, progress);
 }
 
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOpening* opening,

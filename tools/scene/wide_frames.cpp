@@ -14,12 +14,11 @@ bool WideFrames::prepare(const CompactTree& tree, const Camera& camera) {
   width_px_ = camera.width_px();
   height_px_ = camera.height_px();
   renderer_.reset();
-  const std::size_t list_bytes = wide::VoxelLists::bytes(tree);
-  const std::size_t work_bytes = wide::workspace_bytes(width_px_, height_px_, threads_);
-  if (list_bytes > most_bytes_ || work_bytes > most_bytes_ - list_bytes) {
+  const std::size_t bytes = WideRenderer::bytes(tree, width_px_, height_px_, threads_);
+  if (bytes > most_bytes_) {
     return false;
   }
-  memory_ = HostMemory(list_bytes + WideRenderer::kWorkspaceAlignment + work_bytes);
+  memory_ = HostMemory(bytes);
   arena_ = Arena(memory_.bytes());
   renderer_ = WideRenderer::make(tree, &arena_, width_px_, height_px_, threads_);
   return renderer_ != nullptr;

@@ -4,8 +4,33 @@
 #include <chrono>
 
 #include "scene/built_scene.h"
+#include "wide/renderer.h"
+#include "wide/threads.h"
 
 namespace thimble::tools {
+
+WideRenderer::WideRenderer(int threads) : threads_(std::make_unique<wide::Threads>(threads)) {}
+WideRenderer::~WideRenderer() = default;
+
+int WideRenderer::threads() const {
+  return threads_->count();
+}
+
+std::vector<std::string> WideRenderer::instruction_sets() {
+  std::vector<std::string> names;
+  for (int i = 0; i < wide::instruction_set_count(); ++i) {
+    wide::use_instruction_set(i);
+    names.emplace_back(wide::instruction_set());
+  }
+  wide::use_instruction_set(-1);
+  return names;
+}
+
+std::size_t WideRenderer::bytes(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px,
+                                int threads) {
+  return wide::VoxelLists::bytes(tree) + kWorkspaceAlignment +
+         wide::workspace_bytes(width_px, height_px, threads);
+}
 
 std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
                                                  std::int32_t height_px, int threads) {
@@ -49,7 +74,7 @@ std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* built, std::int32_t
 Status WideRenderer::render(const Camera& camera, const Shading& shading, const Band& band,
                             RenderCounts* counts, wide::Counts* work) {
   wide::Options options;
-  options.threads = &threads_;
+  options.threads = threads_.get();
   wide::Stats stats;
   const Status status = wide::render(lists_, camera, shading, band, workspace_, counts, options, &stats);
   work->add(stats.counts);

@@ -1,18 +1,26 @@
 /// @file wide_renderer.h
 /// The wide renderer (platform/wide) made ready for pictures of one size: its lists of voxels and its
-/// workspace in an arena.
+/// workspace in an arena. A build without it (-DTHIMBLE_WIDE=OFF) has wide_renderer_absent.cpp, which makes none.
 #ifndef THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
 #define THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "thimble/base/memory.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
 #include "thimble/tree/compact_tree.h"
-#include "wide/renderer.h"
+#include "wide/kernels.h"
+#include "wide/voxel_lists.h"
+
+namespace thimble::wide {
+class Threads;
+}
 
 namespace thimble::tools {
 
@@ -22,6 +30,15 @@ class WideRenderer {
  public:
   static constexpr std::int32_t kLeastRows = 16;
   static constexpr std::size_t kWorkspaceAlignment = 64;
+
+  ~WideRenderer();
+
+  /// Names the instruction sets that this machine has and this build is compiled for, the best one first;
+  /// empty where the build has no wide renderer. Not while anything is drawn.
+  static std::vector<std::string> instruction_sets();
+  /// What `make` takes of an arena for all rows, at most, and for aligning it.
+  static std::size_t bytes(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px,
+                           int threads);
 
   /// Makes the lists of `tree`, which outlives the result as `arena` does, and takes a workspace: for all
   /// rows of pictures of this size, or for as many as there is room for. Null, and nothing taken, when there
@@ -34,7 +51,7 @@ class WideRenderer {
 
   /// Most rows in a band for `render`.
   std::int32_t rows() const { return rows_; }
-  int threads() const { return threads_.count(); }
+  int threads() const;
   /// What making it took.
   double seconds() const { return seconds_; }
   /// The pixels of `render_band`; Status::kTooFine for cameras that are left to it. `counts` may be null.
@@ -42,9 +59,9 @@ class WideRenderer {
                 wide::Counts* work);
 
  private:
-  explicit WideRenderer(int threads) : threads_(threads) {}
+  explicit WideRenderer(int threads);
 
-  wide::Threads threads_;
+  std::unique_ptr<wide::Threads> threads_;
   wide::VoxelLists lists_;
   Bytes workspace_;
   std::int32_t rows_ = 0;

@@ -1,0 +1,87 @@
+// thimble uart-picture: the picture in what a board sent over its UART, among its other lines. `make emulate SHOT=...`
+// asks for it, and it does for the log of a terminal that a real board hangs on.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "output/image.h"
+#include "output/output_file.h"
+#include "readers/file_bytes.h"
+#include "readers/source.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::string_view kMark = "P5\n";
+
+// The number at `*at`, which ends at a blank or a line feed; moves behind that.
+std::optional<std::int32_t> take_number(std::string_view text, std::size_t* at) {
+  const std::size_t end = std::min(text.find_first_of(" \n", *at), text.size());
+  const auto number = parse_whole(text.substr(*at, end - *at), 1, kMaxPicturePx);
+  if (!number || end == text.size()) {
+    return std::nullopt;
+  }
+  *at = end + 1;
+  return static_cast<std::int32_t>(*number);
+}
+
+// The first whole picture, where a P5 begins a line.
+Image find_picture(std::string_view text) {
+  bool any = false;
+  for (std::size_t mark = text.find(kMark); mark != std::string_view::npos;
+       mark = text.find(kMark, mark + 1)) {
+    if (mark != 0 && text[mark - 1] != '\n') {
+      continue;
+    }
+    std::size_t at = mark + kMark.size();
+    const auto width = take_number(text, &at);
+    const auto height = width ? take_number(text, &at) : std::nullopt;
+    const auto most = height ? take_number(text, &at) : std::nullopt;
+    if (!most || *most != 255) {
+      continue;
+    }
+    any = true;
+    const std::size_t bytes = static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height);
+    if (text.size() - at >= bytes) {
+      const std::string_view pixels = text.substr(at, bytes);
+      return {*width, *height, PixelFormat::kGray8, {pixels.begin(), pixels.end()}};
+    }
+  }
+  throw InputError(any ? "the picture in it is not whole" : "there is no picture (P5) in it");
+}
+
+}  // namespace
+
+void add_uart_picture(CLI::App& app) {
+  struct Command {
+    std::string log;
+    std::string output;
+  };
+  auto command = std::make_shared<Command>();
+  CLI::App* sub = add_command(app, "uart-picture", "Takes a picture out of what a board sent over its UART.");
+  add_argument(*sub, "scene", "LOG", &command->log, "the bytes that it sent").required();
+  add_text_option(
+      *sub, "-o,--output", "FILE",
+      [command](const std::string& text) {
+        command->output = text;
+        return image_kind(text) ? "" : "does not end in .png, .ppm, .pgm or .pbm";
+      },
+      "the picture, .png, .ppm, .pgm or .pbm by its ending")
+      .required();
+  hide_command(*sub);
+  when_chosen(*sub, [command] {
+    const FileBytes log = load_file(command->log, std::uint64_t{1} << 30);
+    const ImageKind kind = *image_kind(command->output);
+    const Image picture = find_picture(log.text());
+    OutputFile file(command->output);
+    write_image(&file, kind, converted(picture, pixel_format(kind)));
+    file.commit();
+  });
+}
+
+}  // namespace thimble::tools

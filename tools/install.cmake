@@ -1,0 +1,43 @@
+# What `make install` and the .deb have besides the library: the command, its scenes, its manual page, completions.
+install(TARGETS thimble_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY gallery/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble
+  FILES_MATCHING PATTERN "*.scene" PATTERN "*.vox" PATTERN "*.vox.gz")
+
+# The manual page comes from the description that --help prints.
+set(manual ${PROJECT_BINARY_DIR}/generated/thimble.1.gz)
+add_custom_command(OUTPUT ${manual} DEPENDS thimble_command
+  COMMAND sh -c "\"$1\" manual | gzip -9n >\"$2\"" sh $<TARGET_FILE:thimble_command> ${manual}
+  COMMENT "Writing the manual page" VERBATIM)
+add_custom_target(thimble_manual ALL DEPENDS ${manual})
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+
+install(FILES completions/thimble.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  RENAME thimble)
+install(FILES completions/thimble.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# Where zsh looks by itself below /usr/local; a package moves it (package.cmake).
+install(FILES completions/thimble.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _thimble)
+
+# make deb
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME thimble)
+set(CPACK_PACKAGE_VENDOR Thimble)
+set(CPACK_PACKAGE_CONTACT "Thimble <thimble@thimble.invalid>" CACHE STRING "Maintainer of the .deb: NAME <MAIL>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+  WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "voxel ray tracer in a fixed block of memory")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Draws voxel scenes, meshes and clouds of points exactly, the same picture bit
+for bit on every machine, and says what a scene takes on a microcontroller:
+memory, flash, time and error. Holds the command, its scenes and the library.")
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_SOURCE_DIR}/package.cmake)
+set(CPACK_THIMBLE_SOURCE ${PROJECT_SOURCE_DIR})
+set(CPACK_THIMBLE_DATE_HEADER ${PROJECT_BINARY_DIR}/generated/thimble_version.h)
+set(CPACK_VERBATIM_VARIABLES ON)
+include(CPack)

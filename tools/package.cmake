@@ -1,0 +1,40 @@
+# What a Debian package has besides what is installed. CPack runs it between installing into a folder of its own and
+# packing that.
+set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr)
+set(doc ${root}/share/doc/thimble)
+file(MAKE_DIRECTORY ${doc})
+
+# Debian's zsh looks here for what packages bring.
+file(RENAME ${root}/share/zsh/site-functions ${root}/share/zsh/vendor-completions)
+
+file(READ ${CPACK_THIMBLE_SOURCE}/LICENSE licence)
+string(REGEX MATCH "Copyright[^\n]*" copyright "${licence}")
+string(REGEX REPLACE "^Copyright (\\(c\\) )?" "" copyright "${copyright}")
+string(REGEX REPLACE "^.*Copyright[^\n]*\n+" "" licence "${licence}")
+string(STRIP "${licence}" licence)
+string(REPLACE "\n\n" "\n.\n" licence "${licence}")
+string(REPLACE "\n" "\n " licence "${licence}")
+file(WRITE ${doc}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: thimble
+
+Files: *
+Copyright: ${copyright}
+License: Expat
+
+License: Expat
+ ${licence}
+")
+
+# The day of the commit, so that a commit makes one package.
+file(READ ${CPACK_THIMBLE_DATE_HEADER} said)
+string(REGEX MATCH "THIMBLE_DATE \"([^\"]*)\"" said "${said}")
+execute_process(COMMAND env LC_ALL=C date -u -R -d ${CMAKE_MATCH_1} OUTPUT_VARIABLE day
+  OUTPUT_STRIP_TRAILING_WHITESPACE)
+file(WRITE ${doc}/changelog "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) unstable; urgency=low
+
+  * What changed stands in CHANGELOG.md of the source.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${day}
+")
+execute_process(COMMAND gzip -9n ${doc}/changelog)
+execute_process(COMMAND chmod -R u=rwX,go=rX ${root})

@@ -1,0 +1,86 @@
+#include "scene/named_scenes.h"
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include "readers/source.h"
+
+namespace thimble::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where both are there, the text comes first: it has the model, a camera and light.
+constexpr std::array<std::string_view, 3> kEndings{".scene", ".vox", ".vox.gz"};
+// From the program to the root of the tree: build/release, and room for a deeper folder.
+constexpr int kMostParents = 6;
+
+fs::path scene_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) {
+    return {};
+  }
+  fs::path parent = program.parent_path();
+  const fs::path installed = (parent / THIMBLE_SCENES_FROM_PROGRAM).lexically_normal();
+  if (fs::is_directory(installed, error)) {
+    return installed;
+  }
+  for (int i = 0; i < kMostParents && parent.has_relative_path(); ++i) {
+    parent = parent.parent_path();
+    const fs::path scenes = parent / "tools/gallery/scenes";
+    if (fs::is_directory(scenes, error)) {
+      return scenes;
+    }
+  }
+  return {};
+}
+
+// Paths by name.
+std::map<std::string, std::string> known_scenes() {
+  std::map<std::string, std::string> known;
+  const fs::path folder = scene_folder();
+  std::error_code error;
+  for (const std::string_view ending : kEndings) {
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+      const std::string file = entry->path().filename().string();
+      if (file.size() > ending.size() && file.ends_with(ending)) {
+        known.try_emplace(file.substr(0, file.size() - ending.size()), entry->path().string());
+      }
+    }
+  }
+  return known;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, path] : known_scenes()) {
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string scene_path(const std::string& scene) {
+  std::error_code error;
+  const bool may_be_name = !scene.empty() && scene.find_first_of("/.") == std::string::npos;
+  if (!may_be_name || fs::exists(fs::symlink_status(scene, error))) {
+    return scene;
+  }
+  const auto known = known_scenes();
+  if (const auto found = known.find(scene); found != known.end()) {
+    return found->second;
+  }
+  std::string names;
+  for (const auto& [name, path] : known) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  throw InputError("no such file, and no scene of that name" +
+                   (names.empty() ? " (none is installed beside the program)" : "; there are " + names));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,42 @@
+// What a build without the wide renderer has in its place: it is never made, so that the core draws.
+#include "scene/wide_renderer.h"
+
+namespace thimble::wide {
+class Threads {};
+}  // namespace thimble::wide
+
+namespace thimble::tools {
+
+WideRenderer::WideRenderer(int /*threads*/) {}
+WideRenderer::~WideRenderer() = default;
+
+std::vector<std::string> WideRenderer::instruction_sets() {
+  return {};
+}
+
+int WideRenderer::threads() const {
+  return 1;
+}
+
+std::size_t WideRenderer::bytes(const CompactTree& /*tree*/, std::int32_t /*width_px*/,
+                                std::int32_t /*height_px*/, int /*threads*/) {
+  return SIZE_MAX;
+}
+
+std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& /*tree*/, Arena* /*arena*/,
+                                                 std::int32_t /*width_px*/, std::int32_t /*height_px*/,
+                                                 int /*threads*/) {
+  return nullptr;
+}
+
+std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* /*built*/, std::int32_t /*width_px*/,
+                                                 std::int32_t /*height_px*/, int /*threads*/) {
+  return nullptr;
+}
+
+Status WideRenderer::render(const Camera& /*camera*/, const Shading& /*shading*/, const Band& /*band*/,
+                            RenderCounts* /*counts*/, wide::Counts* /*work*/) {
+  return Status::kTooFine;
+}
+
+}  // namespace thimble::tools
