@@ -10,6 +10,7 @@ class App;
 namespace thimble::tools {
 
 // Each adds its subcommand with options, help and what it does when it is chosen.
+void add_view_command(CLI::App& app);
 void add_render(CLI::App& app);
 void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
@@ -23,6 +24,7 @@ void add_accuracy(CLI::App& app);
 void add_effects(CLI::App& app);
 
 inline void add_all_commands(CLI::App& app) {
+  add_view_command(app);
   add_render(app);
   add_trace(app);
   add_table(app);

@@ -1,0 +1,155 @@
+#include "viewer/finished_picture.h"
+
+#include "scene/lit_setup.h"
+#include "thimble/light/render.h"
+#include "thimble/tree/octree.h"
+
+namespace thimble::tools::viewer {
+namespace {
+
+// What a scene without light of its own gets.
+constexpr EffectSet kPlainLight =
+    Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kSky;
+// What costs no rays of its own.
+constexpr EffectSet kQuick = Effect::kDirectLight | Effect::kEmission | Effect::kWater | Effect::kFog |
+                             Effect::kSky | Effect::kDepthCue;
+
+void check(Status status) {
+  if (status != Status::kOk) {
+    throw InputError("its lights or surfaces are beyond the limits of a lit picture");
+  }
+}
+
+}  // namespace
+
+FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes)
+    : scene_(std::move(scene)), lighting_(scene_->source->lighting()) {
+  lighting_.rest.bounces = wishes.bounces.value_or(lighting_.rest.bounces);
+  used_ = used_materials(scene_->tree());
+  choose(wishes);
+  lit_ = lit_scene_for(lighting_, used_, effects_);
+  quick_effects_ = effects_ & kQuick;
+  quick_ = lit_scene_for(lighting_, used_, quick_effects_);
+  empty_bytes_.resize(4096);
+  Arena arena(Bytes(empty_bytes_.data(), empty_bytes_.size()));
+  Octree octree;
+  if (Octree::make(scene_->level(), 16, arena, &octree) != Status::kOk ||
+      CompactTree::make(octree, arena, &empty_) != Status::kOk) {
+    throw InputError("internal error: there is no empty world");
+  }
+}
+
+void FinishedLook::choose(const LookWishes& wishes) {
+  const bool asks = wishes.effects || wishes.shade;
+  EffectChoice choice = wishes.effects.value_or(EffectChoice{});
+  if (!asks) {
+    const EffectSet called = chosen_effects(lighting_, used_, choice);
+    if (called == Effect::kNone && !scene_->source->is_point_set()) {
+      choice = {false, kPlainLight};
+      words_ = {"--effects", effects_text(kPlainLight)};
+    }
+  } else if (!wishes.effects) {
+    choice = {false, Effect::kNone};  // a --shade that is given shows no light
+  }
+  if (wishes.effects) {
+    words_.insert(words_.end(), {"--effects", wishes.effects_word});
+  }
+  if (wishes.shade) {
+    words_.insert(words_.end(), {"--shade", wishes.shade_word});
+  }
+  effects_ = chosen_effects(lighting_, used_, choice);
+  mode_ = wishes.shade.value_or(ShadeMode::kDepth);
+  if (wishes.bounces) {
+    words_.insert(words_.end(), {"--bounces", std::to_string(*wishes.bounces)});
+  }
+  across_ = wishes.across.value_or(2);
+  words_.insert(words_.end(), {"--samples", std::to_string(across_ * across_)});
+}
+
+FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes)
+    : look_(std::move(look)) {
+  const OpenScene& scene = *look_->scene_;
+  const VoxelBox bounds = scene.built->bounds();
+  framing_ = frame_scene(wishes, *scene.source, scene.level(), bounds);
+  fine_ = across() == 1 ? framing_.camera
+                        : frame_scene(finer(wishes, across()), *scene.source, scene.level(), bounds).camera;
+  shading_.mode = look_->mode_;
+  shading_.palette = Span<const Rgb8>(scene.built->palette().data(), scene.built->palette().size());
+  const DepthRange range = depth_range(camera(), bounds);
+  shading_.near_q8 = range.near_q8;
+  shading_.far_q8 = range.far_q8;
+  quick_shading_ = shading_;
+  if (look_->effects_ != Effect::kNone) {
+    quick_shading_.mode = ShadeMode::kColor;
+    for (const Light& light : look_->lit_.lights) {
+      if (!light.is_point) {
+        light_from(light.place, quick_shading_.face_light);
+        break;
+      }
+    }
+  }
+}
+
+void FinishedPicture::draw_row(std::int32_t y, std::uint8_t* rgb) const {
+  const std::int32_t width = width_px();
+  const std::size_t row = row_bytes(PixelFormat::kRgb888, width);
+  const int many = across();
+  thread_local std::vector<std::uint8_t> samples;
+  Band band;
+  band.first_row = y * many;
+  band.rows = many;
+  band.format = PixelFormat::kRgb888;
+  band.pixels = Bytes(rgb, row);
+  if (many != 1) {
+    samples.resize(samples_bytes(width, many));
+    band.pixels = Bytes(samples.data(), samples.size());
+  }
+  const CompactTree& tree = look_->scene_->tree();
+  check(look_->effects_ == Effect::kNone
+            ? render_band(tree, fine_, shading_, band)
+            : render_lit_band(look_->effects_, tree, fine_, shading_, look_->lit_, band));
+  if (many != 1) {
+    check(average_samples(band.pixels, many, width, y, PixelFormat::kRgb888, Bytes(rgb, row)));
+  }
+}
+
+namespace {
+
+Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
+  return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
+}
+
+}  // namespace
+
+void FinishedPicture::draw_coarse_row(int step, std::int32_t row, std::uint8_t* rgb) const {
+  const Camera thin = camera().thinned(step);
+  const CompactTree& tree = look_->scene_->tree();
+  check(look_->effects_ == Effect::kNone
+            ? render_band(tree, thin, shading_, row_of(thin, row, rgb))
+            : render_lit_band(look_->effects_, tree, thin, shading_, look_->lit_, row_of(thin, row, rgb)));
+}
+
+bool FinishedPicture::is_plain() const {
+  return (look_->effects_ & Effect::kWater) == 0;
+}
+
+bool FinishedPicture::has_behind() const {
+  return (look_->effects_ & Effect::kSky) != 0;
+}
+
+void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const {
+  const Camera thin = camera().thinned(step);
+  const CompactTree& tree = look_->scene_->tree();
+  check(look_->quick_effects_ == Effect::kNone
+            ? render_band(tree, thin, quick_shading_, row_of(thin, row, rgb))
+            : render_lit_band(look_->quick_effects_, tree, thin, quick_shading_, look_->quick_,
+                              row_of(thin, row, rgb)));
+}
+
+void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* rgb) const {
+  const Camera thin = camera().thinned(step);
+  check(render_lit_band(Effect::kSky, look_->empty_, thin, quick_shading_, look_->lit_,
+                        row_of(thin, row, rgb)));
+}
+
+}  // namespace thimble::tools::viewer

@@ -1,0 +1,174 @@
+#include "viewer/refinement.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <mutex>
+
+#include "viewer/magnify.h"
+#include "wide/threads.h"
+
+namespace thimble::tools::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kPublishTime{60};  // between two states of a pass that are shown
+
+}  // namespace
+
+struct Refinement::State {
+  State(std::shared_ptr<const FinishedPicture> shown, int count)
+      : picture(std::move(shown)), threads(count) {}
+
+  std::shared_ptr<const FinishedPicture> picture;
+  wide::Threads threads;
+  std::atomic<bool> cancelled{false};
+  std::atomic<bool> ended{false};
+
+  std::mutex mutex;  // of what follows
+  std::vector<std::uint8_t> rgb;
+  std::uint64_t version = 0;
+  bool finished = false;
+  int step = kMostRefinedStep;
+  int percent = 0;
+  std::string fault;
+
+  bool each_row(std::int32_t rows, const std::function<void(std::int32_t)>& draw);
+  bool draw_coarse(int step);
+  bool draw_full(bool is_final);
+};
+
+// Whether all were drawn.
+bool Refinement::State::each_row(std::int32_t rows, const std::function<void(std::int32_t)>& draw) {
+  threads.each(rows, [&](int row) {
+    if (!cancelled.load(std::memory_order_relaxed)) {
+      draw(row);
+    }
+  });
+  return !cancelled.load();
+}
+
+bool Refinement::State::draw_coarse(int every) {
+  const std::int32_t width = picture->width_px();
+  const std::int32_t height = picture->height_px();
+  const std::size_t line = 3 * static_cast<std::size_t>(thinned_px(width, every));
+  const std::int32_t rows = thinned_px(height, every);
+  std::vector<std::uint8_t> small(line * static_cast<std::size_t>(rows));
+  if (!each_row(rows, [&](std::int32_t row) {
+        picture->draw_coarse_row(every, row, small.data() + line * static_cast<std::size_t>(row));
+      })) {
+    return false;
+  }
+  std::vector<std::uint8_t> full(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  magnify(small.data(), every, width, height, full.data());
+  const std::scoped_lock lock(mutex);
+  rgb.swap(full);
+  step = every;
+  percent = 100;
+  ++version;
+  return true;
+}
+
+// The rows of the whole picture go over those of the pass before.
+bool Refinement::State::draw_full(bool is_final) {
+  const std::int32_t height = picture->height_px();
+  const std::size_t line = 3 * static_cast<std::size_t>(picture->width_px());
+  std::vector<std::uint8_t> full(line * static_cast<std::size_t>(height));
+  const auto draw = [&](std::int32_t row) {
+    std::uint8_t* to = full.data() + line * static_cast<std::size_t>(row);
+    if (is_final) {
+      picture->draw_row(row, to);
+    } else {
+      picture->draw_coarse_row(1, row, to);
+    }
+  };
+  const std::int32_t chunk = 4 * threads.count();
+  std::int32_t shown = 0;
+  Clock::time_point published = Clock::now();
+  for (std::int32_t y = 0; y < height; y += chunk) {
+    const std::int32_t rows = std::min(chunk, height - y);
+    if (!each_row(rows, [&](std::int32_t row) { draw(y + row); })) {
+      return false;
+    }
+    const std::int32_t drawn = y + rows;
+    if (drawn < height && Clock::now() < published + kPublishTime) {
+      continue;
+    }
+    const std::scoped_lock lock(mutex);
+    rgb.resize(full.size());
+    std::memcpy(rgb.data() + line * static_cast<std::size_t>(shown),
+                full.data() + line * static_cast<std::size_t>(shown),
+                line * static_cast<std::size_t>(drawn - shown));
+    shown = drawn;
+    step = is_final ? 0 : 1;
+    percent = 100 * drawn / height;
+    finished = is_final && drawn == height;
+    ++version;
+    published = Clock::now();
+  }
+  return true;
+}
+
+void Refinement::run(State* state) {
+  try {
+    bool goes_on = true;
+    for (int every = kMostRefinedStep; goes_on && every > 1; every /= 2) {
+      goes_on = state->draw_coarse(every);
+    }
+    if (goes_on && state->picture->across() > 1) {
+      goes_on = state->draw_full(false);
+    }
+    if (goes_on) {
+      state->draw_full(true);
+    }
+  } catch (const std::exception& error) {
+    const std::scoped_lock lock(state->mutex);
+    state->fault = error.what();
+  }
+  state->ended.store(true);
+}
+
+Refinement::Refinement(std::shared_ptr<const FinishedPicture> picture, int threads)
+    : picture_(picture),
+      state_(std::make_unique<State>(std::move(picture), threads)),
+      thread_(run, state_.get()) {}
+
+Refinement::~Refinement() {
+  cancel();
+  thread_.join();
+}
+
+void Refinement::cancel() {
+  state_->cancelled.store(true);
+}
+
+bool Refinement::has_ended() const {
+  return state_->ended.load();
+}
+
+bool Refinement::is_finished() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->finished && taken_ == state_->version;
+}
+
+std::string Refinement::fault() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->fault;
+}
+
+bool Refinement::take(std::vector<std::uint8_t>* rgb) {
+  const std::scoped_lock lock(state_->mutex);
+  if (state_->version == taken_) {
+    return false;
+  }
+  *rgb = state_->rgb;
+  taken_ = state_->version;
+  taken_step_ = state_->step;
+  taken_percent_ = state_->percent;
+  return true;
+}
+
+}  // namespace thimble::tools::viewer
