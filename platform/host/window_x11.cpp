@@ -217,7 +217,8 @@ void Window::open(const ScreenOptions& options) {
                                         kFirstHeightPx / std::max(options.height_px, 1));
   const std::int32_t scale = fixed_scale_ > 0 ? fixed_scale_ : std::clamp(fitting, 1, 16);
   const std::int32_t border = gap_px(look_, scale) != 0 ? 2 * scale : 0;
-  const std::int32_t width = std::max(options.width_px * scale + border, kLeastWidthPx);
+  const std::int32_t width =
+      std::max(options.width_px * scale + border, options.status_lines > 0 ? kLeastWidthPx : 64);
   canvas_.width_px = width;  // panel_px() asks
   std::int32_t height = std::max(options.height_px * scale + border, 64) + panel_px();
   height = std::min(height, 32767);
@@ -285,8 +286,10 @@ std::int32_t Window::overlay_scale() const {
 
 void Window::compose() {
   const std::int32_t room = height_px();
-  canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
   placement_ = place(picture_width_px_, picture_height_px_, canvas_.width_px, room, fixed_scale_);
+  if (rgb_.empty() || placement_.width_px < canvas_.width_px || placement_.height_px < room) {
+    canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
+  }
   if (!rgb_.empty()) {
     draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
   }

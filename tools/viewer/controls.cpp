@@ -22,9 +22,8 @@ bool Controls::flies(host::Key key, double seconds) const {
   return key != kS || (keys_end_ && (!s_may_save_ || seconds - s_pressed_at_ > kTapSeconds));
 }
 
-bool Controls::is_moving(double seconds) const {
-  return buttons_ != 0 ||
-         std::any_of(held_.begin(), held_.end(), [&](host::Key key) { return flies(key, seconds); });
+bool Controls::is_flying(double seconds) const {
+  return std::any_of(held_.begin(), held_.end(), [&](host::Key key) { return flies(key, seconds); });
 }
 
 Action Controls::press(const host::Event& event, double seconds) {

@@ -46,8 +46,8 @@ class Controls {
   Action take(const host::Event& event, double seconds, std::int32_t height_px);
   /// How the camera is to move, all that gathered since the last call.
   Motion take_motion(double seconds);
-  /// Whether it is being moved right now: a button or a key is held.
-  bool is_moving(double seconds) const;
+  /// Whether a key that flies is held: the camera moves without any event.
+  bool is_flying(double seconds) const;
 
   std::int32_t pointer_x_px() const { return x_px_; }
   std::int32_t pointer_y_px() const { return y_px_; }

@@ -1,5 +1,8 @@
 #include "viewer/finished_picture.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "scene/lit_setup.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/octree.h"
@@ -13,6 +16,28 @@ constexpr EffectSet kPlainLight =
 // What costs no rays of its own.
 constexpr EffectSet kQuick = Effect::kDirectLight | Effect::kEmission | Effect::kWater | Effect::kFog |
                              Effect::kSky | Effect::kDepthCue;
+
+double mean(const PackedU16 (&channels)[3]) {
+  return (channels[0] + channels[1] + channels[2]) / 3.0;
+}
+
+// The light of a face in the open, for pictures without shadows: what comes from everywhere, the suns by their
+// angles, and a share for lamps, wherever they hang.
+void quick_light(const LitScene& scene, std::uint16_t (&face_light)[6]) {
+  constexpr double kLamps = 100;
+  for (int face = 0; face < 6; ++face) {
+    double light = (scene.ambient_q8[0] + scene.ambient_q8[1] + scene.ambient_q8[2]) / 3.0;
+    bool has_lamps = scene.lights.size == 0;
+    for (const Light& each : scene.lights) {
+      const Vec3i place = each.place;
+      const double length = std::hypot(static_cast<double>(place.x), place.y, place.z);
+      const double along = (face % 2 == 0 ? -1.0 : 1.0) * place[face / 2];
+      has_lamps = has_lamps || each.is_point;
+      light += each.is_point || length == 0 ? 0 : std::max(0.0, along / length) * mean(each.color_q8);
+    }
+    face_light[face] = static_cast<std::uint16_t>(std::min(256.0, light + (has_lamps ? kLamps : 0)));
+  }
+}
 
 void check(Status status) {
   if (status != Status::kOk) {
@@ -81,12 +106,7 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
   quick_shading_ = shading_;
   if (look_->effects_ != Effect::kNone) {
     quick_shading_.mode = ShadeMode::kColor;
-    for (const Light& light : look_->lit_.lights) {
-      if (!light.is_point) {
-        light_from(light.place, quick_shading_.face_light);
-        break;
-      }
-    }
+    quick_light(look_->lit_, quick_shading_.face_light);
   }
 }
 

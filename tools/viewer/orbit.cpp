@@ -65,11 +65,13 @@ Real3 Orbit::eye() const {
   return eye;
 }
 
-// As far from the rounded eye as it takes to keep a direction in so many digits.
+// As far from the eye as it takes to keep a direction in so many digits.
 Real3 Orbit::target() const {
-  Real3 target = plus(eye(), scaled(forward(), std::max(distance_, 1.0)));
+  constexpr double kFarEnough = 4;
+  Real3 target = distance_ > kFarEnough ? target_ : plus(eye(), scaled(forward(), std::max(distance_, 1.0)));
+  const double steps = distance_ > kFarEnough ? 1e3 : 1e4;
   for (double& coordinate : target) {
-    coordinate = rounded(coordinate, 1e4);
+    coordinate = rounded(coordinate, steps);
   }
   if (is_vertical()) {
     const Real3 from = eye();

@@ -18,6 +18,10 @@ Pace::Pace(double frame_seconds, bool may_be_wide)
       step_(may_be_wide ? 1 : kTrialStep) {}
 
 void Pace::take(double seconds) {
+  if (is_first_) {
+    is_first_ = false;
+    return;
+  }
   mean_seconds_ = frames_ == 0 ? seconds : 0.6 * mean_seconds_ + 0.4 * seconds;
   ++frames_;
   if (engine_ == FastEngine::kRays && may_be_wide_ && wide_seconds_ > 0 && frames_ == 1 &&

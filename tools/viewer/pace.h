@@ -38,7 +38,8 @@ class Pace {
   double wide_seconds_ = 0;  // at the step where rays were tried
   bool rays_tried_ = false;
   double mean_seconds_ = 0;
-  int frames_ = 0;  // since step or engine changed
+  bool is_first_ = true;  // it brings memory and threads into their places
+  int frames_ = 0;        // since step or engine changed
 };
 
 }  // namespace thimble::tools::viewer

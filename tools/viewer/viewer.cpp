@@ -120,6 +120,7 @@ void Viewer::open() {
   screen.title = "thimble: " + name();
   screen.width_px = options_.view.width_px;
   screen.height_px = options_.view.height_px;
+  screen.scale = 1;
   try {
     screen_ = host::open_screen(options_.display, screen);
   } catch (const host::ScreenError& error) {
@@ -254,7 +255,7 @@ int Viewer::wait_ms() const {
     return kIdleMs;
   }
   const double time = now();
-  if (changed_ || controls_->is_moving(time)) {
+  if (changed_ || controls_->is_flying(time)) {
     const double left = frame_began_ + kFastestFrameSeconds - time;
     return left > 0 ? static_cast<int>(1000 * left) : 0;
   }
@@ -306,8 +307,7 @@ void Viewer::draw_frame() {
   frames_->draw(*picture_, &rgb_);
   changed_at_ = now();
   show();
-  // Of one frame after another; else what this one took.
-  const double took = began - frame_began_ < 0.25 ? began - frame_began_ : now() - began;
+  const double took = now() - began;  // with the screen's part
   frame_seconds_ = frame_seconds_ == 0 ? took : 0.8 * frame_seconds_ + 0.2 * took;
   frame_began_ = began;
 }
@@ -546,7 +546,7 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
   Refinement refinement(picture, options.threads);
   double lit = 0;
   while (!refinement.has_ended()) {
-    if (refinement.take(&rgb) && lit == 0 && refinement.step() <= 2) {
+    if (refinement.take(&rgb) && lit == 0 && refinement.step() <= 1 && refinement.percent() == 100) {
       lit = now() - start;
     }
     sleep_ms(1);
@@ -557,7 +557,8 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
                 static_cast<unsigned long long>(scene->built->voxels()), width, height, options.threads,
                 fast.engine(), fast.step(), frames / sum, 1000 * sum / frames, 1000 * slowest, 1000 * lit,
                 1000 * finished);
-  return options.scene.scene + "," + text.data();
+  const std::string& name = options.scene.scene;
+  return (name.find_first_of(",\"") == std::string::npos ? name : in_quotes(name)) + "," + text.data();
 }
 
 }  // namespace thimble::tools::viewer
