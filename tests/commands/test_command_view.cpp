@@ -321,6 +321,22 @@ TEST_CASE("view: without a display, in a terminal -> drawn there; keys, saving, 
   CHECK(end.find("thimble render spheres,depth=4 --size 80x48 ") != std::string::npos);
 }
 
+TEST_CASE("sim: Escape in the middle of a frame that takes seconds -> over at once, as if it had ended") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing running(folder, {"sim", "water,depth=8", "--board", "raspi0"});
+  REQUIRE(display.xdotool("search --sync --onlyvisible --name '^thimble sim' mousemove 100 100 sleep 0.3"));
+  const auto start = Clock::now();
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(running.wait() == 0);
+  const double seconds = seconds_since(start);
+  MESSAGE("Escape to the end of the process, xdotool's own time in it: " << seconds << " s");
+  CHECK(seconds < 0.5);
+}
+
 TEST_CASE("view: neither display nor terminal -> one sentence that names render, status 1") {
   ::unsetenv("DISPLAY");
   for (const Words& words : {Words{"spheres,depth=4"}, Words{"view", "spheres,depth=4"}}) {

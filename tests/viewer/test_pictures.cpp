@@ -101,10 +101,10 @@ TEST_CASE("refinement: coarse to fine -> ends at the rows of the finished pictur
   const auto scene = scene_of("spheres,depth=5");
   const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
   const auto picture = std::make_shared<const FinishedPicture>(look, view_of(101, 67));
-  std::vector<std::uint8_t> wanted(3 * 101 * 67);
-  for (std::int32_t y = 0; y < 67; ++y) {
-    picture->draw_row(y, wanted.data() + 3 * 101 * y);
-  }
+  wide::Threads alone(1);
+  std::vector<std::uint8_t> wanted;
+  REQUIRE(picture->draw(0, &alone, &wanted, [](std::int32_t) { return true; }));
+  CHECK(wanted.size() == 3 * 101 * 67);
   for (const int threads : {1, 2, 3}) {
     Refinement refinement(picture, threads);
     std::vector<std::uint8_t> shown;

@@ -22,7 +22,7 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr Milliseconds kStatusTime{100};   // between two looks at the memory
 constexpr Milliseconds kEndingTime{2000};  // that an application may take to end when it is told to
-constexpr Milliseconds kWatchedTime{60};   // the same where somebody watches, who wants to be gone
+constexpr Milliseconds kWatchedTime{40};   // the same where somebody watches, who wants to be gone
 constexpr int kEventsMs = 5;               // between two looks at keys and window while it draws
 constexpr int kStatusLines = 4;
 constexpr std::size_t kKeptOutputBytes = 65536;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer/finished_picture.h"
+
 namespace thimble::tools::viewer {
 namespace {
 
@@ -106,17 +108,11 @@ void CameraState::choose(Action view, const Framing& now, const OpenScene& scene
     return;
   }
   ViewWishes wishes = first_;
-  wishes.placed = true;
-  wishes.eye.reset();
-  wishes.target.reset();
-  wishes.up.reset();
-  wishes.span.reset();
-  wishes.forward = forward_of(view);
   wishes.orthographic = !now.kept.is_perspective;
   wishes.fov_degrees = static_cast<double>(now.kept.fov_degrees.raw) / Q16::kOne;
   wishes.width_px = now.camera.width_px();
   wishes.height_px = now.camera.height_px();
-  place(frame_box(wishes, scene.level(), scene.built->bounds()), scene);
+  place(framed_from(scene, wishes, forward_of(view)), scene);
 }
 
 void CameraState::change_scene(const OpenScene& scene) {

@@ -6,6 +6,7 @@
 #include "scene/lit_setup.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/octree.h"
+#include "viewer/magnify.h"
 
 namespace thimble::tools::viewer {
 namespace {
@@ -110,27 +111,15 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
   }
 }
 
-void FinishedPicture::draw_row(std::int32_t y, std::uint8_t* rgb) const {
-  const std::int32_t width = width_px();
-  const std::size_t row = row_bytes(PixelFormat::kRgb888, width);
-  const int many = across();
-  thread_local std::vector<std::uint8_t> samples;
-  Band band;
-  band.first_row = y * many;
-  band.rows = many;
-  band.format = PixelFormat::kRgb888;
-  band.pixels = Bytes(rgb, row);
-  if (many != 1) {
-    samples.resize(samples_bytes(width, many));
-    band.pixels = Bytes(samples.data(), samples.size());
-  }
-  const CompactTree& tree = look_->scene_->tree();
-  check(look_->effects_ == Effect::kNone
-            ? render_band(tree, fine_, shading_, band)
-            : render_lit_band(look_->effects_, tree, fine_, shading_, look_->lit_, band));
-  if (many != 1) {
-    check(average_samples(band.pixels, many, width, y, PixelFormat::kRgb888, Bytes(rgb, row)));
-  }
+Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, const Real3& forward) {
+  ViewWishes whole = wishes;
+  whole.placed = true;
+  whole.eye.reset();
+  whole.target.reset();
+  whole.up.reset();
+  whole.span.reset();
+  whole.forward = forward;
+  return frame_box(whole, scene.level(), scene.built->bounds());
 }
 
 namespace {
@@ -141,12 +130,46 @@ Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
 
 }  // namespace
 
-void FinishedPicture::draw_coarse_row(int step, std::int32_t row, std::uint8_t* rgb) const {
-  const Camera thin = camera().thinned(step);
+// Of the picture of every `step`-th pixel, 0: of the finished one.
+void FinishedPicture::draw_row(int step, std::int32_t y, std::uint8_t* rgb) const {
   const CompactTree& tree = look_->scene_->tree();
-  check(look_->effects_ == Effect::kNone
-            ? render_band(tree, thin, shading_, row_of(thin, row, rgb))
-            : render_lit_band(look_->effects_, tree, thin, shading_, look_->lit_, row_of(thin, row, rgb)));
+  const auto draw_band = [&](const Camera& camera, const Band& band) {
+    check(look_->effects_ == Effect::kNone
+              ? render_band(tree, camera, shading_, band)
+              : render_lit_band(look_->effects_, tree, camera, shading_, look_->lit_, band));
+  };
+  const int many = across();
+  if (step != 0 || many == 1) {
+    const Camera thin = camera().thinned(std::max(step, 1));
+    draw_band(thin, row_of(thin, y, rgb));
+    return;
+  }
+  thread_local std::vector<std::uint8_t> samples;
+  samples.resize(samples_bytes(width_px(), many));
+  const Bytes fine(samples.data(), samples.size());
+  draw_band(fine_, {fine, PixelFormat::kRgb888, 0, y * many, many});
+  check(average_samples(fine, many, width_px(), y, PixelFormat::kRgb888,
+                        Bytes(rgb, row_bytes(PixelFormat::kRgb888, width_px()))));
+}
+
+bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
+                           const GoesOn& goes_on) const {
+  constexpr std::int32_t kRowsAThread = 2;
+  const int every = std::max(step, 1);
+  const std::int32_t rows = thinned_px(height_px(), every);
+  const std::size_t line = 3 * static_cast<std::size_t>(thinned_px(width_px(), every));
+  rgb->resize(line * static_cast<std::size_t>(rows));
+  const std::int32_t chunk = kRowsAThread * threads->count();
+  for (std::int32_t first = 0; first < rows; first += chunk) {
+    const std::int32_t count = std::min(chunk, rows - first);
+    threads->each(count, [&](int i) {
+      draw_row(step, first + i, rgb->data() + line * static_cast<std::size_t>(first + i));
+    });
+    if (!goes_on(first + count)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool FinishedPicture::is_plain() const {

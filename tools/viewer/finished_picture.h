@@ -1,13 +1,14 @@
 /// @file finished_picture.h
-/// The picture that `thimble render` makes, row by row, and cheaper pictures of the same view.
+/// The picture that `thimble render` makes, and cheaper pictures of the same view.
 ///
 /// This is the one place where the viewer knows how `render` frames, lights and samples a scene: what
-/// `draw_row` draws and what `thimble render` draws with the words of `FinishedLook::words` are the same
+/// `draw` ends with and what `thimble render` draws with the words of `FinishedLook::words` are the same
 /// bytes.
 #ifndef THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 #define THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "scene/lit_description.h"
 #include "thimble/picture/render.h"
 #include "viewer/open_scene.h"
+#include "wide/threads.h"
 
 namespace thimble::tools::viewer {
 
@@ -40,6 +42,8 @@ class FinishedLook {
 
   /// The options of `thimble render` that look so.
   const std::vector<std::string>& words() const { return words_; }
+  /// Samples a pixel are its square.
+  int across() const { return across_; }
 
  private:
   friend class FinishedPicture;
@@ -59,7 +63,10 @@ class FinishedLook {
   std::vector<std::string> words_;
 };
 
-/// One view. What draws is reentrant: rows may be drawn by several threads at once.
+/// Frames the scene from the side from which `forward` leads to its middle.
+Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, const Real3& forward);
+
+/// One view. What draws is reentrant.
 class FinishedPicture {
  public:
   /// Throws InputError for a camera that cannot be.
@@ -72,11 +79,12 @@ class FinishedPicture {
   /// Samples a pixel are its square.
   int across() const { return look_->across_; }
 
-  /// Row `y` of the picture: r, g, b a pixel. Throws InputError where the scene's lights are beyond the core's
-  /// limits.
-  void draw_row(std::int32_t y, std::uint8_t* rgb) const;
-  /// Row `row` of the picture of every `step`-th pixel, with one sample each and all of the light.
-  void draw_coarse_row(int step, std::int32_t row, std::uint8_t* rgb) const;
+  /// Draws into `rgb`, which gets the size that it takes: `step` 0 the finished picture, else every `step`-th
+  /// pixel with one sample and all of the light. `goes_on` is told now and then how many rows from the top
+  /// are there, and ends it by false; then so does this. Throws InputError where the scene's lights are beyond
+  /// the core's limits.
+  using GoesOn = std::function<bool(std::int32_t rows)>;
+  bool draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
 
   /// The same for a camera that moves: without shadows, occlusion, mirrors and glass.
   void draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const;
@@ -89,6 +97,8 @@ class FinishedPicture {
   const Shading& quick_shading() const { return quick_shading_; }
 
  private:
+  void draw_row(int step, std::int32_t y, std::uint8_t* rgb) const;
+
   std::shared_ptr<const FinishedLook> look_;
   Framing framing_;
   Camera fine_;  // so many times the pixels as there are samples across one

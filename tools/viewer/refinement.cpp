@@ -1,11 +1,9 @@
 #include "viewer/refinement.h"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstring>
 #include <exception>
-#include <functional>
 #include <mutex>
 
 #include "viewer/magnify.h"
@@ -36,32 +34,18 @@ struct Refinement::State {
   int percent = 0;
   std::string fault;
 
-  bool each_row(std::int32_t rows, const std::function<void(std::int32_t)>& draw);
-  bool draw_coarse(int step);
+  bool draw_coarse(int every);
   bool draw_full(bool is_final);
 };
 
-// Whether all were drawn.
-bool Refinement::State::each_row(std::int32_t rows, const std::function<void(std::int32_t)>& draw) {
-  threads.each(rows, [&](int row) {
-    if (!cancelled.load(std::memory_order_relaxed)) {
-      draw(row);
-    }
-  });
-  return !cancelled.load();
-}
-
+// Whether it was drawn to its end.
 bool Refinement::State::draw_coarse(int every) {
-  const std::int32_t width = picture->width_px();
-  const std::int32_t height = picture->height_px();
-  const std::size_t line = 3 * static_cast<std::size_t>(thinned_px(width, every));
-  const std::int32_t rows = thinned_px(height, every);
-  std::vector<std::uint8_t> small(line * static_cast<std::size_t>(rows));
-  if (!each_row(rows, [&](std::int32_t row) {
-        picture->draw_coarse_row(every, row, small.data() + line * static_cast<std::size_t>(row));
-      })) {
+  std::vector<std::uint8_t> small;
+  if (!picture->draw(every, &threads, &small, [&](std::int32_t /*rows*/) { return !cancelled.load(); })) {
     return false;
   }
+  const std::int32_t width = picture->width_px();
+  const std::int32_t height = picture->height_px();
   std::vector<std::uint8_t> full(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   magnify(small.data(), every, width, height, full.data());
   const std::scoped_lock lock(mutex);
@@ -76,26 +60,15 @@ bool Refinement::State::draw_coarse(int every) {
 bool Refinement::State::draw_full(bool is_final) {
   const std::int32_t height = picture->height_px();
   const std::size_t line = 3 * static_cast<std::size_t>(picture->width_px());
-  std::vector<std::uint8_t> full(line * static_cast<std::size_t>(height));
-  const auto draw = [&](std::int32_t row) {
-    std::uint8_t* to = full.data() + line * static_cast<std::size_t>(row);
-    if (is_final) {
-      picture->draw_row(row, to);
-    } else {
-      picture->draw_coarse_row(1, row, to);
-    }
-  };
-  const std::int32_t chunk = 4 * threads.count();
+  std::vector<std::uint8_t> full;
   std::int32_t shown = 0;
   Clock::time_point published = Clock::now();
-  for (std::int32_t y = 0; y < height; y += chunk) {
-    const std::int32_t rows = std::min(chunk, height - y);
-    if (!each_row(rows, [&](std::int32_t row) { draw(y + row); })) {
+  return picture->draw(is_final ? 0 : 1, &threads, &full, [&](std::int32_t drawn) {
+    if (cancelled.load()) {
       return false;
     }
-    const std::int32_t drawn = y + rows;
     if (drawn < height && Clock::now() < published + kPublishTime) {
-      continue;
+      return true;
     }
     const std::scoped_lock lock(mutex);
     rgb.resize(full.size());
@@ -108,8 +81,8 @@ bool Refinement::State::draw_full(bool is_final) {
     finished = is_final && drawn == height;
     ++version;
     published = Clock::now();
-  }
-  return true;
+    return true;
+  });
 }
 
 void Refinement::run(State* state) {

@@ -290,8 +290,9 @@ void Viewer::look_around() {
 
 void Viewer::draw_frame() {
   changed_ = false;
-  const std::int32_t width = std::clamp(screen_->width_px(), 1, kMaxPicturePx / kMaxSamplesAcross);
-  const std::int32_t height = std::clamp(screen_->height_px(), 1, kMaxPicturePx / kMaxSamplesAcross);
+  const std::int32_t most = kMaxPicturePx / look_->across();
+  const std::int32_t width = std::clamp(screen_->width_px(), 1, most);
+  const std::int32_t height = std::clamp(screen_->height_px(), 1, most);
   const double began = now();
   std::shared_ptr<const FinishedPicture> picture;
   const ViewWishes wishes = camera_.wishes(width, height);
@@ -351,6 +352,10 @@ void Viewer::refine() {
 void Viewer::save() {
   if (is_refined_ && refinement_ != nullptr && refinement_->is_finished()) {
     write(*refinement_, wishes_, *look_, rgb_);
+    return;
+  }
+  if (is_refined_) {
+    tell("the picture cannot be finished: " + refinement_->fault());
     return;
   }
   if (refinement_ == nullptr) {
@@ -524,8 +529,7 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
   auto picture = std::make_shared<const FinishedPicture>(look, camera.wishes(width, height));
   FastFrames fast(scene, picture->is_plain(), options.threads);
   std::vector<std::uint8_t> rgb;
-  double sum = 0;
-  double slowest = 0;
+  std::vector<double> times;
   constexpr int kWarmUp = 20;  // in which it finds its pace
   for (int i = -kWarmUp; i < frames; ++i) {
     Motion motion;
@@ -536,10 +540,11 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
     fast.draw(*picture, &rgb);
     const double took = now() - start;
     if (i >= 0) {
-      sum += took;
-      slowest = std::max(slowest, took);
+      times.push_back(took);
     }
   }
+  std::sort(times.begin(), times.end());
+  const double median = times[times.size() / 2];
   camera.choose(Action::kFirstView, picture->framing(), *scene);
   picture = std::make_shared<const FinishedPicture>(look, camera.wishes(width, height));
   const double start = now();
@@ -555,7 +560,7 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(), "%llu,%dx%d,%d,%s,%d,%.1f,%.2f,%.2f,%.0f,%.0f",
                 static_cast<unsigned long long>(scene->built->voxels()), width, height, options.threads,
-                fast.engine(), fast.step(), frames / sum, 1000 * sum / frames, 1000 * slowest, 1000 * lit,
+                fast.engine(), fast.step(), 1 / median, 1000 * median, 1000 * times.back(), 1000 * lit,
                 1000 * finished);
   const std::string& name = options.scene.scene;
   return (name.find_first_of(",\"") == std::string::npos ? name : in_quotes(name)) + "," + text.data();
