@@ -70,9 +70,10 @@ void FinishedLook::choose(const LookWishes& wishes) {
   EffectChoice choice = wishes.effects.value_or(EffectChoice{});
   if (!asks) {
     const EffectSet called = chosen_effects(lighting_, used_, choice);
-    if (called == Effect::kNone && !scene_->source->is_point_set()) {
-      choice = {false, kPlainLight};
-      words_ = {"--effects", effects_text(kPlainLight)};
+    constexpr EffectSet kFromElsewhere = Effect::kDirectLight | Effect::kEmission | Effect::kDepthCue;
+    if ((called & kFromElsewhere) == 0 && !scene_->source->is_point_set()) {
+      choice = {false, called | kPlainLight};
+      words_ = {"--effects", effects_text(choice.effects)};
     }
   } else if (!wishes.effects) {
     choice = {false, Effect::kNone};  // a --shade that is given shows no light
