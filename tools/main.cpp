@@ -2,9 +2,11 @@
 // input and output that cannot be used, 2 for wrong usage.
 #include <fcntl.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <string>
@@ -17,6 +19,8 @@
 #include "output/output_file.h"
 #include "output/units.h"
 #include "readers/source.h"
+#include "scene/generators.h"
+#include "scene/named_scenes.h"
 
 namespace {
 
@@ -29,25 +33,80 @@ extern "C" void clean_up_and_die(int signal_number) {
   std::raise(signal_number);
 }
 
+// " (did you mean render?)", or nothing.
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  const std::string nearest = thimble::tools::nearest_word(word, names);
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+// Whether the first argument is a scene, so that the command is to show it: a file, a generator, the name of a
+// scene that comes along, or what can only be a file that is not there.
+bool is_scene(const std::string& word) {
+  if (word.empty() || word.starts_with("-")) {
+    return false;
+  }
+  try {
+    if (thimble::tools::parse_generator(word)) {
+      return true;
+    }
+  } catch (const thimble::tools::InputError&) {
+    return true;  // a generator that says what is wrong with it
+  }
+  std::error_code error;
+  if (word.find_first_of("./") != std::string::npos || std::filesystem::exists(word, error)) {
+    return true;
+  }
+  const std::vector<std::string> names = thimble::tools::scene_names();
+  return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+constexpr const char* kFirstWords =
+    "Thimble draws voxels: the same picture, bit for bit, on a desktop and on a small chip.\n"
+    "  thimble FILE                           look around in a model (.vox .ply .obj .xyz and more)\n"
+    "  thimble render FILE -o picture.png     draw a picture of it\n"
+    "  thimble info FILE                      say what it is, and what it takes\n"
+    "  thimble boards FILE                    say which boards it fits\n"
+    "  thimble sim FILE --board microbit      see it as that board shows it\n"
+    "  thimble bake FILE -o scene.h           write it as bytes for flash\n"
+    "  thimble --help                         list all there is; thimble SUBCOMMAND --help each option\n";
+
 // What was wrong with the usage, as one sentence.
-std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::string& first) {
   using thimble::tools::in_quotes;
   const auto chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "thimble" : "thimble " + chosen.front()->get_name();
   const std::string advice = "; " + command + " --help lists what there is";
   if (chosen.empty()) {
-    if (argc < 2) {
-      return "a subcommand is required" + advice;
-    }
-    const std::string first = argv[1];
-    return in_quotes(first) + (first.starts_with("-") ? " is not an option here" : " is not a subcommand") +
-           advice;
+    return first.starts_with("-")
+               ? in_quotes(first) + " is not an option here" + suggestion(first, option_names(app)) + advice
+               : in_quotes(first) + " is neither a subcommand nor a file" +
+                     suggestion(first, subcommand_names(app)) + advice;
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     const std::vector<std::string> extras = app.remaining(true);
     for (const std::string& extra : extras) {
       if (extra.size() > 1 && extra.starts_with("-")) {
-        return in_quotes(extra) + " is not an option of " + command + advice;
+        const std::string name = extra.substr(0, extra.find('='));
+        return in_quotes(extra) + " is not an option of " + command +
+               suggestion(name, option_names(*chosen.front())) + advice;
       }
     }
     if (!extras.empty()) {
@@ -103,7 +162,9 @@ int main(int argc, char** argv) {
   thimble::tools::add_all_commands(app);
   app.footer("thimble SUBCOMMAND --help describes each.");
   for (CLI::App* command : app.get_subcommands({})) {
-    command->footer("");
+    if (command->get_footer() == app.get_footer()) {
+      command->footer("");
+    }
   }
   // The file that an input error is about, for the sentence: the subcommand's first argument.
   const auto subject = [&]() -> std::string {
@@ -119,15 +180,26 @@ int main(int argc, char** argv) {
   std::string sentence;
   int status = kInputStatus;
   try {
+    if (argc < 2) {
+      std::fputs(kFirstWords, stdout);
+      thimble::tools::check_standard_output();
+      return 0;
+    }
+    std::vector<char*> words(argv, argv + argc);
+    char view[] = "view";
+    const std::vector<std::string> names = subcommand_names(app);
+    if (std::find(names.begin(), names.end(), argv[1]) == names.end() && is_scene(argv[1])) {
+      words.insert(words.begin() + 1, view);
+    }
     try {
-      app.parse(argc, argv);
+      app.parse(static_cast<int>(words.size()), words.data());
     } catch (const CLI::Success& help) {
-      app.exit(help);  // prints it
+      app.exit(help);  // prints it, or the version
     }
     thimble::tools::check_standard_output();
     return 0;
   } catch (const CLI::ParseError& error) {
-    sentence = usage_sentence(app, error, argc, argv);
+    sentence = usage_sentence(app, error, argv[1]);
     status = kUsageStatus;
   } catch (const thimble::tools::InputError& error) {
     sentence = subject() + error.what();

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "host/font.h"
 
 namespace thimble::host {
 namespace {
+
+static_assert(sizeof(Rgb8) == 3);
 
 Rgb8 pixel_of(const Picture& picture, std::int32_t x, std::int32_t y) {
   const std::uint8_t* at =
@@ -18,6 +21,14 @@ Rgb8 pixel_of(const Picture& picture, std::int32_t x, std::int32_t y) {
 void draw_magnified(Canvas* canvas, const Placement& placement, const Picture& picture, const Look& look) {
   const std::int32_t scale = placement.scale;
   const std::int32_t gap = gap_px(look, scale);
+  if (scale == 1 && look.keeps_color) {  // the viewer's pictures, thirty a second
+    const auto row = static_cast<std::size_t>(picture.width_px);
+    for (std::int32_t y = 0; y < picture.height_px; ++y) {
+      std::memcpy(canvas->row(placement.y_px + y) + placement.x_px,
+                  picture.rgb + sizeof(Rgb8) * row * static_cast<std::size_t>(y), sizeof(Rgb8) * row);
+    }
+    return;
+  }
   for (std::int32_t y = 0; y < picture.height_px; ++y) {
     Rgb8* const first = canvas->row(placement.y_px + y * scale) + placement.x_px;
     Rgb8* to = first;

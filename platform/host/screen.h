@@ -95,6 +95,7 @@ struct Event {
   std::uint8_t button = 0;   ///< 1 left, 2 middle, 3 right
   std::uint8_t buttons = 0;  ///< buttons held after this event: bit 0 left, bit 1 middle, bit 2 right
   std::int32_t steps = 0;    ///< away from the user is above 0
+  bool shift = false;        ///< of the mouse's events: whether shift is held
 };
 
 struct ScreenOptions {

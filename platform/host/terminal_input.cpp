@@ -112,6 +112,7 @@ std::optional<char32_t> utf8_character(std::string_view bytes) {
 }  // namespace
 
 void TerminalInput::take_mouse(std::string_view parameters, bool is_release, std::vector<Event>* events) {
+  constexpr int kShift = 4;
   constexpr int kMotion = 32;
   constexpr int kWheel = 64;
   const auto [code, column, row] = numbers_of(parameters);
@@ -121,6 +122,7 @@ void TerminalInput::take_mouse(std::string_view parameters, bool is_release, std
   Event event;
   event.x_px = column - 1;
   event.y_px = row - 1;
+  event.shift = (code & kShift) != 0;
   const int button = code & 3;
   if ((code & kWheel) != 0) {
     if (button > 1) {

@@ -125,7 +125,7 @@ class Window final : public Screen {
   void take(XEvent& event);
   void take_key(XKeyEvent& event, bool is_down);
   void take_button(const XButtonEvent& event, bool is_down);
-  Event at(EventKind kind, std::int32_t x, std::int32_t y) const;
+  Event at(EventKind kind, std::int32_t x, std::int32_t y, unsigned state) const;
   void release_keys();
 
   Display* display_ = nullptr;
@@ -217,7 +217,8 @@ void Window::open(const ScreenOptions& options) {
                                         kFirstHeightPx / std::max(options.height_px, 1));
   const std::int32_t scale = fixed_scale_ > 0 ? fixed_scale_ : std::clamp(fitting, 1, 16);
   const std::int32_t border = gap_px(look_, scale) != 0 ? 2 * scale : 0;
-  const std::int32_t width = std::max(options.width_px * scale + border, kLeastWidthPx);
+  const std::int32_t width =
+      std::max(options.width_px * scale + border, options.status_lines > 0 ? kLeastWidthPx : 64);
   canvas_.width_px = width;  // panel_px() asks
   std::int32_t height = std::max(options.height_px * scale + border, 64) + panel_px();
   height = std::min(height, 32767);
@@ -285,8 +286,10 @@ std::int32_t Window::overlay_scale() const {
 
 void Window::compose() {
   const std::int32_t room = height_px();
-  canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
   placement_ = place(picture_width_px_, picture_height_px_, canvas_.width_px, room, fixed_scale_);
+  if (rgb_.empty() || placement_.width_px < canvas_.width_px || placement_.height_px < room) {
+    canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
+  }
   if (!rgb_.empty()) {
     draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
   }
@@ -357,12 +360,13 @@ void Window::show(const Picture& picture) {
   send();
 }
 
-Event Window::at(EventKind kind, std::int32_t x, std::int32_t y) const {
+Event Window::at(EventKind kind, std::int32_t x, std::int32_t y, unsigned state) const {
   Event event;
   event.kind = kind;
   event.x_px = to_picture(x, placement_.x_px, placement_.width_px, picture_width_px_);
   event.y_px = to_picture(y, placement_.y_px, placement_.height_px, picture_height_px_);
   event.buttons = buttons_;
+  event.shift = (state & ShiftMask) != 0;
   return event;
 }
 
@@ -405,7 +409,7 @@ void Window::take_key(XKeyEvent& event, bool is_down) {
 void Window::take_button(const XButtonEvent& event, bool is_down) {
   if (event.button == Button4 || event.button == Button5) {
     if (is_down) {
-      Event wheel = at(EventKind::kWheel, event.x, event.y);
+      Event wheel = at(EventKind::kWheel, event.x, event.y, event.state);
       wheel.steps = event.button == Button4 ? 1 : -1;
       events_.push_back(wheel);
     }
@@ -416,7 +420,7 @@ void Window::take_button(const XButtonEvent& event, bool is_down) {
   }
   const auto bit = static_cast<std::uint8_t>(1U << (event.button - 1));
   buttons_ = static_cast<std::uint8_t>(is_down ? buttons_ | bit : buttons_ & ~bit);
-  Event pressed = at(is_down ? EventKind::kMouseDown : EventKind::kMouseUp, event.x, event.y);
+  Event pressed = at(is_down ? EventKind::kMouseDown : EventKind::kMouseUp, event.x, event.y, event.state);
   pressed.button = static_cast<std::uint8_t>(event.button);
   events_.push_back(pressed);
 }
@@ -432,7 +436,7 @@ void Window::take(XEvent& event) {
       take_button(event.xbutton, event.type == ButtonPress);
       return;
     case MotionNotify:
-      events_.push_back(at(EventKind::kMouseMove, event.xmotion.x, event.xmotion.y));
+      events_.push_back(at(EventKind::kMouseMove, event.xmotion.x, event.xmotion.y, event.xmotion.state));
       return;
     case FocusOut:
       release_keys();  // their release would go to another window

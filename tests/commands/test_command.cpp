@@ -59,6 +59,9 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
       {"effects",
        {"SCENE", "--effects", "--bounces", "--size", "--eye", "--frames", "--csv", "--json", "--plot",
         "--quiet", "K_rays", "node_visits", "q25_ms", "ram_bytes", "flash_bytes", "lm3s6965evb"}},
+      {"view",
+       {"SCENE", "--size", "--eye", "--target", "--up", "--fov", "--span", "--display", "--effects",
+        "--samples", "--shade", "--threads", "--bench", "drag", "wheel", "double click", "Esc"}},
       {"table", {"--points", "--scene", "--depth", "--json", "--plot", "--quiet", "--engine", "--threads"}}};
   for (Help& help : all) {
     if (help.subcommand == "render" || help.subcommand == "trace" || help.subcommand == "info") {
@@ -83,9 +86,26 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
   }
 }
 
+TEST_CASE("command: nothing asked for -> eight lines that say where to begin, status 0") {
+  const CommandResult result = run_command({});
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
+  const auto lines = lines_of(result.out);
+  CHECK(lines.size() == 8);
+  for (const std::string& line : lines) {
+    CHECK(line.size() <= 100);
+  }
+  CHECK(result.out.find("thimble FILE") != std::string::npos);
+  CHECK(result.out.find("thimble render FILE -o picture.png") != std::string::npos);
+}
+
 TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is wrong") {
-  check_refused({}, 2, {"subcommand"});
-  check_refused({"paint"}, 2, {"\"paint\""});
+  check_refused({"paint"}, 2, {"\"paint\"", "neither a subcommand nor a file"});
+  check_refused({"rendr"}, 2, {"\"rendr\"", "(did you mean render?)"});
+  check_refused({"inof"}, 2, {"(did you mean info?)"});
+  check_refused({"render", "spheres", "-o", "-", "--sise", "3x3"}, 2, {"(did you mean --size?)"});
+  check_refused({"render", "spheres", "-o", "-", "--dpeth=3"}, 2, {"(did you mean --depth?)"});
+  check_refused({"--hlep"}, 2, {"(did you mean --help?)"});
   check_refused({"--verbose"}, 2, {"\"--verbose\""});
   check_refused({"render"}, 2, {"SCENE"});
   check_refused({"render", "spheres"}, 2, {"--output"});

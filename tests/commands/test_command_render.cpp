@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/engine_options.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
 #include "support/run_command.h"
@@ -733,6 +734,18 @@ TEST_CASE(
       CHECK(pictures >= 3);
     }
   }
+}
+
+TEST_CASE("render: no --threads -> all cores, one within a budget, whose bytes are the same everywhere") {
+  const TemporaryFolder folder;
+  const auto threads = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"cluster:1000", "--size", "16x12"});
+    return render_all(folder, words).stats["threads"].get<int>();
+  };
+  CHECK(threads({}) == thimble::tools::all_cores());
+  CHECK(threads({"--threads", "1"}) == 1);
+  CHECK(threads({"--memory", "1M"}) == 1);
+  CHECK(threads({"--memory", "1M", "--threads", "2"}) == 2);
 }
 
 TEST_CASE("render: --stats -> every key of the contract, with its type") {

@@ -111,7 +111,9 @@ TEST_CASE("render effects: any number of threads -> the same picture and counts,
   const std::string scene = folder.write("a.scene", kScene);
   for (const Words& more : {Words{}, {"--samples", "4"}, {"--memory", "64K"}}) {
     for (const char* ending : {".ppm", ".pbm"}) {
-      const Picture one = render(scene, more, ending, "50x37");
+      Words alone = more;
+      alone.insert(alone.end(), {"--threads", "1"});
+      const Picture one = render(scene, alone, ending, "50x37");
       CHECK(one.stats["threads"] == 1);
       for (const char* threads : {"2", "5"}) {
         CAPTURE(threads);

@@ -84,6 +84,13 @@ bool is_given(const CLI::App& app, const std::string& name);
 /// The names of all that the user gave.
 std::vector<std::string> options_given(const CLI::App& app);
 
+/// The one of `words` that somebody who typed `word` most likely meant: at most a third of its letters are
+/// missing, too many, wrong or swapped with their neighbour. Empty for none.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+
+/// Lines below the options in the help of `command`.
+void add_footer(CLI::App& command, const std::string& text);
+
 /// Ends the command as wrong usage (status 2): "`name`: `what`", or `what` alone.
 [[noreturn]] void refuse_usage(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_usage(const std::string& what);

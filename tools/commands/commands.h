@@ -12,6 +12,7 @@ class App;
 namespace thimble::tools {
 
 // Each adds its subcommand with options, help and what it does when it is chosen.
+void add_view_command(CLI::App& app);
 void add_render(CLI::App& app);
 void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
@@ -32,6 +33,7 @@ void add_uart_picture(CLI::App& app);
 std::string version_text();
 
 inline void add_all_commands(CLI::App& app) {
+  add_view_command(app);
   add_render(app);
   add_trace(app);
   add_table(app);

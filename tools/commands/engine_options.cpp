@@ -1,5 +1,6 @@
 #include "commands/engine_options.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "commands/arguments.h"
@@ -21,7 +22,19 @@ void choose(const std::string& name, std::string* chosen) {
 
 }  // namespace
 
-void EngineOptions::add_to(CLI::App& app) {
+int all_cores() {
+  return std::clamp(oneapi::tbb::info::default_concurrency(), 1, wide::kMaxThreads);
+}
+
+void add_threads(CLI::App& app, int* threads, const std::string& help) {
+  *threads = all_cores();
+  add_whole_option(
+      app, "--threads", "N", 1, wide::kMaxThreads,
+      [threads](std::int64_t number) { *threads = static_cast<int>(number); }, help)
+      .default_str("all cores");
+}
+
+void EngineOptions::add_to(CLI::App& app, bool all_cores) {
   static const std::vector<std::string> kNames{"auto", "wide", "ray64", "ray32"};
   add_choice_option(
       app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
@@ -29,11 +42,15 @@ void EngineOptions::add_to(CLI::App& app) {
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64")
       .default_str("auto");
+  threads = all_cores ? tools::all_cores() : 1;
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
-      [this](std::int64_t number) { threads = static_cast<int>(number); },
+      [this](std::int64_t number) {
+        threads = static_cast<int>(number);
+        threads_given = true;
+      },
       "threads that build, and that draw with the wide engine or with effects")
-      .default_str("1");
+      .default_str(all_cores ? "all cores; 1 with --memory or --board, whose bytes they count in" : "1");
 }
 
 void EngineOptions::add_ray_engines_to(CLI::App& app) {
@@ -69,11 +86,7 @@ void EngineOptions::add_board_engines_to(CLI::App& app) {
       "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
       "applications are always the core's")
       .default_str("auto");
-  add_whole_option(
-      app, "--threads", "N", 1, wide::kMaxThreads,
-      [this](std::int64_t number) { threads = static_cast<int>(number); },
-      "threads that draw with the wide engine")
-      .default_str("1");
+  add_threads(app, &threads, "threads that draw with the wide engine");
 }
 
 TraceOptions EngineOptions::trace_options() const {

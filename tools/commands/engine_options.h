@@ -16,14 +16,24 @@ struct TraceOptions;
 
 namespace thimble::tools {
 
+/// As many threads as this process may use cores, at most wide::kMaxThreads.
+int all_cores();
+/// --threads alone, all cores by default.
+void add_threads(CLI::App& app, int* threads, const std::string& help);
+
 class BuiltScene;
 class WideRenderer;
 
 struct EngineOptions {
   std::string name = "auto";
   int threads = 1;
+  bool threads_given = false;
 
-  void add_to(CLI::App& app);
+  /// `all_cores`: --threads is as many as there are cores unless it is given; otherwise 1.
+  void add_to(CLI::App& app, bool all_cores = true);
+  /// Where there is a budget of memory one thread is the default: what threads keep counts, and figures are
+  /// to be the same on every machine.
+  void keep_to_budget(bool has_budget) { threads = has_budget && !threads_given ? 1 : threads; }
   /// --engine alone, for subcommands that draw nothing.
   void add_ray_engines_to(CLI::App& app);
   /// For applications on a simulated board, where the core draws as the board has it draw.

@@ -323,6 +323,7 @@ void run(const RenderCommand& given) {
   RenderCommand command = given;
   check_usage(command);
   use_display(command.scene.board, &command.view);
+  command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
   enum Output : std::size_t { kPicture, kHits, kDepths, kStats };
   OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},
                     {command.scene.arguments.scene});

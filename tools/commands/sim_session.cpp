@@ -22,6 +22,7 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr Milliseconds kStatusTime{100};   // between two looks at the memory
 constexpr Milliseconds kEndingTime{2000};  // that an application may take to end when it is told to
+constexpr Milliseconds kWatchedTime{40};   // the same where somebody watches, who wants to be gone
 constexpr int kEventsMs = 5;               // between two looks at keys and window while it draws
 constexpr int kStatusLines = 4;
 constexpr std::size_t kKeptOutputBytes = 65536;
@@ -107,6 +108,8 @@ class Session {
   void take_script();
   void take_picture();
   void update_status();
+  // Somebody who watches does not wait for the frame that is being drawn: the picture before it is the last.
+  bool leaves_frame() const { return closing_at_ && watched() && Clock::now() > *closing_at_ + kWatchedTime; }
   bool time_is_up() const { return closing_at_ && Clock::now() > *closing_at_ + kEndingTime; }
 
   SessionOptions options_;
@@ -121,6 +124,10 @@ class Session {
   std::optional<Clock::time_point> closing_at_;
   Clock::time_point status_at_;
   std::uint32_t pictures_ = 0;
+  host::PackedPicture picture_;  // the last one that was seen, where somebody watches
+  host::MemoryUse use_;
+  std::uint64_t rows_sent_ = 0;
+  std::uint64_t rows_kept_ = 0;
   std::uint32_t frames_ = 0;
   double seconds_ = 0;
   double shown_seconds_ = 0;
@@ -272,10 +279,11 @@ void Session::update_status() {
   std::array<char, 32> time{};
   std::snprintf(time.data(), time.size(), "%.2f", 1000 * shown_seconds_);
   const std::string line = last_line(output_);
+  use_ = simulation_.use();
   screen_->set_status(
       std::string(options_.board->name) + "  " + options_.application->name + "  frame " +
-      grouped(pictures_) + "  " + time.data() + " ms a frame on this machine\n" +
-      memory_text(simulation_.use(), "\n") + "\n" +
+      grouped(pictures_) + "  " + time.data() + " ms a frame on this machine\n" + memory_text(use_, "\n") +
+      "\n" +
       (line.empty() || !uart_in_pane_
            ? (options_.application->takes_pointer ? "mouse: touch, drop   arrows or WASD, space   Esc ends"
                                                   : "buttons: arrows or WASD, space   Esc ends")
@@ -303,6 +311,9 @@ void Session::take_picture() {
     options_.recording->write(host::y4m_color_frame(shown));
   }
   if (watched()) {
+    picture_ = picture;
+    rows_sent_ = simulation_.rows_sent();
+    rows_kept_ = simulation_.rows_kept();
     update_status();
     screen_->show(shown);
   }
@@ -313,7 +324,7 @@ SessionResult Session::run() {
   Clock::time_point due = Clock::now();
   host::Moment moment = host::Moment::kNothing;
   take_script();  // frame 0 may come without a question
-  while (moment != host::Moment::kEnded && !time_is_up()) {
+  while (moment != host::Moment::kEnded && !time_is_up() && !leaves_frame()) {
     moment = simulation_.wait(kEventsMs);
     pass_output();
     take_events(0);
@@ -346,6 +357,12 @@ SessionResult Session::run() {
     result.rows_kept = simulation_.rows_kept();
     result.picture = simulation_.picture();
     result.use = simulation_.use();
+  } else if (leaves_frame()) {
+    result.pictures = pictures_;
+    result.picture = picture_;
+    result.rows_sent = rows_sent_;
+    result.rows_kept = rows_kept_;
+    result.use = use_;
   } else {
     result.status = port::kFaultStatus;
     result.fault = "it did not end within two seconds of being told to";

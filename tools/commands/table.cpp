@@ -314,7 +314,7 @@ void add_table(CLI::App& app) {
       "has none), hits, exact_mismatches, engine");
   add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "seconds against points");
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar");
-  command->engine.add_to(*sub);
+  command->engine.add_to(*sub, false);
   when_chosen(*sub, [command] { run(*command); });
 }
 

@@ -1,0 +1,376 @@
+// thimble view, as a user does it: in a window under Xvfb with real pointer and keys, in a terminal, and where
+// there is neither. Windows are skipped where Xvfb or xdotool are missing.
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/check_command.h"
+#include "support/pty.h"
+#include "support/run_command.h"
+#include "support/virtual_display.h"
+
+namespace {
+
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool wait_until(double seconds, const std::function<bool()>& done) {
+  const auto start = Clock::now();
+  while (!done()) {
+    if (seconds_since(start) > seconds) {
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+// Replaces this process by the command.
+[[noreturn]] void become_command(const Words& words) {
+  std::string program = THIMBLE_COMMAND_PATH;
+  std::vector<char*> argv{program.data()};
+  for (const std::string& word : words) {
+    argv.push_back(const_cast<char*>(word.c_str()));
+  }
+  argv.push_back(nullptr);
+  ::execv(program.c_str(), argv.data());
+  ::_exit(127);
+}
+
+// The viewer in the folder, with what it prints in files there.
+class Viewing {
+ public:
+  Viewing(const TemporaryFolder& folder, const Words& words) : folder_(folder) {
+    child_ = ::fork();
+    if (child_ == 0) {
+      const auto to_file = [&](const char* name, int descriptor) {
+        ::dup2(::open(folder.path(name).c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), descriptor);
+      };
+      to_file("out.txt", 1);
+      to_file("err.txt", 2);
+      if (::chdir(folder.path().c_str()) == 0) {
+        become_command(words);
+      }
+      ::_exit(126);
+    }
+  }
+  ~Viewing() {
+    if (child_ > 0) {
+      ::kill(child_, SIGKILL);
+      ::waitpid(child_, nullptr, 0);
+    }
+  }
+  Viewing(const Viewing&) = delete;
+  Viewing& operator=(const Viewing&) = delete;
+
+  std::string out() const { return read_text(folder_.path("out.txt")); }
+  std::string err() const { return read_text(folder_.path("err.txt")); }
+  bool prints(const std::string& text) const {
+    return wait_until(60, [&] { return out().find(text) != std::string::npos; });
+  }
+  bool complains(const std::string& text) const {
+    return wait_until(20, [&] { return err().find(text) != std::string::npos; });
+  }
+  // The exit status once it ends; -1 where it does not.
+  int wait() {
+    int status = 0;
+    const bool ended = wait_until(20, [&] { return ::waitpid(child_, &status, WNOHANG) == child_; });
+    child_ = ended ? -1 : child_;
+    return ended && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  const TemporaryFolder& folder_;
+  pid_t child_ = -1;
+};
+
+bool can_test(const VirtualDisplay& display) {
+  if (!display.works()) {
+    MESSAGE("skipped: " << display.why_not());
+  }
+  return display.works();
+}
+
+// Until the window is there and the pointer in it.
+bool point_into(const VirtualDisplay& display) {
+  return display.xdotool("search --sync --onlyvisible --name '^thimble: '") &&
+         display.xdotool("mousemove 100 100");
+}
+
+// A shell's words of a printed command; none of those here is quoted.
+Words words_of(const std::string& line) {
+  return split(line, ' ');
+}
+
+std::string line_with(const std::string& text, const std::string& part) {
+  for (const std::string& line : lines_of(text)) {
+    if (line.find(part) != std::string::npos) {
+      return line;
+    }
+  }
+  return {};
+}
+
+// The words after a word, as numbers.
+double first_number_after(const Words& words, const std::string& name) {
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i] == name) {
+      return std::stod(words[i + 1]);
+    }
+  }
+  return 1e9;
+}
+
+// Runs the printed command with another output and compares the files.
+void check_same_picture(const TemporaryFolder& folder, const std::string& line) {
+  CAPTURE(line);
+  Words words = words_of(line);
+  REQUIRE(words.size() > 4);
+  CHECK(words[0] == "thimble");
+  const std::string saved = words.back();
+  words.erase(words.begin());
+  words.back() = "again.png";
+  CommandLimits limits;
+  limits.directory = folder.path();
+  const CommandResult again = run_command(words, limits);
+  CAPTURE(again.describe());
+  REQUIRE(again.status == 0);
+  CHECK(read_text(folder.path(saved)) == read_text(folder.path("again.png")));
+}
+
+}  // namespace
+
+TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is what its command renders") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing viewing(folder, {"spheres,depth=5", "--size", "200x150"});
+  REQUIRE(point_into(display));
+  REQUIRE(display.xdotool("key s"));
+  REQUIRE(viewing.prints("-o spheres-depth-5.png"));
+  const std::string first = line_with(viewing.out(), "-o spheres-depth-5.png");
+  CHECK(first.find("--eye") == std::string::npos);  // nobody moved: the view of the command
+  CHECK(first.find("--size 200x150") != std::string::npos);
+  check_same_picture(folder, first);
+
+  REQUIRE(display.xdotool("mousedown 1 mousemove 130 110 mousemove 150 110 mouseup 1 key s"));
+  REQUIRE(viewing.prints("-o spheres-depth-5-2.png"));
+  const std::string turned = line_with(viewing.out(), "-o spheres-depth-5-2.png");
+  CHECK(turned.find("--eye") != std::string::npos);
+  check_same_picture(folder, turned);
+
+  REQUIRE(display.xdotool("click 4 click 4 click 4 mousedown 3 mousemove 120 60 mouseup 3 key s"));
+  REQUIRE(viewing.prints("-o spheres-depth-5-3.png"));
+  check_same_picture(folder, line_with(viewing.out(), "-o spheres-depth-5-3.png"));
+
+  REQUIRE(display.xdotool("key 5 key s"));  // from above: up has to be told
+  REQUIRE(viewing.prints("-o spheres-depth-5-4.png"));
+  const std::string above = line_with(viewing.out(), "-o spheres-depth-5-4.png");
+  CHECK(above.find("--up") != std::string::npos);
+  check_same_picture(folder, above);
+
+  REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 300 220 sleep 0.3 key 1 key s"));
+  REQUIRE(viewing.prints("-o spheres-depth-5-5.png"));
+  const std::string front = line_with(viewing.out(), "-o spheres-depth-5-5.png");
+  CHECK(front.find("--size 300x220") != std::string::npos);
+  check_same_picture(folder, front);
+
+  REQUIRE(display.xdotool("key q"));
+  CHECK(viewing.wait() == 0);
+  CHECK(viewing.err().empty());
+}
+
+TEST_CASE("view: shift drag, flight and a double click -> the eye goes where they say") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  std::string cube;
+  for (int i = 0; i < 512; ++i) {
+    cube += std::to_string(i % 8) + " " + std::to_string(i / 8 % 8) + " " + std::to_string(i / 64) + "\n";
+  }
+  folder.write("cube.xyz", cube);
+  Viewing viewing(folder, {"view", "cube.xyz", "--as-voxels", "--size", "600x400", "--samples", "1"});
+  REQUIRE(point_into(display));
+  int saved = 0;
+  // What s prints after these words of xdotool, as words.
+  const auto after = [&](const std::string& gesture) {
+    REQUIRE(display.xdotool(gesture + " sleep 0.1 key s"));
+    ++saved;
+    const std::string name = "-o cube" + (saved == 1 ? "" : "-" + std::to_string(saved)) + ".png";
+    REQUIRE(viewing.prints(name));
+    return words_of(line_with(viewing.out(), name));
+  };
+  const double front = first_number_after(after("key 1"), "--eye");
+  // Shift and the left button: the scene goes right, so the eye goes left (towards smaller x).
+  const double moved = first_number_after(
+      after("mousemove 200 200 keydown shift mousedown 1 mousemove 300 200 mouseup 1 keyup shift"), "--eye");
+  CHECK(moved < front - 1);
+  const double flown = first_number_after(after("keydown d sleep 0.5 keyup d"), "--eye");
+  CHECK(flown > moved + 1);
+  const Words before = after("key 1");
+  const Words looked = after("mousemove 260 200 sleep 0.5 click 1 click 1");
+  CHECK(first_number_after(looked, "--eye") == doctest::Approx(front).epsilon(0.001));
+  CHECK(first_number_after(looked, "--target") < first_number_after(before, "--target") - 0.2);
+  REQUIRE(display.xdotool("mousemove 300 200"));  // what was looked at is in the middle now
+  REQUIRE(display.xdotool("key p"));
+  REQUIRE(viewing.prints("voxel "));
+  const std::string picked = line_with(viewing.out(), "voxel ");
+  CHECK(picked.find("front face (-y), material ") != std::string::npos);
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+}
+
+TEST_CASE("view: keys shown, Escape in the middle of a slow picture -> over at once") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing viewing(folder, {"water,depth=6", "--size", "900x700", "--samples", "64"});
+  REQUIRE(point_into(display));
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  const thimble::Rgb8 before = display.pixel(30, 150);
+  REQUIRE(display.xdotool("key question sleep 0.5"));
+  const thimble::Rgb8 panel = display.pixel(6, 150);
+  CHECK(panel == thimble::Rgb8{32, 34, 38});
+  CHECK_FALSE(before == panel);
+  REQUIRE(display.xdotool("key question"));
+  const auto start = Clock::now();
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+  const double seconds = seconds_since(start);
+  MESSAGE("Escape to the end of the process, xdotool's own time in it: " << seconds << " s");
+  CHECK(seconds < 0.5);  // 0.1 on a machine that does nothing else
+}
+
+TEST_CASE(
+    "view: the file changes -> read again; half written -> the old picture and a sentence, then again") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  const std::string two = "0 0 0\n9 9 9\n";
+  const std::string path = folder.write("dots.xyz", two);
+  Viewing viewing(folder, {"dots.xyz", "--as-voxels", "--size", "300x200", "--samples", "1"});
+  REQUIRE(point_into(display));
+  const auto saved = [&](const std::string& name) {
+    REQUIRE(display.xdotool("key s"));
+    REQUIRE(viewing.prints("-o " + name));
+    return read_text(folder.path(name));
+  };
+  const std::string first = saved("dots.png");
+  folder.write("dots.xyz", "0 0 0\n1 2 nothi");
+  REQUIRE(viewing.complains("dots.xyz has changed and cannot be read: line 2"));
+  CHECK(is_one_sentence(viewing.err()));
+  CHECK(saved("dots-2.png") == first);
+  folder.write("dots.xyz", "0 0 0\n9 9 9\n4 5 4\n3 3 3\n");
+  std::string last;
+  CHECK(wait_until(20, [&] {
+    static int number = 2;
+    last = saved("dots-" + std::to_string(++number) + ".png");
+    return last != first;
+  }));
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+}
+
+TEST_CASE("view: without a display, in a terminal -> drawn there; keys, saving, Escape") {
+  const TemporaryFolder folder;
+  Pty pty(80, 24, [&] {
+    ::unsetenv("DISPLAY");
+    ::setenv("TERM", "xterm-256color", 1);
+    if (::chdir(folder.path().c_str()) != 0) {
+      return 126;
+    }
+    become_command({"spheres,depth=4"});
+  });
+  REQUIRE(pty.wait_for("\xe2\x96\x80", 20));  // the upper half block
+  pty.type("?");
+  CHECK(pty.wait_for("turns around the model", 20));
+  pty.type("?s");
+  CHECK(wait_until(30, [&] {
+    pty.wait_for("saved", 0.1);
+    return folder.names() == Words{"spheres-depth-4.png"};
+  }));
+  pty.type("\x1b[<0;20;10M\x1b[<32;30;10M\x1b[<0;30;10m");  // a drag
+  pty.wait_for("frames/s", 5);
+  pty.type("\x1b");
+  REQUIRE(pty.wait_for_end(10));
+  CHECK(pty.exit_status() == 0);
+  // Told once the terminal is free again.
+  const std::string end = pty.output().substr(pty.output().rfind("\x1b[?1049l"));
+  CHECK(end.find("thimble render spheres,depth=4 --size 80x48 ") != std::string::npos);
+}
+
+TEST_CASE("sim: Escape in the middle of a frame that takes seconds -> over at once, as if it had ended") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing running(folder, {"sim", "water,depth=8", "--board", "raspi0"});
+  REQUIRE(display.xdotool("search --sync --onlyvisible --name '^thimble sim' mousemove 100 100 sleep 0.3"));
+  const auto start = Clock::now();
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(running.wait() == 0);
+  const double seconds = seconds_since(start);
+  MESSAGE("Escape to the end of the process, xdotool's own time in it: " << seconds << " s");
+  CHECK(seconds < 0.5);
+}
+
+TEST_CASE("view: neither display nor terminal -> one sentence that names render, status 1") {
+  ::unsetenv("DISPLAY");
+  for (const Words& words : {Words{"spheres,depth=4"}, Words{"view", "spheres,depth=4"}}) {
+    const CommandResult result = run_command(words);
+    CAPTURE(result.describe());
+    CHECK(result.status == 1);
+    CHECK(is_one_sentence(result.err));
+    CHECK(result.err.find("thimble render spheres,depth=4 -o picture.png") != std::string::npos);
+  }
+  check_refused({"view", "spheres", "--display", "window"}, 1, {"DISPLAY"});
+}
+
+TEST_CASE("view: scenes that cannot be, options that contradict -> a sentence and no window") {
+  const TemporaryFolder folder;
+  check_refused({"nosuch.vox"}, 1, {"nosuch.vox"});
+  check_refused({folder.write("empty.vox", "")}, 1, {"empty.vox"});
+  check_refused({"points:x"}, 1, {"points"});
+  check_refused({"view"}, 2, {"SCENE"});
+  check_refused({"view", "spheres", "--samples", "5"}, 2, {"--samples", "64"});
+  check_refused({"view", "spheres", "--display", "tv"}, 2, {"auto, window or terminal"});
+  check_refused({"view", "spheres", "--shade", "depth", "--effects", "shadows"}, 2, {"--effects"});
+  check_refused({"spheres", "--wheel"}, 2, {"thimble view"});
+}
+
+TEST_CASE("view: --bench -> a line of CSV under its columns, on any machine") {
+  const CommandResult result =
+      run_command({"points:500,depth=6", "--bench", "5", "--size", "160x120", "--threads", "1"});
+  CAPTURE(result.describe());
+  REQUIRE(result.status == 0);
+  const auto lines = lines_of(result.out);
+  REQUIRE(lines.size() == 2);
+  const Words names = split(lines[0]);
+  // The scene's name has a comma of its own, and stands in quotes.
+  CHECK(names.size() == 11);
+  CHECK(lines[1].find("\"points:500,depth=6\",") == 0);
+  CHECK(split(lines[1]).size() == names.size() + 1);
+}

@@ -1,0 +1,193 @@
+// What the viewer shows: the pace of frames, pictures stretched, and the finished picture in all its passes.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "thimble/light/scene.h"
+#include "viewer/fast_frames.h"
+#include "viewer/finished_picture.h"
+#include "viewer/magnify.h"
+#include "viewer/pace.h"
+#include "viewer/picking.h"
+#include "viewer/refinement.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tools;
+using namespace thimble::tools::viewer;
+
+std::shared_ptr<const OpenScene> scene_of(const std::string& name) {
+  SceneArguments arguments;
+  arguments.scene = name;
+  SceneReading reading(arguments, 2);
+  return reading.take();
+}
+
+ViewWishes view_of(std::int32_t width, std::int32_t height) {
+  ViewWishes view;
+  view.width_px = width;
+  view.height_px = height;
+  return view;
+}
+
+}  // namespace
+
+TEST_CASE("pace: slow frames -> coarser, fast ones -> finer again, between limits") {
+  Pace pace(0.02, true);
+  CHECK(pace.engine() == FastEngine::kWide);
+  pace.take(0.5);  // the first does not count
+  CHECK(pace.step() == 1);
+  pace.take(0.03);
+  CHECK(pace.step() == 2);
+  for (int i = 0; i < 50; ++i) {
+    pace.take(0.015);  // would be 0.06 at full size
+  }
+  CHECK(pace.step() == 2);
+  for (int i = 0; i < 50; ++i) {
+    pace.take(0.002);
+  }
+  CHECK(pace.step() == 1);
+}
+
+TEST_CASE("pace: what is slow at any size -> rays where they are faster, else the wide renderer stays") {
+  const auto settle = [](double ray_pixels_a_second) {
+    Pace pace(0.02, true);
+    for (int i = 0; i < 100; ++i) {
+      const double pixels = 921600.0 / (pace.step() * pace.step());
+      pace.take(pace.engine() == FastEngine::kWide ? 0.08 : pixels / ray_pixels_a_second);
+      CHECK(pace.step() >= 1);
+      CHECK(pace.step() <= Pace::kMostStep);
+    }
+    return pace.engine();
+  };
+  CHECK(settle(2e6) == FastEngine::kRays);
+  CHECK(settle(2e5) == FastEngine::kWide);
+  CHECK(Pace(0.02, false).engine() == FastEngine::kRays);
+}
+
+TEST_CASE("magnify: every pixel that was drawn stays, those between lie between, one colour stays one") {
+  std::mt19937 random(1);
+  for (int step = 1; step <= kMostStep; ++step) {
+    const std::int32_t width = 37;
+    const std::int32_t height = 23;
+    const std::int32_t columns = thinned_px(width, step);
+    const std::int32_t rows = thinned_px(height, step);
+    std::vector<std::uint8_t> small(static_cast<std::size_t>(3 * columns * rows));
+    for (std::uint8_t& byte : small) {
+      byte = static_cast<std::uint8_t>(random());
+    }
+    std::vector<std::uint8_t> full(static_cast<std::size_t>(3 * width * height));
+    magnify(small.data(), step, width, height, full.data());
+    for (std::int32_t y = 0; y < rows; ++y) {
+      for (std::int32_t x = 0; x < 3 * columns; ++x) {
+        CHECK(full[static_cast<std::size_t>(3 * width * y * step + 3 * (x / 3) * step + x % 3)] ==
+              small[static_cast<std::size_t>(3 * columns * y + x)]);
+      }
+    }
+    for (const int value : {0, 1, 128, 255}) {
+      small.assign(small.size(), static_cast<std::uint8_t>(value));
+      magnify(small.data(), step, width, height, full.data());
+      CHECK(full == std::vector<std::uint8_t>(full.size(), static_cast<std::uint8_t>(value)));
+    }
+  }
+}
+
+TEST_CASE("refinement: coarse to fine -> ends at the rows of the finished picture; cancelled -> ends soon") {
+  const auto scene = scene_of("spheres,depth=5");
+  const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
+  const auto picture = std::make_shared<const FinishedPicture>(look, view_of(101, 67));
+  wide::Threads alone(1);
+  std::vector<std::uint8_t> wanted;
+  REQUIRE(picture->draw(0, &alone, &wanted, [](std::int32_t) { return true; }));
+  CHECK(wanted.size() == 3 * 101 * 67);
+  for (const int threads : {1, 2, 3}) {
+    Refinement refinement(picture, threads);
+    std::vector<std::uint8_t> shown;
+    int last_step = 99;
+    while (!refinement.is_finished()) {
+      if (refinement.take(&shown)) {
+        CHECK(refinement.step() <= last_step);
+        last_step = refinement.step();
+        CHECK(shown.size() == wanted.size());
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    CHECK(shown == wanted);
+  }
+  const auto large = std::make_shared<const FinishedPicture>(look, view_of(1600, 1200));
+  Refinement cancelled(large, 2);
+  cancelled.cancel();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!cancelled.has_ended() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  CHECK(cancelled.has_ended());
+  CHECK_FALSE(cancelled.is_finished());
+}
+
+TEST_CASE("fast frames: same view -> wide and rays show the same things; water is drawn, too") {
+  for (const char* name : {"spheres,depth=5", "points:2000,depth=6", "water,depth=5"}) {
+    CAPTURE(name);
+    const auto scene = scene_of(name);
+    const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
+    const FinishedPicture picture(look, view_of(160, 120));
+    FastFrames frames(scene, picture.is_plain(), 2);
+    std::vector<std::uint8_t> rgb;
+    for (int i = 0; i < 3; ++i) {
+      frames.draw(picture, &rgb);
+      CHECK(rgb.size() == 3 * 160 * 120);
+    }
+    CHECK((frames.engine() == std::string("wide")) == picture.is_plain());
+    if (frames.step() != 1) {
+      continue;  // a machine that is busy
+    }
+    std::vector<std::uint8_t> rays(3 * 160);
+    int differ = 0;
+    for (std::int32_t y = 0; y < 120; ++y) {
+      picture.draw_quick_row(1, y, rays.data());
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const int error = rgb[static_cast<std::size_t>(3 * 160 * y) + i] - rays[i];
+        differ += std::abs(error) > 48 ? 1 : 0;
+      }
+    }
+    CHECK(differ < 3 * 160 * 120 / 20);
+  }
+}
+
+TEST_CASE("picking: a voxel seen from the front -> its name, its face and its colour; beside it nothing") {
+  const auto scene = scene_of("spheres,depth=5");
+  const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
+  ViewWishes view = view_of(64, 64);
+  view.forward = {0, 1, 0};
+  view.placed = true;
+  const FinishedPicture picture(look, view);
+  int hits = 0;
+  for (std::int32_t y = 0; y < 64; y += 7) {
+    for (std::int32_t x = 0; x < 64; x += 7) {
+      const auto picked = pick(*scene, picture.camera(), x, y);
+      if (!picked) {
+        continue;
+      }
+      ++hits;
+      const std::string text = picked_text(*scene, picture.camera(), *picked, x, y);
+      CHECK(text.find("voxel ") == 0);
+      CHECK(text.find(", material ") != std::string::npos);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double inside = picked->point[static_cast<std::size_t>(axis)] - picked->hit.voxel[axis];
+        CHECK(inside >= -1e-6);
+        CHECK(inside <= 1 + 1e-6);
+      }
+      if (picked->hit.axis == 1) {
+        CHECK(text.find("front face (-y)") != std::string::npos);
+      }
+    }
+  }
+  CHECK(hits > 5);
+  CHECK_FALSE(pick(*scene, picture.camera(), -1, 0));
+  CHECK_FALSE(pick(*scene, picture.camera(), 0, 64));
+}

@@ -1,0 +1,97 @@
+// thimble view: a scene to look around in.
+#include <cstdio>
+#include <memory>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/effect_options.h"
+#include "commands/engine_options.h"
+#include "commands/scene_options.h"
+#include "commands/view_options.h"
+#include "output/output_file.h"
+#include "thimble/picture/shading.h"
+#include "viewer/keys.h"
+#include "viewer/viewer.h"
+
+namespace thimble::tools {
+namespace {
+
+struct ViewCommand {
+  SceneOptions scene;
+  viewer::ViewerOptions viewer;
+  EffectOptions effects;
+  ShadeMode shade = ShadeMode::kDepth;
+  int bench_frames = 0;
+};
+
+void run(const ViewCommand& command) {
+  viewer::ViewerOptions options = command.viewer;
+  options.scene = command.scene.arguments;
+  viewer::LookWishes& look = options.look;
+  if (!look.shade_word.empty()) {
+    look.shade = command.shade;
+  }
+  if (command.effects.given) {
+    look.effects = command.effects.choice;
+    look.effects_word = look.effects->automatic ? "auto" : effects_text(look.effects->effects);
+  }
+  look.bounces = command.effects.bounces;
+  if (command.effects.named() && look.shade && command.shade != ShadeMode::kColor) {
+    refuse_usage("--shade " + look.shade_word + " shows no light, and so no --effects");
+  }
+  if (command.bench_frames != 0) {
+    std::printf("%s\n%s\n", viewer::kBenchColumns,
+                viewer::bench_viewer(options, command.bench_frames).c_str());
+    return;
+  }
+  viewer::run_viewer(options);
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app) {
+  auto command = std::make_shared<ViewCommand>();
+  viewer::ViewerOptions& options = command->viewer;
+  CLI::App* sub = add_command(app, "view", "Look around in a scene (thimble SCENE does the same).");
+  command->scene.add_scene(*sub);
+  options.view.width_px = 1280;
+  options.view.height_px = 720;
+  add_view(*sub, &options.view, false);
+  add_choice_option(
+      *sub, "--display", {"auto", "window", "terminal"},
+      [command](std::size_t index) {
+        constexpr host::ScreenKind kKinds[]{host::ScreenKind::kAuto, host::ScreenKind::kWindow,
+                                            host::ScreenKind::kTerminal};
+        command->viewer.display = kKinds[index];
+      },
+      "where; auto: an X11 window where DISPLAY works, else the terminal")
+      .default_str("auto");
+  add_shade(*sub, &command->shade,
+            "as for render; without it and --effects, what has no light of its own gets a sun, shadows, "
+            "occlusion and a sky, and strewn points are shaded by depth",
+            &options.look.shade_word);
+  command->effects.add_to(*sub);
+  add_text_option(
+      *sub, "--samples", "N",
+      [command](const std::string& text) -> std::string {
+        const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
+        for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
+          if (*number == across * across) {
+            command->viewer.look.across = across;
+            return {};
+          }
+        }
+        return "is not 1, 4, 9, 16, 25, 36, 49 or 64";
+      },
+      "samples a pixel of the picture at rest: 1, 4, 9, 16, 25, 36, 49 or 64")
+      .default_str("4");
+  add_threads(*sub, &options.threads, "threads that read and draw");
+  add_whole_option(
+      *sub, "--bench", "N", 1, 100000,
+      [command](std::int64_t frames) { command->bench_frames = static_cast<int>(frames); },
+      "no screen: turn once around the scene in N frames, finish the picture, and print what it took as CSV");
+  add_footer(*sub, "Keys and mouse:\n" + viewer::keys_text());
+  when_chosen(*sub, [command] { run(*command); });
+}
+
+}  // namespace thimble::tools

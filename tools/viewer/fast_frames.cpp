@@ -1,0 +1,118 @@
+#include "viewer/fast_frames.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "viewer/magnify.h"
+
+namespace thimble::tools::viewer {
+namespace {
+
+constexpr std::size_t kMostListBytes = std::size_t{2} << 30;
+// What a frame has where nothing was hit, until what lies behind is put there: no palette's colour by chance.
+constexpr Rgb8 kNothing{1, 0, 2};
+constexpr int kBehindStep = kMostStep;
+
+}  // namespace
+
+FastFrames::FastFrames(std::shared_ptr<const OpenScene> scene, bool is_plain, int threads)
+    : scene_(std::move(scene)), threads_(threads), pace_(kFrameSeconds, is_plain) {
+  const std::size_t bytes = is_plain ? wide::VoxelLists::bytes(scene_->tree()) : 0;
+  if (bytes == 0 || bytes > kMostListBytes) {
+    pace_ = Pace(kFrameSeconds, false);
+    return;
+  }
+  list_memory_ = HostMemory(bytes + 64);
+  list_arena_ = Arena(list_memory_.bytes());
+  has_lists_ = wide::VoxelLists::make(scene_->tree(), &list_arena_, &lists_) == Status::kOk;
+  pace_ = Pace(kFrameSeconds, has_lists_);
+}
+
+void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb) {
+  const auto start = std::chrono::steady_clock::now();
+  const int step = pace_.step();
+  const std::int32_t columns = thinned_px(picture.width_px(), step);
+  const std::int32_t rows = thinned_px(picture.height_px(), step);
+  small_.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  was_wide_ = pace_.engine() == FastEngine::kWide && draw_wide(picture, step);
+  if (!was_wide_) {
+    draw_rays(picture, step);
+  }
+  rgb->resize(3 * static_cast<std::size_t>(picture.width_px()) *
+              static_cast<std::size_t>(picture.height_px()));
+  magnify(small_.data(), step, picture.width_px(), picture.height_px(), rgb->data());
+  last_step_ = step;
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  pace_.take(seconds_);
+}
+
+bool FastFrames::draw_wide(const FinishedPicture& picture, int step) {
+  const Camera thin = picture.camera().thinned(step);
+  const std::size_t bytes = wide::workspace_bytes(thin.width_px(), thin.height_px(), threads_.count());
+  if (workspace_.bytes().size < bytes) {
+    workspace_ = HostMemory(bytes);
+  }
+  Shading shading = picture.quick_shading();
+  if (picture.has_behind()) {
+    shading.background = kNothing;
+  }
+  wide::Options options;
+  options.threads = &threads_;
+  const Band band{Bytes(small_.data(), small_.size()), PixelFormat::kRgb888, 0, 0, thin.height_px()};
+  if (wide::render(lists_, thin, shading, band, workspace_.bytes(), nullptr, options) != Status::kOk) {
+    return false;
+  }
+  if (picture.has_behind()) {
+    put_behind(picture, step);
+  }
+  return true;
+}
+
+void FastFrames::draw_rays(const FinishedPicture& picture, int step) {
+  const std::int32_t rows = thinned_px(picture.height_px(), step);
+  const std::size_t row = 3 * static_cast<std::size_t>(thinned_px(picture.width_px(), step));
+  threads_.each(rows, [&](int y) {
+    picture.draw_quick_row(step, y, small_.data() + row * static_cast<std::size_t>(y));
+  });
+}
+
+// It changes slowly over the picture, so a few points of it will do.
+void FastFrames::put_behind(const FinishedPicture& picture, int step) {
+  const std::int32_t width = picture.width_px();
+  const std::int32_t columns = thinned_px(width, kBehindStep);
+  const std::int32_t rows = thinned_px(picture.height_px(), kBehindStep);
+  behind_small_.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (std::int32_t y = 0; y < rows; ++y) {
+    picture.draw_behind_row(kBehindStep, y, behind_small_.data() + 3 * static_cast<std::size_t>(columns * y));
+  }
+  const std::int32_t small_width = thinned_px(width, step);
+  const std::int32_t small_height = thinned_px(picture.height_px(), step);
+  threads_.each(small_height, [&](int y) {
+    std::uint8_t* to =
+        small_.data() + 3 * static_cast<std::size_t>(small_width) * static_cast<std::size_t>(y);
+    const std::int32_t full_y = y * step;
+    const std::int32_t top = full_y / kBehindStep;
+    const std::int32_t bottom = std::min(top + 1, rows - 1);
+    const int down = full_y % kBehindStep;
+    for (std::int32_t x = 0; x < small_width; ++x, to += 3) {
+      if (to[0] != kNothing.r || to[1] != kNothing.g || to[2] != kNothing.b) {
+        continue;
+      }
+      const std::int32_t left = x * step / kBehindStep;
+      const std::int32_t right = std::min(left + 1, columns - 1);
+      const int along = x * step % kBehindStep;
+      for (int channel = 0; channel < 3; ++channel) {
+        const auto at = [&](std::int32_t column, std::int32_t line) {
+          return static_cast<int>(behind_small_[3 * static_cast<std::size_t>(columns * line + column) +
+                                                static_cast<std::size_t>(channel)]);
+        };
+        const int above = at(left, top) * (kBehindStep - along) + at(right, top) * along;
+        const int below = at(left, bottom) * (kBehindStep - along) + at(right, bottom) * along;
+        to[channel] = static_cast<std::uint8_t>((above * (kBehindStep - down) + below * down) /
+                                                (kBehindStep * kBehindStep));
+      }
+    }
+  });
+}
+
+}  // namespace thimble::tools::viewer

@@ -1,0 +1,111 @@
+/// @file finished_picture.h
+/// The picture that `thimble render` makes, and cheaper pictures of the same view.
+///
+/// This is the one place where the viewer knows how `render` frames, lights and samples a scene: what
+/// `draw` ends with and what `thimble render` draws with the words of `FinishedLook::words` are the same
+/// bytes.
+#ifndef THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
+#define THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/framing.h"
+#include "scene/lit_description.h"
+#include "thimble/picture/render.h"
+#include "viewer/open_scene.h"
+#include "wide/threads.h"
+
+namespace thimble::tools::viewer {
+
+/// What the command line says of how pictures look.
+struct LookWishes {
+  std::optional<ShadeMode> shade;  ///< --shade
+  std::string shade_word;
+  std::optional<EffectChoice> effects;  ///< --effects
+  std::string effects_word;
+  std::optional<std::uint8_t> bounces;  ///< --bounces
+  std::optional<int> across;            ///< --samples are its square
+};
+
+/// What a scene's pictures have in common, whatever the camera.
+class FinishedLook {
+ public:
+  /// Throws InputError for what the scene does not take.
+  FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes);
+  FinishedLook(const FinishedLook&) = delete;
+  FinishedLook& operator=(const FinishedLook&) = delete;
+
+  /// The options of `thimble render` that look so.
+  const std::vector<std::string>& words() const { return words_; }
+  /// Samples a pixel are its square.
+  int across() const { return across_; }
+
+ private:
+  friend class FinishedPicture;
+  void choose(const LookWishes& wishes);
+
+  std::shared_ptr<const OpenScene> scene_;
+  LitDescription lighting_;
+  UsedMaterials used_;
+  EffectSet effects_ = Effect::kNone;
+  LitScene lit_;
+  EffectSet quick_effects_ = Effect::kNone;  // of pictures while the camera moves
+  LitScene quick_;
+  ShadeMode mode_ = ShadeMode::kDepth;
+  int across_ = 1;
+  std::vector<std::uint8_t> empty_bytes_;
+  CompactTree empty_;  // a world with nothing in it
+  std::vector<std::string> words_;
+};
+
+/// Frames the scene from the side from which `forward` leads to its middle.
+Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, const Real3& forward);
+
+/// One view. What draws is reentrant.
+class FinishedPicture {
+ public:
+  /// Throws InputError for a camera that cannot be.
+  FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes);
+
+  const Framing& framing() const { return framing_; }
+  const Camera& camera() const { return framing_.camera; }
+  std::int32_t width_px() const { return camera().width_px(); }
+  std::int32_t height_px() const { return camera().height_px(); }
+  /// Samples a pixel are its square.
+  int across() const { return look_->across_; }
+
+  /// Draws into `rgb`, which gets the size that it takes: `step` 0 the finished picture, else every `step`-th
+  /// pixel with one sample and all of the light. `goes_on` is told now and then how many rows from the top
+  /// are there, and ends it by false; then so does this. Throws InputError where the scene's lights are beyond
+  /// the core's limits.
+  using GoesOn = std::function<bool(std::int32_t rows)>;
+  bool draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
+
+  /// The same for a camera that moves: without shadows, occlusion, mirrors and glass.
+  void draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const;
+  /// Whether frames while the camera moves may be drawn by what knows only voxels (the wide renderer, with
+  /// `quick_shading`); not so with water, which is none.
+  bool is_plain() const;
+  /// Whether there is more behind the voxels than one colour; then `draw_behind_row` draws it.
+  bool has_behind() const;
+  void draw_behind_row(int step, std::int32_t row, std::uint8_t* rgb) const;
+  const Shading& quick_shading() const { return quick_shading_; }
+
+ private:
+  void draw_row(int step, std::int32_t y, std::uint8_t* rgb) const;
+
+  std::shared_ptr<const FinishedLook> look_;
+  Framing framing_;
+  Camera fine_;  // so many times the pixels as there are samples across one
+  Shading shading_;
+  Shading quick_shading_;
+};
+
+}  // namespace thimble::tools::viewer
+
+#endif

@@ -1,0 +1,569 @@
+#include "viewer/viewer.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "output/output_file.h"
+#include "output/units.h"
+#include "viewer/camera_state.h"
+#include "viewer/fast_frames.h"
+#include "viewer/file_watch.h"
+#include "viewer/picking.h"
+#include "viewer/refinement.h"
+#include "viewer/saving.h"
+
+namespace thimble::tools::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRestSeconds = 0.12;   // after the last motion, before the picture refines
+constexpr double kWindowSeconds = 0.3;  // that a scene may take to be read before there is a window
+constexpr double kBlurSeconds = 0.2;    // coarse pictures that are replaced sooner are not shown
+constexpr double kMessageSeconds = 8;
+constexpr double kFastestFrameSeconds = 1.0 / 62;
+constexpr double kGoodbyeSeconds = 0.04;  // that threads get to notice that it is over
+constexpr int kIdleMs = 50;
+constexpr int kBusyMs = 8;
+
+double now() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+void sleep_ms(int time) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(time));
+}
+
+// A picture that is to be saved once it is finished.
+struct Saving {
+  std::unique_ptr<Refinement> refinement;
+  ViewWishes wishes;
+  std::shared_ptr<const FinishedLook> look;
+};
+
+class Viewer {
+ public:
+  explicit Viewer(const ViewerOptions& options)
+      : options_(options), camera_(options.view), watch_(options.scene.scene) {}
+  void run();
+
+ private:
+  void open();
+  void adopt(std::shared_ptr<const OpenScene> scene);
+  void look_for_scene();
+  void take_events();
+  void act(Action action);
+  void look_around();
+  void refine();
+  void draw_frame();
+  void show();
+  void save();
+  void write(const Refinement& finished, const ViewWishes& wishes, const FinishedLook& look,
+             const std::vector<std::uint8_t>& rgb);
+  void finish_savings();
+  void stop_refining();
+  void tell(const std::string& text);
+  void print(const std::string& line);
+  void end();
+  std::string state_text() const;
+  int wait_ms() const;
+  std::string name() const { return printable(options_.scene.scene); }
+
+  ViewerOptions options_;
+  CameraState camera_;
+  FileWatch watch_;
+  std::unique_ptr<SceneReading> reading_;
+  std::unique_ptr<host::Screen> screen_;
+  std::optional<Controls> controls_;
+  bool is_terminal_ = false;
+
+  std::shared_ptr<const OpenScene> scene_;
+  std::shared_ptr<const FinishedLook> look_;
+  std::unique_ptr<FastFrames> frames_;
+  std::shared_ptr<const FinishedPicture> picture_;
+  ViewWishes wishes_;
+  std::unique_ptr<Refinement> refinement_;
+  std::vector<std::unique_ptr<Refinement>> leaving_;  // cancelled, their threads still in a row
+  std::vector<Saving> savings_;
+  std::vector<std::uint8_t> rgb_;
+
+  bool ended_ = false;
+  bool changed_ = true;  // the view
+  bool shows_keys_ = false;
+  bool needs_showing_ = false;
+  bool is_refined_ = false;
+  bool saves_this_ = false;
+  double changed_at_ = 0;
+  double refining_since_ = 0;
+  double frame_began_ = 0;
+  double frame_seconds_ = 0;
+  std::string message_;
+  double message_until_ = 0;
+  std::vector<std::string> lines_;  // for standard output, once the terminal is free again
+};
+
+void Viewer::open() {
+  const double start = now();
+  reading_ = std::make_unique<SceneReading>(options_.scene, options_.threads);
+  while (!reading_->is_done() && now() < start + kWindowSeconds) {
+    sleep_ms(2);
+  }
+  look_for_scene();  // what cannot be read at all needs no window
+  host::ScreenOptions screen;
+  screen.title = "thimble: " + name();
+  screen.width_px = options_.view.width_px;
+  screen.height_px = options_.view.height_px;
+  screen.scale = 1;
+  try {
+    screen_ = host::open_screen(options_.display, screen);
+  } catch (const host::ScreenError& error) {
+    throw OutputError(error.what());
+  }
+  if (screen_->width_px() <= 0) {
+    throw OutputError("there is neither a display nor a terminal to look around in; thimble render " +
+                      quoted_for_shell(options_.scene.scene) + " -o picture.png draws a picture");
+  }
+  is_terminal_ = std::string(screen_->name()) == "terminal";
+  controls_.emplace(!is_terminal_);
+}
+
+void Viewer::tell(const std::string& text) {
+  message_ = text;
+  message_until_ = now() + kMessageSeconds;
+  needs_showing_ = true;
+}
+
+void Viewer::print(const std::string& line) {
+  if (is_terminal_) {
+    lines_.push_back(line);
+    return;
+  }
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+// The scene that was read, if one was. Before there is a screen, what is wrong with it is the command's error.
+void Viewer::look_for_scene() {
+  if (reading_ != nullptr && reading_->is_done()) {
+    const bool is_first = scene_ == nullptr;
+    try {
+      adopt(reading_->take());
+      if (!is_first) {
+        tell(name() + " has changed and was read again");
+      }
+    } catch (const std::exception& error) {
+      if (is_first) {
+        throw;
+      }
+      const std::string sentence =
+          name() + " has changed and cannot be read: " + error.what() + "; the old picture stays";
+      tell(sentence);
+      if (!is_terminal_) {
+        std::fprintf(stderr, "thimble: %s\n", printable(sentence).c_str());
+      }
+    }
+    reading_.reset();
+  }
+  if (screen_ != nullptr && reading_ == nullptr && watch_.has_changed(now())) {
+    reading_ = std::make_unique<SceneReading>(options_.scene, options_.threads);
+  }
+}
+
+void Viewer::adopt(std::shared_ptr<const OpenScene> scene) {
+  // All that may throw comes first.
+  auto look = std::make_shared<const FinishedLook>(scene, options_.look);
+  const FinishedPicture trial(look, options_.view);
+  auto frames = std::make_unique<FastFrames>(scene, trial.is_plain(), options_.threads);
+  stop_refining();
+  scene_ = std::move(scene);
+  look_ = std::move(look);
+  frames_ = std::move(frames);
+  camera_.change_scene(*scene_);
+  changed_ = true;
+}
+
+// A refinement that is to be saved goes on; others end when their threads notice.
+void Viewer::stop_refining() {
+  is_refined_ = false;
+  if (refinement_ == nullptr) {
+    return;
+  }
+  if (saves_this_) {
+    savings_.push_back({std::move(refinement_), wishes_, look_});
+    saves_this_ = false;
+    return;
+  }
+  refinement_->cancel();
+  leaving_.push_back(std::move(refinement_));
+}
+
+void Viewer::act(Action action) {
+  const auto pointer = [this] {
+    return controls_->has_pointer() ? std::array{controls_->pointer_x_px(), controls_->pointer_y_px()}
+                                    : std::array{picture_->width_px() / 2, picture_->height_px() / 2};
+  };
+  if (action == Action::kNone) {
+    return;
+  }
+  if (action == Action::kEnd) {
+    ended_ = true;
+    return;
+  }
+  if (action == Action::kHelp) {
+    shows_keys_ = !shows_keys_;
+    needs_showing_ = true;
+    return;
+  }
+  if (picture_ == nullptr) {
+    return;
+  }
+  switch (action) {
+    case Action::kSave:
+      save();
+      return;
+    case Action::kPick:
+    case Action::kLookThere: {
+      const auto [x, y] = pointer();
+      const auto picked = pick(*scene_, picture_->camera(), x, y);
+      if (!picked) {
+        tell("there is nothing under the pointer");
+      } else if (action == Action::kPick) {
+        const std::string text = picked_text(*scene_, picture_->camera(), *picked, x, y);
+        tell(text);
+        print(text);
+      } else {
+        camera_.look_at(picked->point, picture_->framing(), *scene_);
+        changed_ = true;
+      }
+      return;
+    }
+    default:
+      camera_.choose(action, picture_->framing(), *scene_);
+      changed_ = true;
+  }
+}
+
+int Viewer::wait_ms() const {
+  if (scene_ == nullptr) {
+    return kIdleMs;
+  }
+  const double time = now();
+  if (changed_ || controls_->is_flying(time)) {
+    const double left = frame_began_ + kFastestFrameSeconds - time;
+    return left > 0 ? static_cast<int>(1000 * left) : 0;
+  }
+  return is_refined_ && savings_.empty() && leaving_.empty() ? kIdleMs : kBusyMs;
+}
+
+void Viewer::take_events() {
+  int timeout = wait_ms();
+  while (!ended_) {
+    const auto event = screen_->next_event(timeout);
+    if (!event) {
+      return;
+    }
+    timeout = 0;
+    if (event->kind == host::EventKind::kResize) {
+      changed_ = true;
+    }
+    act(controls_->take(*event, now(), screen_->height_px()));
+  }
+}
+
+void Viewer::look_around() {
+  const Motion motion = controls_->take_motion(now());
+  if (picture_ != nullptr && motion.any()) {
+    camera_.apply(motion, picture_->framing(), *scene_);
+    changed_ = true;
+  }
+  if (changed_) {
+    draw_frame();
+  }
+}
+
+void Viewer::draw_frame() {
+  changed_ = false;
+  const std::int32_t most = kMaxPicturePx / look_->across();
+  const std::int32_t width = std::clamp(screen_->width_px(), 1, most);
+  const std::int32_t height = std::clamp(screen_->height_px(), 1, most);
+  const double began = now();
+  std::shared_ptr<const FinishedPicture> picture;
+  const ViewWishes wishes = camera_.wishes(width, height);
+  try {
+    picture = std::make_shared<const FinishedPicture>(look_, wishes);
+  } catch (const InputError& error) {
+    tell(error.what());  // a camera that cannot be: the picture before it stays
+    return;
+  }
+  stop_refining();
+  picture_ = std::move(picture);
+  wishes_ = wishes;
+  frames_->draw(*picture_, &rgb_);
+  changed_at_ = now();
+  show();
+  const double took = now() - began;  // with the screen's part
+  frame_seconds_ = frame_seconds_ == 0 ? took : 0.8 * frame_seconds_ + 0.2 * took;
+  frame_began_ = began;
+}
+
+void Viewer::refine() {
+  if (picture_ == nullptr || is_refined_) {
+    return;
+  }
+  if (refinement_ == nullptr) {
+    if (now() >= changed_at_ + kRestSeconds) {
+      refinement_ = std::make_unique<Refinement>(picture_, options_.threads);
+      refining_since_ = now();
+    }
+    return;
+  }
+  std::vector<std::uint8_t> rgb;
+  if (refinement_->take(&rgb)) {
+    const bool is_blurred = refinement_->step() > std::max(2, frames_->step());
+    if (!is_blurred || now() > refining_since_ + kBlurSeconds) {
+      rgb_ = std::move(rgb);
+      needs_showing_ = true;
+    }
+  }
+  if (!refinement_->has_ended()) {
+    return;
+  }
+  if (refinement_->is_finished()) {
+    is_refined_ = true;
+    needs_showing_ = true;
+    if (saves_this_) {
+      write(*refinement_, wishes_, *look_, rgb_);
+      saves_this_ = false;
+    }
+  } else if (const std::string fault = refinement_->fault(); !fault.empty()) {
+    is_refined_ = true;
+    saves_this_ = false;
+    tell(fault);
+  }
+}
+
+void Viewer::save() {
+  if (is_refined_ && refinement_ != nullptr && refinement_->is_finished()) {
+    write(*refinement_, wishes_, *look_, rgb_);
+    return;
+  }
+  if (is_refined_) {
+    tell("the picture cannot be finished: " + refinement_->fault());
+    return;
+  }
+  if (refinement_ == nullptr) {
+    refinement_ = std::make_unique<Refinement>(picture_, options_.threads);
+    refining_since_ = now();
+  }
+  saves_this_ = true;
+  tell("the picture is saved as soon as it is finished");
+}
+
+void Viewer::write(const Refinement& finished, const ViewWishes& wishes, const FinishedLook& look,
+                   const std::vector<std::uint8_t>& rgb) {
+  const FinishedPicture& picture = finished.picture();
+  try {
+    const std::string file = save_picture(options_.scene.scene, picture.width_px(), picture.height_px(), rgb);
+    const std::string command = render_command(options_.scene, wishes, look.words(), file);
+    print(command);
+    tell("saved " + file + "; the same picture by\n" + command);
+  } catch (const OutputError& error) {
+    tell(error.what());
+  }
+}
+
+void Viewer::finish_savings() {
+  for (std::size_t i = 0; i < savings_.size();) {
+    Saving& saving = savings_[i];
+    if (!saving.refinement->has_ended()) {
+      ++i;
+      continue;
+    }
+    std::vector<std::uint8_t> rgb;
+    saving.refinement->take(&rgb);
+    if (saving.refinement->is_finished() && !rgb.empty()) {
+      write(*saving.refinement, saving.wishes, *saving.look, rgb);
+    }
+    savings_.erase(savings_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  std::erase_if(leaving_, [](const auto& each) { return each->has_ended(); });
+}
+
+std::string Viewer::state_text() const {
+  if (picture_ == nullptr) {
+    return "reading " + name() + ": " +
+           std::to_string(reading_ == nullptr ? 100 : static_cast<int>(100 * reading_->progress())) + "%";
+  }
+  std::array<char, 128> text{};
+  const double rate = frame_seconds_ > 0 ? 1 / frame_seconds_ : 0;
+  const int samples = picture_->across() * picture_->across();
+  if (is_refined_) {
+    std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, %d sample%s a pixel", rate,
+                  frames_->engine(), samples, samples == 1 ? "" : "s");
+  } else if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {
+    std::snprintf(text.data(), text.size(), "%.0f frames/s %s | %s %d%%", rate, frames_->engine(),
+                  refinement_->step() == 0 ? "last pass" : "first pass", refinement_->percent());
+  } else {
+    std::snprintf(text.data(), text.size(), "%.0f frames/s %s 1:%d", rate, frames_->engine(),
+                  frames_->step());
+  }
+  return text.data();
+}
+
+// Lines of at most `columns`, broken where they must be.
+std::string folded(const std::string& text, std::size_t columns) {
+  std::string out;
+  std::size_t used = 0;
+  for (const char c : text) {
+    if (c != '\n' && used == columns) {
+      out += '\n';
+      used = 0;
+    }
+    out += c;
+    used = c == '\n' ? 0 : used + 1;
+  }
+  return out;
+}
+
+void Viewer::show() {
+  needs_showing_ = false;
+  std::string overlay = state_text();
+  if (shows_keys_) {
+    overlay += "\n\n" + keys_text();
+  }
+  if (now() < message_until_) {
+    overlay += "\n" + message_;
+  } else {
+    message_.clear();
+  }
+  // Text in a window is up to twelve pixels wide a letter.
+  const std::int32_t columns = is_terminal_ ? screen_->width_px() - 3 : (screen_->width_px() - 32) / 12;
+  screen_->set_overlay(folded(overlay, static_cast<std::size_t>(std::max(columns, 16))));
+  if (picture_ == nullptr) {
+    const std::array<std::uint8_t, 3> black{};
+    screen_->show({black.data(), 1, 1});
+    return;
+  }
+  screen_->show({rgb_.data(), picture_->width_px(), picture_->height_px()});
+}
+
+void Viewer::run() {
+  open();
+  while (!ended_) {
+    take_events();
+    if (ended_) {
+      break;
+    }
+    look_for_scene();
+    if (scene_ == nullptr) {
+      show();
+      continue;
+    }
+    look_around();
+    refine();
+    finish_savings();
+    if (!message_.empty() && now() >= message_until_) {
+      needs_showing_ = true;
+    }
+    if (needs_showing_) {
+      show();
+    }
+  }
+  end();
+}
+
+void Viewer::end() {
+  screen_.reset();
+  for (const std::string& line : lines_) {
+    std::printf("%s\n", line.c_str());
+  }
+  lines_.clear();
+  is_terminal_ = false;
+  stop_refining();
+  for (const Saving& saving : savings_) {
+    saving.refinement->cancel();
+    std::fprintf(stderr, "thimble: the picture was not finished and is not saved; this makes it:\n");
+    print(render_command(options_.scene, saving.wishes, saving.look->words(),
+                         free_picture_name(options_.scene.scene)));
+  }
+  std::fflush(stdout);
+  if (reading_ != nullptr) {
+    reading_->cancel();
+  }
+  const auto all_ended = [this] {
+    return std::all_of(leaving_.begin(), leaving_.end(),
+                       [](const auto& each) { return each->has_ended(); }) &&
+           std::all_of(savings_.begin(), savings_.end(),
+                       [](const Saving& each) { return each.refinement->has_ended(); }) &&
+           (reading_ == nullptr || reading_->is_done());
+  };
+  const double until = now() + kGoodbyeSeconds;
+  while (!all_ended()) {
+    if (now() > until) {
+      std::_Exit(std::ferror(stdout) != 0 ? 1 : 0);  // in the middle of a row; nobody needs it
+    }
+    sleep_ms(2);
+  }
+}
+
+}  // namespace
+
+void run_viewer(const ViewerOptions& options) {
+  Viewer(options).run();
+}
+
+std::string bench_viewer(const ViewerOptions& options, int frames) {
+  SceneReading reading(options.scene, options.threads);
+  const std::shared_ptr<const OpenScene> scene = reading.take();
+  const auto look = std::make_shared<const FinishedLook>(scene, options.look);
+  CameraState camera(options.view);
+  const std::int32_t width = options.view.width_px;
+  const std::int32_t height = options.view.height_px;
+  auto picture = std::make_shared<const FinishedPicture>(look, camera.wishes(width, height));
+  FastFrames fast(scene, picture->is_plain(), options.threads);
+  std::vector<std::uint8_t> rgb;
+  std::vector<double> times;
+  constexpr int kWarmUp = 20;  // in which it finds its pace
+  for (int i = -kWarmUp; i < frames; ++i) {
+    Motion motion;
+    motion.turn_right = 2.0 / frames;  // of half a turn
+    camera.apply(motion, picture->framing(), *scene);
+    const double start = now();
+    picture = std::make_shared<const FinishedPicture>(look, camera.wishes(width, height));
+    fast.draw(*picture, &rgb);
+    const double took = now() - start;
+    if (i >= 0) {
+      times.push_back(took);
+    }
+  }
+  std::sort(times.begin(), times.end());
+  const double median = times[times.size() / 2];
+  camera.choose(Action::kFirstView, picture->framing(), *scene);
+  picture = std::make_shared<const FinishedPicture>(look, camera.wishes(width, height));
+  const double start = now();
+  Refinement refinement(picture, options.threads);
+  double lit = 0;
+  while (!refinement.has_ended()) {
+    if (refinement.take(&rgb) && lit == 0 && refinement.step() <= 1 && refinement.percent() == 100) {
+      lit = now() - start;
+    }
+    sleep_ms(1);
+  }
+  const double finished = now() - start;
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(), "%llu,%dx%d,%d,%s,%d,%.1f,%.2f,%.2f,%.0f,%.0f",
+                static_cast<unsigned long long>(scene->built->voxels()), width, height, options.threads,
+                fast.engine(), fast.step(), 1 / median, 1000 * median, 1000 * times.back(), 1000 * lit,
+                1000 * finished);
+  const std::string& name = options.scene.scene;
+  return (name.find_first_of(",\"") == std::string::npos ? name : in_quotes(name)) + "," + text.data();
+}
+
+}  // namespace thimble::tools::viewer
