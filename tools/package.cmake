@@ -1,5 +1,6 @@
 # What a Debian package has besides what is installed. CPack runs it between installing into a folder of its own and
 # packing that.
+cmake_minimum_required(VERSION 3.20)
 set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr)
 set(doc ${root}/share/doc/thimble)
 file(MAKE_DIRECTORY ${doc})

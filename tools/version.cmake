@@ -1,5 +1,6 @@
 # Writes thimble_version.h, if it says something new: cmake -DSOURCE=ROOT -DVERSION=N -DTODAY=DAY -DOUT=FILE -P
 # version.cmake. A folder that is no clone itself has no commit, even if it lies in somebody's repository.
+cmake_minimum_required(VERSION 3.20)
 set(commit unknown)
 set(date ${TODAY})
 if(EXISTS ${SOURCE}/.git)

@@ -15,25 +15,18 @@ namespace fs = std::filesystem;
 
 // Where both are there, the text comes first: it has the model, a camera and light.
 constexpr std::array<std::string_view, 3> kEndings{".scene", ".vox", ".vox.gz"};
-// From the program to the root of the tree: build/release, and room for a deeper folder.
-constexpr int kMostParents = 6;
 
 fs::path scene_folder() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) {
     return {};
   }
-  fs::path parent = program.parent_path();
-  const fs::path installed = (parent / THIMBLE_SCENES_FROM_PROGRAM).lexically_normal();
-  if (fs::is_directory(installed, error)) {
-    return installed;
-  }
-  for (int i = 0; i < kMostParents && parent.has_relative_path(); ++i) {
-    parent = parent.parent_path();
-    const fs::path scenes = parent / "tools/gallery/scenes";
-    if (fs::is_directory(scenes, error)) {
-      return scenes;
+  // Where it is installed, and a link that the build makes.
+  for (const char* from_program : {THIMBLE_SCENES_FROM_PROGRAM, "scenes"}) {
+    fs::path folder = (program / from_program).lexically_normal();
+    if (fs::is_directory(folder, error)) {
+      return folder;
     }
   }
   return {};

@@ -2,7 +2,7 @@
 /// The scenes that come with Thimble, found by their names: `thimble render castle`.
 ///
 /// They lie beside the program: in share/thimble/scenes where it is installed (the folder may be moved or
-/// unpacked anywhere), in tools/gallery/scenes of the source tree that it was built in.
+/// unpacked anywhere); in a folder that one builds in, behind a link to tools/gallery/scenes.
 #ifndef THIMBLE_TOOLS_SCENE_NAMED_SCENES_H
 #define THIMBLE_TOOLS_SCENE_NAMED_SCENES_H
 
