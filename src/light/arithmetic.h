@@ -76,33 +76,6 @@ constexpr bool is_before(const RayPoint& one, const RayPoint& other) {
   return is_product_less(one.t_numerator, other.t_denominator, other.t_numerator, one.t_denominator);
 }
 
-// Bits of a direction to a light: what the 32-bit tracer takes in worlds of up to 64, seen from within.
-inline constexpr int kLightBits = 15;
-
-// Brightness of a point light at a distance: 1 / (1 + d / reach)^2, 2^16 = 1.
-constexpr uint32_t falloff_q16(uint32_t distance, uint32_t reach) {
-  if (reach == 0) {
-    return 0;
-  }
-  const uint32_t ratio_q8 = 256 + distance / reach;
-  return ratio_q8 > UINT16_MAX ? 0 : UINT32_MAX / (ratio_q8 * ratio_q8);
-}
-
-// Least component along the normal of a ray that is sent from a bent surface, of 2^14: what the bend turns
-// the wrong way through the flat face runs along it.
-inline constexpr int32_t kLeastRise = 128;
-
-constexpr Vec3i turned_to(Vec3i direction, int axis, bool upwards) {
-  if (upwards ? direction[axis] < kLeastRise : direction[axis] > -kLeastRise) {
-    direction[axis] = upwards ? kLeastRise : -kLeastRise;
-  }
-  return direction;
-}
-
-/// How far from the face of a slope rays start, in 1/256 voxel: above its steps. The corners of a plane's voxels
-/// lie within the root of 3 of one another along its normal, and most within this.
-inline constexpr int32_t kSlopeRise = 3 * Q8::kOne / 2;
-
 /// Whether rays go through a material, with the effects that are on.
 inline bool is_clear(const Frame& frame, uint8_t material) {
   const SurfaceKind kind = surface_of(frame, material).kind;

@@ -3,6 +3,22 @@
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {
+namespace {
+
+// Bits of a direction to a light: what the 32-bit tracer takes in worlds of up to 64, seen from within.
+constexpr int kLightBits = 15;
+
+// Brightness of a point light at a distance: 1 / (1 + d / reach)^2, 2^16 = 1.
+uint32_t falloff_q16(uint32_t distance, uint32_t reach) {
+  if (reach == 0) {
+    return 0;
+  }
+  const uint32_t ratio_q8 = 256 + distance / reach;
+  return ratio_q8 > UINT16_MAX ? 0 : UINT32_MAX / (ratio_q8 * ratio_q8);
+}
+
+}  // namespace
+
 bool light_ray(const Light& light, const Spot& spot, LightRay* ray) {
   uint32_t share_q16 = UINT16_MAX;
   ray->is_point = light.is_point;

@@ -2,11 +2,19 @@
 // a ray then meets, is as exact as without; only where rays go out from changes, and only where the slope is
 // not the face's own: from above the steps of the slope, or each of them would lie in the shadow of the next.
 #include "../arithmetic.h"
+#include "slope_rays.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/light/slope.h"
 
 namespace thimble::lit {
 namespace {
+
+// As those of direct_light.cpp, which keeps its own so that an image without slopes keeps its bytes.
+constexpr int kDirectionBits = 15;
+uint32_t fading_q16(uint32_t distance, uint32_t reach) {
+  const uint32_t ratio_q8 = reach == 0 ? UINT32_MAX : 256 + distance / reach;
+  return ratio_q8 > UINT16_MAX ? 0 : UINT32_MAX / (ratio_q8 * ratio_q8);
+}
 
 // A direction of the occlusion pattern round the normal: by half a turn about the line half way between the
 // normal and its largest axis.
@@ -60,12 +68,12 @@ bool light_ray(const Light& light, const Spot& spot, const Slope& slope, LightRa
   ray->is_point = light.is_point;
   if (light.is_point) {
     const Vec3Q8 place{Q8::from_raw(light.place.x), Q8::from_raw(light.place.y), Q8::from_raw(light.place.z)};
-    if (!ray_towards(slope.start, place, kLightBits, &ray->ray, &ray->place)) {
+    if (!ray_towards(slope.start, place, kDirectionBits, &ray->ray, &ray->place)) {
       return false;
     }
     const int32_t distance =
         distance_q8(ray->ray.direction, ray->place.t_numerator, ray->place.t_denominator);
-    share_q16 = falloff_q16(static_cast<uint32_t>(distance), light.reach);
+    share_q16 = fading_q16(static_cast<uint32_t>(distance), light.reach);
   } else {
     ray->ray = {slope.start, shorten(light.place)};
   }
@@ -144,7 +152,7 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope&
     out.ray = {slope.start, rough ? shorten(roughen(mirrored, metal.roughness, i)) : mirrored};
     out.weight = weight;
     if (!slope.raised) {
-      out.ray.direction = turned_to(out.ray.direction, axis, !spot.face.negative);
+      out.ray.direction = turned_from(out.ray.direction, axis, !spot.face.negative);
     }
     for (uint16_t& channel : out.weight.c) {
       channel = rough ? static_cast<uint16_t>(channel / kRoughnessRays) : channel;
