@@ -8,7 +8,7 @@
 ///
 ///     kLitBaseFlashBytes + the bytes of each effect in SET
 ///
-/// or less, since effects share parts: all eleven take kAllEffectsFlashBytes. An effect that SET does not
+/// or less, since effects share parts: all of them take kAllEffectsFlashBytes. An effect that SET does not
 /// name takes nothing; with Effect::kNone the image is the other one, byte for byte (the same test compares
 /// them).
 #ifndef THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
@@ -26,7 +26,8 @@ inline constexpr uint32_t kLitBaseFlashBytes = 1860;
 struct EffectFlash {
   EffectSet effect;  ///< one
   /// The image with this effect alone less the one with the base alone. Effect::kShadows, which need
-  /// Effect::kDirectLight: with both, less the one with Effect::kDirectLight.
+  /// Effect::kDirectLight: with both, less the one with Effect::kDirectLight. Effect::kEmitterLight: with
+  /// these two, less the one with them.
   uint32_t bytes;
 };
 // clang-format off
@@ -42,6 +43,8 @@ inline constexpr EffectFlash kEffectFlash[] = {
     {Effect::kFog, 1156},
     {Effect::kSky, 720},
     {Effect::kDepthCue, 656},
+    {Effect::kSmoothNormals, 4000},
+    {Effect::kEmitterLight, 0},
 };
 // clang-format on
 

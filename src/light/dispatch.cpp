@@ -6,8 +6,8 @@ namespace thimble {
 namespace lit {
 namespace {
 
-constexpr EffectSet kFolded =
-    Effect::kDirectLight | Effect::kEmission | Effect::kFog | Effect::kSky | Effect::kDepthCue;
+constexpr EffectSet kFolded = Effect::kDirectLight | Effect::kEmission | Effect::kFog | Effect::kSky |
+                              Effect::kDepthCue | Effect::kSmoothNormals;
 
 // With or without each of the effects that are left to choose.
 template <EffectSet kChosen>

@@ -6,8 +6,11 @@ namespace thimble {
 namespace {
 
 constexpr const char* kNames[Effect::kCount] = {
-    "direct-light", "shadows", "ambient-occlusion", "emission", "mirror", "glass", "media", "water",
-    "fog",          "sky",     "depth-cue",
+    "direct-light",  "shadows",   "ambient-occlusion",
+    "emission",      "mirror",    "glass",
+    "media",         "water",     "fog",
+    "sky",           "depth-cue", "smooth-normals",
+    "emitter-light",
 };
 
 }  // namespace

@@ -117,6 +117,22 @@ void ambient_light(const Frame& frame, const Spot& spot, Color* light) {
   }
 }
 
+void light_on_slope(const Frame& frame, const Slope& slope, bool ambient, Color* light) {
+  // Of each face as much as the square of the normal's component: the squares add up to 1.
+  uint32_t share = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const uint32_t component = magnitude_32(slope.normal[axis]);
+    const int face = 2 * axis + (slope.normal[axis] < 0 ? 0 : 1);
+    const uint32_t of_face = ambient ? kAmbientShare[face] : frame.shading.face_light[face];
+    share += of_face * ((component * component + (1U << 13)) >> 14);  // 8 bits and a half by 14 and a bit
+  }
+  share = (share + (1U << 13)) >> 14;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t strength = ambient ? frame.scene.ambient_q8[i] : 256U;
+    light->c[i] = (strength * share * (kFullLight / 256)) >> 8;
+  }
+}
+
 Color lit_color(const Spot& spot, const Color& light) {
   Color color;
   for (int i = 0; i < 3; ++i) {

@@ -15,10 +15,9 @@ struct LitEntry {
   uint32_t crc32;
 };
 inline constexpr LitEntry kLitTable[] = {
-    {PixelFormat::kGray4, 0x38736972},
-    {PixelFormat::kMono1, 0x64719B2F},
-    {PixelFormat::kRgb565, 0xC5BCED4C},
-    {PixelFormat::kRgb888, 0x40498B68},
+    {PixelFormat::kGray4, 0x38736972},  {PixelFormat::kMono1, 0x64719B2F},
+    {PixelFormat::kRgb565, 0xC5BCED4C}, {PixelFormat::kRgb888, 0x40498B68},
+    {PixelFormat::kRgb888, 0x6DF6B6AA},
 };
 
 }  // namespace thimble::golden

@@ -119,8 +119,10 @@ TEST_CASE("effects: what occurs in the tree calls for its effect, what only the 
   used.is[3] = true;
   CHECK(called_for(lit, used) == thimble::Effect::kGlass);
   used.is[4] = used.is[5] = used.is[6] = true;
-  CHECK(called_for(lit, used) ==
-        (thimble::Effect::kGlass | Effect::kMirror | Effect::kEmission | Effect::kMedia));
+  // What glows lights the rest, as lamps do.
+  constexpr EffectSet kOfGlow =
+      Effect::kEmission | Effect::kEmitterLight | Effect::kDirectLight | Effect::kShadows;
+  CHECK(called_for(lit, used) == (thimble::Effect::kGlass | Effect::kMirror | kOfGlow | Effect::kMedia));
 }
 
 TEST_CASE("effects: on and off by the author -> in and out of the set; no shadows without direct light") {

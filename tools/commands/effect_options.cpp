@@ -30,8 +30,26 @@ std::vector<std::string> offered() {
 // What is wrong with `text`, if anything.
 std::string take_effects(const std::string& text, EffectChoice* choice) {
   const auto parsed = parse_effects(text);
+  const std::optional<bool> smooth = choice->smooth;
   *choice = parsed.value_or(EffectChoice{});
+  choice->smooth = smooth;
   return parsed ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+}
+
+void add_normals(CLI::App& app, EffectChoice* choice) {
+  add_text_option(
+      app, "--normals", "auto|face|smooth",
+      [choice](const std::string& text) {
+        choice->smooth.reset();
+        if (text != "auto") {
+          choice->smooth = text == "smooth";
+        }
+        return text == "auto" || text == "face" || text == "smooth" ? "" : "is not auto, face or smooth";
+      },
+      "what light sees: the faces of the voxels, the slope of the surface (the effect smooth-normals), or "
+      "what "
+      "the effects say")
+      .default_str("auto");
 }
 
 }  // namespace
@@ -42,6 +60,7 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
       help)
       .default_str("auto")
       .offers(offered());
+  add_normals(app, choice);
 }
 
 void EffectOptions::add_to(CLI::App& app, const std::string& more) {
@@ -56,6 +75,7 @@ void EffectOptions::add_to(CLI::App& app, const std::string& more) {
           spaced_names() + more)
       .default_str("auto")
       .offers(offered());
+  add_normals(app, &choice);
   add_whole_option(
       app, "--bounces", "N", 0, kMaxBounces,
       [this](std::int64_t number) { bounces = static_cast<std::uint8_t>(number); },

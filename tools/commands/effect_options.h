@@ -1,5 +1,5 @@
 /// @file effect_options.h
-/// --effects and --bounces: what light does in a picture.
+/// --effects, --normals and --bounces: what light does in a picture.
 #ifndef THIMBLE_TOOLS_COMMANDS_EFFECT_OPTIONS_H
 #define THIMBLE_TOOLS_COMMANDS_EFFECT_OPTIONS_H
 
@@ -25,12 +25,14 @@ struct EffectOptions {
   /// `more` ends the help of --effects.
   void add_to(CLI::App& app, const std::string& more = {});
   /// Whether effects were asked for by name.
-  bool named() const { return !choice.automatic && choice.effects != Effect::kNone; }
+  bool named() const {
+    return (!choice.automatic && choice.effects != Effect::kNone) || choice.smooth == true;
+  }
   /// The scene's lighting with --bounces for its own.
   LitDescription lighting(const SceneSource& source) const;
 };
 
-/// --effects alone: auto, none or a list.
+/// --effects (auto, none or a list) and --normals alone.
 void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help);
 
 }  // namespace thimble::tools

@@ -104,7 +104,7 @@ void check_usage(const RenderCommand& command) {
     refuse_usage("--engine wide draws without --effects and --bounces");
   }
   if (command.effects.named() && !command.shade_name.empty() && command.shade != ShadeMode::kColor) {
-    refuse_usage("--shade " + command.shade_name + " shows no light, and so no --effects");
+    refuse_usage("--shade " + command.shade_name + " shows no light, and so no --effects and no --normals");
   }
 }
 
@@ -149,6 +149,7 @@ Light light_of(const RenderCommand& command, const SceneSource& source) {
   light.lighting = command.effects.lighting(source);
   light.choice = effect_choice(command);
   light.effects = expected_effects(source, light.lighting, light.choice, &light.used);
+  light.lighting.expect_glow();
   if (light.effects != Effect::kNone) {
     check_lit(command, light.effects);
   }
@@ -340,6 +341,7 @@ void run(const RenderCommand& given) {
   if (light.effects != Effect::kNone) {
     light.used = used_materials(built.compact());
     light.effects = chosen_effects(light.lighting, light.used, light.choice);
+    light.lighting.find_glow(built.compact());
   }
 
   const Subject subject = subject_of(command, *source, &built, format);

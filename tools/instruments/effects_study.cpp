@@ -67,6 +67,7 @@ class Studio {
         used_(used_materials(built.compact())),
         framing_(frame_scene(options.view, source, built.level(), built.bounds())),
         camera_(framing_.camera) {
+    lit_.find_glow(built.compact());
     *note = framing_.note;
     shading_.mode = ShadeMode::kColor;
     shading_.palette = Span<const Rgb8>(built.palette().data(), built.palette().size());
@@ -205,6 +206,10 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
       return rest.has_sky ? "a sky behind it" : named;
     case Effect::kDepthCue:
       return rest.has_depth_cue ? "far is darker" : named;
+    case Effect::kSmoothNormals:
+      return named;
+    case Effect::kEmitterLight:
+      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
     default:
       return {};
   }
@@ -226,7 +231,8 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
       continue;
     }
     row.why = why_effect(studio.lit(), studio.used(), row.effect);
-    row.with = row.effect == Effect::kDirectLight ? study.effects & ~Effect::kShadows : study.effects;
+    constexpr EffectSet kNeedDirectLight = Effect::kShadows | Effect::kEmitterLight;
+    row.with = row.effect == Effect::kDirectLight ? study.effects & ~kNeedDirectLight : study.effects;
     row.without = row.with & ~row.effect;
     studio.add(row.with);
     studio.add(row.without);

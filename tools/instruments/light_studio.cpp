@@ -25,7 +25,9 @@ LightStudio::LightStudio(const SceneSource& source, const BuiltScene& built, con
     : built_(built), camera_(camera), shading_(shading), lit_(source.lighting()), polished_(lit_) {
   const UsedMaterials used = used_materials(built.compact());
   effects_ = chosen_effects(lit_, used, choice);
-  const LitScene scene = with_defaults(lit_.lit_scene(), effects_);
+  lit_.find_glow(built.compact());
+  polished_.find_glow(built.compact());
+  const LitScene scene = lit_.drawn(effects_);
   if ((effects_ & Effect::kAmbientOcclusion) != 0) {
     own_.occlusion_rays = scene.occlusion.rays;
   }
@@ -104,7 +106,7 @@ void LightStudio::draw(const LightSetting& setting, std::vector<std::uint8_t>* p
                        RenderCounts* counts) const {
   const LitDescription& lit = setting.roughness_rays == 1 ? polished_ : lit_;
   EffectSet effects = effects_;
-  LitScene scene = with_defaults(lit.lit_scene(), effects);
+  LitScene scene = lit.drawn(effects);
   if (setting.occlusion_rays >= 0) {
     scene.occlusion.rays = static_cast<std::uint8_t>(setting.occlusion_rays);
   }

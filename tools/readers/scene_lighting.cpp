@@ -121,6 +121,7 @@ void lamp(TextLine& line, TextPlace place, SceneText* scene) {
 }
 
 void ambient(TextLine& line, TextPlace, SceneText* scene) {
+  scene->has_ambient = true;
   Tinted tinted{{191, 213, 255}, 0.375};
   Clauses("ambient", &line).read({tinted.color(line), tinted.brightness_of(line)});
   const auto color_q8 = tinted.color_q8();

@@ -85,6 +85,7 @@ struct SceneText {
   std::vector<PlacedLight> lights;
   /// Ambient, sky, fog, occlusion, bounces, flags, the water's material. Spans and water stay empty.
   LitScene rest;
+  bool has_ambient = false;  ///< the file says it
   struct WaterArea {
     std::optional<std::array<std::int32_t, 4>> from_to;  ///< x, y, x, y: columns from .. to - 1; none: all
     std::int32_t floor = 0;                              ///< voxels

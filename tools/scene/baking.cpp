@@ -82,8 +82,9 @@ class Assembly {
       camera_ = options.camera(tree.level(), tree.bounds());
       parts_.camera = &camera_;
     }
-    const LitDescription lit = source.lighting();
+    LitDescription lit = source.lighting();
     const UsedMaterials used = used_materials(tree);
+    lit.find_glow(tree);
     effects_ = chosen_effects(lit, used, options.effects);
     lighting_ = lighting_section(lit, used, effects_, tree.level());
     parts_.lighting = {lighting_.data(), lighting_.size()};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "readers/oct.h"
+#include "scene/glow.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
@@ -23,6 +24,13 @@ std::uint16_t q8(double value) {
   constexpr double kMost = 65535.0 / 256;
   const std::uint16_t result = fixed(value, 0, kMost, 256);
   return value > 0 && result == 0 ? std::uint16_t{1} : result;
+}
+
+// What else an effect needs to show anything.
+EffectSet brought_by(EffectSet effects) {
+  constexpr EffectSet kOfEmitters = Effect::kEmission | Effect::kDirectLight | Effect::kShadows;
+  return effects | ((effects & Effect::kEmitterLight) != 0 ? kOfEmitters : Effect::kNone) |
+         ((effects & Effect::kShadows) != 0 ? Effect::kDirectLight : Effect::kNone);
 }
 
 constexpr Light kDefaultSun{};
@@ -55,6 +63,32 @@ LitScene LitDescription::lit_scene() const {
   scene.surfaces = {surfaces.data(), surfaces.size()};
   scene.lights = {lights.data(), lights.size()};
   return scene;
+}
+
+LitScene LitDescription::drawn(EffectSet effects) const {
+  LitScene scene = lit_scene();
+  const bool glows = (effects & Effect::kEmitterLight) != 0;
+  if (glows && !lights_and_glow.empty()) {
+    scene.lights = {lights_and_glow.data(), lights_and_glow.size()};
+  }
+  return with_defaults(scene, effects, has_own_ambient || glows);
+}
+
+void LitDescription::find_glow(const CompactTree& tree) {
+  if (has_baked_glow) {
+    return;
+  }
+  const std::vector<Light> lamps =
+      glow_lamps(tree, surfaces, std::min(kMostGlowLamps, kMaxLights - std::min(kMaxLights, lights.size())));
+  lights_and_glow = lights;
+  lights_and_glow.insert(lights_and_glow.end(), lamps.begin(), lamps.end());
+}
+
+void LitDescription::expect_glow() {
+  if (!has_baked_glow) {
+    lights_and_glow = lights;
+    lights_and_glow.resize(std::min(kMaxLights, lights.size() + kMostGlowLamps));
+  }
 }
 
 Surface surface_of(const Material& material) {
@@ -102,16 +136,23 @@ LitDescription describe_baked(const BakedLighting& lighting, const Palette& pale
   lit.rest = lighting.scene;
   lit.rest.surfaces = {};
   lit.rest.lights = {};
+  lit.lights_and_glow = lit.lights;
+  lit.has_baked_glow = true;
+  lit.has_own_ambient = lit.lights.empty() && (lighting.effects & Effect::kDirectLight) != 0;
   lit.on = lighting.effects;
   lit.off = Effect::kAll & ~lighting.effects;
   return lit;
 }
 
 EffectSet called_for(const LitDescription& lit, const UsedMaterials& used) {
-  EffectSet set = (effects_of(lit.lit_scene(), &used.is) | lit.on) & ~lit.off;
-  if ((lit.on & Effect::kShadows) != 0 && (lit.off & Effect::kDirectLight) == 0) {
-    set |= Effect::kDirectLight;
+  EffectSet set = effects_of(lit.lit_scene(), &used.is) | lit.on;
+  if ((set & ~lit.off & Effect::kEmission) != 0) {
+    set |= Effect::kEmitterLight;
   }
+  if ((lit.off & (Effect::kEmission | Effect::kDirectLight)) != 0) {
+    set &= ~Effect::kEmitterLight;
+  }
+  set = brought_by(set & ~lit.off) & ~lit.off;
   return (set & Effect::kDirectLight) != 0 ? set : set & ~Effect::kShadows;
 }
 
@@ -159,15 +200,16 @@ std::string effect_names() {
 }
 
 EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice) {
-  if (choice.automatic) {
-    return called_for(lit, used);
+  const EffectSet set = choice.automatic ? called_for(lit, used) : brought_by(choice.effects);
+  if (!choice.smooth) {
+    return set;
   }
-  return choice.effects | ((choice.effects & Effect::kShadows) != 0 ? Effect::kDirectLight : Effect::kNone);
+  return *choice.smooth ? set | Effect::kSmoothNormals : set & ~Effect::kSmoothNormals;
 }
 
-LitScene with_defaults(LitScene scene, EffectSet effects) {
+LitScene with_defaults(LitScene scene, EffectSet effects, bool sunless) {
   const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
-  if (wanted(Effect::kDirectLight) && scene.lights.empty()) {
+  if (wanted(Effect::kDirectLight) && scene.lights.empty() && !sunless) {
     scene.lights = {&kDefaultSun, 1};
   }
   scene.has_shadows = scene.has_shadows || wanted(Effect::kShadows);
@@ -190,7 +232,7 @@ std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const Used
   BakedLighting lighting;
   lighting.effects = effects;
   LitScene& scene = lighting.scene;
-  scene = with_defaults(lit.lit_scene(), effects);
+  scene = lit.drawn(effects);
   const LitScene plain;
   const auto unwanted = [effects](EffectSet effect) { return (effects & effect) == 0; };
   if (unwanted(Effect::kDirectLight)) {

@@ -6,7 +6,8 @@
 ///
 ///     const LitDescription lit = source.lighting();
 ///     const EffectSet effects = chosen_effects(lit, used_materials(built.compact()), choice);
-///     const LitScene scene = with_defaults(lit.lit_scene(), effects);   // views into `lit`
+///     lit.find_glow(built.compact());
+///     const LitScene scene = lit.drawn(effects);   // views into `lit`
 ///
 /// and where it is looked at from is `source.camera()`.
 #ifndef THIMBLE_TOOLS_SCENE_LIT_DESCRIPTION_H
@@ -50,8 +51,20 @@ struct LitDescription {
   EffectSet on = Effect::kNone;
   EffectSet off = Effect::kNone;
 
+  /// The scene says how bright it is where no light shines: without lights it gets no sun made up.
+  bool has_own_ambient = false;
+  bool has_baked_glow = false;  ///< its lamps are among the lights
+  /// `lights`, and lamps for what glows once `find_glow` has looked for it.
+  std::vector<Light> lights_and_glow;
+
   /// A view of it all, as long as this lives and keeps its vectors.
   LitScene lit_scene() const;
+  /// The same as these effects draw it: with lamps for what glows (Effect::kEmitterLight), with_defaults.
+  LitScene drawn(EffectSet effects) const;
+  /// Looks for what glows in the tree. Of a baked scene the lamps are among the lights already.
+  void find_glow(const CompactTree& tree);
+  /// Before there is a tree: room for as many lamps as there may be.
+  void expect_glow();
 };
 
 /// What a material of a file does with light. Parameters beyond what the core takes are clamped: roughness
@@ -73,13 +86,16 @@ LitDescription describe_palette(const Palette& palette);
 LitDescription describe_baked(const BakedLighting& lighting, const Palette& palette);
 
 /// The effects that `used` materials and the rest call for (`effects_of`), with what the author turned on and
-/// without what he turned off. Shadows need direct light: they come and go with it.
+/// without what he turned off. Shadows need direct light: they come and go with it. What glows
+/// (Effect::kEmission) calls for Effect::kEmitterLight, which comes with direct light and shadows, and goes
+/// with emission or direct light.
 EffectSet called_for(const LitDescription& lit, const UsedMaterials& used);
 
 /// What --effects says.
 struct EffectChoice {
   bool automatic = true;
   EffectSet effects = Effect::kNone;  ///< unless automatic
+  std::optional<bool> smooth{};       ///< --normals: with Effect::kSmoothNormals, or without
 };
 /// "auto", "none" or names of effects with commas between them; nothing for anything else.
 std::optional<EffectChoice> parse_effects(std::string_view text);
@@ -89,14 +105,14 @@ std::string effects_text(EffectSet effects);
 std::string effect_names();
 
 /// The set that is drawn: what the scene calls for, or what was asked for. Asked-for shadows bring direct
-/// light along.
+/// light along, emitter light these and emission.
 EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice);
 
-/// `scene` with something to show for each effect of the set: a sun where direct light has no lights,
-/// shadows, a sky, 8 rays of occlusion, fog that halves light in 64 voxels, a depth cue. What effects of
+/// `scene` with something to show for each effect of the set: a sun where direct light has no lights (but
+/// for `sunless` scenes), shadows, a sky, 8 rays of occlusion, fog that halves light in 64 voxels, a depth cue. What effects of
 /// materials and water need cannot be made up: they stay without work. The result's spans are those of
 /// `scene`, or of a constant.
-LitScene with_defaults(LitScene scene, EffectSet effects);
+LitScene with_defaults(LitScene scene, EffectSet effects, bool sunless = false);
 
 /// The section of a baked scene (`SectionKind::kLighting`) with what these effects need and no more; empty
 /// where that is nothing. Surfaces reach up to the last used material that is not plain; the palette has the

@@ -20,7 +20,7 @@ EffectSet expected_effects(const SceneSource& source, const LitDescription& lit,
 }
 
 LitScene lit_scene_for(const LitDescription& lit, const UsedMaterials& used, EffectSet effects) {
-  LitScene scene = with_defaults(lit.lit_scene(), effects);
+  LitScene scene = lit.drawn(effects);
   if ((effects & Effect::kDirectLight) == 0) {
     scene.lights = {};
   }

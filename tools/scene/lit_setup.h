@@ -7,9 +7,11 @@
 ///     LitDescription lit = source.lighting();
 ///     UsedMaterials used;
 ///     EffectSet effects = expected_effects(source, lit, choice, &used);
+///     lit.expect_glow();
 ///     ... build, keeping back lit_state_bytes(lit_scene_for(lit, used, effects), effects) ...
 ///     used = used_materials(built.compact());
 ///     effects = chosen_effects(lit, used, choice);              // the same, or less
+///     lit.find_glow(built.compact());
 ///     const LitScene scene = lit_scene_for(lit, used, effects);  // views into `lit`
 #ifndef THIMBLE_TOOLS_SCENE_LIT_SETUP_H
 #define THIMBLE_TOOLS_SCENE_LIT_SETUP_H

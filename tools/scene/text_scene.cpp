@@ -392,7 +392,8 @@ class TextScene final : public SceneSource {
       lit_.lights.push_back(each.light);
     }
     lit_.rest = text_.rest;
-    lit_.on = text_.on;
+    lit_.has_own_ambient = text_.has_ambient;
+    lit_.on = text_.on | (text_.has_ambient ? Effect::kDirectLight & ~text_.off : Effect::kNone);
     lit_.off = text_.off;
     if (text_.water) {
       const SceneText::WaterArea& water = *text_.water;

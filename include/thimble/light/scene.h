@@ -98,7 +98,12 @@ struct Effect {
   static constexpr EffectSet kFog = 1U << 8;        ///< the air itself
   static constexpr EffectSet kSky = 1U << 9;        ///< a gradient where rays leave the world
   static constexpr EffectSet kDepthCue = 1U << 10;  ///< the paper's: brightness falls with depth
-  static constexpr int kCount = 11;
+  /// Light sees the slope of a surface, not the faces of its voxels. Only who asks for it gets it.
+  static constexpr EffectSet kSmoothNormals = 1U << 11;
+  /// What glows lights what is around it: lamps in `LitScene::lights` that whoever makes the scene puts where
+  /// it glows. Drawn by kDirectLight and kShadows, which it needs; no code of its own.
+  static constexpr EffectSet kEmitterLight = 1U << 12;
+  static constexpr int kCount = 13;
   static constexpr EffectSet kAll = (1U << kCount) - 1;
   /// Those that send a ray on from a hit, with a state for each ray still to be followed.
   static constexpr EffectSet kBranching = kMirror | kGlass | kMedia | kWater;

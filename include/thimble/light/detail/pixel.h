@@ -109,6 +109,14 @@ struct Spot {
   Surface surface;
 };
 
+/// How the surface lies at a spot (Effect::kSmoothNormals).
+struct Slope {
+  Vec3i normal;         ///< outwards, a unit in Q14
+  bool bent = false;    ///< other than the face's own; else nothing below counts
+  bool raised = false;  ///< `start` is above the steps of the slope; else it is the spot, on its face
+  Vec3Q8 start;         ///< of the rays that go out from the spot
+};
+
 /// The ray from a spot to a light that its face is turned to.
 struct LightRay {
   Ray ray;
@@ -178,6 +186,16 @@ void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
 /// At a boundary of glass or water: straight on (true), or sends what is reflected and refracted.
 bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
            size_t* count);
+/// The slope at a spot; its visits count as those of the ray that met it.
+Slope slope_at(Frame& frame, LitRayKind kind, const Spot& spot);
+/// What a slope gets, where it is bent, instead of what its faces do.
+void light_on_slope(const Frame& frame, const Slope& slope, bool ambient, Color* light);
+bool light_ray(const Light& light, const Spot& spot, const Slope& slope, LightRay* ray);
+void occlude(Frame& frame, const Spot& spot, const Slope& slope, Color* light);
+void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope& slope, PendingRay* pending,
+                   size_t* count);
+bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count);
 Color sky_color(const Frame& frame, const Vec3i& direction);
 void fade_in_fog(const Frame& frame, const Ray& ray, const Leg& leg, const Meeting& meeting, Weight* weight,
                  Color* sum);
@@ -218,6 +236,45 @@ Color face_color(Frame& frame, const Spot& spot) {
     for (size_t i = 0; i < lights; ++i) {
       LightRay ray;
       if (!light_ray(frame.scene.lights[i], spot, &ray)) {
+        continue;
+      }
+      if constexpr ((kSet & Effect::kShadows) != 0) {
+        if constexpr (kHasClear<kSet>) {
+          if (!light_arrives_through(frame, &ray)) {
+            continue;
+          }
+        } else if (!light_arrives(frame, ray)) {
+          continue;
+        }
+        if constexpr (kHasWater<kSet>) {
+          filter_by_water(frame, &ray);
+        }
+      }
+      add_light(ray, &light);
+    }
+  }
+  Color color = lit_color(spot, light);
+  if constexpr ((kSet & Effect::kEmission) != 0) {
+    if (has<kSet, Effect::kEmission>(frame)) {
+      add_emission(spot, &color);
+    }
+  }
+  return color;
+}
+
+/// The same by the slope at the spot, where it is bent.
+template <EffectSet kSet>
+Color slope_color(Frame& frame, const Spot& spot, const Slope& slope) {
+  Color light;
+  light_on_slope(frame, slope, has<kSet, Effect::kDirectLight>(frame), &light);
+  if constexpr ((kSet & Effect::kAmbientOcclusion) != 0) {
+    occlude(frame, spot, slope, &light);
+  }
+  if constexpr ((kSet & Effect::kDirectLight) != 0) {
+    const size_t lights = has<kSet, Effect::kDirectLight>(frame) ? frame.scene.lights.size : 0;
+    for (size_t i = 0; i < lights; ++i) {
+      LightRay ray;
+      if (!light_ray(frame.scene.lights[i], spot, slope, &ray)) {
         continue;
       }
       if constexpr ((kSet & Effect::kShadows) != 0) {
@@ -293,13 +350,30 @@ void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Co
     }
     if (meeting.opaque) {
       const Spot spot = spot_of(frame, now, meeting);
+      if constexpr ((kSet & Effect::kSmoothNormals) != 0) {
+        if (has<kSet, Effect::kSmoothNormals>(frame) && !spot.inside) {
+          const Slope slope = slope_at(frame, now.kind, spot);
+          if (slope.bent) {
+            if constexpr ((kSet & Effect::kMirror) != 0) {
+              send_mirrored(frame, &now, spot, slope, pending, count);
+            }
+            add(slope_color<kSet>(frame, spot, slope), now.weight, sum);
+            return;
+          }
+        }
+      }
       if constexpr ((kSet & Effect::kMirror) != 0) {
         send_mirrored(frame, &now, spot, pending, count);
       }
       add(face_color<kSet>(frame, spot), now.weight, sum);
       return;
     }
-    if constexpr (kBends<kSet>) {
+    if constexpr (kBends<kSet> && (kSet & Effect::kSmoothNormals) != 0) {
+      if (!(has<kSet, Effect::kSmoothNormals>(frame) ? cross_slope(frame, &now, &leg, meeting, pending, count)
+                                                     : cross(frame, &now, &leg, meeting, pending, count))) {
+        return;
+      }
+    } else if constexpr (kBends<kSet>) {
       if (!cross(frame, &now, &leg, meeting, pending, count)) {
         return;
       }

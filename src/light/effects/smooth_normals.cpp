@@ -1,0 +1,167 @@
+// Smooth normals: light sees the slope of a surface instead of the faces of its voxels. What is hit, and what
+// a ray then meets, is as exact as without; only where rays go out from changes, and only where the slope is
+// not the face's own: from above the steps of the slope, or each of them would lie in the shadow of the next.
+#include "../arithmetic.h"
+#include "slope_rays.h"
+#include "thimble/light/detail/pixel.h"
+#include "thimble/light/slope.h"
+
+namespace thimble::lit {
+namespace {
+
+// As those of direct_light.cpp, which keeps its own so that an image without slopes keeps its bytes.
+constexpr int kDirectionBits = 15;
+uint32_t fading_q16(uint32_t distance, uint32_t reach) {
+  const uint32_t ratio_q8 = reach == 0 ? UINT32_MAX : 256 + distance / reach;
+  return ratio_q8 > UINT16_MAX ? 0 : UINT32_MAX / (ratio_q8 * ratio_q8);
+}
+
+// A direction of the occlusion pattern round the normal: by half a turn about the line half way between the
+// normal and its largest axis.
+struct Turn {
+  int axis = 0;
+  bool negative = false;
+  Vec3i about;
+
+  explicit Turn(const Vec3i& normal) {
+    for (int i = 1; i < 3; ++i) {
+      axis = magnitude_32(normal[i]) > magnitude_32(normal[axis]) ? i : axis;
+    }
+    negative = normal[axis] < 0;
+    about = normal;
+    about[axis] += negative ? -kUnitQ14 : kUnitQ14;
+    about = unit_q14(about);
+  }
+  Vec3i direction(int index) const {
+    const Vec3i from = occlusion_direction(index, axis, negative);
+    constexpr int32_t kScale = kUnitQ14 / 128;
+    const Vec3i turned = reflect({from.x * kScale, from.y * kScale, from.z * kScale}, about);
+    return {-turned.x, -turned.y, -turned.z};
+  }
+};
+
+}  // namespace
+
+Slope slope_at(Frame& frame, LitRayKind kind, const Spot& spot) {
+  const Body body{frame.scene.surfaces, frame.effects, 0};
+  Slope slope;
+  uint32_t visits = 0;
+  slope.normal = surface_normal(frame.tree, body, spot.at, spot.face, &visits);
+  frame.counts.node_visits[static_cast<int>(kind)] += visits;
+  slope.bent = magnitude_32(slope.normal[spot.face.axis]) != static_cast<uint32_t>(kUnitQ14);
+  slope.start = spot.at;
+  if (slope.bent) {
+    Vec3Q8 above = spot.at;
+    for (int axis = 0; axis < 3; ++axis) {
+      above[axis].raw += slope.normal[axis] * kSlopeRise / kUnitQ14;
+    }
+    if (!body.has(frame.tree, {above.x.floor(), above.y.floor(), above.z.floor()})) {
+      slope.start = above;
+      slope.raised = true;
+    }
+  }
+  return slope;
+}
+
+bool light_ray(const Light& light, const Spot& spot, const Slope& slope, LightRay* ray) {
+  uint32_t share_q16 = UINT16_MAX;
+  ray->is_point = light.is_point;
+  if (light.is_point) {
+    const Vec3Q8 place{Q8::from_raw(light.place.x), Q8::from_raw(light.place.y), Q8::from_raw(light.place.z)};
+    if (!ray_towards(slope.start, place, kDirectionBits, &ray->ray, &ray->place)) {
+      return false;
+    }
+    const int32_t distance =
+        distance_q8(ray->ray.direction, ray->place.t_numerator, ray->place.t_denominator);
+    share_q16 = fading_q16(static_cast<uint32_t>(distance), light.reach);
+  } else {
+    ray->ray = {slope.start, shorten(light.place)};
+  }
+  if (!slope.raised && !leaves_face(ray->ray.direction, spot.face.axis, spot.face.negative)) {
+    return false;
+  }
+  const int32_t cosine = dot_q14(unit_q14(ray->ray.direction), slope.normal);
+  if (cosine <= 0) {
+    return false;
+  }
+  share_q16 = (share_q16 * static_cast<uint32_t>(lesser(cosine, kUnitQ14))) >> 14;
+  bool shines = false;
+  for (int i = 0; i < 3; ++i) {
+    ray->brightness[i] = (light.color_q8[i] * share_q16 + 2048) >> 12;  // 16 bits by 16
+    shines = shines || ray->brightness[i] != 0;
+  }
+  return shines;
+}
+
+void occlude(Frame& frame, const Spot& spot, const Slope& slope, Color* light) {
+  const Occlusion& occlusion = frame.scene.occlusion;
+  const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
+  if (!slope.raised || rays == 0 || occlusion.reach == 0) {
+    occlude(frame, spot, light);
+    return;
+  }
+  constexpr uint32_t kOpen = 1U << 12;
+  const Turn turn(slope.normal);
+  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
+  uint32_t open = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Ray ray{slope.start, turn.direction(i)};
+    count_ray(frame, LitRayKind::kOcclusion);
+    Hit hit;
+    find_solid(frame, LitRayKind::kOcclusion, ray, &hit);
+    uint32_t share = kOpen;
+    if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
+      const uint32_t distance =
+          static_cast<uint32_t>(distance_q8(ray.direction, hit.t_numerator, hit.t_denominator));
+      share = distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+    }
+    open += share;
+  }
+  const uint32_t closed = kOpen - open / static_cast<uint32_t>(rays);
+  const uint32_t factor = kOpen - closed * occlusion.strength / 255;
+  for (uint32_t& channel : light->c) {
+    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
+  }
+}
+
+void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope& slope, PendingRay* pending,
+                   size_t* count) {
+  const Surface& metal = spot.surface;
+  if (metal.kind != SurfaceKind::kMetal || metal.mirror == 0 || now->bounces >= frame.scene.bounces) {
+    return;
+  }
+  const int axis = spot.face.axis;
+  const Vec3i unit = unit_q14(spot.arriving);
+  const int32_t along = dot_q14(unit, slope.normal);
+  // Seen from behind the slope it is grazed: straight on.
+  const int32_t cosine = along < 0 ? -along : 0;
+  const Vec3i mirrored = along < 0 ? shorten(reflect(unit, slope.normal)) : unit;
+  Weight weight;
+  const uint32_t share = metal.mirror * 257U;  // 65535 = all
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t reflected = fresnel_q16(cosine, channel_of(metal.albedo, i) * 257U);
+    weight.c[i] = weighed(weighed(now->weight.c[i], reflected), share + share / 65535);
+    now->weight.c[i] = weighed(now->weight.c[i], 65535 - share);
+  }
+  PendingRay out;
+  out.bounces = static_cast<uint8_t>(now->bounces + 1);
+  out.kind = LitRayKind::kMirrorRay;
+  out.axis = static_cast<int8_t>(slope.raised ? -1 : axis);
+  const bool rough = metal.roughness != 0 && now->bounces == 0;
+  for (int i = 0; i < (rough ? kRoughnessRays : 1); ++i) {
+    out.ray = {slope.start, rough ? shorten(roughen(mirrored, metal.roughness, i)) : mirrored};
+    out.weight = weight;
+    if (!slope.raised) {
+      out.ray.direction = turned_from(out.ray.direction, axis, !spot.face.negative);
+    }
+    for (uint16_t& channel : out.weight.c) {
+      channel = rough ? static_cast<uint16_t>(channel / kRoughnessRays) : channel;
+    }
+    if (is_seen(out.weight)) {
+      count_ray(frame, LitRayKind::kMirrorRay);
+      pending[(*count)++] = out;
+    }
+  }
+}
+
+}  // namespace thimble::lit

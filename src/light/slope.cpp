@@ -1,0 +1,370 @@
+// The slope of a surface of voxels. Around the point stands a window of 12 x 12 x 12 voxels, a bit each, read
+// off the tree in one walk. In it
+//
+//   normal = - sum over solid voxels of (R^2 - d^2) d,   d from the point to the voxel's centre, |d| < R
+//
+// which is the gradient of what is solid, blurred by (R^2 - d^2)^2: smooth in the point too, so that no
+// voxel shows. Before that, the surface is followed from column to column along the normal's largest axis;
+// where it leaves its course by kEdgeStep at once, it is taken to go on as before. So a cube stays a cube.
+#include "thimble/light/slope.h"
+
+#include "../base/bits.h"
+#include "../base/integers.h"
+#include "thimble/light/optics.h"
+#include "thimble/trace/secondary_ray.h"
+
+namespace thimble::lit {
+namespace {
+
+constexpr int kSide = 12;    // of the window
+constexpr int kColumns = 5;  // looked at to each side of the point's own
+static_assert(kSide == 2 * kColumns + 2, "one more where the window begins before an odd voxel");
+// Distances are in 1/64 voxel: R^2 has 17 bits, a term 26, and all those of one sign, half a ball, 31 less a
+// tenth.
+constexpr int32_t kUnit = 64;
+constexpr int32_t kReachSquare = (kSlopeReachHalves * kUnit / 2) * (kSlopeReachHalves * kUnit / 2);
+// What R^2 - d^2 adds up to over the whole voxels between two planes needs these sums for each plane.
+struct Sums {
+  int32_t first[kSide + 1] = {};   // of d
+  int32_t second[kSide + 1] = {};  // of d^2
+  int32_t third[kSide + 1] = {};   // of d^3, below 2^30
+};
+
+constexpr bool is_inside(const Vec3i& at) {
+  return at.x >= 0 && at.x < kSide && at.y >= 0 && at.y < kSide && at.z >= 0 && at.z < kSide;
+}
+
+// Bit x of a row.
+struct Window {
+  Vec3i low;
+  uint16_t rows[kSide][kSide] = {};  // z, y
+
+  bool is_solid(const Vec3i& at) const { return is_inside(at) && (rows[at.z][at.y] >> at.x & 1U) != 0; }
+  void put(const Vec3i& at, bool solid) {
+    if (is_inside(at)) {
+      const unsigned bit = 1U << at.x;
+      rows[at.z][at.y] = static_cast<uint16_t>(solid ? rows[at.z][at.y] | bit : rows[at.z][at.y] & ~bit);
+    }
+  }
+  // A solid block; corner in voxels of the window, which the block may exceed.
+  void fill(const Vec3i& corner, int32_t side) {
+    const int32_t from = greater(corner.x, 0);
+    const unsigned bits = (1U << lesser(corner.x + side, kSide)) - (1U << from);
+    for (int32_t z = greater(corner.z, 0); z < lesser(corner.z + side, kSide); ++z) {
+      for (int32_t y = greater(corner.y, 0); y < lesser(corner.y + side, kSide); ++y) {
+        rows[z][y] = static_cast<uint16_t>(rows[z][y] | bits);
+      }
+    }
+  }
+};
+
+// Octants of a node of half side `half` at `corner` (of the window) that reach into the window.
+unsigned octants_inside(const Vec3i& corner, int32_t half) {
+  constexpr uint8_t kLower[3] = {0x55, 0x33, 0x0F};
+  unsigned octants = 0xFF;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int32_t low = corner[axis];
+    const bool lower = low < kSide && low + half > 0;
+    const bool upper = low + half < kSide && low + 2 * half > 0;
+    octants &= (lower ? kLower[axis] : 0U) | (upper ? 0xFFU & ~kLower[axis] : 0U);
+  }
+  return octants;
+}
+
+// The voxels of a node of level 1, which begins at an even place of the window and so lies inside.
+void put_voxels(const CompactTree& tree, const Body& body, uint32_t index, unsigned mask, const Vec3i& corner,
+                Window* window) {
+  if (!body.holds_all()) {
+    unsigned kept = 0;
+    uint32_t number = tree.first_child(index);
+    for (unsigned left = mask; left != 0; left &= left - 1, ++number) {
+      kept |= body.holds(tree.voxel_material(number)) ? left & (0U - left) : 0U;
+    }
+    mask = kept;
+  }
+  for (int pair = 0; pair < 4; ++pair) {
+    uint16_t& row = window->rows[corner.z + (pair >> 1)][corner.y + (pair & 1)];
+    row = static_cast<uint16_t>(row | ((mask >> (2 * pair)) & 3U) << corner.x);
+  }
+}
+
+// Reads the window off the tree: every node that reaches into it once. Levels fall with every step down, and
+// an octant is taken off a list fixed on the way in, so that it ends whatever the tree holds.
+uint32_t read_window(const CompactTree& tree, const Body& body, Window* window) {
+  struct OpenNode {
+    uint32_t first_child;
+    uint8_t mask;
+    uint8_t left;
+  } stack[kMaxLevel + 1];
+  const Vec3i& low = window->low;
+  uint32_t visits = 0;
+  uint32_t index = 0;
+  int level = tree.level();
+  Vec3i place;  // of the node in the world
+  for (;;) {
+    if (index < tree.node_count()) {
+      const uint8_t mask = tree.mask(index);
+      const Vec3i corner{place.x - low.x, place.y - low.y, place.z - low.z};
+      ++visits;
+      if (mask == 0) {
+        if (body.holds_all() || body.holds(tree.block_material(index))) {
+          window->fill(corner, int32_t{1} << level);
+        }
+      } else if (level == 1) {
+        put_voxels(tree, body, index, mask, corner, window);
+      } else {
+        const unsigned left = mask & octants_inside(corner, int32_t{1} << (level - 1));
+        stack[level] = {tree.first_child(index), mask, static_cast<uint8_t>(left)};
+        --level;
+      }
+    }
+    // On to the next octant of the lowest node that has one left.
+    do {
+      ++level;
+    } while (level <= tree.level() && stack[level].left == 0);
+    if (level > tree.level()) {
+      return visits;
+    }
+    OpenNode& open = stack[level];
+    const unsigned octant = bits::lowest_bit(open.left);
+    open.left = static_cast<uint8_t>(open.left & (open.left - 1U));
+    index = open.first_child + bits::popcount8(open.mask & ((1U << octant) - 1U));
+    --level;
+    const int32_t side = int32_t{1} << level;
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = (place[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
+    }
+  }
+}
+
+// The gradient, outwards. `point` is in 1/64 voxel of the window.
+Vec3i gradient(const Window& window, const Vec3i& point) {
+  Sums sums;
+  for (int32_t x = 0; x < kSide; ++x) {
+    const int32_t d = x * kUnit + kUnit / 2 - point.x;
+    sums.first[x + 1] = sums.first[x] + d;
+    sums.second[x + 1] = sums.second[x] + d * d;
+    sums.third[x + 1] = sums.third[x] + d * d * d;
+  }
+  Vec3i normal;
+  for (int32_t z = 0; z < kSide; ++z) {
+    const int32_t dz = z * kUnit + kUnit / 2 - point.z;
+    for (int32_t y = 0; y < kSide; ++y) {
+      const int32_t dy = y * kUnit + kUnit / 2 - point.y;
+      const int32_t rest = kReachSquare - dy * dy - dz * dz;
+      unsigned row = rest > 0 ? window.rows[z][y] : 0U;
+      if (row == 0) {
+        continue;
+      }
+      // The voxels of the row that are within reach.
+      int32_t from = 0;
+      int32_t to = kSide;
+      while (from < to && sums.second[from + 1] - sums.second[from] >= rest) {
+        ++from;
+      }
+      while (to > from && sums.second[to] - sums.second[to - 1] >= rest) {
+        --to;
+      }
+      row &= (1U << to) - (1U << from);
+      int32_t of_row = 0;
+      while (row != 0) {
+        // Solid ones side by side.
+        const unsigned begin = bits::lowest_bit(row);
+        const unsigned end = bits::lowest_bit(~(row | ((1U << begin) - 1U)));
+        row &= ~((1U << end) - 1U);
+        of_row += static_cast<int32_t>(end - begin) * rest - (sums.second[end] - sums.second[begin]);
+        normal.x -= (sums.first[end] - sums.first[begin]) * rest - (sums.third[end] - sums.third[begin]);
+      }
+      normal.y -= of_row * dy;
+      normal.z -= of_row * dz;
+    }
+  }
+  return normal;
+}
+
+// The columns of the window along an axis: how high the surface stands in each above the middle, followed
+// from the middle outwards, at most kColumns up or down.
+struct Columns {
+  Window* window;
+  Vec3i middle;  // the voxel that has the point
+  int axis;      // along them
+  int side_u;    // the other two
+  int side_v;
+  int32_t up;  // 1 or -1
+  int8_t heights[2 * kColumns + 1][2 * kColumns + 1] = {};
+
+  Columns(Window* of, const Vec3i& at, int along, bool upwards)
+      : window(of),
+        middle(at),
+        axis(along),
+        side_u(along == 0 ? 1 : 0),
+        side_v(along == 2 ? 1 : 2),
+        up(upwards ? 1 : -1) {}
+
+  int8_t& height(int u, int v) { return heights[kColumns + u][kColumns + v]; }
+  // From a height near by.
+  int measure(int u, int v, int height) const {
+    Vec3i at = middle;
+    at[side_u] += u;
+    at[side_v] += v;
+    at[axis] += up * height;
+    if (window->is_solid(at)) {
+      for (; height < kColumns; ++height) {
+        at[axis] += up;
+        if (!window->is_solid(at)) {
+          break;
+        }
+      }
+    } else {
+      while (height > -kColumns) {
+        --height;
+        at[axis] -= up;
+        if (window->is_solid(at)) {
+          break;
+        }
+      }
+    }
+    return height;
+  }
+  // Makes the column solid up to a height.
+  void cut(int u, int v, int height) {
+    Vec3i at = middle;
+    at[side_u] += u;
+    at[side_v] += v;
+    for (int above = -kSide; above <= kSide; ++above) {
+      at[axis] = middle[axis] + up * above;
+      window->put(at, above <= height);
+    }
+  }
+  // As high as the column would be, did the surface go on as it came towards it from the point.
+  int expected(int u, int v) {
+    const int step_u = u > 0 ? 1 : -1;
+    const int step_v = v > 0 ? 1 : -1;
+    int height_there = 0;
+    if (absolute(u) == absolute(v)) {
+      height_there = height(u - step_u, v) + height(u, v - step_v) - height(u - step_u, v - step_v);
+    } else {
+      const int far_u = absolute(u) > absolute(v) ? step_u : 0;
+      const int far_v = far_u == 0 ? step_v : 0;
+      const bool first = absolute(u) + absolute(v) == 1;
+      const int before = height(u - far_u, v - far_v);
+      height_there = first ? before : 2 * before - height(u - 2 * far_u, v - 2 * far_v);
+    }
+    return clamped(height_there, -kColumns, kColumns);
+  }
+  // Whether the column was cut off where it begins an edge.
+  bool settle(int u, int v) {
+    const int wanted = expected(u, v);
+    const int found = measure(u, v, wanted);
+    const bool edge = absolute(found - wanted) >= kEdgeStep;
+    height(u, v) = static_cast<int8_t>(edge ? wanted : found);
+    if (edge) {
+      cut(u, v, wanted);
+    }
+    return edge;
+  }
+  // Follows the surface ring by ring, the corners of a ring last. Whether any was cut; `wall` gets whether
+  // that beside the middle, in direction `out`, was.
+  bool follow(const Vec3i& out, bool* wall) {
+    bool any = false;
+    height(0, 0) = static_cast<int8_t>(measure(0, 0, 0));
+    for (int ring = 1; ring <= kColumns; ++ring) {
+      for (int along = 1 - ring; along <= ring; ++along) {
+        for (int side = -ring; side <= ring; side += 2 * ring) {
+          // The last round does the corners.
+          const int other = along == ring ? -side : along;
+          const bool by_u = settle(side, along == ring ? side : other);
+          const bool by_v = settle(other, side);
+          any = any || by_u || by_v;
+          *wall = *wall || (ring == 1 && along == 0 &&
+                            ((by_u && side == out[side_u]) || (by_v && side == out[side_v])));
+        }
+      }
+    }
+    return any;
+  }
+  // Whether all end where the middle one does.
+  bool are_level() const {
+    for (const auto& row : heights) {
+      for (const int8_t one : row) {
+        if (one != heights[kColumns][kColumns]) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+bool Body::holds(uint8_t material) const {
+  const Surface surface = material < surfaces.size ? surfaces[material] : Surface{};
+  const bool glass = surface.kind == SurfaceKind::kGlass && (effects & Effect::kGlass) != 0;
+  const bool media = surface.kind == SurfaceKind::kMedia && (effects & Effect::kMedia) != 0;
+  if (index_q12 == 0) {
+    return !glass && !media;
+  }
+  return (glass && surface.index_q12 == index_q12) || (media && index_q12 == kMinIndexQ12);
+}
+
+bool Body::has(const CompactTree& tree, const Vec3i& voxel) const {
+  uint8_t material = 0;
+  return material_at(tree, voxel, &material) && holds(material);
+}
+
+Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at, const Face& face,
+                     uint32_t* visits) {
+  Vec3i flat;
+  flat[face.axis] = face.negative ? -kUnitQ14 : kUnitQ14;
+  Window window;
+  Vec3i middle;
+  Vec3i point;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int32_t voxel = at[axis].floor();
+    window.low[axis] = (voxel - kColumns) & ~1;
+    middle[axis] = voxel - window.low[axis] - (axis == face.axis && !face.negative ? 1 : 0);
+    point[axis] = (at[axis].raw - window.low[axis] * Q8::kOne) / (Q8::kOne / kUnit);
+  }
+  *visits += read_window(tree, body, &window);
+  Vec3i normal = gradient(window, point);
+  const int side = face.axis == 0 ? 1 : 0;
+  const int other = face.axis == 2 ? 1 : 2;
+  if (normal[side] == 0 && normal[other] == 0) {
+    return flat;
+  }
+  int along = face.axis;
+  for (int axis = 0; axis < 3; ++axis) {
+    along = magnitude_32(normal[axis]) > magnitude_32(normal[along]) ? axis : along;
+  }
+  Columns columns(&window, middle, along, along == face.axis ? !face.negative : normal[along] > 0);
+  Vec3i out;
+  out[face.axis] = face.negative ? -1 : 1;
+  bool wall = false;
+  const bool any_cut = columns.follow(out, &wall);
+  // Level all around, or itself the wall of an edge.
+  if (along == face.axis ? columns.are_level() : wall) {
+    return flat;
+  }
+  if (any_cut) {
+    normal = gradient(window, point);
+  }
+  if (face.negative ? normal[face.axis] > 0 : normal[face.axis] < 0) {
+    normal[face.axis] = 0;  // a face within a slope that leans the other way
+  }
+  if (normal[side] == 0 && normal[other] == 0) {
+    return flat;
+  }
+  // `unit_q14` takes 20 bits.
+  const uint32_t largest = magnitude_32(normal.x) | magnitude_32(normal.y) | magnitude_32(normal.z);
+  const int excess = bits::bit_length(largest) - 20;
+  if (excess > 0) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int32_t shifted = static_cast<int32_t>(magnitude_32(normal[axis]) >> excess);
+      normal[axis] = normal[axis] < 0 ? -shifted : shifted;
+    }
+  }
+  return unit_q14(normal);
+}
+
+}  // namespace thimble::lit
