@@ -4,6 +4,8 @@
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
 #   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
+#   THIMBLE_FACTS          facts of the board to replace, each NAME=VALUE (none): pictures of other sizes
+#   THIMBLE_MEASURED       whether `bench` measures the fastest engine alone (false)
 #   THIMBLE_HOLD           whether it then waits for a `q` over the UART, its last frame shown (false)
 #
 # Says flash, RAM and stack of each image after its link. platform/build.sh calls this.
@@ -11,6 +13,8 @@ set(THIMBLE_APP demo CACHE STRING "Applications to build")
 set(THIMBLE_SCENE_HEADER "" CACHE FILEPATH "Baked scene")
 set(THIMBLE_FRAMES 0 CACHE STRING "Frames before the application ends; 0: for ever")
 set(THIMBLE_HOLD_FPS 0 CACHE STRING "Rate of frames to hold from the start; 0: none")
+set(THIMBLE_FACTS "" CACHE STRING "Facts of the board to replace, NAME=VALUE")
+set(THIMBLE_MEASURED OFF CACHE BOOL "bench measures the fastest engine alone")
 set(THIMBLE_HOLD false CACHE STRING "Wait at the end: true or false")
 
 thimble_list_boards(THIMBLE_BOARDS)
@@ -20,6 +24,13 @@ if(NOT THIMBLE_BOARD IN_LIST THIMBLE_BOARDS)
 endif()
 set(BOARD_NAME ${THIMBLE_BOARD})
 thimble_read_board(${BOARD_NAME})
+foreach(fact IN LISTS THIMBLE_FACTS)
+  string(REGEX MATCH "^([A-Z_]+)=(.+)$" found "${fact}")
+  if(NOT DEFINED BOARD_${CMAKE_MATCH_1})
+    message(FATAL_ERROR "THIMBLE_FACTS: ${fact} is no NAME=VALUE of a fact of a board")
+  endif()
+  set(BOARD_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+endforeach()
 set(THIMBLE_PLATFORM_DIR ${PROJECT_SOURCE_DIR}/platform)
 include(${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/flags.cmake)
 if(NOT DEFINED THIMBLE_BINUTILS_PREFIX)
@@ -90,6 +101,9 @@ endif()
 # Holding a rate of frames takes 10 KB of code and a whole frame of RAM.
 if(BOARD_VISITS_A_SECOND EQUAL 0)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_NO_HOLD)
+endif()
+if(THIMBLE_MEASURED)
+  target_compile_definitions(thimble_apps PRIVATE THIMBLE_MEASURED)
 endif()
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})

@@ -28,7 +28,7 @@
 
 namespace thimble {
 
-inline constexpr int kMaxBrickDirectionBits = 12;
+inline constexpr int kMaxBrickDirectionBits = 15;
 /// Rows of a tile: its rays start where the first of them may meet something.
 inline constexpr int32_t kBrickTilePx = 8;
 

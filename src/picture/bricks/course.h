@@ -22,6 +22,7 @@ struct BrickFrame {
   const Camera& camera;
   const Shading& shading;
   PixelFormat format;
+  bool halfwords;  // pixels are halfwords, and lie where halfwords may be stored
   uint32_t background;
   Vec3i side;    // of the box, in bricks
   Vec3i stride;  // of the directory, in bytes
@@ -48,7 +49,10 @@ struct Course {
   int32_t base;        // offset in the directory, in bytes, of slab 0
   uint32_t base_left;  // counts of bricks of slab 0
   int c;               // the fastest axis
+  int axis[3];         // a, b and c
   unsigned mirrored;   // bit a: axis a is mirrored
+  uint32_t most_cells;  // times a direction in 1/256 this is below 2^31
+  bool wide;           // the products of directions and rests take more than 31 bits
   bool exact_ties;     // a voxel entered through an edge is what is hit, not a part of a merged block
   // Where the rays start.
   uint32_t waiting;  // kWaiting where they may start outside of the box
@@ -67,6 +71,9 @@ void set_course(Course& course, unsigned mirrored, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
   course.c = c;
+  course.axis[0] = c == 0 ? 1 : 0;
+  course.axis[1] = c == 2 ? 1 : 2;
+  course.axis[2] = c;
   course.mirrored = mirrored;
   course.base = 0;
   course.base_left = 0;
