@@ -27,12 +27,6 @@ constexpr int32_t kAsk = -2;  // only closest_hit knows
 // No answer yet.
 constexpr int32_t kGoOn = 0;
 
-#if defined(__arm__) && !defined(__ARM_FEATURE_IDIV)
-constexpr bool kDivides = false;
-#else
-constexpr bool kDivides = true;
-#endif
-
 // Divides for a core without a divider: dividend / divisor, both below 2^31. It starts from the last
 // quotient, from which that of a neighbouring ray is a step or two away. `most` times the divisor is below
 // 2^31.

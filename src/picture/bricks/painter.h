@@ -117,12 +117,20 @@ class BrickPainter {
     int32_t slab = 0;
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab_along(course_, fan, 0);
+      if (kSlots != 0 && sweep_ != nullptr && fan.mixed == 0) {
+        const int32_t origin = course_.origin[fan.c];
+        slab = origin < 0 ? 0 : origin >> 8;
+        if (slab >= 4 * frame_.side[fan.c]) {
+          fill(tile);
+          return;
+        }
+        if (sweep_tile(tile, value, fan, &slab)) {
+          return;
+        }
+      }
+      slab = first_slab_along(course_, fan, slab);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(tile);
-        return;
-      }
-      if (kSlots != 0 && sweep_ != nullptr && fan.mixed == 0 && sweep_tile(tile, value, fan, &slab)) {
         return;
       }
     }
@@ -150,30 +158,30 @@ class BrickPainter {
                                     int32_t* slab) {
     Sweep& sweep = *sweep_;
     set_sweep_course(course_, &sweep);
+    set_tile(course_, value, tile.x1 - tile.x0, tile.y1 - tile.y0, &sweep);
     const TilePlace place{line_of(tile.y0), stride_, tile.x0, tile.y0};
     TileSweep tile_sweep(sweep, course_, value, place);
-    if (!tile_sweep.begin(fan, *slab)) {
-      return false;
-    }
-    set_tile(course_, value, tile.x1 - tile.x0, tile.y1 - tile.y0, &sweep);
+    course_.waiting = kWaiting;
     set_start(course_, *slab);
     if (frame_.format == PixelFormat::kGray4) {
       clear(tile);
     }
-    *slab = tile_sweep.run(*slab);
+    *slab = tile_sweep.run(fan, *slab);
     if (sweep.done()) {
       return true;
     }
+    uint32_t count = 0;
+    for (const uint32_t word : sweep.left.word) {
+      count += bits::popcount32(word);
+    }
     if (*slab == 4 * frame_.side[fan.c]) {
-      uint32_t count = 0;
-      for (const uint32_t word : sweep.left.word) {
-        count += bits::popcount32(word);
-      }
       misses_ += count;
       store_pixels(place, sweep.left, frame_, frame_.background);
       return true;
     }
-    course_.waiting = kWaiting;
+    if (count == static_cast<uint32_t>((tile.x1 - tile.x0) * (tile.y1 - tile.y0))) {
+      return false;
+    }
     set_start(course_, *slab);
     tile_sweep.draw_rays();
     return true;

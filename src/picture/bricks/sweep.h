@@ -24,7 +24,7 @@ constexpr uint32_t kNoKey = UINT32_MAX;
 constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
 // A tile goes over to rays where this many voxels of a slab lie under its shadow.
 #ifndef THIMBLE_MOST_CELLS
-#define THIMBLE_MOST_CELLS 24
+#define THIMBLE_MOST_CELLS 28
 #endif
 constexpr int32_t kMostCells = THIMBLE_MOST_CELLS;
 
@@ -200,34 +200,38 @@ void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across
   }
 }
 
+// A brick under the shadow of a tile.
+struct SweptBrick {
+  int32_t place;  // in the directory
+  int32_t a;
+  int32_t b;
+};
+
 // A tile being swept.
 class TileSweep {
  public:
   TileSweep(Sweep& sweep, Course& course, const Camera::Vec3Q32& value, const TilePlace& place)
-      : sweep_(sweep), course_(course), value_(value), place_(place), reach_() {}
-
-  // Whether the tile, of which nothing is drawn before `slab`, is one to be swept.
-  bool begin(const Fan& fan, int32_t slab) {
-    return set_reach(fan, slab) && cells_at_once() <= kMostCells;
-  }
+      : sweep_(sweep), course_(course), value_(value), place_(place) {}
 
   // Draws what the rays meet from `slab` on. Returns the slab from which on the pixels that are left are to
   // be drawn by rays, or the number of slabs when they miss everything.
-  int32_t run(int32_t slab) {
+  int32_t run(const Fan& fan, int32_t slab) {
     const int32_t slabs = 4 * sweep_.side[2];
-    Reach(&reach)[2] = reach_;
+    if (!set_reach(fan, slab)) {
+      return slab;
+    }
+    columns_ = kTileAcrossPx;
+    words_ = kTileWords;
     while (slab < slabs) {
       const int32_t voxels = 4 - (slab & 3);
       int32_t from[2];
       int32_t to[2];
-      if (cells_at_once() > kMostCells) {
-        return slab;
-      }
       for (int k = 0; k < 2; ++k) {
+        const Reach& reach = reach_[k];
         const int32_t last = sweep_.side[k] - 1;
-        from[k] = reach[k].low >> kBrickShift;
+        from[k] = reach.low >> kBrickShift;
         from[k] = from[k] < 0 ? 0 : from[k];
-        to[k] = (reach[k].high + (voxels - 1) * reach[k].high_step) >> kBrickShift;
+        to[k] = (reach.high + (voxels - 1) * reach.high_step) >> kBrickShift;
         if (from[k] > last) {
           return slabs;
         }
@@ -236,11 +240,24 @@ class TileSweep {
         }
         to[k] = to[k] > last ? last : to[k];
       }
-      draw_layer(slab, voxels, reach, from, to);
-      if (sweep_.done()) {
-        return slabs;
+      SweptBrick bricks[kBeamBricks * kBeamBricks];
+      const SweptBrick* const end = find_bricks(slab >> 2, from, to, bricks);
+      if (end != bricks) {
+        if (cells_at_once() > kMostCells) {
+          return slab;
+        }
+        draw_layer(slab, from, bricks, end);
+        if (sweep_.done()) {
+          return slabs;
+        }
       }
       slab += voxels;
+      if (end == bricks || !narrow(slab)) {
+        for (Reach& reach : reach_) {
+          reach.low += voxels * reach.low_step;
+          reach.high += voxels * reach.high_step;
+        }
+      }
     }
     return slabs;
   }
@@ -263,65 +280,121 @@ class TileSweep {
       const bool flipped = (course_.mirrored >> axis & 1U) != 0;
       low[k] = flipped ? -fan.high[axis] : fan.low[axis];
       high[k] = flipped ? -fan.low[axis] : fan.high[axis];
-      low[k] = low[k] < 0 ? 0 : low[k];
     }
+    return set_reach(low, high, slab);
+  }
+
+  bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
     const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
     for (int k = 0; k < 2; ++k) {
-      if (high[k] > 2 * low[2]) {
+      if (greatest[k] > 2 * least[2]) {
         return false;
       }
-      const int32_t low_slope = low[k] * (1 << kSlopeBits) / high[2];
-      const int32_t high_slope = high[k] * (1 << kSlopeBits) / low[2] + 1;
+      const int32_t low = least[k] < 0 ? 0 : least[k];
+      const int32_t low_slope = low * (1 << kSlopeBits) / greatest[2];
+      const int32_t high_slope = greatest[k] * (1 << kSlopeBits) / least[2] + 1;
       const int32_t at = sweep_.origin[k] * (1 << kSlopeBits);
       reach_[k] = {at + low_slope * plane - 1, at + high_slope * (plane + Q8::kOne) + 1,
-                  low_slope * Q8::kOne, high_slope * Q8::kOne};
+                   low_slope * Q8::kOne, high_slope * Q8::kOne};
     }
     return true;
   }
 
-  // Draws a layer of bricks from its slab `slab` on, and moves on.
-  void draw_layer(int32_t slab, int32_t voxels, Reach (&reach)[2], const int32_t (&from)[2],
-                  const int32_t (&to)[2]) {
-    uint32_t cells[2][4];
-    for (int k = 0; k < 2; ++k) {
-      for (int i = 4 - voxels; i < 4; ++i) {
-        const int32_t first = (reach[k].low >> kCellShift) - 4 * from[k];
-        const int32_t last = (reach[k].high >> kCellShift) - 4 * from[k];
-        cells[k][i] = last < 0 ? 0 : (2U << last) - (1U << (first < 0 ? 0 : first));
-        reach[k].low += reach[k].low_step;
-        reach[k].high += reach[k].high_step;
-      }
-      for (int i = 0; i < 4 - voxels; ++i) {
-        cells[k][i] = 0;
+  // Draws the shadow in to the pixels that are left, where these are many fewer than before; false where not.
+  bool narrow(int32_t slab) {
+    const Pixels& left = sweep_.left;
+    uint32_t columns = 0;
+    int32_t first = kTileWords;
+    int32_t last = 0;
+    for (int32_t i = 0; i < kTileWords; ++i) {
+      if (left.word[i] != 0) {
+        columns |= left.word[i];
+        first = first < i ? first : i;
+        last = i;
       }
     }
-    int32_t bricks[3] = {0, 0, slab >> 2};
-    int32_t row = sweep_.base + bricks[2] * sweep_.stride[2] + from[1] * sweep_.stride[1] +
-                  from[0] * sweep_.stride[0];
-    for (bricks[1] = from[1]; bricks[1] <= to[1]; ++bricks[1], row += sweep_.stride[1]) {
+    columns = (columns | columns >> 16) & 0xFFFFU;
+    const int32_t x0 = static_cast<int32_t>(bits::lowest_bit(columns));
+    const int32_t x1 = bits::highest_bit(columns);
+    const int32_t across = x1 - x0 + 1;
+    const int32_t words = last - first + 1;
+    if (4 * across * words > 3 * columns_ * words_) {
+      return false;
+    }
+    columns_ = across;
+    words_ = words;
+    const TileRays& rays = sweep_.rays;
+    int32_t low[3];
+    int32_t high[3];
+    for (int k = 0; k < 3; ++k) {
+      const int32_t at_x0 = x0 * rays.step_x[k];
+      const int32_t at_x1 = x1 * rays.step_x[k];
+      const int32_t at_y0 = 2 * first * rays.step_y[k];
+      const int32_t at_y1 = (2 * last + 1) * rays.step_y[k];
+      const int32_t least = (at_x0 < at_x1 ? at_x0 : at_x1) + (at_y0 < at_y1 ? at_y0 : at_y1);
+      const int32_t most = (at_x0 < at_x1 ? at_x1 : at_x0) + (at_y0 < at_y1 ? at_y1 : at_y0);
+      low[k] = rays.base[k] + ((rays.rest[k] + least - rays.unit) >> rays.fraction_bits);
+      high[k] = rays.base[k] + ((rays.rest[k] + most + rays.unit) >> rays.fraction_bits);
+    }
+    return set_reach(low, high, slab);
+  }
+
+  // Finds the bricks of a layer that are not empty, from the eye away.
+  SweptBrick* find_bricks(int32_t layer, const int32_t (&from)[2], const int32_t (&to)[2],
+                          SweptBrick* bricks) const {
+    const int32_t stride_a = sweep_.stride[0];
+    const int32_t stride_b = sweep_.stride[1];
+    int32_t row = sweep_.base + layer * sweep_.stride[2] + from[1] * stride_b + from[0] * stride_a;
+    for (int32_t b = from[1]; b <= to[1]; ++b, row += stride_b) {
       int32_t place = row;
-      for (bricks[0] = from[0]; bricks[0] <= to[0]; ++bricks[0], place += sweep_.stride[0]) {
-        if (half_at(course_.directory, place) == 0) {
-          continue;
+      for (int32_t a = from[0]; a <= to[0]; ++a, place += stride_a) {
+        if (half_at(course_.directory, place) != 0) {
+          *bricks++ = {place, a, b};
         }
-        const int shift_a = 4 * (bricks[0] - from[0]);
-        const int shift_b = 4 * (bricks[1] - from[1]);
-        uint32_t wanted[4];
-        for (int i = 0; i < 4; ++i) {
-          wanted[i] = (cells[0][i] >> shift_a & 15U) * kRows[cells[1][i] >> shift_b & 15U];
+      }
+    }
+    return bricks;
+  }
+
+  // Draws bricks of one layer from its slab `slab` on.
+  void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick, const SweptBrick* end) {
+    // The shadow's voxels, from the first brick's on.
+    uint32_t cells[2][4];
+    const int32_t first_slab = slab & 3;
+    for (int k = 0; k < 2; ++k) {
+      int32_t low = reach_[k].low - from[k] * (1 << kBrickShift);
+      int32_t high = reach_[k].high - from[k] * (1 << kBrickShift);
+      for (int32_t i = 0; i < 4; ++i) {
+        if (i < first_slab || high < 0) {
+          cells[k][i] = 0;
+        } else {
+          cells[k][i] = (2U << (high >> kCellShift)) - (1U << (low < 0 ? 0 : low >> kCellShift));
         }
-        draw_brick(place, bricks, {wanted[0] | wanted[1] << 16, wanted[2] | wanted[3] << 16});
-        if (sweep_.done()) {
-          return;
+        if (i >= first_slab) {
+          low += reach_[k].low_step;
+          high += reach_[k].high_step;
         }
+      }
+    }
+    for (; brick != end; ++brick) {
+      const int shift_a = 4 * (brick->a - from[0]);
+      const int shift_b = 4 * (brick->b - from[1]);
+      uint32_t wanted[4];
+      for (int i = 0; i < 4; ++i) {
+        wanted[i] = (cells[0][i] >> shift_a & 15U) * kRows[cells[1][i] >> shift_b & 15U];
+      }
+      draw_brick(*brick, slab >> 2, {wanted[0] | wanted[1] << 16, wanted[2] | wanted[3] << 16});
+      if (sweep_.done()) {
+        return;
       }
     }
   }
 
-  void draw_brick(int32_t place, const int32_t (&bricks)[3], const Cells& wanted) {
+  void draw_brick(const SweptBrick& brick, int32_t layer, const Cells& wanted) {
+    const int32_t place = brick.place;
     Exposed& exposed = sweep_.exposed[static_cast<uint32_t>(place) * 0x9E3779B1U >> 16 & (kExposedKept - 1)];
     if (exposed.place != place) {
-      find_exposed(course_, place, bricks, &exposed);
+      find_exposed(course_, place, {brick.a, brick.b, layer}, &exposed);
     }
     for (int half = 0; half < 2; ++half) {
       const uint32_t mask = half == 0 ? wanted.low : wanted.high;
@@ -333,9 +406,9 @@ class TileSweep {
       while (any != 0) {
         const uint32_t bit = bits::lowest_bit(any);
         any &= any - 1;
-        const int32_t cell[3] = {4 * bricks[0] + static_cast<int32_t>(bit & 3U),
-                                 4 * bricks[1] + static_cast<int32_t>(bit >> 2 & 3U),
-                                 4 * bricks[2] + static_cast<int32_t>(bit >> 4) + 2 * half};
+        const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
+                                 4 * brick.b + static_cast<int32_t>(bit >> 2 & 3U),
+                                 4 * layer + static_cast<int32_t>(bit >> 4) + 2 * half};
         draw_cell(place, cell, faces[0] >> bit & 1U, faces[1] >> bit & 1U, faces[2] >> bit & 1U);
       }
     }
@@ -455,7 +528,10 @@ class TileSweep {
   Course& course_;
   const Camera::Vec3Q32& value_;
   const TilePlace& place_;
-  Reach reach_[2];  // at the slab that is next
+  Reach reach_[2] = {};  // at the slab that is next
+  // The rectangle that the shadow is drawn in to: so many columns, and pairs of rows.
+  int32_t columns_ = 0;
+  int32_t words_ = 0;
 };
 
 // Whether something solid touches the eye: then rays may begin in it or on its surface.
