@@ -115,6 +115,7 @@ class BrickPainter {
     }
     const Fan fan(value, frame_.tile_low, frame_.tile_high);
     int32_t slab = 0;
+    bool begun = false;  // by the sweep
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
       if (kSlots != 0 && sweep_ != nullptr && fan.mixed == 0) {
@@ -124,20 +125,29 @@ class BrickPainter {
           fill(tile);
           return;
         }
-        if (sweep_tile(tile, value, fan, &slab)) {
+        begun = sweep_tile(tile, value, fan, &slab);
+        if (begun && sweep_->done()) {
           return;
         }
       }
-      slab = first_slab_along(course_, fan, slab);
-      if (slab == 4 * frame_.side[fan.c]) {
-        fill(tile);
-        return;
+      if (!begun) {
+        slab = first_slab_along(course_, fan, slab);
+        if (slab == 4 * frame_.side[fan.c]) {
+          fill(tile);
+          return;
+        }
       }
     }
     Camera::Vec3Q32 row = value;
     for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
       Camera::Vec3Q32 at = row;
       for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
+        if (begun && !sweep_->has_quad(x - tile.x0, y - tile.y0)) {
+          for (int axis = 0; axis < 3; ++axis) {
+            at[axis] += kQuadAcrossPx * affine.step_x[axis];
+          }
+          continue;
+        }
         const Tile quad{x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
                         y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1};
         draw_quad(quad, at, fan, slab);
@@ -152,48 +162,31 @@ class BrickPainter {
   }
 
  private:
-  // Draws a tile face by face, as far as that pays; false, and the slab from which on it is to be drawn ray by
-  // ray, when nothing was drawn.
+  // Draws a tile face by face, as far as that pays. False when nothing was drawn; else quads may be left. These
+  // are to be drawn from `slab` on.
   [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
                                     int32_t* slab) {
     Sweep& sweep = *sweep_;
     set_sweep_course(course_, &sweep);
-    set_tile(course_, value, tile.x1 - tile.x0, tile.y1 - tile.y0, &sweep);
-    const TilePlace place{line_of(tile.y0), stride_, tile.x0, tile.y0};
+    const TilePlace place{line_of(tile.y0), stride_, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
     TileSweep tile_sweep(sweep, course_, value, place);
     course_.waiting = kWaiting;
     set_start(course_, *slab);
-    if (frame_.format == PixelFormat::kGray4) {
-      clear(tile);
-    }
     *slab = tile_sweep.run(fan, *slab);
-    if (sweep.done()) {
-      return true;
-    }
-    uint32_t count = 0;
-    for (const uint32_t word : sweep.left.word) {
-      count += bits::popcount32(word);
-    }
-    if (*slab == 4 * frame_.side[fan.c]) {
-      misses_ += count;
-      store_pixels(place, sweep.left, frame_, frame_.background);
-      return true;
-    }
-    if (count == static_cast<uint32_t>((tile.x1 - tile.x0) * (tile.y1 - tile.y0))) {
+    if (!tile_sweep.begun()) {
       return false;
     }
-    set_start(course_, *slab);
-    tile_sweep.draw_rays();
-    return true;
-  }
-
-  void clear(const Tile& tile) {
-    for (int32_t y = tile.y0; y < tile.y1; ++y) {
-      uint8_t* line = line_of(y);
-      for (int32_t x = tile.x0 >> 1; x < (tile.x1 + 1) >> 1; ++x) {
-        line[x] = 0;
+    if (*slab != 4 * frame_.side[fan.c]) {
+      set_start(course_, *slab);
+      tile_sweep.draw_parts_of_quads();
+    } else if (!sweep.done()) {
+      for (uint32_t& word : sweep.left.word) {
+        misses_ += bits::popcount32(word);
       }
+      store_pixels(place, sweep.left, frame_, frame_.background);
+      sweep.left = {};
     }
+    return true;
   }
 
   // Makes the course one of these signs and this fastest axis.

@@ -63,6 +63,14 @@ struct Sweep {
       kept.key = kNoKey;
     }
   }
+  void set_left(int32_t across, int32_t down) {
+    const uint32_t row = 0xFFFFU >> (kTileAcrossPx - across);
+    for (int32_t i = 0; i < kTileWords; ++i) {
+      left.word[i] = (2 * i < down ? row : 0) | (2 * i + 1 < down ? row << 16 : 0);
+    }
+  }
+  // Whether the quad whose first pixel is (x, y) in the tile is left as a whole.
+  bool has_quad(int32_t x, int32_t y) const { return (left.word[y >> 1] >> x & 1U) != 0; }
   bool done() const { return (left.word[0] | left.word[1] | left.word[2] | left.word[3]) == 0; }
 };
 
@@ -194,10 +202,7 @@ void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across
     rays.rest[k] = static_cast<int32_t>(static_cast<uint32_t>(own) >> (32 - rays.fraction_bits));
   }
   sweep->forget_planes();
-  const uint32_t row = 0xFFFFU >> (kTileAcrossPx - across);
-  for (int32_t i = 0; i < kTileWords; ++i) {
-    sweep->left.word[i] = (2 * i < down ? row : 0) | (2 * i + 1 < down ? row << 16 : 0);
-  }
+  sweep->set_left(across, down);
 }
 
 // A brick under the shadow of a tile.
@@ -213,6 +218,9 @@ class TileSweep {
   TileSweep(Sweep& sweep, Course& course, const Camera::Vec3Q32& value, const TilePlace& place)
       : sweep_(sweep), course_(course), value_(value), place_(place) {}
 
+  // Whether anything was met that is worth drawing.
+  bool begun() const { return begun_; }
+
   // Draws what the rays meet from `slab` on. Returns the slab from which on the pixels that are left are to
   // be drawn by rays, or the number of slabs when they miss everything.
   int32_t run(const Fan& fan, int32_t slab) {
@@ -220,8 +228,6 @@ class TileSweep {
     if (!set_reach(fan, slab)) {
       return slab;
     }
-    columns_ = kTileAcrossPx;
-    words_ = kTileWords;
     while (slab < slabs) {
       const int32_t voxels = 4 - (slab & 3);
       int32_t from[2];
@@ -246,6 +252,9 @@ class TileSweep {
         if (cells_at_once() > kMostCells) {
           return slab;
         }
+        if (!begun_) {
+          begin();
+        }
         draw_layer(slab, from, bricks, end);
         if (sweep_.done()) {
           return slabs;
@@ -263,6 +272,14 @@ class TileSweep {
   }
 
  private:
+  void begin() {
+    begun_ = true;
+    set_tile(course_, value_, place_.across, place_.down, &sweep_);
+    if (course_.frame->format == PixelFormat::kGray4) {
+      clear(place_);
+    }
+  }
+
   // Voxels of a slab under the tile's shadow.
   int32_t cells_at_once() const {
     int32_t cells = 1;
@@ -481,10 +498,18 @@ class TileSweep {
   }
 
  public:
-  // Draws what is left by rays, from where the course starts.
-  void draw_rays() {
+  // Draws what is left by rays, from where the course starts, but for quads of which all is left.
+  void draw_parts_of_quads() {
+    uint32_t quads = 0;
     for (uint32_t i = 0; i < kTileWords; ++i) {
-      for (uint32_t word = sweep_.left.word[i]; word != 0; word &= word - 1) {
+      if ((i & 1U) == 0) {
+        // Bits 0, 4, 8 and 12: the quads that are whole in these four rows.
+        quads = sweep_.left.word[i] & sweep_.left.word[i + 1];
+        quads &= quads >> 16;
+        quads &= quads >> 1;
+        quads = quads & quads >> 2 & 0x1111U;
+      }
+      for (uint32_t word = sweep_.left.word[i] & ~(quads * 0x000F000FU); word != 0; word &= word - 1) {
         const uint32_t pixel = 32 * i + bits::lowest_bit(word);
         uint32_t d[3];
         find_direction(course_, value_, pixel, d);
@@ -530,8 +555,9 @@ class TileSweep {
   const TilePlace& place_;
   Reach reach_[2] = {};  // at the slab that is next
   // The rectangle that the shadow is drawn in to: so many columns, and pairs of rows.
-  int32_t columns_ = 0;
-  int32_t words_ = 0;
+  int32_t columns_ = kTileAcrossPx;
+  int32_t words_ = kTileWords;
+  bool begun_ = false;
 };
 
 // Whether something solid touches the eye: then rays may begin in it or on its surface.

@@ -14,7 +14,19 @@ struct TilePlace {
   size_t stride;
   int32_t x;
   int32_t y;
+  int32_t across;
+  int32_t down;
 };
+
+// Clears a tile of kGray4.
+void clear(const TilePlace& place) {
+  uint8_t* line = place.line;
+  for (int32_t y = 0; y < place.down; ++y, line += place.stride) {
+    for (int32_t x = place.x >> 1; x < (place.x + place.across + 1) >> 1; ++x) {
+      line[x] = 0;
+    }
+  }
+}
 
 // Stores pixels of one or two bytes each.
 template <class Pixel>
