@@ -205,6 +205,11 @@ void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across
   sweep->set_left(across, down);
 }
 
+constexpr HalfPlane kAllPixels = {kNoKey,
+                                  {{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}},
+                                  {{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}}};
+constexpr HalfPlane kNoPixels = {kNoKey, {{0, 0, 0, 0}}, {{0, 0, 0, 0}}};
+
 // A brick under the shadow of a tile.
 struct SweptBrick {
   int32_t place;  // in the directory
@@ -375,59 +380,66 @@ class TileSweep {
 
   // Draws bricks of one layer from its slab `slab` on.
   void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick, const SweptBrick* end) {
-    // The shadow's voxels, from the first brick's on.
+    // The shadow's voxels, from the first brick's on. All rays have come into the first of them before the
+    // slab begins, so none enters it there by a plane of a or of b: `entered` is without it.
     uint32_t cells[2][4];
+    uint32_t entered[2][4];
     const int32_t first_slab = slab & 3;
     for (int k = 0; k < 2; ++k) {
-      int32_t low = reach_[k].low - from[k] * (1 << kBrickShift);
-      int32_t high = reach_[k].high - from[k] * (1 << kBrickShift);
+      int32_t low = reach_[k].low;
+      int32_t high = reach_[k].high;
       for (int32_t i = 0; i < 4; ++i) {
-        if (i < first_slab || high < 0) {
-          cells[k][i] = 0;
-        } else {
-          cells[k][i] = (2U << (high >> kCellShift)) - (1U << (low < 0 ? 0 : low >> kCellShift));
+        cells[k][i] = 0;
+        entered[k][i] = 0;
+        if (i < first_slab) {
+          continue;
         }
-        if (i >= first_slab) {
-          low += reach_[k].low_step;
-          high += reach_[k].high_step;
+        first_[k][i] = low >> kCellShift;
+        last_[k][i] = high >> kCellShift;
+        const int32_t first = first_[k][i] - 4 * from[k];
+        if (high >= 0) {
+          cells[k][i] = (2U << (last_[k][i] - 4 * from[k])) - (1U << (first < 0 ? 0 : first));
+          entered[k][i] = first < 0 ? cells[k][i] : cells[k][i] & (cells[k][i] - 1);
         }
+        low += reach_[k].low_step;
+        high += reach_[k].high_step;
       }
     }
     for (; brick != end; ++brick) {
+      Exposed& exposed =
+          sweep_.exposed[static_cast<uint32_t>(brick->place) * 0x9E3779B1U >> 16 & (kExposedKept - 1)];
+      if (exposed.place != brick->place) {
+        find_exposed(course_, brick->place, {brick->a, brick->b, slab >> 2}, &exposed);
+      }
       const int shift_a = 4 * (brick->a - from[0]);
       const int shift_b = 4 * (brick->b - from[1]);
-      uint32_t wanted[4];
-      for (int i = 0; i < 4; ++i) {
-        wanted[i] = (cells[0][i] >> shift_a & 15U) * kRows[cells[1][i] >> shift_b & 15U];
-      }
-      draw_brick(*brick, slab >> 2, {wanted[0] | wanted[1] << 16, wanted[2] | wanted[3] << 16});
-      if (sweep_.done()) {
-        return;
+      for (int32_t i = first_slab; i < 4; ++i) {
+        const uint32_t rows = kRows[cells[1][i] >> shift_b & 15U];
+        const uint32_t across = cells[0][i] >> shift_a & 15U;
+        const int shift = 16 * (i & 1);
+        const auto faces = [&](int k) {
+          return (i < 2 ? exposed.on[k].low : exposed.on[k].high) >> shift & 0xFFFFU;
+        };
+        const uint32_t on_c = faces(2) & (across * rows);
+        const uint32_t on_a = faces(0) & ((entered[0][i] >> shift_a & 15U) * rows);
+        const uint32_t on_b = faces(1) & (across * kRows[entered[1][i] >> shift_b & 15U]);
+        if ((on_a | on_b | on_c) != 0) {
+          draw_cells(*brick, 4 * (slab >> 2) + i, on_a, on_b, on_c);
+          if (sweep_.done()) {
+            return;
+          }
+        }
       }
     }
   }
 
-  void draw_brick(const SweptBrick& brick, int32_t layer, const Cells& wanted) {
-    const int32_t place = brick.place;
-    Exposed& exposed = sweep_.exposed[static_cast<uint32_t>(place) * 0x9E3779B1U >> 16 & (kExposedKept - 1)];
-    if (exposed.place != place) {
-      find_exposed(course_, place, {brick.a, brick.b, layer}, &exposed);
-    }
-    for (int half = 0; half < 2; ++half) {
-      const uint32_t mask = half == 0 ? wanted.low : wanted.high;
-      uint32_t faces[3];
-      for (int k = 0; k < 3; ++k) {
-        faces[k] = mask & (half == 0 ? exposed.on[k].low : exposed.on[k].high);
-      }
-      uint32_t any = faces[0] | faces[1] | faces[2];
-      while (any != 0) {
-        const uint32_t bit = bits::lowest_bit(any);
-        any &= any - 1;
-        const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
-                                 4 * brick.b + static_cast<int32_t>(bit >> 2 & 3U),
-                                 4 * layer + static_cast<int32_t>(bit >> 4) + 2 * half};
-        draw_cell(place, cell, faces[0] >> bit & 1U, faces[1] >> bit & 1U, faces[2] >> bit & 1U);
-      }
+  // Draws faces of a brick's voxels in one slab.
+  void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a, uint32_t on_b, uint32_t on_c) {
+    for (uint32_t any = on_a | on_b | on_c; any != 0; any &= any - 1) {
+      const uint32_t bit = bits::lowest_bit(any);
+      const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
+                               4 * brick.b + static_cast<int32_t>(bit >> 2), slab};
+      draw_cell(brick.place, cell, on_a >> bit & 1U, on_b >> bit & 1U, on_c >> bit & 1U);
     }
   }
 
@@ -435,9 +447,12 @@ class TileSweep {
     const int32_t a = cell[0];
     const int32_t b = cell[1];
     const int32_t c = cell[2];
+    const int32_t in_brick = c & 3;
     if (on_c != 0 && distance_of(sweep_, 2, c) > 0) {
-      draw_face(place, cell, 2, half_plane(sweep_, kAc, a, c), half_plane(sweep_, kBc, b, c),
-                half_plane(sweep_, kAc, a + 1, c), half_plane(sweep_, kBc, b + 1, c));
+      draw_face(place, cell, 2, a == first_[0][in_brick] ? kAllPixels : half_plane(sweep_, kAc, a, c),
+                b == first_[1][in_brick] ? kAllPixels : half_plane(sweep_, kBc, b, c),
+                a == last_[0][in_brick] ? kNoPixels : half_plane(sweep_, kAc, a + 1, c),
+                b == last_[1][in_brick] ? kNoPixels : half_plane(sweep_, kBc, b + 1, c));
     }
     if (on_a != 0 && distance_of(sweep_, 0, a) > 0) {
       draw_face(place, cell, 0, half_plane(sweep_, kAc, a, c + 1), half_plane(sweep_, kAb, a, b + 1),
@@ -558,6 +573,9 @@ class TileSweep {
   int32_t columns_ = kTileAcrossPx;
   int32_t words_ = kTileWords;
   bool begun_ = false;
+  // The first and the last voxel of the shadow in each slab of a layer.
+  int32_t first_[2][4] = {};
+  int32_t last_[2][4] = {};
 };
 
 // Whether something solid touches the eye: then rays may begin in it or on its surface.
