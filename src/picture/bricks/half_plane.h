@@ -54,6 +54,28 @@ constexpr int kDistanceBits = 13;
 constexpr int kCrossingBits = 11;
 constexpr int32_t kCrossingSlack = 24;
 
+// The pixels of a row from a crossing on. Places up to 31, so that one instruction may find them.
+[[gnu::always_inline]] inline uint32_t row_from(int32_t crossing) {
+  const int32_t place = crossing >> kCrossingBits;
+  const int32_t positive = place < 0 ? 0 : place;
+  return 0xFFFFU << (positive > 31 ? 31 : positive);
+}
+
+// Sets the rows of two masks, or what they leave.
+template <bool kFlip>
+[[gnu::always_inline]] inline void fill_rows(int32_t at, int32_t slope, int32_t back, Pixels* first,
+                                             Pixels* second) {
+  Half* to = static_cast<Half*>(static_cast<void*>(first));
+  Half* also = static_cast<Half*>(static_cast<void*>(second));
+#pragma GCC unroll 8
+  for (int row = 0; row < kTileDownPx; ++row, at -= slope) {
+    const uint32_t pixels = row_from(at);
+    const uint32_t more = row_from(at - back);
+    to[row] = static_cast<Half>(kFlip ? ~pixels : pixels);
+    also[row] = static_cast<Half>(kFlip ? ~more : more);
+  }
+}
+
 bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, HalfPlane* plane) {
   const int32_t ahead = bound - f;
   if ((ahead < 0 ? -ahead : ahead) >> 5 > fx || (fy < 0 ? -fy : fy) >> 2 > fx || bound >> 2 > fx) {
@@ -70,18 +92,10 @@ bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, Ha
   // From the first certain pixel back to what is added to round the first possible one up.
   const int32_t back = quotient(2 * bound) + 2 * kCrossingSlack + 1;
   at += kCrossingSlack + (1 << kCrossingBits);
-  Half* certain = static_cast<Half*>(static_cast<void*>(flip ? &plane->possible : &plane->certain));
-  Half* possible = static_cast<Half*>(static_cast<void*>(flip ? &plane->certain : &plane->possible));
-  const uint32_t invert = flip ? 0xFFFFU : 0;
-  // Places up to 31, so that one instruction may do it.
-  const auto from = [](int32_t crossing) {
-    const int32_t place = crossing >> kCrossingBits;
-    const int32_t positive = place < 0 ? 0 : place;
-    return 0xFFFFU << (positive > 31 ? 31 : positive);
-  };
-  for (int row = 0; row < kTileDownPx; ++row, at -= slope) {
-    certain[row] = static_cast<Half>(from(at) ^ invert);
-    possible[row] = static_cast<Half>(from(at - back) ^ invert);
+  if (flip) {
+    fill_rows<true>(at, slope, back, &plane->possible, &plane->certain);
+  } else {
+    fill_rows<false>(at, slope, back, &plane->certain, &plane->possible);
   }
   return true;
 }

@@ -35,6 +35,10 @@ template <class Pixel>
   uint8_t* line = place.line + static_cast<size_t>(place.x) * sizeof(Pixel);
   for (int i = 0; i < kTileWords; ++i) {
     uint32_t word = pixels.word[i];
+    if (word == 0) {
+      line += 2 * place.stride;
+      continue;
+    }
     for (int half = 0; half < 2; ++half, word >>= 16, line += place.stride) {
       Pixel* to = static_cast<Pixel*>(static_cast<void*>(line));
       for (uint32_t row = word & 0xFFFFU; row != 0; row >>= 4, to += 4) {
