@@ -76,9 +76,10 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   sweep.misses = 0;
   sweep.counts = &done;
   sweep.course = kNoKey;
-  const bool swept = kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) &&
-                     !touches_solid(frame);
-  BrickPainter painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride, band.first_row, &done);
+  const bool swept =
+      kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) && !touches_solid(frame);
+  BrickPainter painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride, band.first_row,
+                       &done);
   const int32_t end = band.first_row + band.rows;
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;

@@ -53,6 +53,9 @@ uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t most, uint32_t* 
   return result;
 }
 
+// Up to 12 bits of direction the products of rests and directions have 32 (8 + 12 + 12).
+constexpr bool kHasWideProducts = kMaxBrickDirectionBits > 12;
+
 // The sign of rest_a * d_b - rest_b * d_a: which plane comes first. Rests are below 2^23, directions below
 // 2^15. Where products may have more than 31 bits, both rests are divided by 256 first: that is wrong by less
 // than 2^15, and where it leaves the sign open, the difference is below 2^24, so that its lower 32 bits are
@@ -117,12 +120,23 @@ class BrickRay {
     if (!is_negative(rest_a_ & rest_b_)) {
       if (is_positive(rest_a_)) {
         if (is_positive(rest_b_)) {
-          const int32_t order = order_of(course_, rest_a_, d_b_, rest_b_, d_a_);
-          if (order < 0) {
-            goto cross_b;
-          }
-          if (order == 0) {
-            goto tie;
+          if (kHasWideProducts) {
+            const int32_t order = order_of(course_, rest_a_, d_b_, rest_b_, d_a_);
+            if (order < 0) {
+              goto cross_b;
+            }
+            if (order == 0) {
+              goto tie;
+            }
+          } else {
+            const uint32_t time_a = rest_a_ * d_b_;
+            const uint32_t time_b = rest_b_ * d_a_;
+            if (time_a < time_b) {
+              goto cross_b;
+            }
+            if (time_a == time_b) {
+              goto tie;
+            }
           }
         }
         goto cross_a;
@@ -176,6 +190,9 @@ class BrickRay {
   static constexpr bool mirrored(int axis) { return (kMirrored >> axis & 1U) != 0; }
   static constexpr uint32_t flip(int axis) { return mirrored(axis) ? 3U : 0U; }
 
+  // What `quotient` may start from.
+  [[gnu::always_inline]] uint32_t most_cells() const { return kHasWideProducts ? course_.most_cells : 1023; }
+
   // Finds the cell that the ray starts in.
   [[gnu::always_inline]] int32_t start() {
     const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
@@ -183,8 +200,10 @@ class BrickRay {
     if (seldom(!kDivides && is_negative(at_a | at_b))) {
       return kAsk;
     }
-    const uint32_t cell_a = kDivides ? at_a / den_ : quotient(at_a, den_, course_.most_cells, &course_.inks->near_cell[0]);
-    const uint32_t cell_b = kDivides ? at_b / den_ : quotient(at_b, den_, course_.most_cells, &course_.inks->near_cell[1]);
+    const uint32_t cell_a =
+        kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), &course_.inks->near_cell[0]);
+    const uint32_t cell_b =
+        kDivides ? at_b / den_ : quotient(at_b, den_, most_cells(), &course_.inks->near_cell[1]);
     if (seldom((cell_a | cell_b) >= 1024)) {
       return is_negative(at_a | at_b) ? kAsk : kMissed;
     }

@@ -49,10 +49,7 @@ struct Course {
   int32_t base;        // offset in the directory, in bytes, of slab 0
   uint32_t base_left;  // counts of bricks of slab 0
   int c;               // the fastest axis
-  int axis[3];         // a, b and c
   unsigned mirrored;   // bit a: axis a is mirrored
-  uint32_t most_cells;  // times a direction in 1/256 this is below 2^31
-  bool wide;           // the products of directions and rests take more than 31 bits
   bool exact_ties;     // a voxel entered through an edge is what is hit, not a part of a merged block
   // Where the rays start.
   uint32_t waiting;  // kWaiting where they may start outside of the box
@@ -64,6 +61,10 @@ struct Course {
   // The camera's affine function, mirrored.
   Camera::Vec3Q32 step_x;
   Camera::Vec3Q32 step_y;
+  // What is read seldom.
+  int axis[3];          // a, b and c
+  uint32_t most_cells;  // times a direction in 1/256 this is below 2^31
+  bool wide;            // the products of directions and rests take more than 31 bits
 };
 
 // Sets all but where the rays start.

@@ -85,7 +85,8 @@ bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, Ha
   const int cut = high > 13 ? high - 13 : 0;
   const int32_t by = fx >> cut;
   const auto quotient = [&](int32_t value) {
-    return (cut <= kCrossingBits ? value * (1 << (kCrossingBits - cut)) : value >> (cut - kCrossingBits)) / by;
+    return (cut <= kCrossingBits ? value * (1 << (kCrossingBits - cut)) : value >> (cut - kCrossingBits)) /
+           by;
   };
   int32_t at = quotient(ahead);
   const int32_t slope = quotient(fy);
@@ -174,8 +175,8 @@ void set_all(HalfPlane* plane, uint32_t word) {
   s_i = (s_i + half) >> cut;
   s_j = (s_j + half) >> cut;
   const int32_t bound = (s_i + s_j + 1) * rays.unit + (cut == 0 ? 2 : rays.reach + 2);
-  const int32_t f = (bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) +
-                    s_j * rays.rest[i] - s_i * rays.rest[j];
+  const int32_t f = (bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) + s_j * rays.rest[i] -
+                    s_i * rays.rest[j];
   const int32_t fx = s_j * rays.step_x[i] - s_i * rays.step_x[j];
   const int32_t fy = s_j * rays.step_y[i] - s_i * rays.step_y[j];
   const int32_t across = (kTileAcrossPx - 1) * fx;

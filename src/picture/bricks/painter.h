@@ -38,7 +38,6 @@ int32_t trace_along(const Course& course, const Vec3i& d) {
                          : trace_by_signs<2>(course, x, y, z);
 }
 
-
 unsigned signs_of(const Vec3i& d) {
   return (d.x < 0 ? 1U : 0U) | (d.y < 0 ? 2U : 0U) | (d.z < 0 ? 4U : 0U);
 }

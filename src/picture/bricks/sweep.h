@@ -3,15 +3,17 @@
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
 #define THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
 
+#include "../../base/bits.h"
 #include "beam.h"
 #include "brick_ray.h"
 #include "exposed.h"
 #include "half_plane.h"
 #include "tile_store.h"
-#include "../../base/bits.h"
 
-// Half-planes of a tile that are kept: three times 4, 8 or 16; 0 leaves the sweep out of the image.
-#ifndef THIMBLE_SWEEP_SLOTS
+// Half-planes of a tile that are kept: three times so many, 4, 8 or 16.
+#ifdef THIMBLE_SMALL_FRAMES
+#define THIMBLE_SWEEP_SLOTS 0
+#elif !defined(THIMBLE_SWEEP_SLOTS)
 #define THIMBLE_SWEEP_SLOTS 16
 #endif
 
@@ -22,11 +24,8 @@ constexpr int kSlots = THIMBLE_SWEEP_SLOTS;
 constexpr uint32_t kNoKey = UINT32_MAX;
 // Bricks whose faces are kept.
 constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
-// A tile goes over to rays where this many voxels of a slab lie under its shadow.
-#ifndef THIMBLE_MOST_CELLS
-#define THIMBLE_MOST_CELLS 28
-#endif
-constexpr int32_t kMostCells = THIMBLE_MOST_CELLS;
+// A tile goes over to rays where more voxels of a slab lie under its shadow.
+constexpr int32_t kMostCells = 28;
 
 // Where the rays of a tile are on a or b, in 1/2^kCellShift voxel, mirrored: from `low` at the near plane of a
 // slab to `high` at its far one.
@@ -316,8 +315,8 @@ class TileSweep {
       const int32_t low_slope = low * (1 << kSlopeBits) / greatest[2];
       const int32_t high_slope = greatest[k] * (1 << kSlopeBits) / least[2] + 1;
       const int32_t at = sweep_.origin[k] * (1 << kSlopeBits);
-      reach_[k] = {at + low_slope * plane - 1, at + high_slope * (plane + Q8::kOne) + 1,
-                   low_slope * Q8::kOne, high_slope * Q8::kOne};
+      reach_[k] = {at + low_slope * plane - 1, at + high_slope * (plane + Q8::kOne) + 1, low_slope * Q8::kOne,
+                   high_slope * Q8::kOne};
     }
     return true;
   }
@@ -592,7 +591,8 @@ bool touches_solid(const BrickFrame& frame) {
     }
     if (inside) {
       const int32_t brick = 8 * static_cast<int32_t>(half_at(frame.map.directory(), offset));
-      if ((half_at(frame.map.bricks(), brick + 2 * static_cast<int32_t>(bit >> 4)) >> (bit & 15U) & 1U) != 0) {
+      if ((half_at(frame.map.bricks(), brick + 2 * static_cast<int32_t>(bit >> 4)) >> (bit & 15U) & 1U) !=
+          0) {
         return true;
       }
     }
