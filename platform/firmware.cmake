@@ -78,6 +78,10 @@ target_compile_options(thimble_firmware_flags INTERFACE ${THIMBLE_ARCH_FLAGS}
 # per cent of a frame.
 target_compile_options(thimble PRIVATE -O2 -fno-schedule-insns)
 target_link_libraries(thimble PRIVATE thimble_firmware_flags)
+# Pictures of up to 160 x 128 do without what larger ones take (brick_render.h).
+if("${BOARD_FRAMES}" STREQUAL "small")
+  target_compile_definitions(thimble PUBLIC THIMBLE_SMALL_FRAMES)
+endif()
 
 # The port: a library, so that an image takes what it needs and a board may replace any part.
 file(GLOB sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/arch/common/*.cpp
