@@ -4,8 +4,6 @@
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
 #   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
-#   THIMBLE_FACTS          facts of the board to replace, each NAME=VALUE (none): pictures of other sizes
-#   THIMBLE_MEASURED       whether `bench` measures the fastest engine alone (false)
 #   THIMBLE_HOLD           whether it then waits for a `q` over the UART, its last frame shown (false)
 #
 # Says flash, RAM and stack of each image after its link. platform/build.sh calls this.
@@ -13,8 +11,6 @@ set(THIMBLE_APP demo CACHE STRING "Applications to build")
 set(THIMBLE_SCENE_HEADER "" CACHE FILEPATH "Baked scene")
 set(THIMBLE_FRAMES 0 CACHE STRING "Frames before the application ends; 0: for ever")
 set(THIMBLE_HOLD_FPS 0 CACHE STRING "Rate of frames to hold from the start; 0: none")
-set(THIMBLE_FACTS "" CACHE STRING "Facts of the board to replace, NAME=VALUE")
-set(THIMBLE_MEASURED OFF CACHE BOOL "bench measures the fastest engine alone")
 set(THIMBLE_HOLD false CACHE STRING "Wait at the end: true or false")
 
 thimble_list_boards(THIMBLE_BOARDS)
@@ -24,14 +20,8 @@ if(NOT THIMBLE_BOARD IN_LIST THIMBLE_BOARDS)
 endif()
 set(BOARD_NAME ${THIMBLE_BOARD})
 thimble_read_board(${BOARD_NAME})
-foreach(fact IN LISTS THIMBLE_FACTS)
-  string(REGEX MATCH "^([A-Z_]+)=(.+)$" found "${fact}")
-  if(NOT DEFINED BOARD_${CMAKE_MATCH_1})
-    message(FATAL_ERROR "THIMBLE_FACTS: ${fact} is no NAME=VALUE of a fact of a board")
-  endif()
-  set(BOARD_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
-endforeach()
 set(THIMBLE_PLATFORM_DIR ${PROJECT_SOURCE_DIR}/platform)
+include(${THIMBLE_PLATFORM_DIR}/frames.cmake)
 include(${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/flags.cmake)
 if(NOT DEFINED THIMBLE_BINUTILS_PREFIX)
   message(FATAL_ERROR
@@ -78,10 +68,6 @@ target_compile_options(thimble_firmware_flags INTERFACE ${THIMBLE_ARCH_FLAGS}
 # per cent of a frame.
 target_compile_options(thimble PRIVATE -O2 -fno-schedule-insns)
 target_link_libraries(thimble PRIVATE thimble_firmware_flags)
-# Pictures of up to 160 x 128 do without what larger ones take (brick_render.h).
-if("${BOARD_FRAMES}" STREQUAL "small")
-  target_compile_definitions(thimble PUBLIC THIMBLE_SMALL_FRAMES)
-endif()
 
 # The port: a library, so that an image takes what it needs and a board may replace any part.
 file(GLOB sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/arch/common/*.cpp
@@ -106,9 +92,7 @@ endif()
 if(BOARD_VISITS_A_SECOND EQUAL 0)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_NO_HOLD)
 endif()
-if(THIMBLE_MEASURED)
-  target_compile_definitions(thimble_apps PRIVATE THIMBLE_MEASURED)
-endif()
+thimble_choose_frames()
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})
   target_compile_options(${part} PRIVATE -Os)
