@@ -1,8 +1,8 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim install deb \
-  release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-framebuffer \
-  format tidy clean
+  release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards bench-frames \
+  test-framebuffer format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -102,6 +102,11 @@ test-boards: ## Run the tests of the firmware on every board under QEMU; says fi
 	@sh tests/boards/deps.sh
 	@$(MAKE) --no-print-directory all
 	@sh tests/boards/run.sh
+
+bench-frames: ## Count the instructions of frames of every size on Cortex-M0 to M7 (WRITE=--write: the table)
+	@sh tests/boards/deps.sh
+	@$(MAKE) --no-print-directory all
+	@sh tests/boards/bench_frames.sh $(WRITE)
 
 test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says first what it downloads
 	@.ci/deps build tools framebuffer

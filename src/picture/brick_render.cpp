@@ -60,17 +60,26 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   const size_t line_bytes = row_bytes(band.format, width);
   Inks inks;
   inks.forget();
-  BrickFrame frame{tree, map, camera, shading, band.format, 0, {}, {}, {}, {}, {}, {}, {}};
+  BrickFrame frame{tree, map, camera, shading, band.format, false, 0, {}, {}, {}, {}, {}, {}, {}};
+  frame.halfwords = band.format == PixelFormat::kRgb565 &&
+                    ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
   frame.background = ink_of(band.format, shade(Hit{}, Ray{}, camera, shading));
   for (int axis = 0; axis < 3; ++axis) {
     frame.side[axis] = map.box().high[axis] - map.box().low[axis];
     frame.eye[axis] = camera.eye()[axis].raw - map.box().low[axis] * (4 * Q8::kOne);
   }
   frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  margins_of(camera.affine(), kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
-  margins_of(camera.affine(), kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
+  margins_of(camera, kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
+  margins_of(camera, kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
-  BrickPainter painter(frame, inks, band.pixels.data, stride, band.first_row, &done);
+  Sweep sweep;
+  sweep.misses = 0;
+  sweep.counts = &done;
+  sweep.course = kNoKey;
+  const bool swept =
+      kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) && !touches_solid(frame);
+  BrickPainter painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride, band.first_row,
+                       &done);
   const int32_t end = band.first_row + band.rows;
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;

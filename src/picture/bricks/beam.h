@@ -8,6 +8,10 @@
 namespace thimble::bricks {
 namespace {
 
+// Directions of a tile are found with so many bits behind the point. On the picture they have 15 before it; a
+// tile that reaches beyond the picture does so by less than the picture, either way: below 2^(15 + 3 + 12).
+constexpr int kFanBits = 12;
+
 // The directions of a tile: for each axis the least and the greatest, and what the rays have in common.
 struct Fan {
   Vec3i low;
@@ -20,9 +24,9 @@ struct Fan {
   Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
     int32_t most = -1;
     for (int axis = 0; axis < 3; ++axis) {
-      const int32_t at = static_cast<int32_t>(value[axis] >> 16);
-      low[axis] = (at + least[axis]) >> 16;
-      high[axis] = (at + greatest[axis]) >> 16;
+      const int32_t at = static_cast<int32_t>(value[axis] >> (32 - kFanBits));
+      low[axis] = (at + least[axis]) >> kFanBits;
+      high[axis] = (at + greatest[axis]) >> kFanBits;
       const int32_t sum = low[axis] + high[axis];
       if (sum < 0) {
         mirrored |= 1U << axis;
@@ -41,18 +45,21 @@ struct Fan {
   bool usable() const { return (mixed >> c & 1U) == 0 && low[c] != 0; }
 };
 
-// Finds what the rounded directions of a tile lie between, as 16.16 numbers to be added to its first pixel's
-// affine function in 16.16. The sum is cut off afterwards; one unit of 2^-16 either way makes up for what was
-// cut off before.
-void margins_of(const Camera::Affine& affine, int32_t across_px, int32_t down_px, Vec3i* low, Vec3i* high) {
+// Finds what the rounded directions of a tile lie between, as numbers of kFanBits bits behind the point, to be
+// added to its first pixel's affine function in the same form. The sum is cut off afterwards; one unit either
+// way makes up for what was cut off before.
+void margins_of(const Camera& camera, int32_t across_px, int32_t down_px, Vec3i* low, Vec3i* high) {
+  const Camera::Affine& affine = camera.affine();
+  across_px = across_px < camera.width_px() ? across_px : camera.width_px();
+  down_px = down_px < camera.height_px() ? down_px : camera.height_px();
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t across = affine.step_x[axis] * (across_px - 1);
     const int64_t down = affine.step_y[axis] * (down_px - 1);
     const int64_t least = (across < 0 ? across : 0) + (down < 0 ? down : 0);
     const int64_t greatest = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
     // Halves go away from zero: half a unit below may be rounded down.
-    (*low)[axis] = static_cast<int32_t>(least >> 16) + 0x8000 - 1;
-    (*high)[axis] = static_cast<int32_t>(greatest >> 16) + 0x8000 + 2;
+    (*low)[axis] = static_cast<int32_t>(least >> (32 - kFanBits)) + (1 << (kFanBits - 1)) - 1;
+    (*high)[axis] = static_cast<int32_t>(greatest >> (32 - kFanBits)) + (1 << (kFanBits - 1)) + 2;
   }
 }
 

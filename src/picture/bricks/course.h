@@ -22,6 +22,7 @@ struct BrickFrame {
   const Camera& camera;
   const Shading& shading;
   PixelFormat format;
+  bool halfwords;  // pixels are halfwords, and lie where halfwords may be stored
   uint32_t background;
   Vec3i side;    // of the box, in bricks
   Vec3i stride;  // of the directory, in bytes
@@ -60,6 +61,10 @@ struct Course {
   // The camera's affine function, mirrored.
   Camera::Vec3Q32 step_x;
   Camera::Vec3Q32 step_y;
+  // What is read seldom.
+  int axis[3];          // a, b and c
+  uint32_t most_cells;  // times a direction in 1/256 this is below 2^31
+  bool wide;            // the products of directions and rests take more than 31 bits
 };
 
 // Sets all but where the rays start.
@@ -67,6 +72,9 @@ void set_course(Course& course, unsigned mirrored, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
   course.c = c;
+  course.axis[0] = c == 0 ? 1 : 0;
+  course.axis[1] = c == 2 ? 1 : 2;
+  course.axis[2] = c;
   course.mirrored = mirrored;
   course.base = 0;
   course.base_left = 0;

@@ -42,6 +42,7 @@ uint32_t ink_of(PixelFormat format, Rgb8 color) {
     case PixelFormat::kGray8:
       return gray_of(color);
     case PixelFormat::kRgb565:
+      return (color.r & 0xF8U) << 8 | (color.g & 0xFCU) << 3 | color.b >> 3U;
     case PixelFormat::kRgb888:
       break;
   }
@@ -63,6 +64,9 @@ void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t
       store_pixel(line, x, y, format, {low, low, low});
       return;
     case PixelFormat::kRgb565:
+      line[2 * x] = low;
+      line[2 * x + 1] = static_cast<uint8_t>(ink >> 8);
+      return;
     case PixelFormat::kRgb888:
       store_pixel(line, x, y, format, {low, static_cast<uint8_t>(ink >> 8), static_cast<uint8_t>(ink >> 16)});
       return;

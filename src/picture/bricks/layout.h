@@ -55,6 +55,13 @@ uint32_t row_of(const uint8_t* at) {
   return static_cast<uint32_t>(reinterpret_cast<size_t>(at)) & 6U;
 }
 
+// Whether the core has an instruction to divide.
+#if defined(__arm__) && !defined(__ARM_FEATURE_IDIV)
+constexpr bool kDivides = false;
+#else
+constexpr bool kDivides = true;
+#endif
+
 // Tells the compiler which way a branch mostly goes.
 [[gnu::always_inline]] constexpr bool seldom(bool condition) {
   return __builtin_expect(static_cast<long>(condition), 0) != 0;

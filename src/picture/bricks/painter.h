@@ -5,8 +5,8 @@
 
 #include "beam.h"
 #include "brick_ray.h"
+#include "sweep.h"
 #include "thimble/picture/brick_render.h"
-#include "thimble/trace/trace.h"
 
 namespace thimble::bricks {
 namespace {
@@ -19,61 +19,15 @@ struct Tile {
   int32_t y1;
 };
 
-// Tiles are kBrickTilePx high.
-constexpr int32_t kTileAcrossPx = 16;
+// Up to these bits the product of a rest and a direction has at most 31: 8 + 11 + 11 is below.
+constexpr int kNarrowDirectionBits = 11;
+
+static_assert(kTileDownPx == kBrickTilePx);
 // Quads are the smallest tiles.
 constexpr int32_t kQuadAcrossPx = 4;
 constexpr int32_t kQuadDownPx = 4;
 constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;
 
-// Traces one ray through the tree: what the bricks leave open.
-int32_t ask(const BrickFrame& frame, int32_t x, int32_t y, RenderCounts* counts) {
-  const Ray ray = frame.camera.ray(x, y);
-  Hit hit;
-  if (closest_hit_32(frame.tree, ray, &hit) != Status::kOk) {
-    return kMissed;
-  }
-  counts->node_visits += hit.visits;
-  if (hit.kind != HitKind::kHit) {
-    return kMissed;
-  }
-  return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
-}
-
-// The axes that a course mirrors, as a type: what is compiled once for each.
-template <unsigned kAxes>
-struct Mirrored {
-  static constexpr unsigned kMirrored = kAxes;
-};
-template <class Call>
-[[gnu::always_inline]] inline int32_t with_mirrored(unsigned mirrored, const Call& call) {
-  switch (mirrored) {
-    case 0:
-      return call(Mirrored<0>{});
-    case 1:
-      return call(Mirrored<1>{});
-    case 2:
-      return call(Mirrored<2>{});
-    case 3:
-      return call(Mirrored<3>{});
-    case 4:
-      return call(Mirrored<4>{});
-    case 5:
-      return call(Mirrored<5>{});
-    case 6:
-      return call(Mirrored<6>{});
-    default:
-      return call(Mirrored<7>{});
-  }
-}
-
-// Traces one ray of direction `d`, whose signs are the course's.
-template <int kC>
-int32_t trace_by_signs(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
-  return with_mirrored(course.mirrored, [&](auto axes) {
-    return trace_one<kC, decltype(axes)::kMirrored>(course, d_a, d_b, d_c);
-  });
-}
 int32_t trace_along(const Course& course, const Vec3i& d) {
   const auto size = [](int32_t value) { return static_cast<uint32_t>(value < 0 ? -value : value); };
   const uint32_t x = size(d.x);
@@ -130,14 +84,21 @@ int32_t trace_quad_by_signs(const Course& course, const Camera::Vec3Q32& from, i
 // Draws the tiles of one band.
 class BrickPainter {
  public:
-  BrickPainter(const BrickFrame& frame, Inks& inks, uint8_t* first_line, size_t stride, int32_t first_row,
-               RenderCounts* counts)
-      : frame_(frame), first_line_(first_line), stride_(stride), first_row_(first_row), counts_(counts) {
+  BrickPainter(const BrickFrame& frame, Inks& inks, Sweep* sweep, uint8_t* first_line, size_t stride,
+               int32_t first_row, RenderCounts* counts)
+      : frame_(frame),
+        sweep_(sweep),
+        first_line_(first_line),
+        stride_(stride),
+        first_row_(first_row),
+        counts_(counts) {
     course_.frame = &frame;
     course_.inks = &inks;
     course_.directory = frame.map.directory();
     course_.bricks = frame.map.bricks();
     course_.exact_ties = !frame.tree.merged();
+    course_.wide = frame.camera.direction_bits() > kNarrowDirectionBits;
+    course_.most_cells = (1U << (23 - frame.camera.direction_bits())) - 1;
     set_course(course_, 0, 0);  // NOLINT: where rays start is set_start's
   }
 
@@ -153,18 +114,39 @@ class BrickPainter {
     }
     const Fan fan(value, frame_.tile_low, frame_.tile_high);
     int32_t slab = 0;
+    bool begun = false;  // by the sweep
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab_along(course_, fan, 0);
-      if (slab == 4 * frame_.side[fan.c]) {
-        fill(tile);
-        return;
+      if (kSlots != 0 && sweep_ != nullptr && fan.mixed == 0) {
+        const int32_t origin = course_.origin[fan.c];
+        slab = origin < 0 ? 0 : origin >> 8;
+        if (slab >= 4 * frame_.side[fan.c]) {
+          fill(tile);
+          return;
+        }
+        begun = sweep_tile(tile, value, fan, &slab);
+        if (begun && sweep_->done()) {
+          return;
+        }
+      }
+      if (!begun) {
+        slab = first_slab_along(course_, fan, slab);
+        if (slab == 4 * frame_.side[fan.c]) {
+          fill(tile);
+          return;
+        }
       }
     }
     Camera::Vec3Q32 row = value;
     for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
       Camera::Vec3Q32 at = row;
       for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
+        if (begun && !sweep_->has_quad(x - tile.x0, y - tile.y0)) {
+          for (int axis = 0; axis < 3; ++axis) {
+            at[axis] += kQuadAcrossPx * affine.step_x[axis];
+          }
+          continue;
+        }
         const Tile quad{x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
                         y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1};
         draw_quad(quad, at, fan, slab);
@@ -179,6 +161,33 @@ class BrickPainter {
   }
 
  private:
+  // Draws a tile face by face, as far as that pays. False when nothing was drawn; else quads may be left. These
+  // are to be drawn from `slab` on.
+  [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
+                                    int32_t* slab) {
+    Sweep& sweep = *sweep_;
+    set_sweep_course(course_, &sweep);
+    const TilePlace place{line_of(tile.y0), stride_, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
+    TileSweep tile_sweep(sweep, course_, value, place);
+    course_.waiting = kWaiting;
+    set_start(course_, *slab);
+    *slab = tile_sweep.run(fan, *slab);
+    if (!tile_sweep.begun()) {
+      return false;
+    }
+    if (*slab != 4 * frame_.side[fan.c]) {
+      set_start(course_, *slab);
+      tile_sweep.draw_parts_of_quads();
+    } else if (!sweep.done()) {
+      for (uint32_t& word : sweep.left.word) {
+        misses_ += bits::popcount32(word);
+      }
+      store_pixels(place, sweep.left, frame_, frame_.background);
+      sweep.left = {};
+    }
+    return true;
+  }
+
   // Makes the course one of these signs and this fastest axis.
   void use(unsigned mirrored, int c) {
     if (mirrored != course_.mirrored || c != course_.c) {
@@ -263,6 +272,15 @@ class BrickPainter {
       }
       return;
     }
+    if (frame_.halfwords) {
+      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+        Half* const pixels = static_cast<Half*>(static_cast<void*>(line)) + quad.x0;
+        for (int32_t i = 0; i < across; ++i) {
+          pixels[i] = static_cast<Half>(*inks++);
+        }
+      }
+      return;
+    }
     for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
       for (int32_t x = quad.x0; x < quad.x1; ++x) {
         store_ink(line, x, y, frame_.format, static_cast<uint32_t>(*inks++));
@@ -302,10 +320,11 @@ class BrickPainter {
   }
 
  public:
-  uint32_t misses() const { return misses_; }
+  uint32_t misses() const { return misses_ + (sweep_ != nullptr ? sweep_->misses : 0); }
 
  private:
   const BrickFrame& frame_;
+  Sweep* sweep_;  // null where tiles are not swept
   uint8_t* first_line_;
   size_t stride_;
   int32_t first_row_;

@@ -1,0 +1,26 @@
+# Which frames an image draws, for firmware.cmake: those of BOARD_FRAMES, or of sizes that are measured only.
+#
+#   THIMBLE_FACTS      facts of the board to replace, each NAME=VALUE (none): other pictures, another core
+#   THIMBLE_MEASURED   whether `bench` measures the fastest engine alone (OFF)
+set(THIMBLE_FACTS "" CACHE STRING "Facts of the board to replace, NAME=VALUE")
+set(THIMBLE_MEASURED OFF CACHE BOOL "bench measures the fastest engine alone")
+
+foreach(fact IN LISTS THIMBLE_FACTS)
+  string(REGEX MATCH "^([A-Z_]+)=(.+)$" found "${fact}")
+  if(NOT DEFINED BOARD_${CMAKE_MATCH_1})
+    message(FATAL_ERROR "THIMBLE_FACTS: ${fact} is no NAME=VALUE of a fact of a board")
+  endif()
+  set(BOARD_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+endforeach()
+
+function(thimble_choose_frames)
+  # Pictures of up to 160 x 128 do without what larger ones take (brick_render.h).
+  if("${BOARD_FRAMES}" STREQUAL "small")
+    target_compile_definitions(thimble PUBLIC THIMBLE_SMALL_FRAMES)
+  elseif(NOT "${BOARD_FRAMES}" STREQUAL "")
+    message(FATAL_ERROR "BOARD_FRAMES of ${BOARD_NAME} is ${BOARD_FRAMES}; it may be small, or left out")
+  endif()
+  if(THIMBLE_MEASURED)
+    target_compile_definitions(thimble_apps PRIVATE THIMBLE_MEASURED)
+  endif()
+endfunction()

@@ -1,0 +1,196 @@
+// Which pixels of a tile meet one plane of voxels before another, as bits. Internal to src/.
+//
+// A ray from the eye meets plane I of axis i at t_i(I) = s_i / d_i, with s_i its distance. So it meets plane I
+// of i before plane J of j where f = s_j d_i - s_i d_j is positive. Directions are an affine function of the
+// pixel, rounded, so f is within (s_i + s_j) / 2 of an affine function F: the pixels where F is above that
+// bound are certain, those within it on either side are open, and their own rays decide.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_HALF_PLANE_H
+#define THIMBLE_SRC_PICTURE_BRICKS_HALF_PLANE_H
+
+#include "../../base/bits.h"
+#include "layout.h"
+#include "thimble/picture/camera.h"
+
+namespace thimble::bricks {
+namespace {
+
+// Tiles are so large; bit x + 16 y of 128 is a pixel.
+constexpr int32_t kTileAcrossPx = 16;
+constexpr int32_t kTileDownPx = 8;
+constexpr int kTileWords = kTileAcrossPx * kTileDownPx / 32;
+
+// The pixels of a tile.
+struct Pixels {
+  uint32_t word[kTileWords];
+};
+
+// The directions of a tile, mirrored and in the order a, b, c: base + rest + x * step_x + y * step_y, of which
+// `base` is whole and the others have `fraction_bits` behind the point.
+struct TileRays {
+  int32_t base[3];
+  int32_t rest[3];
+  int32_t step_x[3];
+  int32_t step_y[3];
+  int fraction_bits;
+  int32_t unit;   // (s_i + s_j) times this bounds what rounding does to f
+  int32_t reach;  // bounds rest + x * step_x + y * step_y, below 2^15
+};
+
+// F positive: certain; F positive or open: possible. The others are certainly negative.
+struct HalfPlane {
+  uint32_t key;
+  Pixels certain;
+  Pixels possible;
+};
+
+// Distances are cut to this many bits where an affine function is computed from them.
+constexpr int kDistanceBits = 13;
+
+// The same as `walk_edge` with three divisions instead of loops, for edges that are not far from upright:
+// where they cross the rows, in 1/2^kCrossingBits pixel. False for others. `fx` is positive.
+//
+// A quotient is wrong by 1 unit for being cut off, likewise what is divided, and by 2^-13 of itself as the
+// divisor keeps 14 bits: at most 24 units, with |crossing| <= 33 pixels in the first row and |slope| <= 5.
+constexpr int kCrossingBits = 11;
+constexpr int32_t kCrossingSlack = 24;
+
+// The pixels of a row from a crossing on. Places up to 31, so that one instruction may find them.
+[[gnu::always_inline]] inline uint32_t row_from(int32_t crossing) {
+  const int32_t place = crossing >> kCrossingBits;
+  const int32_t positive = place < 0 ? 0 : place;
+  return 0xFFFFU << (positive > 31 ? 31 : positive);
+}
+
+// Sets the rows of two masks, or what they leave.
+template <bool kFlip>
+[[gnu::always_inline]] inline void fill_rows(int32_t at, int32_t slope, int32_t back, Pixels* first,
+                                             Pixels* second) {
+  Half* to = static_cast<Half*>(static_cast<void*>(first));
+  Half* also = static_cast<Half*>(static_cast<void*>(second));
+#pragma GCC unroll 8
+  for (int row = 0; row < kTileDownPx; ++row, at -= slope) {
+    const uint32_t pixels = row_from(at);
+    const uint32_t more = row_from(at - back);
+    to[row] = static_cast<Half>(kFlip ? ~pixels : pixels);
+    also[row] = static_cast<Half>(kFlip ? ~more : more);
+  }
+}
+
+bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, HalfPlane* plane) {
+  const int32_t ahead = bound - f;
+  if ((ahead < 0 ? -ahead : ahead) >> 5 > fx || (fy < 0 ? -fy : fy) >> 2 > fx || bound >> 2 > fx) {
+    return false;
+  }
+  const int high = bits::highest_bit(static_cast<uint32_t>(fx));
+  const int cut = high > 13 ? high - 13 : 0;
+  const int32_t by = fx >> cut;
+  const auto quotient = [&](int32_t value) {
+    return (cut <= kCrossingBits ? value * (1 << (kCrossingBits - cut)) : value >> (cut - kCrossingBits)) /
+           by;
+  };
+  int32_t at = quotient(ahead);
+  const int32_t slope = quotient(fy);
+  // From the first certain pixel back to what is added to round the first possible one up.
+  const int32_t back = quotient(2 * bound) + 2 * kCrossingSlack + 1;
+  at += kCrossingSlack + (1 << kCrossingBits);
+  if (flip) {
+    fill_rows<true>(at, slope, back, &plane->possible, &plane->certain);
+  } else {
+    fill_rows<false>(at, slope, back, &plane->certain, &plane->possible);
+  }
+  return true;
+}
+
+// Walks along an edge: `f` (F times 2^fraction_bits, scaled) at the tile's first pixel, its steps, and the
+// bound. Exactly the pixels above `bound` become certain, those from -bound on possible.
+void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plane) {
+  // As if F grew to the right, and in the order of rows in which it grows.
+  const bool flip = fx < 0;
+  if (flip) {
+    f = -f;
+    fx = -fx;
+    fy = -fy;
+  }
+  if (kDivides && divide_edge(f, fx, fy, bound, flip, plane)) {
+    return;
+  }
+  Half* certain = static_cast<Half*>(static_cast<void*>(flip ? &plane->possible : &plane->certain));
+  Half* possible = static_cast<Half*>(static_cast<void*>(flip ? &plane->certain : &plane->possible));
+  const uint32_t invert = flip ? 0xFFFFU : 0;
+  int step = 1;
+  if (fy < 0) {
+    f += (kTileDownPx - 1) * fy;
+    fy = -fy;
+    certain += kTileDownPx - 1;
+    possible += kTileDownPx - 1;
+    step = -1;
+  }
+  // The pixels from `first` on are certain; `at` is F of the one before, less the bound.
+  int32_t first = kTileAcrossPx;
+  int32_t at = f + (kTileAcrossPx - 1) * fx - bound;
+  for (int row = 0; row < kTileDownPx; ++row) {
+    while (first > 0 && at > 0) {
+      --first;
+      at -= fx;
+    }
+    int32_t open = first;
+    for (int32_t there = at + 2 * bound; open > 0 && there >= 0; there -= fx) {
+      --open;
+    }
+    *certain = static_cast<Half>((0xFFFFU << first) ^ invert);
+    *possible = static_cast<Half>((0xFFFFU << open) ^ invert);
+    certain += step;
+    possible += step;
+    at += fy;
+  }
+}
+
+void set_all(HalfPlane* plane, uint32_t word) {
+  for (int i = 0; i < kTileWords; ++i) {
+    plane->certain.word[i] = word;
+    plane->possible.word[i] = word;
+  }
+}
+
+// Finds where the plane of axis i (0 a, 1 b, 2 c) at distance `s_i` is met before that of j at `s_j`. Planes
+// behind the eye, or at it, were met before all others.
+[[gnu::noinline]] void find_half_plane(const TileRays& rays, int i, int j, int32_t s_i, int32_t s_j,
+                                       HalfPlane* plane) {
+  if (s_i <= 0 || s_j <= 0) {
+    set_all(plane, s_i <= 0 ? UINT32_MAX : 0);
+    return;
+  }
+  const int32_t exact = s_j * rays.base[i] - s_i * rays.base[j];
+  int cut = 0;
+  for (int32_t most = s_i > s_j ? s_i : s_j; most >= 1 << kDistanceBits; most >>= 2) {
+    cut += 2;
+  }
+  const int bits = rays.fraction_bits;
+  const int32_t size = exact < 0 ? -exact : exact;
+  if (size >> cut >= 1 << (30 - bits)) {
+    set_all(plane, exact > 0 ? UINT32_MAX : 0);
+    return;
+  }
+  const int32_t half = cut == 0 ? 0 : 1 << (cut - 1);
+  s_i = (s_i + half) >> cut;
+  s_j = (s_j + half) >> cut;
+  const int32_t bound = (s_i + s_j + 1) * rays.unit + (cut == 0 ? 2 : rays.reach + 2);
+  const int32_t f = (bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) + s_j * rays.rest[i] -
+                    s_i * rays.rest[j];
+  const int32_t fx = s_j * rays.step_x[i] - s_i * rays.step_x[j];
+  const int32_t fy = s_j * rays.step_y[i] - s_i * rays.step_y[j];
+  const int32_t across = (kTileAcrossPx - 1) * fx;
+  const int32_t down = (kTileDownPx - 1) * fy;
+  const int32_t least = f + (across < 0 ? across : 0) + (down < 0 ? down : 0);
+  const int32_t greatest = f + (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+  if (least > bound || greatest < -bound) {
+    set_all(plane, least > bound ? UINT32_MAX : 0);
+    return;
+  }
+  walk_edge(f, fx, fy, bound, plane);
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

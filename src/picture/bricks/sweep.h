@@ -1,0 +1,606 @@
+// Draws a tile face by face, from the eye away: for pictures in which a face covers several pixels. Internal
+// to src/; README.md derives it.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
+#define THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
+
+#include "../../base/bits.h"
+#include "beam.h"
+#include "brick_ray.h"
+#include "exposed.h"
+#include "half_plane.h"
+#include "tile_store.h"
+
+// Half-planes of a tile that are kept: three times so many, 4, 8 or 16.
+#ifdef THIMBLE_SMALL_FRAMES
+#define THIMBLE_SWEEP_SLOTS 0
+#elif !defined(THIMBLE_SWEEP_SLOTS)
+#define THIMBLE_SWEEP_SLOTS 16
+#endif
+
+namespace thimble::bricks {
+namespace {
+
+constexpr int kSlots = THIMBLE_SWEEP_SLOTS;
+constexpr uint32_t kNoKey = UINT32_MAX;
+// Bricks whose faces are kept.
+constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
+// A tile goes over to rays where more voxels of a slab lie under its shadow.
+constexpr int32_t kMostCells = 28;
+
+// Where the rays of a tile are on a or b, in 1/2^kCellShift voxel, mirrored: from `low` at the near plane of a
+// slab to `high` at its far one.
+struct Reach {
+  int32_t low;
+  int32_t high;
+  int32_t low_step;
+  int32_t high_step;
+};
+
+// What the sweep keeps from tile to tile of a band, and while it draws one.
+struct Sweep {
+  TileRays rays;
+  Pixels left;  // not drawn yet
+  HalfPlane plane[3 * kSlots + (kSlots == 0 ? 1 : 0)];
+  Exposed exposed[kExposedKept];
+  unsigned course;    // whose bricks these are: its axis c and signs, or kNoKey
+  int32_t origin[3];  // of the rays, on a, b and c
+  int32_t base;       // offset in the directory of the first brick
+  int32_t side[3];
+  int32_t stride[3];
+  uint32_t misses;
+  RenderCounts* counts;
+  int32_t step_x[3];  // of directions, with rays.fraction_bits, by the world's axes
+  int32_t step_y[3];
+
+  void forget_bricks() {
+    for (Exposed& kept : exposed) {
+      kept.place = -1;
+    }
+  }
+  void forget_planes() {
+    for (HalfPlane& kept : plane) {
+      kept.key = kNoKey;
+    }
+  }
+  void set_left(int32_t across, int32_t down) {
+    const uint32_t row = 0xFFFFU >> (kTileAcrossPx - across);
+    for (int32_t i = 0; i < kTileWords; ++i) {
+      left.word[i] = (2 * i < down ? row : 0) | (2 * i + 1 < down ? row << 16 : 0);
+    }
+  }
+  // Whether the quad whose first pixel is (x, y) in the tile is left as a whole.
+  bool has_quad(int32_t x, int32_t y) const { return (left.word[y >> 1] >> x & 1U) != 0; }
+  bool done() const { return (left.word[0] | left.word[1] | left.word[2] | left.word[3]) == 0; }
+};
+
+// The families of half-planes: axis a against c, b against c, a against b.
+enum Family { kAc = 0, kBc = 1, kAb = 2 };
+constexpr int kFirstAxis[3] = {0, 1, 0};
+constexpr int kSecondAxis[3] = {2, 2, 1};
+
+int32_t distance_of(const Sweep& sweep, int k, int32_t plane) {
+  return plane * Q8::kOne - sweep.origin[k];
+}
+
+// The half-plane of the rays that meet plane `i` of a family's first axis before plane `j` of its second.
+[[gnu::always_inline]] inline const HalfPlane& half_plane(Sweep& sweep, Family family, int32_t i, int32_t j) {
+  constexpr int kAcross = kSlots >= 16 ? 8 : kSlots >= 8 ? 4 : 2;
+  constexpr int kDeep = kSlots / (kAcross == 0 ? 1 : kAcross);
+  const uint32_t key = static_cast<uint32_t>(i) | static_cast<uint32_t>(j) << 16;
+  HalfPlane& kept = sweep.plane[family * kSlots + (i & (kAcross - 1)) * kDeep + (j & (kDeep - 1))];
+  if (kept.key != key) {
+    kept.key = key;
+    find_half_plane(sweep.rays, kFirstAxis[family], kSecondAxis[family],
+                    distance_of(sweep, kFirstAxis[family], i), distance_of(sweep, kSecondAxis[family], j),
+                    &kept);
+  }
+  return kept;
+}
+
+// A pixel's exact direction on a, b and c; it has the course's signs.
+void find_direction(const Course& course, const Camera::Vec3Q32& value, uint32_t pixel, uint32_t (&d)[3]) {
+  const int32_t x = static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
+  const int32_t y = static_cast<int32_t>(pixel / kTileAcrossPx);
+  for (int k = 0; k < 3; ++k) {
+    const int axis = course.axis[k];
+    const int64_t own = (course.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis];
+    const int64_t sum = own + x * course.step_x[axis] + y * course.step_y[axis] + (int64_t{1} << 31);
+    d[k] = static_cast<uint32_t>(static_cast<uint64_t>(sum) >> 32);
+  }
+}
+
+// Where a ray meets a face: 1 inside, -1 outside, 0 on an edge of it.
+int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uint32_t (&d)[3]) {
+  const int32_t s_k = distance_of(sweep, k, cell[k]);
+  int result = 1;
+  for (int m = 0; m < 3; ++m) {
+    if (m == k) {
+      continue;
+    }
+    const int32_t near_m = distance_of(sweep, m, cell[m]);
+    const int32_t far_m = near_m + Q8::kOne;
+    const int32_t here = s_k * static_cast<int32_t>(d[m]);
+    const int32_t after = near_m <= 0 ? 1 : here - near_m * static_cast<int32_t>(d[k]);
+    const int32_t before = far_m <= 0 ? -1 : far_m * static_cast<int32_t>(d[k]) - here;
+    if (after < 0 || before < 0) {
+      return -1;
+    }
+    result = after == 0 || before == 0 ? 0 : result;
+  }
+  return result;
+}
+
+// Traces the ray of direction `d` from where the course starts.
+int32_t trace_turned(const Course& course, const uint32_t (&d)[3]) {
+  return course.c == 0   ? trace_by_signs<0>(course, d[0], d[1], d[2])
+         : course.c == 1 ? trace_by_signs<1>(course, d[0], d[1], d[2])
+                         : trace_by_signs<2>(course, d[0], d[1], d[2]);
+}
+
+// Finds how a band's directions are counted. False where a tile's are too far apart for that.
+bool set_steps(const Camera& camera, Sweep* sweep) {
+  const Camera::Affine& affine = camera.affine();
+  int64_t most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int64_t x = affine.step_x[axis] < 0 ? -affine.step_x[axis] : affine.step_x[axis];
+    const int64_t y = affine.step_y[axis] < 0 ? -affine.step_y[axis] : affine.step_y[axis];
+    const int64_t here = (kTileAcrossPx - 1) * x + (kTileDownPx - 1) * y;
+    most = here > most ? here : most;
+  }
+  constexpr int kMostBits = 12;
+  constexpr int kLeastBits = 4;
+  const int32_t whole = static_cast<int32_t>(most >> 32) + 2;  // the rest, and what was cut off
+  int bits = kMostBits;
+  while (bits >= kLeastBits && whole >= (1 << 15 >> bits)) {
+    --bits;
+  }
+  if (bits < kLeastBits) {
+    return false;
+  }
+  TileRays& rays = sweep->rays;
+  rays.fraction_bits = bits;
+  rays.unit = (1 << (bits - 1)) + (kTileAcrossPx + kTileDownPx) / 2;
+  rays.reach = whole << bits;
+  const int64_t half = int64_t{1} << (31 - bits);
+  for (int axis = 0; axis < 3; ++axis) {
+    sweep->step_x[axis] = static_cast<int32_t>((affine.step_x[axis] + half) >> (32 - bits));
+    sweep->step_y[axis] = static_cast<int32_t>((affine.step_y[axis] + half) >> (32 - bits));
+  }
+  return true;
+}
+
+// Takes up a course.
+void set_sweep_course(const Course& course, Sweep* sweep) {
+  const unsigned id = course.mirrored << 2 | static_cast<unsigned>(course.c);
+  if (sweep->course == id) {
+    return;
+  }
+  sweep->course = id;
+  sweep->forget_bricks();
+  sweep->base = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int axis = course.axis[k];
+    const bool flipped = (course.mirrored >> axis & 1U) != 0;
+    sweep->side[k] = course.frame->side[axis];
+    sweep->stride[k] = course.stride[axis];
+    sweep->origin[k] = course.origin[axis] - (k == 2 ? 0 : kOutsideQ8);
+    sweep->base -= flipped ? (sweep->side[k] - 1) * course.stride[axis] : 0;
+    sweep->rays.step_x[k] = flipped ? -sweep->step_x[axis] : sweep->step_x[axis];
+    sweep->rays.step_y[k] = flipped ? -sweep->step_y[axis] : sweep->step_y[axis];
+  }
+}
+
+// Takes up a tile whose first pixel has the directions `value`, `across` by `down` pixels.
+void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across, int32_t down,
+              Sweep* sweep) {
+  TileRays& rays = sweep->rays;
+  for (int k = 0; k < 3; ++k) {
+    const int axis = course.axis[k];
+    const int64_t own = (course.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis];
+    rays.base[k] = static_cast<int32_t>(own >> 32);
+    rays.rest[k] = static_cast<int32_t>(static_cast<uint32_t>(own) >> (32 - rays.fraction_bits));
+  }
+  sweep->forget_planes();
+  sweep->set_left(across, down);
+}
+
+constexpr HalfPlane kAllPixels = {kNoKey,
+                                  {{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}},
+                                  {{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}}};
+constexpr HalfPlane kNoPixels = {kNoKey, {{0, 0, 0, 0}}, {{0, 0, 0, 0}}};
+
+// A brick under the shadow of a tile.
+struct SweptBrick {
+  int32_t place;  // in the directory
+  int32_t a;
+  int32_t b;
+};
+
+// A tile being swept.
+class TileSweep {
+ public:
+  TileSweep(Sweep& sweep, Course& course, const Camera::Vec3Q32& value, const TilePlace& place)
+      : sweep_(sweep), course_(course), value_(value), place_(place) {}
+
+  // Whether anything was met that is worth drawing.
+  bool begun() const { return begun_; }
+
+  // Draws what the rays meet from `slab` on. Returns the slab from which on the pixels that are left are to
+  // be drawn by rays, or the number of slabs when they miss everything.
+  int32_t run(const Fan& fan, int32_t slab) {
+    const int32_t slabs = 4 * sweep_.side[2];
+    if (!set_reach(fan, slab)) {
+      return slab;
+    }
+    while (slab < slabs) {
+      const int32_t voxels = 4 - (slab & 3);
+      int32_t from[2];
+      int32_t to[2];
+      for (int k = 0; k < 2; ++k) {
+        const Reach& reach = reach_[k];
+        const int32_t last = sweep_.side[k] - 1;
+        from[k] = reach.low >> kBrickShift;
+        from[k] = from[k] < 0 ? 0 : from[k];
+        to[k] = (reach.high + (voxels - 1) * reach.high_step) >> kBrickShift;
+        if (from[k] > last) {
+          return slabs;
+        }
+        if (to[k] - from[k] >= kBeamBricks) {
+          return slab;
+        }
+        to[k] = to[k] > last ? last : to[k];
+      }
+      SweptBrick bricks[kBeamBricks * kBeamBricks];
+      const SweptBrick* const end = find_bricks(slab >> 2, from, to, bricks);
+      if (end != bricks) {
+        if (cells_at_once() > kMostCells) {
+          return slab;
+        }
+        if (!begun_) {
+          begin();
+        }
+        draw_layer(slab, from, bricks, end);
+        if (sweep_.done()) {
+          return slabs;
+        }
+      }
+      slab += voxels;
+      if (end == bricks || !narrow(slab)) {
+        for (Reach& reach : reach_) {
+          reach.low += voxels * reach.low_step;
+          reach.high += voxels * reach.high_step;
+        }
+      }
+    }
+    return slabs;
+  }
+
+ private:
+  void begin() {
+    begun_ = true;
+    set_tile(course_, value_, place_.across, place_.down, &sweep_);
+    if (course_.frame->format == PixelFormat::kGray4) {
+      clear(place_);
+    }
+  }
+
+  // Voxels of a slab under the tile's shadow.
+  int32_t cells_at_once() const {
+    int32_t cells = 1;
+    for (const Reach& reach : reach_) {
+      cells *= (reach.high >> kCellShift) - (reach.low >> kCellShift) + 1;
+    }
+    return cells;
+  }
+
+  bool set_reach(const Fan& fan, int32_t slab) {
+    int32_t low[3];
+    int32_t high[3];
+    for (int k = 0; k < 3; ++k) {
+      const int axis = course_.axis[k];
+      const bool flipped = (course_.mirrored >> axis & 1U) != 0;
+      low[k] = flipped ? -fan.high[axis] : fan.low[axis];
+      high[k] = flipped ? -fan.low[axis] : fan.high[axis];
+    }
+    return set_reach(low, high, slab);
+  }
+
+  bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
+    const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
+    for (int k = 0; k < 2; ++k) {
+      if (greatest[k] > 2 * least[2]) {
+        return false;
+      }
+      const int32_t low = least[k] < 0 ? 0 : least[k];
+      const int32_t low_slope = low * (1 << kSlopeBits) / greatest[2];
+      const int32_t high_slope = greatest[k] * (1 << kSlopeBits) / least[2] + 1;
+      const int32_t at = sweep_.origin[k] * (1 << kSlopeBits);
+      reach_[k] = {at + low_slope * plane - 1, at + high_slope * (plane + Q8::kOne) + 1, low_slope * Q8::kOne,
+                   high_slope * Q8::kOne};
+    }
+    return true;
+  }
+
+  // Draws the shadow in to the pixels that are left, where these are many fewer than before; false where not.
+  bool narrow(int32_t slab) {
+    const Pixels& left = sweep_.left;
+    uint32_t columns = 0;
+    int32_t first = kTileWords;
+    int32_t last = 0;
+    for (int32_t i = 0; i < kTileWords; ++i) {
+      if (left.word[i] != 0) {
+        columns |= left.word[i];
+        first = first < i ? first : i;
+        last = i;
+      }
+    }
+    columns = (columns | columns >> 16) & 0xFFFFU;
+    const int32_t x0 = static_cast<int32_t>(bits::lowest_bit(columns));
+    const int32_t x1 = bits::highest_bit(columns);
+    const int32_t across = x1 - x0 + 1;
+    const int32_t words = last - first + 1;
+    if (4 * across * words > 3 * columns_ * words_) {
+      return false;
+    }
+    columns_ = across;
+    words_ = words;
+    const TileRays& rays = sweep_.rays;
+    int32_t low[3];
+    int32_t high[3];
+    for (int k = 0; k < 3; ++k) {
+      const int32_t at_x0 = x0 * rays.step_x[k];
+      const int32_t at_x1 = x1 * rays.step_x[k];
+      const int32_t at_y0 = 2 * first * rays.step_y[k];
+      const int32_t at_y1 = (2 * last + 1) * rays.step_y[k];
+      const int32_t least = (at_x0 < at_x1 ? at_x0 : at_x1) + (at_y0 < at_y1 ? at_y0 : at_y1);
+      const int32_t most = (at_x0 < at_x1 ? at_x1 : at_x0) + (at_y0 < at_y1 ? at_y1 : at_y0);
+      low[k] = rays.base[k] + ((rays.rest[k] + least - rays.unit) >> rays.fraction_bits);
+      high[k] = rays.base[k] + ((rays.rest[k] + most + rays.unit) >> rays.fraction_bits);
+    }
+    return set_reach(low, high, slab);
+  }
+
+  // Finds the bricks of a layer that are not empty, from the eye away.
+  SweptBrick* find_bricks(int32_t layer, const int32_t (&from)[2], const int32_t (&to)[2],
+                          SweptBrick* bricks) const {
+    const int32_t stride_a = sweep_.stride[0];
+    const int32_t stride_b = sweep_.stride[1];
+    int32_t row = sweep_.base + layer * sweep_.stride[2] + from[1] * stride_b + from[0] * stride_a;
+    for (int32_t b = from[1]; b <= to[1]; ++b, row += stride_b) {
+      int32_t place = row;
+      for (int32_t a = from[0]; a <= to[0]; ++a, place += stride_a) {
+        if (half_at(course_.directory, place) != 0) {
+          *bricks++ = {place, a, b};
+        }
+      }
+    }
+    return bricks;
+  }
+
+  // Draws bricks of one layer from its slab `slab` on.
+  void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick, const SweptBrick* end) {
+    // The shadow's voxels, from the first brick's on. All rays have come into the first of them before the
+    // slab begins, so none enters it there by a plane of a or of b: `entered` is without it.
+    uint32_t cells[2][4];
+    uint32_t entered[2][4];
+    const int32_t first_slab = slab & 3;
+    for (int k = 0; k < 2; ++k) {
+      int32_t low = reach_[k].low;
+      int32_t high = reach_[k].high;
+      for (int32_t i = 0; i < 4; ++i) {
+        cells[k][i] = 0;
+        entered[k][i] = 0;
+        if (i < first_slab) {
+          continue;
+        }
+        first_[k][i] = low >> kCellShift;
+        last_[k][i] = high >> kCellShift;
+        const int32_t first = first_[k][i] - 4 * from[k];
+        if (high >= 0) {
+          cells[k][i] = (2U << (last_[k][i] - 4 * from[k])) - (1U << (first < 0 ? 0 : first));
+          entered[k][i] = first < 0 ? cells[k][i] : cells[k][i] & (cells[k][i] - 1);
+        }
+        low += reach_[k].low_step;
+        high += reach_[k].high_step;
+      }
+    }
+    for (; brick != end; ++brick) {
+      Exposed& exposed =
+          sweep_.exposed[static_cast<uint32_t>(brick->place) * 0x9E3779B1U >> 16 & (kExposedKept - 1)];
+      if (exposed.place != brick->place) {
+        find_exposed(course_, brick->place, {brick->a, brick->b, slab >> 2}, &exposed);
+      }
+      const int shift_a = 4 * (brick->a - from[0]);
+      const int shift_b = 4 * (brick->b - from[1]);
+      for (int32_t i = first_slab; i < 4; ++i) {
+        const uint32_t rows = kRows[cells[1][i] >> shift_b & 15U];
+        const uint32_t across = cells[0][i] >> shift_a & 15U;
+        const int shift = 16 * (i & 1);
+        const auto faces = [&](int k) {
+          return (i < 2 ? exposed.on[k].low : exposed.on[k].high) >> shift & 0xFFFFU;
+        };
+        const uint32_t on_c = faces(2) & (across * rows);
+        const uint32_t on_a = faces(0) & ((entered[0][i] >> shift_a & 15U) * rows);
+        const uint32_t on_b = faces(1) & (across * kRows[entered[1][i] >> shift_b & 15U]);
+        if ((on_a | on_b | on_c) != 0) {
+          draw_cells(*brick, 4 * (slab >> 2) + i, on_a, on_b, on_c);
+          if (sweep_.done()) {
+            return;
+          }
+        }
+      }
+    }
+  }
+
+  // Draws faces of a brick's voxels in one slab.
+  void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a, uint32_t on_b, uint32_t on_c) {
+    for (uint32_t any = on_a | on_b | on_c; any != 0; any &= any - 1) {
+      const uint32_t bit = bits::lowest_bit(any);
+      const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
+                               4 * brick.b + static_cast<int32_t>(bit >> 2), slab};
+      draw_cell(brick.place, cell, on_a >> bit & 1U, on_b >> bit & 1U, on_c >> bit & 1U);
+    }
+  }
+
+  void draw_cell(int32_t place, const int32_t (&cell)[3], uint32_t on_a, uint32_t on_b, uint32_t on_c) {
+    const int32_t a = cell[0];
+    const int32_t b = cell[1];
+    const int32_t c = cell[2];
+    const int32_t in_brick = c & 3;
+    if (on_c != 0 && distance_of(sweep_, 2, c) > 0) {
+      draw_face(place, cell, 2, a == first_[0][in_brick] ? kAllPixels : half_plane(sweep_, kAc, a, c),
+                b == first_[1][in_brick] ? kAllPixels : half_plane(sweep_, kBc, b, c),
+                a == last_[0][in_brick] ? kNoPixels : half_plane(sweep_, kAc, a + 1, c),
+                b == last_[1][in_brick] ? kNoPixels : half_plane(sweep_, kBc, b + 1, c));
+    }
+    if (on_a != 0 && distance_of(sweep_, 0, a) > 0) {
+      draw_face(place, cell, 0, half_plane(sweep_, kAc, a, c + 1), half_plane(sweep_, kAb, a, b + 1),
+                half_plane(sweep_, kAc, a, c), half_plane(sweep_, kAb, a, b));
+    }
+    if (on_b != 0 && distance_of(sweep_, 1, b) > 0) {
+      draw_face(place, cell, 1, half_plane(sweep_, kBc, b, c + 1), half_plane(sweep_, kAb, a, b),
+                half_plane(sweep_, kBc, b, c), half_plane(sweep_, kAb, a + 1, b));
+    }
+  }
+
+  // Draws the face of `cell` on axis k: the pixels that meet two planes (`yes`) and not yet two others.
+  void draw_face(int32_t place, const int32_t (&cell)[3], int k, const HalfPlane& yes0, const HalfPlane& yes1,
+                 const HalfPlane& no0, const HalfPlane& no1) {
+    Pixels possible;
+    uint32_t any = 0;
+    for (int i = 0; i < kTileWords; ++i) {
+      possible.word[i] = yes0.possible.word[i] & yes1.possible.word[i] &
+                         ~(no0.certain.word[i] | no1.certain.word[i]) & sweep_.left.word[i];
+      any |= possible.word[i];
+    }
+    if (any == 0) {
+      return;
+    }
+    Pixels mine;
+    any = 0;
+    for (int i = 0; i < kTileWords; ++i) {
+      mine.word[i] = yes0.certain.word[i] & yes1.certain.word[i] &
+                     ~(no0.possible.word[i] | no1.possible.word[i]) & sweep_.left.word[i];
+      sweep_.left.word[i] &= ~mine.word[i];
+      possible.word[i] &= ~mine.word[i];
+      any |= possible.word[i];
+    }
+    if (any != 0) {
+      decide(cell, k, possible, &mine);
+    }
+    if ((mine.word[0] | mine.word[1] | mine.word[2] | mine.word[3]) != 0) {
+      store_pixels(place_, mine, *course_.frame, ink_of_face(place, cell, k));
+    }
+  }
+
+  // Asks the rays of open pixels themselves.
+  [[gnu::noinline]] void decide(const int32_t (&cell)[3], int k, const Pixels& open, Pixels* mine) {
+    for (uint32_t i = 0; i < kTileWords; ++i) {
+      for (uint32_t word = open.word[i]; word != 0; word &= word - 1) {
+        const uint32_t bit = bits::lowest_bit(word);
+        uint32_t d[3];
+        find_direction(course_, value_, 32 * i + bit, d);
+        const int where = place_on_face(sweep_, k, cell, d);
+        if (where > 0) {
+          mine->word[i] |= 1U << bit;
+          sweep_.left.word[i] &= ~(1U << bit);
+        } else if (where == 0) {
+          draw_ray(32 * i + bit, trace_turned(course_, d));
+        }
+      }
+    }
+  }
+
+ public:
+  // Draws what is left by rays, from where the course starts, but for quads of which all is left.
+  void draw_parts_of_quads() {
+    uint32_t quads = 0;
+    for (uint32_t i = 0; i < kTileWords; ++i) {
+      if ((i & 1U) == 0) {
+        // Bits 0, 4, 8 and 12: the quads that are whole in these four rows.
+        quads = sweep_.left.word[i] & sweep_.left.word[i + 1];
+        quads &= quads >> 16;
+        quads &= quads >> 1;
+        quads = quads & quads >> 2 & 0x1111U;
+      }
+      for (uint32_t word = sweep_.left.word[i] & ~(quads * 0x000F000FU); word != 0; word &= word - 1) {
+        const uint32_t pixel = 32 * i + bits::lowest_bit(word);
+        uint32_t d[3];
+        find_direction(course_, value_, pixel, d);
+        draw_ray(pixel, trace_turned(course_, d));
+      }
+    }
+  }
+
+ private:
+  // Draws one pixel as its ray answered.
+  void draw_ray(uint32_t pixel, int32_t ink) {
+    const int32_t x = place_.x + static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
+    const int32_t down = static_cast<int32_t>(pixel / kTileAcrossPx);
+    const BrickFrame& frame = *course_.frame;
+    sweep_.left.word[pixel >> 5] &= ~(1U << (pixel & 31U));
+    if (ink == kAsk) {
+      ink = ask(frame, x, place_.y + down, sweep_.counts);
+    }
+    if (ink < 0) {
+      ink = static_cast<int32_t>(frame.background);
+      ++sweep_.misses;
+    }
+    store_ink(place_.line + place_.stride * static_cast<size_t>(down), x, place_.y + down, frame.format,
+              static_cast<uint32_t>(ink));
+  }
+
+ private:
+  uint32_t ink_of_face(int32_t place, const int32_t (&cell)[3], int k) const {
+    uint32_t voxel = half_at(course_.directory, place) << 6;
+    for (int m = 0; m < 3; ++m) {
+      const int axis = course_.axis[m];
+      voxel |= ((static_cast<uint32_t>(cell[m]) & 3U) ^ course_.flip[axis]) << 2 * axis;
+    }
+    const int axis = course_.axis[k];
+    const uint32_t key = voxel << 3 | course_.face[axis];
+    const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
+    return seen.key == key ? seen.ink : static_cast<uint32_t>(look_up(course_, voxel, axis));
+  }
+
+  Sweep& sweep_;
+  Course& course_;
+  const Camera::Vec3Q32& value_;
+  const TilePlace& place_;
+  Reach reach_[2] = {};  // at the slab that is next
+  // The rectangle that the shadow is drawn in to: so many columns, and pairs of rows.
+  int32_t columns_ = kTileAcrossPx;
+  int32_t words_ = kTileWords;
+  bool begun_ = false;
+  // The first and the last voxel of the shadow in each slab of a layer.
+  int32_t first_[2][4] = {};
+  int32_t last_[2][4] = {};
+};
+
+// Whether something solid touches the eye: then rays may begin in it or on its surface.
+bool touches_solid(const BrickFrame& frame) {
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    int32_t offset = 0;
+    uint32_t bit = 0;
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int32_t cell = (frame.eye[axis] - static_cast<int32_t>(corner >> axis & 1U)) >> 8;
+      inside = inside && cell >= 0 && cell < 4 * frame.side[axis];
+      offset += (cell >> 2) * frame.stride[axis];
+      bit |= (static_cast<uint32_t>(cell) & 3U) << 2 * axis;
+    }
+    if (inside) {
+      const int32_t brick = 8 * static_cast<int32_t>(half_at(frame.map.directory(), offset));
+      if ((half_at(frame.map.bricks(), brick + 2 * static_cast<int32_t>(bit >> 4)) >> (bit & 15U) & 1U) !=
+          0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

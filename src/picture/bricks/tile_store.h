@@ -1,0 +1,96 @@
+// Stores one colour in those pixels of a tile that are set in a mask. Internal to src/.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_TILE_STORE_H
+#define THIMBLE_SRC_PICTURE_BRICKS_TILE_STORE_H
+
+#include "half_plane.h"
+#include "inks.h"
+
+namespace thimble::bricks {
+namespace {
+
+// Where a tile's pixels are stored.
+struct TilePlace {
+  uint8_t* line;  // of the tile's first row
+  size_t stride;
+  int32_t x;
+  int32_t y;
+  int32_t across;
+  int32_t down;
+};
+
+// Clears a tile of kGray4.
+void clear(const TilePlace& place) {
+  uint8_t* line = place.line;
+  for (int32_t y = 0; y < place.down; ++y, line += place.stride) {
+    for (int32_t x = place.x >> 1; x < (place.x + place.across + 1) >> 1; ++x) {
+      line[x] = 0;
+    }
+  }
+}
+
+// Stores pixels of one or two bytes each.
+template <class Pixel>
+[[gnu::noinline]] void store_whole(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
+  const Pixel value = static_cast<Pixel>(ink);
+  uint8_t* line = place.line + static_cast<size_t>(place.x) * sizeof(Pixel);
+  for (int i = 0; i < kTileWords; ++i) {
+    uint32_t word = pixels.word[i];
+    if (word == 0) {
+      line += 2 * place.stride;
+      continue;
+    }
+    for (int half = 0; half < 2; ++half, word >>= 16, line += place.stride) {
+      Pixel* to = static_cast<Pixel*>(static_cast<void*>(line));
+      for (uint32_t row = word & 0xFFFFU; row != 0; row >>= 4, to += 4) {
+        if ((row & 15U) == 15) {
+          to[0] = value;
+          to[1] = value;
+          to[2] = value;
+          to[3] = value;
+          continue;
+        }
+        if ((row & 1U) != 0) {
+          to[0] = value;
+        }
+        if ((row & 2U) != 0) {
+          to[1] = value;
+        }
+        if ((row & 4U) != 0) {
+          to[2] = value;
+        }
+        if ((row & 8U) != 0) {
+          to[3] = value;
+        }
+      }
+    }
+  }
+}
+
+// Stores pixels of any format; those of less than a byte were cleared before.
+[[gnu::noinline]] void store_any(const TilePlace& place, const Pixels& pixels, PixelFormat format,
+                                 uint32_t ink) {
+  uint8_t* line = place.line;
+  for (int row = 0; row < kTileDownPx; ++row, line += place.stride) {
+    uint32_t bits = pixels.word[row >> 1] >> 16 * (row & 1) & 0xFFFFU;
+    for (int32_t x = place.x; bits != 0; bits >>= 1, ++x) {
+      if ((bits & 1U) != 0) {
+        store_ink(line, x, place.y + row, format, ink);
+      }
+    }
+  }
+}
+
+void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame, uint32_t ink) {
+  if (frame.halfwords) {
+    store_whole<Half>(place, pixels, ink);
+  } else if (frame.format == PixelFormat::kGray8) {
+    store_whole<uint8_t>(place, pixels, ink);
+  } else {
+    store_any(place, pixels, frame.format, ink);
+  }
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

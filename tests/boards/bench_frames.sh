@@ -1,0 +1,74 @@
+#!/bin/sh
+# What frames of every size take, in instructions: APP=bench for QEMU's MPS2 boards with other sizes, cores and scenes than
+# a board has, and Cortex-M0 code on the Cortex-M3. Measuring targets: nothing here is a board of platform/boards.
+#   bench_frames.sh [--write]     --write: the table tests/budgets/frames.csv is written anew; else what grew beyond it fails
+# In the environment: TARGETS, SIZES, SCENES choose some of those below; THIMBLE is another build/release/thimble.
+# A picture is compared with that of the tree's rays on the first target that draws it, then by its CRCs.
+set -eu
+cd "$(dirname "$0")/../.."
+table=tests/budgets/frames.csv
+work=build/bench-frames
+thimble=${THIMBLE:-build/release/thimble}
+mkdir -p "$work"
+# core:machine
+targets=${TARGETS:-cortex-m3:mps2-an385 cortex-m0:mps2-an385 cortex-m4:mps2-an386 cortex-m7:mps2-an500}
+# width:height:format
+sizes=${SIZES:-128:64:gray4 160:128:rgb565 240:240:rgb565 320:240:rgb565 640:480:rgb565}
+# name=what `thimble bake` takes: the demonstration's valley, many small faces, open sky
+scenes=${SCENES:-valley=demo dust=cluster:6000,depth=6 castle=castle}
+export CCACHE_DISABLE=1
+for scene in $scenes; do
+  "$thimble" bake "${scene#*=}" --board mps2-an500 --effects none -o "$work/${scene%%=*}.h" --quiet
+done
+echo core,scene,width,height,format,instructions_median,instructions_a_pixel,stack_bytes >"$work/measured.csv"
+failed=0
+for target in $targets; do
+  core=${target%%:*}
+  # The rays of the tree are drawn once for each picture.
+  alone=ON
+  [ "$target" = "${targets%% *}" ] && alone=OFF
+  for size in $sizes; do
+    width=${size%%:*}
+    format=${size##*:}
+    height=${size#*:}
+    height=${height%:*}
+    for scene in $scenes; do
+      name=${scene%%=*}
+      cmake -S . -B "$work/$core" -G Ninja -DCMAKE_TOOLCHAIN_FILE=platform/arch/cortex-m/toolchain.cmake \
+        -DTHIMBLE_BOARD=mps2-an500 -DTHIMBLE_APP=bench -DTHIMBLE_SCENE_HEADER="$PWD/$work/$name.h" -DTHIMBLE_MEASURED=$alone \
+        "-DTHIMBLE_FACTS=CPU=$core;WIDTH_PX=$width;HEIGHT_PX=$height;FORMAT=$format" \
+        --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
+      cmake --build "$work/$core" -- --quiet >/dev/null
+      log=$work/$core-$width-$name.log
+      if ! qemu-system-arm -M "${target#*:}" -icount shift=6 -display none -monitor none -serial stdio \
+        -semihosting-config enable=on,target=native -kernel "$work/$core/bench.elf" >"$log" </dev/null; then
+        echo "bench-frames: $core $width x $height $name failed; see $log" >&2
+        failed=1
+        continue
+      fi
+      crcs=$work/$width-$name.crc
+      grep '^brick_map\.crc' "$log" >"$work/crc.now"
+      [ "$alone" = ON ] || cp "$work/crc.now" "$crcs"
+      if ! grep -q '^exact,yes' "$log" || { [ -f "$crcs" ] && ! cmp -s "$crcs" "$work/crc.now"; }; then
+        echo "bench-frames: $core $width x $height $name draws other pixels than the tree's rays; see $log" >&2
+        failed=1
+      fi
+      awk -F, -v OFS=, -v row="$core,$name,$width,$height,$format" '{ value[$1] = $2 }
+        END { print row, value["brick_map.instructions_median"], value["brick_map.instructions_a_ray"],
+          value["stack_high_water_bytes"] }' "$log" | tee -a "$work/measured.csv"
+    done
+  done
+done
+if [ "${1:-}" = --write ]; then
+  { grep '^#' "$table"; cat "$work/measured.csv"; } >"$work/frames.csv"
+  mv "$work/frames.csv" "$table"
+  echo "bench-frames: wrote $table"
+else
+  # One per cent: other versions of the compiler.
+  awk -F, 'FNR == 1 { next } /^#/ { next } NR == FNR { old[$1,$2,$3,$4] = $6; next }
+    old[$1,$2,$3,$4] != "" && $6 > 1.01 * old[$1,$2,$3,$4] {
+      print "bench-frames: " $1 " " $2 " " $3 " x " $4 " takes " $6 " instructions, the table says " old[$1,$2,$3,$4]
+      bad = 1
+    } END { exit bad }' "$table" "$work/measured.csv" || failed=1
+fi
+exit $failed
