@@ -48,6 +48,15 @@ inline int check_reader(Source (*read)(const SharedBytes&, const Progress&),
     return 0;
   }
   std::uint64_t count = 0;
+  if (const auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
+    const auto size = (*grid)->size();
+    (*grid)->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb) {
+      require(x >= 0 && y >= 0 && z >= 0 && x < size[0] && y < size[1] && z < size[2]);
+      ++count;
+    });
+    require(count != 0);
+    return 0;
+  }
   std::get<std::unique_ptr<PointCloud>>(source)->for_each([&](const CloudPoint& point) {
     require(std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z));
     require(point.line != 0);

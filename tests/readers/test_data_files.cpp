@@ -30,7 +30,8 @@ bool must_be_read(const std::filesystem::path& root, const std::string& path) {
     // Gadget snapshots and other things; a snapshot's first record has 256 bytes.
     return inside.starts_with("/nbody/") && read_text(path).starts_with(std::string("\x00\x01\x00\x00", 4));
   }
-  return ends_with_any(inside, {".vox", ".ply", ".ply.gz", ".obj", ".off", ".xyz"});
+  return ends_with_any(inside, {".vox", ".ply", ".ply.gz", ".obj", ".off", ".xyz", ".stl", ".glb", ".pcd",
+                                ".las", ".binvox", ".npz", ".mts", ".schematic"});
 }
 
 }  // namespace

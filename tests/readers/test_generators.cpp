@@ -95,6 +95,8 @@ TEST_CASE("generators: a spec in full and by default -> as written") {
   CHECK(parse_generator("water,depth=1")->depth == 1);
   CHECK(parse_generator("water,depth=8,seed=18446744073709551615")->seed == 18446744073709551615U);
   CHECK(parse_generator("points:1000000000")->count == kMaxGeneratorPoints);
+  CHECK(parse_generator("points:1e6")->count == 1000000);
+  CHECK(parse_generator("cluster:2.5E3,depth=6")->count == 2500);
 }
 
 TEST_CASE("generators: names of files -> no generator") {
@@ -111,7 +113,10 @@ TEST_CASE("generators: a name with bad parameters -> an error") {
                            "points:x",
                            "points:-1",
                            "points:+1",
-                           "points:1e6",
+                           "points:1e",
+                           "points:1e100",
+                           "points:1.5e0",
+                           "points:.5e1",
                            "points:1.0",
                            "points: 1",
                            "points:1000000001",

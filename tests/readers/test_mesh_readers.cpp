@@ -187,6 +187,20 @@ TEST_CASE("off: counts after the keyword or on a later line, comments, blank lin
   }
 }
 
+TEST_CASE("off: several vertices and faces on a line, or all -> by their words") {
+  for (const char* text : {"OFF 4 2 0 0 0 0 1 0 0 1 1 0 0 1 0 4 0 1 2 3 3 0 1 2",
+                           "OFF\n4 2 0\n0 0 0 1 0 0\n1 1 0 0 1 0 # corners\n4 0 1 2 3 3 0 1 2\n",
+                           "NOFF 4 2 0 0 0 0 0 0 1 1 0 0 0 0 1 1 1 0 0 0 1 0 1 0 0 0 1 4 0 1 2 3 3 0 1 2",
+                           "OFF\n4 2 0\n0 0\n0\n1 0 0\n1 1\n0\n0 1 0\n4 0 1\n2 3\n3\n0 1 2\n"}) {
+    INFO(std::string(text));
+    const TriangleMesh mesh = read_mesh(read_off, text);
+    CHECK(mesh.positions[3] == std::array<double, 3>{0, 1, 0});
+    CHECK(mesh.triangles == Triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}});
+  }
+  CHECK(
+      contains(error_of(read_off, "OFF 3 1 0 0 0 0 1 0 0 1 1 0 3 0 1 2 7"), "'7' comes after the last face"));
+}
+
 TEST_CASE("off: colours of vertices -> bytes, or fractions of 1") {
   const std::string face = "3 0 1 2 1 1 1\n";
   const auto colors = [&](const std::string& text) { return read_mesh(read_off, text + face).colors; };

@@ -569,6 +569,38 @@ TEST_CASE("vox: animations -> their first frame") {
                          shape_chunk(4, 2))) == Voxels{{2, 0, 0, 3}, {0, 0, 0, 3}});
 }
 
+TEST_CASE("vox: --frame -> what its keys say, in a box that holds all frames") {
+  const auto at = [](const Bytes& bytes, std::uint32_t frame) {
+    return read_vox(share(FileBytes::copy_of(bytes)), {}, frame);
+  };
+  const Bytes models = model_chunks({1, 1, 1}, {{0, 0, 0, 1}}) + model_chunks({3, 1, 1}, {{2, 0, 0, 2}});
+  // Without a scene graph: model by model, each about its middle.
+  const Bytes film = file(models, 150);
+  CHECK(read(film)->frames() == 2);
+  CHECK(read(film)->size() == Sides{3, 1, 1});
+  CHECK(voxels_of(*at(film, 0)) == Voxels{{1, 0, 0, 1}});
+  CHECK(voxels_of(*at(film, 1)) == Voxels{{2, 0, 0, 2}});
+  // With one: keys hold until the next, and what moves does so within one box.
+  Dictionary first = moved(0, 0, 0), later = moved(10, 0, 0);
+  later.emplace_back("_f", "5");
+  const Bytes scene = file(models + transform_chunk(0, 1, {later, first}) +
+                           shape_chunk(1, {{0, {{"_f", "0"}}}, {1, {{"_f", "7"}}}}));
+  CHECK(read(scene)->frames() == 8);
+  CHECK(read(scene)->size() == Sides{12, 1, 1});
+  CHECK(voxels_of(*read(scene)) == voxels_of(*at(scene, 0)));
+  CHECK(voxels_of(*at(scene, 4)) == Voxels{{0, 0, 0, 1}});
+  CHECK(voxels_of(*at(scene, 6)) == Voxels{{10, 0, 0, 1}});
+  CHECK(voxels_of(*at(scene, 7)) == Voxels{{11, 0, 0, 2}});
+  CHECK_THROWS_WITH_AS(at(scene, 8), "there is no frame 8; the file has frames 0 to 7", InputError);
+  CHECK_THROWS_WITH_AS(at(file(kOneModel), 1), "there is no frame 1; the file has only frame 0", InputError);
+  // Hidden layers stay hidden in every frame.
+  const Bytes hidden =
+      file(models + layer_chunk(3, {{"_hidden", "1"}}) + transform_chunk(0, 1, {first}, {}, -1) +
+           group_chunk(1, {2, 4}) + transform_chunk(2, 3, {first, later}, {}, 3) + shape_chunk(3, 0) +
+           transform_chunk(4, 5, {first, later}) + shape_chunk(5, 1));
+  CHECK(voxels_of(*at(hidden, 5)).size() == 1);
+}
+
 TEST_CASE("vox: unknown chunks, children of chunks and bytes behind MAIN -> ignored") {
   const Bytes bytes = file(chunk("ABCD", Put().u32(1), chunk("XYZI", Put().u32(99))) + kOneModel +
                            chunk("rCAM", Put().raw("anything")) + chunk("NOTE", {})) +

@@ -85,6 +85,17 @@ TriangleMesh read_mesh(Reader reader, std::string text) {
   return std::get<TriangleMesh>(std::move(source));
 }
 
+std::vector<GridVoxel> read_voxels(Reader reader, std::string text) {
+  const Source source = read(reader, std::move(text));
+  REQUIRE(std::holds_alternative<std::unique_ptr<VoxelGrid>>(source));
+  std::vector<GridVoxel> voxels;
+  std::get<std::unique_ptr<VoxelGrid>>(source)->for_each(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
+        voxels.push_back({x, y, z, color});
+      });
+  return voxels;
+}
+
 std::string error_of(Reader reader, std::string text) {
   try {
     read(reader, std::move(text));
@@ -112,6 +123,17 @@ long long outcome_of(Reader reader, std::string bytes) {
         }
       }
       count = static_cast<long long>(mesh->positions.size());
+    } else if (const auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
+      const auto size = (*grid)->size();
+      (*grid)->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb) {
+        kept = kept && x >= 0 && y >= 0 && z >= 0 && x < size[0] && y < size[1] && z < size[2];
+        ++count;
+      });
+    } else if (const auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
+      (*model)->for_each([&](auto, auto, auto, auto) { ++count; });
+      count += 1;  // a model may be empty
+    } else if (const auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source); cloud == nullptr) {
+      return 1;
     } else {
       std::get<std::unique_ptr<PointCloud>>(source)->for_each([&](const CloudPoint& point) {
         kept = kept && std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);

@@ -4,6 +4,7 @@
 #define THIMBLE_TESTS_SUPPORT_READER_INPUTS_H
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -29,6 +30,15 @@ std::vector<CloudPoint> points_of(const PointCloud& cloud);
 std::vector<CloudPoint> read_points(Reader reader, std::string text);
 TriangleMesh read_mesh(Reader reader, std::string text);
 bool cloud_has_color(Reader reader, std::string text);
+
+/// A voxel of a grid.
+struct GridVoxel {
+  std::int32_t x = 0, y = 0, z = 0;
+  Rgb color;
+  friend bool operator==(const GridVoxel&, const GridVoxel&) = default;
+};
+/// All voxels of bytes that must be a grid.
+std::vector<GridVoxel> read_voxels(Reader reader, std::string text);
 
 /// The error's sentence, or "" when the text is read.
 std::string error_of(Reader reader, std::string text);

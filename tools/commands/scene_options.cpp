@@ -14,7 +14,8 @@ namespace thimble::tools {
 void SceneOptions::add_scene(CLI::App& app, bool required) {
   Option scene = add_argument(
       app, "scene", "SCENE", &arguments.scene,
-      "a file (.vox .ply .obj .off .xyz .csv .scene .oct, a Gadget-1 snapshot, .gz of any) or a "
+      "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
+      ".npz .asc .binvox .qb .kvx .schematic .schem .mts, a Gadget-1 snapshot, .gz of any) or a "
       "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L; or the name "
       "of a scene that comes with Thimble, such as castle");
   if (required) {
@@ -28,7 +29,11 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
       "others)");
   add_flag(app, "--as-voxels", &arguments.as_voxels,
            "point files: coordinates are voxel indices; nothing is scaled, turned or moved");
-  add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is)");
+  add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is, but in .stl)");
+  add_whole_option(
+      app, "--frame", "N", 0, UINT32_MAX - 1,
+      [this](std::int64_t frame) { arguments.frame = static_cast<std::uint32_t>(frame); },
+      "frame N of a .vox animation, counted from 0 (default: the first)");
 }
 
 void SceneOptions::add_report(CLI::App& app) {

@@ -85,14 +85,14 @@ class FileBuffer {
   /// Room for at least one more byte and at most one byte past the limit, which is how an excess shows.
   std::span<std::uint8_t> room() {
     if (bytes_.size_ == capacity_) {
-      reserve(std::max<std::uint64_t>(kStepBytes, std::uint64_t{capacity_} * 2));
+      grow();
     }
     return {bytes_.data_.get() + bytes_.size_, capacity_ - bytes_.size_};
   }
   void reserve(std::uint64_t capacity) {
     capacity = std::min(capacity, limit_bytes_ + 1);
-    if (capacity > capacity_) {
-      resize(capacity);
+    if (capacity > capacity_ && !resize(capacity)) {
+      refuse_for_memory();
     }
   }
   /// `count` bytes of `room()` were written.
@@ -103,9 +103,10 @@ class FileBuffer {
     }
   }
   std::size_t size() const { return bytes_.size_; }
+  std::span<const std::uint8_t> bytes() const { return bytes_.bytes(); }
   FileBytes finish() {
     if (bytes_.size_ != 0 && bytes_.size_ < capacity_) {
-      resize(bytes_.size_);
+      static_cast<void>(resize(bytes_.size_));  // what stays larger is as good
     }
     return std::move(bytes_);
   }
@@ -114,15 +115,29 @@ class FileBuffer {
   }
 
  private:
-  void resize(std::uint64_t capacity) {
+  /// Twice the room; where this machine does not have that, half as much more, and so on.
+  void grow() {
+    for (std::uint64_t more = std::max<std::uint64_t>(kStepBytes, capacity_); more >= kStepBytes; more /= 2) {
+      if (resize(std::min(capacity_ + more, limit_bytes_ + 1))) {
+        return;
+      }
+    }
+    refuse_for_memory();
+  }
+  [[noreturn]] void refuse_for_memory() const {
+    throw InputError("does not fit the memory that is left on this machine: " + std::to_string(bytes_.size_) +
+                     " bytes of it did");
+  }
+  bool resize(std::uint64_t capacity) {
     void* moved =
         capacity > SIZE_MAX ? nullptr : std::realloc(bytes_.data_.get(), static_cast<std::size_t>(capacity));
     if (moved == nullptr) {
-      throw InputError("needs " + std::to_string(capacity) + " bytes of memory, which are not there");
+      return false;
     }
     static_cast<void>(bytes_.data_.release());
     bytes_.data_.reset(static_cast<std::uint8_t*>(moved));
     capacity_ = static_cast<std::size_t>(capacity);
+    return true;
   }
 
   FileBytes bytes_;
@@ -132,10 +147,28 @@ class FileBuffer {
 
 namespace {
 
+/// Asks `look` once, as soon as there is enough to look at.
+class Looker {
+ public:
+  explicit Looker(const FirstLook& look) : look_(look) {}
+  void at(std::span<const std::uint8_t> bytes, bool is_all) {
+    if (!asked_ && (is_all || bytes.size() >= kFirstLookBytes)) {
+      asked_ = true;
+      if (look_ && !bytes.empty()) {
+        look_(bytes.first(std::min(bytes.size(), kFirstLookBytes)));
+      }
+    }
+  }
+
+ private:
+  const FirstLook& look_;
+  bool asked_ = false;
+};
+
 /// Inflates gzip members as their bytes arrive.
 class Inflater {
  public:
-  explicit Inflater(FileBuffer& out) : out_(out) {
+  Inflater(FileBuffer& out, Looker& looker) : out_(out), looker_(looker) {
     if (inflateInit2(&stream_, kGzipOnly) != Z_OK) {
       throw InputError("cannot be inflated: zlib does not start");
     }
@@ -191,6 +224,7 @@ class Inflater {
     stream_.avail_out = static_cast<uInt>(offered);
     const int result = inflate(&stream_, Z_NO_FLUSH);
     out_.grew(offered - stream_.avail_out);
+    looker_.at(out_.bytes(), false);
     if (result == Z_STREAM_END) {
       between_members_ = true;
     } else if (result != Z_OK) {
@@ -200,15 +234,16 @@ class Inflater {
   }
 
   FileBuffer& out_;
+  Looker& looker_;
   z_stream stream_{};
   std::uint64_t fed_bytes_ = 0;
   bool between_members_ = false;
 };
 
 FileBytes load_gzip(const Descriptor& file, std::span<std::uint8_t> step, std::size_t got,
-                    std::uint64_t limit_bytes) {
+                    std::uint64_t limit_bytes, Looker& looker) {
   FileBuffer out(limit_bytes);
-  Inflater inflater(out);
+  Inflater inflater(out, looker);
   while (got > 0) {
     inflater.feed(step.first(got));
     got = file.read(step.data(), step.size());
@@ -217,10 +252,63 @@ FileBytes load_gzip(const Descriptor& file, std::span<std::uint8_t> step, std::s
   if (out.size() == 0) {
     throw InputError("gzip data holds no bytes");
   }
+  looker.at(out.bytes(), true);
   return out.finish();
 }
 
 }  // namespace
+
+namespace {
+
+/// Inflates `packed` into `out` until it ends, is damaged or `enough` bytes are there.
+/// @return zlib's last answer
+int inflate_into(FileBuffer& out, std::span<const std::uint8_t> packed, Deflated frame,
+                 std::uint64_t enough) {
+  z_stream stream{};
+  const int window = frame == Deflated::kZlib ? 15 : (frame == Deflated::kGzip ? 15 + 16 : -15);
+  if (inflateInit2(&stream, window) != Z_OK) {
+    throw InputError("cannot be inflated: zlib does not start");
+  }
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
+  int result = Z_OK;
+  while (result == Z_OK && out.size() < enough) {
+    if (stream.avail_in == 0) {
+      const std::size_t step = std::min(packed.size(), std::size_t{1} << 30);
+      stream.next_in = const_cast<Bytef*>(packed.data());
+      stream.avail_in = static_cast<uInt>(step);
+      packed = packed.subspan(step);
+    }
+    const std::span<std::uint8_t> room = out.room();
+    const std::size_t offered = std::min(room.size(), std::size_t{1} << 30);
+    stream.next_out = room.data();
+    stream.avail_out = static_cast<uInt>(offered);
+    result = inflate(&stream, Z_NO_FLUSH);
+    out.grew(offered - stream.avail_out);
+    if (result == Z_BUF_ERROR && !packed.empty()) {
+      result = Z_OK;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
+                        const std::string& place) {
+  FileBuffer out(limit_bytes);
+  const int result = inflate_into(out, packed, frame, UINT64_MAX);
+  if (result != Z_STREAM_END) {
+    throw InputError(place + (result == Z_BUF_ERROR ? ": the deflated data is truncated"
+                                                    : ": the deflated data is damaged"));
+  }
+  return out.finish();
+}
+
+FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
+  FileBuffer out(std::max<std::uint64_t>(count, std::size_t{1} << 20));
+  inflate_into(out, packed, frame, count);
+  return out.finish();
+}
 
 FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
   FileBuffer buffer(bytes.size());
@@ -237,7 +325,7 @@ SharedBytes share(FileBytes bytes) {
   return {kept->bytes(), kept};
 }
 
-FileBytes load_file(const std::string& path, std::uint64_t limit_bytes) {
+FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
   limit_bytes = std::clamp<std::uint64_t>(limit_bytes, 1, SIZE_MAX - 1);
   const Descriptor file(path);
   const std::uint64_t size_hint_bytes = file.size_hint_bytes();
@@ -247,12 +335,14 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes) {
   if (got == 0) {
     throw InputError("is empty");
   }
+  Looker looker(look);
   if (got >= 2 && step[0] == kGzipSignature[0] && step[1] == kGzipSignature[1]) {
-    return load_gzip(file, step, got, limit_bytes);
+    return load_gzip(file, step, got, limit_bytes, looker);
   }
   if (path.ends_with(".gz")) {
     throw InputError("its name ends in .gz but it does not begin with the gzip signature 1f 8b");
   }
+  looker.at(step.first(got), true);  // a pipe hands out less only at its end
   if (size_hint_bytes > limit_bytes) {
     FileBuffer::refuse(limit_bytes);
   }

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,13 @@
 #include "readers/source.h"
 
 namespace thimble::tools {
+
+/// How many bytes a `FirstLook` sees at most.
+inline constexpr std::size_t kFirstLookBytes = 4096;
+
+/// Called once with a file's first bytes, inflated: the first `kFirstLookBytes`, or all of a shorter file.
+/// What it throws ends the reading there and then, so that no file is loaded that nobody can read.
+using FirstLook = std::function<void(std::span<const std::uint8_t> first)>;
 
 /// What `load_file` refuses to exceed when the caller names no limit: 4 GiB after decompression.
 inline constexpr std::uint64_t kFileLimitBytes = std::uint64_t{4} << 30;
@@ -65,10 +73,25 @@ SharedBytes share(FileBytes bytes);
 /// most twice what came out plus 64 KiB, whatever the file's headers say.
 ///
 /// @param limit_bytes  the most bytes accepted, counted after inflating; at least 1
+/// @param look         may be empty
 /// @throws InputError  the file cannot be opened or read (with the system's reason), is a directory or empty,
-///   holds more than `limit_bytes`, or its gzip data is truncated, damaged or followed by something else.
-///   Zero bytes after the last member are padding and ignored, as gzip itself does.
-FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes);
+///   holds more than `limit_bytes` or than this machine has memory for, or its gzip data is truncated,
+///   damaged or followed by something else; and what `look` throws. Zero bytes after the last member are
+///   padding and ignored, as gzip itself does.
+FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes,
+                    const FirstLook& look = {});
+
+/// What `inflate_bytes` takes: deflate with zlib's frame around it, with gzip's, or bare as in a .zip.
+enum class Deflated : std::uint8_t { kZlib, kGzip, kBare };
+
+/// `packed` inflated, all of one stream; bytes after it are ignored.
+/// @param limit_bytes  the most bytes accepted
+/// @param place        what errors call these bytes
+/// @throws InputError  damaged or truncated data, more bytes than the limit
+FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
+                        const std::string& place);
+/// The first `count` bytes of what `packed` holds, or all where it holds fewer or is damaged behind them.
+FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count);
 
 /// A cursor over bytes that somebody else owns. Each read checks that its bytes are there and moves past
 /// them; a read that does not fit throws and leaves the cursor where it was.

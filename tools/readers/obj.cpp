@@ -85,9 +85,26 @@ class StatementBuffer final : public std::streambuf {
   std::uint64_t first_line_ = 0;
 };
 
+/// How many lines begin with `v` and how many with `f`: as much as is worth making room for at once.
+std::array<std::size_t, 2> count_statements(std::string_view text) {
+  std::array<std::size_t, 2> counts{};
+  char before = '\n';
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    const bool begins = (before == '\n' || before == '\r') && (text[i + 1] == ' ' || text[i + 1] == '\t');
+    counts[0] += begins && text[i] == 'v' ? 1U : 0U;
+    counts[1] += begins && text[i] == 'f' ? 1U : 0U;
+    before = text[i];
+  }
+  return counts;
+}
+
 class ObjParser {
  public:
-  ObjParser(std::string_view text, const Progress& progress) : buffer_(text, progress) {}
+  ObjParser(std::string_view text, const Progress& progress) : buffer_(text, progress) {
+    const auto [vertices, faces] = count_statements(text);
+    mesh_.positions.reserve(vertices);
+    mesh_.triangles.reserve(faces);
+  }
 
   Source parse() {
     tinyobj::callback_t callbacks;
@@ -146,6 +163,9 @@ class ObjParser {
     mesh_.positions.push_back(position);
     all_colored_ = all_colored_ && colored;
     if (all_colored_) {
+      if (mesh_.colors.empty()) {
+        mesh_.colors.reserve(mesh_.positions.capacity());
+      }
       mesh_.colors.push_back({unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])});
     }
   }

@@ -21,8 +21,8 @@ namespace thimble::tools {
 
 /// Reads all of `file` and keeps none of it.
 ///
-/// Memory: 24 bytes a vertex (27 with colour), 12 a triangle, at most three times that while it grows, and
-/// the longest line twice.
+/// Memory: 24 bytes a vertex (27 with colour), 12 a triangle, at most three times the triangles' while they
+/// grow, which only polygons make them, and the longest line twice.
 /// @throws InputError  naming the line: a coordinate that is missing or no finite number, an index that is
 ///   zero, no integer or no vertex of the file
 Source read_obj(const SharedBytes& file, const Progress& progress = {});

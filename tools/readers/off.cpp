@@ -47,6 +47,9 @@ class OffParser {
     header();
     vertices();
     faces();
+    if (const std::string_view word = is_by_line_ ? std::string_view() : words_.next(); !word.empty()) {
+      fail(quoted(word) + " comes after the last face");
+    }
     meter_.done();
     return mesh_or_points(std::move(mesh_), face_count_);
   }
@@ -66,7 +69,6 @@ class OffParser {
     vertex_count_ = count("vertices");
     face_count_ = count("faces");
     count("edges");
-    words_.skip_line();
     if (vertex_count_ > kMeshVertexLimit) {
       fail("the mesh has " + std::to_string(vertex_count_) + " vertices, the limit is " +
            std::to_string(kMeshVertexLimit));
@@ -74,6 +76,26 @@ class OffParser {
     // The shortest vertex is "0 0 0" with what separates it from the next, the shortest face "0".
     check_room(vertex_count_, 6, "vertices");
     check_room(face_count_, 2, "faces");
+    is_by_line_ = has_lines(vertex_count_ + face_count_);
+    end_item();
+  }
+
+  /// Whether so many lines with something on them follow this one.
+  bool has_lines(std::uint64_t wanted) const {
+    WordReader rest = words_;
+    rest.skip_line();
+    while (wanted > 0 && !rest.next().empty()) {
+      rest.skip_line();
+      --wanted;
+    }
+    return wanted == 0;
+  }
+
+  /// A vertex or a face is over: what else stands on its line is of no use, unless it is the next one.
+  void end_item() {
+    if (is_by_line_) {
+      words_.skip_line();
+    }
   }
 
   std::uint64_t count(const char* what) {
@@ -123,10 +145,10 @@ class OffParser {
         coordinate = number("a coordinate", vertex);
       }
       mesh_.positions.push_back(position);
+      for (int i = 0; keyword_.has_normals && (keyword_.has_colors || !is_by_line_) && i < 3; ++i) {
+        number("the normal", vertex);
+      }
       if (keyword_.has_colors) {
-        for (int i = 0; keyword_.has_normals && i < 3; ++i) {
-          number("the normal", vertex);
-        }
         std::array<float, 3> color{};
         for (float& component : color) {
           const double value = number("the color", vertex);
@@ -136,7 +158,7 @@ class OffParser {
         }
         colors.push_back(color);
       }
-      words_.skip_line();
+      end_item();
       meter_.at(words_.offset());
     }
     const double full = bytes_only && above_one ? 255 : 1;
@@ -176,7 +198,7 @@ class OffParser {
         }
         fan.add(static_cast<std::uint32_t>(index));
       }
-      words_.skip_line();
+      end_item();
       meter_.at(words_.offset());
     }
   }
@@ -186,6 +208,7 @@ class OffParser {
   Keyword keyword_;
   std::uint64_t vertex_count_ = 0;
   std::uint64_t face_count_ = 0;
+  bool is_by_line_ = true;
   TriangleMesh mesh_;
 };
 

@@ -6,8 +6,11 @@
 /// comments from # to the end of the line. A vertex is three coordinates, then a normal, a colour and texture
 /// coordinates as the keyword says; only the colour is used. A face is a count of corners and as many
 /// indices, then an optional colour, which is ignored; faces of fewer than three corners make no triangle.
-/// One vertex or face a line: what else stands on its last line is passed over. A file without faces becomes
-/// a point cloud.
+/// A file without faces becomes a point cloud.
+///
+/// Where there are as many lines as vertices and faces, what else stands on the last line of one is passed
+/// over. In a file of fewer lines (several on one, all on one) the words alone count: a vertex is as many
+/// numbers as the keyword says, with C three of a colour, and a face has no colour.
 ///
 /// Colours (keyword with C): three or four numbers, the fourth ignored. In a file where all of them are
 /// whole numbers and one is above 1, they go from 0 to 255; otherwise from 0 to 1. What lies outside is

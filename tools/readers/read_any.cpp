@@ -4,12 +4,24 @@
 #include <array>
 #include <utility>
 
+#include "readers/binvox.h"
+#include "readers/file_bytes.h"
 #include "readers/gadget.h"
+#include "readers/gltf.h"
+#include "readers/height_grid.h"
+#include "readers/kvx.h"
+#include "readers/las.h"
+#include "readers/mts.h"
+#include "readers/npy.h"
 #include "readers/obj.h"
 #include "readers/oct.h"
 #include "readers/off.h"
+#include "readers/pcd.h"
 #include "readers/ply.h"
+#include "readers/qb.h"
 #include "readers/scene_text.h"
+#include "readers/schematic.h"
+#include "readers/stl.h"
 #include "readers/text.h"
 #include "readers/vox.h"
 #include "readers/xyz.h"
@@ -18,30 +30,79 @@ namespace thimble::tools {
 
 namespace {
 
-Source read_vox_source(const SharedBytes& file, const Progress& progress) {
-  return read_vox(file, progress);
-}
-
 bool looks_like_vox(std::span<const std::uint8_t> bytes) {
   constexpr std::string_view kMagic = "VOX ";
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
 }
 
-// The one place that knows all formats.
-constexpr std::array<ReaderRow, 8> kRows{{
-    {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox},
-    {".ply", "PLY mesh or points", read_ply, looks_like_ply},
-    {".obj", "Wavefront mesh", read_obj, nullptr},
-    {".off", "OFF mesh", read_off, looks_like_off},
-    {".xyz .csv", "points, one a line", read_xyz, nullptr},
-    {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget},
-    {".oct", "baked scene", read_oct, looks_like_oct},
-    {".scene", "scene text", read_scene_text, nullptr},
+Source read_vox_source(const SharedBytes& file, const Progress& progress) {
+  return read_vox(file, progress);
+}
+
+Source read_vox_frame(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return read_vox(file, progress, options.frame);
+}
+
+Source read_gltf_source(const SharedBytes& file, const Progress& progress) {
+  return read_gltf(file, "", progress);
+}
+
+Source read_gltf_beside(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return read_gltf(file, options.path, progress);
+}
+
+// The one place that knows all formats. Where two recognise the same bytes, the first one counts.
+constexpr std::array<ReaderRow, 22> kRows{{
+    {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox, Beginning::kMagic, read_vox_frame},
+    {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
+    {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText},
+    {".off", "OFF mesh", read_off, looks_like_off, Beginning::kText},
+    {".stl", "STL mesh", read_stl, looks_like_stl},
+    {".glb .gltf", "glTF scene", read_gltf_source, looks_like_gltf, Beginning::kMagic, read_gltf_beside},
+    {".xyz .csv .txt .tsv .pts", "points, one a line", read_xyz, nullptr, Beginning::kText},
+    {".pcd", "PCL point cloud", read_pcd, looks_like_pcd, Beginning::kMagic},
+    {".las", "LAS laser scan", read_las, looks_like_las, Beginning::kMagic},
+    {".laz", "compressed LAS laser scan", read_las, nullptr, Beginning::kMagic},
+    {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget, Beginning::kMagic},
+    {".oct", "baked scene", read_oct, looks_like_oct, Beginning::kMagic},
+    {".scene", "scene text", read_scene_text, nullptr, Beginning::kText},
+    {".binvox", "binvox grid", read_binvox, looks_like_binvox, Beginning::kMagic},
+    {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic},
+    {".npz", "NumPy archive", read_npy, nullptr},
+    {".asc", "grid of heights", read_height_grid, looks_like_height_grid, Beginning::kMagic},
+    {".mts", "Minetest schematic", read_mts, looks_like_mts, Beginning::kMagic},
+    {".schematic", "Minecraft schematic", read_schematic, looks_like_schematic, Beginning::kMagic},
+    {".schem", "Sponge schematic", read_schematic, nullptr, Beginning::kMagic},
+    {".qb", "Qubicle model", read_qb, nullptr},
+    {".kvx", "KVX model", read_kvx, nullptr},
 }};
 
 bool has_ending(std::string_view path, std::string_view ending) {
   return path.size() > ending.size() &&
          equals_ignoring_case(path.substr(path.size() - ending.size()), ending);
+}
+
+const ReaderRow& row_for(std::string_view path, std::span<const std::uint8_t> bytes) {
+  const ReaderRow* row = find_reader(path, bytes);
+  if (row == nullptr) {
+    throw InputError("neither the name nor the contents tell what this file is; known endings are " +
+                     reader_endings());
+  }
+  return *row;
+}
+
+/// Refuses first bytes that are those of no text that means anything.
+void check_text(std::span<const std::uint8_t> first, const char* name) {
+  const auto zero = std::find(first.begin(), first.end(), std::uint8_t{0});
+  if (zero != first.end()) {
+    throw InputError("holds a zero byte at byte offset " + std::to_string(zero - first.begin()) +
+                     ", and text, as which it would be read (" + name + "), holds none");
+  }
+  const bool is_blank = std::all_of(first.begin(), first.end(),
+                                    [](std::uint8_t byte) { return is_space(static_cast<char>(byte)); });
+  if (is_blank && first.size() >= kFirstLookBytes) {
+    throw InputError("begins with " + std::to_string(first.size()) + " blanks and empty lines, and no text");
+  }
 }
 
 }  // namespace
@@ -51,6 +112,11 @@ std::span<const ReaderRow> reader_rows() {
 }
 
 const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes) {
+  for (const ReaderRow& row : kRows) {
+    if (row.looks_like != nullptr && row.looks_like(bytes)) {
+      return &row;
+    }
+  }
   if (has_ending(path, ".gz")) {
     path.remove_suffix(3);
   }
@@ -60,11 +126,6 @@ const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t
       if (has_ending(path, ending)) {
         return &row;
       }
-    }
-  }
-  for (const ReaderRow& row : kRows) {
-    if (row.looks_like != nullptr && row.looks_like(bytes)) {
-      return &row;
     }
   }
   return nullptr;
@@ -81,13 +142,31 @@ std::string reader_endings() {
   return out;
 }
 
-Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress) {
-  const ReaderRow* row = find_reader(path, file.bytes);
-  if (row == nullptr) {
-    throw InputError("neither the name nor the contents tell what this file is; known endings are " +
-                     reader_endings());
+void check_beginning(std::string_view path, std::span<const std::uint8_t> first) {
+  const ReaderRow& row = row_for(path, first);
+  if (row.beginning == Beginning::kMagic && (row.looks_like == nullptr || !row.looks_like(first))) {
+    row.read({first, nullptr}, {});  // says how such a file begins
   }
-  return row->read(file, progress);
+  if (row.beginning == Beginning::kText) {
+    check_text(first, row.name);
+  }
+}
+
+Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
+  const ReaderRow& row = row_for(options.path, file.bytes);
+  if (options.frame && row.read != read_vox_source) {
+    throw InputError("--frame is for .vox files with frames, and this is a " + std::string(row.name));
+  }
+  return row.read_with != nullptr ? row.read_with(file, options, progress) : row.read(file, progress);
+}
+
+Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress) {
+  return read_any(ReadOptions{std::string(path), std::nullopt}, file, progress);
+}
+
+Source read_scene_file(const ReadOptions& options, const Progress& progress) {
+  const FirstLook look = [&](std::span<const std::uint8_t> first) { check_beginning(options.path, first); };
+  return read_any(options, share(load_file(options.path, kFileLimitBytes, look)), progress);
 }
 
 }  // namespace thimble::tools

@@ -5,6 +5,9 @@
 #ifndef THIMBLE_TOOLS_READERS_READ_ANY_H
 #define THIMBLE_TOOLS_READERS_READ_ANY_H
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,28 +16,56 @@
 
 namespace thimble::tools {
 
+/// What a reader is told beside the bytes.
+struct ReadOptions {
+  std::string path;                    ///< of the file, for the other files that it names; may be empty
+  std::optional<std::uint32_t> frame;  ///< of an animation; the first where none is asked for
+};
+
+/// How a file of a format begins.
+enum class Beginning : std::uint8_t {
+  kAny,    ///< anyhow
+  kText,   ///< with text
+  kMagic,  ///< as `looks_like` says, or it is none
+};
+
 /// One format.
 struct ReaderRow {
   const char* endings;  ///< lower case with their points, separated by blanks; may be empty
   const char* name;     ///< what the format is called in help and errors
   Source (*read)(const SharedBytes& file, const Progress& progress);
-  /// Recognises the format by its first bytes, for files with another ending or none; may be null.
+  /// Recognises the format by the file's first bytes, whatever its name; null where they do not tell.
   bool (*looks_like)(std::span<const std::uint8_t> bytes);
+  Beginning beginning = Beginning::kAny;
+  /// The same as `read`, for a format that has a use for the options; else null.
+  Source (*read_with)(const SharedBytes& file, const ReadOptions& options,
+                      const Progress& progress) = nullptr;
 };
 
 /// The table's rows, in the order in which they are tried.
 std::span<const ReaderRow> reader_rows();
 
-/// The row whose ending `path` has, in any case and before a final `.gz`; otherwise the first one that
-/// recognises `bytes`; null when there is none. An ending decides alone: a broken `.ply` is a broken `.ply`.
+/// The first row that recognises `bytes`; otherwise the one whose ending `path` has, in any case and before a
+/// final `.gz`; null when there is none. So what a file holds counts for more than its name, and a `.ply`
+/// that no reader recognises is a broken `.ply`.
 const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes);
 
 /// All endings of the table, as ".off, .ply, ..." for errors and help.
 std::string reader_endings();
 
-/// Reads `file`, the contents of `path` already decompressed.
-/// @throws InputError  no reader knows the file, or the reader's own errors
+/// Refuses a file by its first bytes where these suffice for it.
+/// @throws InputError  no reader knows the file, or the one that does says how such a file begins
+void check_beginning(std::string_view path, std::span<const std::uint8_t> first);
+
+/// Reads `file`, the contents of `options.path` already decompressed.
+/// @throws InputError  no reader knows the file, a frame is asked of a format that has none, or the reader's
+///   own errors
+Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress = {});
+/// The same, without options but for the path.
 Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress = {});
+
+/// Loads the file and reads it. A file that no reader knows is refused by its first bytes.
+Source read_scene_file(const ReadOptions& options, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

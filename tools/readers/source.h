@@ -69,7 +69,26 @@ class VoxelModel {
   /// Extent of the models' boxes on each axis, at least one past the largest position; all 0 without voxels.
   virtual std::array<std::int32_t, 3> size() const = 0;
   virtual const Palette& palette() const = 0;
+  /// Frames of the animation that this is one of; 1 where it is none.
+  virtual std::uint32_t frames() const { return 1; }
 };
+
+/// Voxels with whole-number positions and a colour of their own each: `.binvox`, `.qb`, `.schematic` ...
+class VoxelGrid {
+ public:
+  virtual ~VoxelGrid() = default;
+  using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, Rgb color)>;
+  /// Calls `visit` for each solid voxel, in an order of the format's own; where a position repeats, the last
+  /// one counts. z is up.
+  virtual void for_each(const Visit& visit) const = 0;
+  /// What the file declares on each axis, past every position; none is 0.
+  virtual std::array<std::int32_t, 3> size() const = 0;
+  /// Otherwise every colour is white.
+  virtual bool has_color() const = 0;
+};
+
+/// Longest side of a `VoxelGrid`: beyond that no world holds it.
+inline constexpr std::uint32_t kGridSideLimit = 4096;
 
 struct CloudPoint {
   double x = 0, y = 0, z = 0;  ///< finite, as in the file
@@ -77,7 +96,7 @@ struct CloudPoint {
   std::uint64_t line = 0;      ///< 1-based line of a text file or 1-based point number of a binary one
 };
 
-/// Points with real coordinates: `.xyz`, `.csv`, `.ply` without faces, Gadget-1 snapshots.
+/// Points with real coordinates: `.xyz`, `.csv`, `.ply` without faces, `.pcd`, `.las`, Gadget-1 snapshots.
 class PointCloud {
  public:
   virtual ~PointCloud() = default;
@@ -88,11 +107,13 @@ class PointCloud {
   virtual const char* counts_in() const { return "point"; }
 };
 
-/// Triangles with real coordinates: `.obj`, `.off`, `.ply` with faces. Polygons are already fanned.
+/// Triangles with real coordinates: `.obj`, `.off`, `.stl`, `.gltf`, `.ply` with faces. Polygons are already
+/// fanned.
 struct TriangleMesh {
   std::vector<std::array<double, 3>> positions;         ///< all finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`, in range
   std::vector<Rgb> colors;                              ///< one a position, or empty
+  bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
 };
 
 /// A scene baked by `thimble bake`, checked to its last byte: `.oct`.
@@ -105,7 +126,7 @@ struct BakedFile {
 struct SceneText;
 
 using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh, BakedFile,
-                            std::shared_ptr<const SceneText>>;
+                            std::shared_ptr<const SceneText>, std::unique_ptr<VoxelGrid>>;
 
 /// Called now and then while reading: fraction done, 0..1. May throw to cancel.
 using Progress = std::function<void(double)>;

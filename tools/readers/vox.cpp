@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,7 +73,8 @@ class Reporter {
 
 class VoxFile final : public VoxelModel {
  public:
-  VoxFile(SharedBytes file, const Progress& progress) : file_(std::move(file)) {
+  VoxFile(SharedBytes file, const Progress& progress, std::optional<std::uint32_t> frame)
+      : file_(std::move(file)), frame_(frame) {
     Reporter reporter(progress, file_.bytes.size());
     read_chunks(reporter);
     place_models();
@@ -97,6 +99,7 @@ class VoxFile final : public VoxelModel {
   }
   std::array<std::int32_t, 3> size() const override { return size_; }
   const Palette& palette() const override { return palette_; }
+  std::uint32_t frames() const override { return frames_; }
 
  private:
   void read_chunks(Reporter& reporter);
@@ -104,6 +107,9 @@ class VoxFile final : public VoxelModel {
   void read_voxels(ByteReader& chunk, Reporter& reporter);
   void check_size_used() const;
   void place_models();
+  void place_frames();
+  void place_scene();
+  void add_box(const Instance& instance);
   void move_to_origin();
 
   SharedBytes file_;
@@ -111,9 +117,14 @@ class VoxFile final : public VoxelModel {
   std::vector<Model> models_;
   std::vector<Instance> instances_;
   std::array<std::int32_t, 3> size_{};
+  std::uint32_t frames_ = 1;
 
   // Only while reading.
   VoxScene scene_;
+  std::optional<std::uint32_t> frame_;
+  std::array<std::int32_t, 3> low_{};  // of all frames' boxes
+  std::array<std::int32_t, 3> high_{};
+  bool has_box_ = false;
   bool size_pending_ = false;  // a SIZE waits for its XYZI
   std::array<std::uint32_t, 3> pending_size_{};
   std::string pending_place_;
@@ -243,62 +254,101 @@ void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
 
 void VoxFile::place_models() {
   if (scene_.empty()) {
-    // Files from before the scene graph: further models are frames of an animation.
-    instances_.push_back(make_instance(0, models_.front(), VoxTransform{}));
+    frames_ = static_cast<std::uint32_t>(models_.size());
+  } else if (const auto& keys = scene_.frames(); !keys.empty()) {
+    frames_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(keys.back(), 0, UINT32_MAX - 1) + 1);
+  }
+  if (frame_ && *frame_ >= frames_) {
+    throw InputError("there is no frame " + std::to_string(*frame_) + "; the file has " +
+                     (frames_ == 1 ? "only frame 0" : "frames 0 to " + std::to_string(frames_ - 1)));
+  }
+  if (scene_.empty()) {
+    place_frames();
+  } else {
+    place_scene();
+  }
+}
+
+/// Files from before the scene graph: further models are frames of an animation.
+void VoxFile::place_frames() {
+  for (std::size_t number = 0; number < models_.size(); ++number) {
+    const Instance instance =
+        make_instance(static_cast<std::uint32_t>(number), models_[number], VoxTransform{});
+    if (number == frame_.value_or(0)) {
+      instances_.push_back(instance);
+    }
+    add_box(instance);
+  }
+}
+
+void VoxFile::place_scene() {
+  std::uint64_t placed_voxels = 0;
+  const std::int64_t frame = frame_ ? std::int64_t{*frame_} : std::numeric_limits<std::int64_t>::min();
+  const std::uint32_t visits = scene_.place_models(
+      frame, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
+        if (number >= models_.size()) {
+          throw InputError(vox_place("nSHP", offset) + ": model " + std::to_string(number) +
+                           " is not among the " + std::to_string(models_.size()) + " models of this file");
+        }
+        if (instances_.size() == kVoxInstanceLimit) {
+          throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
+                           std::to_string(kVoxInstanceLimit) + " models");
+        }
+        const Model& model = models_[number];
+        placed_voxels += model.voxels.size() / kVoxelBytes;
+        if (placed_voxels > kVoxPlacedVoxelLimit) {
+          throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
+                           std::to_string(kVoxPlacedVoxelLimit) + " voxels");
+        }
+        instances_.push_back(make_instance(number, model, transform));
+        add_box(instances_.back());
+      });
+  const std::vector<std::int64_t>& keys = scene_.frames();
+  if (keys.size() * visits <= kVoxAnimationLimit) {
+    for (const std::int64_t key : keys) {
+      scene_.place_models(key, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t) {
+        if (keys.size() > 1 && number < models_.size()) {
+          add_box(make_instance(number, models_[number], transform));
+        }
+      });
+    }
+  }
+  scene_ = VoxScene{};
+  std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty; });
+}
+
+/// The boxes that the file declares count, not only what is solid in them, so that the voxels of a single
+/// model keep their indices.
+void VoxFile::add_box(const Instance& instance) {
+  const Model& model = models_[instance.model];
+  if (model.empty) {
     return;
   }
-  std::uint64_t placed_voxels = 0;
-  scene_.place_models([&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
-    if (number >= models_.size()) {
-      throw InputError(vox_place("nSHP", offset) + ": model " + std::to_string(number) +
-                       " is not among the " + std::to_string(models_.size()) + " models of this file");
-    }
-    if (instances_.size() == kVoxInstanceLimit) {
-      throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
-                       std::to_string(kVoxInstanceLimit) + " models");
-    }
-    const Model& model = models_[number];
-    placed_voxels += model.voxels.size() / kVoxelBytes;
-    if (placed_voxels > kVoxPlacedVoxelLimit) {
-      throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
-                       std::to_string(kVoxPlacedVoxelLimit) + " voxels");
-    }
-    instances_.push_back(make_instance(number, model, transform));
-  });
-  scene_ = VoxScene{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int32_t a = instance.offset[i];
+    const std::int32_t b =
+        instance.sign[i] * (static_cast<std::int32_t>(model.size[instance.axis[i]]) - 1) + instance.offset[i];
+    low_[i] = has_box_ ? std::min({low_[i], a, b}) : std::min(a, b);
+    high_[i] = has_box_ ? std::max({high_[i], a, b}) : std::max(a, b);
+  }
+  has_box_ = true;
 }
 
 void VoxFile::move_to_origin() {
-  std::array<std::int32_t, 3> low{};
-  std::array<std::int32_t, 3> high{};
-  bool any = false;
-  std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty; });
-  for (const Instance& instance : instances_) {
-    const Model& model = models_[instance.model];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t axis = instance.axis[i];
-      const std::int32_t a = instance.offset[i];
-      const std::int32_t b =
-          instance.sign[i] * (static_cast<std::int32_t>(model.size[axis]) - 1) + instance.offset[i];
-      low[i] = any ? std::min({low[i], a, b}) : std::min(a, b);
-      high[i] = any ? std::max({high[i], a, b}) : std::max(a, b);
-    }
-    any = true;
-  }
-  for (std::size_t i = 0; any && i < 3; ++i) {
-    // The boxes that the file declares count, not only what is solid in them, so that the voxels of a single
-    // model keep their indices. At most 2^25 + 512 apart, by the limit on translations.
-    size_[i] = high[i] - low[i] + 1;
+  for (std::size_t i = 0; has_box_ && i < 3; ++i) {
+    // At most 2^25 + 512 apart, by the limit on translations.
+    size_[i] = high_[i] - low_[i] + 1;
     for (Instance& instance : instances_) {
-      instance.offset[i] -= low[i];
+      instance.offset[i] -= low_[i];
     }
   }
 }
 
 }  // namespace
 
-std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress) {
-  return std::make_unique<VoxFile>(std::move(file), progress);
+std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress,
+                                     std::optional<std::uint32_t> frame) {
+  return std::make_unique<VoxFile>(std::move(file), progress, frame);
 }
 
 }  // namespace thimble::tools

@@ -3,10 +3,12 @@
 ///
 /// What is read: all models (SIZE, XYZI), the palette (RGBA, or MagicaVoxel's default one), materials (MATT,
 /// MATL), layers (LAYR) and the scene graph (nTRN, nGRP, nSHP) with translations, rotations and mirrors,
-/// shared and nested groups, hidden nodes and hidden layers. Of an animation the first frame is taken: the
-/// lowest `_f` of a node with a scene graph, the first model of a file without one (there, several models
-/// only ever are frames). IMAP orders the colours of the editor's palette window and nothing else, so colours
-/// do not depend on it; it is skipped as cameras, lights, notes and unknown chunks are.
+/// shared and nested groups, hidden nodes and hidden layers. Of an animation one frame is taken, the first
+/// where none is asked for. With a scene graph a node is as its key with the greatest `_f` up to the frame
+/// says, and holds still until the next one; in a file without one, several models only ever are frames. What
+/// is placed stays where it is from frame to frame: the lowest corner is that of all frames together. IMAP
+/// orders the colours of the editor's palette window and nothing else, so colours do not depend on it; it is
+/// skipped as cameras, lights, notes and unknown chunks are.
 ///
 /// Conventions: the axes are the file's, z up, right-handed. A model of size s turns about the lattice point
 /// floor(s / 2), which its node's translation places; voxels turn by their centres, as MagicaVoxel does.
@@ -19,6 +21,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "readers/file_bytes.h"
 #include "readers/source.h"
@@ -33,6 +36,8 @@ inline constexpr std::int32_t kVoxTranslationLimit = 1 << 24;
 inline constexpr std::uint32_t kVoxInstanceLimit = 65536;
 /// Most scene graph nodes entered while placing them, for shared groups that hold nothing.
 inline constexpr std::uint32_t kVoxVisitLimit = 1 << 20;
+/// Most nodes entered to find how far an animation reaches.
+inline constexpr std::uint64_t kVoxAnimationLimit = std::uint64_t{1} << 22;
 /// Most voxels in all placed models together: what one call of `for_each` may have to do.
 inline constexpr std::uint64_t kVoxPlacedVoxelLimit = std::uint64_t{1} << 31;
 
@@ -43,11 +48,17 @@ inline constexpr std::uint64_t kVoxPlacedVoxelLimit = std::uint64_t{1} << 31;
 /// by model in the scene graph's order (depth first, children as listed), each in the order of its XYZI
 /// chunk. A scene whose models are all hidden is read and holds no voxels.
 ///
+/// Of an animation of more than `kVoxAnimationLimit` nodes in all frames together, the lowest corner is that
+/// of the frame taken.
+///
+/// @param frame     0 is the first; absent: the earliest key of each node
 /// @param progress  called every few hundred kilobytes and with 1 at the end; may be empty; may throw
 /// @throws InputError  wrong magic or version; no model; a chunk, string or count that leaves its place; a
 ///   side over 256; a voxel outside its model; a scene graph without node 0, with an id used twice, a missing
-///   node or model or a cycle; a rotation byte that is none; any of the limits above
-std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress = {});
+///   node or model or a cycle; a rotation byte that is none; a frame that there is
+///   not; any of the limits above
+std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress = {},
+                                     std::optional<std::uint32_t> frame = {});
 
 }  // namespace thimble::tools
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "readers/vox.h"
 #include "readers/vox_chunk.h"
@@ -69,20 +70,66 @@ std::int64_t parse_frame(std::string_view text, const ByteReader& chunk) {
   return *frame;
 }
 
-/// Of frames in any order, the lowest; of equal ones, the first.
-class FirstFrame {
+/// Of keys in any order the last one up to a frame, or the first where none comes so early; of equal ones,
+/// the first in the file.
+class KeyAt {
  public:
+  explicit KeyAt(std::int64_t wanted) : wanted_(wanted) {}
   bool take(std::int64_t frame) {
-    const bool earlier = !any_ || frame < lowest_;
-    lowest_ = earlier ? frame : lowest_;
+    const bool is_better =
+        !any_ || (frame <= wanted_ ? best_ > wanted_ || frame > best_ : best_ > wanted_ && frame < best_);
+    best_ = is_better ? frame : best_;
     any_ = true;
-    return earlier;
+    return is_better;
   }
 
  private:
+  std::int64_t wanted_;
   bool any_ = false;
-  std::int64_t lowest_ = 0;
+  std::int64_t best_ = 0;
 };
+
+/// An nTRN's next key; `frame` is where it begins to hold.
+VoxTransform read_transform(ByteReader& keys, std::int64_t* frame) {
+  VoxTransform transform;
+  *frame = 0;
+  vox_dictionary(keys, [&](std::string_view key, std::string_view value) {
+    if (key == "_t") {
+      transform.translation = parse_translation(value, keys);
+    } else if (key == "_r") {
+      parse_rotation(value, keys, transform);
+    } else if (key == "_f") {
+      *frame = parse_frame(value, keys);
+    }
+  });
+  return transform;
+}
+
+/// An nSHP's next model.
+std::uint32_t read_model(ByteReader& keys, std::int64_t* frame) {
+  const std::uint32_t model = keys.u32();
+  *frame = 0;
+  vox_dictionary(keys, [&](std::string_view key, std::string_view value) {
+    if (key == "_f") {
+      *frame = parse_frame(value, keys);
+    }
+  });
+  return model;
+}
+
+/// What `read` makes of the key that holds at `frame`; `otherwise` without keys.
+template <class Value, class Read>
+Value value_at(ByteReader keys, std::uint32_t count, std::int64_t frame, Value otherwise, const Read& read) {
+  KeyAt at(frame);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::int64_t key_frame = 0;
+    const Value value = read(keys, &key_frame);
+    if (at.take(key_frame)) {
+      otherwise = value;
+    }
+  }
+  return otherwise;
+}
 
 }  // namespace
 
@@ -121,23 +168,12 @@ void VoxScene::add_transform(ByteReader& chunk, std::uint64_t offset) {
   const std::int32_t child = chunk.i32();
   chunk.skip(4);  // reserved
   node.layer = chunk.i32();
-  const std::uint32_t frame_count = chunk.u32();
-  FirstFrame first;
-  for (std::uint32_t i = 0; i < frame_count; ++i) {
-    VoxTransform transform;
+  node.key_count = chunk.u32();
+  node.keys = chunk;
+  for (std::uint32_t i = 0; i < node.key_count; ++i) {
     std::int64_t frame = 0;
-    vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
-      if (key == "_t") {
-        transform.translation = parse_translation(value, chunk);
-      } else if (key == "_r") {
-        parse_rotation(value, chunk, transform);
-      } else if (key == "_f") {
-        frame = parse_frame(value, chunk);
-      }
-    });
-    if (first.take(frame)) {
-      node.transform = transform;
-    }
+    read_transform(chunk, &frame);
+    note_frame(frame);
   }
   node.first_child = static_cast<std::uint32_t>(children_.size());
   node.child_count = 1;
@@ -162,22 +198,26 @@ void VoxScene::add_group(ByteReader& chunk, std::uint64_t offset) {
 
 void VoxScene::add_shape(ByteReader& chunk, std::uint64_t offset) {
   Node node = read_head(chunk, Kind::kShape, offset);
-  const std::uint32_t count = chunk.u32();
-  FirstFrame first;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t model = chunk.u32();
+  node.key_count = chunk.u32();
+  node.keys = chunk;
+  for (std::uint32_t i = 0; i < node.key_count; ++i) {
     std::int64_t frame = 0;
-    vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
-      if (key == "_f") {
-        frame = parse_frame(value, chunk);
-      }
-    });
-    if (first.take(frame)) {
-      node.first_child = model;
-      node.child_count = 1;
-    }
+    read_model(chunk, &frame);
+    note_frame(frame);
   }
   add(node);
+}
+
+void VoxScene::note_frame(std::int64_t frame) {
+  if (frames_.empty() || frames_.back() != frame) {
+    frames_.push_back(frame);
+  }
+}
+
+const std::vector<std::int64_t>& VoxScene::frames() {
+  std::sort(frames_.begin(), frames_.end());
+  frames_.erase(std::unique(frames_.begin(), frames_.end()), frames_.end());
+  return frames_;
 }
 
 void VoxScene::add_layer(ByteReader& chunk) {
@@ -201,7 +241,10 @@ std::uint32_t VoxScene::find(std::int32_t id) const {
                                                   : kNoNode;
 }
 
-void VoxScene::place_models(const Place& place) {
+void VoxScene::sort_nodes() {
+  if (std::exchange(is_sorted_, true)) {
+    return;
+  }
   // By id, and by place in the file among equals, so that the error names the second of two.
   std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) { return a.id < b.id; });
   for (std::size_t i = 1; i < nodes_.size(); ++i) {
@@ -212,7 +255,10 @@ void VoxScene::place_models(const Place& place) {
     }
   }
   std::sort(hidden_layers_.begin(), hidden_layers_.end());
+}
 
+std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
+  sort_nodes();
   struct Step {
     std::uint32_t node;
     std::uint32_t next_child;
@@ -238,12 +284,15 @@ void VoxScene::place_models(const Place& place) {
       return;
     }
     if (node.kind == Kind::kShape) {
-      if (node.child_count > 0) {
-        place(node.first_child, parent, node.offset);
+      if (node.key_count > 0) {
+        place(value_at(node.keys, node.key_count, frame, std::uint32_t{0}, read_model), parent, node.offset);
       }
       return;
     }
-    const VoxTransform world = node.kind == Kind::kTransform ? parent.after(node.transform) : parent;
+    const VoxTransform world =
+        node.kind == Kind::kTransform
+            ? parent.after(value_at(node.keys, node.key_count, frame, VoxTransform{}, read_transform))
+            : parent;
     for (const std::int32_t coordinate : world.translation) {
       if (coordinate < -kVoxTranslationLimit || coordinate > kVoxTranslationLimit) {
         fail(node, "nested translations add up to " + std::to_string(coordinate) +
@@ -276,6 +325,7 @@ void VoxScene::place_models(const Place& place) {
     const VoxTransform world = step.world;  // `enter` may move the path
     enter(child, world);
   }
+  return visits;
 }
 
 }  // namespace thimble::tools

@@ -37,14 +37,19 @@ class VoxScene {
   void add_layer(ByteReader& chunk);
 
   bool empty() const { return nodes_.empty(); }
+  /// The frames that something changes in, ascending; the scene is the same from each to the next. Call once
+  /// all nodes are in.
+  const std::vector<std::int64_t>& frames();
 
   /// Called for each visible model, in order: the model's number as in the file (it may be none), where it is
   /// put, and the byte offset of the nSHP chunk for errors.
   using Place = std::function<void(std::uint32_t model, const VoxTransform& transform, std::uint64_t offset)>;
   /// Walks from node 0, depth first, with a stack of its own: depth is bounded by the number of nodes, work
-  /// by `kVoxVisitLimit`. Hidden nodes, and nodes of hidden layers, are left out with all below them.
+  /// by `kVoxVisitLimit`. Hidden nodes, and nodes of hidden layers, are left out with all below them. A node
+  /// is as its last key up to `frame` says, as its first where none comes so early.
+  /// @return how many nodes were entered
   /// @throws InputError  a missing root, child or unique id; a cycle; a limit of vox.h
-  void place_models(const Place& place);
+  std::uint32_t place_models(std::int64_t frame, const Place& place);
 
  private:
   enum class Kind : std::uint8_t { kTransform, kGroup, kShape };
@@ -55,18 +60,23 @@ class VoxScene {
     bool on_path = false;           ///< the walk is inside it now
     std::int32_t layer = -1;        ///< nTRN only; -1 is none
     std::uint64_t offset = 0;       ///< of the chunk, for errors
-    std::uint32_t first_child = 0;  ///< in `children_`; of an nSHP the model, if it has one
+    std::uint32_t first_child = 0;  ///< in `children_`
     std::uint32_t child_count = 0;
-    VoxTransform transform;  ///< nTRN only
+    ByteReader keys{{}};  ///< of an nTRN its frames, of an nSHP its models
+    std::uint32_t key_count = 0;
   };
 
   Node read_head(ByteReader& chunk, Kind kind, std::uint64_t offset) const;
   void add(const Node& node);
+  void sort_nodes();
+  void note_frame(std::int64_t frame);
   std::uint32_t find(std::int32_t id) const;
 
   std::vector<Node> nodes_;
   std::vector<std::int32_t> children_;       ///< ids
   std::vector<std::int32_t> hidden_layers_;  ///< ids
+  std::vector<std::int64_t> frames_;
+  bool is_sorted_ = false;
 };
 
 }  // namespace thimble::tools

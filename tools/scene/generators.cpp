@@ -31,13 +31,32 @@ constexpr std::array<Name, 5> kNames{{{"points", GeneratorKind::kPoints},
                                       {"water", GeneratorKind::kWater},
                                       {"demo", GeneratorKind::kDemo}}};
 
-/// Decimal digits only; nothing when there are none, others, or too many for 64 bits.
+/// A whole number: decimal digits, or as in 1e6 and 2.5e6. Nothing for anything else, or too much for 64
+/// bits.
 std::optional<std::uint64_t> parse_number(const std::string& text) {
-  if (text.empty()) {
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  const std::size_t point = std::min(text.find('.'), e);
+  const bool has_exponent = e < text.size();
+  std::string digits =
+      text.substr(0, point) + text.substr(std::min(point + 1, e), e - std::min(point + 1, e));
+  if (point == 0 || (point < e && !has_exponent) ||
+      (has_exponent && (e + 1 == text.size() || e + 3 < text.size()))) {
     return std::nullopt;
   }
+  std::size_t exponent = 0;
+  for (std::size_t i = e + 1; i < text.size(); ++i) {
+    if (text[i] < '0' || text[i] > '9') {
+      return std::nullopt;
+    }
+    exponent = exponent * 10 + static_cast<std::size_t>(text[i] - '0');
+  }
+  const std::size_t fraction = digits.size() - point;
+  if (exponent < fraction) {
+    return std::nullopt;
+  }
+  digits.append(exponent - fraction, '0');
   std::uint64_t value = 0;
-  for (const char c : text) {
+  for (const char c : digits) {
     if (c < '0' || c > '9') {
       return std::nullopt;
     }

@@ -9,7 +9,8 @@
 ///               no voxels but a still surface (water_surface.h), which only effects show
 ///   demo        a castle in a valley (demo_world.h): what the firmware shows
 ///
-/// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`.
+/// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`. N may be
+/// written as 1e6 or 2.5e6.
 ///
 /// A scene is a function of kind, count, seed and depth: integer arithmetic and a random generator of
 /// our own make it the same on every machine. It is laid out in fractions of the world, so another depth

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "readers/file_bytes.h"
 #include "readers/oct.h"
 #include "readers/read_any.h"
 #include "scene/fit_points.h"
@@ -84,27 +83,35 @@ class GeneratedScene final : public SceneSource {
   std::optional<SceneCamera> camera_;
 };
 
+// The level of a world for voxels that lie where they lie: the smallest, or `depth` where that is enough.
+int level_for(const std::array<std::int32_t, 3>& size, std::optional<int> depth) {
+  const std::int32_t largest = std::max({size[0], size[1], size[2]});
+  int needed = kMinLevel;
+  while (needed <= kMaxLevel && (std::int32_t{1} << needed) < largest) {
+    ++needed;
+  }
+  if (needed > kMaxLevel) {
+    throw InputError("the scene is " + std::to_string(largest) + " voxels long; the largest world has " +
+                     std::to_string(1 << kMaxLevel));
+  }
+  const int level = depth.value_or(needed);
+  if (level < needed) {
+    throw InputError("the scene is " + std::to_string(largest) + " voxels long and needs --depth " +
+                     std::to_string(needed));
+  }
+  return level;
+}
+
 class VoxelModelScene final : public SceneSource {
  public:
   VoxelModelScene(std::unique_ptr<VoxelModel> model, std::optional<int> depth) : model_(std::move(model)) {
-    const auto size = model_->size();
-    const std::int32_t largest = std::max({size[0], size[1], size[2]});
-    int needed = kMinLevel;
-    while (needed <= kMaxLevel && (std::int32_t{1} << needed) < largest) {
-      ++needed;
-    }
-    if (needed > kMaxLevel) {
-      throw InputError("the scene is " + std::to_string(largest) + " voxels long; the largest world has " +
-                       std::to_string(1 << kMaxLevel));
-    }
-    level_ = depth.value_or(needed);
-    if (level_ < needed) {
-      throw InputError("the scene is " + std::to_string(largest) + " voxels long and needs --depth " +
-                       std::to_string(needed));
-    }
+    level_ = level_for(model_->size(), depth);
     model_->for_each([&](auto, auto, auto, auto) { ++voxels_; });
   }
-  std::string kind() const override { return "voxel model"; }
+  std::string kind() const override {
+    return model_->frames() == 1 ? "voxel model"
+                                 : "voxel model of " + std::to_string(model_->frames()) + " frames";
+  }
   std::uint64_t points() const override { return voxels_; }
   bool is_point_set() const override { return false; }
   bool single_material() const override { return false; }
@@ -122,6 +129,46 @@ class VoxelModelScene final : public SceneSource {
  private:
   std::unique_ptr<VoxelModel> model_;
   std::uint64_t voxels_ = 0;
+};
+
+class VoxelGridScene final : public SceneSource {
+ public:
+  VoxelGridScene(std::unique_ptr<VoxelGrid> grid, std::optional<int> depth)
+      : grid_(std::move(grid)), colors_(histogram()) {
+    level_ = level_for(grid_->size(), depth);
+  }
+  std::string kind() const override { return "voxel grid"; }
+  std::uint64_t points() const override { return voxels_; }
+  bool is_point_set() const override { return false; }
+  bool single_material() const override { return colors_.colors() == 0; }
+  bool is_scalable() const override { return false; }
+  std::array<std::int32_t, 3> extent() const override { return grid_->size(); }
+  const Palette& palette() const override { return colors_.palette(); }
+  void stream(const VoxelSink& sink, const Progress& progress) const override {
+    Meter meter(progress, voxels_);
+    const bool has_color = grid_->has_color();
+    grid_->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
+      sink(x, y, z, has_color ? colors_.index(color) : std::uint8_t{0});
+      meter.step();
+    });
+  }
+
+ private:
+  ColorHistogram histogram() {
+    ColorHistogram colors;
+    const bool has_color = grid_->has_color();
+    grid_->for_each([&](auto, auto, auto, Rgb color) {
+      ++voxels_;
+      if (has_color) {
+        colors.add(color);
+      }
+    });
+    return colors;
+  }
+
+  std::unique_ptr<VoxelGrid> grid_;
+  std::uint64_t voxels_ = 0;
+  PaletteMap colors_;
 };
 
 class PointScene final : public SceneSource {
@@ -175,7 +222,7 @@ class PointScene final : public SceneSource {
 class MeshScene final : public SceneSource {
  public:
   MeshScene(TriangleMesh mesh, const SceneArguments& arguments)
-      : mesh_(std::move(mesh)), colors_(triangle_colors(mesh_)), z_up_(arguments.z_up) {
+      : mesh_(std::move(mesh)), colors_(triangle_colors(mesh_)), z_up_(arguments.z_up || mesh_.is_z_up) {
     constexpr int kDefaultDepth = 9;
     level_ = arguments.depth.value_or(kDefaultDepth);
     if (mesh_.triangles.empty()) {
@@ -189,6 +236,12 @@ class MeshScene final : public SceneSource {
   bool single_material() const override { return colors_.colors() == 0; }
   const Palette& palette() const override { return colors_.palette(); }
   void stream(const VoxelSink& sink, const Progress& progress) const override {
+    voxelise(mesh_, level_, z_up_, &colors_, sink, progress);
+  }
+  void stream_blocks(const VisitBlock& visit, const Progress& progress) const override {
+    const BlockSink sink = [&](const UnitPoint& voxel, int level, std::uint8_t material) {
+      visit({voxel[0], voxel[1], voxel[2]}, level, material);
+    };
     voxelise(mesh_, level_, z_up_, &colors_, sink, progress);
   }
 
@@ -266,6 +319,19 @@ std::array<std::int32_t, 3> SceneSource::extent() const {
   return {side, side, side};
 }
 
+void SceneSource::stream_blocks(const VisitBlock& visit, const Progress& progress) const {
+  const BakedScene* scene = baked();
+  if (scene != nullptr) {
+    for_each_block(scene->tree(), visit);
+    return;
+  }
+  stream(
+      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        visit({x, y, z}, 0, material);
+      },
+      progress);
+}
+
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress) {
   SceneArguments found = arguments;
   if (!parse_generator(arguments.scene)) {
@@ -283,12 +349,15 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
     if (arguments.as_voxels) {
       throw InputError("--as-voxels is for point files");
     }
+    if (arguments.frame) {
+      throw InputError("--frame is for .vox files with frames");
+    }
     if (arguments.depth) {
       spec->depth = *arguments.depth;
     }
     return std::make_unique<GeneratedScene>(*spec);
   }
-  Source source = read_any(arguments.scene, share(load_file(arguments.scene)), progress);
+  Source source = read_scene_file({arguments.scene, arguments.frame}, progress);
   if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
     return std::make_unique<PointScene>(std::move(*cloud), arguments);
   }
@@ -297,6 +366,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   }
   if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
     return open_text_scene(**text, arguments, opening, progress);
+  }
+  if (auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
+    return std::make_unique<VoxelGridScene>(std::move(*grid), arguments.depth);
   }
   if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
     return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "readers/oct.h"
 #include "readers/source.h"
 #include "scene/lit_description.h"
 #include "scene/scene_arguments.h"
@@ -45,6 +46,8 @@ class SceneSource {
   virtual const BakedScene* baked() const { return nullptr; }
   /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
   virtual void stream(const VoxelSink& sink, const Progress& progress) const = 0;
+  /// The same in blocks where the source has larger ones than voxels.
+  virtual void stream_blocks(const VisitBlock& visit, const Progress& progress) const;
 
  protected:
   int level_ = 1;

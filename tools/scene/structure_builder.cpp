@@ -24,20 +24,6 @@ constexpr std::size_t most_after_tidying(std::size_t capacity) {
   return capacity - capacity / 16 - (capacity >= 1 && capacity < 16 ? 1 : 0);
 }
 
-// Everything solid: blocks where the source has them, else voxels, which are blocks of level 0.
-template <class Take>
-void for_each_solid(const SceneSource& source, const Progress& progress, const Take& take) {
-  if (const BakedScene* baked = source.baked()) {
-    for_each_block(baked->tree(), take);
-    return;
-  }
-  source.stream(
-      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-        take(Vec3i{x, y, z}, 0, material);
-      },
-      progress);
-}
-
 }  // namespace
 
 // A grid's world is the least that holds the grid, and the world
@@ -134,7 +120,7 @@ void StructureBuilder::fill_part(Bytes pool, int part_level, std::size_t part) {
   built_.pool.set_coarsen(true);
   const std::int32_t inside = (std::int32_t{1} << part_level) - 1;
   const auto number = [&](std::int32_t x) { return static_cast<std::uint32_t>(x >> part_level); };
-  for_each_solid(source_, progress_, [&](const Vec3i& at, int block_level, std::uint8_t material) {
+  const VisitBlock take = [&](const Vec3i& at, int block_level, std::uint8_t material) {
     const std::size_t code = morton_code(number(at.x), number(at.y), number(at.z));
     if (block_level <= part_level) {
       if (code == part) {
@@ -146,7 +132,8 @@ void StructureBuilder::fill_part(Bytes pool, int part_level, std::size_t part) {
     if (code >> above == part >> above) {
       insert({}, part_level, material);  // the block holds the whole part
     }
-  });
+  };
+  source_.stream_blocks(take, progress_);
 }
 
 // The world in parts: each is built in the pool, coarsened and made compact at once; in the end the parts are
@@ -244,9 +231,9 @@ void StructureBuilder::build_pool(bool coarsen) {
     throw Shortage{};
   }
   built_.pool.set_coarsen(coarsen);
-  for_each_solid(source_, progress_, [&](const Vec3i& at, int block_level, std::uint8_t material) {
-    insert(at, block_level, material);
-  });
+  source_.stream_blocks(
+      [&](const Vec3i& at, int block_level, std::uint8_t material) { insert(at, block_level, material); },
+      progress_);
 
   // `rest` is aligned, so the pool needs none of the slack that octree_bytes allows for.
   const std::size_t pool_used =
@@ -283,7 +270,12 @@ void StructureBuilder::build_keys() {
   Key* keys = reinterpret_cast<Key*>(rest.data);
   std::size_t count = 0;
   std::size_t most = 0;  // bytes
-  bool tidied = false;
+  // A list as long as the world has places, or very long, is looked through for repeats before it grows on:
+  // so places that repeat take no more memory than they would once, twice over.
+  constexpr std::uint64_t kShortList = std::uint64_t{1} << 24;
+  constexpr std::uint64_t kLongList = std::uint64_t{1} << 26;
+  std::size_t wanted =
+      static_cast<std::size_t>(std::clamp(std::uint64_t{1} << (3 * source_.level()), kShortList, kLongList));
   const auto tidy = [&] {
     const Bytes free = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
     const Bytes scratch = free.subspan(0, key_sort_scratch_bytes(count, threads_));
@@ -295,13 +287,13 @@ void StructureBuilder::build_keys() {
   source_.stream(
       [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
         ++streamed;
-        if (count == capacity) {
+        if (count == std::min(capacity, wanted)) {
           // Repeats may have filled it.
           tidy();
-          tidied = true;
-          if (count > most_after_tidying(capacity) || capacity == 0) {
+          if (streamed > capacity && (count > most_after_tidying(capacity) || capacity == 0)) {
             throw Shortage{};
           }
+          wanted = std::max(wanted, 2 * count);
         }
         const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                                                static_cast<std::uint32_t>(z));
@@ -311,7 +303,7 @@ void StructureBuilder::build_keys() {
   tidy();
   // The same demand at the end, so that whether a scene fits is a matter of its counts and not of their
   // order.
-  if (tidied && count > most_after_tidying(capacity)) {
+  if (streamed > capacity && count > most_after_tidying(capacity)) {
     throw Shortage{};
   }
 

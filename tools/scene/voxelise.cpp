@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "scene/voxelise_cells.h"
 #include "scene/world_fit.h"
 
 namespace thimble::tools {
@@ -11,13 +12,23 @@ namespace {
 /// The two coordinates that stay when `axis` is left out.
 constexpr std::array<std::array<std::size_t, 2>, 3> kPlane{{{1, 2}, {0, 2}, {0, 1}}};
 
-/// A cube of 2^level voxels a side by its lowest voxel.
-struct Block {
-  UnitPoint voxel;
-  int level;
-  /// Bit a: all that the block holds meets the slabs of the plane perpendicular to axis a.
-  std::uint8_t inside = 0;
-};
+/// Bits p + 4 q of the plane perpendicular to `axis` as bits x + 4 y + 16 z, the same all along the axis.
+std::uint64_t spread_plane(std::size_t axis, std::uint64_t cells) {
+  if (axis == 2) {
+    return cells * 0x0001000100010001U;
+  }
+  std::uint64_t spread = 0;
+  for (int i = 0; i < 4; ++i) {
+    const std::uint64_t four = cells >> (4 * i) & 0xF;
+    if (axis == 1) {
+      spread |= four * 0x1111U << (16 * i);
+    } else {
+      const std::uint64_t apart = (four | four << 3 | four << 6 | four << 9) & 0x1111U;
+      spread |= apart * 0xF << (16 * i);
+    }
+  }
+  return spread;
+}
 
 std::array<double, 3> turned(const std::array<double, 3>& p, bool z_up) {
   return z_up ? p : std::array<double, 3>{p[0], -p[2], p[1]};
@@ -53,46 +64,22 @@ void emit_voxels(const TriangleBoxTest& test, const UnitPoint& first, const Unit
   }
 }
 
-/// Whether the triangle meets `block`; asks nothing that is known for the block it is part of, and adds to
-/// `block.inside` what its parts need not ask.
-bool meets_block(const TriangleBoxTest& test, Block& block) {
-  const std::int32_t half = kUnitsPerVoxel / 2 << block.level;
-  UnitPoint center;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    center[axis] = block.voxel[axis] * kUnitsPerVoxel + half;
-  }
-  if (!test.meets_bounds(center, half) || !test.meets_surface(center, half)) {
-    return false;
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if ((block.inside >> axis & 1) != 0) {
-      continue;
-    }
-    if (!test.meets_plane(axis, center, half)) {
-      return false;
-    }
-    if (block.level > 0 && test.inside_plane(axis, center, half)) {
-      block.inside = static_cast<std::uint8_t>(block.inside | 1U << axis);
-    }
-  }
-  return true;
-}
-
 /// Emits the voxels of a block that meets the triangle. The stack holds at most 7 siblings a level and the
 /// block in hand.
-void descend(const TriangleBoxTest& test, const Block& root, std::uint8_t material, const VoxelSink& sink) {
-  std::array<Block, 7 * 12 + 1> stack;
+void descend(const TriangleBoxTest& test, const TriangleBlock& root, std::uint8_t material,
+             const VoxelSink& sink) {
+  std::array<TriangleBlock, 7 * 12 + 1> stack;
   std::size_t depth = 0;
   stack[depth++] = root;
   while (depth > 0) {
-    const Block block = stack[--depth];
+    const TriangleBlock block = stack[--depth];
     if (block.level == 0) {
       sink(block.voxel[0], block.voxel[1], block.voxel[2], material);
       continue;
     }
     const int level = block.level - 1;
     for (int child = 7; child >= 0; --child) {
-      Block part{block.voxel, level, block.inside};
+      TriangleBlock part{block.voxel, level, block.inside};
       for (int axis = 0; axis < 3; ++axis) {
         part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << level;
       }
@@ -150,7 +137,12 @@ class RecentTriangles {
   std::uint8_t material_ = 0;
 };
 
-/// About how many voxels a triangle may have: decides only how often progress is reported.
+/// What triangle by triangle is quickly done, whatever the world; and what a triangle of a scan has at most.
+constexpr std::uint64_t kCheapVoxels = std::uint64_t{1} << 24;
+constexpr std::uint64_t kSmallTriangleVoxels = 64;
+
+/// About how many voxels a triangle may have: decides only how they are found and how often progress is
+/// reported.
 std::uint64_t rough_cost(const UnitTriangle& triangle) {
   std::array<std::uint64_t, 3> span{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -216,6 +208,63 @@ bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std
     }
   }
   return true;
+}
+
+std::uint64_t TriangleBoxTest::cube_mask(const UnitPoint& voxel, unsigned inside) const {
+  constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
+  constexpr std::uint64_t kOnes = 0x1111111111111111U;
+  std::array<std::int64_t, 3> at{};  // the first voxel's centre from vertex 0
+  std::uint64_t mask = ~std::uint64_t{0};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    at[axis] = voxel[axis] * kUnitsPerVoxel + kHalf - origin_[axis];
+    const std::int32_t first = std::max(((low_[axis] - 1) >> kUnitBits) - voxel[axis], 0);
+    const std::int32_t last = std::min((high_[axis] >> kUnitBits) - voxel[axis], 3);
+    // Along x the bits of a nibble, along y nibbles, along z sixteen bits.
+    constexpr std::array<std::array<std::uint64_t, 4>, 3> kRows{
+        {{kOnes, kOnes << 1, kOnes << 2, kOnes << 3},
+         {0x000F000F000F000FU, 0x00F000F000F000F0U, 0x0F000F000F000F00U, 0xF000F000F000F000U},
+         {0xFFFFU, 0xFFFFULL << 16, 0xFFFFULL << 32, 0xFFFFULL << 48}}};
+    std::uint64_t rows = 0;
+    for (std::int32_t i = first; i <= last; ++i) {
+      rows |= kRows[axis][static_cast<std::size_t>(i)];
+    }
+    mask &= rows;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if ((inside >> axis & 1) != 0) {
+      continue;
+    }
+    const auto [p, q] = kPlane[axis];
+    std::uint64_t cells = 0xFFFF;  // bit p + 4 q
+    for (const Slab& slab : slabs_[axis]) {
+      const std::int64_t low = slab.low - slab.reach * kHalf;
+      const auto width = static_cast<std::uint64_t>(slab.high - slab.low + 2 * slab.reach * kHalf);
+      std::int64_t row = slab.u * at[p] + slab.v * at[q] - low;
+      std::uint64_t passed = 0;
+      for (int bit = 0; bit < 16; bit += 4, row += slab.v * kUnitsPerVoxel) {
+        std::int64_t value = row;
+        for (int i = 0; i < 4; ++i, value += slab.u * kUnitsPerVoxel) {
+          passed |= std::uint64_t{static_cast<std::uint64_t>(value) <= width} << (bit + i);
+        }
+      }
+      cells &= passed;
+    }
+    mask &= spread_plane(axis, cells);
+  }
+  const std::int64_t reach = normal_reach_ * kHalf;
+  std::int64_t slice = normal_[0] * at[0] + normal_[1] * at[1] + normal_[2] * at[2] + reach;
+  const auto width = static_cast<std::uint64_t>(2 * reach);
+  std::uint64_t passed = 0;
+  for (int z = 0; z < 64; z += 16, slice += normal_[2] * kUnitsPerVoxel) {
+    std::int64_t row = slice;
+    for (int y = 0; y < 16; y += 4, row += normal_[1] * kUnitsPerVoxel) {
+      std::int64_t value = row;
+      for (int x = 0; x < 4; ++x, value += normal_[0] * kUnitsPerVoxel) {
+        passed |= std::uint64_t{static_cast<std::uint64_t>(value) <= width} << (x + y + z);
+      }
+    }
+  }
+  return mask & passed;
 }
 
 bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
@@ -287,7 +336,7 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
   for (std::int32_t z = first[2]; z <= last[2]; ++z) {
     for (std::int32_t y = first[1]; y <= last[1]; ++y) {
       for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        Block block{{x << level, y << level, z << level}, level};
+        TriangleBlock block{{x << level, y << level, z << level}, level};
         if (meets_block(test, block)) {
           descend(test, block, material, sink);
         }
@@ -316,11 +365,35 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh) {
   return histogram;
 }
 
-void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
+void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const bool colored = colors != nullptr && !mesh.colors.empty();
+  const auto triangle_at = [&](std::size_t i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    return CellTriangle{{units[a], units[b], units[c]},
+                        colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0}};
+  };
   RecentTriangles recent(mesh.triangles.size());
+  std::uint64_t all_cost = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    all_cost += rough_cost(triangle_at(i).corners);
+  }
+  if (all_cost > std::max(kCheapVoxels, kSmallTriangleVoxels * mesh.triangles.size())) {
+    std::vector<CellTriangle> triangles;
+    for (std::size_t i = mesh.triangles.size(); i-- > 0;) {
+      const CellTriangle triangle = triangle_at(i);
+      if (!recent.is_repeat(triangle.corners, 0)) {  // of equal ones, the last one counts
+        triangles.push_back(triangle);
+      }
+    }
+    std::reverse(triangles.begin(), triangles.end());
+    voxelise_cells(triangles, level, sink, progress);
+    return;
+  }
+  const VoxelSink each = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+    sink({x, y, z}, 0, material);
+  };
   constexpr std::uint64_t kCostPerReport = 1 << 18;
   std::uint64_t cost = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -328,15 +401,28 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
       progress(static_cast<double>(i) / static_cast<double>(mesh.triangles.size()));
       cost = 0;
     }
-    const auto& [a, b, c] = mesh.triangles[i];
-    const UnitTriangle triangle{units[a], units[b], units[c]};
-    const std::uint8_t material = colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0};
-    if (recent.is_repeat(triangle, material)) {
+    const CellTriangle triangle = triangle_at(i);
+    if (recent.is_repeat(triangle.corners, triangle.material)) {
       continue;
     }
-    cost += rough_cost(triangle);
-    voxelise_triangle(triangle, material, sink);
+    cost += rough_cost(triangle.corners);
+    voxelise_triangle(triangle.corners, triangle.material, each);
   }
+}
+
+void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
+              const Progress& progress) {
+  const BlockSink blocks = [&](const UnitPoint& voxel, int block_level, std::uint8_t material) {
+    const std::int32_t side = std::int32_t{1} << block_level;
+    for (std::int32_t z = voxel[2]; z < voxel[2] + side; ++z) {
+      for (std::int32_t y = voxel[1]; y < voxel[1] + side; ++y) {
+        for (std::int32_t x = voxel[0]; x < voxel[0] + side; ++x) {
+          sink(x, y, z, material);
+        }
+      }
+    }
+  };
+  voxelise(mesh, level, z_up, colors, blocks, progress);
 }
 
 }  // namespace thimble::tools

@@ -24,6 +24,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "readers/source.h"
@@ -64,6 +65,9 @@ class TriangleBoxTest {
   bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
   /// Whether every cube within this one passes `meets_plane`: the cube lies inside the slabs of all edges.
   bool inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
+  /// Which of the 4 x 4 x 4 voxels from `voxel` on meet the triangle: bit x + 4 y + 16 z. Of a plane whose
+  /// bit is set in `inside`, all of them pass `meets_plane`.
+  std::uint64_t cube_mask(const UnitPoint& voxel, unsigned inside) const;
   /// The triangle's plane against the cube.
   bool meets_surface(const UnitPoint& center, std::int32_t half) const;
 
@@ -86,6 +90,9 @@ class TriangleBoxTest {
   std::int64_t normal_reach_;  ///< sum of the normal's absolute components
 };
 
+/// Takes a solid block: its lowest voxel, the log2 of its side (0 for a voxel), its material.
+using BlockSink = std::function<void(const UnitPoint& voxel, int level, std::uint8_t material)>;
+
 /// All vertices of `mesh`, turned, fitted to 2^level and quantised; a vertex that no triangle uses is
 /// (0,0,0). InputError "no triangles" when there are none.
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up);
@@ -100,12 +107,21 @@ Rgb triangle_color(const TriangleMesh& mesh, std::size_t index);
 /// The colours of all triangles, for PaletteMap; empty when the mesh has no colours.
 ColorHistogram triangle_colors(const TriangleMesh& mesh);
 
-/// Streams the voxels of `mesh` in a world of 2^level voxels a side (level 1..12), triangle by triangle, z
-/// rows of y rows of x within small triangles. A voxel comes once for each triangle that it meets, but a
-/// triangle that equals a recent one (the same quantised vertices in any order) may be left out where that
-/// changes no voxel's last material. `colors` may be null: then, as for a mesh without colours, everything is
-/// material 0. Memory: 12 bytes a vertex and 48 bytes a triangle, of these at most 3 MiB.
-/// `progress` may be empty. InputError "no triangles".
+/// Streams the voxels of `mesh` in a world of 2^level voxels a side (level 1..12). `colors` may be null:
+/// then, as for a mesh without colours, everything is material 0. `progress` may be empty. InputError "no
+/// triangles".
+///
+/// Small triangles, and few of any size, come one by one, z rows of y rows of x within small ones. A voxel
+/// then comes once for each triangle that it meets, but a triangle that equals a recent one (the same
+/// quantised vertices in any order) may be left out where that changes no voxel's last material. Where there
+/// are many large ones (more than 2^24 voxels in their boxes, and more than 64 a triangle), which may cover
+/// each other many times over, they go cell by cell (voxelise_cells.h): each voxel comes once, with the
+/// material of the last triangle that meets it, and a full block as one. So time follows the triangles and
+/// the surface that they have together. Memory: 12 bytes a vertex and 48 bytes a triangle, of these at most
+/// 3 MiB; cell by cell 40 bytes a triangle more, and the lists.
+void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
+              const Progress& progress = {});
+/// The same, voxel by voxel.
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
               const Progress& progress = {});
 

@@ -1,0 +1,138 @@
+// Files are looked at before they are loaded, and what is loaded takes memory in proportion.
+#include <doctest/doctest.h>
+#include <zlib.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "readers/file_bytes.h"
+#include "readers/read_any.h"
+#include "support/reader_inputs.h"
+#include "support/run_command.h"
+
+using namespace thimble::tools;
+using thimble::tests::CommandLimits;
+using thimble::tests::CommandResult;
+using thimble::tests::run_command;
+using thimble::tests::TemporaryFolder;
+
+namespace {
+
+/// Writes `count` times `text`, compressed.
+std::string write_gzip(const TemporaryFolder& folder, const std::string& name, const std::string& text,
+                       std::size_t count) {
+  const std::string path = folder.path(name);
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "wb9"), gzclose);
+  REQUIRE(file != nullptr);
+  for (std::size_t i = 0; i < count; ++i) {
+    REQUIRE(gzwrite(file.get(), text.data(), static_cast<unsigned>(text.size())) ==
+            static_cast<int>(text.size()));
+  }
+  return path;
+}
+
+std::string refusal(std::string_view path, const std::string& first) {
+  try {
+    check_beginning(path, SharedBytes::own(first).bytes);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Holds a command to memory and time: address space, of which the program and its threads take some.
+CommandResult limited(const std::vector<std::string>& words, std::uint64_t megabytes) {
+  CommandLimits limits;
+  limits.address_space_bytes = megabytes << 20;
+  limits.seconds = 60;
+  return run_command(words, limits);
+}
+
+}  // namespace
+
+TEST_CASE("load_file: a look at the first bytes, once -> all that is read where it objects") {
+  const TemporaryFolder folder;
+  const std::string plain = folder.write("plain", std::string(100000, 'x'));
+  const std::string packed = write_gzip(folder, "packed.gz", std::string(1000, 'y'), 1000);
+  const std::string small = folder.write("small", "abc");
+  for (const std::string& path : {plain, packed, small}) {
+    int looks = 0;
+    load_file(path, kFileLimitBytes, [&](std::span<const std::uint8_t> first) {
+      ++looks;
+      CHECK(first.size() == (path == small ? 3 : kFirstLookBytes));
+    });
+    CHECK(looks == 1);
+    CHECK_THROWS_AS(
+        load_file(path, kFileLimitBytes, [](std::span<const std::uint8_t>) { throw InputError("no"); }),
+        InputError);
+  }
+}
+
+TEST_CASE("check_beginning: first bytes that no reader takes -> a sentence") {
+  CHECK(test::contains(refusal("zero", std::string(4096, '\0')), "neither the name nor the contents"));
+  CHECK(test::contains(refusal("a.vox", std::string(4096, '\0')), "VOX"));
+  CHECK(test::contains(refusal("a.vox.gz", std::string(4096, '\0')), "VOX"));
+  CHECK(test::contains(refusal("a.ply", std::string(4096, ' ')), "'ply'"));
+  CHECK(test::contains(refusal("a.obj", "v 1 2 3" + std::string(1, '\0')), "byte offset 7"));
+  CHECK(test::contains(refusal("a.csv", std::string(4096, '\n')), "blanks"));
+  CHECK(refusal("a.csv", "1 2 3\n").empty());
+  CHECK(refusal("a.off", "# a comment\n" + std::string(5000, '#')).empty());
+  CHECK(refusal("a.obj", "ply\n").empty());
+  for (const ReaderRow& row : reader_rows()) {
+    INFO(row.name);
+    const std::string ending(row.endings, std::string(row.endings).find(' ') == std::string::npos
+                                              ? std::string(row.endings).size()
+                                              : std::string(row.endings).find(' '));
+    const std::string sentence = refusal("a" + ending, std::string(4096, '\x07'));
+    CHECK((row.beginning != Beginning::kMagic || !sentence.empty()));
+  }
+}
+
+TEST_CASE("info: endless and bloated files -> refused at once, in little memory") {
+  const TemporaryFolder folder;
+  for (const std::string& path :
+       {std::string("/dev/zero"), write_gzip(folder, "zeros.vox.gz", std::string(1 << 20, '\0'), 512),
+        write_gzip(folder, "zeros.obj.gz", std::string(1 << 20, '\0'), 512),
+        write_gzip(folder, "lines.xyz.gz", std::string(1 << 20, '\n'), 512)}) {
+    CAPTURE(path);
+    const CommandResult result = limited({"info", path}, 150);
+    CAPTURE(result.describe());
+    CHECK(result.status == 1);
+    CHECK(thimble::tests::is_one_sentence(result.err));
+    CHECK_FALSE(test::contains(result.err, "memory"));
+  }
+}
+
+TEST_CASE("info: a mesh and a cloud of text -> three times their bytes and 64 MB suffice to read them") {
+  const TemporaryFolder folder;
+  std::string mesh;
+  std::string cloud;
+  for (int i = 0; i < 400000; ++i) {
+    const std::string numbers = std::to_string(i * 0.731) + " " + std::to_string(i % 977 * 1.13) + " " +
+                                std::to_string(i % 1013 * 0.37) + "\n";
+    mesh += "v " + numbers;
+    cloud += numbers;
+  }
+  for (int i = 3; i < 400000; ++i) {
+    mesh += "f " + std::to_string(i - 2) + " " + std::to_string(i - 1) + " " + std::to_string(i) + "\n";
+  }
+  // Beside the reader: the program itself, and a tree of depth 4, which needs next to nothing.
+  constexpr std::uint64_t kProgramMegabytes = 60;
+  for (const auto& [name, text] : {std::pair{"a.obj", &mesh}, std::pair{"a.xyz", &cloud}}) {
+    const std::string path = folder.write(name, *text);
+    const std::uint64_t megabytes = 3 * (text->size() >> 20) + 64 + kProgramMegabytes;
+    const CommandResult result = limited({"info", path, "--depth", "4"}, megabytes);
+    CAPTURE(result.describe());
+    CAPTURE(megabytes);
+    CHECK(result.status == 0);
+  }
+}
+
+TEST_CASE("info: a thousand million points in 4,096 places -> memory for the places") {
+  // Fewer here, which would take as much as they have; the list is cut long before.
+  const CommandResult result = limited({"info", "points:100000000,depth=4"}, 300);
+  CAPTURE(result.describe());
+  CHECK(result.status == 0);
+  CHECK(test::contains(result.out, "4,096"));
+}

@@ -1,0 +1,369 @@
+// Readers of point scans and meshes in binary forms: .pcd, .las, .stl, .gltf and .glb.
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "readers/gltf.h"
+#include "readers/las.h"
+#include "readers/pcd.h"
+#include "readers/read_any.h"
+#include "readers/stl.h"
+#include "support/reader_inputs.h"
+#include "support/run_command.h"
+
+using namespace thimble::tools;
+using namespace thimble::tools::test;
+
+namespace {
+
+std::string little(std::uint64_t value, std::size_t bytes) {
+  std::string out;
+  for (std::size_t i = 0; i < bytes; ++i) {
+    out += static_cast<char>(value >> (8 * i));
+  }
+  return out;
+}
+std::string little(float value) {
+  return little(std::bit_cast<std::uint32_t>(value), 4);
+}
+std::string little(double value) {
+  return little(std::bit_cast<std::uint64_t>(value), 8);
+}
+
+std::string pcd_head(const std::string& data, int points = 2) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 8 4 4\nTYPE F F I U\nCOUNT 1 1 1 1\nWIDTH " +
+         std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) +
+         "\nDATA " + data + "\n";
+}
+
+/// LZF of literals alone, then of one copy.
+std::string packed_lzf(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size(); at += 32) {
+    const std::string part = text.substr(at, 32);
+    out += static_cast<char>(part.size() - 1) + part;
+  }
+  return out;
+}
+
+struct LasPoint {
+  std::int32_t x, y, z;
+  std::uint16_t r = 0, g = 0, b = 0;
+  bool withheld = false;
+};
+
+std::string las(unsigned minor, unsigned format, const std::vector<LasPoint>& points) {
+  constexpr std::array<std::uint16_t, 11> kBytes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+  constexpr std::array<std::uint16_t, 11> kColor{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
+  const std::uint16_t header_bytes = minor == 4 ? 375 : 227;
+  std::string out = "LASF" + little(0, 20) + little(1, 1) + little(minor, 1) + little(0, 68) +
+                    little(header_bytes, 2) + little(header_bytes, 4) + little(0, 4) + little(format, 1) +
+                    little(kBytes[format], 2) + little(minor == 4 ? 0 : points.size(), 4) + little(0, 20) +
+                    little(0.5) + little(0.5) + little(2.0) + little(100.0) + little(0.0) + little(-1.0);
+  out.resize(247);
+  out += little(points.size(), 8);
+  out.resize(header_bytes);
+  for (const LasPoint& point : points) {
+    std::string record = little(static_cast<std::uint32_t>(point.x), 4) +
+                         little(static_cast<std::uint32_t>(point.y), 4) +
+                         little(static_cast<std::uint32_t>(point.z), 4);
+    record.resize(kBytes[format]);
+    record[15] = static_cast<char>(point.withheld ? (format >= 6 ? 0x04 : 0x80) : 0);
+    if (kColor[format] != 0) {
+      record.replace(kColor[format], 6, little(point.r, 2) + little(point.g, 2) + little(point.b, 2));
+    }
+    out += record;
+  }
+  return out;
+}
+
+std::string stl_triangle(const std::array<float, 9>& numbers) {
+  std::string out = little(0, 12);
+  for (const float number : numbers) {
+    out += little(number);
+  }
+  return out + little(0, 2);
+}
+std::string stl(const std::string& title, std::uint32_t count, const std::string& triangles) {
+  std::string head = title;
+  head.resize(80);
+  return head + little(count, 4) + triangles;
+}
+
+Source read_alone(const SharedBytes& file, const Progress& progress) {
+  return read_gltf(file, "", progress);
+}
+
+/// Three corners and their indices, in a buffer of 48 bytes.
+std::string triangle_buffer() {
+  std::string out;
+  for (const float number : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 2.0F, 0.0F}) {
+    out += little(number);
+  }
+  return out + little(0, 2) + little(1, 2) + little(2, 2) + little(0, 6);
+}
+constexpr const char* kTriangleData =
+    "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAAAAABAAIAAAAAAAAA";
+
+/// A scene of one triangle; `nodes` and `material` are JSON.
+std::string gltf_json(const std::string& buffer, const std::string& nodes, const std::string& material = "{}",
+                      const std::string& primitive = "") {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+         R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0)" + primitive +
+         R"(}]}],"materials":[)" + material +
+         R"(],"accessors":[)"
+         R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+         R"({"bufferView":0,"byteOffset":36,"componentType":5123,"count":3,"type":"SCALAR"}],)"
+         R"("bufferViews":[{"buffer":0,"byteLength":48}],"buffers":[{"byteLength":48)" +
+         (buffer.empty() ? "" : ",\"uri\":\"" + buffer + "\"") + "}]}";
+}
+
+std::string glb(std::string json, const std::string& binary) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  return "glTF" + little(2, 4) + little(28 + json.size() + binary.size(), 4) + little(json.size(), 4) +
+         "JSON" + json + little(binary.size(), 4) + std::string("BIN\0", 4) + binary;
+}
+
+}  // namespace
+
+TEST_CASE("pcd: text, binary and compressed -> the same points; not finite ones are left out") {
+  const std::string text = pcd_head("ascii", 3) + "1.5 2.5 -3 255\nnan 1 2 0\n4 5 6 16711680\n";
+  const auto x = [](float value) { return little(value); };
+  const std::string binary = pcd_head("binary", 3) + x(1.5F) + little(2.5) + little(0xFFFFFFFD, 4) +
+                             little(255, 4) + x(NAN) + little(1.0) + little(2, 4) + little(0, 4) + x(4) +
+                             little(5.0) + little(6, 4) + little(0xFF0000, 4);
+  const std::string apart = x(1.5F) + x(NAN) + x(4) + little(2.5) + little(1.0) + little(5.0) +
+                            little(0xFFFFFFFD, 4) + little(2, 4) + little(6, 4) + little(255, 4) +
+                            little(0, 4) + little(0xFF0000, 4);
+  const std::string packed = packed_lzf(apart);
+  const std::string compressed =
+      pcd_head("binary_compressed", 3) + little(packed.size(), 4) + little(apart.size(), 4) + packed;
+  for (const std::string& file : {text, binary, compressed}) {
+    CHECK(looks_like_pcd(SharedBytes::own(file).bytes));
+    const auto points = read_points(read_pcd, file);
+    REQUIRE(points.size() == 2);
+    CHECK(points[0].x == 1.5);
+    CHECK(points[0].y == 2.5);
+    CHECK(points[0].z == -3);
+    CHECK(points[0].color == Rgb{0, 0, 255});
+    CHECK(points[1].color == Rgb{255, 0, 0});
+    CHECK(cloud_has_color(read_pcd, file));
+  }
+  // The last line of a text may be cut so that its numbers are still some.
+  for (const std::size_t length : accepted_lengths(read_pcd, text)) {
+    CHECK(length > text.size() - 9);
+  }
+  CHECK(accepted_lengths(read_pcd, binary).empty());
+  CHECK(accepted_lengths(read_pcd, compressed).empty());
+}
+
+TEST_CASE("pcd: LZF copies, also of what they make -> the bytes") {
+  // Twelve zero bytes: one literal, a copy of eleven from one byte back; y is a double, so 24 a point.
+  const std::string packed = std::string("\0\0", 2) + std::string("\xE0\x0E\0", 3);
+  const auto points = read_points(
+      read_pcd, "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA binary_compressed\n" +
+                    little(packed.size(), 4) + little(24, 4) + packed);
+  REQUIRE(points.size() == 1);
+  CHECK(points[0].x == 0);
+  CHECK(
+      contains(error_of(read_pcd, "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nPOINTS 1\nDATA binary_compressed\n" +
+                                      little(2, 4) + little(24, 4) + "\x20\x05"),
+               "before the beginning"));
+  CHECK(contains(error_of(read_pcd, "FIELDS x y z\nPOINTS 357913941\nDATA binary_compressed\n" +
+                                        little(2, 4) + little(4294967292, 4) + "\x20\x05"),
+                 "cannot hold"));
+}
+
+TEST_CASE("pcd: damage -> a sentence that names the place") {
+  CHECK(contains(error_of(read_pcd, "289814.15 4320978.61 170.76\n"), "line 1: '289814.15'"));
+  CHECK(contains(error_of(read_pcd, "VERSION .7\nFIELDS x y\nPOINTS 1\nDATA ascii\n1 2\n"), "named z"));
+  CHECK(contains(error_of(read_pcd, "VERSION .7\nPOINTS 1\nDATA ascii\n1 2\n"), "FIELDS"));
+  CHECK(contains(error_of(read_pcd, "FIELDS x y z\nDATA ascii\n1 2 3\n"), "POINTS"));
+  CHECK(contains(error_of(read_pcd, "FIELDS x y z\nSIZE 3 4 4\n"), "line 2"));
+  CHECK(contains(error_of(read_pcd, "FIELDS x y z\nTYPE X F F\n"), "'X'"));
+  CHECK(contains(error_of(read_pcd, "FIELDS x y z\nDATA zip\n"), "'zip'"));
+  CHECK(contains(error_of(read_pcd, pcd_head("ascii", 9) + "1 2 3 4\n"), "room for"));
+  CHECK(contains(error_of(read_pcd, pcd_head("ascii", 1) + "1 2 3\n          "), "3 values"));
+  CHECK(contains(error_of(read_pcd, pcd_head("ascii", 1) + "1 2 3x 4\n"), "line 12: '3x'"));
+  CHECK(contains(error_of(read_pcd, pcd_head("binary", 2000000000)), "room for 0"));
+  CHECK(contains(error_of(read_pcd, pcd_head("ascii", 1) + "nan 1 2 3\n"), "finite"));
+  CHECK(contains(error_of(read_pcd, pcd_head("ascii", 0)), "no points"));
+}
+
+TEST_CASE("las: all versions and formats -> positions and colours") {
+  for (unsigned minor = 0; minor <= 4; ++minor) {
+    for (unsigned format = 0; format <= 10; ++format) {
+      CAPTURE(minor);
+      CAPTURE(format);
+      const std::string file =
+          las(minor, format, {{2, 4, -6, 65535, 0, 32768}, {1, 1, 1, 1, 2, 3, true}, {7, 8, 9}});
+      CHECK(looks_like_las(SharedBytes::own(file).bytes));
+      const auto points = read_points(read_las, file);
+      REQUIRE(points.size() == 2);
+      CHECK(points[0].x == 101);
+      CHECK(points[0].y == 2);
+      CHECK(points[0].z == -13);
+      CHECK(points[1].line == 3);
+      const bool has_color =
+          format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10;
+      CHECK(points[0].color == (has_color ? Rgb{255, 0, 128} : Rgb{}));
+      CHECK(cloud_has_color(read_las, file) == has_color);
+    }
+  }
+  CHECK(read_points(read_las, las(2, 2, {{0, 0, 0, 255, 128, 0}}))[0].color == Rgb{255, 128, 0});
+  CHECK_FALSE(cloud_has_color(read_las, las(2, 2, {{0, 0, 0}})));
+  CHECK(accepted_lengths(read_las, las(2, 3, {{2, 4, 6}, {1, 2, 3}})).empty());
+}
+
+TEST_CASE("las: compressed, damaged, hostile -> a sentence") {
+  std::string file = las(2, 3, {{2, 4, 6}});
+  file[104] = static_cast<char>(0x80 | 3);
+  CHECK(contains(error_of(read_las, file), "LAZ"));
+  file[104] = 11;
+  CHECK(contains(error_of(read_las, file), "format 11"));
+  file = las(2, 3, {{2, 4, 6}});
+  file.replace(107, 4, little(0xFFFFFFFF, 4));
+  CHECK(contains(error_of(read_las, file),
+                 "4294967295 points, but from byte offset 227 on the file has room for 1"));
+  file = las(4, 6, {{2, 4, 6}});
+  file.replace(247, 8, little(UINT64_MAX, 8));
+  CHECK(contains(error_of(read_las, file), "room for 1"));
+  file = las(2, 3, {{2, 4, 6}});
+  file.replace(105, 2, little(20, 2));
+  CHECK(contains(error_of(read_las, file), "at least 34"));
+  file = las(2, 3, {{2, 4, 6}});
+  file.replace(131, 8, little(std::nan("")));
+  CHECK(contains(error_of(read_las, file), "point 1 is not finite"));
+  CHECK(contains(error_of(read_las, las(2, 0, {})), "no points"));
+  CHECK(contains(error_of(read_las, las(2, 0, {{1, 1, 1, 0, 0, 0, true}})), "withheld"));
+  CHECK(contains(error_of(read_las, "text"), "LASF"));
+}
+
+TEST_CASE("stl: text and binary -> the same triangles, z up") {
+  const std::string text =
+      "solid a b\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 0.5\n"
+      "  endloop\n endfacet\nendsolid\nsolid empty\nendsolid\n";
+  const std::string binary = stl("a box", 1, stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0.5F}));
+  const std::string named_solid =
+      stl("solid, says the exporter", 1, stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0.5F}));
+  CHECK(looks_like_stl(SharedBytes::own(text).bytes));
+  CHECK_FALSE(looks_like_stl(SharedBytes::own(binary).bytes));
+  for (const std::string& file : {text, binary, named_solid}) {
+    const TriangleMesh mesh = read_mesh(read_stl, file);
+    CHECK(mesh.is_z_up);
+    REQUIRE(mesh.triangles.size() == 1);
+    CHECK(mesh.positions[mesh.triangles[0][2]] == std::array<double, 3>{0, 1, 0.5});
+  }
+  CHECK(accepted_lengths(read_stl, binary).empty());
+  for (const std::size_t length : accepted_lengths(read_stl, text)) {
+    CHECK(length >= text.find("endfacet") + 8);
+  }
+  CHECK(contains(error_of(read_stl, stl("x", 0xFFFFFFFF, "")),
+                 "4294967295 triangles, but the file has room for 0"));
+  CHECK(contains(error_of(read_stl, stl("x", 0, "")), "no triangles"));
+  CHECK(contains(error_of(read_stl, stl("x", 1, stl_triangle({NAN, 0, 0, 1, 0, 0, 0, 1, 0}))), "triangle 0"));
+  CHECK(contains(error_of(read_stl, "solid\nfacet\nvertex 1 2 3\nendfacet\n"),
+                 "line 4: the facet has 1 corners"));
+  CHECK(contains(error_of(read_stl, "solid\nfacet\nvertex 1 2 x\n"), "line 3: z is 'x'"));
+  CHECK(contains(error_of(read_stl, "solid\nvertex 1 2 3\n"), "outside of any facet"));
+}
+
+TEST_CASE("gltf: embedded, binary and beside -> the same triangle with its transforms and colour") {
+  const std::string nodes = R"([{"children":[1],"translation":[10,0,0]},{"mesh":0,"scale":[2,3,1],)"
+                            R"("rotation":[0,0,0.7071067811865476,0.7071067811865476]}])";
+  const std::string red = R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0,0.21404114,1]}})";
+  const std::string embedded = gltf_json(kTriangleData, nodes, red);
+  const std::string binary = glb(gltf_json("", nodes, red), triangle_buffer());
+  for (const std::string& file : {embedded, binary}) {
+    CHECK(looks_like_gltf(SharedBytes::own(file).bytes));
+    const TriangleMesh mesh = read_mesh(read_alone, file);
+    REQUIRE(mesh.triangles.size() == 1);
+    CHECK(mesh.colors[0] == Rgb{255, 0, 127});
+    // (1,0,0) scaled by 2, turned a quarter about z, moved by 10.
+    CHECK(std::fabs(mesh.positions[1][0] - 10) < 1e-12);
+    CHECK(std::fabs(mesh.positions[1][1] - 2) < 1e-12);
+    CHECK(std::fabs(mesh.positions[2][0] - 4) < 1e-12);
+  }
+  for (const std::size_t length : accepted_lengths(read_alone, binary)) {
+    CHECK(length > binary.size() - 7);  // the buffer's padding
+  }
+  CHECK(accepted_lengths(read_alone, embedded).empty());
+
+  const thimble::tests::TemporaryFolder folder;
+  folder.write("a b.bin", triangle_buffer());
+  const std::string path = folder.write("scene.gltf", gltf_json("a%20b.bin", nodes));
+  const Source source = read_scene_file({path, std::nullopt});
+  CHECK(std::get<TriangleMesh>(source).triangles.size() == 1);
+  CHECK(std::get<TriangleMesh>(source).colors.empty());
+}
+
+TEST_CASE("gltf: what leaves its place, is not there or comes round again -> a sentence") {
+  const std::string node = R"([{"mesh":0}])";
+  for (const char* uri : {"../a.bin", "/etc/passwd", "http://a/b.bin", "a/../../b.bin"}) {
+    INFO(std::string(uri));
+    CHECK(contains(
+        error_of([](const SharedBytes& file, const Progress& p) { return read_gltf(file, "/tmp/x.gltf", p); },
+                 gltf_json(uri, node)),
+        "no file in the folder"));
+  }
+  CHECK(contains(error_of(read_alone, gltf_json("data:;base64,AAAA", node)), "not in its buffer of 3"));
+  CHECK(contains(error_of(read_alone, gltf_json("data:;base64,!!!!", node)), "base64"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"children":[0],"mesh":0}])")), "node"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"children":[7]}])")), "node 0"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"mesh":4}])")), "no entry 4"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{}])")), "neither triangles nor points"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, node, "{}", R"(,"mode":"x")")), "mode"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, node, "{}",
+                                                R"(,"extensions":{"KHR_draco_mesh_compression":{}})")),
+                 "draco"));
+  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"mesh":0,"matrix":[1,2]}])")),
+                 "16 numbers"));
+  CHECK(contains(
+      error_of(read_alone,
+               gltf_json(kTriangleData, R"([{"mesh":0,"scale":[1e308,1e308,1],"translation":[1e999,0,0]}])")),
+      "JSON"));
+  CHECK(contains(error_of(read_alone, "{\"asset\":{}}"), "neither"));
+  CHECK(contains(error_of(read_alone, "{\"asset\":"), "broken at its byte"));
+  CHECK(contains(error_of(read_alone, "{" + std::string(1000, '[')), "deeper"));
+  CHECK(contains(error_of(read_alone, "{\"a\":[" + std::string(600000, ',')), "values"));
+  CHECK(contains(error_of(read_alone, "text"), "glTF"));
+  CHECK(contains(error_of(read_alone, "glTF" + little(1, 4) + little(0, 4)), "version 1"));
+  // A mesh placed very often costs few bytes in the file and is limited by them.
+  std::string many = "[{\"children\":[";
+  std::string rest;
+  for (int i = 1; i <= 150000; ++i) {
+    many += (i > 1 ? "," : "") + std::to_string(i);
+    rest += ",{\"mesh\":0}";
+  }
+  CHECK(outcome_of(read_alone, gltf_json(kTriangleData, many + "]}" + rest + "]")) == 450000);
+}
+
+TEST_CASE("data: real scans and meshes -> as many points and triangles as they have") {
+  const std::filesystem::path data = data_folder();
+  if (data.empty()) {
+    return;
+  }
+  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_bun4.pcd")) == 361);
+  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_chef.pcd")) == 5092);
+  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_milk.pcd")) == 13704);
+  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_rops_cloud.pcd")) == 32087);
+  CHECK(outcome_of(read_las, contents_of(data / "cloud/pdal_simple.las")) == 1065);
+  CHECK(outcome_of(read_las, contents_of(data / "cloud/pdal_1.2-with-color.las")) == 1065);
+  CHECK(cloud_has_color(read_las, contents_of(data / "cloud/pdal_1.2-with-color.las")));
+  CHECK(outcome_of(read_las, contents_of(data / "cloud/urban.las")) == 13511);
+  CHECK(contains(error_of(read_las, contents_of(data / "cloud/pdal_simple.laz")), "LAZ"));
+  CHECK(read_mesh(read_stl, contents_of(data / "mesh/trimesh_20mm-xyz-cube.stl")).triangles.size() == 260);
+  CHECK(read_mesh(read_stl, contents_of(data / "mesh/assimp_Spider_ascii.stl")).triangles.size() == 1368);
+  CHECK(read_mesh(read_stl, contents_of(data / "hostile/assimp_triangle_with_empty_solid.stl"))
+            .triangles.size() == 1);
+  const TriangleMesh duck = read_mesh(read_alone, contents_of(data / "mesh/trimesh_Duck.glb"));
+  CHECK(duck.triangles.size() == 4212);
+  CHECK(duck.colors.size() == duck.positions.size());  // from its picture
+  CHECK(read_mesh(read_alone, contents_of(data / "mesh/trimesh_monkey.glb")).triangles.size() == 968);
+  CHECK(read_mesh(read_alone, contents_of(data / "mesh/trimesh_nested.glb")).triangles.size() == 36);
+  CHECK(outcome_of(read_alone, contents_of(data / "hostile/assimp_RecursiveNodes.gltf")) == -1);
+  CHECK(outcome_of(read_alone, contents_of(data / "hostile/assimp_AllIndicesOutOfRange.gltf")) == -1);
+}

@@ -1,0 +1,118 @@
+// Triangles to voxels cell by cell: the same voxels as triangle by triangle, each once, and in time.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/random.h"
+#include "scene/voxelise.h"
+#include "scene/voxelise_cells.h"
+#include "scene/world_fit.h"
+
+namespace {
+
+using namespace thimble::tools;
+
+UnitTriangle random_triangle(SplitMix64& random, int level) {
+  const std::int32_t top = (kUnitsPerVoxel << level) - 1;
+  const std::int32_t reach = random.below(2) == 0 ? top : std::int32_t{kUnitsPerVoxel} * 6;
+  UnitTriangle triangle{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int32_t low = random.between(1, top);
+    for (UnitPoint& corner : triangle) {
+      corner[axis] = std::clamp(low + random.between(-reach, reach), 1, top);
+      if (random.below(3) == 0) {
+        corner[axis] = std::max(corner[axis] & ~255, 1);  // on a wall between voxels
+      }
+    }
+    if (random.below(6) == 0) {
+      triangle[1][axis] = triangle[2][axis] = triangle[0][axis];
+    }
+  }
+  return triangle;
+}
+
+using Voxels = std::map<UnitPoint, std::uint8_t>;
+
+Voxels by_triangle(const std::vector<CellTriangle>& triangles) {
+  Voxels voxels;
+  for (const CellTriangle& triangle : triangles) {
+    voxelise_triangle(triangle.corners, triangle.material,
+                      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+                        voxels[{x, y, z}] = material;
+                      });
+  }
+  return voxels;
+}
+
+Voxels by_cell(const std::vector<CellTriangle>& triangles, int level, int* blocks) {
+  Voxels voxels;
+  bool once = true;
+  double last = 0;
+  const BlockSink sink = [&](const UnitPoint& corner, int block_level, std::uint8_t material) {
+    const std::int32_t side = std::int32_t{1} << block_level;
+    *blocks += block_level > 0 ? 1 : 0;
+    for (std::int32_t i = 0; i < side * side * side; ++i) {
+      const UnitPoint voxel{corner[0] + i % side, corner[1] + i / side % side, corner[2] + i / side / side};
+      once = once && voxels.emplace(voxel, material).second;
+    }
+  };
+  voxelise_cells(triangles, level, sink, [&](double done) {
+    CHECK(done >= last);
+    CHECK(done <= 1);
+    last = done;
+  });
+  CHECK(last == 1);
+  CHECK(once);
+  return voxels;
+}
+
+}  // namespace
+
+TEST_CASE("voxelise_cells: random triangles -> what each of them meets, with the last one's material") {
+  SplitMix64 random(20);
+  int blocks = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int level = random.between(1, 6);
+    const bool many_materials = round % 2 == 0;
+    std::vector<CellTriangle> triangles;
+    const int count = round < 50 ? random.between(1, 30) : 1500;
+    for (int i = 0; i < count; ++i) {
+      triangles.push_back(
+          {random_triangle(random, level), static_cast<std::uint8_t>(many_materials ? random.below(3) : 0)});
+    }
+    CAPTURE(round);
+    CHECK((by_cell(triangles, level, &blocks) == by_triangle(triangles)));
+  }
+  CHECK(blocks > 100);
+}
+
+TEST_CASE("voxelise: 20,000 triangles that fill a world of 512 -> seconds") {
+  SplitMix64 random(19);
+  TriangleMesh mesh;
+  for (int i = 0; i < 3000; ++i) {
+    mesh.positions.push_back({random.between(0, 1000) / 1000.0, random.between(0, 1000) / 1000.0,
+                              random.between(0, 1000) / 1000.0});
+  }
+  for (int i = 0; i < 20000; ++i) {
+    const auto corner = [&] { return random.below(3000); };
+    mesh.triangles.push_back({corner(), corner(), corner()});
+  }
+  const auto start = std::chrono::steady_clock::now();
+  std::uint64_t volume = 0;
+  std::uint64_t calls = 0;
+  voxelise(mesh, 9, false, nullptr, BlockSink([&](const UnitPoint&, int level, std::uint8_t) {
+             volume += std::uint64_t{1} << (3 * level);
+             ++calls;
+           }),
+           {});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  MESSAGE(volume << " voxels in " << calls << " blocks, " << seconds << " s");
+  CHECK(volume > 100'000'000);
+  CHECK(calls < volume / 3);
+#ifndef __SANITIZE_ADDRESS__
+  CHECK(seconds < 30);  // 15 s on two cores that eight programs share
+#endif
+}

@@ -1,0 +1,118 @@
+#include "readers/binvox.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::string_view kMagic = "#binvox";
+
+class BinvoxGrid final : public VoxelGrid {
+ public:
+  BinvoxGrid(const SharedBytes& file, const Progress& progress) : file_(file) {
+    header();
+    ProgressMeter meter(progress, file.bytes.size());
+    const std::uint64_t cells = std::uint64_t{dim_[0]} * dim_[1] * dim_[2];
+    std::uint64_t covered = 0;
+    std::uint64_t solid = 0;
+    std::size_t at = data_offset_;
+    for (; covered < cells; at += 2) {
+      const std::string place = "run at byte offset " + std::to_string(at);
+      if (at + 2 > file.bytes.size()) {
+        throw InputError(place + ": the file ends after " + std::to_string(covered) + " of " +
+                         std::to_string(cells) + " voxels");
+      }
+      const unsigned value = file.bytes[at];
+      const unsigned count = file.bytes[at + 1];
+      if (value > 1 || count == 0 || covered + count > cells) {
+        throw InputError(place + ": the value " + std::to_string(value) + ", " + std::to_string(count) +
+                         " times, with " + std::to_string(cells - covered) +
+                         " voxels to go; values are 0 and 1, each 1 to 255 times");
+      }
+      covered += count;
+      solid += value * count;
+      meter.at(at);
+    }
+    if (solid == 0) {
+      throw InputError("the grid holds no solid voxel");
+    }
+    meter.done();
+  }
+
+  void for_each(const Visit& visit) const override {
+    std::uint64_t index = 0;
+    const std::uint64_t cells = std::uint64_t{dim_[0]} * dim_[1] * dim_[2];
+    for (std::size_t at = data_offset_; index < cells; at += 2) {
+      const std::uint64_t end = index + file_.bytes[at + 1];
+      for (; file_.bytes[at] != 0 && index < end; ++index) {
+        const auto y = static_cast<std::int32_t>(index % dim_[2]);
+        const auto z = static_cast<std::int32_t>(index / dim_[2] % dim_[1]);
+        const auto x = static_cast<std::int32_t>(index / dim_[2] / dim_[1]);
+        visit(x, y, z, Rgb{});
+      }
+      index = end;
+    }
+  }
+  std::array<std::int32_t, 3> size() const override {
+    return {static_cast<std::int32_t>(dim_[0]), static_cast<std::int32_t>(dim_[2]),
+            static_cast<std::int32_t>(dim_[1])};
+  }
+  bool has_color() const override { return false; }
+
+ private:
+  void header() {
+    if (!looks_like_binvox(file_.bytes)) {
+      throw InputError("is not a binvox file: it does not begin with \"#binvox\"");
+    }
+    LineReader lines(file_.text());
+    std::string_view line;
+    lines.next(line);
+    if (line.substr(kMagic.size()) != " 1") {
+      fail_at_line(1, quoted(line) + " is not version 1, the only one that is read");
+    }
+    for (bool more = true; more;) {
+      if (!lines.next(line)) {
+        throw InputError("the header has no line 'data'");
+      }
+      const std::string_view word = take_word(line);
+      more = word != "data";
+      if (word == "dim") {
+        for (std::uint32_t& side : dim_) {
+          std::int64_t value = 0;
+          const std::string_view number = take_word(line);
+          if (!parse_integer(number, value) || value < 1 || value > std::int64_t{kGridSideLimit}) {
+            fail_at_line(lines.line_number(), "the side " + quoted(number) + " is no number from 1 to " +
+                                                  std::to_string(kGridSideLimit));
+          }
+          side = static_cast<std::uint32_t>(value);
+        }
+      } else if (more && word != "translate" && word != "scale" && !word.empty()) {
+        fail_at_line(lines.line_number(), quoted(word) + " is not dim, translate, scale or data");
+      }
+    }
+    if (dim_[0] == 0) {
+      fail_at_line(lines.line_number(), "'data' comes before 'dim'");
+    }
+    data_offset_ = lines.offset();
+  }
+
+  SharedBytes file_;
+  std::array<std::uint32_t, 3> dim_{};  ///< slowest first: x, z, y
+  std::size_t data_offset_ = 0;
+};
+
+}  // namespace
+
+bool looks_like_binvox(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= kMagic.size() && SharedBytes{bytes, nullptr}.text().starts_with(kMagic);
+}
+
+Source read_binvox(const SharedBytes& file, const Progress& progress) {
+  return std::unique_ptr<VoxelGrid>(std::make_unique<BinvoxGrid>(file, progress));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,364 @@
+#include "readers/gltf_file.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "readers/file_bytes.h"
+#include "readers/gltf.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+
+/// Types of components.
+enum : std::uint32_t { kI8 = 5120, kU8, kI16, kU16, kU32 = 5125, kF32 };
+
+std::uint32_t bytes_of(std::uint32_t component_type) {
+  switch (component_type) {
+    case kI8:
+    case kU8:
+      return 1;
+    case kI16:
+    case kU16:
+      return 2;
+    case kU32:
+    case kF32:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+/// Counts what a parser would make of the text, so that no text is parsed that makes too much.
+void check_json(std::string_view text) {
+  std::uint64_t values = 0;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      i += c == '\\' ? 1 : 0;
+      in_string = c != '"';
+      continue;
+    }
+    in_string = c == '"';
+    depth += c == '[' || c == '{' ? 1 : (c == ']' || c == '}' ? -1 : 0);
+    values += c == '[' || c == '{' || c == ',' ? 1 : 0;
+    if (depth > kGltfDepthLimit || values > kGltfValueLimit) {
+      throw InputError("the JSON has more than " + std::to_string(kGltfValueLimit) +
+                       " values, or nests them deeper than " + std::to_string(kGltfDepthLimit) +
+                       ", at its byte " + std::to_string(i));
+    }
+  }
+}
+
+json parse_json(std::string_view text) {
+  check_json(text);
+  try {
+    json parsed = json::parse(text.begin(), text.end());
+    if (!parsed.is_object()) {
+      throw InputError("the JSON is no object");
+    }
+    return parsed;
+  } catch (const json::parse_error& error) {
+    throw InputError("the JSON is broken at its byte " + std::to_string(error.byte));
+  } catch (const json::exception&) {
+    throw InputError("the JSON holds a number or a text that cannot be read");
+  }
+}
+
+/// Bytes that were written as letters, six bits each.
+std::string decode_base64(std::string_view text, const std::string& place) {
+  std::string out;
+  out.reserve(text.size() / 4 * 3);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') {
+      break;
+    }
+    const int value = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+' || c == '-' ? 62
+                      : c == '/' || c == '_' ? 63
+                                             : -1;
+    if (value < 0) {
+      throw InputError(place + ": its link holds something else than base64");
+    }
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      out.push_back(static_cast<char>(bits >> count));
+    }
+  }
+  return out;
+}
+
+/// A link with %20 and the like written out.
+std::string decode_percent(const std::string& uri) {
+  std::string out;
+  const auto digit = [](char c) {
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                                  : -1;
+  };
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+      out.push_back(static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])));
+      i += 2;
+    } else {
+      out.push_back(uri[i]);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+const json* gltf_member(const json& object, const char* name) {
+  if (!object.is_object()) {
+    return nullptr;
+  }
+  const auto found = object.find(name);
+  return found == object.end() ? nullptr : &*found;
+}
+
+std::optional<std::uint64_t> gltf_number(const json& object, const char* name, const std::string& place) {
+  const json* member = gltf_member(object, name);
+  if (member == nullptr) {
+    return std::nullopt;
+  }
+  if (member->is_number_unsigned()) {
+    return member->get<std::uint64_t>();
+  }
+  // Exporters have written 12.0.
+  const double value = member->is_number() ? member->get<double>() : -1;
+  if (!(value >= 0 && value <= 9007199254740992.0) || value != std::floor(value)) {
+    throw InputError(place + ": " + name + " is no whole number from 0 on");
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
+void gltf_reals(const json& object, const char* name, std::span<double> values, const std::string& place) {
+  const json* member = gltf_member(object, name);
+  if (member == nullptr) {
+    return;
+  }
+  bool is_good = member->is_array() && member->size() == values.size();
+  for (std::size_t i = 0; is_good && i < values.size(); ++i) {
+    is_good = (*member)[i].is_number();
+    values[i] = is_good ? (*member)[i].get<double>() : 0;
+  }
+  if (!is_good) {
+    throw InputError(place + ": " + name + " is no list of " + std::to_string(values.size()) + " numbers");
+  }
+}
+
+double GltfAccessor::real(std::uint64_t i, std::uint32_t component) const {
+  const std::uint32_t size = bytes_of(component_type);
+  ByteReader reader(
+      bytes.subspan(static_cast<std::size_t>(i * stride + std::uint64_t{component} * size), size));
+  switch (component_type) {
+    case kI8: {
+      const double value = reader.i8();
+      return normalized ? std::fmax(value / 127, -1) : value;
+    }
+    case kU8:
+      return normalized ? reader.u8() / 255.0 : reader.u8();
+    case kI16: {
+      const double value = reader.i16();
+      return normalized ? std::fmax(value / 32767, -1) : value;
+    }
+    case kU16:
+      return normalized ? reader.u16() / 65535.0 : reader.u16();
+    case kU32:
+      return reader.u32();
+    default:
+      return static_cast<double>(reader.f32());
+  }
+}
+
+std::uint32_t GltfAccessor::index(std::uint64_t i) const {
+  const std::uint32_t size = bytes_of(component_type);
+  ByteReader reader(bytes.subspan(static_cast<std::size_t>(i * stride), size));
+  return size == 1 ? reader.u8() : (size == 2 ? reader.u16() : reader.u32());
+}
+
+GltfFile::GltfFile(const SharedBytes& file, const std::string& path) : file_(file), path_(path) {
+  if (!looks_like_gltf(file.bytes)) {
+    throw InputError(
+        "is no glTF file: it begins neither with \"glTF\" nor with a JSON object that names its asset");
+  }
+  if (!file.text().starts_with("glTF")) {
+    json_ = parse_json(file.text());
+    return;
+  }
+  ByteReader reader(file.bytes, "the header");
+  reader.skip(4);
+  const std::uint32_t version = reader.u32();
+  if (version != 2) {
+    throw InputError("version " + std::to_string(version) + " at byte offset 4 is not supported, only 2 is");
+  }
+  reader.skip(4);
+  bool has_json = false;
+  while (reader.remaining() >= 8) {
+    const std::uint32_t size = reader.u32();
+    const std::uint32_t kind = reader.u32();
+    ByteReader chunk = reader.sub(size, "the chunk at byte offset " + std::to_string(reader.offset() - 8));
+    const SharedBytes content{chunk.take(size), file.owner};
+    if (!has_json) {
+      if (kind != kJsonChunk) {
+        throw InputError("the first chunk is not JSON");
+      }
+      json_ = parse_json(content.text());
+      has_json = true;
+    } else if (kind == kBinaryChunk && !binary_) {
+      binary_ = content;
+    }
+  }
+  if (!has_json) {
+    throw InputError("the file ends before its JSON");
+  }
+}
+
+std::uint64_t GltfFile::count(const char* name) const {
+  const json* list = gltf_member(json_, name);
+  return list != nullptr && list->is_array() ? list->size() : 0;
+}
+
+const json& GltfFile::entry(const char* name, std::uint64_t i) const {
+  const json* list = gltf_member(json_, name);
+  if (i >= count(name)) {
+    throw InputError("there is no entry " + std::to_string(i) + " among the " + std::to_string(count(name)) +
+                     " of " + quoted(name));
+  }
+  const json& found = (*list)[static_cast<std::size_t>(i)];
+  if (!found.is_object()) {
+    throw InputError("entry " + std::to_string(i) + " of " + quoted(name) + " is no object");
+  }
+  return found;
+}
+
+SharedBytes GltfFile::link(const std::string& uri, const std::string& place) const {
+  if (uri.starts_with("data:")) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos) {
+      throw InputError(place + ": its data link is not base64");
+    }
+    return SharedBytes::own(decode_base64(std::string_view(uri).substr(comma + 1), place));
+  }
+  const std::filesystem::path relative = decode_percent(uri);
+  bool leaves = relative.empty() || relative.is_absolute() || uri.find("://") != std::string::npos ||
+                path_.empty() || uri.find('\0') != std::string::npos;
+  for (const std::filesystem::path& part : relative) {
+    leaves = leaves || part == "..";
+  }
+  if (leaves) {
+    throw InputError(place + ": its link " + tools::quoted(uri) + " is no file in the folder of this one");
+  }
+  try {
+    return share(load_file((std::filesystem::path(path_).parent_path() / relative).string()));
+  } catch (const InputError& error) {
+    throw InputError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
+  }
+}
+
+std::uint64_t GltfFile::bytes_read() const {
+  std::uint64_t sum = file_.bytes.size();
+  for (const auto& [i, bytes] : buffers_) {
+    sum += bytes.bytes.size();
+  }
+  return sum;
+}
+
+std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
+  const auto found = buffers_.find(i);
+  if (found != buffers_.end()) {
+    return found->second.bytes;
+  }
+  const std::string place = "buffer " + std::to_string(i);
+  const json& entry = this->entry("buffers", i);
+  const json* uri = gltf_member(entry, "uri");
+  if (uri == nullptr) {
+    if (i != 0 || !binary_) {
+      throw InputError(place + ": it has no link, and the file has no binary chunk for it");
+    }
+    return binary_->bytes;
+  }
+  if (!uri->is_string()) {
+    throw InputError(place + ": its link is no text");
+  }
+  return buffers_.emplace(i, link(uri->get_ref<const std::string&>(), place)).first->second.bytes;
+}
+
+std::span<const std::uint8_t> GltfFile::buffer_view(std::uint64_t i) {
+  const std::string place = "buffer view " + std::to_string(i);
+  const json& view = entry("bufferViews", i);
+  const json* extensions = gltf_member(view, "extensions");
+  if (extensions != nullptr && gltf_member(*extensions, "EXT_meshopt_compression") != nullptr) {
+    throw InputError(place + ": its data is compressed (EXT_meshopt_compression), which is not read");
+  }
+  const auto whole = buffer(gltf_number(view, "buffer", place).value_or(0));
+  const std::uint64_t offset = gltf_number(view, "byteOffset", place).value_or(0);
+  const std::uint64_t length = gltf_number(view, "byteLength", place).value_or(0);
+  if (offset > whole.size() || length > whole.size() - offset) {
+    throw InputError(place + ": " + std::to_string(length) + " bytes from " + std::to_string(offset) +
+                     " on are not in its buffer of " + std::to_string(whole.size()));
+  }
+  return whole.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+}
+
+GltfAccessor GltfFile::accessor(std::uint64_t i) {
+  const std::string place = "accessor " + std::to_string(i);
+  const json& entry = this->entry("accessors", i);
+  const auto view = gltf_number(entry, "bufferView", place);
+  if (!view || gltf_member(entry, "sparse") != nullptr) {
+    throw InputError(place + ": it is sparse, compressed or empty, which is not read");
+  }
+  static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 4> kTypes{
+      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}}};
+  GltfAccessor accessor;
+  const json* type = gltf_member(entry, "type");
+  for (const auto& [name, components] : kTypes) {
+    if (type != nullptr && type->is_string() && type->get_ref<const std::string&>() == name) {
+      accessor.components = components;
+    }
+  }
+  const std::uint64_t component_type = gltf_number(entry, "componentType", place).value_or(0);
+  accessor.component_type = component_type <= kF32 ? static_cast<std::uint32_t>(component_type) : 0;
+  const std::uint64_t element = std::uint64_t{accessor.components} * bytes_of(accessor.component_type);
+  if (element == 0) {
+    throw InputError(place + ": its type or componentType is missing or none of numbers and vectors");
+  }
+  const json* normalized = gltf_member(entry, "normalized");
+  accessor.normalized = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();
+  accessor.count = gltf_number(entry, "count", place).value_or(0);
+  accessor.stride = gltf_number(this->entry("bufferViews", *view), "byteStride", place).value_or(element);
+  const std::uint64_t offset = gltf_number(entry, "byteOffset", place).value_or(0);
+  const auto bytes = buffer_view(*view);
+  const bool fits =
+      offset <= bytes.size() && accessor.stride >= element && accessor.stride <= 65535 &&
+      (accessor.count == 0 || (element <= bytes.size() - offset &&
+                               accessor.count - 1 <= (bytes.size() - offset - element) / accessor.stride));
+  if (!fits) {
+    throw InputError(place + ": " + std::to_string(accessor.count) + " times " + std::to_string(element) +
+                     " bytes from " + std::to_string(offset) + " on, one every " +
+                     std::to_string(accessor.stride) + ", are not in its buffer view of " +
+                     std::to_string(bytes.size()));
+  }
+  accessor.bytes = bytes.subspan(static_cast<std::size_t>(offset));
+  return accessor;
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,72 @@
+/// @file gltf_file.h
+/// The JSON of a glTF file and the bytes that it talks of. Internal to the glTF reader.
+#ifndef THIMBLE_TOOLS_READERS_GLTF_FILE_H
+#define THIMBLE_TOOLS_READERS_GLTF_FILE_H
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "readers/shared_bytes.h"
+
+namespace thimble::tools {
+
+/// Numbers in a buffer: vectors of 1 to 16 components.
+struct GltfAccessor {
+  std::span<const std::uint8_t> bytes;  ///< from the first component on
+  std::uint64_t stride = 0;
+  std::uint64_t count = 0;
+  std::uint32_t component_type = 0;
+  std::uint32_t components = 0;
+  bool normalized = false;
+
+  /// A component as a number; normalised integers become 0 to 1 or -1 to 1.
+  double real(std::uint64_t i, std::uint32_t component) const;
+  /// A component of an unsigned type.
+  std::uint32_t index(std::uint64_t i) const;
+};
+
+/// Every member function throws an InputError that names the place: "accessor 3: ...".
+class GltfFile {
+ public:
+  GltfFile(const SharedBytes& file, const std::string& path);
+
+  const nlohmann::json& root() const { return json_; }
+  /// Entry `i` of the list `name` ("meshes"), which is an object.
+  const nlohmann::json& entry(const char* name, std::uint64_t i) const;
+  /// How many entries it has.
+  std::uint64_t count(const char* name) const;
+
+  GltfAccessor accessor(std::uint64_t i);
+  std::span<const std::uint8_t> buffer_view(std::uint64_t i);
+  /// The bytes behind a link: `data:` or a file beside this one.
+  SharedBytes link(const std::string& uri, const std::string& place) const;
+  /// The file and what it loaded.
+  std::uint64_t bytes_read() const;
+
+ private:
+  std::span<const std::uint8_t> buffer(std::uint64_t i);
+
+  SharedBytes file_;
+  std::string path_;
+  nlohmann::json json_;
+  std::optional<SharedBytes> binary_;  ///< of a .glb
+  std::map<std::uint64_t, SharedBytes> buffers_;
+};
+
+/// The member `name` of `object` as a whole number; nothing where there is none.
+std::optional<std::uint64_t> gltf_number(const nlohmann::json& object, const char* name,
+                                         const std::string& place);
+/// As reals; `values` stays as it is where there is no such member. @throws InputError  not that many numbers
+void gltf_reals(const nlohmann::json& object, const char* name, std::span<double> values,
+                const std::string& place);
+/// The member `name`, or null.
+const nlohmann::json* gltf_member(const nlohmann::json& object, const char* name);
+
+}  // namespace thimble::tools
+
+#endif

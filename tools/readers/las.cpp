@@ -1,0 +1,182 @@
+#include "readers/las.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "readers/file_bytes.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::string_view kMagic = "LASF";
+constexpr std::uint64_t kNoColor = 0;
+
+struct PointFormat {
+  std::uint16_t least_bytes;
+  std::uint16_t color_offset;  ///< `kNoColor` without
+};
+constexpr std::array<PointFormat, 11> kFormats{{{20, 0},
+                                                {28, 0},
+                                                {26, 20},
+                                                {34, 28},
+                                                {57, 0},
+                                                {63, 28},
+                                                {30, 0},
+                                                {36, 30},
+                                                {38, 30},
+                                                {59, 0},
+                                                {67, 30}}};
+
+class LasCloud final : public PointCloud {
+ public:
+  LasCloud(const SharedBytes& file, const Progress& progress) : file_(file) {
+    read_header();
+    ProgressMeter meter(progress, file.bytes.size());
+    std::uint16_t highest = 0;
+    std::uint64_t kept = 0;
+    for (std::uint64_t i = 0; i < count_; ++i) {
+      ByteReader record = record_at(i);
+      if (is_withheld(record)) {
+        continue;
+      }
+      ++kept;
+      const CloudPoint point = point_at(i);
+      if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+        throw InputError("the position of point " + std::to_string(i + 1) + " is not finite");
+      }
+      if (color_offset_ != kNoColor) {
+        record.skip(color_offset_);
+        highest = std::max({highest, record.u16(), record.u16(), record.u16()});
+      }
+      meter.at(static_cast<std::size_t>(first_offset_ + i * record_bytes_));
+    }
+    if (kept == 0) {
+      throw InputError(count_ == 0 ? "the file holds no points" : "all points of the file are withheld");
+    }
+    has_color_ = highest > 0;
+    full_ = highest > 255 ? 65535 : 255;
+    meter.done();
+  }
+
+  void for_each(const Visit& visit) const override {
+    for (std::uint64_t i = 0; i < count_; ++i) {
+      ByteReader record = record_at(i);
+      if (is_withheld(record)) {
+        continue;
+      }
+      CloudPoint point = point_at(i);
+      if (has_color_) {
+        record.skip(color_offset_);
+        point.color.r = byte_of(record.u16());
+        point.color.g = byte_of(record.u16());
+        point.color.b = byte_of(record.u16());
+      }
+      visit(point);
+    }
+  }
+  bool has_color() const override { return has_color_; }
+
+ private:
+  void read_header() {
+    if (!looks_like_las(file_.bytes)) {
+      throw InputError("is not a LAS file: it does not begin with \"LASF\"");
+    }
+    ByteReader header(file_.bytes, "the header");
+    header.skip(24);
+    const unsigned major = header.u8();
+    const unsigned minor = header.u8();
+    if (major != 1 || minor > 4) {
+      throw InputError("version " + std::to_string(major) + "." + std::to_string(minor) +
+                       " at byte offset 24 is not supported, only 1.0 to 1.4 are");
+    }
+    header.skip(68);
+    const std::uint16_t header_bytes = header.u16();
+    first_offset_ = header.u32();
+    header.skip(4);
+    const unsigned format = header.u8();
+    record_bytes_ = header.u16();
+    count_ = header.u32();
+    header.skip(20);
+    for (double& scale : scale_) {
+      scale = header.f64();
+    }
+    for (double& offset : offset_) {
+      offset = header.f64();
+    }
+    constexpr std::uint16_t kHeaderBytes14 = 375;
+    if (minor == 4 && header_bytes >= kHeaderBytes14) {
+      header.skip(247 - header.offset());
+      const std::uint64_t count = header.u64();
+      count_ = count != 0 ? count : count_;
+    }
+    if ((format & 0xC0U) != 0) {
+      throw InputError(
+          "its points are compressed (LAZ), which is not read; unpack it first, for example with \"pdal "
+          "translate in.laz out.las\"");
+    }
+    if (format >= kFormats.size()) {
+      throw InputError("point format " + std::to_string(format) +
+                       " at byte offset 104 is not supported, only 0 to 10 are");
+    }
+    is_new_format_ = format >= 6;
+    color_offset_ = kFormats[format].color_offset;
+    if (record_bytes_ < kFormats[format].least_bytes) {
+      throw InputError("points of format " + std::to_string(format) + " take at least " +
+                       std::to_string(kFormats[format].least_bytes) + " bytes, but the header says " +
+                       std::to_string(record_bytes_));
+    }
+    const std::uint64_t room =
+        first_offset_ < file_.bytes.size() ? (file_.bytes.size() - first_offset_) / record_bytes_ : 0;
+    if (count_ > room) {
+      throw InputError("the header counts " + std::to_string(count_) + " points, but from byte offset " +
+                       std::to_string(first_offset_) + " on the file has room for " + std::to_string(room));
+    }
+  }
+
+  ByteReader record_at(std::uint64_t i) const {
+    return ByteReader(file_.bytes.subspan(static_cast<std::size_t>(first_offset_ + i * record_bytes_),
+                                          static_cast<std::size_t>(record_bytes_)));
+  }
+  CloudPoint point_at(std::uint64_t i) const {
+    ByteReader record = record_at(i);
+    CloudPoint point;
+    point.x = record.i32() * scale_[0] + offset_[0];
+    point.y = record.i32() * scale_[1] + offset_[1];
+    point.z = record.i32() * scale_[2] + offset_[2];
+    point.line = i + 1;
+    return point;
+  }
+  bool is_withheld(ByteReader record) const {
+    record.skip(15);
+    return (record.u8() & (is_new_format_ ? 0x04U : 0x80U)) != 0;
+  }
+  std::uint8_t byte_of(std::uint16_t component) const {
+    return static_cast<std::uint8_t>((component * 255U + full_ / 2) / full_);
+  }
+
+  SharedBytes file_;
+  std::uint64_t first_offset_ = 0;
+  std::uint64_t record_bytes_ = 0;
+  std::uint64_t count_ = 0;
+  std::uint64_t color_offset_ = kNoColor;
+  std::array<double, 3> scale_{}, offset_{};
+  bool is_new_format_ = false;
+  bool has_color_ = false;
+  unsigned full_ = 255;
+};
+
+}  // namespace
+
+bool looks_like_las(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with(kMagic);
+}
+
+Source read_las(const SharedBytes& file, const Progress& progress) {
+  return std::unique_ptr<PointCloud>(std::make_unique<LasCloud>(file, progress));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,116 @@
+#include "readers/mts.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "readers/block_colors.h"
+#include "readers/file_bytes.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::string_view kMagic = "MTSM";
+constexpr std::uint64_t kNodeBytes =
+    4;  // a number of two bytes, a chance, a turn; each for all nodes together
+
+class MtsGrid final : public VoxelGrid {
+ public:
+  explicit MtsGrid(const SharedBytes& file) {
+    if (!looks_like_mts(file.bytes)) {
+      throw InputError("is not a Minetest schematic: it does not begin with \"MTSM\"");
+    }
+    ByteReader reader(file.bytes, "the header");
+    reader.skip(kMagic.size());
+    const unsigned version = reader.u16_be();
+    if (version < 1 || version > 4) {
+      throw InputError("version " + std::to_string(version) +
+                       " at byte offset 4 is not supported, only 1 to 4 are");
+    }
+    for (std::uint32_t& side : size_) {
+      side = reader.u16_be();
+      if (side < 1 || side > kGridSideLimit) {
+        reader.fail("a side of " + std::to_string(side) + " nodes; there are 1 to " +
+                    std::to_string(kGridSideLimit));
+      }
+    }
+    if (version >= 3) {
+      reader.skip(size_[1]);  // chances of the layers
+    }
+    const unsigned names = reader.u16_be();
+    for (unsigned i = 0; i < names; ++i) {
+      const auto name = reader.take(reader.u16_be());
+      colors_.push_back(block_color({reinterpret_cast<const char*>(name.data()), name.size()}));
+    }
+    const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
+    nodes_ = inflate_bytes(reader.take(reader.remaining()), Deflated::kZlib, cells * kNodeBytes, "the nodes");
+    if (nodes_.size() != cells * kNodeBytes) {
+      throw InputError("the nodes take " + std::to_string(nodes_.size()) + " bytes, not 4 for each of " +
+                       std::to_string(cells));
+    }
+    has_chances_ = version >= 2;
+    chance_bits_ = version >= 4 ? 0x7FU : 0xFFU;
+    std::uint64_t solid = 0;
+    for (std::uint64_t i = 0; i < cells; ++i) {
+      if (number(i) >= colors_.size()) {
+        throw InputError("node " + std::to_string(i) + " has the number " + std::to_string(number(i)) +
+                         ", but there are " + std::to_string(colors_.size()) + " names");
+      }
+      solid += is_there(i, cells) ? 1U : 0U;
+    }
+    if (solid == 0) {
+      throw InputError("the schematic holds nothing but air");
+    }
+  }
+
+  void for_each(const Visit& visit) const override {
+    const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
+    for (std::uint64_t i = 0; i < cells; ++i) {
+      if (is_there(i, cells)) {
+        const auto x = static_cast<std::int32_t>(i % size_[0]);
+        const auto y = static_cast<std::int32_t>(i / size_[0] % size_[1]);
+        const auto z = static_cast<std::int32_t>(i / size_[0] / size_[1]);
+        visit(x, static_cast<std::int32_t>(size_[2]) - 1 - z, y, *colors_[number(i)]);
+      }
+    }
+  }
+  std::array<std::int32_t, 3> size() const override {
+    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[2]),
+            static_cast<std::int32_t>(size_[1])};
+  }
+  bool has_color() const override { return true; }
+
+ private:
+  unsigned number(std::uint64_t i) const {
+    const std::uint8_t* at = nodes_.bytes().data() + 2 * i;
+    return static_cast<unsigned>(at[0] << 8 | at[1]);
+  }
+  bool is_there(std::uint64_t i, std::uint64_t cells) const {
+    const unsigned chance = nodes_.bytes()[static_cast<std::size_t>(2 * cells + i)] & chance_bits_;
+    return colors_[number(i)].has_value() && (!has_chances_ || chance != 0);
+  }
+
+  std::array<std::uint32_t, 3> size_{};  ///< x, y, z of the file
+  std::vector<std::optional<Rgb>> colors_;
+  FileBytes nodes_;
+  unsigned chance_bits_ = 0xFF;
+  bool has_chances_ = true;
+};
+
+}  // namespace
+
+bool looks_like_mts(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with(kMagic);
+}
+
+Source read_mts(const SharedBytes& file, const Progress& progress) {
+  auto grid = std::make_unique<MtsGrid>(file);
+  if (progress) {
+    progress(1);
+  }
+  return std::unique_ptr<VoxelGrid>(std::move(grid));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,322 @@
+#include "readers/npy.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "readers/height_grid.h"
+#include "readers/text.h"
+#include "readers/zip.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kZipMagic("PK\x03\x04", 4);
+
+/// What a header says.
+struct Header {
+  char type = 'u';  ///< b, u, i or f
+  std::size_t size_bytes = 1;
+  bool is_big_endian = false;
+  bool is_fortran = false;
+  std::vector<std::uint64_t> shape;
+  std::size_t data_offset = 0;
+};
+
+std::uint64_t numbers_of(const Header& header) {
+  std::uint64_t count = 1;
+  for (const std::uint64_t side : header.shape) {
+    if (side != 0 && count > UINT64_MAX / 16 / side) {
+      return UINT64_MAX / 16;
+    }
+    count *= side;
+  }
+  return count;
+}
+
+/// What stands behind a key in the header's dictionary, up to the next key.
+std::string_view value_of(std::string_view dictionary, std::string_view key) {
+  const std::size_t at = dictionary.find("'" + std::string(key) + "'");
+  const std::size_t colon = at == std::string_view::npos ? at : dictionary.find(':', at);
+  if (colon == std::string_view::npos) {
+    throw InputError("the header has no " + quoted(key));
+  }
+  std::string_view value = dictionary.substr(colon + 1);
+  value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
+  return value;
+}
+
+void read_type(std::string_view value, Header& header) {
+  const std::string_view text = value.size() > 1 && (value[0] == '\'' || value[0] == '"')
+                                    ? value.substr(1, value.find(value[0], 1) - 1)
+                                    : std::string_view();
+  static constexpr std::array<std::string_view, 12> kTypes{"b1", "u1", "u2", "u4", "u8", "i1",
+                                                           "i2", "i4", "i8", "f4", "f8", "?"};
+  const bool has_order = !text.empty() && std::string_view("<>|=").find(text[0]) != std::string_view::npos;
+  const std::string_view type = text.substr(has_order ? 1 : 0);
+  if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
+    throw InputError("the type of the array's numbers, " + quoted(value.substr(0, value.find(','))) +
+                     ", is none of booleans, integers, and floats of 4 or 8 bytes");
+  }
+  header.type = type[0] == '?' ? 'b' : type[0];
+  header.size_bytes = type.size() < 2 ? 1 : static_cast<std::size_t>(type[1] - '0');
+  header.is_big_endian = has_order && text[0] == '>';
+}
+
+void read_shape(std::string_view value, Header& header) {
+  const std::size_t end = value.find(')');
+  if (value.empty() || value[0] != '(' || end == std::string_view::npos) {
+    throw InputError("the array's shape is no list in parentheses");
+  }
+  value = value.substr(1, end - 1);
+  while (value.find_first_not_of(" ,") != std::string_view::npos) {
+    value.remove_prefix(value.find_first_not_of(" ,"));
+    const std::size_t length = std::min(value.find_first_of(" ,"), value.size());
+    std::int64_t side = 0;
+    if (!parse_integer(value.substr(0, length), side) || side < 0) {
+      throw InputError("the array's shape holds " + quoted(value.substr(0, length)) + ", which is no length");
+    }
+    header.shape.push_back(static_cast<std::uint64_t>(side));
+    value.remove_prefix(length);
+  }
+}
+
+Header read_header(std::span<const std::uint8_t> bytes) {
+  if (!SharedBytes{bytes, nullptr}.text().starts_with(kMagic)) {
+    throw InputError("is no NumPy array: it does not begin with \"\\x93NUMPY\"");
+  }
+  ByteReader reader(bytes, "the header");
+  reader.skip(kMagic.size());
+  const unsigned version = reader.u8();
+  reader.skip(1);
+  if (version < 1 || version > 3) {
+    throw InputError("version " + std::to_string(version) +
+                     " at byte offset 6 is not supported, only 1 to 3 are");
+  }
+  const auto text = reader.take(version == 1 ? reader.u16() : reader.u32());
+  const std::string_view dictionary(reinterpret_cast<const char*>(text.data()), text.size());
+  Header header;
+  read_type(value_of(dictionary, "descr"), header);
+  header.is_fortran = value_of(dictionary, "fortran_order").starts_with("True");
+  read_shape(value_of(dictionary, "shape"), header);
+  header.data_offset = static_cast<std::size_t>(reader.offset());
+  return header;
+}
+
+/// An array's numbers.
+struct Array {
+  Header header;
+  SharedBytes bytes;
+  std::vector<std::uint64_t> strides;  ///< in numbers
+
+  Array(Header read, SharedBytes file) : header(std::move(read)), bytes(std::move(file)) {
+    const std::uint64_t room = (bytes.bytes.size() - header.data_offset) / header.size_bytes;
+    if (numbers_of(header) > room) {
+      throw InputError("the array's shape takes " + std::to_string(numbers_of(header)) + " numbers of " +
+                       std::to_string(header.size_bytes) + " bytes, but the file has room for " +
+                       std::to_string(room));
+    }
+    strides.resize(header.shape.size());
+    std::uint64_t stride = 1;
+    for (std::size_t i = 0; i < strides.size(); ++i) {
+      const std::size_t axis = header.is_fortran ? i : strides.size() - 1 - i;
+      strides[axis] = stride;
+      stride *= header.shape[axis];
+    }
+  }
+
+  double at(std::uint64_t index) const {
+    const std::uint8_t* first = bytes.bytes.data() + header.data_offset + index * header.size_bytes;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < header.size_bytes; ++i) {
+      bits = bits << 8 | first[header.is_big_endian ? i : header.size_bytes - 1 - i];
+    }
+    if (header.type == 'f') {
+      return header.size_bytes == 4
+                 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
+                 : std::bit_cast<double>(bits);
+    }
+    const auto unused = static_cast<int>(64 - 8 * header.size_bytes);
+    return header.type == 'i' ? static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused)
+                              : static_cast<double>(bits);
+  }
+};
+
+class ArrayPoints final : public PointCloud {
+ public:
+  explicit ArrayPoints(Array array) : array_(std::move(array)) {
+    has_color_ = array_.header.shape[1] == 6;
+    for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
+      for (std::uint64_t column = 0; column < array_.header.shape[1]; ++column) {
+        const double value = number(i, column);
+        if (column < 3 && !std::isfinite(value)) {
+          throw InputError("a coordinate of point " + std::to_string(i + 1) + " is not finite");
+        }
+        has_color_ = has_color_ && (column < 3 || (value >= 0 && value <= 255 && value == std::floor(value)));
+      }
+    }
+    if (array_.header.shape[0] == 0) {
+      throw InputError("the array holds no points");
+    }
+  }
+  void for_each(const Visit& visit) const override {
+    CloudPoint point;
+    for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
+      point.x = number(i, 0);
+      point.y = number(i, 1);
+      point.z = number(i, 2);
+      if (has_color_) {
+        point.color = {static_cast<std::uint8_t>(number(i, 3)), static_cast<std::uint8_t>(number(i, 4)),
+                       static_cast<std::uint8_t>(number(i, 5))};
+      }
+      point.line = i + 1;
+      visit(point);
+    }
+  }
+  bool has_color() const override { return has_color_; }
+
+ private:
+  double number(std::uint64_t i, std::uint64_t column) const {
+    return array_.at(i * array_.strides[0] + column * array_.strides[1]);
+  }
+  Array array_;
+  bool has_color_ = false;
+};
+
+class ArrayGrid final : public VoxelGrid {
+ public:
+  explicit ArrayGrid(Array array)
+      : array_(std::move(array)), channels_(array_.header.shape.size() == 4 ? array_.header.shape[3] : 0) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint64_t side = array_.header.shape[axis];
+      if (side < 1 || side > kGridSideLimit) {
+        throw InputError("the array has a side of " + std::to_string(side) + " voxels; there are 1 to " +
+                         std::to_string(kGridSideLimit));
+      }
+      size_[axis] = static_cast<std::int32_t>(side);
+    }
+    std::uint64_t solid = 0;
+    for_each([&](auto, auto, auto, auto) { ++solid; });
+    if (solid == 0) {
+      throw InputError("the array holds nothing solid");
+    }
+  }
+  void for_each(const Visit& visit) const override {
+    for (std::int32_t x = 0; x < size_[0]; ++x) {
+      for (std::int32_t y = 0; y < size_[1]; ++y) {
+        for (std::int32_t z = 0; z < size_[2]; ++z) {
+          if (const auto color = color_at(x, y, z)) {
+            visit(x, y, z, *color);
+          }
+        }
+      }
+    }
+  }
+  std::array<std::int32_t, 3> size() const override { return size_; }
+  bool has_color() const override { return channels_ != 0; }
+
+ private:
+  std::optional<Rgb> color_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    const std::uint64_t first = static_cast<std::uint64_t>(x) * array_.strides[0] +
+                                static_cast<std::uint64_t>(y) * array_.strides[1] +
+                                static_cast<std::uint64_t>(z) * array_.strides[2];
+    if (channels_ == 0) {
+      const double value = array_.at(first);
+      return value != 0 && (array_.header.type != 'f' || value >= 0.5) ? std::optional<Rgb>(Rgb{})
+                                                                       : std::nullopt;
+    }
+    const auto channel = [&](std::uint64_t i) {
+      return static_cast<std::uint8_t>(array_.at(first + i * array_.strides[3]));
+    };
+    const Rgb color{channel(0), channel(1), channel(2)};
+    const bool is_solid = channels_ == 4 ? channel(3) != 0 : color != Rgb{0, 0, 0};
+    return is_solid ? std::optional<Rgb>(color) : std::nullopt;
+  }
+
+  Array array_;
+  std::uint64_t channels_;  ///< 0 without colours
+  std::array<std::int32_t, 3> size_{};
+};
+
+std::string shape_of(const Header& header) {
+  std::string text;
+  for (const std::uint64_t side : header.shape) {
+    text += (text.empty() ? "" : " x ") + std::to_string(side);
+  }
+  return text.empty() ? "one number" : text;
+}
+
+Source source_of(Array array) {
+  const Header& header = array.header;
+  const std::size_t dimensions = header.shape.size();
+  if (dimensions == 2 && header.type == 'f' && (header.shape[1] == 3 || header.shape[1] == 6)) {
+    return std::unique_ptr<PointCloud>(std::make_unique<ArrayPoints>(std::move(array)));
+  }
+  if (dimensions == 2) {
+    return height_landscape(header.shape[1], header.shape[0], [&](std::uint64_t column, std::uint64_t row) {
+      return array.at(row * array.strides[0] + column * array.strides[1]);
+    });
+  }
+  const bool is_color = dimensions == 4 && header.type == 'u' && header.size_bytes == 1 &&
+                        (header.shape[3] == 3 || header.shape[3] == 4);
+  if (dimensions == 3 || is_color) {
+    return std::unique_ptr<VoxelGrid>(std::make_unique<ArrayGrid>(std::move(array)));
+  }
+  throw InputError(
+      "an array of " + shape_of(header) +
+      " numbers is read as nothing; points are N x 3 floats, heights H x W, voxels X x Y x Z, colours "
+      "X x Y x Z x 3 or 4 bytes");
+}
+
+/// The member of an archive that has the most to show, unpacked.
+SharedBytes largest_member(std::span<const std::uint8_t> file) {
+  constexpr std::uint64_t kEnoughForHeader = 4096;
+  std::optional<ZipMember> best;
+  std::uint64_t most = 0;
+  for (const ZipMember& member : zip_members(file)) {
+    const FileBytes beginning = zip_beginning(member, kEnoughForHeader);
+    if (!beginning.text().starts_with(kMagic)) {
+      continue;
+    }
+    const Header header = read_header(beginning.bytes());
+    if (header.shape.size() >= 2 && numbers_of(header) > most) {
+      most = numbers_of(header);
+      best = member;
+    }
+  }
+  if (!best) {
+    throw InputError("the archive holds no NumPy array of two dimensions or more");
+  }
+  return share(zip_unpack(*best));
+}
+
+}  // namespace
+
+bool looks_like_npy(std::span<const std::uint8_t> bytes) {
+  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+  constexpr std::size_t kNameLength = 26;
+  constexpr std::size_t kName = 30;
+  if (text.starts_with(kZipMagic) && bytes.size() > kName) {
+    const std::size_t length = bytes[kNameLength] | static_cast<std::size_t>(bytes[kNameLength + 1]) << 8;
+    return text.substr(kName, length).ends_with(".npy");
+  }
+  return text.starts_with(kMagic);
+}
+
+Source read_npy(const SharedBytes& file, const Progress& progress) {
+  const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
+  Source source = source_of(Array(read_header(bytes.bytes), bytes));
+  if (progress) {
+    progress(1);
+  }
+  return source;
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,402 @@
+#include "readers/pcd.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "readers/file_bytes.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+enum class Encoding : std::uint8_t { kText, kBinary, kCompressed };
+
+struct Field {
+  std::string_view name;
+  std::uint64_t size_bytes = 4;
+  char type = 'F';
+  std::uint64_t count = 1;
+};
+
+/// x, y, z and the colour.
+constexpr std::size_t kUsed = 4;
+constexpr std::size_t kColor = 3;
+
+struct Header {
+  std::vector<Field> fields;
+  std::optional<std::uint64_t> width, height, points;
+  Encoding encoding = Encoding::kText;
+  std::size_t data_offset = 0;
+  std::uint64_t data_line = 0;
+};
+
+/// Where a value of all points lies.
+struct Column {
+  Field field;
+  std::uint64_t first = 0;   ///< byte offset, or in a text the number of values before it
+  std::uint64_t stride = 0;  ///< bytes from point to point
+};
+
+class HeaderParser {
+ public:
+  explicit HeaderParser(std::string_view text) : lines_(text) {}
+
+  Header parse() {
+    std::string_view line;
+    for (;;) {
+      if (!lines_.next(line)) {
+        throw InputError("the header has no line 'DATA'");
+      }
+      const std::string_view word = take_word(line);
+      if (word == "DATA") {
+        encoding(take_word(line));
+        break;
+      }
+      statement(word, line);
+    }
+    if (header_.fields.empty()) {
+      throw InputError("the header has no line 'FIELDS'");
+    }
+    header_.data_offset = lines_.offset();
+    header_.data_line = lines_.line_number() + 1;
+    return std::move(header_);
+  }
+
+ private:
+  void statement(std::string_view word, std::string_view line) {
+    if (word == "FIELDS" || word == "COLUMNS") {
+      for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) {
+        Field field;
+        field.name = name;
+        header_.fields.push_back(field);
+      }
+    } else if (word == "SIZE") {
+      each_field(line, [&](Field& field, std::string_view value) {
+        field.size_bytes = number(value, 8);
+        if (!std::has_single_bit(field.size_bytes)) {
+          fail("the size " + quoted(value) + " is not 1, 2, 4 or 8");
+        }
+      });
+    } else if (word == "TYPE") {
+      each_field(line, [&](Field& field, std::string_view value) {
+        if (value != "F" && value != "U" && value != "I") {
+          fail("the type " + quoted(value) + " is not F, U or I");
+        }
+        field.type = value.front();
+      });
+    } else if (word == "COUNT") {
+      constexpr std::uint64_t kMostValues = 65536;
+      each_field(line,
+                 [&](Field& field, std::string_view value) { field.count = number(value, kMostValues); });
+    } else if (word == "WIDTH") {
+      header_.width = number(take_word(line), UINT32_MAX);
+    } else if (word == "HEIGHT") {
+      header_.height = number(take_word(line), UINT32_MAX);
+    } else if (word == "POINTS") {
+      header_.points = number(take_word(line), INT64_MAX);
+    } else if (!word.empty() && word.front() != '#' && word != "VERSION" && word != "VIEWPOINT") {
+      fail(quoted(word) + " begins no line of a header");
+    }
+  }
+
+  template <class Set>
+  void each_field(std::string_view line, const Set& set) {
+    for (Field& field : header_.fields) {
+      set(field, take_word(line));
+    }
+  }
+
+  void encoding(std::string_view word) {
+    if (word == "binary") {
+      header_.encoding = Encoding::kBinary;
+    } else if (word == "binary_compressed") {
+      header_.encoding = Encoding::kCompressed;
+    } else if (word != "ascii") {
+      fail("the data " + quoted(word) + " is not ascii, binary or binary_compressed");
+    }
+  }
+
+  std::uint64_t number(std::string_view word, std::uint64_t most) const {
+    std::int64_t value = 0;
+    if (!parse_integer(word, value) || value < 0 || static_cast<std::uint64_t>(value) > most) {
+      fail(quoted(word) + " is no whole number from 0 to " + std::to_string(most));
+    }
+    return static_cast<std::uint64_t>(value);
+  }
+  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(lines_.line_number(), sentence); }
+
+  LineReader lines_;
+  Header header_;
+};
+
+/// Unpacks LZF. A byte below 32 stands before that many literal bytes and one more; any other before a copy
+/// of what came already: three bits of length (7: a byte more follows), thirteen of distance.
+std::string unpack_lzf(std::span<const std::uint8_t> packed, std::size_t size) {
+  // A copy of three bytes makes at most 264.
+  if (size / 88 > packed.size()) {
+    throw InputError("the compressed data announces " + std::to_string(size) + " bytes, which " +
+                     std::to_string(packed.size()) + " packed ones cannot hold");
+  }
+  ByteReader reader(packed, "the compressed data");
+  std::string out;
+  out.reserve(size);
+  while (reader.remaining() > 0) {
+    const std::size_t control = reader.u8();
+    if (control < 32) {
+      const auto literal = reader.take(control + 1);
+      out.append(reinterpret_cast<const char*>(literal.data()), literal.size());
+    } else {
+      const std::size_t length = 2 + ((control >> 5) == 7 ? 7 + std::size_t{reader.u8()} : control >> 5);
+      const std::size_t distance = ((control & 31) << 8 | reader.u8()) + 1;
+      if (distance > out.size()) {
+        reader.fail("a copy at byte " + std::to_string(reader.offset()) +
+                    " of it reaches before the beginning");
+      }
+      for (std::size_t i = 0; i < length; ++i) {
+        out.push_back(out[out.size() - distance]);
+      }
+    }
+    if (out.size() > size) {
+      reader.fail("it holds more than the " + std::to_string(size) + " bytes announced");
+    }
+  }
+  if (out.size() != size) {
+    reader.fail("it holds " + std::to_string(out.size()) + " bytes, not the " + std::to_string(size) +
+                " announced");
+  }
+  return out;
+}
+
+Rgb color_of(std::uint32_t bits) {
+  return {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
+          static_cast<std::uint8_t>(bits)};
+}
+
+class PcdCloud final : public PointCloud {
+ public:
+  PcdCloud(const SharedBytes& file, const Progress& progress) : file_(file) {
+    const Header header = HeaderParser(file.text()).parse();
+    is_text_ = header.encoding == Encoding::kText;
+    data_offset_ = header.data_offset;
+    data_line_ = header.data_line;
+    count_points(header);
+    find_columns(header);
+    if (header.encoding == Encoding::kCompressed) {
+      ByteReader data(file.bytes.subspan(data_offset_), "the compressed data", data_offset_);
+      const std::uint32_t packed_bytes = data.u32();
+      const std::uint32_t size_bytes = data.u32();
+      if (count_ != size_bytes / record_ || size_bytes % record_ != 0) {
+        throw InputError("the header counts " + std::to_string(count_) + " points of " +
+                         std::to_string(record_) + " bytes, but the compressed data announces " +
+                         std::to_string(size_bytes) + " bytes");
+      }
+      file_ = SharedBytes::own(unpack_lzf(data.take(packed_bytes), size_bytes));
+      data_offset_ = 0;
+    }
+    const std::uint64_t room = (file_.bytes.size() - data_offset_ + (is_text_ ? 1 : 0)) / record_;
+    if (count_ > room) {
+      throw InputError("the header counts " + std::to_string(count_) + " points, but the file has room for " +
+                       std::to_string(room) + " at most");
+    }
+    ProgressMeter meter(progress, file.bytes.size());
+    std::uint64_t finite = 0;
+    walk([&](const CloudPoint&) { ++finite; }, meter);
+    if (finite == 0) {
+      throw InputError(count_ == 0 ? "the header counts no points" : "no point of the file is finite");
+    }
+    meter.done();
+  }
+
+  void for_each(const Visit& visit) const override {
+    const Progress no_progress;
+    ProgressMeter meter(no_progress, 0);
+    walk(visit, meter);
+  }
+  bool has_color() const override { return has_color_; }
+  const char* counts_in() const override { return is_text_ ? "line" : "point"; }
+
+ private:
+  void count_points(const Header& header) {
+    if (!header.points && !header.width) {
+      throw InputError("the header has no line 'POINTS' or 'WIDTH'");
+    }
+    count_ = header.points.value_or(header.width.value_or(0) * header.height.value_or(1));
+  }
+
+  void find_columns(const Header& header) {
+    static constexpr std::array<std::string_view, kUsed> kNames{"x", "y", "z", "rgb"};
+    std::array<bool, kUsed> found{};
+    std::uint64_t bytes = 0;
+    std::uint64_t values = 0;
+    for (const Field& field : header.fields) {
+      for (std::size_t i = 0; i < kUsed; ++i) {
+        const bool is_name = field.name == kNames[i] || (i == kColor && field.name == "rgba");
+        const bool is_color = i != kColor || field.size_bytes == 4;
+        if (is_name && is_color && !found[i] && field.count > 0) {
+          found[i] = true;
+          columns_[i].field = field;
+          columns_[i].first = is_text_ ? values : bytes;
+        }
+      }
+      if (field.type == 'F' && field.size_bytes < 4) {
+        throw InputError("the field " + quoted(field.name) + " is of floats of " +
+                         std::to_string(field.size_bytes) + " bytes, which there are not");
+      }
+      bytes += field.size_bytes * field.count;
+      values += field.count;
+    }
+    for (std::size_t i = 0; i < kColor; ++i) {
+      if (!found[i]) {
+        throw InputError("no field of the header is named " + std::string(kNames[i]));
+      }
+    }
+    has_color_ = found[kColor];
+    record_ = is_text_ ? 2 * values : bytes;
+    for (Column& column : columns_) {
+      // Compressed data holds all values of one field, then all of the next.
+      const bool is_apart = header.encoding == Encoding::kCompressed;
+      column.stride = is_apart ? column.field.size_bytes * column.field.count : bytes;
+      column.first *= is_apart ? count_ : 1;
+    }
+  }
+
+  template <class Take>
+  void walk(const Take& take, ProgressMeter& meter) const {
+    if (is_text_) {
+      walk_lines(take, meter);
+      return;
+    }
+    for (std::uint64_t i = 0; i < count_; ++i) {
+      CloudPoint point;
+      point.x = value(columns_[0], i);
+      point.y = value(columns_[1], i);
+      point.z = value(columns_[2], i);
+      point.line = i + 1;
+      if (has_color_) {
+        point.color = color_of(static_cast<std::uint32_t>(bits(columns_[kColor], i)));
+      }
+      meter.at(static_cast<std::size_t>(data_offset_ + i * record_));
+      if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
+        take(point);
+      }
+    }
+  }
+
+  template <class Take>
+  void walk_lines(const Take& take, ProgressMeter& meter) const {
+    LineReader lines(file_.text().substr(data_offset_));
+    std::string_view line;
+    std::uint64_t last = 0;
+    for (const Column& column : columns_) {
+      last = std::max(last, column.first);
+    }
+    for (std::uint64_t done = 0; done < count_;) {
+      if (!lines.next(line)) {
+        throw InputError("the header counts " + std::to_string(count_) + " points, but the file holds " +
+                         std::to_string(done));
+      }
+      meter.at(data_offset_ + lines.offset());
+      std::array<std::string_view, kUsed> words;
+      std::uint64_t at = 0;
+      for (std::string_view word = take_word(line); at <= last && !word.empty();
+           word = take_word(line), ++at) {
+        for (std::size_t i = 0; i < kUsed; ++i) {
+          words[i] = columns_[i].first == at ? word : words[i];
+        }
+      }
+      if (at == 0) {
+        continue;
+      }
+      ++done;
+      CloudPoint point;
+      point.line = data_line_ + lines.line_number() - 1;
+      if (at <= last) {
+        fail_at_line(point.line, std::to_string(at) + " values, but the fields of the header take more");
+      }
+      point.x = number(words[0], point.line);
+      point.y = number(words[1], point.line);
+      point.z = number(words[2], point.line);
+      if (has_color_) {
+        point.color = written_color(words[kColor], point.line);
+      }
+      if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
+        take(point);
+      }
+    }
+  }
+
+  static double number(std::string_view word, std::uint64_t line) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (parse_number(word, value) == NumberKind::kGarbage) {
+      fail_at_line(line, quoted(word) + " is not a number");
+    }
+    return value;
+  }
+  Rgb written_color(std::string_view word, std::uint64_t line) const {
+    const double value = number(word, line);
+    if (columns_[kColor].field.type == 'F') {
+      // Too large to be a float: its bytes stand for no colour either.
+      return std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max())
+                 ? color_of(std::bit_cast<std::uint32_t>(static_cast<float>(value)))
+                 : Rgb{};
+    }
+    if (!(value >= INT32_MIN && value <= UINT32_MAX)) {
+      fail_at_line(line, "the color " + quoted(word) + " does not fit 32 bits");
+    }
+    return color_of(static_cast<std::uint32_t>(static_cast<std::int64_t>(value)));
+  }
+
+  std::uint64_t bits(const Column& column, std::uint64_t i) const {
+    std::uint64_t result = 0;
+    const std::uint8_t* bytes = file_.bytes.data() + data_offset_ + column.first + i * column.stride;
+    for (std::uint64_t byte = 0; byte < column.field.size_bytes; ++byte) {
+      result |= std::uint64_t{bytes[byte]} << (8 * byte);
+    }
+    return result;
+  }
+  double value(const Column& column, std::uint64_t i) const {
+    const std::uint64_t raw = bits(column, i);
+    const auto unused = static_cast<int>(64 - 8 * column.field.size_bytes);
+    if (column.field.type == 'F') {
+      return column.field.size_bytes == 4
+                 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)))
+                 : std::bit_cast<double>(raw);
+    }
+    return column.field.type == 'U' ? static_cast<double>(raw)
+                                    : static_cast<double>(static_cast<std::int64_t>(raw << unused) >> unused);
+  }
+
+  SharedBytes file_;  ///< or what it unpacks to
+  std::size_t data_offset_ = 0;
+  std::uint64_t data_line_ = 0;
+  std::uint64_t count_ = 0;
+  std::uint64_t record_ = 0;  ///< fewest bytes of a point
+  std::array<Column, kUsed> columns_;
+  bool is_text_ = true;
+  bool has_color_ = false;
+};
+
+}  // namespace
+
+bool looks_like_pcd(std::span<const std::uint8_t> bytes) {
+  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+  if (text.starts_with("# .PCD")) {
+    return true;
+  }
+  const std::string_view word = WordReader(text, '#').next();
+  return word == "VERSION" || word == "FIELDS" || word == "COLUMNS";
+}
+
+Source read_pcd(const SharedBytes& file, const Progress& progress) {
+  return std::unique_ptr<PointCloud>(std::make_unique<PcdCloud>(file, progress));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,177 @@
+#include "readers/qb.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "readers/file_bytes.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::uint32_t kVersion = 0x00000101;  // bytes 1, 1, 0, 0
+constexpr std::uint32_t kRunFlag = 2;
+constexpr std::uint32_t kNextSliceFlag = 6;
+
+struct Matrix {
+  std::array<std::uint32_t, 3> size{};
+  std::array<std::int64_t, 3> position{};
+  std::size_t data_offset = 0;
+};
+
+class QbGrid final : public VoxelGrid {
+ public:
+  QbGrid(const SharedBytes& file, const Progress& progress) : file_(file) {
+    ByteReader reader(file.bytes, "the header");
+    if (file.bytes.size() < 4 || reader.u32() != kVersion) {
+      throw InputError("is not a Qubicle file of version 1.1: it does not begin with the bytes 1, 1, 0, 0");
+    }
+    is_bgra_ = flag(reader, "color format");
+    is_left_handed_ = !flag(reader, "z axis");
+    is_packed_ = flag(reader, "compression");
+    flag(reader, "visibility mask");
+    const std::uint32_t count = reader.u32();
+    std::uint64_t voxels = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      Matrix matrix;
+      reader.skip(reader.u8());
+      for (std::uint32_t& side : matrix.size) {
+        side = reader.u32();
+        if (side > kGridSideLimit) {
+          reader.fail("matrix " + std::to_string(i) + " has a side of " + std::to_string(side) +
+                      " voxels, the limit is " + std::to_string(kGridSideLimit));
+        }
+      }
+      for (std::int64_t& coordinate : matrix.position) {
+        coordinate = reader.i32();
+      }
+      matrix.data_offset = static_cast<std::size_t>(reader.offset());
+      if (is_packed_) {
+        // What a run repeats costs no byte, but time.
+        voxels += std::uint64_t{matrix.size[0]} * matrix.size[1] * matrix.size[2];
+        if (voxels > kMostCells) {
+          reader.fail("the matrices have more cells than the limit of " + std::to_string(kMostCells));
+        }
+      }
+      walk(matrix, reader, [](auto, auto, auto, auto) {});
+      matrices_.push_back(matrix);
+    }
+    place();
+    if (progress) {
+      progress(1);
+    }
+  }
+
+  void for_each(const Visit& visit) const override {
+    for (const Matrix& matrix : matrices_) {
+      ByteReader reader(file_.bytes.subspan(matrix.data_offset), "a matrix", matrix.data_offset);
+      walk(matrix, reader, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t bits) {
+        const auto at = [&](std::size_t axis, std::uint32_t local) {
+          return static_cast<std::int32_t>(matrix.position[axis] + local - low_[axis]);
+        };
+        const Rgb color{static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+                        static_cast<std::uint8_t>(bits >> 16)};
+        const std::int32_t depth = at(2, z);
+        visit(at(0, x), is_left_handed_ ? depth : size_[1] - 1 - depth, at(1, y),
+              is_bgra_ ? Rgb{color.b, color.g, color.r} : color);
+      });
+    }
+  }
+  std::array<std::int32_t, 3> size() const override { return size_; }
+  bool has_color() const override { return true; }
+
+ private:
+  static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31;
+
+  static bool flag(ByteReader& reader, const char* what) {
+    const std::uint32_t value = reader.u32();
+    if (value > 1) {
+      reader.fail(std::string("the ") + what + " is " + std::to_string(value) + ", not 0 or 1");
+    }
+    return value == 1;
+  }
+
+  /// Reads a matrix's voxels, slice by slice of z, rows of y of x. `take` sees those that are there.
+  template <class Take>
+  void walk(const Matrix& matrix, ByteReader& reader, const Take& take) const {
+    const std::uint64_t slice = std::uint64_t{matrix.size[0]} * matrix.size[1];
+    const auto put = [&](std::uint64_t index, std::uint32_t z, std::uint32_t bits) {
+      if ((bits >> 24) != 0) {
+        take(static_cast<std::uint32_t>(index % matrix.size[0]),
+             static_cast<std::uint32_t>(index / matrix.size[0]), z, bits);
+      }
+    };
+    for (std::uint32_t z = 0; z < matrix.size[2]; ++z) {
+      if (!is_packed_) {
+        if (reader.remaining() / 4 < slice) {
+          reader.fail("the file ends in slice " + std::to_string(z) + " of " +
+                      std::to_string(matrix.size[2]));
+        }
+        for (std::uint64_t index = 0; index < slice; ++index) {
+          put(index, z, reader.u32());
+        }
+        continue;
+      }
+      std::uint64_t index = 0;
+      for (std::uint32_t code = reader.u32(); code != kNextSliceFlag; code = reader.u32()) {
+        const std::uint32_t times = code == kRunFlag ? reader.u32() : 1;
+        const std::uint32_t bits = code == kRunFlag ? reader.u32() : code;
+        if (times > slice - index) {
+          reader.fail("slice " + std::to_string(z) + " holds more than its " + std::to_string(slice) +
+                      " voxels, before byte offset " + std::to_string(reader.offset()));
+        }
+        for (const std::uint64_t end = index + times; index < end; ++index) {
+          put(index, z, bits);
+        }
+      }
+    }
+  }
+
+  void place() {
+    std::array<std::int64_t, 3> high{};
+    bool any = false;
+    for (const Matrix& matrix : matrices_) {
+      if (matrix.size[0] == 0 || matrix.size[1] == 0 || matrix.size[2] == 0) {
+        continue;
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::int64_t end = matrix.position[axis] + matrix.size[axis];
+        low_[axis] = any ? std::min(low_[axis], matrix.position[axis]) : matrix.position[axis];
+        high[axis] = any ? std::max(high[axis], end) : end;
+      }
+      any = true;
+    }
+    if (!any) {
+      throw InputError("the file holds no voxels");
+    }
+    constexpr std::array<std::size_t, 3> kTurned{0, 2, 1};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t side = high[axis] - low_[axis];
+      if (side > std::int64_t{kGridSideLimit}) {
+        throw InputError("the matrices reach over " + std::to_string(side) + " voxels, the limit is " +
+                         std::to_string(kGridSideLimit));
+      }
+      size_[kTurned[axis]] = static_cast<std::int32_t>(side);
+    }
+    std::uint64_t solid = 0;
+    for_each([&](auto, auto, auto, auto) { ++solid; });
+    if (solid == 0) {
+      throw InputError("the file holds no voxels");
+    }
+  }
+
+  SharedBytes file_;
+  std::vector<Matrix> matrices_;
+  std::array<std::int64_t, 3> low_{};   ///< in the file's axes
+  std::array<std::int32_t, 3> size_{};  ///< z up
+  bool is_bgra_ = false, is_left_handed_ = false, is_packed_ = false;
+};
+
+}  // namespace
+
+Source read_qb(const SharedBytes& file, const Progress& progress) {
+  return std::unique_ptr<VoxelGrid>(std::make_unique<QbGrid>(file, progress));
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,141 @@
+#include "readers/stl.h"
+
+#include <cmath>
+#include <string>
+
+#include "readers/file_bytes.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 80;
+constexpr std::size_t kTriangleBytes = 50;
+
+bool begins_with_solid(std::string_view text) {
+  std::string_view line = text.substr(0, 64);
+  return equals_ignoring_case(take_word(line), "solid");
+}
+
+/// Adds a triangle of three new positions.
+void add(TriangleMesh& mesh, const std::array<std::array<double, 3>, 3>& corners) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+  mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+void reserve(TriangleMesh& mesh, std::uint64_t triangles) {
+  constexpr std::uint64_t kMost = UINT32_MAX / 3;
+  if (triangles > kMost) {
+    throw InputError("the file holds " + std::to_string(triangles) + " triangles, the limit is " +
+                     std::to_string(kMost));
+  }
+  mesh.positions.reserve(static_cast<std::size_t>(3 * triangles));
+  mesh.triangles.reserve(static_cast<std::size_t>(triangles));
+}
+
+TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
+  ByteReader reader(file.bytes);
+  reader.skip(kHeaderBytes);
+  const std::uint32_t count = reader.u32();
+  if (reader.remaining() / kTriangleBytes < count) {
+    throw InputError("the header counts " + std::to_string(count) + " triangles, but the file has room for " +
+                     std::to_string(reader.remaining() / kTriangleBytes));
+  }
+  TriangleMesh mesh;
+  reserve(mesh, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    reader.skip(3 * sizeof(float));  // the normal
+    std::array<std::array<double, 3>, 3> corners{};
+    for (auto& corner : corners) {
+      for (double& coordinate : corner) {
+        coordinate = static_cast<double>(reader.f32());
+        if (!std::isfinite(coordinate)) {
+          reader.fail("a coordinate of triangle " + std::to_string(i) +
+                      " is not finite, before byte offset " + std::to_string(reader.offset()));
+        }
+      }
+    }
+    reader.skip(2);
+    add(mesh, corners);
+    meter.at(static_cast<std::size_t>(reader.offset()));
+  }
+  return mesh;
+}
+
+std::uint64_t count_facets(std::string_view text) {
+  std::uint64_t facets = 0;
+  for (std::size_t at = text.find("endfacet"); at != std::string_view::npos;
+       at = text.find("endfacet", at + 8)) {
+    ++facets;
+  }
+  return facets;
+}
+
+TriangleMesh read_text(std::string_view text, ProgressMeter& meter) {
+  static constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
+  TriangleMesh mesh;
+  reserve(mesh, count_facets(text));
+  LineReader lines(text);
+  std::string_view line;
+  std::array<std::array<double, 3>, 3> corners{};
+  std::size_t count = 0;
+  bool in_facet = false;
+  while (lines.next(line)) {
+    meter.at(lines.offset());
+    const std::string_view word = take_word(line);
+    if (equals_ignoring_case(word, "vertex")) {
+      if (!in_facet || count == 3) {
+        fail_at_line(lines.line_number(), in_facet ? "the facet has more than three corners"
+                                                   : "a corner stands outside of any facet");
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        corners[count][axis] = finite_number(take_word(line), lines.line_number(), kNames[axis]);
+      }
+      ++count;
+    } else if (equals_ignoring_case(word, "facet")) {
+      if (in_facet) {
+        fail_at_line(lines.line_number(), "a facet begins within another one");
+      }
+      in_facet = true;
+      count = 0;
+    } else if (equals_ignoring_case(word, "endfacet")) {
+      if (!in_facet || count != 3) {
+        fail_at_line(lines.line_number(), "the facet has " + std::to_string(count) + " corners, not three");
+      }
+      in_facet = false;
+      add(mesh, corners);
+    }
+  }
+  if (in_facet) {
+    fail_at_line(lines.line_number(), "the file ends within a facet");
+  }
+  return mesh;
+}
+
+}  // namespace
+
+bool looks_like_stl(std::span<const std::uint8_t> bytes) {
+  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+  return begins_with_solid(text) && text.substr(0, kFirstLookBytes).find("facet") != std::string_view::npos &&
+         text.substr(0, kFirstLookBytes).find('\0') == std::string_view::npos;
+}
+
+Source read_stl(const SharedBytes& file, const Progress& progress) {
+  ProgressMeter meter(progress, file.bytes.size());
+  bool is_binary = !begins_with_solid(file.text());
+  if (!is_binary && file.bytes.size() >= kHeaderBytes + 4) {
+    ByteReader reader(file.bytes);
+    reader.skip(kHeaderBytes);
+    is_binary = std::uint64_t{reader.u32()} * kTriangleBytes == reader.remaining();
+  }
+  TriangleMesh mesh = is_binary ? read_binary(file, meter) : read_text(file.text(), meter);
+  if (mesh.triangles.empty()) {
+    throw InputError("the file holds no triangles");
+  }
+  mesh.is_z_up = true;
+  meter.done();
+  return mesh;
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,98 @@
+#include "readers/zip.h"
+
+#include <algorithm>
+#include <string>
+
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::uint32_t kEndSignature = 0x06054b50;
+constexpr std::uint32_t kEntrySignature = 0x02014b50;
+constexpr std::uint32_t kLocalSignature = 0x04034b50;
+constexpr std::size_t kEndBytes = 22;
+constexpr std::size_t kLongestComment = 65535;
+
+/// Offset of the record that ends the directory: the last one that there is room for.
+std::size_t find_end(std::span<const std::uint8_t> file) {
+  const std::size_t last = file.size() < kEndBytes ? 0 : file.size() - kEndBytes;
+  for (std::size_t back = 0; back <= std::min(last, kLongestComment) && file.size() >= kEndBytes; ++back) {
+    if (ByteReader(file.subspan(last - back)).u32() == kEndSignature) {
+      return last - back;
+    }
+  }
+  throw InputError("the archive has no directory at its end: it is truncated or no .zip");
+}
+
+}  // namespace
+
+std::vector<ZipMember> zip_members(std::span<const std::uint8_t> file) {
+  const std::size_t end_offset = find_end(file);
+  ByteReader end(file.subspan(end_offset), "the end of the archive", end_offset);
+  end.skip(10);
+  const unsigned count = end.u16();
+  end.skip(4);
+  const std::uint32_t directory_offset = end.u32();
+  ByteReader whole(file, "the archive");
+  whole.skip(directory_offset);
+  std::vector<ZipMember> members;
+  for (unsigned i = 0; i < count; ++i) {
+    const std::string place = "entry " + std::to_string(i + 1) + " of the archive's directory";
+    if (whole.u32() != kEntrySignature) {
+      throw InputError(place + " is none, before byte offset " + std::to_string(whole.offset()));
+    }
+    whole.skip(4);
+    const unsigned flags = whole.u16();
+    const unsigned method = whole.u16();
+    whole.skip(8);
+    const std::uint32_t packed_bytes = whole.u32();
+    ZipMember member;
+    member.size_bytes = whole.u32();
+    const unsigned name_bytes = whole.u16();
+    const std::uint64_t extra_bytes = std::uint64_t{whole.u16()} + whole.u16();
+    whole.skip(8);
+    const std::uint32_t local_offset = whole.u32();
+    const auto name = whole.take(name_bytes);
+    member.name = {reinterpret_cast<const char*>(name.data()), name.size()};
+    whole.skip(extra_bytes);
+    if ((flags & 1U) != 0 || (method != 0 && method != 8) || member.size_bytes == UINT32_MAX ||
+        packed_bytes == UINT32_MAX || local_offset == UINT32_MAX) {
+      throw InputError("the member " + quoted(member.name) +
+                       " is encrypted, larger than 4 GiB or packed in a way (" + std::to_string(method) +
+                       ") that is not read");
+    }
+    member.is_deflated = method == 8;
+    ByteReader local(file, "the member " + quoted(member.name));
+    local.skip(local_offset);
+    if (local.u32() != kLocalSignature) {
+      local.fail("none is at byte offset " + std::to_string(local_offset));
+    }
+    local.skip(22);
+    const std::uint64_t before = std::uint64_t{local.u16()} + local.u16();
+    local.skip(before);
+    member.packed = local.take(packed_bytes);
+    members.push_back(member);
+  }
+  return members;
+}
+
+FileBytes zip_unpack(const ZipMember& member) {
+  const std::string place = "the member " + quoted(member.name);
+  FileBytes bytes = member.is_deflated ? inflate_bytes(member.packed, Deflated::kBare,
+                                                       std::max<std::uint64_t>(1, member.size_bytes), place)
+                                       : FileBytes::copy_of(member.packed);
+  if (bytes.size() != member.size_bytes) {
+    throw InputError(place + " has " + std::to_string(bytes.size()) + " bytes, not the " +
+                     std::to_string(member.size_bytes) + " of the directory");
+  }
+  return bytes;
+}
+
+FileBytes zip_beginning(const ZipMember& member, std::uint64_t count) {
+  return member.is_deflated ? inflate_beginning(member.packed, Deflated::kBare, count)
+                            : FileBytes::copy_of(member.packed.first(static_cast<std::size_t>(
+                                  std::min<std::uint64_t>(count, member.packed.size()))));
+}
+
+}  // namespace thimble::tools
