@@ -225,7 +225,7 @@ TEST_CASE("render effects: baked, or read again -> the same picture") {
 TEST_CASE("render effects: a short budget -> the same picture in bands of fewer rows, or a sentence") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kScene);
-  const Picture drawn = render(scene, {});
+  const Picture drawn = render(scene, {"--threads", "1"});  // as within a budget
   // The least budget, by halving.
   const auto fits = [&](int bytes) {
     return run_command({"render", scene, "--size", "48x36", "--quiet", "-o", folder.path("b.ppm"), "--memory",
@@ -245,7 +245,7 @@ TEST_CASE("render effects: a short budget -> the same picture in bands of fewer 
   CHECK(high < drawn.stats["high_water_bytes"]);
   check_refused(scene, {"--memory", std::to_string(low)}, 1, {std::to_string(high % 1000), "--memory"});
   // What the effects keep is in the budget: without them it may be smaller by just that.
-  const Picture plain = render(scene, {"--effects", "none", "--engine", "ray64"});
+  const Picture plain = render(scene, {"--effects", "none", "--engine", "ray64", "--threads", "1"});
   namespace lit = thimble;
   constexpr lit::EffectSet kAll = lit::Effect::kAll & ~(lit::Effect::kWater | lit::Effect::kDepthCue);
   const std::size_t tables = 2 * sizeof(lit::Light) + 5 * sizeof(lit::Surface);

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostListBytes = std::size_t{2} << 30;
 // What a frame has where nothing was hit, until what lies behind is put there: no palette's colour by chance.
 constexpr Rgb8 kNothing{1, 0, 2};
-constexpr int kBehindStep = kMostStep;
+constexpr int kBehindStep = 16;
 
 }  // namespace
 
@@ -40,7 +40,14 @@ void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>*
   }
   rgb->resize(3 * static_cast<std::size_t>(picture.width_px()) *
               static_cast<std::size_t>(picture.height_px()));
-  magnify(small_.data(), step, picture.width_px(), picture.height_px(), rgb->data());
+  const std::int32_t part = (rows + threads_.count() - 1) / threads_.count();
+  threads_.each(threads_.count(), [&](int i) {
+    const std::int32_t first = std::min(rows, part * i);
+    const std::int32_t end = std::min(rows, first + part);
+    if (first < end) {
+      magnify_rows(small_.data(), step, picture.width_px(), picture.height_px(), first, end, rgb->data());
+    }
+  });
   last_step_ = step;
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   pace_.take(seconds_);
@@ -82,9 +89,9 @@ void FastFrames::put_behind(const FinishedPicture& picture, int step) {
   const std::int32_t columns = thinned_px(width, kBehindStep);
   const std::int32_t rows = thinned_px(picture.height_px(), kBehindStep);
   behind_small_.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for (std::int32_t y = 0; y < rows; ++y) {
+  threads_.each(rows, [&](int y) {
     picture.draw_behind_row(kBehindStep, y, behind_small_.data() + 3 * static_cast<std::size_t>(columns * y));
-  }
+  });
   const std::int32_t small_width = thinned_px(width, step);
   const std::int32_t small_height = thinned_px(picture.height_px(), step);
   threads_.each(small_height, [&](int y) {

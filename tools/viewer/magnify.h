@@ -7,7 +7,7 @@
 
 namespace thimble::tools::viewer {
 
-inline constexpr int kMostStep = 16;
+inline constexpr int kMostStep = 8;
 
 /// Columns or rows of a picture of every `step`-th pixel of `size_px`.
 constexpr std::int32_t thinned_px(std::int32_t size_px, int step) {
@@ -18,6 +18,9 @@ constexpr std::int32_t thinned_px(std::int32_t size_px, int step) {
 /// straight mixtures of the four around them. `step` 1 .. kMostStep.
 void magnify(const std::uint8_t* small, int step, std::int32_t width_px, std::int32_t height_px,
              std::uint8_t* rgb);
+/// The part of it that belongs to the rows `first` .. `end` - 1 of `small`.
+void magnify_rows(const std::uint8_t* small, int step, std::int32_t width_px, std::int32_t height_px,
+                  std::int32_t first, std::int32_t end, std::uint8_t* rgb);
 
 }  // namespace thimble::tools::viewer
 

@@ -117,7 +117,7 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
 std::string free_picture_name(const std::string& scene) {
   const std::string stem = stem_of(scene);
   for (int number = 1; number <= kMostNames; ++number) {
-    const std::string name = numbered(stem, number);
+    std::string name = numbered(stem, number);
     std::error_code error;
     if (!std::filesystem::exists(std::filesystem::symlink_status(name, error))) {
       return name;
@@ -129,7 +129,7 @@ std::string free_picture_name(const std::string& scene) {
 std::string save_picture(const std::string& scene, std::int32_t width_px, std::int32_t height_px,
                          const std::vector<std::uint8_t>& rgb) {
   for (;;) {
-    const std::string name = free_picture_name(scene);
+    std::string name = free_picture_name(scene);
     // The name is taken first, by a file that only this call can make.
     const int taken = ::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (taken < 0 && errno == EEXIST) {

@@ -447,8 +447,10 @@ void Viewer::show() {
   const std::int32_t columns = is_terminal_ ? screen_->width_px() - 3 : (screen_->width_px() - 32) / 12;
   screen_->set_overlay(folded(overlay, static_cast<std::size_t>(std::max(columns, 16))));
   if (picture_ == nullptr) {
-    const std::array<std::uint8_t, 3> black{};
-    screen_->show({black.data(), 1, 1});
+    const std::int32_t width = std::clamp(screen_->width_px(), 1, kMaxPicturePx);
+    const std::int32_t height = std::clamp(screen_->height_px(), 1, kMaxPicturePx);
+    rgb_.assign(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 24);
+    screen_->show({rgb_.data(), width, height});
     return;
   }
   screen_->show({rgb_.data(), picture_->width_px(), picture_->height_px()});
