@@ -124,6 +124,10 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   return app.add_subcommand(name, description);
 }
 
+void add_footer(CLI::App& command, const std::string& text) {
+  command.footer("\n" + wrapped(text, 0));
+}
+
 void when_chosen(CLI::App& command, std::function<void()> action) {
   command.callback(std::move(action));
 }

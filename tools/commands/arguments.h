@@ -42,6 +42,8 @@ class Option {
 
 /// A subcommand of `app`, which keeps it.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description);
+/// What stands below the options in its help.
+void add_footer(CLI::App& command, const std::string& text);
 /// What the subcommand does, once all options are read.
 void when_chosen(CLI::App& command, std::function<void()> action);
 

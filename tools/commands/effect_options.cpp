@@ -24,11 +24,11 @@ std::string take_effects(const std::string& text, EffectChoice* choice) {
 
 }  // namespace
 
-void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help) {
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default) {
   add_text_option(
       app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
       help)
-      .default_str("auto");
+      .default_str(names_default ? "auto" : "");
 }
 
 void EffectOptions::add_to(CLI::App& app, const std::string& more) {

@@ -80,6 +80,7 @@ EffectSet called_for(const LitDescription& lit, const UsedMaterials& used);
 struct EffectChoice {
   bool automatic = true;
   EffectSet effects = Effect::kNone;  ///< unless automatic
+  bool is_given = false;  ///< somebody said so; "auto" then adds nothing to what the scene calls for
 };
 /// "auto", "none" or names of effects with commas between them; nothing for anything else.
 std::optional<EffectChoice> parse_effects(std::string_view text);
