@@ -29,7 +29,7 @@ case $scene in
     if [ -z "$effects" ] && [ "$scene" = demo ]; then
       effects=$(fact DEMO_EFFECTS)
     fi
-    build/release/thimble bake "$scene" --board "$board" --effects "${effects:-auto}" -o "$header" --quiet
+    build/release/thimble bake "$scene" --board "$board" ${effects:+--effects "$effects"} -o "$header" --quiet
     ;;
 esac
 # A compiler cache would hand out objects without their call graphs.

@@ -76,7 +76,7 @@ for target in $targets; do
           water) [ "$(grays "$work/water/picture.pgm")" -ge 8 ] || fail "water draws no water" ;;
           # 16 greys are 17 apart: plain pictures take the nearest, lit ones are dithered.
           baked_scene) like baked_scene 9 --shade color ;;
-          lit_room) like lit_room 17 ;;
+          lit_room) like lit_room 17 --effects auto ;;
         esac
         ;;
       *) fail "no such target: $target" ;;

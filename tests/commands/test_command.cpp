@@ -37,7 +37,7 @@ TEST_CASE("command: --help -> exit 0, on standard output, every option named, no
         "--check", "--record", "--keys", "--quiet", "SCENE", "--depth", "--as-voxels", "BUTTON", "TEXT"}},
       {"particles",
        {"--size",   "--count",  "--min-size", "--max-size",      "--bounciness", "--gravity",     "--speed",
-        "--seed",   "--bodies", "--substeps", "--subpixel-bits", "--steps",      "--view",        "--eps",
+        "--seed",   "--bodies", "--substeps", "--subpixel-bits", "--steps",      "--display",     "--eps",
         "--fps",    "--input",  "TICK",       "--record-input",  "--state",      "--field",       "--output",
         "--record", "--stats",  "--quiet",    "--figures",       "asleep",       "steps a second"}},
       {"bake", {"SCENE",     "--depth", "--as-voxels",      "--z-up",       "--output", "--memory", "--board",

@@ -81,7 +81,7 @@ struct Drawn {
 
 Drawn draw(const TemporaryFolder& folder, const std::string& options) {
   const CommandResult result =
-      run_command(with(with(with({"render"}, kView), words_of(options)),
+      run_command(with(with(with({"render", "--view", "paper", "--fov", "60"}, kView), words_of(options)),
                        {"--engine", "ray64", "--quiet", "-o", folder.path("r.ppm"), "--depth-image",
                         folder.path("r.pfm"), "--stats", folder.path("r.json")}));
   CAPTURE(result.describe());

@@ -137,7 +137,7 @@ TEST_CASE("bake: with any camera -> the baked scene renders to the same pixels a
       // The same camera said once more.
       CHECK(render(folder, oct, joined(picture, camera)) == expected);
     }
-    const Words depth{"--size", "80x60"};
+    const Words depth{"--size", "80x60", "--shade", "depth"};
     check_ok({"bake", scene, "-o", oct, "--quiet"});
     CHECK(render(folder, oct, depth) == render(folder, scene, depth));
     for (const char* structure : {"dense", "pool"}) {
@@ -230,14 +230,15 @@ TEST_CASE("bake: --coarsen -> within the limit and close to it, only solid added
   for (const std::string& scene : {std::string("spheres"), std::string("points:5000,depth=7"),
                                    std::string("cluster:3000,depth=9"), vox}) {
     CAPTURE(scene);
-    check_ok({"bake", scene, "-o", oct, "--quiet", "--stats", folder.path("full.json")});
+    check_ok({"bake", scene, "-o", oct, "--quiet", "--effects", "none", "--stats", folder.path("full.json")});
     const auto full = json_of(folder.path("full.json"));
     const std::size_t exact = std::filesystem::file_size(oct);
     for (const std::size_t percent : {100U, 99U, 80U, 50U, 30U}) {
       const std::size_t limit = exact * percent / 100;
       CAPTURE(percent);
-      const CommandResult result = check_ok({"bake", scene, "-o", oct, "--coarsen", "--memory",
-                                             std::to_string(limit), "--stats", folder.path("s.json")});
+      const CommandResult result =
+          check_ok({"bake", scene, "-o", oct, "--coarsen", "--effects", "none", "--memory",
+                    std::to_string(limit), "--stats", folder.path("s.json")});
       const std::size_t size = std::filesystem::file_size(oct);
       CHECK(size <= limit);
       // One block is merged at a time. The first one also costs a bit a node.
@@ -351,7 +352,7 @@ TEST_CASE("bake: --board -> its flash is the limit, its display the picture; RAM
   CHECK(run_command({"info", oct}).out.find("brick map ") != std::string::npos);
   check_ok({"bake", "spheres", "-o", oct, "--memory", "12700", "--board", "stm32vldiscovery", "--quiet"});
   CHECK(std::filesystem::file_size(oct) == 12624);  // no room for a map: none
-  check_ok({"bake", "spheres", "-o", oct, "--brick-map", "--quiet"});
+  check_ok({"bake", "spheres", "-o", oct, "--brick-map", "--size", "128x64", "--quiet"});
   CHECK(std::filesystem::file_size(oct) == baked_bytes);
   const std::string ram = "RAM " + tools::grouped(208 + 512 + board->stack_bytes) + " of 8,192 bytes";
   CHECK(result.err.find(ram) != std::string::npos);  // renderer, band and stack
@@ -381,9 +382,11 @@ TEST_CASE("render --board: the display's size and pixels as it shows them, its R
   const std::string oct = folder.path("s.oct");
   check_ok({"bake", "spheres", "-o", oct, "--board", "lm3s6965evb", "--quiet"});
   // 16 greys, 17 apart, rounded from 256.
-  const std::string fine = pixels_of(render(folder, "spheres", {"--size", "128x64"}, "a.pgm"));
-  const std::string shown =
-      pixels_of(render(folder, oct, {"--board", "lm3s6965evb", "--stats", folder.path("s.json")}, "b.pgm"));
+  const std::string fine =
+      pixels_of(render(folder, "spheres", {"--size", "128x64", "--shade", "depth"}, "a.pgm"));
+  const std::string shown = pixels_of(
+      render(folder, oct, {"--board", "lm3s6965evb", "--shade", "depth", "--stats", folder.path("s.json")},
+             "b.pgm"));
   REQUIRE(fine.size() == 128 * 64);
   REQUIRE(shown.size() == fine.size());
   std::string packed;
@@ -452,7 +455,8 @@ TEST_CASE("baked scenes: --memory counts the tree, and nothing to build it with"
   check_ok({"bake", "spheres", "-o", oct, "--quiet"});
   check_ok({"info", oct, "--memory", "12468"});
   check_refused({"info", oct, "--memory", "12467"}, 1, {oct, "needs 12,468 bytes", "12,467"});
-  check_ok({"render", oct, "-o", folder.path("p.ppm"), "--size", "64x48", "--memory", "16K", "--quiet"});
+  check_ok({"render", oct, "-o", folder.path("p.ppm"), "--size", "64x48", "--memory", "16K", "--quiet",
+            "--shade", "depth"});
   check_refused({"info", oct, "--depth", "7"}, 1, {"baked with depth 6", "--depth"});
   check_ok({"info", oct, "--depth", "6"});
   check_refused({"info", oct, "--as-voxels"}, 1, {"--as-voxels"});

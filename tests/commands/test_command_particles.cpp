@@ -43,7 +43,7 @@ CommandResult particles(Words words) {
 nlohmann::json stats_of(Words words) {
   const TemporaryFolder folder;
   const std::string path = folder.path("stats.json");
-  words.insert(words.end(), {"--stats", path, "--quiet", "--view", "none"});
+  words.insert(words.end(), {"--stats", path, "--quiet", "--display", "none"});
   const CommandResult result = particles(words);
   CAPTURE(result.describe());
   REQUIRE(result.status == 0);
@@ -195,7 +195,7 @@ TEST_CASE("particles: every knob -> another state") {
 
 TEST_CASE("particles: --state and --field -> the field is the discs and the walls drawn, cell by cell") {
   const TemporaryFolder folder;
-  const Words size{"--size", "203x150", "--quiet", "--view", "none"};
+  const Words size{"--size", "203x150", "--quiet", "--display", "none"};
   const auto run = [&](Words words, const std::string& name) {
     words.insert(words.end(), size.begin(), size.end());
     words.insert(words.end(), {"--state", folder.path(name + ".csv"), "--field", folder.path(name + ".pbm")});
@@ -455,7 +455,7 @@ TEST_CASE("particles: wrong usage -> status 2 and a sentence that quotes what is
                                  {"--steps", "-1"},
                                  {"--steps", "many"},
                                  {"--seed", "-1"},
-                                 {"--view", "hologram"},
+                                 {"--display", "hologram"},
                                  {"--eps", "0"},
                                  {"--fps", "0"},
                                  {"-o", "frame.jpg"},

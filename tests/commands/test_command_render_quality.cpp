@@ -114,9 +114,17 @@ TEST_CASE("render quality: samples -> the mean of the same view drawn larger, pi
 TEST_CASE("render quality: --hits with a cut-off -> lowest corners of blocks, never farther than without") {
   const TemporaryFolder folder;
   const auto hits = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{
-        "render", "spheres",           "--quiet", "--size", "32x24", "-o", folder.path("a.ppm"),
-        "--hits", folder.path("h.csv")};
+    std::vector<std::string> words{"render",
+                                   "spheres",
+                                   "--quiet",
+                                   "--size",
+                                   "32x24",
+                                   "-o",
+                                   folder.path("a.ppm"),
+                                   "--hits",
+                                   folder.path("h.csv"),
+                                   "--shade",
+                                   "depth"};
     words.insert(words.end(), more.begin(), more.end());
     REQUIRE(run_command(words).status == 0);
     return lines_of(read_text(folder.path("h.csv")));

@@ -19,7 +19,7 @@ std::vector<std::uint8_t> baked(const std::string& scene) {
   const auto source = tools::open_scene({.scene = scene, .depth = std::nullopt});
   tools::BakingOptions options;
   if (source->camera() != nullptr) {
-    options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+    options.camera = [&source](const CompactTree&) { return *source->camera(); };
   }
   return tools::bake_scene(*source, options).bytes;
 }

@@ -37,7 +37,7 @@ tools::Baked bake_demo(EffectSet effects) {
   tools::BakingOptions options;
   options.effects = {effects == Effect::kNone, effects};
   options.name = "demo";
-  options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+  options.camera = [&source](const CompactTree&) { return *source->camera(); };
   return tools::bake_scene(*source, options);
 }
 const tools::Baked& demo_scene() {
@@ -474,7 +474,7 @@ TEST_CASE(
   const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
   tools::BakingOptions options;
   options.brick_map = true;
-  options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+  options.camera = [&source](const CompactTree&) { return *source->camera(); };
   const tools::Baked baked = tools::bake_scene(*source, options);
   const Run exact = run_demo(board, bytes_of(baked.bytes), 6, {}, true);
   CHECK(exact.out.find(" map 0 ") == std::string::npos);

@@ -79,7 +79,7 @@ TEST_CASE(
   const std::string record = folder.path("input.txt");
   const Words world{"--size", "800x600", "--count", "200", "--seed", "3"};
   Words words = world;
-  words.insert(words.end(), {"--view", "window", "--record-input", record, "--stats", stats, "--field",
+  words.insert(words.end(), {"--display", "window", "--record-input", record, "--stats", stats, "--field",
                              folder.path("window.pbm"), "--state", folder.path("window.csv"), "--quiet"});
   Running running(words);
   REQUIRE(display.xdotool("search --sync --name 'thimble particles'"));
@@ -121,7 +121,7 @@ TEST_CASE(
   words = world;
   words.insert(words.begin(), "particles");
   words.insert(words.end(),
-               {"--view", "none", "--input", record, "--stats", folder.path("again.json"), "--field",
+               {"--display", "none", "--input", record, "--stats", folder.path("again.json"), "--field",
                 folder.path("again.pbm"), "--state", folder.path("again.csv"), "--quiet"});
   const CommandResult again = run_command(words);
   CAPTURE(again.describe());
@@ -158,7 +158,7 @@ TEST_CASE(
     ::setenv("TERM", "xterm-256color", 1);
     ::setenv("COLORTERM", "truecolor", 1);
     ::unsetenv("DISPLAY");
-    ::execl(THIMBLE_COMMAND_PATH, "thimble", "particles", "--size", "160x96", "--count", "40", "--view",
+    ::execl(THIMBLE_COMMAND_PATH, "thimble", "particles", "--size", "160x96", "--count", "40", "--display",
             "terminal", "--record-input", record.c_str(), "--stats", stats.c_str(),
             static_cast<char*>(nullptr));
     return 127;
@@ -202,7 +202,8 @@ TEST_CASE(
 TEST_CASE("particles in a terminal: a signal -> the terminal is given back") {
   Pty pty(80, 27, [] {
     ::setenv("TERM", "xterm", 1);
-    ::execl(THIMBLE_COMMAND_PATH, "thimble", "particles", "--view", "terminal", static_cast<char*>(nullptr));
+    ::execl(THIMBLE_COMMAND_PATH, "thimble", "particles", "--display", "terminal",
+            static_cast<char*>(nullptr));
     return 127;
   });
   REQUIRE(pty.wait_for("Total Colliders: 693"));
@@ -214,7 +215,7 @@ TEST_CASE("particles in a terminal: a signal -> the terminal is given back") {
 
 TEST_CASE("particles: a window or a terminal that is not there -> status 1 and a sentence") {
   ::unsetenv("DISPLAY");
-  const CommandResult window = run_command({"particles", "--view", "window"});
+  const CommandResult window = run_command({"particles", "--display", "window"});
   CHECK(window.status == 1);
   CHECK(is_one_sentence(window.err));
   CHECK(window.err.find("DISPLAY is not set") != std::string::npos);

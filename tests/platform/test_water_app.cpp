@@ -40,7 +40,7 @@ const std::vector<std::uint8_t>& baked(const char* text) {
     const auto source = tools::open_scene({.scene = text, .depth = std::nullopt});
     tools::BakingOptions options;
     options.name = text;
-    options.camera = [&source](int, const VoxelBox&) { return *source->camera(); };
+    options.camera = [&source](const CompactTree&) { return *source->camera(); };
     bytes = tools::bake_scene(*source, options).bytes;
   }
   return bytes;

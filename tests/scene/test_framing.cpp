@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "readers/source.h"
+#include "scene/best_view.h"
 #include "scene/framing.h"
 #include "thimble/trace/trace.h"
+#include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
 
 namespace {
 
@@ -112,4 +115,183 @@ TEST_CASE("framing: too near to see all -> a note; a direction of nothing -> a s
   nowhere.eye = nowhere.target = tools::Real3{1, 2, 3};
   CHECK_THROWS_AS((void)tools::frame_box(nowhere, kLevel, kBox), tools::InputError);
   CHECK_THROWS_AS((void)tools::finer({}, 64), tools::InputError);
+}
+
+namespace {
+
+// A staircase of balls: nothing of it is near the corners of its box.
+class Balls {
+ public:
+  Balls() {
+    std::vector<std::uint8_t> pool(1U << 20);
+    Octree tree;
+    REQUIRE(Octree::make(kLevel, Bytes(pool.data(), pool.size()), &tree) == Status::kOk);
+    for (const Vec3i& center : {Vec3i{16, 14, 12}, Vec3i{36, 30, 26}, Vec3i{48, 20, 44}}) {
+      for (int i = 0; i < 17 * 17 * 17; ++i) {
+        const Vec3i off{i % 17 - 8, i / 17 % 17 - 8, i / 289 - 8};
+        if (off.x * off.x + off.y * off.y + off.z * off.z <= 64) {
+          const Vec3i at{center.x + off.x, center.y + off.y, center.z + off.z};
+          REQUIRE(tree.insert(at) == Status::kOk);
+        }
+      }
+    }
+    bytes_.resize(compact_bytes(compact_shape(tree)));
+    REQUIRE(CompactTree::make(tree, Bytes(bytes_.data(), bytes_.size()), &tree_) == Status::kOk);
+  }
+  const CompactTree& tree() const { return tree_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  CompactTree tree_;
+};
+
+// Where hits lie on the picture, as parts of its half width and height from the middle.
+struct Reach {
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+};
+Reach reach_of(const CompactTree& tree, const Camera& camera) {
+  Reach reach;
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      Hit hit;
+      REQUIRE(closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk);
+      if (hit.kind == HitKind::kHit) {
+        const double across = (2.0 * x + 1) / camera.width_px() - 1;
+        const double down = (2.0 * y + 1) / camera.height_px() - 1;
+        reach = {std::min(reach.left, across), std::max(reach.right, across), std::min(reach.top, down),
+                 std::max(reach.bottom, down)};
+      }
+    }
+  }
+  return reach;
+}
+
+constexpr tools::NamedView kSides[] = {
+    tools::NamedView::kBest, tools::NamedView::kIso,   tools::NamedView::kFront, tools::NamedView::kBack,
+    tools::NamedView::kLeft, tools::NamedView::kRight, tools::NamedView::kTop};
+
+}  // namespace
+
+TEST_CASE("framing: every named view and shape -> what is occupied fills 90 % of the tighter side, centred") {
+  const Balls balls;
+  const tools::SceneShape shape = tools::shape_of(balls.tree());
+  for (const tools::NamedView side : kSides) {
+    for (const bool orthographic : {false, true}) {
+      for (const bool tall : {false, true}) {
+        for (const double turn : {0.0, 33.0}) {
+          tools::ViewWishes wishes;
+          wishes.width_px = tall ? 150 : 260;
+          wishes.height_px = tall ? 240 : 160;
+          wishes.orthographic = orthographic;
+          wishes.side = side;
+          wishes.onward.turn = turn;
+          wishes.fov_degrees = tools::kPictureFov;
+          CAPTURE(static_cast<int>(side));
+          CAPTURE(orthographic);
+          CAPTURE(tall);
+          CAPTURE(turn);
+          const Reach reach = reach_of(balls.tree(), tools::frame_shape(wishes, shape).camera);
+          const double across = (reach.right - reach.left) / 2;
+          const double down = (reach.bottom - reach.top) / 2;
+          CHECK(std::max(across, down) <= tools::kPictureFill + 0.001);
+          CHECK(std::max(across, down) >= tools::kPictureFill - 0.025);  // two pixels
+          CHECK(std::abs(reach.left + reach.right) < 0.04);
+          CHECK(std::abs(reach.top + reach.bottom) < 0.04);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("framing: front looks along +y, left along +x, top down with the front below; turns add up") {
+  const Balls balls;
+  const tools::SceneShape shape = tools::shape_of(balls.tree());
+  const auto forward = [&](tools::NamedView side, double turn, double tilt) {
+    tools::ViewWishes wishes;
+    wishes.side = side;
+    wishes.onward = {turn, tilt};
+    const Vec3i raw = tools::frame_shape(wishes, shape).kept.forward;
+    const auto unit = [](std::int32_t value) {
+      return static_cast<int>(std::lround(value / 1073741824.0 * 8));
+    };
+    return Vec3i{unit(raw.x), unit(raw.y), unit(raw.z)};
+  };
+  using tools::NamedView;
+  CHECK(forward(NamedView::kFront, 0, 0) == Vec3i{0, 8, 0});
+  CHECK(forward(NamedView::kBack, 0, 0) == Vec3i{0, -8, 0});
+  CHECK(forward(NamedView::kLeft, 0, 0) == Vec3i{8, 0, 0});
+  CHECK(forward(NamedView::kRight, 0, 0) == Vec3i{-8, 0, 0});
+  CHECK(forward(NamedView::kTop, 0, 0) == Vec3i{0, 0, -8});
+  CHECK(forward(NamedView::kFront, 90, 0) == forward(NamedView::kRight, 0, 0));
+  CHECK(forward(NamedView::kFront, 0, 500) == forward(NamedView::kTop, 0, 0));
+  CHECK(forward(NamedView::kBest, 180, 0).x == -forward(NamedView::kBest, 0, 0).x);
+}
+
+TEST_CASE("framing: best -> the side with the many colours, from the front where sides are alike") {
+  const auto painted = [](int axis, bool high) {
+    // A cube whose one side is a checkerboard of materials.
+    std::vector<std::uint8_t> pool(1U << 20);
+    Octree octree;
+    REQUIRE(Octree::make(5, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+    for (int i = 0; i < 16 * 16 * 16; ++i) {
+      const Vec3i at{i % 16 + 8, i / 16 % 16 + 8, i / 256 + 8};
+      const bool on_side = axis >= 0 && at[axis] == (high ? 23 : 8);
+      REQUIRE(octree.insert(at, static_cast<std::uint8_t>(on_side ? 1 + i % 200 : 0)) == Status::kOk);
+    }
+    std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
+    CompactTree tree;
+    REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+    return tools::best_angles(tools::shape_of(tree));
+  };
+  const auto plain = painted(-1, false);
+  CHECK(plain.turn == -35);
+  CHECK(std::abs(painted(1, false).turn) < 90);
+  CHECK(std::abs(painted(1, true).turn) > 90);
+  CHECK(painted(0, false).turn < 0);
+  CHECK(painted(0, true).turn > 0);
+}
+
+TEST_CASE("framing: a turn of pictures -> one eye's distance, evenly round, everything in every picture") {
+  const Balls balls;
+  const tools::SceneShape shape = tools::shape_of(balls.tree());
+  tools::ViewWishes wishes;
+  wishes.side = tools::NamedView::kBest;
+  wishes.width_px = 120;
+  wishes.height_px = 90;
+  wishes.fov_degrees = tools::kPictureFov;
+  const std::vector<tools::Framing> turns = tools::frame_turns(wishes, shape, 8);
+  REQUIRE(turns.size() == 8);
+  double widest = 0;
+  for (const tools::Framing& framing : turns) {
+    const Reach reach = reach_of(balls.tree(), framing.camera);
+    widest = std::max({widest, -reach.left, reach.right, -reach.top, reach.bottom});
+    CHECK(framing.kept.eye.z == turns[0].kept.eye.z);
+  }
+  CHECK(widest <= tools::kPictureFill + 0.001);
+  CHECK(widest >= tools::kPictureFill - 0.05);
+}
+
+TEST_CASE("framing: nothing occupied, one voxel, a whole world -> a camera all the same") {
+  for (const int voxels : {0, 1, 64}) {
+    std::vector<std::uint8_t> pool(1U << 16);
+    Octree octree;
+    REQUIRE(Octree::make(2, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+    for (int i = 0; i < voxels; ++i) {
+      REQUIRE(octree.insert({i % 4, i / 4 % 4, i / 16}) == Status::kOk);
+    }
+    std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
+    CompactTree tree;
+    REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+    for (const tools::NamedView side : kSides) {
+      for (const bool orthographic : {false, true}) {
+        tools::ViewWishes wishes;
+        wishes.side = side;
+        wishes.orthographic = orthographic;
+        wishes.fov_degrees = tools::kPictureFov;
+        CAPTURE(voxels);
+        CAPTURE(static_cast<int>(side));
+        CHECK_NOTHROW((void)tools::frame_shape(wishes, tools::shape_of(tree)));
+      }
+    }
+  }
 }

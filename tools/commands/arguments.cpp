@@ -147,6 +147,10 @@ void hide_command(CLI::App& command) {
   command.group("");
 }
 
+void add_paragraph_below(CLI::App& command, const std::string& text) {
+  command.footer("\n" + wrapped(text, 0));
+}
+
 void when_chosen(CLI::App& command, std::function<void()> action) {
   command.callback(std::move(action));
 }

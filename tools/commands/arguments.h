@@ -44,6 +44,8 @@ class Option {
 
 /// A subcommand of `app`, which keeps it.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description);
+/// A paragraph below the options in the help of `command`, wrapped as the rest.
+void add_paragraph_below(CLI::App& command, const std::string& text);
 /// Leaves it out of the help: scripts call it.
 void hide_command(CLI::App& command);
 /// What the subcommand does, once all options are read.

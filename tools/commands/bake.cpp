@@ -18,6 +18,7 @@
 #include "scene/baking.h"
 #include "scene/board_fit.h"
 #include "scene/framing.h"
+#include "scene/generators.h"
 
 namespace thimble::tools {
 namespace {
@@ -59,8 +60,9 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   options.name = scene_name(command.scene.arguments.scene);
   options.brick_map = command.brick_map || command.scene.board != nullptr;
   options.effects = command.effects;
-  options.camera = [&command, &source, note](int level, const VoxelBox& bounds) {
-    Framing framing = frame_scene(command.view, source, level, bounds);
+  options.default_look = source.baked() == nullptr && !parse_generator(command.scene.arguments.scene);
+  options.camera = [&command, &source, note](const CompactTree& tree) {
+    Framing framing = frame_scene(command.view, source, shape_of(tree));
     if (note != nullptr && !framing.note.empty()) {
       *note = framing.note;
     }
@@ -91,6 +93,14 @@ std::string advice(const BakeCommand& command, const SceneSource& source, std::u
     }
   }
   return "; --coarsen merges blocks until it fits";
+}
+
+// Whether the scene with its light keeps the limit, uncoarsened, and the board can draw it.
+bool has_room_for_light(const BakeCommand& command, const Baked& baked) {
+  const platform::BoardFacts* const board = command.scene.board;
+  return baked.fits && baked.bytes.size() <= limit_bytes(command).value_or(UINT64_MAX) &&
+         baked.scene.tree().solid_added() == 0 &&
+         (board == nullptr || drawing_ram_bytes(*board, baked.effects) <= board->ram_bytes);
 }
 
 void report(const BakeCommand& command, const Baked& baked, const std::string& note) {
@@ -162,6 +172,11 @@ void run(const BakeCommand& given) {
     ProgressBar bar("baking", command.scene.quiet);
     baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
     command.effects_found = baked.effects;
+    if (options.default_look && baked.effects != Effect::kNone && !has_room_for_light(command, baked)) {
+      options.default_look = false;  // light that nobody asked for never costs a scene its place
+      baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
+      command.effects_found = baked.effects;
+    }
     const std::optional<std::uint64_t> left = limit_bytes(command);
     if (left < options.limit_bytes && (!baked.fits || baked.bytes.size() > *left)) {
       // With the code of its effects it does not fit: smaller, without a brick map, or not at all.
@@ -229,7 +244,9 @@ void add_bake(CLI::App& app) {
   add_effect_list(
       *sub, &command->effects,
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
-      "commas between them; a header states the set as a macro, so that firmware holds no others");
+      "commas between them; a header states the set as a macro, so that firmware holds no others (default: "
+      "auto, and for a file that states no light a sun over the viewer's shoulder with shadows)",
+      false);
   add_text_option(
       *sub, "--name", "IDENT",
       [command](const std::string& text) {
@@ -238,7 +255,7 @@ void add_bake(CLI::App& app) {
       },
       "what a header calls the array; its macros begin with the same in capitals")
       .default_str(kDefaultIdentifier);
-  add_view(*sub, &command->view);
+  add_picture_view(*sub, &command->view);
   command->scene.add_report(*sub);
   when_chosen(*sub, [command] { run(*command); });
 }

@@ -63,8 +63,8 @@ struct BakedSize {
 BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& source, const Progress& progress) {
   BakingOptions options;
   options.name = scene_name(command.scene.arguments.scene);
-  options.camera = [&](int level, const VoxelBox& bounds) {
-    return frame_scene({}, source, level, bounds).kept;
+  options.camera = [&](const CompactTree& tree) {
+    return frame_scene({}, source, tree.level(), tree.bounds()).kept;
   };
   const Baked baked = bake_scene(source, options, progress);
   // A depth deeper every voxel beside a block becomes a node below the nodes that are there. Few of those

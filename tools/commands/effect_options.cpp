@@ -54,11 +54,11 @@ void add_normals(CLI::App& app, EffectChoice* choice) {
 
 }  // namespace
 
-void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help) {
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default) {
   add_text_option(
       app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
       help)
-      .default_str("auto")
+      .default_str(names_default ? "auto" : "")
       .offers(offered());
   add_normals(app, choice);
 }

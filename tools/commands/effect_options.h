@@ -33,7 +33,8 @@ struct EffectOptions {
 };
 
 /// --effects (auto, none or a list) and --normals alone.
-void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help);
+/// `names_default`: the help ends with "(default: auto)".
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default = true);
 
 }  // namespace thimble::tools
 

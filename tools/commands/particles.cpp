@@ -249,7 +249,7 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       "2000, "
       "or to the end of a longer --input)");
   add_choice_option(
-      sub, "--view", {"auto", "none", "window", "terminal"},
+      sub, "--display", {"auto", "none", "window", "terminal"},
       [command](std::size_t index) {
         constexpr std::array kKinds{host::ScreenKind::kAuto, host::ScreenKind::kNone,
                                     host::ScreenKind::kWindow, host::ScreenKind::kTerminal};

@@ -5,13 +5,12 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/effect_options.h"
-#include "commands/engine_options.h"
-#include "commands/scene_options.h"
+#include "commands/render_command.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
 #include "output/hit_csv.h"
@@ -27,74 +26,43 @@
 namespace thimble::tools {
 namespace {
 
-struct RenderCommand {
-  SceneOptions scene;
-  EngineOptions engine;
-  ViewWishes view;
-  Quality quality;
-  EffectOptions effects;
-  ShadeMode shade = ShadeMode::kDepth;
-  std::string shade_name;  ///< empty unless given
-  std::string output;
-  std::string hits_path;
-  std::string depth_path;
-};
-
 constexpr std::int32_t kMostBandRows = 16;
 
-// Rows in a band: as many as a sixteenth of the budget holds, fewer when the scene needs the room.
-std::int32_t band_rows(const RenderCommand& command, PixelFormat format) {
-  std::uint64_t rows = kMostBandRows;
-  if (const auto budget = command.scene.budget_bytes()) {
-    rows = std::min<std::uint64_t>(rows, *budget / 16 / row_bytes(format, command.view.width_px));
-  }
-  return std::clamp(static_cast<std::int32_t>(rows), 1, command.view.height_px);
-}
-
-// Pixel by pixel once more, for the files that hold hits and distances.
-void write_hits(const RenderCommand& command, const QualityFrame& frame, const Camera& camera,
-                OutputFile* csv, OutputFile* pfm) {
-  if (csv != nullptr) {
-    csv->write(std::string("px,py,") + kHitColumns + "\n");
-  }
-  std::vector<float> distances;
-  ProgressBar bar("writing hits", command.scene.quiet);
-  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
-    std::string text;
-    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      const Ray ray = camera.ray(x, y);
-      Hit hit;
-      if (frame.closest_hit(ray, &hit, command.engine.trace_options()) != Status::kOk) {
-        throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
-      }
-      if (csv != nullptr) {
-        text += std::to_string(x) + ',' + std::to_string(y) + ',';
-        append_hit(&text, ray, hit);
-      }
-      if (pfm != nullptr) {
-        const double length =
-            std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
-                       static_cast<double>(ray.direction.z));
-        distances.push_back(hit.kind == HitKind::kHit ? static_cast<float>(hit_t(hit) * length)
-                                                      : std::numeric_limits<float>::infinity());
-      }
-    }
-    if (csv != nullptr) {
-      csv->write(text);
-    }
-    bar.update(static_cast<double>(y) / camera.height_px());
-  }
-  if (pfm != nullptr) {
-    write_pfm(pfm, camera.width_px(), camera.height_px(), distances);
-  }
+std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
+  return band_rows(command, row_bytes(format, command.view.width_px), kMostBandRows);
 }
 
 [[noreturn]] void fail_camera(const RenderCommand& command) {
   throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
 }
 
+// What belongs to the scene's own look and films only.
+void check_look(const RenderCommand& command) {
+  const bool look = takes_look(command);
+  if (command.wishes_look && !look) {
+    refuse_usage(
+        "--background and --ground are for pictures in the scene's own look, without --shade, --effects, "
+        "--structure, --engine, --cutoff, --max-depth and --board");
+  }
+  const bool is_film = command.output.ends_with(".gif") || command.output.ends_with(".y4m");
+  if (is_film != (command.turntable != 0)) {
+    refuse_usage(is_film ? "a .gif and a .y4m are films, which want --turntable"
+                         : "--turntable makes a film: -o wants a .gif or .y4m");
+  }
+  if (is_film && (!look || !command.hits_path.empty() || !command.depth_path.empty() || command.view.eye)) {
+    refuse_usage(
+        "--turntable shows the scene's own look from all sides, without --shade, --effects, --structure, "
+        "--engine, --cutoff, --max-depth, --board, --eye, --hits and --depth-image");
+  }
+  if (command.look.background.kind == BackgroundKind::kNone &&
+      image_kind(command.output) != ImageKind::kPng) {
+    refuse_usage("--background none wants a .png, the one that holds what is transparent");
+  }
+}
+
 // What contradicts itself whatever the scene is.
 void check_usage(const RenderCommand& command) {
+  check_look(command);
   const bool wide = command.engine.name == "wide";
   if (wide && !command.quality.plain()) {
     refuse_usage(
@@ -163,7 +131,7 @@ SceneOptions::DrawingBytes drawing_bytes(const RenderCommand& command, const Sce
   const std::int32_t width = command.view.width_px;
   const bool plain = command.quality.plain();
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
-  bytes.band = plain ? band_bytes(format, width, band_rows(command, format)) : quality_bytes;
+  bytes.band = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
   bytes.least_band = plain ? band_bytes(format, width, 1) : quality_bytes;
   const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
   bytes.state = in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
@@ -189,11 +157,18 @@ struct Subject {
 Subject subject_of(const RenderCommand& command, const SceneSource& source, BuiltScene* built,
                    PixelFormat format) {
   Subject subject{command, *built, format, {}, {}, {}};
-  subject.framing = frame_scene(command.view, source, built->level(), built->bounds());
-  subject.fine = command.quality.across == 1 ? subject.framing.camera
-                                             : frame_scene(finer(command.view, command.quality.across),
-                                                           source, built->level(), built->bounds())
-                                                   .camera;
+  // What it is seen from must not depend on what traces it: other structures are framed by a compact tree of
+  // the same voxels, which goes again, beside the budget.
+  std::optional<BuiltScene> compact;
+  if (built->structure() != StructureKind::kCompact && command.view.side != NamedView::kPaper &&
+      !command.view.eye) {
+    compact.emplace(source, BuildOptions{});
+  }
+  const SceneShape shape = shape_of(compact ? *compact : *built);
+  subject.framing = frame_scene(command.view, source, shape);
+  subject.fine = command.quality.across == 1
+                     ? subject.framing.camera
+                     : frame_scene(finer(command.view, command.quality.across), source, shape).camera;
   subject.shading.mode = command.shade;
   subject.shading.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
   const DepthRange range = depth_range(subject.camera(), built->bounds());
@@ -293,39 +268,12 @@ Stats stats_of(const Subject& subject, const SceneSource& source, const Light& l
   return stats;
 }
 
-// For a person: what the scene takes, and what came of it.
-void print_summary(const Stats& stats, const std::string& note) {
-  if (!note.empty()) {
-    std::fprintf(stderr, "note: %s\n", note.c_str());
-  }
-  std::fprintf(stderr,
-               "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
-               grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
-               grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
-               stats.frame_seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
-  if (stats.lit_counts) {
-    std::string rays;
-    for (int kind = 0; kind < kLitRayKinds; ++kind) {
-      if (stats.lit_counts->rays[kind] != 0) {
-        rays += (rays.empty() ? "" : ", ") + grouped(stats.lit_counts->rays[kind]) + " " +
-                ray_kind_name(static_cast<LitRayKind>(kind));
-      }
-    }
-    std::fprintf(stderr, "lit: %s; rays: %s\n", effects_text(*stats.effects).c_str(), rays.c_str());
-  }
-  if (stats.solid_added != 0) {
-    std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
-                 grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
-  }
-}
-
 // From a file to a picture: reader, source, builder, tree, painter, output.
 void run(const RenderCommand& given) {
   RenderCommand command = given;
   check_usage(command);
   use_display(command.scene.board, &command.view);
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
-  enum Output : std::size_t { kPicture, kHits, kDepths, kStats };
   OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},
                     {command.scene.arguments.scene});
   const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
@@ -334,9 +282,16 @@ void run(const RenderCommand& given) {
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
 
   const auto source = command.scene.open();
+  command.scene.build_threads = command.engine.threads;
+  if (takes_look(command)) {
+    render_look(command, *source, outputs);
+    return;
+  }
+  if (command.shade_name.empty()) {
+    command.shade = source->single_material() ? ShadeMode::kDepth : ShadeMode::kColor;
+  }
   Light light = light_of(command, *source);
 
-  command.scene.build_threads = command.engine.threads;
   BuiltScene built = command.scene.build(*source, drawing_bytes(command, *source, light, format));
   if (light.effects != Effect::kNone) {
     light.used = used_materials(built.compact());
@@ -369,7 +324,109 @@ void run(const RenderCommand& given) {
   }
 }
 
+// What can be wished of the scene's own look.
+void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
+  add_text_option(
+      app, "--background", "none|RRGGBB|gradient",
+      [command](const std::string& text) {
+        command->wishes_look = true;
+        return parse_background(text, &command->look.background) ? ""
+                                                                 : "is not none, gradient or six hex digits";
+      },
+      "what stands behind the scene; none is transparent, in a .png (default: the scene's sky, else a soft "
+      "gradient, black behind stars)");
+  add_choice_option(
+      app, "--ground", {"auto", "on", "off"},
+      [command](std::size_t index) {
+        command->wishes_look = true;
+        command->look.ground = index == 0 ? std::nullopt : std::optional<bool>(index == 1);
+      },
+      "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
+      .default_str("auto");
+  add_whole_option(
+      app, "--turntable", "N", 2, 1000,
+      [command](std::int64_t frames) { command->turntable = static_cast<int>(frames); },
+      "a film of N frames once around the scene, six seconds long");
+  add_flag(app, "--verbose", &command->verbose, "say on standard error what the scene's look came to");
+}
+
 }  // namespace
+
+void print_summary(const Stats& stats, const std::string& note) {
+  if (!note.empty()) {
+    std::fprintf(stderr, "note: %s\n", note.c_str());
+  }
+  std::fprintf(stderr,
+               "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
+               grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
+               grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
+               stats.frame_seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
+  if (stats.lit_counts) {
+    std::string rays;
+    for (int kind = 0; kind < kLitRayKinds; ++kind) {
+      if (stats.lit_counts->rays[kind] != 0) {
+        rays += (rays.empty() ? "" : ", ") + grouped(stats.lit_counts->rays[kind]) + " " +
+                ray_kind_name(static_cast<LitRayKind>(kind));
+      }
+    }
+    std::fprintf(stderr, "lit: %s; rays: %s\n", effects_text(*stats.effects).c_str(), rays.c_str());
+  }
+  if (stats.solid_added != 0) {
+    std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
+                 grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
+  }
+}
+
+bool takes_look(const RenderCommand& command) {
+  return command.shade_name.empty() && !command.effects.given &&
+         command.scene.structure == StructureKind::kCompact && command.engine.name == "auto" &&
+         !command.quality.cuts() && command.scene.board == nullptr;
+}
+
+std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std::int32_t most) {
+  auto rows = static_cast<std::uint64_t>(most);
+  if (const auto budget = command.scene.budget_bytes()) {
+    rows = std::min<std::uint64_t>(rows, *budget / 16 / row_bytes);
+  }
+  return std::clamp(static_cast<std::int32_t>(rows), 1, command.view.height_px);
+}
+
+void write_hits(const RenderCommand& command, const QualityFrame& frame, const Camera& camera,
+                OutputFile* csv, OutputFile* pfm) {
+  if (csv != nullptr) {
+    csv->write(std::string("px,py,") + kHitColumns + "\n");
+  }
+  std::vector<float> distances;
+  ProgressBar bar("writing hits", command.scene.quiet);
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    std::string text;
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      const Ray ray = camera.ray(x, y);
+      Hit hit;
+      if (frame.closest_hit(ray, &hit, command.engine.trace_options()) != Status::kOk) {
+        throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
+      }
+      if (csv != nullptr) {
+        text += std::to_string(x) + ',' + std::to_string(y) + ',';
+        append_hit(&text, ray, hit);
+      }
+      if (pfm != nullptr) {
+        const double length =
+            std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
+                       static_cast<double>(ray.direction.z));
+        distances.push_back(hit.kind == HitKind::kHit ? static_cast<float>(hit_t(hit) * length)
+                                                      : std::numeric_limits<float>::infinity());
+      }
+    }
+    if (csv != nullptr) {
+      csv->write(text);
+    }
+    bar.update(static_cast<double>(y) / camera.height_px());
+  }
+  if (pfm != nullptr) {
+    write_pfm(pfm, camera.width_px(), camera.height_px(), distances);
+  }
+}
 
 void add_render(CLI::App& app) {
   auto command = std::make_shared<RenderCommand>();
@@ -379,15 +436,18 @@ void add_render(CLI::App& app) {
       *sub, "-o,--output", "FILE",
       [command](const std::string& text) {
         command->output = text;
-        return image_kind(text) ? "" : "does not end in .ppm, .pgm, .pbm or .png";
+        const bool is_film = text.ends_with(".gif") || text.ends_with(".y4m");
+        return image_kind(text) || is_film ? "" : "does not end in .ppm, .pgm, .pbm or .png";
       },
-      "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output")
+      "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output; with --turntable "
+      "a .gif or .y4m")
       .required();
-  add_view(*sub, &command->view);
+  add_picture_view(*sub, &command->view);
   add_shade(*sub, &command->shade,
-            "brightness by distance, the face's direction, the palette in one light, or white where anything "
-            "is; given without --effects it draws none",
+            "brightness by distance (the paper's), the face's direction, the palette in one light, or white "
+            "where anything is; given without --effects it draws none (default: the scene's own look, below)",
             &command->shade_name);
+  add_look(*sub, command);
   add_path_option(
       *sub, "--hits", "FILE.csv", &command->hits_path,
       std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
@@ -400,6 +460,7 @@ void add_render(CLI::App& app) {
                           "only");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
+  add_paragraph_below(*sub, kDefaultLookText);
   when_chosen(*sub, [command] { run(*command); });
 }
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,7 @@
 #include "scene/baking.h"
 #include "scene/board_fit.h"
 #include "scene/framing.h"
+#include "scene/generators.h"
 #include "scene/wide_frames.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/baked_lighting.h"
@@ -87,11 +89,21 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.brick_map = true;
     options.effects = command.effects;
     options.name = scene_name(command.scene.arguments.scene);
-    options.camera = [&](int level, const VoxelBox& bounds) {
-      return frame_scene(view, *source, level, bounds).kept;
-    };
+    // Framed as `thimble render` does, and a person's scene is lit so; a generator's figures stay what they are.
+    options.default_look = !parse_generator(command.scene.arguments.scene);  // a baked one was let out above
+    view.side = NamedView::kBest;
+    view.fov_degrees = kPictureFov;
+    options.camera = [&](const CompactTree& tree) { return frame_scene(view, *source, shape_of(tree)).kept; };
     ProgressBar bar("baking", command.scene.quiet);
-    bytes = bake_scene(*source, options, [&](double done) { bar.update(done); }).bytes;
+    const auto bake = [&] { return bake_scene(*source, options, [&](double done) { bar.update(done); }); };
+    Baked made = bake();
+    if (options.default_look && made.effects != Effect::kNone &&
+        (!made.fits || made.bytes.size() > scene_flash_bytes(board, made.effects) ||
+         drawing_ram_bytes(board, made.effects) > board.ram_bytes)) {
+      options.default_look = false;  // light that nobody asked for never costs a scene its place
+      made = bake();
+    }
+    bytes = std::move(made.bytes);
   }
   if (bytes.size() > limit) {
     throw InputError("takes " + grouped(bytes.size()) + " bytes baked; " + board.name + " has " +
@@ -421,7 +433,9 @@ void add_sim(CLI::App& app) {
            "when the scene does not fit the flash, merge blocks of voxels until it just does");
   add_effect_list(
       *sub, &command->effects,
-      "what the scene is baked for: auto (what it calls for), none, or effects with commas between them");
+      "what the scene is baked for: auto (what it calls for), none, or effects with commas between them "
+      "(default: auto, and for a file that states no light a sun over the viewer's shoulder with shadows)",
+      false);
   add_display_options(*sub, command);
   add_file_options(*sub, command);
   command->engine.add_board_engines_to(*sub);

@@ -5,6 +5,7 @@
 
 #include "boards/board_table.h"
 #include "commands/arguments.h"
+#include "output/units.h"
 #include "scene/framing.h"
 #include "scene/quality.h"
 #include "thimble/picture/shading.h"
@@ -83,7 +84,7 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
         return view->fov_degrees >= 1 && view->fov_degrees <= 120 ? "" : "is not a number from 1 to 120";
       },
       "perspective: vertical field of view in degrees, 1 to 120")
-      .default_str("60");
+      .default_str(shortest(view->fov_degrees));
   add_text_option(
       app, "--span", "V",
       [view](const std::string& text) {
@@ -94,6 +95,44 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
       "orthographic: width of the picture in voxels (default: the whole scene)");
   if (with_direction_bits) {
     add_direction_bits(app, &view->direction_bits);
+  }
+}
+
+void add_picture_view(CLI::App& app, ViewWishes* view) {
+  static constexpr std::array kSides{NamedView::kBest, NamedView::kIso,  NamedView::kFront,
+                                     NamedView::kBack, NamedView::kLeft, NamedView::kRight,
+                                     NamedView::kTop,  NamedView::kPaper};
+  view->side = NamedView::kBest;
+  view->fov_degrees = kPictureFov;
+  add_choice_option(
+      app, "--view", {"best", "iso", "front", "back", "left", "right", "top", "paper"},
+      [view](std::size_t index) {
+        view->side = kSides[index];
+        view->placed = true;
+      },
+      "from which side the scene fills nine tenths of the picture; best: of eight three-quarter views from "
+      "above the one that shows the most distinct faces and colours; front looks along +y, left along +x; "
+      "paper: where the instruments stand, which frame a box "
+      "(default: the scene's own camera, else best)");
+  const auto add_angle = [&](const char* name, double* angle, double most, const char* help) {
+    add_text_option(
+        app, name, "DEG",
+        [view, angle, most](const std::string& text) -> std::string {
+          const auto degrees = parse_real(text);
+          *angle = degrees.value_or(most + 1);
+          view->placed = true;
+          return std::abs(*angle) <= most
+                     ? ""
+                     : "is not a number from " + shortest(-most) + " to " + shortest(most);
+        },
+        help);
+  };
+  add_angle("--turn", &view->onward.turn, 360,
+            "go round the scene by so many degrees from there, to the right");
+  add_angle("--tilt", &view->onward.tilt, 180, "rise by so many degrees from there, straight above at most");
+  add_view(app, view);
+  for (const char* const angle : {"--view", "--turn", "--tilt"}) {
+    exclude_each_other(app, angle, "--eye");
   }
 }
 
@@ -116,6 +155,7 @@ void add_quality(CLI::App& app, Quality* quality) {
       app, "--samples", "N",
       [quality](const std::string& text) {
         quality->across = 0;
+        quality->is_sampled = true;
         const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
         for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
           quality->across = *number == across * across ? across : quality->across;

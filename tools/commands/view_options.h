@@ -23,6 +23,9 @@ struct ViewWishes;
 
 /// All that `view` holds. `with_direction_bits`: --direction-bits too.
 void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits = true);
+/// The same for pictures that people keep: --view, --turn and --tilt too, and the view and the angle that they
+/// start from.
+void add_picture_view(CLI::App& app, ViewWishes* view);
 /// --direction-bits, for subcommands that have no camera too.
 void add_direction_bits(CLI::App& app, int* bits);
 /// Without --size the picture is as large as the board's; `board` may be null.

@@ -8,15 +8,15 @@ data=$2
 out=$(dirname "$0")
 size="--size 480x360 --quiet"
 
-$thimble render spheres --depth 9 $size --eye -130,-300,520 --target 256,256,262 --fov 52 -o "$out/spheres-perspective.png"
-$thimble render spheres --depth 9 $size --projection orthographic --span 860 -o "$out/spheres-orthographic.png"
-$thimble render cluster:1000000 $size --eye 40,-420,900 --target 512,512,470 --fov 48 -o "$out/cluster.png"
-$thimble render "$data/vox/ephtracy/monu10.vox" $size --shade color --fov 30 -o "$out/monu10.png"
+$thimble render spheres --shade depth --depth 9 $size --eye -130,-300,520 --target 256,256,262 --fov 52 -o "$out/spheres-perspective.png"
+$thimble render spheres --shade depth --depth 9 $size --view paper --projection orthographic --span 860 -o "$out/spheres-orthographic.png"
+$thimble render cluster:1000000 --shade depth $size --eye 40,-420,900 --target 512,512,470 --fov 48 -o "$out/cluster.png"
+$thimble render "$data/vox/ephtracy/monu10.vox" $size --shade color --view paper --fov 30 -o "$out/monu10.png"
 $thimble render "$data/mesh/dragon_vrip_res2.ply.gz" --depth 10 $size --shade depth --eye 300,-760,620 \
   --target 512,512,425 --fov 44 -o "$out/dragon.png"
-$thimble render "$data/nbody/galaxy_littleendian.dat" $size --shade color --eye 100,60,700 --target 256,256,256 \
+$thimble render "$data/nbody/galaxy_littleendian.dat" $size --shade color --eye 100,60,700 --target 256,256,256 --fov 60 \
   -o "$out/galaxy.png"
-$thimble render "${STARS:-stars.xyz}" --depth 10 $size --eye 300,-60,760 --target 512,512,512 --fov 44 -o "$out/stars.png"
+$thimble render "${STARS:-stars.xyz}" --shade depth --depth 10 $size --eye 300,-60,760 --target 512,512,512 --fov 44 -o "$out/stars.png"
 scenes="$out/scenes"
 $thimble render "$scenes/castle.vox" $size --samples 9 --shade color --effects direct-light,shadows,sky,ambient-occlusion \
   --eye 2,-118,72 --target 40,40,29 --fov 32 -o "$out/castle.png"
@@ -24,7 +24,7 @@ $thimble render "$scenes/fox.vox.gz" $size --samples 9 --shade color --effects d
   --eye 20,-110,75 --target 42,42,38 --fov 36 -o "$out/fox.png"
 # Lit by what their texts say.
 for scene in house lagoon ship glass room; do
-  $thimble render "$scenes/$scene.scene" $size --samples 9 -o "$out/$scene.png"
+  $thimble render "$scenes/$scene.scene" $size --samples 9 --effects auto -o "$out/$scene.png"
 done
 $thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-light,shadows,ambient-occlusion,sky,glass,media \
   --eye 141.3,-22.7,66.4 --target 25.6,59.2,9.3 --fov 36 -o "$out/bevy-test.png"
@@ -50,6 +50,20 @@ $thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 10
 ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
 [b][p]paletteuse=dither=none:diff_mode=rectangle" "$out/waves.gif"
 rm "$out/waves.y4m"
+# The sheet of README.md here: twelve scenes without a word on how (ImageMagick).
+sheet=$(mktemp -d)
+sheet_of() {
+  number=10
+  for scene in "$@"; do
+    $thimble render "$scene" --size 240x180 --quiet -o "$sheet/$number.png"
+    number=$((number + 1))
+  done
+}
+sheet_of "$scenes/castle.vox" demo "$scenes/glass.scene" "$scenes/room.scene" "$scenes/lagoon.scene" spheres \
+  "$data/mesh/dragon_vrip_res2.ply.gz" water "$data/nbody/galaxy_littleendian.dat" cluster:200000 points:20000 \
+  "${STARS:-stars.xyz}"
+montage "$sheet"/*.png -tile 3x4 -geometry +0+0 "$out/defaults.png"
+rm -r "$sheet"
 # simulator.png is the window of: thimble sim demo
 
 # The studies of tools/README.md. Their titles are the names of the files, so they run where these lie.

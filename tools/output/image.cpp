@@ -97,9 +97,12 @@ Image converted(const Image& image, PixelFormat format) {
   if (image.format == format) {
     return image;
   }
-  Image result{image.width_px, image.height_px, format,
+  Image result{image.width_px,
+               image.height_px,
+               format,
                std::vector<std::uint8_t>(row_bytes(format, image.width_px) *
-                                         static_cast<std::size_t>(image.height_px))};
+                                         static_cast<std::size_t>(image.height_px)),
+               {}};
   for (std::int32_t y = 0; y < image.height_px; ++y) {
     const std::size_t row = static_cast<std::size_t>(y);
     const std::uint8_t* from = image.pixels.data() + row * row_bytes(image.format, image.width_px);
@@ -113,6 +116,13 @@ Image converted(const Image& image, PixelFormat format) {
 
 std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind) {
   std::vector<std::uint8_t> pixels = image.pixels;
+  if (kind == ImageKind::kPng && !image.alpha.empty()) {
+    pixels.clear();
+    for (std::size_t i = 0; i < image.alpha.size(); ++i) {
+      pixels.insert(pixels.end(),
+                    {image.pixels[3 * i], image.pixels[3 * i + 1], image.pixels[3 * i + 2], image.alpha[i]});
+    }
+  }
   if (kind == ImageKind::kPbm) {
     // 1 is black in a PBM; the padding at a row's end stays 0.
     const std::size_t row = row_bytes(PixelFormat::kMono1, image.width_px);
@@ -145,8 +155,9 @@ void write_image(OutputFile* file, ImageKind kind, const Image& image) {
         const auto* bytes = static_cast<const unsigned char*>(data);
         out->insert(out->end(), bytes, bytes + count);
       };
-      if (stbi_write_png_to_func(append, &png, image.width_px, image.height_px, 3, pixels.data(),
-                                 3 * image.width_px) == 0) {
+      const int channels = image.alpha.empty() ? 3 : 4;
+      if (stbi_write_png_to_func(append, &png, image.width_px, image.height_px, channels, pixels.data(),
+                                 channels * image.width_px) == 0) {
         throw OutputError("the PNG encoder ran out of memory");
       }
       file->write(std::span<const unsigned char>(png));

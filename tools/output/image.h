@@ -28,6 +28,8 @@ struct Image {
   std::int32_t height_px = 0;
   PixelFormat format = PixelFormat::kRgb888;
   std::vector<std::uint8_t> pixels;
+  /// How much of each pixel is covered, 0 .. 255, for pictures without a background: PNG, Rgb888. Empty: all.
+  std::vector<std::uint8_t> alpha{};  // so that most need not name it
 };
 
 /// The same picture in another format, pixel by pixel as a display shows it: 16 greys are 17 apart, channels

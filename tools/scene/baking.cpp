@@ -9,6 +9,7 @@
 
 #include "readers/oct.h"
 #include "scene/built_scene.h"
+#include "scene/default_look.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
@@ -79,11 +80,21 @@ class Assembly {
     parts_.palette = {palette_.data(), palette_.size()};
     parts_.name = {reinterpret_cast<const std::uint8_t*>(name_.data()), name_.size()};
     if (options.camera) {
-      camera_ = options.camera(tree.level(), tree.bounds());
+      camera_ = options.camera(tree);
       parts_.camera = &camera_;
     }
     LitDescription lit = source.lighting();
     const UsedMaterials used = used_materials(tree);
+    if (options.default_look && !options.effects.is_given && options.camera) {
+      Framing framing;
+      framing.kept = camera_;
+      const SceneFacts facts = facts_of(source, lit, shape_of(tree));
+      lit = baked_look(facts, framing);
+      if (is_clay(facts)) {
+        std::fill(palette_.begin(), palette_.end(), kClay);
+        parts_.palette = {palette_.data(), palette_.size()};
+      }
+    }
     lit.find_glow(tree);
     effects_ = chosen_effects(lit, used, options.effects);
     lighting_ = lighting_section(lit, used, effects_, tree.level());

@@ -24,7 +24,10 @@ struct BakingOptions {
   EffectChoice effects;
   std::string name;  ///< cut off at kMaxNameBytes
   /// Chooses the camera once the tree is known; without it the scene gets none.
-  std::function<SceneCamera(int level, const VoxelBox& bounds)> camera;
+  std::function<SceneCamera(const CompactTree& tree)> camera;
+  /// Bake the light of the default look (default_look.h) where `effects` were not given and the scene states
+  /// none. For scenes of people; generators are baked as they are.
+  bool default_look = false;
 };
 
 /// A baked scene and what its making took.

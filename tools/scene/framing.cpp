@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "output/units.h"
+#include "scene/best_view.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/ray.h"
 
@@ -296,7 +297,166 @@ Camera orthographic_camera(const ViewWishes& wishes, int level, const Sight& sig
   return camera;
 }
 
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+// The way in, and what is up where that is upright.
+void look_from(const ViewAngles& angles, ViewWishes* wishes) {
+  const double turn = angles.turn * kDegree;
+  const double tilt = std::clamp(angles.tilt, -90.0, 90.0) * kDegree;
+  wishes->forward = {-std::sin(turn) * std::cos(tilt), std::cos(turn) * std::cos(tilt), -std::sin(tilt)};
+  constexpr double kUpright = 89.9;
+  if (!wishes->up && std::abs(angles.tilt) > kUpright) {
+    const double side = angles.tilt > 0 ? 1 : -1;
+    wishes->forward = {0, 0, -side};
+    wishes->up = Real3{-side * std::sin(turn), side * std::cos(turn), 0};
+  }
+}
+
+// Corners as a camera sees them, about a point near them all.
+class Seen {
+ public:
+  Seen(const std::vector<Vec3i>& corners, const Real3& middle, const Axes& axes) {
+    for (const Vec3i& corner : corners) {
+      const Real3 offset =
+          minus({static_cast<double>(corner.x), static_cast<double>(corner.y), static_cast<double>(corner.z)},
+                middle);
+      points_.push_back({dot(offset, axes.right), dot(offset, axes.up), dot(offset, axes.forward)});
+    }
+  }
+
+  /// Where two planes through the eye that open by `slope` to either side of the view touch the corners:
+  /// their crossing, as the coordinate along the axis and the depth.
+  struct Crossing {
+    double along;
+    double depth;
+  };
+  Crossing crossing(std::size_t axis, double slope) const {
+    double above = -HUGE_VAL;
+    double below = -HUGE_VAL;
+    for (const Real3& point : points_) {
+      above = std::max(above, point[axis] - slope * point[2]);
+      below = std::max(below, -point[axis] - slope * point[2]);
+    }
+    return {(above - below) / 2, -(above + below) / (2 * slope)};
+  }
+  /// Where along an axis an eye at that depth sees as much on one side as on the other.
+  double balanced(std::size_t axis, double slope, double depth) const {
+    double low = 0;
+    double high = slope;
+    for (int step = 0; step < 48; ++step) {
+      const double middle = (low + high) / 2;
+      (crossing(axis, middle).depth < depth ? low : high) = middle;
+    }
+    return crossing(axis, high).along;
+  }
+  Crossing extent(std::size_t axis) const {  // the middle, and half the length
+    double low = HUGE_VAL;
+    double high = -HUGE_VAL;
+    for (const Real3& point : points_) {
+      low = std::min(low, point[axis]);
+      high = std::max(high, point[axis]);
+    }
+    return {(low + high) / 2, (high - low) / 2};
+  }
+
+ private:
+  std::vector<Real3> points_;
+};
+
+Real3 middle_of(const VoxelBox& bounds) {
+  return {(bounds.low.x + bounds.high.x) / 2.0, (bounds.low.y + bounds.high.y) / 2.0,
+          (bounds.low.z + bounds.high.z) / 2.0};
+}
+
+bool is_reachable(const Real3& eye, const Reach& reach) {
+  return std::all_of(eye.begin(), eye.end(), [&](double coordinate) { return reach.holds(coordinate); });
+}
+
+// From the middle of `bounds` by that much along the axes.
+Real3 placed(const VoxelBox& bounds, const Axes& axes, double right, double up, double forward) {
+  return plus(plus(middle_of(bounds), scaled(axes.right, right)),
+              plus(scaled(axes.up, up), scaled(axes.forward, forward)));
+}
+
+// The side that is wished, in numbers.
+ViewAngles angles_for(const ViewWishes& wishes, const SceneShape& shape) {
+  ViewAngles angles = wishes.side == NamedView::kBest ? best_angles(shape) : angles_of(wishes.side);
+  angles.turn += wishes.onward.turn;
+  angles.tilt = std::clamp(angles.tilt + wishes.onward.tilt, -90.0, 90.0);
+  return angles;
+}
+
+// Rounded to what a camera can say, so that nothing of it moves later.
+double kept_q8(double value) {
+  return std::round(value * Q8::kOne) / Q8::kOne;
+}
+Real3 kept_q8(const Real3& point) {
+  return {kept_q8(point[0]), kept_q8(point[1]), kept_q8(point[2])};
+}
+
+// Whether a picture shows everything occupied.
+bool shows_all(const Framing& framing, const SceneShape& shape, const Sight& sight, const Lens& lens) {
+  const Real3 eye = to_reals(framing.kept.eye);
+  const double half = voxels_of(framing.kept.span) / 2;
+  return std::none_of(shape.corners.begin(), shape.corners.end(), [&](const Vec3i& corner) {
+    const Real3 offset = minus(
+        {static_cast<double>(corner.x), static_cast<double>(corner.y), static_cast<double>(corner.z)}, eye);
+    const double depth = dot(offset, sight.axes.forward);
+    const double reach_x = framing.kept.is_perspective ? depth * lens.tan_y * lens.aspect : half;
+    return depth <= 0 || std::abs(dot(offset, sight.axes.right)) > reach_x ||
+           std::abs(dot(offset, sight.axes.up)) > reach_x / lens.aspect;
+  });
+}
+
+// The eye and the span that show the corners so; the target keeps to the middle of the view.
+ViewWishes fitted(const ViewWishes& wishes, const SceneShape& shape, const Sight& sight) {
+  const Lens lens(wishes);
+  const Axes& axes = sight.axes;
+  const Seen seen(shape.corners, middle_of(shape.bounds), axes);
+  ViewWishes placed_view = wishes;
+  placed_view.up = wishes.up.value_or(to_reals(sight.up));
+  if (wishes.orthographic) {
+    const Seen::Crossing x = seen.extent(0);
+    const Seen::Crossing y = seen.extent(1);
+    const Seen::Crossing z = seen.extent(2);
+    const double half = std::max(x.depth, y.depth * lens.aspect);
+    placed_view.eye = kept_q8(placed(shape.bounds, axes, x.along, y.along, z.along - z.depth - 1));
+    placed_view.target = plus(*placed_view.eye, scaled(axes.forward, z.depth + 1 - z.along));
+    placed_view.span = wishes.span.value_or(std::ceil(2 * half / kPictureFill * Q14::kOne) / Q14::kOne);
+    return placed_view;
+  }
+  const double slope_y = lens.tan_y * kPictureFill;
+  const double slope_x = slope_y * lens.aspect;
+  const double depth = std::min(seen.crossing(0, slope_x).depth, seen.crossing(1, slope_y).depth);
+  const double x = seen.balanced(0, slope_x, depth);
+  const double y = seen.balanced(1, slope_y, depth);
+  placed_view.eye = kept_q8(placed(shape.bounds, axes, x, y, depth));
+  placed_view.target = plus(*placed_view.eye, scaled(axes.forward, std::max(1.0, -depth)));
+  return placed_view;
+}
+
 }  // namespace
+
+ViewAngles angles_of(NamedView view) {
+  constexpr double kIsometric = 35.264389682754654;  // the angle of a cube's diagonal and its faces
+  switch (view) {
+    case NamedView::kPaper:
+    case NamedView::kBest:
+    case NamedView::kIso:
+      return {-45, kIsometric};
+    case NamedView::kFront:
+      return {0, 0};
+    case NamedView::kBack:
+      return {180, 0};
+    case NamedView::kLeft:
+      return {-90, 0};
+    case NamedView::kRight:
+      return {90, 0};
+    case NamedView::kTop:
+      return {0, 90};
+  }
+  return {};
+}
 
 Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   const std::int32_t side = std::int32_t{1} << level;
@@ -350,6 +510,80 @@ Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int lev
                      "; another --size, or a camera of your own (--eye, --target, --span), helps");
   }
   return framing;
+}
+
+Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
+  ViewWishes wishes = given;
+  if (wishes.side == NamedView::kPaper) {
+    return frame_box(wishes, shape.level, shape.bounds);
+  }
+  wishes.fill = kPictureFill;
+  if (!wishes.eye) {
+    look_from(angles_for(wishes, shape), &wishes);
+  }
+  if (wishes.eye || wishes.target || shape.corners.empty()) {
+    return frame_box(wishes, shape.level, shape.bounds);
+  }
+  const Reach reach(shape.level);
+  const Sight sight = sight_of(wishes, reach, corners_of(shape.bounds));
+  const ViewWishes placed_view = fitted(wishes, shape, sight);
+  Framing framing;
+  if (is_reachable(*placed_view.eye, reach) && is_reachable(*placed_view.target, reach)) {
+    try {
+      return frame_box(placed_view, shape.level, shape.bounds);
+    } catch (const InputError&) {
+      // Beyond what a camera can do; the next one makes do with less, or says why not.
+    }
+  }
+  framing = frame_box(wishes, shape.level, shape.bounds);
+  if (shows_all(framing, shape, sight, Lens(wishes))) {
+    framing.note.clear();  // what its box lacks holds nothing
+  }
+  return framing;
+}
+
+Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape) {
+  return wishes.placed || source.camera() == nullptr ? frame_shape(wishes, shape)
+                                                     : frame_scene(wishes, source, shape.level, shape.bounds);
+}
+
+std::vector<Framing> frame_turns(const ViewWishes& given, const SceneShape& shape, int count) {
+  ViewWishes wishes = given;
+  const ViewAngles first = angles_for(wishes, shape);
+  const Reach reach(shape.level);
+  const Corners box = corners_of(shape.bounds.empty() ? VoxelBox{{0, 0, 0}, {1, 1, 1}} : shape.bounds);
+  const Lens lens(wishes);
+  std::vector<ViewWishes> views;
+  double distance = 0;
+  double half_width = 0;
+  for (int i = 0; i < count; ++i) {
+    ViewWishes view = wishes;
+    look_from({first.turn + 360.0 * i / count, first.tilt}, &view);
+    const Sight sight = sight_of(view, reach, box);
+    const Seen seen(shape.corners, sight.target, sight.axes);
+    for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+      const double slope = lens.tan_y * kPictureFill * (axis == 0 ? lens.aspect : 1);
+      const Seen::Crossing crossing = seen.crossing(axis, slope);
+      distance = std::max(distance, std::abs(crossing.along) / slope - crossing.depth);
+      const Seen::Crossing extent = seen.extent(axis);
+      half_width =
+          std::max(half_width, (std::abs(extent.along) + extent.depth) * (axis == 0 ? 1 : lens.aspect));
+    }
+    distance = std::max(distance, wishes.orthographic ? seen.extent(2).depth + 1 : 0);
+    views.push_back(view);
+  }
+  std::vector<Framing> framings;
+  for (ViewWishes& view : views) {
+    const Sight sight = sight_of(view, reach, box);
+    view.eye = eye_at(sight, distance, reach);
+    view.target = sight.target;
+    view.up = view.up.value_or(to_reals(sight.up));
+    if (wishes.orthographic) {
+      view.span = wishes.span.value_or(2 * half_width / kPictureFill);
+    }
+    framings.push_back(frame_box(view, shape.level, shape.bounds));
+  }
+  return framings;
 }
 
 ViewWishes finer(const ViewWishes& wishes, int across) {

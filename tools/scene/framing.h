@@ -10,6 +10,7 @@
 #include <string>
 
 #include "readers/real3.h"
+#include "scene/scene_shape.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/picture/camera.h"
 
@@ -21,6 +22,33 @@ class SceneSource;
 inline constexpr Real3 kDefaultForward{0.5, 0.9, -0.45};
 /// The part of the picture that a framed scene fills then.
 inline constexpr double kDefaultFill = 0.94;
+
+/// What a scene that is framed as a person would fills, of the picture's tighter side.
+inline constexpr double kPictureFill = 0.9;
+/// The vertical angle of such a picture.
+inline constexpr double kPictureFov = 35;
+
+/// Sides to see a scene from. Front looks along +y, left along +x, top down with the front below; iso stands
+/// in front on the left, as high as isometric drawings do.
+enum class NamedView : std::uint8_t {
+  kPaper,  ///< kDefaultForward, with the corners of a box within kDefaultFill: what instruments look from
+  kBest,   ///< of a few three-quarter views the one that shows most (best_view.h)
+  kIso,
+  kFront,
+  kBack,
+  kLeft,
+  kRight,
+  kTop,
+};
+
+/// Where a camera stands around a scene, in degrees.
+struct ViewAngles {
+  double turn = 0;  ///< 0 in front (towards -y), 90 on the right (+x)
+  double tilt = 0;  ///< above the horizon, -90 .. 90
+};
+
+/// Those of a named view. kBest wants a scene and has none.
+ViewAngles angles_of(NamedView view);
 
 /// Points and lengths in voxels. What is not given frames the scene.
 struct ViewWishes {
@@ -35,10 +63,13 @@ struct ViewWishes {
   std::optional<Real3> target;      ///< else the middle of the scene
   std::optional<Real3> up;          ///< else `default_up` of the direction of view
   Real3 forward = kDefaultForward;  ///< the direction of view where there is no eye; any length above 0
-  double fov_degrees = 60;          ///< vertical, 1 .. 120; perspective
-  std::optional<double> span;       ///< width of the picture; orthographic, else the whole scene
-  double fill = kDefaultFill;       ///< of the picture, 0 .. 1, where the scene is framed
-  int direction_bits = 0;           ///< kMinDirectionBits .. kMaxDirectionBits; 0: as many as are needed
+  /// Instead of `forward`, for `frame_shape`: the side, and by how much to go on from there.
+  NamedView side = NamedView::kPaper;
+  ViewAngles onward;
+  double fov_degrees = 60;     ///< vertical, 1 .. 120; perspective
+  std::optional<double> span;  ///< width of the picture; orthographic, else the whole scene
+  double fill = kDefaultFill;  ///< of the picture, 0 .. 1, where the scene is framed
+  int direction_bits = 0;      ///< kMinDirectionBits .. kMaxDirectionBits; 0: as many as are needed
 };
 
 /// A view as it came out.
@@ -54,6 +85,18 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds);
 
 /// The camera that the scene brings along, unless `wishes.placed` or it has none; then the one above.
 Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int level, const VoxelBox& bounds);
+
+/// As a person would frame it: from `wishes.side`, turned and tilted on by `wishes.onward`, what is occupied in
+/// the middle of the picture, filling kPictureFill of its tighter side. With an eye, a target or kPaper: as
+/// `frame_box`, in that direction. A function of its arguments alone. Throws InputError as above.
+Framing frame_shape(const ViewWishes& wishes, const SceneShape& shape);
+
+/// The camera that the scene brings along, unless `wishes.placed` or it has none; then the one above.
+Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape);
+
+/// Pictures all around, `count` of them: the view above turned by a whole turn, clockwise, in equal steps, about
+/// the upright through the middle of the scene, from as far away as the widest of them wants.
+std::vector<Framing> frame_turns(const ViewWishes& wishes, const SceneShape& shape, int count);
 
 /// The same view in a picture `across` times as wide and high. Throws InputError beyond the largest size.
 ViewWishes finer(const ViewWishes& wishes, int across);

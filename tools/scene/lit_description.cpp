@@ -158,6 +158,7 @@ EffectSet called_for(const LitDescription& lit, const UsedMaterials& used) {
 
 std::optional<EffectChoice> parse_effects(std::string_view text) {
   EffectChoice choice;
+  choice.is_given = true;
   if (text == "auto") {
     return choice;
   }

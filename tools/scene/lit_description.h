@@ -96,6 +96,7 @@ struct EffectChoice {
   bool automatic = true;
   EffectSet effects = Effect::kNone;  ///< unless automatic
   std::optional<bool> smooth{};       ///< --normals: with Effect::kSmoothNormals, or without
+  bool is_given = false;  ///< somebody said so; "auto" then adds nothing to what the scene calls for
 };
 /// "auto", "none" or names of effects with commas between them; nothing for anything else.
 std::optional<EffectChoice> parse_effects(std::string_view text);

@@ -16,9 +16,10 @@ namespace thimble::tools {
 inline constexpr int kMostCutoffPx = 64;
 
 struct Quality {
-  int across = 1;     ///< samples a pixel are its square
-  Q16 cutoff;         ///< in pixels, up to kMostCutoffPx; 0: none
-  int max_depth = 0;  ///< nodes that deep are solid through; 0: all levels
+  int across = 1;           ///< samples a pixel are its square
+  bool is_sampled = false;  ///< whether somebody chose that
+  Q16 cutoff;               ///< in pixels, up to kMostCutoffPx; 0: none
+  int max_depth = 0;        ///< nodes that deep are solid through; 0: all levels
 
   int samples() const { return across * across; }
   /// Whether nodes are cut at all.

@@ -1,0 +1,310 @@
+// `thimble render` without a word on how: the scene's own look, backgrounds, films.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble::tests;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+// Coloured boxes on legs, so that there is something to cast a shadow.
+constexpr const char* kScene = R"(depth 5
+material wall color 200 60 40
+material roof color 60 90 200
+box wall from 8 8 6 to 24 20 18
+box roof from 6 6 18 to 26 22 22
+box wall from 8 8 2 to 10 10 6
+box wall from 22 18 2 to 24 20 6
+)";
+
+std::uint8_t byte_at(const std::string& text, std::size_t at) {
+  REQUIRE(at < text.size());
+  return static_cast<std::uint8_t>(text[at]);
+}
+
+struct Drawn {
+  std::string pixels;
+  json stats;
+  std::string err;
+};
+
+Drawn draw(const std::string& scene, const Words& more, const std::string& size = "80x60") {
+  const TemporaryFolder folder;
+  Words words{"render", scene, "--size", size, "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")};
+  words.insert(words.end(), more.begin(), more.end());
+  const CommandResult result = run_command(words);
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  const std::string file = read_text(folder.path("a.ppm"));
+  return {file.substr(file.find("255\n") + 4), json::parse(read_text(folder.path("a.json"))), result.err};
+}
+
+void check_refused(const std::string& scene, const Words& more, const std::string& named,
+                   const std::string& output = "a.png") {
+  const TemporaryFolder folder;
+  Words words{"render", scene, "--size", "16x12", "-o", folder.path(output)};
+  words.insert(words.end(), more.begin(), more.end());
+  const CommandResult result = run_command(words);
+  INFO(result.describe());
+  CHECK(result.status == 2);
+  CHECK(is_one_sentence(result.err));
+  CHECK(result.err.find(named) != std::string::npos);
+  CHECK(folder.names().empty());
+}
+
+std::size_t little_16(const std::string& text, std::size_t at) {
+  return byte_at(text, at) + 256U * byte_at(text, at + 1);
+}
+
+// A film as a reader that knows nothing of the writer sees it: CompuServe's GIF89a of 1990.
+struct Gif {
+  std::size_t width = 0, height = 0;
+  std::vector<std::string> frames;  // r, g, b
+  std::vector<std::size_t> delays;
+};
+
+std::vector<std::size_t> decode_lzw(const std::string& data, std::size_t pixels) {
+  std::vector<std::vector<std::size_t>> words;
+  const auto clear = [&] {
+    words.assign(258, {});
+    for (std::size_t i = 0; i < 256; ++i) {
+      words[i] = {i};
+    }
+  };
+  clear();
+  std::vector<std::size_t> out;
+  std::size_t bit = 0;
+  std::size_t bits = 9;
+  std::vector<std::size_t> last;
+  for (;;) {
+    std::size_t code = 0;
+    REQUIRE((bit + bits + 7) / 8 <= data.size());
+    for (std::size_t i = 0; i < bits; ++i, ++bit) {
+      code |= static_cast<std::size_t>(byte_at(data, bit / 8) >> (bit % 8) & 1U) << i;
+    }
+    if (code == 256) {
+      clear();
+      bits = 9;
+      last.clear();
+      continue;
+    }
+    if (code == 257) {
+      break;
+    }
+    std::vector<std::size_t> word;
+    if (code < words.size()) {
+      word = words[code];
+    } else {
+      REQUIRE(code == words.size());
+      REQUIRE_FALSE(last.empty());
+      word = last;
+      word.push_back(last[0]);
+    }
+    if (!last.empty() && words.size() < 4096) {
+      last.push_back(word[0]);
+      words.push_back(last);
+      bits += words.size() == std::size_t{1} << bits && bits < 12 ? 1U : 0U;
+    }
+    out.insert(out.end(), word.begin(), word.end());
+    last = word;
+  }
+  CHECK(out.size() == pixels);
+  return out;
+}
+
+Gif decode(const std::string& file) {
+  Gif gif;
+  REQUIRE(file.substr(0, 6) == "GIF89a");
+  gif.width = little_16(file, 6);
+  gif.height = little_16(file, 8);
+  REQUIRE(byte_at(file, 10) == 0xF7);
+  const std::string palette = file.substr(13, 768);
+  std::size_t at = 13 + 768;
+  for (;;) {
+    const std::uint8_t kind = byte_at(file, at++);
+    if (kind == 0x3B) {
+      break;
+    }
+    if (kind == 0x21) {
+      if (byte_at(file, at) == 0xF9) {
+        gif.delays.push_back(little_16(file, at + 3));
+      }
+      ++at;
+      while (byte_at(file, at) != 0) {
+        at += 1U + byte_at(file, at);
+      }
+      ++at;
+      continue;
+    }
+    REQUIRE(kind == 0x2C);
+    CHECK(little_16(file, at + 4) == gif.width);
+    CHECK(little_16(file, at + 6) == gif.height);
+    CHECK(byte_at(file, at + 8) == 0);
+    REQUIRE(byte_at(file, at + 9) == 8);
+    at += 10;
+    std::string data;
+    while (byte_at(file, at) != 0) {
+      data += file.substr(at + 1, byte_at(file, at));
+      at += 1U + byte_at(file, at);
+    }
+    ++at;
+    std::string pixels;
+    for (const std::size_t index : decode_lzw(data, gif.width * gif.height)) {
+      pixels += palette.substr(3 * index, 3);
+    }
+    gif.frames.push_back(pixels);
+  }
+  CHECK(at == file.size());
+  return gif;
+}
+
+}  // namespace
+
+TEST_CASE("render look: a scene with colours and nothing said -> light, shadows, a backdrop, four samples") {
+  const TemporaryFolder folder;
+  const Drawn drawn = draw(folder.write("a.scene", kScene), {"--verbose"});
+  CHECK(drawn.stats["engine"] == "lit");
+  CHECK(drawn.stats["effects"] == json({"direct-light", "shadows", "ambient-occlusion"}));
+  CHECK(drawn.stats["samples"] == 4);
+  CHECK(drawn.stats["rays"].get<std::uint64_t>() >= 4 * 80 * 60);
+  CHECK(drawn.err.find("look: its colours, a sun over the viewer's shoulder") != std::string::npos);
+  // The corners show the backdrop, lighter below.
+  const std::size_t last = 3 * (80 * 60 - 1);
+  CHECK(byte_at(drawn.pixels, 0) > 100);
+  CHECK(byte_at(drawn.pixels, last) > byte_at(drawn.pixels, 0));
+  std::set<std::string> colors;
+  for (std::size_t i = 0; i < drawn.pixels.size(); i += 3) {
+    colors.insert(drawn.pixels.substr(i, 3));
+  }
+  CHECK(colors.size() > 200);
+}
+
+TEST_CASE("render look: any number of threads, any budget that fits -> the same pixels") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  for (const std::string& one : {scene, std::string("points:3000,depth=7")}) {
+    const Drawn first = draw(one, {"--quiet"});
+    for (const char* const threads : {"2", "3", "5"}) {
+      CHECK(draw(one, {"--quiet", "--threads", threads}).pixels == first.pixels);
+    }
+    for (const char* const memory : {"48K", "64K", "200K"}) {
+      const Drawn tight = draw(one, {"--quiet", "--memory", memory});
+      CHECK(tight.pixels == first.pixels);
+      CHECK(tight.stats["high_water_bytes"] <= tight.stats["budget_bytes"]);
+    }
+  }
+}
+
+TEST_CASE("render look: strewn points -> stars on black, brighter where there are more") {
+  const Drawn drawn = draw("cluster:5000,depth=8", {"--verbose"});
+  CHECK(drawn.stats["engine"] == "stars");
+  CHECK(drawn.err.find("look: stars") != std::string::npos);
+  std::uint64_t dark = 0;
+  std::uint64_t bright = 0;
+  for (std::size_t i = 0; i < drawn.pixels.size(); i += 3) {
+    dark += byte_at(drawn.pixels, i) < 20 ? 1U : 0U;
+    bright += byte_at(drawn.pixels, i) > 180 ? 1U : 0U;
+  }
+  CHECK(dark > 80 * 60 / 4);
+  CHECK(bright > 20);
+}
+
+TEST_CASE("render look: nothing in the scene -> the backdrop, and no crash") {
+  CHECK(draw("points:0,depth=4", {"--quiet"}).stats["hits"] == 0);
+  CHECK(draw("points:1,depth=12", {"--quiet"}).pixels.size() == 3 * 80 * 60);
+}
+
+TEST_CASE(
+    "render look: --background -> a colour behind; none -> an alpha that is 0 there and 255 on the model") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  const Drawn red = draw(scene, {"--quiet", "--background", "ff2010", "--ground", "off"});
+  CHECK(red.pixels.substr(0, 3) == std::string("\xff\x20\x10"));
+  const Drawn shadow = draw(scene, {"--quiet", "--background", "ff2010", "--ground", "on"});
+  CHECK(shadow.pixels != red.pixels);
+  const CommandResult result = run_command(
+      {"render", scene, "--size", "80x60", "--background", "none", "--quiet", "-o", folder.path("a.png")});
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  const std::string png = read_text(folder.path("a.png"));
+  CHECK(byte_at(png, 25) == 6);  // colour type: r, g, b and alpha
+  check_refused(scene, {"--background", "none"}, "png", "a.ppm");
+  check_refused(scene, {"--background", "blue"}, "\"blue\"");
+  check_refused(scene, {"--background", "ff2010", "--shade", "color"}, "--background");
+  check_refused(scene, {"--ground", "on", "--engine", "ray64"}, "--ground");
+  check_refused(scene, {"--ground", "wet"}, "\"wet\"");
+}
+
+TEST_CASE("render look: --view, --turn and --tilt -> other pictures, and the same by another name") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  const auto pixels = [&](const Words& words) {
+    Words all{"--quiet"};
+    all.insert(all.end(), words.begin(), words.end());
+    return draw(scene, all, "40x30").pixels;
+  };
+  CHECK(pixels({"--view", "best"}) == pixels({}));
+  CHECK(pixels({"--view", "front"}) != pixels({}));
+  CHECK(pixels({"--view", "front", "--turn", "90"}) == pixels({"--view", "right"}));
+  CHECK(pixels({"--view", "front", "--turn", "-90"}) == pixels({"--view", "left"}));
+  CHECK(pixels({"--view", "front", "--tilt", "90"}) == pixels({"--view", "top"}));
+  check_refused(scene, {"--view", "below"}, "\"below\"");
+  check_refused(scene, {"--turn", "nan"}, "\"nan\"");
+  check_refused(scene, {"--tilt", "181"}, "-180 to 180");
+  check_refused(scene, {"--view", "front", "--eye", "1,2,3"}, "--eye");
+}
+
+TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each near its own picture") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("a.scene", kScene);
+  const std::string path = folder.path("a.gif");
+  const CommandResult result =
+      run_command({"render", scene, "--size", "90x70", "--turntable", "7", "-o", path, "--quiet"});
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  const Gif gif = decode(read_text(path));
+  CHECK(gif.width == 90);
+  CHECK(gif.height == 70);
+  REQUIRE(gif.frames.size() == 7);
+  CHECK(gif.delays == std::vector<std::size_t>(7, 85));
+  for (std::size_t i = 1; i < 7; ++i) {
+    CHECK(gif.frames[i] != gif.frames[i - 1]);
+  }
+  // The same frames without a palette.
+  const CommandResult film = run_command(
+      {"render", scene, "--size", "90x70", "--turntable", "7", "-o", folder.path("a.y4m"), "--quiet"});
+  REQUIRE(film.status == 0);
+  const std::string y4m = read_text(folder.path("a.y4m"));
+  const std::size_t header = y4m.find('\n') + 1;
+  CHECK(y4m.size() == header + 7U * (6 + 3 * 90 * 70));
+  for (std::size_t frame = 0; frame < 7; ++frame) {
+    double away = 0;
+    for (std::size_t i = 0; i < 90U * 70; ++i) {
+      const std::string& rgb = gif.frames[frame];
+      const int luma =
+          ((66 * byte_at(rgb, 3 * i) + 129 * byte_at(rgb, 3 * i + 1) + 25 * byte_at(rgb, 3 * i + 2) + 128) >>
+           8) +
+          16;
+      away += std::abs(luma - byte_at(y4m, header + frame * (6 + 3 * 90 * 70) + 6 + i));
+    }
+    CHECK(away / (90 * 70) < 6);
+  }
+}
+
+TEST_CASE("render look: films and pictures asked for wrongly -> status 2, and no file") {
+  check_refused("spheres", {"--turntable", "5"}, ".gif");
+  check_refused("spheres", {}, "--turntable", "a.gif");
+  check_refused("spheres", {"--turntable", "1"}, "2 to 1000", "a.gif");
+  check_refused("spheres", {"--turntable", "5", "--shade", "depth"}, "--shade", "a.gif");
+  check_refused("spheres", {"--turntable", "5", "--eye", "1,2,3"}, "--eye", "a.y4m");
+  check_refused("spheres", {"--turntable", "5", "--background", "none"}, "png", "a.gif");
+}

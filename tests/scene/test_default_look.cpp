@@ -1,0 +1,171 @@
+// The default look: what a scene has decides, and what a scene states stays.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "scene/default_look.h"
+#include "scene/look_picture.h"
+#include "scene/tone.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tools;
+
+Framing looking(const Vec3i& forward) {
+  Framing framing;
+  framing.kept.forward = forward;
+  return framing;
+}
+
+SceneFacts colored() {
+  SceneFacts facts;
+  facts.has_colors = true;
+  facts.palette.assign(256, Rgb8{10, 200, 30});
+  facts.bounds = {{4, 4, 4}, {24, 20, 30}};
+  facts.used.is[1] = true;
+  return facts;
+}
+
+Look look_at_front(const SceneFacts& facts, const LookWishes& wishes = {}) {
+  return default_look(facts, wishes, looking({0, 1 << 20, 0}), 800, 600);
+}
+
+bool has(const Look& look, EffectSet effects) {
+  return (look.effects & effects) == effects;
+}
+
+}  // namespace
+
+TEST_CASE("look: colours -> a sun, shadows, occlusion, a gradient, a ground, four samples, its palette") {
+  const Look look = look_at_front(colored());
+  CHECK(look.kind == LookKind::kLit);
+  CHECK(has(look, Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion));
+  CHECK_FALSE(has(look, Effect::kSky));
+  CHECK(look.has_backdrop);
+  CHECK(look.background.kind == BackgroundKind::kGradient);
+  CHECK(look.has_ground);
+  CHECK(look.ground_z == 4);
+  CHECK(look.across == 2);
+  CHECK(look.palette[7] == Rgb8{10, 200, 30});
+  CHECK((look.effects & Effect::kSmoothNormals) == 0);
+}
+
+TEST_CASE("look: from every side -> the sun shines on what faces the viewer") {
+  for (const Vec3i& forward : {Vec3i{1 << 20, 0, 0}, Vec3i{-(1 << 20), 0, 0}, Vec3i{0, 1 << 20, 0},
+                               Vec3i{0, -(1 << 20), 0}, Vec3i{0, 0, -(1 << 20)}, Vec3i{0, 0, 1 << 20},
+                               Vec3i{600000, 800000, -500000}, Vec3i{-600000, 800000, -500000}}) {
+    const Look look = default_look(colored(), {}, looking(forward), 800, 600);
+    const LitScene scene = look.lit_scene();
+    REQUIRE(scene.lights.size == 1);
+    const Vec3i sun = scene.lights[0].place;
+    const std::int64_t facing = std::int64_t{sun.x} * -forward.x + std::int64_t{sun.y} * -forward.y +
+                                std::int64_t{sun.z} * -forward.z;
+    CHECK(facing > 0);
+    CHECK(look.toward_sun == sun);
+  }
+}
+
+TEST_CASE("look: a mesh or a surface of points without colours -> clay; strewn points -> stars") {
+  SceneFacts facts = colored();
+  facts.has_colors = false;
+  facts.is_mesh = true;
+  const Look mesh = look_at_front(facts);
+  CHECK(mesh.palette[0] == mesh.palette[255]);
+  CHECK(mesh.palette[0].r > mesh.palette[0].b);
+  CHECK((mesh.effects & Effect::kSmoothNormals) != 0);
+  facts.is_mesh = false;
+  facts.is_points = true;
+  facts.surface_share = kSurfaceShare;
+  CHECK(look_at_front(facts).kind == LookKind::kLit);
+  facts.surface_share = kSurfaceShare - 1;
+  CHECK(look_at_front(facts).kind == LookKind::kStars);
+}
+
+TEST_CASE("look: lights, sky, occlusion, effects that the scene states -> kept as they are") {
+  SceneFacts facts = colored();
+  Light lamp;
+  lamp.is_point = true;
+  lamp.reach = 9;
+  facts.lighting.lights = {lamp};
+  facts.lighting.rest.has_sky = true;
+  facts.lighting.rest.occlusion = {4, 99, 3};
+  facts.lighting.off = Effect::kShadows;
+  const Look look = look_at_front(facts);
+  REQUIRE(look.lit_scene().lights.size == 1);
+  CHECK(look.lit_scene().lights[0].is_point);
+  CHECK(look.lit_scene().lights[0].reach == 9);
+  CHECK(look.lit_scene().occlusion == Occlusion{4, 99, 3});
+  CHECK(has(look, Effect::kSky));
+  CHECK_FALSE(has(look, Effect::kShadows));
+  CHECK_FALSE(look.has_backdrop);
+  CHECK_FALSE(look.has_ground);
+  LookWishes wishes;
+  wishes.background = {BackgroundKind::kColor, {1, 2, 3}};
+  wishes.ground = true;
+  CHECK(look_at_front(facts, wishes).has_backdrop);
+  CHECK(look_at_front(facts, wishes).has_ground);
+}
+
+TEST_CASE("look: an ambient of its own, or no direct light -> no sun is added") {
+  SceneFacts dark = colored();
+  dark.lighting.rest.ambient_q8[0] = 1;
+  CHECK(look_at_front(dark).lit_scene().lights.size == 0);
+  SceneFacts off = colored();
+  off.lighting.off = Effect::kDirectLight;
+  CHECK_FALSE(has(look_at_front(off), Effect::kDirectLight));
+}
+
+TEST_CASE("look: more rays than the limit -> one sample a pixel; a wish goes first") {
+  const SceneFacts facts = colored();
+  LookWishes wishes;
+  const auto across = [&](std::int32_t width, std::int32_t height) {
+    return default_look(facts, wishes, looking({0, 1 << 20, 0}), width, height).across;
+  };
+  // 1 ray, 1 to the sun and 16 around, four times a pixel.
+  const auto most = static_cast<std::int32_t>(kMostLookRays / 72 / 1000);
+  CHECK(across(1000, most) == 2);
+  CHECK(across(1000, most + 1) == 1);
+  wishes.across = 3;
+  CHECK(across(1000, most + 1) == 3);
+}
+
+TEST_CASE("look: none, gradient and six hex digits are backgrounds; nothing else is") {
+  Background background;
+  CHECK(parse_background("none", &background));
+  CHECK(background.kind == BackgroundKind::kNone);
+  CHECK(parse_background("gradient", &background));
+  CHECK(background.kind == BackgroundKind::kGradient);
+  CHECK(parse_background("0aFf10", &background));
+  CHECK(background.kind == BackgroundKind::kColor);
+  CHECK(background.color == Rgb8{10, 255, 16});
+  for (const char* wrong :
+       {"", "#0aff10", "0aff1", "0aff100", "0aff1g", "-aff10", "+aff10", "None", " none"}) {
+    CAPTURE(wrong);
+    CHECK_FALSE(parse_background(wrong, &background));
+  }
+}
+
+TEST_CASE("tone: never falls, nothing is cut off, black stays black; exposures keep their limits") {
+  for (const std::uint32_t exposure : {kLeastExposureQ8, 256U, kMostExposureQ8}) {
+    const ToneTable table = tone_table(exposure);
+    CHECK(table[0] == 0);
+    CHECK(std::is_sorted(table.begin(), table.end()));
+    CHECK(table[255] < 255);
+    CHECK(table[200] < table[255]);  // bright and brighter stay apart
+  }
+  CHECK(tone_table(256)[100] == 150);  // straight below the knee
+  std::array<std::uint32_t, 256> counts{};
+  CHECK(exposure_q8(counts) == 256);
+  counts[0] = 1000;
+  CHECK(exposure_q8(counts) == kMostExposureQ8);
+  counts = {};
+  counts[255] = 10;
+  CHECK(exposure_q8(counts) == kLeastExposureQ8);
+  counts = {};
+  counts[60] = 899;
+  counts[128] = 100;
+  counts[140] = 1;  // a tenth is as bright as 128
+  CHECK(exposure_q8(counts) == kExposedGray * 512 / 384);
+}

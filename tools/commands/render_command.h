@@ -1,0 +1,58 @@
+/// @file render_command.h
+/// What `thimble render` was told, and the ways to draw it.
+#ifndef THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
+#define THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
+
+#include <string>
+
+#include "commands/effect_options.h"
+#include "commands/engine_options.h"
+#include "commands/scene_options.h"
+#include "commands/stats.h"
+#include "output/output_set.h"
+#include "scene/default_look.h"
+#include "scene/framing.h"
+#include "scene/quality.h"
+#include "thimble/picture/shading.h"
+
+namespace thimble::tools {
+
+struct RenderCommand {
+  SceneOptions scene;
+  EngineOptions engine;
+  ViewWishes view;
+  Quality quality;
+  EffectOptions effects;
+  LookWishes look;
+  bool wishes_look = false;  ///< --background or --ground
+  bool verbose = false;
+  int turntable = 0;  ///< frames of a film; 0: a picture
+  ShadeMode shade = ShadeMode::kDepth;
+  std::string shade_name;  ///< empty unless given
+  std::string output;
+  std::string hits_path;
+  std::string depth_path;
+};
+
+/// The files that it writes, by their place in the set.
+enum RenderOutput : std::size_t { kPicture, kHits, kDepths, kStats };
+
+/// Rows in a band of `row_bytes` each: as many as a sixteenth of the budget holds, fewer when the scene needs
+/// the room; at most `most`.
+std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std::int32_t most);
+
+/// Pixel by pixel once more, for the files that hold hits and distances.
+void write_hits(const RenderCommand& command, const QualityFrame& frame, const Camera& camera,
+                OutputFile* csv, OutputFile* pfm);
+
+/// For a person: what the scene takes, and what came of it.
+void print_summary(const Stats& stats, const std::string& note);
+
+/// Whether the scene's own look is drawn: nobody said how to shade, and nothing that was said forbids light.
+bool takes_look(const RenderCommand& command);
+/// Draws that: a picture, or a film with --turntable.
+void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,111 @@
+#include "scene/backdrop.h"
+
+#include <algorithm>
+#include <array>
+
+#include "thimble/trace/trace.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr Rgb8 kTop{150, 168, 190};
+constexpr Rgb8 kBottom{226, 224, 218};
+
+std::uint8_t between(std::uint8_t from, std::uint8_t to, std::int32_t part, std::int32_t whole) {
+  return static_cast<std::uint8_t>((from * (whole - part) + to * part + whole / 2) / whole);
+}
+
+// Of about one length each, spread over the hemisphere above by the cosine of their angle with the upright: a
+// spiral that turns by the golden angle.
+constexpr std::array<Vec3i, 32> kAround{
+    {{16, 0, 127},    {-20, 19, 125},  {3, -36, 123},  {26, 34, 121},  {-47, -8, 119},  {45, -28, 116},
+     {-15, 56, 114},  {-29, -55, 112}, {62, 23, 110},  {-64, 27, 107}, {31, -66, 105},  {23, 73, 102},
+     {-69, -40, 100}, {81, -18, 97},   {-50, 70, 95},  {-11, -88, 92}, {70, 59, 89},    {-95, 4, 86},
+     {69, -69, 83},   {-5, 100, 80},   {-66, -79, 77}, {104, 14, 73},  {-88, 61, 70},   {24, -107, 66},
+     {56, 97, 62},    {-109, -35, 58}, {106, -49, 53}, {-46, 109, 48}, {-41, -114, 42}, {109, 57, 36},
+     {-121, 32, 28},  {69, -107, 16}}};
+constexpr std::int64_t kAroundLength = 128;
+
+// Of 256: how much of the sky the model closes off near `at`, fading with distance.
+std::uint32_t closed_above(const CompactTree& tree, const Vec3Q8& at, std::uint16_t reach) {
+  const std::int64_t reach_q8 = std::int64_t{reach} * Q8::kOne;
+  std::int64_t closed = 0;
+  for (const Vec3i& direction : kAround) {
+    Hit hit;
+    if (closest_hit(tree, {at, direction}, &hit) != Status::kOk || hit.kind != HitKind::kHit) {
+      continue;
+    }
+    const std::int64_t distance_q8 =
+        std::int64_t{hit.t_numerator} * kAroundLength * Q8::kOne / hit.t_denominator;
+    closed += std::max<std::int64_t>(0, reach_q8 - distance_q8) * 256 / reach_q8;
+  }
+  return static_cast<std::uint32_t>(closed / static_cast<std::int64_t>(kAround.size()));
+}
+
+bool is_near(const Vec3Q8& at, const VoxelBox& box, std::int32_t reach) {
+  for (int axis = 0; axis < 2; ++axis) {
+    const std::int32_t voxel = at[axis].raw >> Q8::kBits;
+    if (voxel < box.low[axis] - reach || voxel > box.high[axis] + reach) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Where a ray from above meets the ground, if within where rays may start.
+bool meets_ground(const CompactTree& tree, const Ray& ray, std::int32_t ground_z, Vec3Q8* at) {
+  const std::int64_t plane = std::int64_t{ground_z} * Q8::kOne;
+  const std::int64_t drop = plane - ray.origin.z.raw;
+  if (ray.direction.z >= 0 || drop >= 0) {
+    return false;
+  }
+  at->z = Q8::from_raw(static_cast<std::int32_t>(plane));
+  for (int axis = 0; axis < 2; ++axis) {
+    const std::int64_t value = ray.origin[axis].raw + ray.direction[axis] * drop / ray.direction.z;
+    const std::int64_t side = std::int64_t{Q8::kOne} << tree.level();
+    if (value < kMinOriginWorlds * side || value > kMaxOriginWorlds * side) {
+      return false;
+    }
+    (*at)[axis] = Q8::from_raw(static_cast<std::int32_t>(value));
+  }
+  return true;
+}
+
+}  // namespace
+
+Rgb8 backdrop_color(const Background& background, std::int32_t, std::int32_t y, std::int32_t,
+                    std::int32_t height_px) {
+  if (background.kind != BackgroundKind::kGradient) {
+    return background.kind == BackgroundKind::kColor ? background.color : Rgb8{};
+  }
+  const std::int32_t whole = std::max(1, height_px - 1);
+  return {between(kTop.r, kBottom.r, y, whole), between(kTop.g, kBottom.g, y, whole),
+          between(kTop.b, kBottom.b, y, whole)};
+}
+
+bool light_behind(const CompactTree& tree, const Look& look, const Ray& ray, std::uint8_t* share) {
+  HitKind kind = HitKind::kMiss;
+  *share = kFullShare;
+  if (any_hit(tree, ray, &kind) != Status::kOk) {
+    return true;
+  }
+  if (kind == HitKind::kHit) {
+    return false;
+  }
+  Vec3Q8 at;
+  if (!look.has_ground || !meets_ground(tree, ray, look.ground_z, &at)) {
+    return true;
+  }
+  std::uint32_t light = kFullShare;
+  if (look.toward_sun.z > 0 && any_hit(tree, {at, look.toward_sun}, &kind) == Status::kOk &&
+      kind == HitKind::kHit) {
+    light = light * 160 / 256;
+  }
+  if (is_near(at, tree.bounds(), look.reach)) {
+    light -= light * closed_above(tree, at, look.reach) * 3 / 4 / 256;
+  }
+  *share = static_cast<std::uint8_t>(light);
+  return true;
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,28 @@
+/// @file backdrop.h
+/// What stands behind a scene: a colour, a gradient or nothing, and a ground of which only the shadow is seen.
+#ifndef THIMBLE_TOOLS_SCENE_BACKDROP_H
+#define THIMBLE_TOOLS_SCENE_BACKDROP_H
+
+#include <cstdint>
+
+#include "scene/default_look.h"
+#include "thimble/trace/ray.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::tools {
+
+/// Light that a ray finds behind the scene: kFullShare as it is, less in shadow.
+inline constexpr std::uint8_t kFullShare = 254;
+
+/// The backdrop's colour at a pixel.
+Rgb8 backdrop_color(const Background& background, std::int32_t x, std::int32_t y, std::int32_t width_px,
+                    std::int32_t height_px);
+
+/// Whether `ray` of a camera misses everything; then how much light the ground that it meets has, if any:
+/// kFullShare less the sun's exact shadow, and less what the model closes off above. Up to 34 rays.
+/// False where it hits. Integers only.
+bool light_behind(const CompactTree& tree, const Look& look, const Ray& ray, std::uint8_t* share);
+
+}  // namespace thimble::tools
+
+#endif

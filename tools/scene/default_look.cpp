@@ -1,0 +1,275 @@
+#include "scene/default_look.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "output/units.h"
+#include "readers/oct.h"
+#include "scene/lit_setup.h"
+#include "scene/scene_source.h"
+#include "scene/tone.h"
+#include "thimble/trace/trace.h"
+
+namespace thimble::tools {
+
+const char* const kDefaultLookText =
+    "Without --shade and --effects the scene decides. Colours, from a palette or of points and corners, are "
+    "drawn as they are; meshes and surfaces without are clay. A sun stands over the viewer's left shoulder, "
+    "with exact shadows, occlusion, a soft gradient behind the scene, and under it a ground that only shows "
+    "the shadow. What a scene states itself (camera, lights, occlusion, sky, effects off) is kept. Points of "
+    "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
+    "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, counted from the "
+    "effects and the picture's size. The exposure follows the scene. --structure dense|pool, --engine, "
+    "--cutoff, --max-depth and --board draw by --shade instead: colours where the scene has any, else depth.";
+
+namespace {
+
+constexpr std::uint16_t kSunlight[3] = {196, 188, 172};
+constexpr std::uint16_t kAmbient[3] = {92, 98, 112};
+constexpr std::uint8_t kOcclusionRays = 16;
+// What mirrors and glass show around the scene.
+constexpr Sky kStudio{{120, 142, 172}, {214, 218, 222}, {150, 146, 140}};
+
+bool is_solid(const CompactTree& tree, const Vec3i& at) {
+  const std::int32_t side = std::int32_t{1} << tree.level();
+  if (at.x < 0 || at.y < 0 || at.z < 0 || at.x >= side || at.y >= side || at.z >= side) {
+    return false;
+  }
+  constexpr std::int32_t kHalf = Q8::kOne / 2;
+  const auto middle = [](std::int32_t v) { return Q8::from_raw(v * Q8::kOne + kHalf); };
+  Hit hit;
+  return closest_hit(tree, {{middle(at.x), middle(at.y), middle(at.z)}, {1, 0, 0}}, &hit) == Status::kOk &&
+         hit.kind == HitKind::kHit && hit.axis < 0;
+}
+
+bool has_neighbours(const CompactTree& tree, const Vec3i& at) {
+  int found = 0;
+  for (int place = 0; place < 27 && found < kSurfaceNeighbours; ++place) {
+    const Vec3i offset{place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1};
+    found += offset != Vec3i{} && is_solid(tree, {at.x + offset.x, at.y + offset.y, at.z + offset.z}) ? 1 : 0;
+  }
+  return found == kSurfaceNeighbours;
+}
+
+// Per cent of the voxels, of up to 4,096 of them, that have neighbours.
+int surface_share(const CompactTree& tree) {
+  constexpr std::uint64_t kMost = 4096;
+  const std::uint64_t every = tree.voxel_count() / kMost + 1;
+  std::uint64_t seen = 0;
+  std::uint64_t asked = 0;
+  std::uint64_t have = 0;
+  for_each_block(tree, [&](const Vec3i& corner, int level, std::uint8_t) {
+    if (seen++ % every == 0) {
+      ++asked;
+      have += level > 0 || has_neighbours(tree, corner) ? 1U : 0U;
+    }
+  });
+  return asked == 0 ? 100 : static_cast<int>(100 * have / asked);
+}
+
+// The picture's axes as integers of 2^10.
+struct ViewAxes {
+  Vec3i right;
+  Vec3i up;
+  Vec3i forward;
+};
+
+Vec3i short_vector(const Real3& v) {
+  constexpr double kLength = 1024;
+  const double scale = kLength / std::sqrt(dot(v, v));
+  return {static_cast<std::int32_t>(std::lround(v[0] * scale)),
+          static_cast<std::int32_t>(std::lround(v[1] * scale)),
+          static_cast<std::int32_t>(std::lround(v[2] * scale))};
+}
+
+Real3 real(const Vec3i& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+ViewAxes axes_of(const SceneCamera& camera) {
+  const Vec3i forward = camera.forward == Vec3i{} ? look_at(camera.eye, camera.target) : camera.forward;
+  const Vec3i up = camera.up == Vec3i{} ? default_up(forward) : camera.up;
+  const Real3 right = cross(real(forward), real(up));
+  return {short_vector(right), short_vector(cross(right, real(forward))), short_vector(real(forward))};
+}
+
+// Towards a sun behind the viewer, to the left and above: what is seen is lit, and no two sides of a corner
+// alike.
+Vec3i sun_over_shoulder(const SceneCamera& camera) {
+  const ViewAxes axes = axes_of(camera);
+  Vec3i sun;
+  for (int axis = 0; axis < 3; ++axis) {
+    sun[axis] = -7 * axes.forward[axis] / 8 - axes.right[axis] / 2 + axes.up[axis] / 2;
+  }
+  return sun;
+}
+
+bool states_light(const LitDescription& lighting) {
+  const LitScene plain;
+  return !lighting.lights.empty() || (lighting.off & Effect::kDirectLight) != 0 ||
+         !std::equal(std::begin(plain.ambient_q8), std::end(plain.ambient_q8),
+                     std::begin(lighting.rest.ambient_q8));
+}
+
+std::uint64_t rays_a_sample(const LitScene& scene, EffectSet effects) {
+  const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
+  const std::uint64_t at_hit = (wanted(Effect::kShadows) ? scene.lights.size : 0) +
+                               (wanted(Effect::kAmbientOcclusion) ? scene.occlusion.rays : 0);
+  return (1 + at_hit) * ((effects & Effect::kBranching) != 0 ? 4 : 1);
+}
+
+std::uint16_t occlusion_reach(const VoxelBox& bounds) {
+  const std::int32_t longest =
+      std::max({bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y, bounds.high.z - bounds.low.z});
+  return static_cast<std::uint16_t>(std::clamp(longest / 10, 4, 48));
+}
+
+SceneFacts facts_without_shape(const SceneSource& source, const LitDescription& lighting) {
+  SceneFacts facts;
+  facts.has_colors = !source.single_material();
+  facts.is_points = source.is_point_set();
+  facts.is_mesh = source.is_mesh();
+  facts.lighting = lighting;
+  for (const Material& material : source.palette()) {
+    facts.palette.push_back({material.color.r, material.color.g, material.color.b});
+  }
+  return facts;
+}
+
+// The rule's light, where the scene states none.
+void add_sun(const SceneFacts& facts, const Framing& framing, LitDescription* lighting) {
+  Light sun;
+  sun.place = sun_over_shoulder(framing.kept);
+  std::copy(std::begin(kSunlight), std::end(kSunlight), std::begin(sun.color_q8));
+  lighting->lights = {sun};
+  std::copy(std::begin(kAmbient), std::end(kAmbient), std::begin(lighting->rest.ambient_q8));
+  lighting->rest.has_shadows = (facts.lighting.off & Effect::kShadows) == 0;
+}
+
+void use_clay(Look* look) {
+  look->palette.assign(look->palette.size(), kClay);
+  for (Surface& surface : look->lighting.surfaces) {
+    surface.albedo = kClay;
+  }
+}
+
+std::string look_text(const SceneFacts& facts, const Look& look, bool own_light, std::uint64_t rays) {
+  if (look.kind == LookKind::kStars) {
+    return "stars: " + std::to_string(facts.surface_share) + " % of the points have " +
+           std::to_string(kSurfaceNeighbours) + " neighbours, less than " + std::to_string(kSurfaceShare) +
+           " %";
+  }
+  std::string text = facts.has_colors ? "its colours" : "clay";
+  text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";
+  text += ", effects " + effects_text(look.effects);
+  text += look.has_ground ? ", a ground" : ", no ground";
+  text += ", " + std::to_string(look.across * look.across) + (look.across == 1 ? " sample" : " samples") +
+          " a pixel (" + grouped(rays) + " rays at most; four want at most " + grouped(kMostLookRays) + ")";
+  return text;
+}
+
+}  // namespace
+
+SceneFacts facts_expected(const SceneSource& source, const LitDescription& lighting) {
+  SceneFacts facts = facts_without_shape(source, lighting);
+  expected_effects(source, lighting, {}, &facts.used);
+  return facts;
+}
+
+SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, const SceneShape& shape) {
+  SceneFacts facts = facts_without_shape(source, lighting);
+  facts.bounds = shape.bounds;
+  facts.used = used_materials(*shape.tree);
+  facts.surface_share = facts.is_points ? surface_share(*shape.tree) : 100;
+  return facts;
+}
+
+bool parse_background(std::string_view text, Background* background) {
+  if (text == "none" || text == "gradient") {
+    background->kind = text == "none" ? BackgroundKind::kNone : BackgroundKind::kGradient;
+    return true;
+  }
+  std::uint32_t color = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), color, 16);
+  if (text.size() != 6 || read.ec != std::errc() || read.ptr != text.data() + text.size()) {
+    return false;
+  }
+  background->kind = BackgroundKind::kColor;
+  background->color = {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8 & 255U),
+                       static_cast<std::uint8_t>(color & 255U)};
+  return true;
+}
+
+LitScene Look::lit_scene() const {
+  return lit_scene_for(lighting, used, effects);
+}
+
+Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing,
+                  std::int32_t width_px, std::int32_t height_px) {
+  Look look;
+  look.lighting = facts.lighting;
+  look.used = facts.used;
+  look.palette = facts.palette;
+  look.has_own_colors = facts.has_colors;
+  look.background = wishes.background;
+  LitDescription& lighting = look.lighting;
+  const EffectSet off = lighting.off;
+  const bool own_light = states_light(lighting);
+  if (!own_light) {
+    add_sun(facts, framing, &lighting);
+    // What glows stays behind the sun that came instead of the lights.
+    const std::vector<Light>& found = facts.lighting.lights_and_glow;
+    const auto own = static_cast<std::ptrdiff_t>(std::min(found.size(), facts.lighting.lights.size()));
+    lighting.lights_and_glow = lighting.lights;
+    lighting.lights_and_glow.insert(lighting.lights_and_glow.end(), found.begin() + own, found.end());
+  }
+  if (is_clay(facts)) {
+    use_clay(&look);
+  }
+  look.reach = occlusion_reach(facts.bounds);
+  if (lighting.rest.occlusion.rays == 0 && (off & Effect::kAmbientOcclusion) == 0) {
+    lighting.rest.occlusion = {kOcclusionRays, 200, look.reach};
+  }
+  // Where the core draws air or water the sky is its own as well.
+  const EffectSet called = called_for(lighting, facts.used);
+  const bool has_air = (called & (Effect::kWater | Effect::kFog)) != 0;
+  const bool own_sky = lighting.rest.has_sky;
+  const bool reflects = (called & (Effect::kMirror | Effect::kGlass | Effect::kWater)) != 0;
+  if (!own_sky && (off & Effect::kSky) == 0 && (reflects || has_air)) {
+    lighting.rest.has_sky = true;
+    lighting.rest.sky = kStudio;
+  }
+  look.has_backdrop = !has_air && (!own_sky || wishes.background.kind != BackgroundKind::kAuto);
+  if (look.background.kind == BackgroundKind::kAuto) {
+    look.background.kind = BackgroundKind::kGradient;
+  }
+  const bool smooth =
+      wishes.smooth.value_or((facts.is_mesh || facts.is_points) && (off & Effect::kSmoothNormals) == 0);
+  look.effects = called_for(lighting, facts.used) | (smooth ? Effect::kSmoothNormals : Effect::kNone);
+  if (!smooth && wishes.smooth) {
+    look.effects &= ~Effect::kSmoothNormals;
+  }
+  const bool has_sun = !lighting.lights.empty() && !lighting.lights[0].is_point;
+  look.toward_sun = has_sun ? Vec3i(lighting.lights[0].place) : Vec3i{0, 0, 1};
+  look.ground_z = facts.bounds.low.z;
+  look.has_ground = look.has_backdrop && wishes.ground.value_or(!own_light) && !facts.bounds.empty();
+  look.kind = facts.forms_surface() ? LookKind::kLit : LookKind::kStars;
+
+  const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);
+  const std::uint64_t rays = pixels * 4 * rays_a_sample(look.lit_scene(), look.effects);
+  look.across = wishes.across != 0 ? wishes.across : rays <= kMostLookRays ? 2 : 1;
+  dim(&lighting, &look.used);
+  look.text = look_text(facts, look, own_light, rays);
+  return look;
+}
+
+LitDescription baked_look(const SceneFacts& facts, const Framing& framing) {
+  LitDescription lighting = facts.lighting;
+  if (!states_light(lighting) && facts.forms_surface()) {
+    add_sun(facts, framing, &lighting);
+  }
+  return lighting;
+}
+
+}  // namespace thimble::tools

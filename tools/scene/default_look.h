@@ -1,0 +1,126 @@
+/// @file default_look.h
+/// The rule for a picture that nobody described further: what a scene has decides how it looks. The one home
+/// of the rule; `thimble render --help` prints kDefaultLookText, `--verbose` prints what came of it.
+///
+/// From a scene to a picture:
+///
+///     SceneShape shape = shape_of(built);                          // scene_shape.h
+///     Framing framing = frame_scene(view_wishes, source, shape);   // framing.h
+///     SceneFacts facts = facts_of(source, shape);
+///     Look look = default_look(facts, wishes, framing, view_wishes.width_px, view_wishes.height_px);
+///     LookPicture picture(built, look, ...);                       // look_picture.h
+///
+/// Another camera of the same scene needs only the last three lines; the facts stay.
+#ifndef THIMBLE_TOOLS_SCENE_DEFAULT_LOOK_H
+#define THIMBLE_TOOLS_SCENE_DEFAULT_LOOK_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/framing.h"
+#include "scene/lit_description.h"
+#include "scene/scene_shape.h"
+
+namespace thimble::tools {
+
+class SceneSource;
+
+/// Samples a pixel are four where that takes at most so many rays, else one.
+inline constexpr std::uint64_t kMostLookRays = 100'000'000;
+/// Points form a surface where at least this share of them, in per cent, have kSurfaceNeighbours neighbours
+/// or more among the 26 places around.
+inline constexpr int kSurfaceShare = 50;
+inline constexpr int kSurfaceNeighbours = 3;
+
+/// The rule in words, for help.
+extern const char* const kDefaultLookText;
+
+/// What a scene has.
+struct SceneFacts {
+  bool has_colors = false;  ///< a palette, or colours of points or corners
+  bool is_points = false;   ///< strewn voxels
+  bool is_mesh = false;     ///< triangles
+  int surface_share = 100;  ///< of points: per cent with enough neighbours
+  LitDescription lighting;  ///< what the scene itself states
+  UsedMaterials used;
+  std::vector<Rgb8> palette;
+  VoxelBox bounds;
+
+  bool forms_surface() const { return !is_points || surface_share >= kSurfaceShare; }
+};
+
+/// Before anything is built: at least the materials that will be used, and points taken for a surface.
+SceneFacts facts_expected(const SceneSource& source, const LitDescription& lighting);
+/// Of what was built. For points it looks at up to 4,096 of them, spread evenly, and the places around.
+SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, const SceneShape& shape);
+
+enum class BackgroundKind : std::uint8_t {
+  kAuto,      ///< the scene's own sky, else the gradient
+  kGradient,  ///< a soft one, from top to bottom
+  kColor,
+  kNone,  ///< transparent
+};
+struct Background {
+  BackgroundKind kind = BackgroundKind::kAuto;
+  Rgb8 color;  ///< kColor
+};
+
+/// "none", "gradient" or six hex digits. False for anything else.
+bool parse_background(std::string_view text, Background* background);
+
+/// What somebody wished of a look; the rest is the rule's.
+struct LookWishes {
+  Background background;
+  std::optional<bool> ground;  ///< else where the sun is the rule's
+  int across = 0;              ///< samples a pixel are its square; 0: the rule's
+  std::optional<bool>
+      smooth;  ///< slopes instead of the faces of voxels; else for meshes and surfaces of points
+};
+
+enum class LookKind : std::uint8_t {
+  kLit,    ///< light on surfaces
+  kStars,  ///< points that shine
+};
+
+struct Look {
+  LookKind kind = LookKind::kLit;
+  /// kLit: surfaces, lights and the rest, at two thirds of their brightness (tone.h).
+  LitDescription lighting;
+  EffectSet effects = Effect::kNone;
+  UsedMaterials used;
+  std::vector<Rgb8> palette;
+  bool has_own_colors = false;  ///< else stars take theirs from how far they are
+  /// Whether the background stands behind the scene; otherwise the core draws air, water or sky there.
+  bool has_backdrop = true;
+  Background background;
+  bool has_ground = false;
+  std::int32_t ground_z = 0;  ///< voxels
+  Vec3i toward_sun;           ///< for the ground's shadow
+  std::uint16_t reach = 8;    ///< voxels within which the ground darkens under the model
+  int across = 1;
+  std::string text;  ///< what was chosen and why, a sentence
+
+  /// Views into `lighting`.
+  LitScene lit_scene() const;
+};
+
+/// The rule. A function of its arguments alone, the same on every machine.
+Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing,
+                  std::int32_t width_px, std::int32_t height_px);
+
+/// Meshes and surfaces without colours.
+inline constexpr Rgb8 kClay{214, 186, 162};
+inline bool is_clay(const SceneFacts& facts) {
+  return !facts.has_colors && facts.forms_surface();
+}
+
+/// What is baked of the rule for a scene without lights of its own: its colours, the sun and exact shadows; no
+/// more than a small chip draws. Stars stay as they are.
+LitDescription baked_look(const SceneFacts& facts, const Framing& framing);
+
+}  // namespace thimble::tools
+
+#endif

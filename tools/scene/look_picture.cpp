@@ -1,0 +1,191 @@
+#include "scene/look_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <vector>
+
+#include "scene/backdrop.h"
+#include "scene/lit_setup.h"
+#include "scene/workers.h"
+#include "thimble/light/render.h"
+#include "thimble/trace/trace.h"
+
+namespace thimble::tools {
+namespace {
+
+Shading shading_of(const LookCanvas& canvas, const Camera& camera) {
+  Shading shading;
+  shading.mode = ShadeMode::kColor;
+  shading.palette = {canvas.look->palette.data(), canvas.look->palette.size()};
+  const DepthRange range = depth_range(camera, canvas.tree->bounds());
+  shading.near_q8 = range.near_q8;
+  shading.far_q8 = range.far_q8;
+  for (std::uint16_t& light : shading.face_light) {
+    light = static_cast<std::uint16_t>(2U * light / 3);
+  }
+  return shading;
+}
+
+// Calls draw(row, thread) for rows 0 .. rows - 1, on so many threads; the worst status.
+template <class Draw>
+Status for_rows(std::int32_t rows, int threads, const Draw& draw) {
+  std::atomic<Status> worst{Status::kOk};
+  each_task(static_cast<std::size_t>(rows), threads, [&](std::size_t row, std::size_t thread) {
+    const Status status =
+        worst.load() == Status::kOk ? draw(static_cast<std::int32_t>(row), thread) : Status::kOk;
+    if (status != Status::kOk) {
+      worst.store(status);
+    }
+  });
+  return worst;
+}
+
+}  // namespace
+
+LookRows::LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t exposure)
+    : canvas_(canvas),
+      camera_(camera),
+      shading_(shading_of(canvas, camera)),
+      scene_(canvas.look->lit_scene()),
+      tone_(tone_table(exposure)) {}
+
+Status LookRows::trace(std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
+                       LitCounts* counts) const {
+  Band band;
+  band.pixels = colors;
+  band.first_row = first_row;
+  band.rows = rows;
+  const Look& look = *canvas_.look;
+  const Status status = render_lit_band(look.effects, *canvas_.tree, camera_, shading_, scene_, band, counts);
+  std::uint8_t* share = shares.data;
+  for (std::int32_t y = first_row; status == Status::kOk && y < first_row + rows; ++y) {
+    RowRays rays(camera_, 0, y);
+    for (std::int32_t x = 0; x < camera_.width_px(); ++x, rays.next(), ++share) {
+      if (!look.has_backdrop || !light_behind(*canvas_.tree, look, rays.ray(), share)) {
+        *share = kNothingBehind;
+      }
+    }
+  }
+  return status;
+}
+
+Status LookRows::draw(std::int32_t y, Bytes work, Image* image, LitCounts* counts) const {
+  const int across = canvas_.look->across;
+  const auto samples = static_cast<std::size_t>(camera_.width_px()) * static_cast<std::size_t>(across);
+  const Bytes colors = work.subspan(0, 3 * samples);
+  const Bytes shares = work.subspan(3 * samples, samples);
+  const Status status = trace(y * across, across, colors, shares, counts);
+  for (std::int32_t x = 0; status == Status::kOk && x < image->width_px; ++x) {
+    finish(x, y, colors, shares, image);
+  }
+  return status;
+}
+
+// The mean of a pixel's samples, each with its tone and what is behind it.
+void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const {
+  const int across = canvas_.look->across;
+  const Rgb8 behind = backdrop_color(canvas_.look->background, x, y, image->width_px, image->height_px);
+  std::array<std::uint32_t, 3> sum{};
+  std::uint32_t cover = 0;  // 255 a sample
+  for (int j = 0; j < across; ++j) {
+    for (int i = 0; i < across; ++i) {
+      const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(camera_.width_px()) +
+                      static_cast<std::size_t>(x * across + i);
+      const std::uint32_t share = shares[at];
+      const std::uint8_t* color = colors.data + 3 * at;
+      const std::array<std::uint32_t, 3> back{behind.r, behind.g, behind.b};
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum[c] += share == kNothingBehind ? tone_[color[c]] : (back[c] * share + kFullShare / 2) / kFullShare;
+      }
+      cover += share == kNothingBehind ? 255U : (kFullShare - share) * 255U / kFullShare;
+    }
+  }
+  const auto count = static_cast<std::uint32_t>(across * across);
+  const auto pixel =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width_px) + static_cast<std::size_t>(x);
+  if (image->alpha.empty()) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      image->pixels[3 * pixel + c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+    }
+    return;
+  }
+  for (std::size_t c = 0; c < 3; ++c) {  // what is behind is black, so the sum is the cover's colour
+    image->pixels[3 * pixel + c] =
+        cover == 0 ? std::uint8_t{0}
+                   : static_cast<std::uint8_t>(std::min(255U, (sum[c] * 255 + cover / 2) / cover));
+  }
+  image->alpha[pixel] = static_cast<std::uint8_t>((cover + count / 2) / count);
+}
+
+std::uint32_t measured_exposure(const LookCanvas& canvas) {
+  constexpr std::int32_t kMost = 96;
+  if (canvas.look->kind == LookKind::kStars) {
+    return 256;
+  }
+  const std::int32_t longest = std::max(canvas.fine.width_px(), canvas.fine.height_px());
+  const Camera coarse = canvas.fine.thinned((longest + kMost - 1) / kMost);
+  const LookRows rows(canvas, coarse, 256);
+  std::array<std::uint32_t, 256> counts{};
+  std::array<std::uint8_t, std::size_t{4} * kMost> work{};
+  const auto width = static_cast<std::size_t>(coarse.width_px());
+  for (std::int32_t y = 0; y < coarse.height_px(); ++y) {
+    const Bytes colors(work.data(), 3 * width);
+    const Bytes shares(work.data() + 3 * width, width);
+    if (rows.trace(y, 1, colors, shares, nullptr) != Status::kOk) {
+      return 256;  // painting will say why
+    }
+    for (std::size_t x = 0; x < width; ++x) {
+      if (shares[x] == LookRows::kNothingBehind) {
+        ++counts[gray_of({colors[3 * x], colors[3 * x + 1], colors[3 * x + 2]})];
+      }
+    }
+  }
+  return exposure_q8(counts);
+}
+
+Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
+                  Painting* painting) {
+  const Look& look = *canvas.look;
+  *painting = {};
+  Image& image = painting->image;
+  image.width_px = canvas.framing->camera.width_px();
+  image.height_px = canvas.framing->camera.height_px();
+  const auto pixels = static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
+  image.pixels.resize(3 * pixels);
+  if (look.background.kind == BackgroundKind::kNone) {
+    image.alpha.resize(pixels);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  Status status = Status::kOk;
+  if (look.kind == LookKind::kStars) {
+    status = paint_stars(canvas, progress, painting);
+  } else {
+    painting->engine = "lit";
+    painting->threads = canvas.threads;
+    const LookRows rows(canvas, canvas.fine, exposure);
+    const std::size_t row_bytes = look_work_bytes(image.width_px, look.across);
+    const auto at_once = static_cast<std::int32_t>(
+        std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
+    std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
+    for (std::int32_t y = 0; y < image.height_px && status == Status::kOk; y += at_once) {
+      status = for_rows(
+          std::min(at_once, image.height_px - y), canvas.threads, [&](std::int32_t row, std::size_t thread) {
+            const Bytes work = canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
+            return rows.draw(y + row, work, &image, &counts[thread]);
+          });
+      if (progress) {
+        progress(static_cast<double>(y) / image.height_px);
+      }
+    }
+    for (const LitCounts& part : counts) {
+      add_counts(part, &painting->counts.lit);
+    }
+    painting->counts.all = totals_of(painting->counts.lit);
+  }
+  painting->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return status;
+}
+
+}  // namespace thimble::tools

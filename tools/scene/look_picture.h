@@ -1,0 +1,74 @@
+/// @file look_picture.h
+/// Paints a look (default_look.h): light on what the scene holds, the backdrop behind it, then the tone.
+///
+/// A pixel is a function of tree, look, camera and exposure alone, in integers; threads take rows as they
+/// come. `thimble render`, films and the viewer paint with it.
+#ifndef THIMBLE_TOOLS_SCENE_LOOK_PICTURE_H
+#define THIMBLE_TOOLS_SCENE_LOOK_PICTURE_H
+
+#include <cstddef>
+#include <cstdint>
+
+#include "output/image.h"
+#include "scene/default_look.h"
+#include "scene/painting.h"
+#include "scene/tone.h"
+
+namespace thimble::tools {
+
+/// Bytes of work for a row of the picture: `look_work_bytes(...) * rows` for so many at once.
+constexpr std::size_t look_work_bytes(std::int32_t width_px, int across) {
+  // A colour and a share of light behind for each sample; a sum of light for each pixel of stars.
+  const auto samples = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
+  return static_cast<std::size_t>(width_px) * (samples < 3 ? 12 : 4 * samples);
+}
+
+/// What a picture of a look is painted with. What it refers to must live as long as it does.
+struct LookCanvas {
+  const CompactTree* tree = nullptr;
+  const Look* look = nullptr;
+  const Framing* framing = nullptr;  ///< of the picture
+  Camera fine;                       ///< the same view `look->across` times as wide and high
+  Bytes work;                        ///< look_work_bytes for at least one row
+  int threads = 1;
+};
+
+/// A picture of a look by rows, for whoever shows it as it grows: those of `paint_look`. `camera` is
+/// `canvas.fine`, or a thinned one of a look with one sample a pixel. Not for stars, which shine over rows.
+class LookRows {
+ public:
+  LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t exposure_q8);
+  /// Row `y` of `image`, whose size is the camera's, a pixel for all samples. `work` holds look_work_bytes.
+  Status draw(std::int32_t y, Bytes work, Image* image, LitCounts* counts) const;
+
+  /// The samples of rows of the camera, and what light is behind each (kFullShare of backdrop.h, or
+  /// kNothingBehind), from `first_row` on.
+  Status trace(std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
+               LitCounts* counts) const;
+  static constexpr std::uint8_t kNothingBehind = 255;
+
+ private:
+  void finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const;
+
+  const LookCanvas& canvas_;
+  Camera camera_;
+  Shading shading_;
+  LitScene scene_;
+  ToneTable tone_;
+};
+
+/// The exposure of this picture: from the rays of every so manyth pixel, at most 96 x 96 of them. Stars have
+/// none (256).
+std::uint32_t measured_exposure(const LookCanvas& canvas);
+
+/// Paints the whole picture in Rgb888, with `Image::alpha` where the background is none. Errors: those of the
+/// core's lit renderer (lights or surfaces beyond its limits).
+Status paint_look(const LookCanvas& canvas, std::uint32_t exposure_q8, const Progress& progress,
+                  Painting* painting);
+
+/// The same for points that shine (stars.cpp).
+Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting* painting);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,33 @@
+/// @file scene_shape.h
+/// What a scene occupies, as those who look for a place to see it from need it.
+#ifndef THIMBLE_TOOLS_SCENE_SCENE_SHAPE_H
+#define THIMBLE_TOOLS_SCENE_SCENE_SHAPE_H
+
+#include <vector>
+
+#include "thimble/base/vec.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::tools {
+
+class BuiltScene;
+
+struct SceneShape {
+  int level = 1;
+  VoxelBox bounds;
+  /// Corners of voxels whose convex hull is that of everything occupied; the corners of `bounds` where no
+  /// compact tree was built. Empty where nothing is occupied.
+  std::vector<Vec3i> corners;
+  /// Null where another structure was built.
+  const CompactTree* tree = nullptr;
+};
+
+/// One pass over the blocks. In worlds of more than 1,024 a side corners are rounded outwards, to a
+/// thousandth of the world. Memory for a while: 8 bytes a column of voxels, at most 8 MiB.
+/// The tree must live as long as the shape.
+SceneShape shape_of(const CompactTree& tree);
+SceneShape shape_of(const BuiltScene& built);
+
+}  // namespace thimble::tools
+
+#endif

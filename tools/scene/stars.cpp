@@ -1,0 +1,262 @@
+// Points that shine: each voxel is a soft disc of light, and light adds up. Sums of integers, so that neither
+// the order of the points nor the height of a band makes a difference.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "readers/oct.h"
+#include "scene/look_picture.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr int kAxisBits = 20;
+constexpr Rgb8 kNear{255, 216, 172};  // of points without colours
+constexpr Rgb8 kFar{100, 136, 255};
+constexpr Rgb8 kNight{3, 4, 9};
+
+struct Axis {
+  std::int64_t x, y, z;
+  std::int64_t along(std::int64_t dx, std::int64_t dy, std::int64_t dz) const {
+    return (x * dx + y * dy + z * dz) >> kAxisBits;
+  }
+};
+
+Axis axis_of(const Real3& v) {
+  const double scale = static_cast<double>(1 << kAxisBits) / std::sqrt(dot(v, v));
+  return {std::llround(v[0] * scale), std::llround(v[1] * scale), std::llround(v[2] * scale)};
+}
+
+Real3 real(const Vec3i& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
+  return a / b - (a % b < 0 ? 1 : 0);
+}
+
+// Where points lie on the picture, in 1/256 pixel, and how they shine there.
+class Sky {
+ public:
+  Sky(const LookCanvas& canvas, std::uint64_t points)
+      : canvas_(canvas), camera_(canvas.framing->camera), eye_(canvas.framing->kept.eye) {
+    const SceneCamera& kept = canvas.framing->kept;
+    const Vec3i forward = kept.forward == Vec3i{} ? look_at(kept.eye, kept.target) : kept.forward;
+    const Vec3i up = kept.up == Vec3i{} ? default_up(forward) : kept.up;
+    const Real3 right = cross(real(forward), real(up));
+    forward_ = axis_of(real(forward));
+    right_ = axis_of(right);
+    down_ = axis_of(cross(real(forward), right));
+    const double half = kept.fov_degrees.raw / 65536.0 * 3.14159265358979323846 / 360;
+    pixels_q8_ =
+        kept.is_perspective
+            ? std::llround(camera_.height_px() / 2.0 / std::tan(half) * 256)
+            : std::llround(camera_.width_px() / (static_cast<double>(kept.span.raw) / Q14::kOne) * 256);
+    // As large as leaves a hundred times their room.
+    const double area = static_cast<double>(camera_.width_px()) * camera_.height_px();
+    radius_q8_ = std::clamp(
+        std::llround(256 *
+                     std::sqrt(area / (100.0 * static_cast<double>(std::max<std::uint64_t>(1, points))))),
+        200LL, 1100LL);
+    near_ = INT64_MAX;
+    far_ = INT64_MIN;
+    const VoxelBox& box = canvas.tree->bounds();
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const std::int64_t depth =
+          depth_of({(corner & 1U) != 0 ? box.high.x : box.low.x, (corner & 2U) != 0 ? box.high.y : box.low.y,
+                    (corner & 4U) != 0 ? box.high.z : box.low.z},
+                   0);
+      near_ = std::min(near_, depth);
+      far_ = std::max(far_, depth);
+    }
+    near_ = std::max<std::int64_t>(near_, 1);
+    far_ = std::max(far_, near_ + 256);
+    middle_ = (near_ + far_) / 2;
+  }
+
+  struct Star {
+    std::int64_t x_q8, y_q8;  // of its middle
+    std::int64_t radius_q8;   // where its light ends
+    std::int64_t light[3];    // at its middle, 65,536 for a white one half way
+  };
+
+  // False where it lies behind the eye or beside the picture.
+  bool shine(const Vec3i& corner, int level, std::uint8_t material, Star* star) const {
+    const std::int64_t half = std::int64_t{Q8::kOne / 2} << level;
+    const std::int64_t dx = std::int64_t{corner.x} * Q8::kOne + half - eye_.x.raw;
+    const std::int64_t dy = std::int64_t{corner.y} * Q8::kOne + half - eye_.y.raw;
+    const std::int64_t dz = std::int64_t{corner.z} * Q8::kOne + half - eye_.z.raw;
+    const std::int64_t depth = forward_.along(dx, dy, dz);
+    const bool perspective = canvas_.framing->kept.is_perspective;
+    if (perspective && depth < Q8::kOne / 4) {
+      return false;
+    }
+    const std::int64_t divisor = perspective ? depth : Q8::kOne;
+    star->x_q8 = camera_.width_px() * 128 + floor_divide(right_.along(dx, dy, dz) * pixels_q8_, divisor);
+    star->y_q8 = camera_.height_px() * 128 + floor_divide(down_.along(dx, dy, dz) * pixels_q8_, divisor);
+    const std::int64_t side =
+        (pixels_q8_ << level) * (perspective ? Q8::kOne : 1) / (perspective ? divisor : 1);
+    const std::int64_t ratio_q8 =
+        perspective ? std::clamp<std::int64_t>(middle_ * 256 / depth, 96, 700) : 256;
+    star->radius_q8 = std::max({radius_q8_ * ratio_q8 / 256 * 2, side * 3 / 4, std::int64_t{300}});
+    const std::int64_t place = std::clamp<std::int64_t>((far_ - depth) * 256 / (far_ - near_), 0, 256);
+    const std::int64_t bright = ratio_q8 * ratio_q8 / 256 * (96 + place * 160 / 256) / 256;
+    const Rgb8 color = canvas_.look->palette.empty() ? kNear : canvas_.look->palette[material];
+    const std::int64_t channels[3] = {color.r, color.g, color.b};
+    const std::int64_t near_colors[3] = {kNear.r, kNear.g, kNear.b};
+    const std::int64_t far_colors[3] = {kFar.r, kFar.g, kFar.b};
+    for (int c = 0; c < 3; ++c) {
+      const std::int64_t own =
+          colored_ ? channels[c] : (near_colors[c] * place + far_colors[c] * (256 - place)) / 256;
+      star->light[c] = own * bright;
+    }
+    return star->x_q8 + star->radius_q8 > 0 && star->y_q8 + star->radius_q8 > 0 &&
+           star->x_q8 - star->radius_q8 < camera_.width_px() * 256LL &&
+           star->y_q8 - star->radius_q8 < camera_.height_px() * 256LL;
+  }
+  void set_colored(bool colored) { colored_ = colored; }
+
+ private:
+  std::int64_t depth_of(const Vec3i& corner, std::int64_t half) const {
+    return forward_.along(std::int64_t{corner.x} * Q8::kOne + half - eye_.x.raw,
+                          std::int64_t{corner.y} * Q8::kOne + half - eye_.y.raw,
+                          std::int64_t{corner.z} * Q8::kOne + half - eye_.z.raw);
+  }
+
+  const LookCanvas& canvas_;
+  const Camera& camera_;
+  Vec3Q8 eye_;
+  Axis right_{};
+  Axis down_{};
+  Axis forward_{};
+  std::int64_t pixels_q8_ = 0;  // a voxel at a depth of one
+  std::int64_t radius_q8_ = 0;
+  std::int64_t near_ = 0;
+  std::int64_t far_ = 0;
+  std::int64_t middle_ = 0;
+  bool colored_ = false;
+};
+
+// Adds a star's light to the rows first .. first + rows - 1.
+void add_star(const Sky::Star& star, std::int32_t width, std::int32_t first, std::int32_t rows,
+              std::uint32_t* sums) {
+  const std::int64_t r = star.radius_q8;
+  const auto y_from = std::max<std::int64_t>(first, floor_divide(star.y_q8 - r, 256));
+  const auto y_to = std::min<std::int64_t>(first + rows - 1, floor_divide(star.y_q8 + r, 256));
+  const auto x_from = std::max<std::int64_t>(0, floor_divide(star.x_q8 - r, 256));
+  const auto x_to = std::min<std::int64_t>(width - 1, floor_divide(star.x_q8 + r, 256));
+  for (std::int64_t y = y_from; y <= y_to; ++y) {
+    const std::int64_t dy = y * 256 + 128 - star.y_q8;
+    for (std::int64_t x = x_from; x <= x_to; ++x) {
+      const std::int64_t dx = x * 256 + 128 - star.x_q8;
+      const std::int64_t inside = r * r - dx * dx - dy * dy;
+      if (inside <= 0) {
+        continue;
+      }
+      const std::int64_t share = inside * 1024 / (r * r);  // 0 .. 1024
+      std::uint32_t* const sum = sums + 3 * ((y - first) * width + x);
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t light = star.light[c] * share / 1024 * share / 1024 / 16;
+        sum[c] = static_cast<std::uint32_t>(std::min<std::int64_t>(UINT32_MAX, sum[c] + light));
+      }
+    }
+  }
+}
+
+std::uint32_t brightest(const std::uint32_t* sum) {
+  return std::max({sum[0], sum[1], sum[2]});
+}
+
+// Greys of logarithmic steps, to find a middle among them.
+int step_of(std::uint32_t value) {
+  int bits = 0;
+  while (value >> bits > 15) {
+    ++bits;
+  }
+  return 16 * bits + static_cast<int>(value >> bits);
+}
+
+}  // namespace
+
+Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting* painting) {
+  painting->engine = "stars";
+  Image& image = painting->image;
+  const std::int32_t width = image.width_px;
+  const std::int32_t height = image.height_px;
+  const auto at_once = static_cast<std::int32_t>(std::min<std::size_t>(
+      canvas.work.size / (12 * static_cast<std::size_t>(width)), static_cast<std::size_t>(height)));
+  Sky sky(canvas, canvas.tree->voxel_count());
+  sky.set_colored(canvas.look->has_own_colors);
+  auto* const sums = reinterpret_cast<std::uint32_t*>(canvas.work.data);
+  const auto gather = [&](std::int32_t first, std::int32_t rows) {
+    std::fill(sums, sums + std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(rows),
+              0U);
+    for_each_block(*canvas.tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
+      Sky::Star star{};
+      if (sky.shine(corner, level, material, &star)) {
+        add_star(star, width, first, rows, sums);
+      }
+    });
+  };
+  // First the light that is half way to white: three fifths of the pixels that have any have less.
+  std::vector<std::uint64_t> counts(16 * 33);
+  std::uint64_t lit = 0;
+  for (std::int32_t y = 0; y < height; y += at_once) {
+    const std::int32_t rows = std::min(at_once, height - y);
+    gather(y, rows);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
+      const std::uint32_t value = brightest(sums + 3 * i);
+      counts[static_cast<std::size_t>(step_of(value))] += value != 0 ? 1 : 0;
+      lit += value != 0 ? 1 : 0;
+    }
+    if (progress) {
+      progress(static_cast<double>(y) / height / 2);
+    }
+  }
+  std::size_t step = 0;
+  std::uint64_t below = counts[0];
+  while (step + 1 < counts.size() && 5 * below < 3 * lit) {
+    below += counts[++step];
+  }
+  const std::uint64_t half_way = std::max<std::uint64_t>(64, std::uint64_t{step % 16} << (step / 16));
+  for (std::int32_t y = 0; y < height; y += at_once) {
+    const std::int32_t rows = std::min(at_once, height - y);
+    if (at_once < height) {
+      gather(y, rows);
+    }
+    const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
+      const std::array<std::uint8_t, 3> night{kNight.r, kNight.g, kNight.b};
+      const Rgb8 own = canvas.look->background.color;
+      const std::array<std::uint8_t, 3> chosen{own.r, own.g, own.b};
+      std::uint32_t most = 0;
+      std::array<std::uint32_t, 3> shown{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint64_t light = sums[3 * i + c];
+        shown[c] = static_cast<std::uint32_t>(255 * light / (light + half_way));
+        most = std::max(most, shown[c]);
+      }
+      std::uint8_t* const pixel = image.pixels.data() + 3 * (first + i);
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!image.alpha.empty()) {
+          pixel[c] = static_cast<std::uint8_t>(most == 0 ? 0 : shown[c] * 255 / most);
+        } else {
+          const std::uint32_t back =
+              canvas.look->background.kind == BackgroundKind::kColor ? chosen[c] : night[c];
+          pixel[c] = static_cast<std::uint8_t>(shown[c] + back * (255 - shown[c]) / 255);
+        }
+      }
+      if (!image.alpha.empty()) {
+        image.alpha[first + i] = static_cast<std::uint8_t>(most);
+      }
+    }
+    if (progress) {
+      progress(0.5 + static_cast<double>(y) / height / 2);
+    }
+  }
+  painting->counts.all.rays = 0;
+  return Status::kOk;
+}
+
+}  // namespace thimble::tools

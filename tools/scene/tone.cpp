@@ -1,0 +1,76 @@
+#include "scene/tone.h"
+
+#include <algorithm>
+
+namespace thimble::tools {
+namespace {
+
+std::uint16_t two_thirds(std::uint16_t value) {
+  return static_cast<std::uint16_t>((2U * value + 1) / 3);
+}
+Rgb8 two_thirds(Rgb8 color) {
+  const auto one = [](std::uint8_t value) { return static_cast<std::uint8_t>((2U * value + 1) / 3); };
+  return {one(color.r), one(color.g), one(color.b)};
+}
+
+}  // namespace
+
+void dim(LitDescription* lighting, const UsedMaterials* used) {
+  for (std::vector<Light>* const lights : {&lighting->lights, &lighting->lights_and_glow}) {
+    for (Light& light : *lights) {
+      for (PackedU16& channel : light.color_q8) {
+        channel = two_thirds(channel);
+      }
+    }
+  }
+  LitScene& rest = lighting->rest;
+  for (std::uint16_t& channel : rest.ambient_q8) {
+    channel = two_thirds(channel);
+  }
+  for (std::size_t i = 0; i < lighting->surfaces.size(); ++i) {
+    Surface& surface = lighting->surfaces[i];
+    if (used != nullptr && !used->is[i]) {
+      continue;
+    }
+    surface.emission_q8 = two_thirds(surface.emission_q8);
+    if (surface.kind == SurfaceKind::kMedia) {
+      surface.albedo = two_thirds(surface.albedo);
+    }
+  }
+  rest.sky = {two_thirds(rest.sky.zenith), two_thirds(rest.sky.horizon), two_thirds(rest.sky.ground)};
+  rest.fog.color = two_thirds(rest.fog.color);
+}
+
+std::uint32_t exposure_q8(const std::array<std::uint32_t, 256>& counts) {
+  std::uint64_t total = 0;
+  for (const std::uint32_t count : counts) {
+    total += count;
+  }
+  if (total == 0) {
+    return 256;
+  }
+  std::uint64_t above = 0;
+  std::uint32_t gray = 255;
+  while (gray > 1) {
+    above += counts[gray];
+    if (10 * above >= total) {
+      break;
+    }
+    --gray;
+  }
+  return std::clamp(kExposedGray * 256 * 2 / (3 * gray), kLeastExposureQ8, kMostExposureQ8);
+}
+
+ToneTable tone_table(std::uint32_t exposure_q8) {
+  constexpr std::uint32_t kKnee = 200;
+  constexpr std::uint32_t kRest = 255 - kKnee;
+  ToneTable table{};
+  for (std::uint32_t value = 0; value < table.size(); ++value) {
+    const std::uint32_t bright = (value * exposure_q8 * 3 + 256) / 512;
+    const std::uint32_t over = bright > kKnee ? bright - kKnee : 0;
+    table[value] = static_cast<std::uint8_t>(bright - over + kRest * over / (over + kRest));
+  }
+  return table;
+}
+
+}  // namespace thimble::tools
