@@ -161,11 +161,6 @@ int main(int argc, char** argv) {
                        "print version, commit, and what this build and this machine have");
   thimble::tools::add_all_commands(app);
   app.footer("thimble SUBCOMMAND --help describes each.");
-  for (CLI::App* command : app.get_subcommands({})) {
-    if (command->get_footer() == app.get_footer()) {
-      command->footer("");
-    }
-  }
   // The file that an input error is about, for the sentence: the subcommand's first argument.
   const auto subject = [&]() -> std::string {
     for (const CLI::App* command : app.get_subcommands()) {

@@ -269,7 +269,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return nearest;
 }
 
-void add_footer(CLI::App& command, const std::string& text) {
+void add_help_lines(CLI::App& command, const std::string& text) {
   command.footer(text);
 }
 

@@ -90,8 +90,8 @@ std::vector<std::string> options_given(const CLI::App& app);
 /// missing, too many, wrong or swapped with their neighbour. Empty for none.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
 
-/// Lines below the options in the help of `command`.
-void add_footer(CLI::App& command, const std::string& text);
+/// Lines below the options in the help of `command`, as they stand.
+void add_help_lines(CLI::App& command, const std::string& text);
 
 /// Ends the command as wrong usage (status 2): "`name`: `what`", or `what` alone.
 [[noreturn]] void refuse_usage(const std::string& name, const std::string& what);

@@ -90,7 +90,7 @@ void add_view_command(CLI::App& app) {
       *sub, "--bench", "N", 1, 100000,
       [command](std::int64_t frames) { command->bench_frames = static_cast<int>(frames); },
       "no screen: turn once around the scene in N frames, finish the picture, and print what it took as CSV");
-  add_footer(*sub, "Keys and mouse:\n" + viewer::keys_text());
+  add_help_lines(*sub, "Keys and mouse:\n" + viewer::keys_text());
   when_chosen(*sub, [command] { run(*command); });
 }
 
