@@ -1,5 +1,9 @@
 // Files are looked at before they are loaded, and what is loaded takes memory in proportion.
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <memory>
@@ -129,10 +133,20 @@ TEST_CASE("info: a mesh and a cloud of text -> three times their bytes and 64 MB
   }
 }
 
-TEST_CASE("info: a thousand million points in 4,096 places -> memory for the places") {
-  // Fewer here, which would take as much as they have; the list is cut long before.
-  const CommandResult result = limited({"info", "points:100000000,depth=4"}, 300);
-  CAPTURE(result.describe());
-  CHECK(result.status == 0);
-  CHECK(test::contains(result.out, "4,096"));
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("info: a hundred million points in 4,096 places -> memory for the places") {
+  // No limit here: within one, a list of points was cut where it ended before, too.
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(::open("/dev/null", O_WRONLY), STDOUT_FILENO);
+    ::execl(THIMBLE_COMMAND_PATH, "thimble", "info", "--quiet", "points:1e8,depth=4", nullptr);
+    ::_exit(127);
+  }
+  REQUIRE(child > 0);
+  int status = 0;
+  rusage usage{};
+  REQUIRE(::wait4(child, &status, 0, &usage) == child);
+  CHECK(status == 0);
+  CHECK(usage.ru_maxrss < 250 * 1024);  // kilobytes; the points would take 400 MB
 }
+#endif

@@ -1,7 +1,8 @@
 // Triangles to voxels cell by cell: the same voxels as triangle by triangle, each once, and in time.
 #include <doctest/doctest.h>
 
-#include <chrono>
+#include <algorithm>
+#include <ctime>
 #include <map>
 #include <string>
 #include <vector>
@@ -100,19 +101,23 @@ TEST_CASE("voxelise: 20,000 triangles that fill a world of 512 -> seconds") {
     const auto corner = [&] { return random.below(3000); };
     mesh.triangles.push_back({corner(), corner(), corner()});
   }
-  const auto start = std::chrono::steady_clock::now();
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kLevel = 7;
+#else
+  constexpr int kLevel = 9;
+#endif
+  // Processor time: what else the machine does is no matter.
+  const std::clock_t start = std::clock();
   std::uint64_t volume = 0;
   std::uint64_t calls = 0;
-  voxelise(mesh, 9, false, nullptr, BlockSink([&](const UnitPoint&, int level, std::uint8_t) {
+  voxelise(mesh, kLevel, false, nullptr, BlockSink([&](const UnitPoint&, int level, std::uint8_t) {
              volume += std::uint64_t{1} << (3 * level);
              ++calls;
            }),
            {});
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   MESSAGE(volume << " voxels in " << calls << " blocks, " << seconds << " s");
-  CHECK(volume > 100'000'000);
+  CHECK(volume > std::uint64_t{1} << (3 * kLevel - 1));
   CHECK(calls < volume / 3);
-#ifndef __SANITIZE_ADDRESS__
-  CHECK(seconds < 30);  // 15 s on two cores that eight programs share
-#endif
+  CHECK(seconds < 15);  // 5.7 s on a core that was shared
 }

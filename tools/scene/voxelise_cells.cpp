@@ -96,7 +96,17 @@ class Cell {
       sink(block.voxel, block.level, *first_material_);
       return;
     }
-    for (std::uint64_t left = covered_[cube]; left != 0; left &= left - 1) {
+    std::uint64_t left = covered_[cube];
+    for (int child = 0; is_uniform_ && child < 8; ++child) {
+      constexpr std::uint64_t kEight = 0x330033;  // two by two by two
+      const std::uint64_t eight = kEight << (2 * (child & 1) + 8 * (child >> 1 & 1) + 32 * (child >> 2));
+      if ((left & eight) == eight) {
+        const TriangleBlock part = child_of(block, child);
+        sink(part.voxel, part.level, *first_material_);
+        left &= ~eight;
+      }
+    }
+    for (; left != 0; left &= left - 1) {
       const int bit = std::countr_zero(left);
       sink({block.voxel[0] + (bit & 3), block.voxel[1] + (bit >> 2 & 3), block.voxel[2] + (bit >> 4)}, 0,
            has_materials_ ? materials_[64 * cube + static_cast<std::size_t>(bit)] : *first_material_);
