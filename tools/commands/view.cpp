@@ -36,6 +36,7 @@ void run(const ViewCommand& command) {
     look.effects_word = look.effects->automatic ? "auto" : effects_text(look.effects->effects);
   }
   look.bounces = command.effects.bounces;
+  look.smooth = command.effects.choice.smooth;
   if (command.effects.named() && look.shade && command.shade != ShadeMode::kColor) {
     refuse_usage("--shade " + look.shade_word + " shows no light, and so no --effects");
   }
@@ -56,7 +57,7 @@ void add_view_command(CLI::App& app) {
   command->scene.add_scene(*sub);
   options.view.width_px = 1280;
   options.view.height_px = 720;
-  add_view(*sub, &options.view, false);
+  add_picture_view(*sub, &options.view);
   add_choice_option(
       *sub, "--display", {"auto", "window", "terminal"},
       [command](std::size_t index) {

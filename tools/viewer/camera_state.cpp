@@ -23,21 +23,20 @@ Real3 real_of(const Vec3i& vector) {
   return {static_cast<double>(vector.x), static_cast<double>(vector.y), static_cast<double>(vector.z)};
 }
 
-// Which way the camera looks in a named view.
-Real3 forward_of(Action view) {
+NamedView side_of(Action view) {
   switch (view) {
     case Action::kFront:
-      return {0, 1, 0};
+      return NamedView::kFront;
     case Action::kBack:
-      return {0, -1, 0};
+      return NamedView::kBack;
     case Action::kLeft:
-      return {1, 0, 0};
+      return NamedView::kLeft;
     case Action::kRight:
-      return {-1, 0, 0};
+      return NamedView::kRight;
     case Action::kTop:
-      return {0, 0, -1};
+      return NamedView::kTop;
     default:
-      return {1, 1, -std::sqrt(2.0 / 3)};  // a third of a right angle and a bit from above
+      return NamedView::kIso;
   }
 }
 
@@ -112,7 +111,7 @@ void CameraState::choose(Action view, const Framing& now, const OpenScene& scene
   wishes.fov_degrees = static_cast<double>(now.kept.fov_degrees.raw) / Q16::kOne;
   wishes.width_px = now.camera.width_px();
   wishes.height_px = now.camera.height_px();
-  place(framed_from(scene, wishes, forward_of(view)), scene);
+  place(framed_from(scene, wishes, side_of(view)), scene);
 }
 
 void CameraState::change_scene(const OpenScene& scene) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <cstring>
+
+#include "scene/backdrop.h"
 #include "scene/lit_setup.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/octree.h"
@@ -11,9 +14,6 @@
 namespace thimble::tools::viewer {
 namespace {
 
-// What a scene without light of its own gets.
-constexpr EffectSet kPlainLight =
-    Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kSky;
 // What costs no rays of its own.
 constexpr EffectSet kQuick = Effect::kDirectLight | Effect::kEmission | Effect::kWater | Effect::kFog |
                              Effect::kSky | Effect::kDepthCue;
@@ -49,8 +49,9 @@ void check(Status status) {
 }  // namespace
 
 FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes)
-    : scene_(std::move(scene)), lighting_(scene_->source->lighting()) {
+    : scene_(std::move(scene)), shape_(shape_of(scene_->tree())), lighting_(scene_->source->lighting()) {
   lighting_.rest.bounces = wishes.bounces.value_or(lighting_.rest.bounces);
+  lighting_.find_glow(scene_->tree());
   used_ = used_materials(scene_->tree());
   choose(wishes);
   lit_ = lit_scene_for(lighting_, used_, effects_);
@@ -66,45 +67,51 @@ FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWis
 }
 
 void FinishedLook::choose(const LookWishes& wishes) {
-  const bool asks = wishes.effects || wishes.shade;
   EffectChoice choice = wishes.effects.value_or(EffectChoice{});
-  if (!asks) {
-    const EffectSet called = chosen_effects(lighting_, used_, choice);
-    constexpr EffectSet kFromElsewhere = Effect::kDirectLight | Effect::kEmission | Effect::kDepthCue;
-    if ((called & kFromElsewhere) == 0 && !scene_->source->is_point_set()) {
-      choice = {false, called | kPlainLight};
-      words_ = {"--effects", effects_text(choice.effects)};
-    }
-  } else if (!wishes.effects) {
-    choice = {false, Effect::kNone};  // a --shade that is given shows no light
-  }
+  choice.smooth = wishes.smooth;
   if (wishes.effects) {
     words_.insert(words_.end(), {"--effects", wishes.effects_word});
+  } else {
+    choice = {false, Effect::kNone};  // a --shade that is given shows no light
   }
   if (wishes.shade) {
     words_.insert(words_.end(), {"--shade", wishes.shade_word});
+  }
+  if (!wishes.effects && !wishes.shade) {
+    own_ = facts_of(*scene_->source, lighting_, shape_);
+    own_wishes_.across = wishes.across.value_or(0);
+    own_wishes_.smooth = wishes.smooth;
+  }
+  if (wishes.smooth) {
+    words_.insert(words_.end(), {"--normals", *wishes.smooth ? "smooth" : "face"});
   }
   effects_ = chosen_effects(lighting_, used_, choice);
   mode_ = wishes.shade.value_or(ShadeMode::kDepth);
   if (wishes.bounces) {
     words_.insert(words_.end(), {"--bounces", std::to_string(*wishes.bounces)});
   }
-  across_ = wishes.across.value_or(2);
-  words_.insert(words_.end(), {"--samples", std::to_string(across_ * across_)});
+  across_ = own_ ? 1 : wishes.across.value_or(2);
+  if (!own_ || wishes.across) {
+    const int across = wishes.across.value_or(2);
+    words_.insert(words_.end(), {"--samples", std::to_string(across * across)});
+  }
 }
 
 FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes)
     : look_(std::move(look)) {
   const OpenScene& scene = *look_->scene_;
-  const VoxelBox bounds = scene.built->bounds();
-  framing_ = frame_scene(wishes, *scene.source, scene.level(), bounds);
-  fine_ = across() == 1 ? framing_.camera
-                        : frame_scene(finer(wishes, across()), *scene.source, scene.level(), bounds).camera;
+  framing_ = frame_scene(wishes, *scene.source, look_->shape_);
   shading_.mode = look_->mode_;
   shading_.palette = Span<const Rgb8>(scene.built->palette().data(), scene.built->palette().size());
-  const DepthRange range = depth_range(camera(), bounds);
+  const DepthRange range = depth_range(camera(), scene.built->bounds());
   shading_.near_q8 = range.near_q8;
   shading_.far_q8 = range.far_q8;
+  if (look_->own_) {
+    take_own_look();
+    return;
+  }
+  fine_ = across() == 1 ? framing_.camera
+                        : frame_scene(finer(wishes, across()), *scene.source, look_->shape_).camera;
   quick_shading_ = shading_;
   if (look_->effects_ != Effect::kNone) {
     quick_shading_.mode = ShadeMode::kColor;
@@ -112,18 +119,47 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
   }
 }
 
-Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, const Real3& forward) {
+// The scene's own look, as render_look.cpp takes it.
+void FinishedPicture::take_own_look() {
+  own_ = default_look(*look_->own_, look_->own_wishes_, framing_, width_px(), height_px());
+  const std::int32_t across = own_->across;
+  fine_ = framing_.camera;
+  if (width_px() * across > kMaxPicturePx || height_px() * across > kMaxPicturePx ||
+      set_camera(framing_.kept, width_px() * across, height_px() * across, camera().level(), &fine_) !=
+          Status::kOk) {
+    own_->across = 1;  // such a camera has no rays between the pixels'
+  }
+  own_coarse_ = *own_;
+  own_coarse_.across = 1;
+  quick_tone_ = tone_table(256);
+  quick_shading_ = shading_;
+  if (own_->kind == LookKind::kStars) {
+    quick_shading_.mode = own_->has_own_colors ? ShadeMode::kColor : ShadeMode::kDepth;
+    return;
+  }
+  quick_shading_.mode = ShadeMode::kColor;
+  quick_shading_.palette = Span<const Rgb8>(own_->palette.data(), own_->palette.size());
+  quick_light(own_->lit_scene(), quick_shading_.face_light);
+  for (std::uint16_t& light : quick_shading_.face_light) {
+    light = std::min<std::uint16_t>(256, quick_tone_[std::min<std::uint16_t>(255, light)]);
+  }
+}
+
+Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView side) {
   ViewWishes whole = wishes;
   whole.placed = true;
   whole.eye.reset();
   whole.target.reset();
   whole.up.reset();
   whole.span.reset();
-  whole.forward = forward;
-  return frame_box(whole, scene.level(), scene.built->bounds());
+  whole.side = side;
+  whole.onward = {};
+  return frame_shape(whole, shape_of(scene.tree()));
 }
 
 namespace {
+
+constexpr std::int32_t kRowsAThread = 2;
 
 Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
   return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
@@ -155,7 +191,12 @@ void FinishedPicture::draw_row(int step, std::int32_t y, std::uint8_t* rgb) cons
 
 bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                            const GoesOn& goes_on) const {
-  constexpr std::int32_t kRowsAThread = 2;
+  if (own_ && own_->kind == LookKind::kLit) {
+    return draw_own(step, threads, rgb, goes_on);
+  }
+  if (own_ && step == 0) {
+    return draw_stars(threads->count(), rgb, goes_on);
+  }
   const int every = std::max(step, 1);
   const std::int32_t rows = thinned_px(height_px(), every);
   const std::size_t line = 3 * static_cast<std::size_t>(thinned_px(width_px(), every));
@@ -173,27 +214,106 @@ bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::ui
   return true;
 }
 
+bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
+                               const GoesOn& goes_on) const {
+  const bool is_final = step == 0;
+  const Camera drawn = is_final ? fine_ : camera().thinned(step);
+  const LookCanvas finished{&look_->scene_->tree(), &*own_, &framing_, fine_, {}, threads->count()};
+  LookCanvas canvas = finished;
+  if (!is_final) {
+    canvas.look = &own_coarse_;
+    canvas.fine = drawn;
+  }
+  std::call_once(exposed_, [&] { exposure_ = measured_exposure(finished); });
+  const LookRows rows(canvas, drawn, exposure_);
+  Image image;
+  image.width_px = thinned_px(width_px(), std::max(step, 1));
+  image.height_px = thinned_px(height_px(), std::max(step, 1));
+  const std::size_t line = 3 * static_cast<std::size_t>(image.width_px);
+  image.pixels.resize(line * static_cast<std::size_t>(image.height_px));
+  rgb->resize(image.pixels.size());
+  const std::int32_t chunk = kRowsAThread * threads->count();
+  for (std::int32_t first = 0; first < image.height_px; first += chunk) {
+    const std::int32_t count = std::min(chunk, image.height_px - first);
+    threads->each(count, [&](int i) {
+      thread_local std::vector<std::uint8_t> work;
+      work.resize(look_work_bytes(image.width_px, canvas.look->across));
+      check(rows.draw(first + i, Bytes(work.data(), work.size()), &image, nullptr));
+    });
+    std::memcpy(rgb->data() + line * static_cast<std::size_t>(first),
+                image.pixels.data() + line * static_cast<std::size_t>(first),
+                line * static_cast<std::size_t>(count));
+    if (!goes_on(first + count)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool FinishedPicture::draw_stars(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const {
+  struct Ended {};
+  std::vector<std::uint8_t> work(look_work_bytes(width_px(), 1) * static_cast<std::size_t>(height_px()));
+  const LookCanvas canvas{&look_->scene_->tree(),          &*own_, &framing_, fine_,
+                          Bytes(work.data(), work.size()), threads};
+  rgb->resize(3 * static_cast<std::size_t>(width_px()) * static_cast<std::size_t>(height_px()));
+  Painting painting;
+  try {
+    check(paint_look(
+        canvas, 256,
+        [&](double /*done*/) {
+          if (!goes_on(0)) {
+            throw Ended();
+          }
+        },
+        &painting));
+  } catch (const Ended&) {
+    return false;
+  }
+  rgb->swap(painting.image.pixels);
+  return goes_on(height_px());
+}
+
 bool FinishedPicture::is_plain() const {
-  return (look_->effects_ & Effect::kWater) == 0;
+  return (effects() & Effect::kWater) == 0;
 }
 
 bool FinishedPicture::has_behind() const {
-  return (look_->effects_ & Effect::kSky) != 0;
+  return own_ ? own_->kind == LookKind::kLit : (effects() & Effect::kSky) != 0;
 }
 
 void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const {
   const Camera thin = camera().thinned(step);
   const CompactTree& tree = look_->scene_->tree();
-  check(look_->quick_effects_ == Effect::kNone
-            ? render_band(tree, thin, quick_shading_, row_of(thin, row, rgb))
-            : render_lit_band(look_->quick_effects_, tree, thin, quick_shading_, look_->quick_,
-                              row_of(thin, row, rgb)));
+  const EffectSet quick = own_ && own_->kind == LookKind::kStars ? Effect::kNone : effects() & kQuick;
+  if (quick == Effect::kNone) {
+    check(render_band(tree, thin, quick_shading_, row_of(thin, row, rgb)));
+    return;
+  }
+  check(render_lit_band(quick, tree, thin, quick_shading_, own_ ? own_->lit_scene() : look_->quick_,
+                        row_of(thin, row, rgb)));
+  if (own_) {
+    std::transform(rgb, rgb + 3 * static_cast<std::size_t>(thin.width_px()), rgb,
+                   [this](std::uint8_t channel) { return quick_tone_[channel]; });
+  }
 }
 
 void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* rgb) const {
   const Camera thin = camera().thinned(step);
-  check(render_lit_band(Effect::kSky, look_->empty_, thin, quick_shading_, look_->lit_,
-                        row_of(thin, row, rgb)));
+  if (own_ && own_->has_backdrop) {
+    for (std::int32_t x = 0; x < thin.width_px(); ++x, rgb += 3) {
+      const Rgb8 color = backdrop_color(own_->background, x, row, thin.width_px(), thin.height_px());
+      rgb[0] = color.r;
+      rgb[1] = color.g;
+      rgb[2] = color.b;
+    }
+    return;
+  }
+  check(render_lit_band(Effect::kSky, look_->empty_, thin, quick_shading_,
+                        own_ ? own_->lit_scene() : look_->lit_, row_of(thin, row, rgb)));
+  if (own_) {
+    std::transform(rgb, rgb + 3 * static_cast<std::size_t>(thin.width_px()), rgb,
+                   [this](std::uint8_t channel) { return quick_tone_[channel]; });
+  }
 }
 
 }  // namespace thimble::tools::viewer

@@ -3,19 +3,23 @@
 ///
 /// This is the one place where the viewer knows how `render` frames, lights and samples a scene: what
 /// `draw` ends with and what `thimble render` draws with the words of `FinishedLook::words` are the same
-/// bytes.
+/// bytes. Without --shade and --effects it is the scene's own look (scene/default_look.h).
 #ifndef THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 #define THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/default_look.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
+#include "scene/look_picture.h"
+#include "scene/scene_shape.h"
 #include "thimble/picture/render.h"
 #include "viewer/open_scene.h"
 #include "wide/threads.h"
@@ -29,6 +33,7 @@ struct LookWishes {
   std::optional<EffectChoice> effects;  ///< --effects
   std::string effects_word;
   std::optional<std::uint8_t> bounces;  ///< --bounces
+  std::optional<bool> smooth;           ///< --normals
   std::optional<int> across;            ///< --samples are its square
 };
 
@@ -42,7 +47,7 @@ class FinishedLook {
 
   /// The options of `thimble render` that look so.
   const std::vector<std::string>& words() const { return words_; }
-  /// Samples a pixel are its square.
+  /// Samples a pixel are its square. 1 where the scene's own look decides: it takes fewer in a large picture.
   int across() const { return across_; }
 
  private:
@@ -50,6 +55,9 @@ class FinishedLook {
   void choose(const LookWishes& wishes);
 
   std::shared_ptr<const OpenScene> scene_;
+  SceneShape shape_;
+  std::optional<SceneFacts> own_;  // the scene's own look
+  tools::LookWishes own_wishes_;
   LitDescription lighting_;
   UsedMaterials used_;
   EffectSet effects_ = Effect::kNone;
@@ -64,7 +72,7 @@ class FinishedLook {
 };
 
 /// Frames the scene from the side from which `forward` leads to its middle.
-Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, const Real3& forward);
+Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView side);
 
 /// One view. What draws is reentrant.
 class FinishedPicture {
@@ -77,7 +85,7 @@ class FinishedPicture {
   std::int32_t width_px() const { return camera().width_px(); }
   std::int32_t height_px() const { return camera().height_px(); }
   /// Samples a pixel are its square.
-  int across() const { return look_->across_; }
+  int across() const { return !own_ ? look_->across_ : own_->kind == LookKind::kStars ? 1 : own_->across; }
 
   /// Draws into `rgb`, which gets the size that it takes: `step` 0 the finished picture, else every `step`-th
   /// pixel with one sample and all of the light. `goes_on` is told now and then how many rows from the top
@@ -97,13 +105,23 @@ class FinishedPicture {
   const Shading& quick_shading() const { return quick_shading_; }
 
  private:
+  void take_own_look();
   void draw_row(int step, std::int32_t y, std::uint8_t* rgb) const;
+  bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
+                const GoesOn& goes_on) const;
+  bool draw_stars(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
+  EffectSet effects() const { return own_ ? own_->effects : look_->effects_; }
 
   std::shared_ptr<const FinishedLook> look_;
   Framing framing_;
   Camera fine_;  // so many times the pixels as there are samples across one
   Shading shading_;
   Shading quick_shading_;
+  std::optional<Look> own_;  // the scene's own look from here
+  Look own_coarse_;          // with one sample a pixel
+  ToneTable quick_tone_{};
+  mutable std::once_flag exposed_;
+  mutable std::uint32_t exposure_ = 256;
 };
 
 }  // namespace thimble::tools::viewer
