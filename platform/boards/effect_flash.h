@@ -43,13 +43,13 @@ inline constexpr EffectFlash kEffectFlash[] = {
     {Effect::kFog, 1156},
     {Effect::kSky, 720},
     {Effect::kDepthCue, 656},
-    {Effect::kSmoothNormals, 4000},
-    {Effect::kEmitterLight, 0},
+    {Effect::kSmoothNormals, 5520},
+    {Effect::kEmitterLight, 4},
 };
 // clang-format on
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
-inline constexpr uint32_t kAllEffectsFlashBytes = 28332;
+inline constexpr uint32_t kAllEffectsFlashBytes = 36956;
 
 }  // namespace thimble
 

@@ -17,6 +17,7 @@ namespace thimble::lit {
 namespace {
 
 constexpr int kSide = 12;    // of the window
+constexpr int kShell = 3;    // voxels that a body is thick at least; what is thinner is a shell
 constexpr int kColumns = 5;  // looked at to each side of the point's own
 static_assert(kSide == 2 * kColumns + 2, "one more where the window begins before an odd voxel");
 // Distances are in 1/64 voxel: R^2 has 17 bits, a term 26, and all those of one sign, half a ball, 31 less a
@@ -191,15 +192,18 @@ struct Columns {
   int side_u;    // the other two
   int side_v;
   int32_t up;  // 1 or -1
+  bool cuts;   // where edges are
+  bool changed = false;
   int8_t heights[2 * kColumns + 1][2 * kColumns + 1] = {};
 
-  Columns(Window* of, const Vec3i& at, int along, bool upwards)
+  Columns(Window* of, const Vec3i& at, int along, bool upwards, bool cuts_edges)
       : window(of),
         middle(at),
         axis(along),
         side_u(along == 0 ? 1 : 0),
         side_v(along == 2 ? 1 : 2),
-        up(upwards ? 1 : -1) {}
+        up(upwards ? 1 : -1),
+        cuts(cuts_edges) {}
 
   int8_t& height(int u, int v) { return heights[kColumns + u][kColumns + v]; }
   // From a height near by.
@@ -252,22 +256,46 @@ struct Columns {
     }
     return clamped(height_there, -kColumns, kColumns);
   }
-  // Whether the column was cut off where it begins an edge.
+  // What is solid at a height but not below is the shell of a body: as if all were solid below.
+  bool thicken(int u, int v, int top) {
+    Vec3i at = middle;
+    at[side_u] += u;
+    at[side_v] += v;
+    at[axis] += up * top;
+    if (!window->is_solid(at)) {
+      return false;
+    }
+    bool thin = false;
+    for (int below = 1; is_inside(at); ++below) {
+      if (below > kShell && !thin) {
+        return false;
+      }
+      thin = thin || !window->is_solid(at);
+      window->put(at, true);
+      at[axis] -= up;
+    }
+    return thin;
+  }
+  // Follows the surface into the column. Whether it was cut off there, where an edge begins.
   bool settle(int u, int v) {
     const int wanted = expected(u, v);
     const int found = measure(u, v, wanted);
-    const bool edge = absolute(found - wanted) >= kEdgeStep;
+    const bool edge = cuts && absolute(found - wanted) >= kEdgeStep;
     height(u, v) = static_cast<int8_t>(edge ? wanted : found);
     if (edge) {
       cut(u, v, wanted);
+    } else {
+      changed = thicken(u, v, found) || changed;
     }
+    changed = changed || edge;
     return edge;
   }
-  // Follows the surface ring by ring, the corners of a ring last. Whether any was cut; `wall` gets whether
-  // that beside the middle, in direction `out`, was.
-  bool follow(const Vec3i& out, bool* wall) {
-    bool any = false;
+  // Follows the surface ring by ring, the corners of a ring last. Whether the column beside the middle, in
+  // direction `out`, was cut off.
+  bool follow(const Vec3i& out) {
+    bool wall = false;
     height(0, 0) = static_cast<int8_t>(measure(0, 0, 0));
+    changed = thicken(0, 0, height(0, 0));
     for (int ring = 1; ring <= kColumns; ++ring) {
       for (int along = 1 - ring; along <= ring; ++along) {
         for (int side = -ring; side <= ring; side += 2 * ring) {
@@ -275,13 +303,12 @@ struct Columns {
           const int other = along == ring ? -side : along;
           const bool by_u = settle(side, along == ring ? side : other);
           const bool by_v = settle(other, side);
-          any = any || by_u || by_v;
-          *wall = *wall || (ring == 1 && along == 0 &&
-                            ((by_u && side == out[side_u]) || (by_v && side == out[side_v])));
+          wall = wall || (ring == 1 && along == 0 &&
+                          ((by_u && side == out[side_u]) || (by_v && side == out[side_v])));
         }
       }
     }
-    return any;
+    return wall;
   }
   // Whether all end where the middle one does.
   bool are_level() const {
@@ -295,6 +322,17 @@ struct Columns {
     return true;
   }
 };
+
+// Whether the voxel has nothing solid close behind it.
+bool is_shell(const Window& window, Vec3i voxel, const Vec3i& out) {
+  for (int behind = 1; behind < kShell; ++behind) {
+    voxel = {voxel.x - out.x, voxel.y - out.y, voxel.z - out.z};
+    if (!window.is_solid(voxel)) {
+      return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -327,6 +365,12 @@ Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at
     point[axis] = (at[axis].raw - window.low[axis] * Q8::kOne) / (Q8::kOne / kUnit);
   }
   *visits += read_window(tree, body, &window);
+  Vec3i out;
+  out[face.axis] = face.negative ? -1 : 1;
+  if (is_shell(window, middle, out)) {
+    // Which way it lies shows only once it is a body.
+    Columns(&window, middle, face.axis, !face.negative, false).follow(out);
+  }
   Vec3i normal = gradient(window, point);
   const int side = face.axis == 0 ? 1 : 0;
   const int other = face.axis == 2 ? 1 : 2;
@@ -337,16 +381,15 @@ Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at
   for (int axis = 0; axis < 3; ++axis) {
     along = magnitude_32(normal[axis]) > magnitude_32(normal[along]) ? axis : along;
   }
-  Columns columns(&window, middle, along, along == face.axis ? !face.negative : normal[along] > 0);
-  Vec3i out;
-  out[face.axis] = face.negative ? -1 : 1;
-  bool wall = false;
-  const bool any_cut = columns.follow(out, &wall);
-  // Level all around, or itself the wall of an edge.
-  if (along == face.axis ? columns.are_level() : wall) {
+  Columns columns(&window, middle, along, along == face.axis ? !face.negative : normal[along] > 0, true);
+  const bool wall = columns.follow(out);
+  // Level all around, or itself the wall of an edge. A column before the face that is as high as the face
+  // belongs to something else, such as the far side of a thin wall.
+  if (along == face.axis ? columns.are_level()
+                         : wall || columns.height(out[columns.side_u], out[columns.side_v]) >= 0) {
     return flat;
   }
-  if (any_cut) {
+  if (columns.changed) {
     normal = gradient(window, point);
   }
   if (face.negative ? normal[face.axis] > 0 : normal[face.axis] < 0) {

@@ -62,6 +62,7 @@ class CountingRun {
   explicit CountingRun(const std::string& scene)
       : source_(open(scene)), built_(*source_, {}), lit_(source_->lighting()) {
     used_ = tools::used_materials(built_.compact());
+    lit_.find_glow(built_.compact());
     REQUIRE(thimble::set_camera(*source_->camera(), 48, 36, built_.level(), &camera_) ==
             thimble::Status::kOk);
     shading_.palette = {built_.palette().data(), built_.palette().size()};
@@ -74,8 +75,7 @@ class CountingRun {
     band.pixels = {pixels.data(), pixels.size()};
     band.rows = 36;
     thimble::LitCounts counts;
-    REQUIRE(thimble::render_lit_band(effects, built_.compact(), camera_, shading_,
-                                     tools::with_defaults(lit_.lit_scene(), effects), band,
+    REQUIRE(thimble::render_lit_band(effects, built_.compact(), camera_, shading_, lit_.drawn(effects), band,
                                      &counts) == thimble::Status::kOk);
     return counts;
   }
@@ -122,7 +122,7 @@ TEST_CASE("effects: what is not called for -> exactly 0 rays, nodes, time, RAM a
       CHECK(row["why"] != "");
     }
   }
-  CHECK(none == 5);
+  CHECK(none == 7);
 }
 
 TEST_CASE("effects: rays of each kind and nodes -> those of two counting runs by the core") {
@@ -201,7 +201,8 @@ TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
   CHECK(all ==
         "1 distant light, 1 lamp\nits lights cast shadows\n4 rays a face, 6 voxels far\nmaterial 3 is "
         "emissive\n"
-        "material 1 is metal\n\nmaterial 2 is cloud\n\nair that halves light in 64 voxels\n\n\n");
+        "material 1 is metal\n\nmaterial 2 is cloud\n\nair that halves light in 64 voxels\n\n\n\n"
+        "material 3 is emissive\n");
   const json asked = rows_of("spheres", {"--effects", "sky,shadows"});
   CHECK(asked[0]["why"] == "asked for");
   CHECK(asked[1]["why"] == "asked for");
@@ -209,7 +210,7 @@ TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
   check_nothing(asked[2]);
 }
 
-TEST_CASE("effects: table, CSV, JSON and SVG -> all eleven, in lines that fit a terminal") {
+TEST_CASE("effects: table, CSV, JSON and SVG -> all of them, in lines that fit a terminal") {
   const TemporaryFolder folder;
   const std::string csv_path = folder.path("e.csv");
   const std::string svg_path = folder.path("e.svg");
@@ -222,7 +223,7 @@ TEST_CASE("effects: table, CSV, JSON and SVG -> all eleven, in lines that fit a 
     CHECK(line.size() <= 100);
   }
   const std::vector<std::string> lines = lines_of(read_text(csv_path));
-  REQUIRE(lines.size() == 12);
+  REQUIRE(lines.size() == 14);
   CHECK(lines[0] ==
         "effect,called_for,why,primary_rays,shadow_rays,occlusion_rays,mirror_rays,glass_rays,media_rays,"
         "water_rays,rays,node_visits,ms,q25_ms,q75_ms,with_ms,without_ms,ram_bytes,flash_bytes");
@@ -245,13 +246,13 @@ TEST_CASE("effects: table, CSV, JSON and SVG -> all eleven, in lines that fit a 
     return number;
   };
   CHECK(count("<text") == count("</text>"));
-  CHECK(count("<rect") == 12);
+  CHECK(count("<rect") == 14);
   CHECK(count("nan") + count("inf") == 0);
 
   // Data on standard output stand alone.
   const CommandResult data =
       run_command({"effects", "spheres", "--size", "16x16", "--frames", "1", "--json", "-"});
-  CHECK(json::parse(data.out).size() == 11);
+  CHECK(json::parse(data.out).size() == 13);
 }
 
 TEST_CASE("effects: wrong usage -> status 2 and a sentence") {

@@ -152,6 +152,12 @@ TEST_CASE("a plane, a cube, a lone voxel, a plate, a room: every face keeps its 
       return wall || (x >= 20 && x < 32 && y >= 20 && y < 32 && z < 16);
     }));
   }
+  SUBCASE("a room of thin walls") {
+    expect_faces(Body([](int x, int y, int z) {
+      const bool inside = x < 60 && y < 60 && z < 50 && x >= 2 && y >= 2 && z >= 2;
+      return x < 62 && y < 62 && z < 52 && !inside;
+    }));
+  }
   SUBCASE("a floor below a slab") {
     expect_faces(Body([](int x, int, int z) { return z < 20 || (z >= 23 && z < 30 && x < 30); }));
   }
@@ -215,6 +221,35 @@ TEST_CASE("a ball: within 6 degrees of the true normals from radius 6 on, 2.5 in
       CHECK(worst < 6);
       CHECK(std::sqrt(sum / count) < (radius < 7 ? 2.5 : 1.6));
     }
+  }
+}
+
+TEST_CASE("a thin shell, as meshes are: within 18 degrees, 2.5 in the mean square") {
+  for (const double radius : {6.0, 10.0, 14.5, 20.0, 28.0}) {
+    CAPTURE(radius);
+    const auto distance = [](double x, double y, double z) {
+      return std::sqrt((x - 32.25) * (x - 32.25) + (y - 32.25) * (y - 32.25) + (z - 32.25) * (z - 32.25));
+    };
+    const Body shell([=](int x, int y, int z) {
+      const double at = distance(x + 0.5, y + 0.5, z + 0.5);
+      return at < radius && at >= radius - 1.5;
+    });
+    double worst = 0;
+    double sum = 0;
+    double count = 0;
+    shell.each_place(1, [&](const Vec3Q8& at, const Face& face, const Vec3i& normal) {
+      const double from_middle = at[face.axis].raw / 256.0 - 32.25;
+      if ((from_middle < 0) != face.negative) {
+        return;  // its inside
+      }
+      const Real3 out{at.x.raw / 256.0 - 32.25, at.y.raw / 256.0 - 32.25, at.z.raw / 256.0 - 32.25};
+      const double error = degrees_between(normal, out);
+      worst = std::max(worst, error);
+      sum += error * error;
+      ++count;
+    });
+    CHECK(worst < 18);
+    CHECK(std::sqrt(sum / count) < 2.5);
   }
 }
 

@@ -13,7 +13,7 @@ inline constexpr uint32_t kCoreCrc32 = 0xB2CC0E70;
 inline constexpr uint32_t kGoldenCrc32 = 0x6150ED3F;
 inline constexpr uint32_t kCommonGoldenCrc32 = 0x39872813;
 /// Of lit pictures, all of which every board draws.
-inline constexpr uint32_t kLitCrc32 = 0x3177EB7C;
+inline constexpr uint32_t kLitCrc32 = 0x7B37D363;
 
 }  // namespace thimble::portable
 
