@@ -57,7 +57,7 @@ void add_view_command(CLI::App& app) {
   command->scene.add_scene(*sub);
   options.view.width_px = 1280;
   options.view.height_px = 720;
-  add_picture_view(*sub, &options.view);
+  add_picture_view(*sub, &options.view, false);
   add_choice_option(
       *sub, "--display", {"auto", "window", "terminal"},
       [command](std::size_t index) {

@@ -98,7 +98,7 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
   }
 }
 
-void add_picture_view(CLI::App& app, ViewWishes* view) {
+void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
   static constexpr std::array kSides{NamedView::kBest, NamedView::kIso,  NamedView::kFront,
                                      NamedView::kBack, NamedView::kLeft, NamedView::kRight,
                                      NamedView::kTop,  NamedView::kPaper};
@@ -130,7 +130,7 @@ void add_picture_view(CLI::App& app, ViewWishes* view) {
   add_angle("--turn", &view->onward.turn, 360,
             "go round the scene by so many degrees from there, to the right");
   add_angle("--tilt", &view->onward.tilt, 180, "rise by so many degrees from there, straight above at most");
-  add_view(app, view);
+  add_view(app, view, with_direction_bits);
   for (const char* const angle : {"--view", "--turn", "--tilt"}) {
     exclude_each_other(app, angle, "--eye");
   }

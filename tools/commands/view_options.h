@@ -25,7 +25,7 @@ struct ViewWishes;
 void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits = true);
 /// The same for pictures that people keep: --view, --turn and --tilt too, and the view and the angle that they
 /// start from.
-void add_picture_view(CLI::App& app, ViewWishes* view);
+void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits = true);
 /// --direction-bits, for subcommands that have no camera too.
 void add_direction_bits(CLI::App& app, int* bits);
 /// Without --size the picture is as large as the board's; `board` may be null.

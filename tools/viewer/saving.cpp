@@ -87,6 +87,18 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
   if (view.orthographic) {
     add("--projection", "orthographic");
   }
+  if (!view.eye) {
+    static constexpr std::array kSides{"paper", "best", "iso", "front", "back", "left", "right", "top"};
+    if (view.side != NamedView::kBest) {
+      add("--view", kSides[static_cast<std::size_t>(view.side)]);
+    }
+    if (view.onward.turn != 0) {
+      add("--turn", shortest(view.onward.turn));
+    }
+    if (view.onward.tilt != 0) {
+      add("--tilt", shortest(view.onward.tilt));
+    }
+  }
   if (view.eye) {
     add("--eye", text_of(*view.eye));
   }
