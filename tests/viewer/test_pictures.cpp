@@ -99,7 +99,7 @@ TEST_CASE("magnify: every pixel that was drawn stays, those between lie between,
 
 TEST_CASE("refinement: coarse to fine -> ends at the rows of the finished picture; cancelled -> ends soon") {
   const auto scene = scene_of("spheres,depth=5");
-  const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
+  const auto look = std::make_shared<const FinishedLook>(scene, viewer::LookWishes{});
   const auto picture = std::make_shared<const FinishedPicture>(look, view_of(101, 67));
   wide::Threads alone(1);
   std::vector<std::uint8_t> wanted;
@@ -134,7 +134,7 @@ TEST_CASE("fast frames: same view -> wide and rays show the same things; water i
   for (const char* name : {"spheres,depth=5", "points:2000,depth=6", "water,depth=5"}) {
     CAPTURE(name);
     const auto scene = scene_of(name);
-    const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
+    const auto look = std::make_shared<const FinishedLook>(scene, viewer::LookWishes{});
     const FinishedPicture picture(look, view_of(160, 120));
     FastFrames frames(scene, picture.is_plain(), 2);
     std::vector<std::uint8_t> rgb;
@@ -161,7 +161,7 @@ TEST_CASE("fast frames: same view -> wide and rays show the same things; water i
 
 TEST_CASE("picking: a voxel seen from the front -> its name, its face and its colour; beside it nothing") {
   const auto scene = scene_of("spheres,depth=5");
-  const auto look = std::make_shared<const FinishedLook>(scene, LookWishes{});
+  const auto look = std::make_shared<const FinishedLook>(scene, viewer::LookWishes{});
   ViewWishes view = view_of(64, 64);
   view.forward = {0, 1, 0};
   view.placed = true;

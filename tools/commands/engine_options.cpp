@@ -1,6 +1,7 @@
 #include "commands/engine_options.h"
 
 #include <algorithm>
+#include <thread>
 #include <vector>
 
 #include "commands/arguments.h"
@@ -23,7 +24,7 @@ void choose(const std::string& name, std::string* chosen) {
 }  // namespace
 
 int all_cores() {
-  return std::clamp(oneapi::tbb::info::default_concurrency(), 1, wide::kMaxThreads);
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, wide::kMaxThreads);
 }
 
 void add_threads(CLI::App& app, int* threads, const std::string& help) {

@@ -15,7 +15,7 @@ struct SceneArguments {
   std::optional<int> depth;            ///< --depth
   bool as_voxels = false;              ///< --as-voxels
   bool z_up = false;                   ///< --z-up
-  std::optional<std::uint32_t> frame;  ///< --frame
+  std::optional<std::uint32_t> frame{};  ///< --frame
 };
 
 /// What is built of it, and traced.
