@@ -222,7 +222,9 @@ TEST_CASE("wide frames: no room for them -> the core draws the same, or an error
   tools::WideFrames roomy(true);
   const Simulated wide = simulate(apps::demo, &roomy, kFrames);
   CHECK(wide.crc == core.crc);
-  CHECK(wide.use.stack_bytes == core.use.stack_bytes);
+  // The core draws the first frame, so that its stack is seen. Others may sweep more tiles, which takes more.
+  CHECK(wide.use.stack_bytes >= simulate(apps::demo, nullptr, 1).use.stack_bytes);
+  CHECK(wide.use.stack_bytes <= core.use.stack_bytes);
   CHECK(roomy.drawn() == kFrames);
   CHECK(roomy.left() == 0);
   tools::WideFrames narrow(false, 1, 1000);

@@ -69,6 +69,7 @@ TEST_CASE("saving: the command -> only what is not the default, quoted where a s
   ViewWishes view;
   view.width_px = 640;
   view.height_px = 480;
+  view.side = NamedView::kBest;
   CHECK(render_command(scene, view, {}, "a.png") ==
         "thimble render 'it'\\''s a castle.vox' --depth 7 --size 640x480 -o a.png");
   view.placed = true;

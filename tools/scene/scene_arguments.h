@@ -11,10 +11,10 @@ namespace thimble::tools {
 
 /// What is opened.
 struct SceneArguments {
-  std::string scene;                   ///< a file's path or a generator
-  std::optional<int> depth;            ///< --depth
-  bool as_voxels = false;              ///< --as-voxels
-  bool z_up = false;                   ///< --z-up
+  std::string scene;                     ///< a file's path or a generator
+  std::optional<int> depth;              ///< --depth
+  bool as_voxels = false;                ///< --as-voxels
+  bool z_up = false;                     ///< --z-up
   std::optional<std::uint32_t> frame{};  ///< --frame
 };
 
