@@ -1,12 +1,12 @@
 #!/bin/sh
 # What frames of every size take, in instructions: APP=bench for QEMU's MPS2 boards with other sizes, cores and scenes than
 # a board has, and Cortex-M0 code on the Cortex-M3. Measuring targets: nothing here is a board of platform/boards.
-#   bench_frames.sh [--write]     --write: the table tests/budgets/frames.csv is written anew; else what grew beyond it fails
+#   bench_frames.sh [--write]     --write: the table tests/budgets/frame_sizes.csv is written anew; else what grew beyond it fails
 # In the environment: TARGETS, SIZES, SCENES choose some of those below; THIMBLE is another build/release/thimble.
 # A picture is compared with that of the tree's rays on the first target that draws it, then by its CRCs.
 set -eu
 cd "$(dirname "$0")/../.."
-table=tests/budgets/frames.csv
+table=tests/budgets/frame_sizes.csv
 work=build/bench-frames
 thimble=${THIMBLE:-build/release/thimble}
 mkdir -p "$work"
@@ -60,8 +60,8 @@ for target in $targets; do
   done
 done
 if [ "${1:-}" = --write ]; then
-  { grep '^#' "$table"; cat "$work/measured.csv"; } >"$work/frames.csv"
-  mv "$work/frames.csv" "$table"
+  { grep '^#' "$table"; cat "$work/measured.csv"; } >"$work/frame_sizes.csv"
+  mv "$work/frame_sizes.csv" "$table"
   echo "bench-frames: wrote $table"
 else
   # One per cent: other versions of the compiler.

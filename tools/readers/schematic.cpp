@@ -133,7 +133,7 @@ class SchematicGrid final : public VoxelGrid {
     for (std::size_t i = 0; i < cells; ++i) {
       unsigned number = blocks_[i];
       if (i / 2 < add_.size()) {
-        number |= (add_[i / 2] >> (i % 2 == 0 ? 4 : 0) & 0xFU) << 8;
+        number |= (unsigned{add_[i / 2]} >> (i % 2 == 0 ? 4U : 0U) & 0xFU) << 8;
       }
       take(i, block_color(number, i < data_.size() ? data_[i] : 0U));
     }
