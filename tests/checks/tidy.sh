@@ -12,7 +12,8 @@ fi
 # clang-tidy reads a file once for each command that compiles it, so there are no tests: they would only build the core
 # and the applications again, at other levels of optimisation.
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF --no-warn-unused-cli \
-  --log-level=WARNING -Wno-dev >/dev/null
+  --log-level=WARNING -Wno-dev -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+ninja -C "$build" --quiet generated/thimble_version.h
 cd "$root"
 folders=
 for folder in "$@"; do

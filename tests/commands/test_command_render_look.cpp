@@ -89,7 +89,7 @@ std::vector<std::size_t> decode_lzw(const std::string& data, std::size_t pixels)
     std::size_t code = 0;
     REQUIRE((bit + bits + 7) / 8 <= data.size());
     for (std::size_t i = 0; i < bits; ++i, ++bit) {
-      code |= static_cast<std::size_t>(byte_at(data, bit / 8) >> (bit % 8) & 1U) << i;
+      code |= std::size_t{static_cast<unsigned>(byte_at(data, bit / 8)) >> (bit % 8) & 1U} << i;
     }
     if (code == 256) {
       clear();

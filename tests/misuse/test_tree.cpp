@@ -56,7 +56,7 @@ void ask_nodes(OddValues& odd, const SharedTree& tree) {
     }
     if (mask != 0 && (node & SharedTree::kInline) == 0) {
       const auto octant = static_cast<unsigned>(odd.bits() % 8);
-      node = (mask >> octant & 1U) != 0 ? tree.child(node, mask, octant) : tree.root();
+      node = (std::uint32_t{mask} >> octant & 1U) != 0 ? tree.child(node, mask, octant) : tree.root();
     }
   }
 }

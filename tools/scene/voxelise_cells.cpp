@@ -46,7 +46,8 @@ class Cell {
         continue;
       }
       for (int child = 0; child < 8; ++child) {
-        const std::size_t cube = static_cast<std::size_t>(8 * octant + child);
+        const std::size_t cube =
+            std::size_t{8} * static_cast<std::size_t>(octant) + static_cast<std::size_t>(child);
         TriangleBlock block = child_of(part, child);
         if (covered_[cube] != kFull && meets_block(test, block)) {
           take(cube, test.cube_mask(block.voxel, block.inside), triangle.material);
@@ -64,7 +65,7 @@ class Cell {
   void emit(const TriangleBlock& cell, const BlockSink& sink) const {
     for (int octant = 0; octant < 8; ++octant) {
       const TriangleBlock part = child_of(cell, octant);
-      const auto first = static_cast<std::size_t>(8 * octant);
+      const auto first = std::size_t{8} * static_cast<std::size_t>(octant);
       const std::uint64_t cubes = std::uint64_t{0xFF} << first;
       if (is_uniform_ && (full_cubes_ & cubes) == cubes) {
         sink(part.voxel, part.level, *first_material_);
