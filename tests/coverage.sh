@@ -47,6 +47,10 @@ if [ "${2:-}" = --update ]; then
   cp "$out/coverage.csv" "$budget"
   exit
 fi
+if [ ! -f "$budget" ]; then
+  echo "coverage: nothing to compare with; coverage.sh $build --update writes $budget" >&2
+  exit
+fi
 awk -F, '
   NR == FNR { lines[$1 "," $2] = $3; branches[$1 "," $2] = $4; next }
   FNR > 1 && ($3 < lines[$1 "," $2] || $4 < branches[$1 "," $2]) {
