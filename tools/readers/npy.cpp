@@ -144,8 +144,9 @@ struct Array {
                  : std::bit_cast<double>(bits);
     }
     const auto unused = static_cast<int>(64 - 8 * header.size_bytes);
-    return header.type == 'i' ? static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused)
-                              : static_cast<double>(bits);
+    return header.type == 'i'
+               ? static_cast<double>(static_cast<std::int64_t>(bits << (unused & 63)) >> (unused & 63))
+               : static_cast<double>(bits);
   }
 };
 

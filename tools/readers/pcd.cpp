@@ -370,8 +370,9 @@ class PcdCloud final : public PointCloud {
                  ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)))
                  : std::bit_cast<double>(raw);
     }
-    return column.field.type == 'U' ? static_cast<double>(raw)
-                                    : static_cast<double>(static_cast<std::int64_t>(raw << unused) >> unused);
+    return column.field.type == 'U'
+               ? static_cast<double>(raw)
+               : static_cast<double>(static_cast<std::int64_t>(raw << (unused & 63)) >> (unused & 63));
   }
 
   SharedBytes file_;  ///< or what it unpacks to
