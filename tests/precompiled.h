@@ -1,4 +1,4 @@
-// What most test files include. Compiled once: each of them would read its 90,000 lines again.
+// What most test files include. Compiled once: each of them would read it again.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>

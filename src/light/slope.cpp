@@ -251,7 +251,7 @@ struct Columns {
       const int far_u = absolute(u) > absolute(v) ? step_u : 0;
       const int far_v = far_u == 0 ? step_v : 0;
       const bool first = absolute(u) + absolute(v) == 1;
-      const int before = height(u - far_u, v - far_v);
+      const int before = static_cast<int>(height(u - far_u, v - far_v));
       height_there = first ? before : 2 * before - height(u - 2 * far_u, v - 2 * far_v);
     }
     return clamped(height_there, -kColumns, kColumns);

@@ -13,7 +13,7 @@ fi
 # and the applications again, at other levels of optimisation.
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF --no-warn-unused-cli \
   --log-level=WARNING -Wno-dev -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
-ninja -C "$build" --quiet generated/thimble_version.h
+ninja -C "$build" --quiet thimble_generated
 cd "$root"
 folders=
 for folder in "$@"; do
