@@ -206,6 +206,7 @@ struct Columns {
         cuts(cuts_edges) {}
 
   int8_t& height(int u, int v) { return heights[kColumns + u][kColumns + v]; }
+  int height_at(int u, int v) const { return heights[kColumns + u][kColumns + v]; }
   // From a height near by.
   int measure(int u, int v, int height) const {
     Vec3i at = middle;
@@ -251,8 +252,8 @@ struct Columns {
       const int far_u = absolute(u) > absolute(v) ? step_u : 0;
       const int far_v = far_u == 0 ? step_v : 0;
       const bool first = absolute(u) + absolute(v) == 1;
-      const int before = static_cast<int>(height(u - far_u, v - far_v));
-      height_there = first ? before : 2 * before - height(u - 2 * far_u, v - 2 * far_v);
+      const int before = height_at(u - far_u, v - far_v);
+      height_there = first ? before : 2 * before - height_at(u - 2 * far_u, v - 2 * far_v);
     }
     return clamped(height_there, -kColumns, kColumns);
   }

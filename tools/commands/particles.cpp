@@ -61,7 +61,7 @@ void tell_placing(const ParticlesCommand& command, const Placing& placing) {
 }
 
 // What is written, in the order of the names.
-enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording, kStats };
+enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording, kCounts };
 
 // All but the recordings, which were written as the world went.
 void write_files(const ParticlesCommand& command, const PopulatedWorld& populated, const PlayResult& result,
@@ -82,8 +82,8 @@ void write_files(const ParticlesCommand& command, const PopulatedWorld& populate
     const ImageKind kind = image_kind(command.frame_path).value_or(ImageKind::kPng);
     write_image(outputs[kFrame], kind, converted(image, pixel_format(kind)));
   }
-  if (outputs[kStats] != nullptr) {
-    outputs[kStats]->write(particle_stats(populated, result.counts, result.step_seconds));
+  if (outputs[kCounts] != nullptr) {
+    outputs[kCounts]->write(particle_stats(populated, result.counts, result.step_seconds));
   }
 }
 

@@ -87,9 +87,9 @@ std::string last_line(const std::string& text) {
   return line;
 }
 
-class Session {
+class SimSession {
  public:
-  explicit Session(const SessionOptions& options);
+  explicit SimSession(const SessionOptions& options);
   SessionResult run();
 
  private:
@@ -134,7 +134,7 @@ class Session {
   host::Simulation simulation_;
 };
 
-host::ScreenKind Session::screen_kind() const {
+host::ScreenKind SimSession::screen_kind() const {
   const bool nothing_to_see =
       options_.board->screen == platform::Screen::kNone || !options_.application->is_to_watch;
   return options_.display == host::ScreenKind::kAuto && nothing_to_see ? host::ScreenKind::kNone
@@ -153,7 +153,7 @@ std::unique_ptr<host::Screen> open(const SessionOptions& options, host::ScreenKi
   return host::open_screen(kind, screen);
 }
 
-Session::Session(const SessionOptions& options)
+SimSession::SimSession(const SessionOptions& options)
     : options_(options),
       screen_(open(options, screen_kind())),
       simulation_({options.board, connected(), options.scene, options.application->run, options.hold_fps,
@@ -172,7 +172,7 @@ Session::Session(const SessionOptions& options)
   }
 }
 
-void Session::take(const host::Event& event) {
+void SimSession::take(const host::Event& event) {
   switch (event.kind) {
     case host::EventKind::kKeyDown:
       held_ |= button_of(event.key);
@@ -206,7 +206,7 @@ void Session::take(const host::Event& event) {
 }
 
 // A pixel of the picture. One a frame: the last that was pressed on or moved over.
-void Session::point(char what, const host::Event& event) {
+void SimSession::point(char what, const host::Event& event) {
   const platform::BoardFacts& board = *options_.board;
   if (options_.application->takes_pointer && event.x_px >= 0 && event.y_px >= 0 &&
       event.x_px < board.width_px && event.y_px < board.height_px) {
@@ -214,7 +214,7 @@ void Session::point(char what, const host::Event& event) {
   }
 }
 
-void Session::take_events(int timeout_ms) {
+void SimSession::take_events(int timeout_ms) {
   for (auto event = screen_->next_event(timeout_ms); event; event = screen_->next_event(0)) {
     take(*event);
     if (event->kind == host::EventKind::kClose) {
@@ -224,7 +224,7 @@ void Session::take_events(int timeout_ms) {
 }
 
 // Standard input, as much as is there, and what was typed.
-void Session::take_input() {
+void SimSession::take_input() {
   // In the background a terminal must not be read: it would stop this program.
   if (input_is_open_ && (::isatty(STDIN_FILENO) == 0 || ::tcgetpgrp(STDIN_FILENO) == ::getpgrp())) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -245,7 +245,7 @@ void Session::take_input() {
   typed_.erase(0, taken);
 }
 
-void Session::pass_output() {
+void SimSession::pass_output() {
   const std::string text = simulation_.take_output();
   if (text.empty()) {
     return;
@@ -260,7 +260,7 @@ void Session::pass_output() {
   }
 }
 
-void Session::take_script() {
+void SimSession::take_script() {
   for (const host::KeyScript::Step& step : options_.keys.take(simulation_.frames_asked())) {
     scripted_ = (scripted_ | step.press) & ~step.release;
     typed_ += step.typed;
@@ -268,7 +268,7 @@ void Session::take_script() {
   simulation_.set_buttons(held_ | scripted_);
 }
 
-void Session::update_status() {
+void SimSession::update_status() {
   const Clock::time_point now = Clock::now();
   if (now < status_at_ + kStatusTime && pictures_ > 1) {
     return;
@@ -290,7 +290,7 @@ void Session::update_status() {
            : "UART: " + line));
 }
 
-void Session::take_picture() {
+void SimSession::take_picture() {
   if (simulation_.pictures() == pictures_) {
     return;
   }
@@ -319,7 +319,7 @@ void Session::take_picture() {
   }
 }
 
-SessionResult Session::run() {
+SessionResult SimSession::run() {
   const auto frame_time = std::chrono::nanoseconds(1'000'000'000 / options_.frames_a_second);
   Clock::time_point due = Clock::now();
   host::Moment moment = host::Moment::kNothing;
@@ -390,7 +390,7 @@ std::string memory_text(const host::MemoryUse& use, const char* separator) {
 }
 
 SessionResult run_session(const SessionOptions& options) {
-  return Session(options).run();
+  return SimSession(options).run();
 }
 
 }  // namespace thimble::tools

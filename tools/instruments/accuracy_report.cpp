@@ -13,7 +13,7 @@ namespace thimble::tools {
 namespace {
 
 // Three digits that count.
-std::string brief(double value) {
+std::string brief_ms(double value) {
   return fixed(value, value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3);
 }
 
@@ -76,7 +76,7 @@ std::string settings_table(const AccuracyStudy& study) {
       cells.push_back(value == 0 ? "-" : shortest(value));
     }
     const std::array measured{
-        brief(row.ms_median),
+        brief_ms(row.ms_median),
         spread(row),
         decibels(row.psnr_db),
         fixed(rms_of(row.psnr_db), 2),
@@ -97,7 +97,7 @@ std::string work_table(const AccuracyStudy& study) {
   std::vector<Cells> rows{
       {"visits given", "ms", "+-%", "exact %", "bound", "error", "PSNR", "RMS", "wrong %"}};
   for (const WorkRow& row : study.work) {
-    rows.push_back({grouped(row.given_visits), brief(row.picture.ms_median), spread(row.picture),
+    rows.push_back({grouped(row.given_visits), brief_ms(row.picture.ms_median), spread(row.picture),
                     percent(study.pixels - row.inexact_px, study.pixels), fixed(row.error_bound_grays, 2),
                     fixed(row.mean_error_grays, 2), decibels(row.picture.psnr_db),
                     fixed(rms_of(row.picture.psnr_db), 2), percent(row.picture.wrong_px, study.pixels)});
@@ -117,7 +117,7 @@ std::string light_table(const AccuracyStudy& study) {
     }
     const double pixels = static_cast<double>(study.pixels);
     rows.push_back({row.front ? "*" : "", rays_of(row.light.occlusion_rays),
-                    rays_of(row.light.roughness_rays), rays_of(row.light.bounces), brief(row.ms_median),
+                    rays_of(row.light.roughness_rays), rays_of(row.light.bounces), brief_ms(row.ms_median),
                     spread(row), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
                     percent(row.wrong_px, study.pixels),
                     fixed(static_cast<double>(row.counts.rays) / pixels, 2),
@@ -180,7 +180,7 @@ const char* axis_title(CostAxis axis) {
 
 std::string answer(const std::string& question, const AccuracyRow& row) {
   return "\n" + question + (row.light != LightSetting{} ? "\nlight: " : "\noptions: ") + options_of(row) +
-         "\n  " + brief(row.ms_median) + " ms, RMS error " + fixed(rms_of(row.psnr_db), 2) +
+         "\n  " + brief_ms(row.ms_median) + " ms, RMS error " + fixed(rms_of(row.psnr_db), 2) +
          " of 255, PSNR " + decibels(row.psnr_db) + (std::isfinite(row.psnr_db) ? " dB\n" : "\n");
 }
 
@@ -338,7 +338,7 @@ std::string answer_for_ms(const AccuracyStudy& study, double ms) {
   if (best == nullptr) {
     const AccuracyRow* fastest = fastest_with(study.rows, 0);
     throw InputError("no setting draws a frame in " + shortest(ms) + " ms here; the fastest, " +
-                     options_of(*fastest) + ", takes " + brief(fastest->ms_median) +
+                     options_of(*fastest) + ", takes " + brief_ms(fastest->ms_median) +
                      " ms (--size makes frames smaller)");
   }
   std::string text = answer(question, *best) + unlit_advice(study);
@@ -348,8 +348,8 @@ std::string answer_for_ms(const AccuracyStudy& study, double ms) {
   }
   if (early != nullptr && early->picture.psnr_db > best->psnr_db) {
     text += "or a frame of the default setting stopped after " + grouped(early->given_visits) +
-            " node visits (AnytimeFrame::refine):\n  " + brief(early->picture.ms_median) + " ms, RMS error " +
-            fixed(rms_of(early->picture.psnr_db), 2) + " of 255\n";
+            " node visits (AnytimeFrame::refine):\n  " + brief_ms(early->picture.ms_median) +
+            " ms, RMS error " + fixed(rms_of(early->picture.psnr_db), 2) + " of 255\n";
   }
   return text + light_answer(best_within(study.light, ms));
 }

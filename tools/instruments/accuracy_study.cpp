@@ -21,9 +21,9 @@ struct Prepared {
   QualityFrame frame;
 };
 
-class Studio {
+class AccuracyStudio {
  public:
-  Studio(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options)
+  AccuracyStudio(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options)
       : source_(source), built_(*built), options_(options) {
     shading_.mode = options.shade;
     shading_.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
@@ -181,7 +181,7 @@ constexpr std::uint32_t kFirstVisits = 256;
 
 // The setting with the most samples and bits that this view can have: a fine picture may be too large or too
 // fine.
-Prepared prepare_reference(const Studio& studio, AccuracyStudy* study) {
+Prepared prepare_reference(const AccuracyStudio& studio, AccuracyStudy* study) {
   for (int across = kMaxSamplesAcross;; --across) {
     study->reference = best_setting(across);
     try {
@@ -200,7 +200,7 @@ Prepared prepare_reference(const Studio& studio, AccuracyStudy* study) {
 }
 
 // Rows for all settings that this view can have, and these settings ready to be drawn.
-std::vector<Prepared> prepare_trials(const Studio& studio, int level, AccuracyStudy* study) {
+std::vector<Prepared> prepare_trials(const AccuracyStudio& studio, int level, AccuracyStudy* study) {
   std::vector<Prepared> prepared;
   std::vector<std::string> left_out;
   std::string reason;
@@ -226,7 +226,7 @@ std::vector<Prepared> prepare_trials(const Studio& studio, int level, AccuracySt
 }
 
 // Rows for twice the work again and again until the frame is done. `exact`: the finished picture.
-void add_work_rows(Studio& studio, const Prepared& plain, const std::vector<std::uint8_t>& exact,
+void add_work_rows(AccuracyStudio& studio, const Prepared& plain, const std::vector<std::uint8_t>& exact,
                    AccuracyStudy* study) {
   std::vector<std::uint8_t> memory;
   for (std::uint32_t visits = kFirstVisits; study->work.empty() || study->work.back().inexact_px != 0;
@@ -250,7 +250,7 @@ void add_work_rows(Studio& studio, const Prepared& plain, const std::vector<std:
 
 // Draws the study's rows and sets their times; in round 0 also their counts and errors.
 struct Comparison {
-  Studio& studio;
+  AccuracyStudio& studio;
   int rounds;
   const std::function<void(double)>& progress;
   AccuracyStudy* study;
@@ -313,7 +313,7 @@ struct Comparison {
       AccuracyRow& row = study->light[i];
       RenderCounts counts;
       milliseconds[study->rows.size() + study->work.size() + i].push_back(
-          Studio::draw(light, row.light, &picture, &counts));
+          AccuracyStudio::draw(light, row.light, &picture, &counts));
       if (round == 0) {
         row.counts = counts;
         compare_pictures(picture, light_reference, &row);
@@ -401,7 +401,7 @@ const AccuracyRow* fastest_with(const std::vector<AccuracyRow>& rows, double psn
 
 AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options,
                              const std::function<void(double)>& progress) {
-  Studio studio(source, built, options);
+  AccuracyStudio studio(source, built, options);
   AccuracyStudy study;
   study.pixels =
       static_cast<std::uint64_t>(options.view.width_px) * static_cast<std::uint64_t>(options.view.height_px);

@@ -59,9 +59,10 @@ struct Variant {
   std::vector<double> ms;
 };
 
-class Studio {
+class EffectsStudio {
  public:
-  Studio(const SceneSource& source, const BuiltScene& built, const EffectsOptions& options, std::string* note)
+  EffectsStudio(const SceneSource& source, const BuiltScene& built, const EffectsOptions& options,
+                std::string* note)
       : built_(built),
         lit_(options.effects.lighting(source)),
         used_(used_materials(built.compact())),
@@ -138,7 +139,7 @@ std::int64_t difference(std::uint64_t with, std::uint64_t without) {
 // A set without effects that trace on: nothing but what every lit picture keeps.
 constexpr std::size_t kBaseRamBytes = lit_render_bytes(Effect::kSky) - render_bytes();
 
-void fill(const Studio& studio, EffectRow* row) {
+void fill(const EffectsStudio& studio, EffectRow* row) {
   const Variant& with = studio.of(row->with);
   const Variant& without = studio.of(row->without);
   for (int kind = 0; kind < kLitRayKinds; ++kind) {
@@ -175,7 +176,7 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
   if ((called_for(lit, used) & effect) == 0) {
     return "asked for";
   }
-  const std::string named = "the scene names it";
+  std::string named = "the scene names it";
   const LitScene& rest = lit.rest;
   switch (effect) {
     case Effect::kDirectLight:
@@ -219,7 +220,7 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
                            const Progress& progress) {
   const BuiltScene built(source, {});
   EffectsStudy study;
-  Studio studio(source, built, options, &study.note);
+  EffectsStudio studio(source, built, options, &study.note);
   study.effects = chosen_effects(studio.lit(), studio.used(), options.effects.choice);
   studio.add(study.effects);
   studio.add(Effect::kNone);

@@ -27,7 +27,7 @@ HardCaseRow all_cases(const std::vector<HardCaseRow>& cases) {
   return all;
 }
 
-std::string brief(double value) {
+std::string four_digits(double value) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.4g", value);
   return text.data();
@@ -78,8 +78,9 @@ std::string totals_table(const HardCaseRow& all) {
   std::vector<Cells> rows{{"traversal", "arithmetic", "epsilon", "wrong", "%", "wrong face", "%"}};
   for (std::size_t i = 0; i < kTracers; ++i) {
     const TracerName& tracer = tracer_names()[i];
-    rows.push_back({tracer.traversal, tracer.arithmetic, tracer.has_epsilon ? brief(epsilon_of(tracer)) : "-",
-                    grouped(all.wrong[i]), of_rays(all.wrong[i], all.rays), grouped(all.wrong_face[i]),
+    rows.push_back({tracer.traversal, tracer.arithmetic,
+                    tracer.has_epsilon ? four_digits(epsilon_of(tracer)) : "-", grouped(all.wrong[i]),
+                    of_rays(all.wrong[i], all.rays), grouped(all.wrong_face[i]),
                     of_rays(all.wrong_face[i], all.rays)});
   }
   return grouped(all.rays) + " near-degenerate rays, " + grouped(all.hits) +
@@ -109,7 +110,8 @@ std::string cases_table(const std::vector<HardCaseRow>& cases, std::size_t first
 std::string operations_table(const std::vector<OperationError>& operations) {
   std::vector<Cells> rows{{"operation", "bound", "unit", "largest", "allowed"}};
   for (const OperationError& found : operations) {
-    rows.push_back({found.operation, found.bound_name, found.unit, brief(found.error), brief(found.bound)});
+    rows.push_back(
+        {found.operation, found.bound_name, found.unit, four_digits(found.error), four_digits(found.bound)});
   }
   return "\nthe largest error of each fixed-point operation against exact arithmetic, and what its "
          "header\nallows\n" +
@@ -155,8 +157,8 @@ std::string hard_case_fault(const HardCaseStudy& study) {
   }
   for (const OperationError& found : study.operations) {
     if (!(found.error <= found.bound)) {
-      return found.operation + " is off by " + brief(found.error) + ", " + found.bound_name + " allows " +
-             brief(found.bound);
+      return found.operation + " is off by " + four_digits(found.error) + ", " + found.bound_name +
+             " allows " + four_digits(found.bound);
     }
   }
   return {};

@@ -32,14 +32,14 @@ class Draw {
 };
 
 // A world of random voxels, for the core, the reference and the textbooks.
-struct World {
+struct CaseWorld {
   int level;
   reference::BitGrid grid;
   reference::Pyramid pyramid;
   std::vector<std::uint8_t> bytes;
   CompactTree tree;
 
-  World(int log2_side, int one_in, std::uint64_t seed)
+  CaseWorld(int log2_side, int one_in, std::uint64_t seed)
       : level(log2_side), grid(filled(log2_side, one_in, seed)), pyramid(grid) {
     std::vector<std::uint64_t> keys;
     const int side = 1 << level;
@@ -63,7 +63,7 @@ struct World {
       throw std::logic_error("the world of the hard cases has no tree");
     }
   }
-  World(const World&) = delete;
+  CaseWorld(const CaseWorld&) = delete;
 
  private:
   static reference::BitGrid filled(int level, int one_in, std::uint64_t seed) {
@@ -85,7 +85,7 @@ struct World {
 
 // --- The cases. `side` is that of the world in voxels, positions are in 1/256 voxel.
 
-constexpr std::int64_t kOne = 256;
+constexpr std::int64_t kOneQ8 = 256;
 
 Components any_direction(Draw& draw) {
   Components direction{};
@@ -104,7 +104,7 @@ Components before(Draw& draw, const Components& point, const Components& directi
   for (const std::int64_t component : direction) {
     most = std::max(most, component < 0 ? -component : component);
   }
-  const std::int64_t times = draw.from(0, std::max<std::int64_t>(2 * side * kOne / most, 1));
+  const std::int64_t times = draw.from(0, std::max<std::int64_t>(2 * side * kOneQ8 / most, 1));
   Components origin{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     origin[axis] = point[axis] - times * direction[axis];
@@ -137,10 +137,10 @@ std::int64_t inverse(std::int64_t value, std::int64_t modulus) {
 }
 
 Components corner(Draw& draw, std::int64_t side) {
-  return {kOne * draw.from(0, side), kOne * draw.from(0, side), kOne * draw.from(0, side)};
+  return {kOneQ8 * draw.from(0, side), kOneQ8 * draw.from(0, side), kOneQ8 * draw.from(0, side)};
 }
 Components inside(Draw& draw, std::int64_t side) {
-  return {draw.from(0, kOne * side - 1), draw.from(0, kOne * side - 1), draw.from(0, kOne * side - 1)};
+  return {draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1)};
 }
 
 struct HardCase {
@@ -160,7 +160,7 @@ const HardCase kCases[] = {
     {"through an edge", kSmall,
      [](Draw& draw, std::int64_t side) {
        Components point = corner(draw, side);
-       point[static_cast<std::size_t>(draw.from(0, 2))] = draw.from(0, kOne * side);
+       point[static_cast<std::size_t>(draw.from(0, 2))] = draw.from(0, kOneQ8 * side);
        const Components direction = short_direction(draw);
        const Components origin = before(draw, point, direction, side);
        return reference::Ray{origin, direction};
@@ -183,7 +183,7 @@ const HardCase kCases[] = {
      [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = inside(draw, side);
-       origin[axis] = kOne * draw.from(0, side - 1);
+       origin[axis] = kOneQ8 * draw.from(0, side - 1);
        Components direction = any_direction(draw);
        direction[axis] = 0;
        direction[(axis + 1) % 3] = draw.from(1, 32767);
@@ -193,7 +193,7 @@ const HardCase kCases[] = {
      [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = corner(draw, side);
-       origin[axis] = draw.sign() < 0 ? -kOne * side : kOne * 2 * side;
+       origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
        Components direction{};
        direction[axis] = origin[axis] < 0 ? 1 : -1;
        return reference::Ray{origin, direction};
@@ -201,7 +201,7 @@ const HardCase kCases[] = {
     {"starts on a face", kSmall,
      [](Draw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
-       origin[static_cast<std::size_t>(draw.from(0, 2))] = kOne * draw.from(0, side);
+       origin[static_cast<std::size_t>(draw.from(0, 2))] = kOneQ8 * draw.from(0, side);
        const Components direction = any_direction(draw);
        return reference::Ray{origin, direction};
      }},
@@ -215,7 +215,7 @@ const HardCase kCases[] = {
      [](Draw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
-       origin[axis] = kOne * draw.from(0, side);
+       origin[axis] = kOneQ8 * draw.from(0, side);
        origin[axis] += draw.sign();
        const Components direction = any_direction(draw);
        return reference::Ray{origin, direction};
@@ -224,7 +224,7 @@ const HardCase kCases[] = {
      [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = corner(draw, side);
-       origin[axis] = draw.sign() < 0 ? -kOne * side : kOne * 2 * side;
+       origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
        Components direction{};
        for (std::size_t other = 0; other < 3; ++other) {
          direction[other] = draw.from(-2, 2);
@@ -262,8 +262,8 @@ const HardCase kCases[] = {
      [](Draw& draw, std::int64_t side) {
        Components origin{};
        for (std::int64_t& component : origin) {
-         component = draw.sign() < 0 ? draw.from(-4 * kOne * side, -3 * kOne * side)
-                                     : draw.from(4 * kOne * side, 5 * kOne * side);
+         component = draw.sign() < 0 ? draw.from(-4 * kOneQ8 * side, -3 * kOneQ8 * side)
+                                     : draw.from(4 * kOneQ8 * side, 5 * kOneQ8 * side);
        }
        const Components target = corner(draw, side);
        Components direction{};
@@ -318,7 +318,7 @@ void judge(const reference::Hit& right, const reference::TextbookHit& answer, st
   }
 }
 
-void trace_all(const World& world, const reference::Ray& ray, HardCaseRow* row) {
+void trace_all(const CaseWorld& world, const reference::Ray& ray, HardCaseRow* row) {
   const reference::Hit right = reference::walk(world.grid, ray);
   row->hits += right.hit ? 1 : 0;
   ++row->rays;
@@ -369,14 +369,14 @@ const std::array<TracerName, kTracers>& tracer_names() {
 
 std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
                                         const std::function<void(double)>& progress) {
-  const World small(kSmall, 12, seed);
-  const World large(kLarge, 200, seed + 1);
+  const CaseWorld small(kSmall, 12, seed);
+  const CaseWorld large(kLarge, 200, seed + 1);
   std::vector<HardCaseRow> rows;
   const std::size_t count = std::size(kCases);
   const std::uint64_t rays_a_case = std::max<std::uint64_t>((rays + count - 1) / count, 1);
   for (std::size_t i = 0; i < count; ++i) {
     const HardCase& hard = kCases[i];
-    const World& world = hard.level == kSmall ? small : large;
+    const CaseWorld& world = hard.level == kSmall ? small : large;
     Draw draw(seed * 1000003 + i);
     HardCaseRow row;
     row.name = hard.name;

@@ -11,11 +11,11 @@
 namespace thimble::tools {
 namespace {
 
-constexpr double kWidth = 760;
+constexpr double kPlotWidth = 760;
 constexpr double kHeight = 460;
-constexpr double kLeft = 84;
-constexpr double kRight = 20;
-constexpr double kTop = 44;
+constexpr double kPlotLeft = 84;
+constexpr double kPlotRight = 20;
+constexpr double kPlotTop = 44;
 constexpr double kBottom = 112;
 
 // A range of whole decades.
@@ -84,43 +84,45 @@ std::string log_plot_text(const Plot& plot) {
   const auto x_part = [&](double x) {
     return plot.whole_x ? (x - least) / (greatest - least) : x_range.part(x);
   };
-  const auto x_at = [&](double x) { return kLeft + x_part(x) * (kWidth - kLeft - kRight); };
+  const auto x_at = [&](double x) { return kPlotLeft + x_part(x) * (kPlotWidth - kPlotLeft - kPlotRight); };
   const auto y_at = [&](double y) {
-    return kHeight - kBottom - y_range.part(y) * (kHeight - kTop - kBottom);
+    return kHeight - kBottom - y_range.part(y) * (kHeight - kPlotTop - kBottom);
   };
 
   std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(kHeight) +
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kPlotWidth) + " " +
+      number(kHeight) +
       "\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\n"
       ".ground { fill: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: "
       "#222222 } .mark { stroke: #888888; stroke-dasharray: 2 3 }\n@media (prefers-color-scheme: dark) { "
       ".ground { fill: #15181c } text { fill: #e6e6e6 "
       "} .grid { stroke: #3a3f45 } .axis { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" "
       "height=\"100%\" class=\"ground\"/>\n";
-  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
+  svg += label(kPlotWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
   for (double whole = least; plot.whole_x && whole <= greatest; whole += 1) {
-    svg += line(x_at(whole), kTop, x_at(whole), kHeight - kBottom, "grid") +
+    svg += line(x_at(whole), kPlotTop, x_at(whole), kHeight - kBottom, "grid") +
            label(x_at(whole), kHeight - kBottom + 18, "middle", std::to_string(std::lround(whole)));
   }
   for (int decade = x_range.low; !plot.whole_x && decade <= x_range.high; ++decade) {
     const double x = x_at(std::pow(10, decade));
-    svg += line(x, kTop, x, kHeight - kBottom, "grid") +
+    svg += line(x, kPlotTop, x, kHeight - kBottom, "grid") +
            label(x, kHeight - kBottom + 18, "middle", decade_text(decade));
   }
   for (int decade = y_range.low; decade <= y_range.high; ++decade) {
     const double y = y_at(std::pow(10, decade));
-    svg += line(kLeft, y, kWidth - kRight, y, "grid") + label(kLeft - 8, y + 4, "end", decade_text(decade));
+    svg += line(kPlotLeft, y, kPlotWidth - kPlotRight, y, "grid") +
+           label(kPlotLeft - 8, y + 4, "end", decade_text(decade));
   }
-  svg += line(kLeft, kTop, kLeft, kHeight - kBottom, "axis") +
-         line(kLeft, kHeight - kBottom, kWidth - kRight, kHeight - kBottom, "axis");
-  svg += label((kLeft + kWidth - kRight) / 2, kHeight - kBottom + 40, "middle", plot.x_label);
-  const double middle = (kTop + kHeight - kBottom) / 2;
+  svg += line(kPlotLeft, kPlotTop, kPlotLeft, kHeight - kBottom, "axis") +
+         line(kPlotLeft, kHeight - kBottom, kPlotWidth - kPlotRight, kHeight - kBottom, "axis");
+  svg += label((kPlotLeft + kPlotWidth - kPlotRight) / 2, kHeight - kBottom + 40, "middle", plot.x_label);
+  const double middle = (kPlotTop + kHeight - kBottom) / 2;
   svg += label(20, middle, "middle", plot.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
 
   for (const Mark& mark : plot.marks) {
     const double y = y_at(mark.y);
-    svg += line(kLeft, y, kWidth - kRight, y, "mark") +
-           label(kLeft + 6, y - 4, "start", mark.name, " font-size=\"11\"");
+    svg += line(kPlotLeft, y, kPlotWidth - kPlotRight, y, "mark") +
+           label(kPlotLeft + 6, y - 4, "start", mark.name, " font-size=\"11\"");
   }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
@@ -136,7 +138,7 @@ std::string log_plot_text(const Plot& plot) {
              "\"/>\n";
     }
     const std::size_t legend_row = i / 2;
-    const double column = kLeft + static_cast<double>(i % 2) * (kWidth - kLeft - kRight) / 2;
+    const double column = kPlotLeft + static_cast<double>(i % 2) * (kPlotWidth - kPlotLeft - kPlotRight) / 2;
     const double row = kHeight - kBottom + 62 + 18 * static_cast<double>(legend_row);
     svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
            "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";

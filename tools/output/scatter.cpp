@@ -12,13 +12,13 @@
 namespace thimble::tools {
 namespace {
 
-constexpr double kWidth = 760;
-constexpr double kLeft = 72;
-constexpr double kRight = 24;
-constexpr double kTop = 52;
+constexpr double kScatterWidth = 760;
+constexpr double kScatterLeft = 72;
+constexpr double kScatterRight = 24;
+constexpr double kScatterTop = 52;
 constexpr double kPlotHeight = 330;
 constexpr double kLineHeight = 18;
-constexpr double kPlotBottom = kTop + kPlotHeight;
+constexpr double kPlotBottom = kScatterTop + kPlotHeight;
 // Names in two columns where there are many.
 constexpr std::size_t kManyNames = 8;
 
@@ -82,8 +82,8 @@ struct Scales {
     high = (std::floor(y_high / step) + 1) * step;
   }
   double x_at(double x) const {
-    return kLeft + std::log(x / x_ticks.front()) / std::log(x_ticks.back() / x_ticks.front()) *
-                       (kWidth - kLeft - kRight);
+    return kScatterLeft + std::log(x / x_ticks.front()) / std::log(x_ticks.back() / x_ticks.front()) *
+                              (kScatterWidth - kScatterLeft - kScatterRight);
   }
   double y_at(double y) const { return kPlotBottom - (std::min(y, high) - low) / (high - low) * kPlotHeight; }
 };
@@ -151,7 +151,8 @@ std::string scatter_text(const Scatter& scatter) {
       names + kLineHeight * static_cast<double>(scatter.front.empty() ? 0 : name_rows + 1) + 8;
 
   std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kScatterWidth) + " " +
+      number(height) +
       "\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\n"
       ".ground { fill: #ffffff } text { fill: #222222 } .grid { stroke: #dddddd } .axis { stroke: #222222 } "
       ".front { fill: none; stroke: #222222; stroke-width: 1.5 } .ring { fill: none; stroke: #222222 }\n"
@@ -159,23 +160,25 @@ std::string scatter_text(const Scatter& scatter) {
       "stroke: "
       "#3a3f45 } .axis, .front, .ring { stroke: #e6e6e6 } }\n</style>\n<rect width=\"100%\" height=\"100%\" "
       "class=\"ground\"/>\n";
-  svg += label(kWidth / 2, 26, "middle", scatter.title, " font-size=\"15\"");
+  svg += label(kScatterWidth / 2, 26, "middle", scatter.title, " font-size=\"15\"");
   for (const double tick : scales.x_ticks) {
     const double x = scales.x_at(tick);
-    svg += line(x, kTop, x, kPlotBottom, "grid") + label(x, kPlotBottom + 18, "middle", rounded(tick));
+    svg += line(x, kScatterTop, x, kPlotBottom, "grid") + label(x, kPlotBottom + 18, "middle", rounded(tick));
   }
   for (int i = 0; scales.low + i * scales.step <= scales.high + scales.step / 2; ++i) {
     const double value = scales.low + i * scales.step;
     const double y = scales.y_at(value);
-    svg += line(kLeft, y, kWidth - kRight, y, "grid") + label(kLeft - 8, y + 4, "end", rounded(value));
+    svg += line(kScatterLeft, y, kScatterWidth - kScatterRight, y, "grid") +
+           label(kScatterLeft - 8, y + 4, "end", rounded(value));
   }
-  svg += line(kLeft, kTop, kLeft, kPlotBottom, "axis") +
-         line(kLeft, kPlotBottom, kWidth - kRight, kPlotBottom, "axis");
+  svg += line(kScatterLeft, kScatterTop, kScatterLeft, kPlotBottom, "axis") +
+         line(kScatterLeft, kPlotBottom, kScatterWidth - kScatterRight, kPlotBottom, "axis");
   if (infinite) {
-    svg += label(kLeft + 6, kTop - 6, "start", scatter.infinite_name, " font-size=\"11\"");
+    svg += label(kScatterLeft + 6, kScatterTop - 6, "start", scatter.infinite_name, " font-size=\"11\"");
   }
-  svg += label((kLeft + kWidth - kRight) / 2, kPlotBottom + 40, "middle", scatter.x_label);
-  const double middle = kTop + kPlotHeight / 2;
+  svg +=
+      label((kScatterLeft + kScatterWidth - kScatterRight) / 2, kPlotBottom + 40, "middle", scatter.x_label);
+  const double middle = kScatterTop + kPlotHeight / 2;
   svg += label(20, middle, "middle", scatter.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
 
   if (!scatter.front.empty()) {
@@ -197,13 +200,14 @@ std::string scatter_text(const Scatter& scatter) {
     for (const auto& [x, y] : scatter.clouds[i].points) {
       svg += dot(scales.x_at(x), scales.y_at(y), 4, fill);
     }
-    const double column = kLeft + static_cast<double>(i % 4) * (kWidth - kLeft - kRight) / 4;
+    const double column =
+        kScatterLeft + static_cast<double>(i % 4) * (kScatterWidth - kScatterLeft - kScatterRight) / 4;
     const std::size_t legend_row = i / 4;
     const double row = legend + kLineHeight * static_cast<double>(legend_row);
     svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
   }
   if (!scatter.front.empty()) {
-    svg += label(kLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
+    svg += label(kScatterLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
   }
   std::vector<std::pair<double, double>> rings;
   for (const FrontPoint& point : scatter.front) {
@@ -217,7 +221,8 @@ std::string scatter_text(const Scatter& scatter) {
     svg += dot(x, y, 6, "class=\"ring\"");
     svg += numbers.label_at(x, y, std::to_string(i + 1));
     const std::size_t name_column = i / name_rows;
-    const double column = kLeft + static_cast<double>(name_column) * (kWidth - kLeft - kRight) / 2;
+    const double column =
+        kScatterLeft + static_cast<double>(name_column) * (kScatterWidth - kScatterLeft - kScatterRight) / 2;
     svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
                  std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
   }
@@ -228,15 +233,15 @@ std::string stacked(const std::vector<std::string>& plots) {
   std::string inner;
   double height = 0;
   for (const std::string& plot : plots) {
-    const std::string box = "viewBox=\"0 0 " + number(kWidth) + " ";
+    const std::string box = "viewBox=\"0 0 " + number(kScatterWidth) + " ";
     const std::size_t at = plot.find(box);
     const double own = std::strtod(plot.c_str() + at + box.size(), nullptr);
-    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kWidth) + "\" height=\"" + number(own) +
-             "\" " + plot.substr(at);
+    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kScatterWidth) + "\" height=\"" +
+             number(own) + "\" " + plot.substr(at);
     height += own;
   }
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
-         "\">\n" + inner + "</svg>\n";
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kScatterWidth) + " " +
+         number(height) + "\">\n" + inner + "</svg>\n";
 }
 
 }  // namespace thimble::tools

@@ -10,7 +10,7 @@
 namespace thimble::tools {
 namespace {
 
-constexpr double kOne = 65536;
+constexpr double kOneQ16 = 65536;
 constexpr std::int32_t kSearchCells = 64;
 constexpr std::uint32_t kSpareBalls = 1000;
 
@@ -46,13 +46,13 @@ std::vector<Vec2i> places_around() {
 }
 
 std::int32_t to_q16(double cells) {
-  return static_cast<std::int32_t>(std::lround(cells * kOne));
+  return static_cast<std::int32_t>(std::lround(cells * kOneQ16));
 }
 
 }  // namespace
 
 std::uint32_t restitution_q16(double bounciness) {
-  return static_cast<std::uint32_t>(std::lround(bounciness * kOne));
+  return static_cast<std::uint32_t>(std::lround(bounciness * kOneQ16));
 }
 
 PopulatedWorld::PopulatedWorld(const WorldOptions& options, const std::optional<Bodies>& bodies)

@@ -21,9 +21,9 @@ constexpr double kRateTime = 0.5;  // over which the steps a second are counted
 constexpr int kIdleMs = 50;
 constexpr std::uint64_t kTimedSteps = 64;
 
-class Session {
+class ParticleSession {
  public:
-  Session(PopulatedWorld* world, const PlayOptions& options);
+  ParticleSession(PopulatedWorld* world, const PlayOptions& options);
   PlayResult run();
 
  private:
@@ -61,7 +61,7 @@ host::ScreenOptions screen_options(const ParticleWorld& world) {
   return options;
 }
 
-Session::Session(PopulatedWorld* world, const PlayOptions& options)
+ParticleSession::ParticleSession(PopulatedWorld* world, const PlayOptions& options)
     : world_(world),
       options_(options),
       player_(world, options.rate),
@@ -80,7 +80,7 @@ Session::Session(PopulatedWorld* world, const PlayOptions& options)
   }
 }
 
-bool Session::has_ended() const {
+bool ParticleSession::has_ended() const {
   if (player_.has_ended() || (options_.steps && player_.counts().steps >= *options_.steps)) {
     return true;
   }
@@ -88,7 +88,7 @@ bool Session::has_ended() const {
   return !watched() && player_.stands() && next_event_ == options_.script.size();
 }
 
-void Session::take(const InputEvent& event) {
+void ParticleSession::take(const InputEvent& event) {
   if (options_.input_recording != nullptr && event.kind != InputKind::kEnd) {
     options_.input_recording->write(to_text(event));
   }
@@ -96,14 +96,14 @@ void Session::take(const InputEvent& event) {
   needs_showing_ = true;
 }
 
-void Session::take_script() {
+void ParticleSession::take_script() {
   while (next_event_ < options_.script.size() && options_.script[next_event_].tick <= player_.ticks() &&
          !player_.has_ended()) {
     take(options_.script[next_event_++]);
   }
 }
 
-void Session::take_events(int timeout_ms) {
+void ParticleSession::take_events(int timeout_ms) {
   for (auto event = screen_->next_event(timeout_ms); event && !player_.has_ended();
        event = screen_->next_event(0)) {
     if (const auto input = input_event(*event, player_.ticks())) {
@@ -115,7 +115,7 @@ void Session::take_events(int timeout_ms) {
 }
 
 // A tick with all that belongs to it. The caller has looked at has_ended().
-void Session::advance() {
+void ParticleSession::advance() {
   take_script();
   if (has_ended()) {
     return;
@@ -133,7 +133,7 @@ void Session::advance() {
   }
 }
 
-void Session::record_frame() {
+void ParticleSession::record_frame() {
   const ParticleConfig& config = world_->world().config();
   draw_world(*world_, &rgb_);
   if (options_.figures_in_files) {
@@ -142,7 +142,7 @@ void Session::record_frame() {
   options_.recording->write(host::y4m_color_frame({rgb_.data(), config.width, config.height}));
 }
 
-void Session::show() {
+void ParticleSession::show() {
   const ParticleConfig& config = world_->world().config();
   // A terminal has not the room for text on the picture, so the figures stand below it.
   const bool is_window = screen_->name() == std::string("window");
@@ -173,7 +173,7 @@ void Session::show() {
 
 // Ticks go by the clock, pictures by another; what a slow machine does not manage is left out, not made up
 // for.
-void Session::watch() {
+void ParticleSession::watch() {
   const Seconds frame_time(1.0 / options_.frames_a_second);
   Clock::time_point drawn = Clock::now();
   Clock::time_point ticked = drawn;
@@ -217,7 +217,7 @@ void Session::watch() {
   }
 }
 
-void Session::run_unseen() {
+void ParticleSession::run_unseen() {
   ProgressBar bar("steps", options_.quiet);
   const Clock::time_point begin = Clock::now();
   while (!has_ended()) {
@@ -229,7 +229,7 @@ void Session::run_unseen() {
   step_seconds_ = Seconds(Clock::now() - begin).count();
 }
 
-PlayResult Session::run() {
+PlayResult ParticleSession::run() {
   if (watched()) {
     watch();
   } else {
@@ -246,7 +246,7 @@ PlayResult Session::run() {
 }  // namespace
 
 PlayResult play(PopulatedWorld* world, const PlayOptions& options) {
-  return Session(world, options).run();
+  return ParticleSession(world, options).run();
 }
 
 }  // namespace thimble::tools

@@ -9,7 +9,7 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kMagic = "#binvox";
+constexpr std::string_view kBinvoxMagic = "#binvox";
 
 class BinvoxGrid final : public VoxelGrid {
  public:
@@ -71,7 +71,7 @@ class BinvoxGrid final : public VoxelGrid {
     LineReader lines(file_.text());
     std::string_view line;
     lines.next(line);
-    if (line.substr(kMagic.size()) != " 1") {
+    if (line.substr(kBinvoxMagic.size()) != " 1") {
       fail_at_line(1, quoted(line) + " is not version 1, the only one that is read");
     }
     for (bool more = true; more;) {
@@ -108,7 +108,7 @@ class BinvoxGrid final : public VoxelGrid {
 }  // namespace
 
 bool looks_like_binvox(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= kMagic.size() && SharedBytes{bytes, nullptr}.text().starts_with(kMagic);
+  return bytes.size() >= kBinvoxMagic.size() && SharedBytes{bytes, nullptr}.text().starts_with(kBinvoxMagic);
 }
 
 Source read_binvox(const SharedBytes& file, const Progress& progress) {

@@ -34,7 +34,7 @@ constexpr std::array<std::string_view, 7> kInvisible{"air",     "cave_air",     
                                                      "barrier", "structure_void", "light"};
 
 /// The first word that is part of a name decides, so what is special stands before what is common.
-constexpr auto kKinds = std::to_array<Entry>({
+constexpr auto kBlockKinds = std::to_array<Entry>({
     // Plants before the wood and earth that they are named after.
     {"cherry_leaves", {229, 172, 194}},
     {"blueberry", {62, 98, 58}},
@@ -358,7 +358,7 @@ std::optional<Rgb> block_color(std::string_view name) {
       return dye->color;
     }
   }
-  for (const Entry& kind : kKinds) {
+  for (const Entry& kind : kBlockKinds) {
     if (has(name, kind.word)) {
       return kind.color;
     }

@@ -13,7 +13,7 @@ namespace thimble::tools {
 
 namespace {
 
-constexpr std::uint32_t kHeaderBytes = 256;
+constexpr std::uint32_t kGadgetHeaderBytes = 256;
 constexpr std::size_t kMarkerBytes = 4;
 constexpr std::size_t kTypes = 6;
 
@@ -97,7 +97,7 @@ ByteOrder byte_order(std::span<const std::uint8_t> bytes) {
   if (bytes.size() >= kMarkerBytes) {
     for (const ByteOrder order : {ByteOrder::kLittle, ByteOrder::kBig}) {
       const std::uint64_t marker = load(bytes, 0, kMarkerBytes, order);
-      if (marker == kHeaderBytes) {
+      if (marker == kGadgetHeaderBytes) {
         return order;
       }
       if (marker == 8 && bytes.size() >= 8 && bytes[4] == 'H' && bytes[5] == 'E') {
@@ -112,12 +112,12 @@ ByteOrder byte_order(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 bool looks_like_gadget(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kMarkerBytes + kHeaderBytes + kMarkerBytes) {
+  if (bytes.size() < kMarkerBytes + kGadgetHeaderBytes + kMarkerBytes) {
     return false;
   }
   for (const ByteOrder order : {ByteOrder::kLittle, ByteOrder::kBig}) {
-    if (load(bytes, 0, kMarkerBytes, order) == kHeaderBytes &&
-        load(bytes, kMarkerBytes + kHeaderBytes, kMarkerBytes, order) == kHeaderBytes) {
+    if (load(bytes, 0, kMarkerBytes, order) == kGadgetHeaderBytes &&
+        load(bytes, kMarkerBytes + kGadgetHeaderBytes, kMarkerBytes, order) == kGadgetHeaderBytes) {
       return true;
     }
   }

@@ -9,7 +9,7 @@ namespace thimble::tools {
 namespace {
 
 constexpr std::size_t kPaletteBytes = 768;
-constexpr std::size_t kHeaderBytes = 28;  // bytes of the model, three sides, three pivots
+constexpr std::size_t kKvxHeaderBytes = 28;  // bytes of the model, three sides, three pivots
 
 class KvxGrid final : public VoxelGrid {
  public:
@@ -30,7 +30,7 @@ class KvxGrid final : public VoxelGrid {
     }
     const std::uint64_t tables =
         4 * (std::uint64_t{size_[0]} + 1) + 2 * std::uint64_t{size_[0]} * (size_[1] + 1);
-    if (kHeaderBytes + tables > end) {
+    if (kKvxHeaderBytes + tables > end) {
       throw InputError("the model of " + std::to_string(model_bytes) +
                        " bytes has no room for the table of " + std::to_string(size_[0]) + " x " +
                        std::to_string(size_[1]) + " columns");
@@ -76,12 +76,12 @@ class KvxGrid final : public VoxelGrid {
   /// The slabs of a column. Offsets count from the table of them on; a row of columns has one, each column
   /// one within.
   ByteReader column(std::uint32_t x, std::uint32_t y) const {
-    ByteReader row(file_.bytes.subspan(kHeaderBytes + 4 * std::size_t{x}));
-    ByteReader inner(file_.bytes.subspan(kHeaderBytes + 4 * (std::size_t{size_[0]} + 1) +
+    ByteReader row(file_.bytes.subspan(kKvxHeaderBytes + 4 * std::size_t{x}));
+    ByteReader inner(file_.bytes.subspan(kKvxHeaderBytes + 4 * (std::size_t{size_[0]} + 1) +
                                          2 * (std::size_t{x} * (size_[1] + 1) + y)));
     const std::uint64_t first_row = row.u32();
-    const std::uint64_t first = kHeaderBytes + first_row + inner.u16();
-    const std::uint64_t last = kHeaderBytes + first_row + inner.u16();
+    const std::uint64_t first = kKvxHeaderBytes + first_row + inner.u16();
+    const std::uint64_t last = kKvxHeaderBytes + first_row + inner.u16();
     const std::string place = "column " + std::to_string(x) + "," + std::to_string(y);
     if (first > last || last > end_) {
       throw InputError(place + " lies from byte offset " + std::to_string(first) + " to " +

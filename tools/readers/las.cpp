@@ -12,7 +12,7 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kMagic = "LASF";
+constexpr std::string_view kLasMagic = "LASF";
 constexpr std::uint64_t kNoColor = 0;
 
 struct PointFormat {
@@ -172,7 +172,7 @@ class LasCloud final : public PointCloud {
 }  // namespace
 
 bool looks_like_las(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with(kMagic);
+  return SharedBytes{bytes, nullptr}.text().starts_with(kLasMagic);
 }
 
 Source read_las(const SharedBytes& file, const Progress& progress) {

@@ -12,7 +12,7 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kMagic = "MTSM";
+constexpr std::string_view kMtsMagic = "MTSM";
 constexpr std::uint64_t kNodeBytes =
     4;  // a number of two bytes, a chance, a turn; each for all nodes together
 
@@ -23,7 +23,7 @@ class MtsGrid final : public VoxelGrid {
       throw InputError("is not a Minetest schematic: it does not begin with \"MTSM\"");
     }
     ByteReader reader(file.bytes, "the header");
-    reader.skip(kMagic.size());
+    reader.skip(kMtsMagic.size());
     const unsigned version = reader.u16_be();
     if (version < 1 || version > 4) {
       throw InputError("version " + std::to_string(version) +
@@ -102,7 +102,7 @@ class MtsGrid final : public VoxelGrid {
 }  // namespace
 
 bool looks_like_mts(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with(kMagic);
+  return SharedBytes{bytes, nullptr}.text().starts_with(kMtsMagic);
 }
 
 Source read_mts(const SharedBytes& file, const Progress& progress) {

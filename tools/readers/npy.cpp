@@ -17,11 +17,11 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::string_view kZipMagic("PK\x03\x04", 4);
 
 /// What a header says.
-struct Header {
+struct NpyHeader {
   char type = 'u';  ///< b, u, i or f
   std::size_t size_bytes = 1;
   bool is_big_endian = false;
@@ -30,7 +30,7 @@ struct Header {
   std::size_t data_offset = 0;
 };
 
-std::uint64_t numbers_of(const Header& header) {
+std::uint64_t numbers_of(const NpyHeader& header) {
   std::uint64_t count = 1;
   for (const std::uint64_t side : header.shape) {
     if (side != 0 && count > UINT64_MAX / 16 / side) {
@@ -53,7 +53,7 @@ std::string_view value_of(std::string_view dictionary, std::string_view key) {
   return value;
 }
 
-void read_type(std::string_view value, Header& header) {
+void read_type(std::string_view value, NpyHeader& header) {
   const std::string_view text = value.size() > 1 && (value[0] == '\'' || value[0] == '"')
                                     ? value.substr(1, value.find(value[0], 1) - 1)
                                     : std::string_view();
@@ -70,7 +70,7 @@ void read_type(std::string_view value, Header& header) {
   header.is_big_endian = has_order && text[0] == '>';
 }
 
-void read_shape(std::string_view value, Header& header) {
+void read_shape(std::string_view value, NpyHeader& header) {
   const std::size_t end = value.find(')');
   if (value.empty() || value[0] != '(' || end == std::string_view::npos) {
     throw InputError("the array's shape is no list in parentheses");
@@ -88,12 +88,12 @@ void read_shape(std::string_view value, Header& header) {
   }
 }
 
-Header read_header(std::span<const std::uint8_t> bytes) {
-  if (!SharedBytes{bytes, nullptr}.text().starts_with(kMagic)) {
+NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
+  if (!SharedBytes{bytes, nullptr}.text().starts_with(kNpyMagic)) {
     throw InputError("is no NumPy array: it does not begin with \"\\x93NUMPY\"");
   }
   ByteReader reader(bytes, "the header");
-  reader.skip(kMagic.size());
+  reader.skip(kNpyMagic.size());
   const unsigned version = reader.u8();
   reader.skip(1);
   if (version < 1 || version > 3) {
@@ -102,7 +102,7 @@ Header read_header(std::span<const std::uint8_t> bytes) {
   }
   const auto text = reader.take(version == 1 ? reader.u16() : reader.u32());
   const std::string_view dictionary(reinterpret_cast<const char*>(text.data()), text.size());
-  Header header;
+  NpyHeader header;
   read_type(value_of(dictionary, "descr"), header);
   header.is_fortran = value_of(dictionary, "fortran_order").starts_with("True");
   read_shape(value_of(dictionary, "shape"), header);
@@ -112,11 +112,11 @@ Header read_header(std::span<const std::uint8_t> bytes) {
 
 /// An array's numbers.
 struct Array {
-  Header header;
+  NpyHeader header;
   SharedBytes bytes;
   std::vector<std::uint64_t> strides;  ///< in numbers
 
-  Array(Header read, SharedBytes file) : header(std::move(read)), bytes(std::move(file)) {
+  Array(NpyHeader read, SharedBytes file) : header(std::move(read)), bytes(std::move(file)) {
     const std::uint64_t room = (bytes.bytes.size() - header.data_offset) / header.size_bytes;
     if (numbers_of(header) > room) {
       throw InputError("the array's shape takes " + std::to_string(numbers_of(header)) + " numbers of " +
@@ -246,7 +246,7 @@ class ArrayGrid final : public VoxelGrid {
   std::array<std::int32_t, 3> size_{};
 };
 
-std::string shape_of(const Header& header) {
+std::string shape_of(const NpyHeader& header) {
   std::string text;
   for (const std::uint64_t side : header.shape) {
     text += (text.empty() ? "" : " x ") + std::to_string(side);
@@ -255,7 +255,7 @@ std::string shape_of(const Header& header) {
 }
 
 Source source_of(Array array) {
-  const Header& header = array.header;
+  const NpyHeader& header = array.header;
   const std::size_t dimensions = header.shape.size();
   if (dimensions == 2 && header.type == 'f' && (header.shape[1] == 3 || header.shape[1] == 6)) {
     return std::unique_ptr<PointCloud>(std::make_unique<ArrayPoints>(std::move(array)));
@@ -283,10 +283,10 @@ SharedBytes largest_member(std::span<const std::uint8_t> file) {
   std::uint64_t most = 0;
   for (const ZipMember& member : zip_members(file)) {
     const FileBytes beginning = zip_beginning(member, kEnoughForHeader);
-    if (!beginning.text().starts_with(kMagic)) {
+    if (!beginning.text().starts_with(kNpyMagic)) {
       continue;
     }
-    const Header header = read_header(beginning.bytes());
+    const NpyHeader header = read_npy_header(beginning.bytes());
     if (header.shape.size() >= 2 && numbers_of(header) > most) {
       most = numbers_of(header);
       best = member;
@@ -308,12 +308,12 @@ bool looks_like_npy(std::span<const std::uint8_t> bytes) {
     const std::size_t length = bytes[kNameLength] | static_cast<std::size_t>(bytes[kNameLength + 1]) << 8;
     return text.substr(kName, length).ends_with(".npy");
   }
-  return text.starts_with(kMagic);
+  return text.starts_with(kNpyMagic);
 }
 
 Source read_npy(const SharedBytes& file, const Progress& progress) {
   const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
-  Source source = source_of(Array(read_header(bytes.bytes), bytes));
+  Source source = source_of(Array(read_npy_header(bytes.bytes), bytes));
   if (progress) {
     progress(1);
   }

@@ -11,7 +11,7 @@ namespace thimble::tools {
 namespace {
 
 // "TMS"; the version follows.
-constexpr std::array<std::uint8_t, 3> kMagic{0x54, 0x4D, 0x53};
+constexpr std::array<std::uint8_t, 3> kOctMagic{0x54, 0x4D, 0x53};
 constexpr std::size_t kVersionOffset = 3;
 constexpr std::size_t kSizeOffset = 4;
 
@@ -31,7 +31,7 @@ InputError another_version(const std::string& unknown) {
 }  // namespace
 
 bool looks_like_oct(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+  return bytes.size() >= kOctMagic.size() && std::equal(kOctMagic.begin(), kOctMagic.end(), bytes.begin());
 }
 
 Source read_oct(const SharedBytes& file, const Progress&) {

@@ -17,7 +17,7 @@
 namespace thimble::tools {
 namespace {
 
-enum class Encoding : std::uint8_t { kText, kBinary, kCompressed };
+enum class PcdEncoding : std::uint8_t { kText, kBinary, kCompressed };
 
 struct Field {
   std::string_view name;
@@ -30,10 +30,10 @@ struct Field {
 constexpr std::size_t kUsed = 4;
 constexpr std::size_t kColor = 3;
 
-struct Header {
+struct PcdHeader {
   std::vector<Field> fields;
   std::optional<std::uint64_t> width, height, points;
-  Encoding encoding = Encoding::kText;
+  PcdEncoding encoding = PcdEncoding::kText;
   std::size_t data_offset = 0;
   std::uint64_t data_line = 0;
 };
@@ -45,11 +45,11 @@ struct Column {
   std::uint64_t stride = 0;  ///< bytes from point to point
 };
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(std::string_view text) : lines_(text) {}
+  explicit PcdHeaderParser(std::string_view text) : lines_(text) {}
 
-  Header parse() {
+  PcdHeader parse() {
     std::string_view line;
     for (;;) {
       if (!lines_.next(line)) {
@@ -116,9 +116,9 @@ class HeaderParser {
 
   void encoding(std::string_view word) {
     if (word == "binary") {
-      header_.encoding = Encoding::kBinary;
+      header_.encoding = PcdEncoding::kBinary;
     } else if (word == "binary_compressed") {
-      header_.encoding = Encoding::kCompressed;
+      header_.encoding = PcdEncoding::kCompressed;
     } else if (word != "ascii") {
       fail("the data " + quoted(word) + " is not ascii, binary or binary_compressed");
     }
@@ -134,7 +134,7 @@ class HeaderParser {
   [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(lines_.line_number(), sentence); }
 
   LineReader lines_;
-  Header header_;
+  PcdHeader header_;
 };
 
 /// Unpacks LZF. A byte below 32 stands before that many literal bytes and one more; any other before a copy
@@ -183,13 +183,13 @@ Rgb color_of(std::uint32_t bits) {
 class PcdCloud final : public PointCloud {
  public:
   PcdCloud(const SharedBytes& file, const Progress& progress) : file_(file) {
-    const Header header = HeaderParser(file.text()).parse();
-    is_text_ = header.encoding == Encoding::kText;
+    const PcdHeader header = PcdHeaderParser(file.text()).parse();
+    is_text_ = header.encoding == PcdEncoding::kText;
     data_offset_ = header.data_offset;
     data_line_ = header.data_line;
     count_points(header);
     find_columns(header);
-    if (header.encoding == Encoding::kCompressed) {
+    if (header.encoding == PcdEncoding::kCompressed) {
       ByteReader data(file.bytes.subspan(data_offset_), "the compressed data", data_offset_);
       const std::uint32_t packed_bytes = data.u32();
       const std::uint32_t size_bytes = data.u32();
@@ -224,14 +224,14 @@ class PcdCloud final : public PointCloud {
   const char* counts_in() const override { return is_text_ ? "line" : "point"; }
 
  private:
-  void count_points(const Header& header) {
+  void count_points(const PcdHeader& header) {
     if (!header.points && !header.width) {
       throw InputError("the header has no line 'POINTS' or 'WIDTH'");
     }
     count_ = header.points.value_or(header.width.value_or(0) * header.height.value_or(1));
   }
 
-  void find_columns(const Header& header) {
+  void find_columns(const PcdHeader& header) {
     static constexpr std::array<std::string_view, kUsed> kNames{"x", "y", "z", "rgb"};
     std::array<bool, kUsed> found{};
     std::uint64_t bytes = 0;
@@ -262,7 +262,7 @@ class PcdCloud final : public PointCloud {
     record_ = is_text_ ? 2 * values : bytes;
     for (Column& column : columns_) {
       // Compressed data holds all values of one field, then all of the next.
-      const bool is_apart = header.encoding == Encoding::kCompressed;
+      const bool is_apart = header.encoding == PcdEncoding::kCompressed;
       column.stride = is_apart ? column.field.size_bytes * column.field.count : bytes;
       column.first *= is_apart ? count_ : 1;
     }

@@ -20,7 +20,7 @@ namespace thimble::tools {
 
 namespace {
 
-enum class Encoding : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
+enum class PlyEncoding : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
 enum class Scalar : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
 /// What a property is to us. The first six are positions in an array of a vertex's values.
@@ -43,8 +43,8 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
-  Encoding encoding = Encoding::kAscii;
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<Element> elements;
   std::size_t body_offset = 0;
   std::uint64_t body_line = 0;  ///< line number of the body's first byte
@@ -149,11 +149,11 @@ ElementKind kind_named(std::string_view name) {
   return name == "tristrips" ? ElementKind::kStrips : ElementKind::kOther;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(std::string_view text) : text_(text), lines_(text) {}
+  explicit PlyHeaderParser(std::string_view text) : text_(text), lines_(text) {}
 
-  Header parse() {
+  PlyHeader parse() {
     if (!looks_like_ply({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()})) {
       throw InputError("the first line is not 'ply'");
     }
@@ -195,11 +195,11 @@ class HeaderParser {
   void format(std::string_view line) {
     const std::string_view word = take_word(line);
     if (word == "ascii") {
-      header_.encoding = Encoding::kAscii;
+      header_.encoding = PlyEncoding::kAscii;
     } else if (word == "binary_little_endian") {
-      header_.encoding = Encoding::kLittleEndian;
+      header_.encoding = PlyEncoding::kLittleEndian;
     } else if (word == "binary_big_endian") {
-      header_.encoding = Encoding::kBigEndian;
+      header_.encoding = PlyEncoding::kBigEndian;
     } else {
       fail("the format " + quoted(word) + " is not ascii, binary_little_endian or binary_big_endian");
     }
@@ -268,7 +268,7 @@ class HeaderParser {
 
   std::string_view text_;
   LineReader lines_;
-  Header header_;
+  PlyHeader header_;
   bool has_format_ = false;
 };
 
@@ -283,7 +283,7 @@ class HeaderParser {
 
 class AsciiBody {
  public:
-  AsciiBody(const SharedBytes& file, const Header& header)
+  AsciiBody(const SharedBytes& file, const PlyHeader& header)
       : words_(file.text().substr(header.body_offset), 0, header.body_line), start_(header.body_offset) {}
 
   double scalar(Scalar) {
@@ -334,8 +334,10 @@ class AsciiBody {
 
 class BinaryBody {
  public:
-  BinaryBody(const SharedBytes& file, const Header& header)
-      : bytes_(file.bytes), next_(header.body_offset), big_endian_(header.encoding == Encoding::kBigEndian) {}
+  BinaryBody(const SharedBytes& file, const PlyHeader& header)
+      : bytes_(file.bytes),
+        next_(header.body_offset),
+        big_endian_(header.encoding == PlyEncoding::kBigEndian) {}
 
   double scalar(Scalar type) {
     const std::uint64_t bits = take(size_bytes(type));
@@ -556,7 +558,7 @@ bool holds_polygons(const Element& element) {
 
 /// Walks a whole body and gathers its mesh.
 template <class Body>
-TriangleMesh read_mesh(Body body, const Header& header, const Element& vertices, ProgressMeter& meter) {
+TriangleMesh read_mesh(Body body, const PlyHeader& header, const Element& vertices, ProgressMeter& meter) {
   if (vertices.count > kMeshVertexLimit) {
     throw InputError("the mesh has " + std::to_string(vertices.count) + " vertices, the limit is " +
                      std::to_string(kMeshVertexLimit));
@@ -621,7 +623,7 @@ class PlyCloud final : public PointCloud {
 };
 
 template <class Body>
-Source read_body(const SharedBytes& file, const Header& header, const Progress& progress) {
+Source read_body(const SharedBytes& file, const PlyHeader& header, const Progress& progress) {
   const Element* vertices = nullptr;
   bool has_polygons = false;
   for (const Element& element : header.elements) {
@@ -667,8 +669,8 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes) {
 }
 
 Source read_ply(const SharedBytes& file, const Progress& progress) {
-  const Header header = HeaderParser(file.text()).parse();
-  if (header.encoding == Encoding::kAscii) {
+  const PlyHeader header = PlyHeaderParser(file.text()).parse();
+  if (header.encoding == PlyEncoding::kAscii) {
     return read_body<AsciiBody>(file, header, progress);
   }
   return read_body<BinaryBody>(file, header, progress);

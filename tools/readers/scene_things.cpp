@@ -9,7 +9,7 @@ namespace thimble::tools::statements {
 namespace {
 
 // Kinds of materials, in the order of SurfaceKind.
-constexpr std::array<std::string_view, 5> kKinds{"diffuse", "metal", "glass", "emit", "media"};
+constexpr std::array<std::string_view, 5> kThingKinds{"diffuse", "metal", "glass", "emit", "media"};
 
 // Clauses that a material and water share.
 Clause color_clause(TextLine& line, Surface& surface) {
@@ -154,8 +154,8 @@ void material(TextLine& line, TextPlace place, SceneText* scene) {
   Clauses clauses("material", &line);
   std::vector<Clause> known;
   bool has_kind = false;
-  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
-    known.push_back({kKinds[kind], [&, kind](const Word& word) {
+  for (std::size_t kind = 0; kind < kThingKinds.size(); ++kind) {
+    known.push_back({kThingKinds[kind], [&, kind](const Word& word) {
                        if (has_kind) {
                          fail_at(word.place, "a material has one kind; there is one already");
                        }

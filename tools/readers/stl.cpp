@@ -9,7 +9,7 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 80;
+constexpr std::size_t kStlHeaderBytes = 80;
 constexpr std::size_t kTriangleBytes = 50;
 
 bool begins_with_solid(std::string_view text) {
@@ -36,7 +36,7 @@ void reserve(TriangleMesh& mesh, std::uint64_t triangles) {
 
 TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
   ByteReader reader(file.bytes);
-  reader.skip(kHeaderBytes);
+  reader.skip(kStlHeaderBytes);
   const std::uint32_t count = reader.u32();
   if (reader.remaining() / kTriangleBytes < count) {
     throw InputError("the header counts " + std::to_string(count) + " triangles, but the file has room for " +
@@ -124,9 +124,9 @@ bool looks_like_stl(std::span<const std::uint8_t> bytes) {
 Source read_stl(const SharedBytes& file, const Progress& progress) {
   ProgressMeter meter(progress, file.bytes.size());
   bool is_binary = !begins_with_solid(file.text());
-  if (!is_binary && file.bytes.size() >= kHeaderBytes + 4) {
+  if (!is_binary && file.bytes.size() >= kStlHeaderBytes + 4) {
     ByteReader reader(file.bytes);
-    reader.skip(kHeaderBytes);
+    reader.skip(kStlHeaderBytes);
     is_binary = std::uint64_t{reader.u32()} * kTriangleBytes == reader.remaining();
   }
   TriangleMesh mesh = is_binary ? read_binary(file, meter) : read_text(file.text(), meter);

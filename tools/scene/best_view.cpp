@@ -11,7 +11,7 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::array<ViewAngles, 8> kViews{
+constexpr std::array<ViewAngles, 8> kCandidates{
     {{-35, 25}, {35, 25}, {-35, 40}, {35, 40}, {-145, 25}, {145, 25}, {-145, 40}, {145, 40}}};
 constexpr std::int32_t kWidth = 96;
 constexpr std::int32_t kHeight = 72;
@@ -41,18 +41,18 @@ std::size_t planes_seen(const CompactTree& tree, const Camera& camera) {
 
 ViewAngles best_angles(const SceneShape& shape) {
   if (shape.tree == nullptr || shape.corners.empty()) {
-    return kViews[0];
+    return kCandidates[0];
   }
   std::size_t best = 0;
   std::size_t most = 0;
   std::size_t front = 0;  // the most of the views from there
-  for (std::size_t i = 0; i < kViews.size(); ++i) {
+  for (std::size_t i = 0; i < kCandidates.size(); ++i) {
     ViewWishes wishes;
     wishes.width_px = kWidth;
     wishes.height_px = kHeight;
     wishes.side = NamedView::kIso;
-    wishes.onward = {kViews[i].turn - angles_of(NamedView::kIso).turn,
-                     kViews[i].tilt - angles_of(NamedView::kIso).tilt};
+    wishes.onward = {kCandidates[i].turn - angles_of(NamedView::kIso).turn,
+                     kCandidates[i].tilt - angles_of(NamedView::kIso).tilt};
     wishes.fov_degrees = kPictureFov;
     std::size_t seen = 0;
     try {
@@ -60,14 +60,14 @@ ViewAngles best_angles(const SceneShape& shape) {
     } catch (const InputError&) {
       continue;  // a side from which this world cannot be seen whole
     }
-    const bool from_behind = i >= kViews.size() / 2;
+    const bool from_behind = i >= kCandidates.size() / 2;
     if (from_behind ? 2 * seen > 3 * front && seen > most : seen > most) {
       best = i;
       most = seen;
     }
     front = from_behind ? front : most;
   }
-  return kViews[best];
+  return kCandidates[best];
 }
 
 }  // namespace thimble::tools

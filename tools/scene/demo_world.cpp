@@ -12,7 +12,7 @@ namespace {
 
 // Lengths are in 1/256 of a unit, a unit is 1/64 of the world: the world is 2^14 a side, a voxel of a world
 // of 2^depth is 2^(14 - depth).
-constexpr int kWorldBits = 14;
+constexpr int kDemoBits = 14;
 constexpr std::int32_t kUnit = 256;
 constexpr std::int32_t kMiddle = 32 * kUnit;
 
@@ -124,7 +124,7 @@ std::int32_t valley(std::uint64_t seed, std::int32_t x, std::int32_t y) {
   return height;
 }
 
-std::int32_t ground(std::uint64_t seed, std::int32_t x, std::int32_t y) {
+std::int32_t ground_height(std::uint64_t seed, std::int32_t x, std::int32_t y) {
   // Mountains are blocks of rock, so that small pictures show planes and not a thicket of edges.
   std::int32_t height = valley(seed, snapped(x, 4), snapped(y, 4));
   if (height > kTerraceTop) {
@@ -218,9 +218,9 @@ bool inside_shape(const Part& part, const Corner& at) {
   return false;
 }
 
-class World {
+class DemoWorld {
  public:
-  explicit World(std::uint64_t seed) : seed_(seed) {
+  explicit DemoWorld(std::uint64_t seed) : seed_(seed) {
     build_castle();
     build_bridge();
     build_aqueduct();
@@ -231,7 +231,7 @@ class World {
     plant_trees();
   }
 
-  std::int32_t ground_at(std::int32_t x, std::int32_t y) const { return ground(seed_, x, y); }
+  std::int32_t ground_at(std::int32_t x, std::int32_t y) const { return ground_height(seed_, x, y); }
 
   /// The parts whose boxes stand on a point of the plan, as indices in their order.
   struct Column {
@@ -449,7 +449,7 @@ class World {
   std::size_t count_ = 0;
 };
 
-Material colored(Rgb color) {
+Material diffuse(Rgb color) {
   Material material;
   material.color = color;
   return material;
@@ -458,12 +458,12 @@ Material colored(Rgb color) {
 }  // namespace
 
 void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink) {
-  const World world(seed);
+  const DemoWorld world(seed);
   const std::int32_t side = std::int32_t{1} << depth;
-  const auto center = [depth](std::int32_t index) { return (2 * index + 1) << (kWorldBits - 1 - depth); };
+  const auto center = [depth](std::int32_t index) { return (2 * index + 1) << (kDemoBits - 1 - depth); };
   for (std::int32_t y = 0; y < side; ++y) {
     for (std::int32_t x = 0; x < side; ++x) {
-      const World::Column column = world.column(center(x), center(y));
+      const DemoWorld::Column column = world.column(center(x), center(y));
       for (std::int32_t z = 0; z < side && center(z) < column.top; ++z) {
         const Tone tone = world.tone(column, {center(x), center(y), center(z)});
         if (tone != kAir) {
@@ -477,18 +477,18 @@ void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink) {
 Palette demo_world_palette() {
   Palette palette;
   palette.fill(default_material());
-  palette[kWater] = colored({38, 84, 128});
-  palette[kSand] = colored({214, 190, 138});
-  palette[kGrass] = colored({104, 150, 62});
-  palette[kMeadow] = colored({136, 176, 76});
-  palette[kRock] = colored({128, 122, 118});
-  palette[kCliff] = colored({150, 138, 124});
-  palette[kSnow] = colored({244, 246, 250});
-  palette[kWall] = colored({236, 222, 192});
-  palette[kRoof] = colored({192, 68, 46});
-  palette[kLeaves] = colored({44, 102, 54});
-  palette[kWood] = colored({74, 52, 40});
-  palette[kRoad] = colored({186, 160, 120});
+  palette[kWater] = diffuse({38, 84, 128});
+  palette[kSand] = diffuse({214, 190, 138});
+  palette[kGrass] = diffuse({104, 150, 62});
+  palette[kMeadow] = diffuse({136, 176, 76});
+  palette[kRock] = diffuse({128, 122, 118});
+  palette[kCliff] = diffuse({150, 138, 124});
+  palette[kSnow] = diffuse({244, 246, 250});
+  palette[kWall] = diffuse({236, 222, 192});
+  palette[kRoof] = diffuse({192, 68, 46});
+  palette[kLeaves] = diffuse({44, 102, 54});
+  palette[kWood] = diffuse({74, 52, 40});
+  palette[kRoad] = diffuse({186, 160, 120});
   return palette;
 }
 

@@ -107,7 +107,7 @@ Corners corners_of(const VoxelBox& box) {
 }
 
 // The picture's axes, of length 1.
-struct Axes {
+struct SightAxes {
   Real3 right;
   Real3 up;
   Real3 forward;
@@ -118,7 +118,7 @@ struct Sight {
   Real3 target;
   Vec3i forward;  // as the core is given them, so that both mean the same axes
   Vec3i up;
-  Axes axes;
+  SightAxes axes;
 };
 
 Sight sight_of(const ViewWishes& wishes, const Reach& reach, const Corners& corners) {
@@ -202,7 +202,7 @@ Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
   return eye;
 }
 
-bool sees_all(const Corners& corners, const Real3& eye, const Axes& axes, const Lens& lens) {
+bool sees_all(const Corners& corners, const Real3& eye, const SightAxes& axes, const Lens& lens) {
   return std::none_of(corners.begin(), corners.end(), [&](const Real3& corner) {
     const Real3 offset = minus(corner, eye);
     const double reach_y = dot(offset, axes.forward) * lens.tan_y;
@@ -313,9 +313,9 @@ void look_from(const ViewAngles& angles, ViewWishes* wishes) {
 }
 
 // Corners as a camera sees them, about a point near them all.
-class Seen {
+class SeenExtent {
  public:
-  Seen(const std::vector<Vec3i>& corners, const Real3& middle, const Axes& axes) {
+  SeenExtent(const std::vector<Vec3i>& corners, const Real3& middle, const SightAxes& axes) {
     for (const Vec3i& corner : corners) {
       const Real3 offset =
           minus({static_cast<double>(corner.x), static_cast<double>(corner.y), static_cast<double>(corner.z)},
@@ -373,7 +373,7 @@ bool is_reachable(const Real3& eye, const Reach& reach) {
 }
 
 // From the middle of `bounds` by that much along the axes.
-Real3 placed(const VoxelBox& bounds, const Axes& axes, double right, double up, double forward) {
+Real3 placed(const VoxelBox& bounds, const SightAxes& axes, double right, double up, double forward) {
   return plus(plus(middle_of(bounds), scaled(axes.right, right)),
               plus(scaled(axes.up, up), scaled(axes.forward, forward)));
 }
@@ -411,14 +411,14 @@ bool shows_all(const Framing& framing, const SceneShape& shape, const Sight& sig
 // The eye and the span that show the corners so; the target keeps to the middle of the view.
 ViewWishes fitted(const ViewWishes& wishes, const SceneShape& shape, const Sight& sight) {
   const Lens lens(wishes);
-  const Axes& axes = sight.axes;
-  const Seen seen(shape.corners, middle_of(shape.bounds), axes);
+  const SightAxes& axes = sight.axes;
+  const SeenExtent seen(shape.corners, middle_of(shape.bounds), axes);
   ViewWishes placed_view = wishes;
   placed_view.up = wishes.up.value_or(to_reals(sight.up));
   if (wishes.orthographic) {
-    const Seen::Crossing x = seen.extent(0);
-    const Seen::Crossing y = seen.extent(1);
-    const Seen::Crossing z = seen.extent(2);
+    const SeenExtent::Crossing x = seen.extent(0);
+    const SeenExtent::Crossing y = seen.extent(1);
+    const SeenExtent::Crossing z = seen.extent(2);
     const double half = std::max(x.depth, y.depth * lens.aspect);
     placed_view.eye = kept_q8(placed(shape.bounds, axes, x.along, y.along, z.along - z.depth - 1));
     placed_view.target = plus(*placed_view.eye, scaled(axes.forward, z.depth + 1 - z.along));
@@ -560,12 +560,12 @@ std::vector<Framing> frame_turns(const ViewWishes& given, const SceneShape& shap
     ViewWishes view = wishes;
     look_from({first.turn + 360.0 * i / count, first.tilt}, &view);
     const Sight sight = sight_of(view, reach, box);
-    const Seen seen(shape.corners, sight.target, sight.axes);
+    const SeenExtent seen(shape.corners, sight.target, sight.axes);
     for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
       const double slope = lens.tan_y * kPictureFill * (axis == 0 ? lens.aspect : 1);
-      const Seen::Crossing crossing = seen.crossing(axis, slope);
+      const SeenExtent::Crossing crossing = seen.crossing(axis, slope);
       distance = std::max(distance, std::abs(crossing.along) / slope - crossing.depth);
-      const Seen::Crossing extent = seen.extent(axis);
+      const SeenExtent::Crossing extent = seen.extent(axis);
       half_width =
           std::max(half_width, (std::abs(extent.along) + extent.depth) * (axis == 0 ? 1 : lens.aspect));
     }

@@ -310,12 +310,12 @@ void generate_spheres(const GeneratorSpec& spec, const VoxelSink& sink) {
 // ---- water
 
 // Palette indices of `water`.
-constexpr std::uint8_t kAir = 0;    ///< nothing there, no voxel
-constexpr std::uint8_t kWater = 1;  ///< no voxel either: the palette's entry for its colour
-constexpr std::uint8_t kSand = 2;
-constexpr std::uint8_t kRock = 3;
-constexpr std::uint8_t kGlass = 4;
-constexpr std::uint8_t kMetal = 5;
+constexpr std::uint8_t kLagoonAir = 0;    ///< nothing there, no voxel
+constexpr std::uint8_t kLagoonWater = 1;  ///< no voxel either: the palette's entry for its colour
+constexpr std::uint8_t kLagoonSand = 2;
+constexpr std::uint8_t kLagoonRock = 3;
+constexpr std::uint8_t kLagoonGlass = 4;
+constexpr std::uint8_t kLagoonMetal = 5;
 
 constexpr std::int32_t kWallThickness = 3 * kStep;
 constexpr std::int32_t kWallTop = 20 * kStep;
@@ -361,12 +361,12 @@ Lagoon lay_out(std::uint64_t seed) {
   }
   constexpr std::array<std::int32_t, 5> kRadii{6, 5, 4, 3, 3};
   for (std::size_t i = 0; i < kRadii.size(); ++i) {
-    Ball ball{{}, kRadii[i] * kStep, i % 2 == 0 ? kGlass : kMetal};
+    Ball ball{{}, kRadii[i] * kStep, i % 2 == 0 ? kLagoonGlass : kLagoonMetal};
     const std::int32_t edge = kWallThickness + kStep + ball.radius;
     for (int draw = 0; draw < 400; ++draw) {
       // Glass floats higher than metal.
       ball.center = {random.between(edge, kWorld - edge), random.between(edge, kWorld - edge),
-                     kWaterLevel + (ball.material == kGlass ? ball.radius / 3 : ball.radius / 8)};
+                     kWaterLevel + (ball.material == kLagoonGlass ? ball.radius / 3 : ball.radius / 8)};
       bool clear = square(ball.center[0] - island.x) + square(ball.center[1] - island.y) >=
                    square(ball.radius + 15 * kStep);
       for (std::size_t other = 0; other < lagoon.float_count; ++other) {
@@ -383,14 +383,14 @@ Lagoon lay_out(std::uint64_t seed) {
   return lagoon;
 }
 
-/// Material at a point whose ground is known, or kAir.
+/// Material at a point whose ground is known, or kLagoonAir.
 std::uint8_t water_material(const Lagoon& lagoon, const Point& point, std::int32_t ground_height) {
   const std::int32_t rim = std::min({point[0], point[1], kWorld - point[0], kWorld - point[1]});
   if (rim < kWallThickness) {
-    return point[2] < kWallTop ? kRock : kAir;
+    return point[2] < kWallTop ? kLagoonRock : kLagoonAir;
   }
   if (point[2] < ground_height) {
-    return point[2] < kBeach ? kSand : kRock;
+    return point[2] < kBeach ? kLagoonSand : kLagoonRock;
   }
   for (std::size_t i = 0; i < lagoon.float_count; ++i) {
     const Ball& ball = lagoon.floats[i];
@@ -398,7 +398,7 @@ std::uint8_t water_material(const Lagoon& lagoon, const Point& point, std::int32
       return ball.material;
     }
   }
-  return kAir;
+  return kLagoonAir;
 }
 
 void generate_water(const GeneratorSpec& spec, const VoxelSink& sink) {
@@ -419,7 +419,7 @@ void generate_water(const GeneratorSpec& spec, const VoxelSink& sink) {
           break;
         }
         const std::uint8_t material = water_material(lagoon, point, height);
-        if (material != kAir) {
+        if (material != kLagoonAir) {
           sink(x, y, z, material);
         }
       }
@@ -537,22 +537,22 @@ Palette generator_palette(GeneratorKind kind) {
     }
   }
   if (kind == GeneratorKind::kWater) {
-    palette[kWater] = colored({70, 160, 172});
-    palette[kWater].kind = SurfaceKind::kGlass;
-    palette[kWater].alpha = 128;
-    palette[kWater].ior = 1.33;
-    palette[kWater].transparency = 1;
-    palette[kSand] = colored({226, 200, 144});
-    palette[kRock] = colored({124, 116, 110});
-    palette[kGlass] = colored({206, 238, 226});
-    palette[kGlass].kind = SurfaceKind::kGlass;
-    palette[kGlass].alpha = 64;
-    palette[kGlass].ior = 1.5;
-    palette[kGlass].transparency = 1;
-    palette[kGlass].attenuation = 0.1;
-    palette[kMetal] = colored({226, 178, 82});
-    palette[kMetal].kind = SurfaceKind::kMetal;
-    palette[kMetal].metalness = 0.85;
+    palette[kLagoonWater] = colored({70, 160, 172});
+    palette[kLagoonWater].kind = SurfaceKind::kGlass;
+    palette[kLagoonWater].alpha = 128;
+    palette[kLagoonWater].ior = 1.33;
+    palette[kLagoonWater].transparency = 1;
+    palette[kLagoonSand] = colored({226, 200, 144});
+    palette[kLagoonRock] = colored({124, 116, 110});
+    palette[kLagoonGlass] = colored({206, 238, 226});
+    palette[kLagoonGlass].kind = SurfaceKind::kGlass;
+    palette[kLagoonGlass].alpha = 64;
+    palette[kLagoonGlass].ior = 1.5;
+    palette[kLagoonGlass].transparency = 1;
+    palette[kLagoonGlass].attenuation = 0.1;
+    palette[kLagoonMetal] = colored({226, 178, 82});
+    palette[kLagoonMetal].kind = SurfaceKind::kMetal;
+    palette[kLagoonMetal].metalness = 0.85;
   }
   return palette;
 }
@@ -578,7 +578,7 @@ LitDescription generator_lighting(const GeneratorSpec& spec) {
   lit.rest.ambient_q8[1] = 104;
   lit.rest.ambient_q8[2] = 120;
   // As clear at every depth: a finer world has more voxels on the same way.
-  for (const std::uint8_t clear : {kWater, kGlass}) {
+  for (const std::uint8_t clear : {kLagoonWater, kLagoonGlass}) {
     PackedU16& density = lit.surfaces[clear].density_q8;
     density = static_cast<std::uint16_t>(std::max(1, (density << 6) >> spec.depth));
   }
@@ -592,7 +592,7 @@ LitDescription generator_lighting(const GeneratorSpec& spec) {
   lit.rest.has_water = true;
   lit.rest.water =
       still_water({first, first, 0}, columns, columns, kWaterLevel >> (kWorldBits - spec.depth - Q8::kBits));
-  lit.rest.water_material = lit.surfaces[kWater];
+  lit.rest.water_material = lit.surfaces[kLagoonWater];
   return lit;
 }
 

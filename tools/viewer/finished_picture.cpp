@@ -289,15 +289,15 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
     check(render_band(tree, thin, quick_shading_, row_of(thin, row, rgb)));
     return;
   }
-  constexpr Rgb8 kNothing{1, 0, 2};  // no surface's colour by chance
+  constexpr Rgb8 kBehind{1, 0, 2};  // no surface's colour by chance
   Shading shading = quick_shading_;
   if (own_ && own_->has_backdrop) {
-    shading.background = kNothing;
+    shading.background = kBehind;
   }
   check(render_lit_band(quick, tree, thin, shading, own_ ? own_->lit_scene() : look_->quick_,
                         row_of(thin, row, rgb)));
   for (std::int32_t x = 0; own_ && x < thin.width_px(); ++x, rgb += 3) {
-    const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kNothing;
+    const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kBehind;
     const Rgb8 color = is_behind ? backdrop_color(own_->background, x, row, thin.width_px(), thin.height_px())
                                  : Rgb8{quick_tone_[rgb[0]], quick_tone_[rgb[1]], quick_tone_[rgb[2]]};
     rgb[0] = color.r;
