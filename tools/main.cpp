@@ -33,12 +33,6 @@ extern "C" void clean_up_and_die(int signal_number) {
   std::raise(signal_number);
 }
 
-// " (did you mean render?)", or nothing.
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
-  const std::string nearest = thimble::tools::nearest_word(word, names);
-  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
-}
-
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -95,21 +89,23 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   const std::string command = chosen.empty() ? "thimble" : "thimble " + chosen.front()->get_name();
   const std::string advice = "; " + command + " --help lists what there is";
   if (chosen.empty()) {
-    return first.starts_with("-")
-               ? in_quotes(first) + " is not an option here" + suggestion(first, option_names(app)) + advice
-               : in_quotes(first) + " is neither a subcommand nor a file" +
-                     suggestion(first, subcommand_names(app)) + advice;
+    return first.starts_with("-") ? in_quotes(first) + " is not an option here" +
+                                        thimble::tools::suggestion(first, option_names(app)) + advice
+                                  : in_quotes(first) + " is neither a subcommand nor a file" +
+                                        thimble::tools::suggestion(first, subcommand_names(app)) + advice;
   }
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    const std::vector<std::string> extras = app.remaining(true);
+  const std::vector<std::string> extras = app.remaining(true);
+  // What is required may be missing because it follows an option that is not there.
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     for (const std::string& extra : extras) {
       if (extra.size() > 1 && extra.starts_with("-")) {
         const std::string name = extra.substr(0, extra.find('='));
         return in_quotes(extra) + " is not an option of " + command +
-               suggestion(name, option_names(*chosen.front())) + advice;
+               thimble::tools::suggestion(name, option_names(*chosen.front())) + advice;
       }
     }
-    if (!extras.empty()) {
+    if (!extras.empty() && dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
       return in_quotes(extras.front()) + " is one argument too many" + advice;
     }
   }

@@ -107,6 +107,7 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
   check_refused({"render", "spheres", "-o", "-", "--dpeth=3"}, 2, {"(did you mean --depth?)"});
   check_refused({"--hlep"}, 2, {"(did you mean --help?)"});
   check_refused({"--verbose"}, 2, {"\"--verbose\""});
+  check_refused({"render", "--nope"}, 2, {"\"--nope\"", "is not an option of thimble render"});
   check_refused({"render"}, 2, {"SCENE"});
   check_refused({"render", "spheres"}, 2, {"--output"});
   check_refused({"trace", "spheres"}, 2, {"--rays"});
@@ -124,6 +125,26 @@ TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is w
   check_refused({"render", "spheres", "-o", ""}, 2, {"--output"});
   check_refused({"bake"}, 2, {"SCENE"});
   check_refused({"bake", "spheres"}, 2, {"--output"});
+}
+
+TEST_CASE("command: options that have no effect together -> status 2, whichever subcommand") {
+  const std::vector<Words> commands{{"render", "spheres", "-o", "-"}, {"bake", "spheres", "-o", "-"},
+                                    {"effects", "spheres"},           {"memory", "spheres"},
+                                    {"accuracy", "spheres"},          {"view", "spheres"}};
+  for (const Words& command : commands) {
+    const auto with = [&](const Words& more) {
+      Words words = command;
+      words.insert(words.end(), more.begin(), more.end());
+      return words;
+    };
+    check_refused(with({"--span", "3"}), 2, {"--span", "--projection orthographic"});
+    check_refused(with({"--projection", "perspective", "--span", "3"}), 2, {"--span"});
+    check_refused(with({"--fov", "30", "--projection", "orthographic"}), 2, {"--fov", "--span"});
+  }
+  for (const char* structure : {"pool", "Pool", "dense"}) {
+    check_refused({"render", "spheres", "-o", "-", "--structure", structure, "--engine", "wide"}, 2,
+                  {"--engine wide", "--structure compact"});
+  }
 }
 
 TEST_CASE("command: values out of range -> status 2, the option, the value and the limits named") {

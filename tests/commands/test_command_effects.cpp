@@ -199,10 +199,10 @@ TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
     all += row["why"].get<std::string>() + "\n";
   }
   CHECK(all ==
-        "1 distant light, 1 lamp\nits lights cast shadows\n4 rays a face, 6 voxels far\nmaterial 3 is "
+        "1 distant light, 1 lamp\nits lights cast shadows\n4 rays a face, 6 voxels far\nmaterial glow is "
         "emissive\n"
-        "material 1 is metal\n\nmaterial 2 is cloud\n\nair that halves light in 64 voxels\n\n\n\n"
-        "material 3 is emissive\n");
+        "material mirror is metal\n\nmaterial mist is cloud\n\nair that halves light in 64 voxels\n\n\n\n"
+        "material glow is emissive\n");
   const json asked = rows_of("spheres", {"--effects", "sky,shadows"});
   CHECK(asked[0]["why"] == "asked for");
   CHECK(asked[1]["why"] == "asked for");

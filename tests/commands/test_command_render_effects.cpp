@@ -184,6 +184,13 @@ TEST_CASE("render effects: a list -> these and no others; --bounces -> no more r
   CHECK(darker.stats["rays_by_kind"]["occlusion"] > 0);
   CHECK(darker.bytes != two.bytes);
 
+  CHECK(render("spheres", {"--effects", "shadows,sky,ao"}).bytes == darker.bytes);
+  const Picture all = render("water", {"--effects", "all"});
+  CHECK(all.stats["effects"] == json({"direct-light", "shadows", "ambient-occlusion", "emission", "mirror",
+                                      "glass", "water", "sky", "smooth-normals", "emitter-light"}));
+  CHECK(render("spheres", {"--effects", "all", "--normals", "face"}).stats["effects"] ==
+        json({"direct-light", "shadows", "ambient-occlusion", "emission", "emitter-light"}));
+
   std::uint64_t before = 0;
   for (const char* bounces : {"0", "1", "2", "8"}) {
     const Picture water = render("water", {"--bounces", bounces});
@@ -288,10 +295,12 @@ TEST_CASE("render effects: several samples a pixel -> the mean of the same view 
 }
 
 TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 2, a sentence, no file") {
-  for (const char* wrong : {"", "shadow", "auto,sky", "sky,", "sky,sky", "Shadows", "none,sky", "all"}) {
+  for (const char* wrong :
+       {"", "shadow", "auto,sky", "sky,", "sky,sky", "Shadows", "none,sky", "all,sky", "ao,ao"}) {
     check_refused("spheres", {"--effects", wrong}, 2,
                   {std::string("--effects: \"") + wrong + "\"", "auto, none", "ambient-occlusion"});
   }
+  check_refused("spheres", {"--effects", "sky,shadow"}, 2, {"(did you mean shadows?)"});
   for (const char* wrong : {"-1", "9", "x", "", "1.5"}) {
     check_refused("spheres", {"--bounces", wrong}, 2, {"--bounces", "0 to 8"});
   }

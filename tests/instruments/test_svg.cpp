@@ -5,6 +5,7 @@
 
 #include "output/plot.h"
 #include "output/svg.h"
+#include "output/units.h"
 
 namespace thimble::tools {
 namespace {
@@ -22,6 +23,15 @@ TEST_CASE("svg words: markup is written otherwise, UTF-8 stays, what is neither 
   CHECK(xml_text("\xF4\x90\x80\x80") == other + other + other + other);
   CHECK(xml_text(std::string("a\x01\0b", 4)) == "a" + other + other + "b");
   CHECK(label(1, 2, "middle", "<") == "<text x=\"1.0\" y=\"2.0\" text-anchor=\"middle\">&lt;</text>\n");
+}
+
+TEST_CASE("titles: a path -> the file's name; anything else as it is, printable") {
+  CHECK(scene_title("/there/castle.vox") == "castle.vox");
+  CHECK(scene_title("castle.vox") == "castle.vox");
+  CHECK(scene_title("points:10,depth=3") == "points:10,depth=3");
+  CHECK(scene_title("there/") == "there/");
+  CHECK(scene_title("a/b\n.vox") == "b\\x0a.vox");
+  CHECK(scene_title("").empty());
 }
 
 TEST_CASE("svg plot: decades far from 1 are powers in plain words, none of its markup is written out") {

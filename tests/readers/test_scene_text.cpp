@@ -235,6 +235,8 @@ TEST_CASE("scene text: each error -> its line, its column and what is wrong") {
       {"effects on", 1, 11, "the name of an effect is missing"},
       {"effects on sparkle", 1, 12, "'sparkle' is no effect; there are direct-light, shadows"},
       {"effects on sky\neffects off sky", 2, 13, "sky is turned on or off twice"},
+      {"effects off direct-light\neffects on shadows", 2, 12, "without direct-light there are no shadows"},
+      {"effects on emitter-light\neffects off sky direct-light", 2, 17, "without direct-light there are no"},
       {"material", 1, 9, "material needs a name"},
       {"material \"two words\"", 1, 10, "one word"},
       {"material a\nmaterial a", 2, 10, "there is a material 'a' already"},

@@ -10,6 +10,14 @@
 namespace thimble::tools {
 namespace {
 
+// A subcommand that keeps what is looked at before it acts.
+class Subcommand : public CLI::App {
+ public:
+  Subcommand(CLI::App& parent, const std::string& name, const std::string& description)
+      : CLI::App(description, name, &parent) {}
+  std::vector<std::function<void()>> checks;
+};
+
 constexpr std::size_t kHelpColumn = 30;
 constexpr std::size_t kHelpWidth = 100;
 constexpr char kOffered[] = "offered";  // the name of a check that keeps words
@@ -140,7 +148,7 @@ Option& Option::offers(const std::vector<std::string>& words) {
 }
 
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description) {
-  return app.add_subcommand(name, description);
+  return app.add_subcommand(std::make_shared<Subcommand>(app, name, description));
 }
 
 void hide_command(CLI::App& command) {
@@ -152,7 +160,16 @@ void add_paragraph_below(CLI::App& command, const std::string& text) {
 }
 
 void when_chosen(CLI::App& command, std::function<void()> action) {
-  command.callback(std::move(action));
+  command.callback([&command, action = std::move(action)] {
+    for (const auto& check : dynamic_cast<const Subcommand&>(command).checks) {
+      check();
+    }
+    action();
+  });
+}
+
+void also_check(CLI::App& command, std::function<void()> check) {
+  dynamic_cast<Subcommand&>(command).checks.push_back(std::move(check));
 }
 
 Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
@@ -246,6 +263,11 @@ bool is_given(const CLI::App& app, const std::string& name) {
   return app.count(name) != 0;
 }
 
+std::string text_given(const CLI::App& app, const std::string& name) {
+  const CLI::Option* const option = app.get_option_no_throw(name);
+  return option == nullptr || option->count() == 0 ? "" : CLI::detail::to_lower(option->results().back());
+}
+
 std::vector<std::string> options_given(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -267,6 +289,11 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     }
   }
   return nearest;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& words) {
+  const std::string nearest = nearest_word(word, words);
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
 void add_help_lines(CLI::App& command, const std::string& text) {

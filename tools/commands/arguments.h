@@ -50,6 +50,9 @@ void add_paragraph_below(CLI::App& command, const std::string& text);
 void hide_command(CLI::App& command);
 /// What the subcommand does, once all options are read.
 void when_chosen(CLI::App& command, std::function<void()> action);
+/// What is looked at before that: options that are sound one by one and make no sense together. `check` calls
+/// refuse_usage.
+void also_check(CLI::App& command, std::function<void()> check);
 
 /// An argument without a name on the command line; `name` is for the functions below.
 Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
@@ -83,12 +86,17 @@ void exclude_each_other(CLI::App& app, const std::string& name, const std::strin
 bool has_option(const CLI::App& app, const std::string& name);
 /// Whether the user gave it.
 bool is_given(const CLI::App& app, const std::string& name);
+/// What the user gave for it, in small letters; empty where he did not.
+std::string text_given(const CLI::App& app, const std::string& name);
 /// The names of all that the user gave.
 std::vector<std::string> options_given(const CLI::App& app);
 
 /// The one of `words` that somebody who typed `word` most likely meant: at most a third of its letters are
 /// missing, too many, wrong or swapped with their neighbour. Empty for none.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+
+/// " (did you mean render?)", or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& words);
 
 /// Lines below the options in the help of `command`, as they stand.
 void add_help_lines(CLI::App& command, const std::string& text);

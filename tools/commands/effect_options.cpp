@@ -19,7 +19,7 @@ std::string spaced_names() {
 }
 
 std::vector<std::string> offered() {
-  std::vector<std::string> words{"auto", "none"};
+  std::vector<std::string> words{"auto", "none", "all"};
   std::istringstream names(effect_names());
   for (std::string name; std::getline(names, name, ',');) {
     words.push_back(name);
@@ -33,7 +33,15 @@ std::string take_effects(const std::string& text, EffectChoice* choice) {
   const std::optional<bool> smooth = choice->smooth;
   *choice = parsed.value_or(EffectChoice{});
   choice->smooth = smooth;
-  return parsed ? "" : "is not auto, none or a list such as shadows,sky of " + effect_names();
+  if (parsed) {
+    return {};
+  }
+  std::string nearest;
+  std::istringstream names(text);
+  for (std::string name; nearest.empty() && std::getline(names, name, ',');) {
+    nearest = parse_effects(name) ? "" : suggestion(name, offered());
+  }
+  return "is not auto, none, all or a list such as shadows,sky of " + effect_names() + nearest;
 }
 
 void add_normals(CLI::App& app, EffectChoice* choice) {
@@ -65,13 +73,13 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
 
 void EffectOptions::add_to(CLI::App& app, const std::string& more) {
   add_text_option(
-      app, "--effects", "auto|none|LIST",
+      app, "--effects", "auto|none|all|LIST",
       [this](const std::string& text) {
         given = true;
         return take_effects(text, &choice);
       },
-      "what light does: auto (what the scene's materials, lights, water and sky call for), none, or with "
-      "commas between them any of " +
+      "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
+      "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
           spaced_names() + more)
       .default_str("auto")
       .offers(offered());

@@ -133,7 +133,7 @@ std::string frame_lines(const EffectsStudy& study) {
 
 std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
   BarChart chart;
-  chart.title = "What effects cost: " + printable(command.scene.arguments.scene);
+  chart.title = "What effects cost: " + scene_title(command.scene.arguments.scene);
   chart.x_label = "milliseconds a frame of " + std::to_string(command.study.view.width_px) + " x " +
                   std::to_string(command.study.view.height_px) + ", with quartiles";
   for (const EffectRow& row : study.rows) {

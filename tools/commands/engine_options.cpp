@@ -43,6 +43,12 @@ void EngineOptions::add_to(CLI::App& app, bool all_cores) {
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64")
       .default_str("auto");
+  also_check(app, [&app, this] {
+    const std::string structure = text_given(app, "--structure");
+    if (name == "wide" && !structure.empty() && structure != "compact") {
+      refuse_usage("--engine wide draws --structure compact only");
+    }
+  });
   threads = all_cores ? tools::all_cores() : 1;
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,

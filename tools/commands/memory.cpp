@@ -352,7 +352,7 @@ std::string budget_table(const MemoryStudy& study) {
 
 std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
   Plot plot;
-  plot.title = "Memory against depth: " + printable(command.scene.arguments.scene);
+  plot.title = "Memory against depth: " + scene_title(command.scene.arguments.scene);
   plot.x_label = "depth (a world of 2^depth voxels a side)";
   plot.y_label = "bytes (log scale)";
   plot.whole_x = true;
@@ -392,7 +392,7 @@ std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
 
 std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) {
   Plot plot;
-  plot.title = "Picture error against budget: " + printable(command.scene.arguments.scene);
+  plot.title = "Picture error against budget: " + scene_title(command.scene.arguments.scene);
   plot.x_label = "budget for the structure, bytes (log scale)";
   plot.y_label = "mean depth error, voxels of the deepest (log; 0 not shown)";
   Series compact{"compact tree, the depth that fits", false, {}};

@@ -33,7 +33,9 @@ void run(const ViewCommand& command) {
   }
   if (command.effects.given) {
     look.effects = command.effects.choice;
-    look.effects_word = look.effects->automatic ? "auto" : effects_text(look.effects->effects);
+    look.effects_word = look.effects->automatic ? "auto"
+                        : look.effects->on_top  ? "all"
+                                                : effects_text(look.effects->effects);
   }
   look.bounces = command.effects.bounces;
   look.smooth = command.effects.choice.smooth;
@@ -72,20 +74,7 @@ void add_view_command(CLI::App& app) {
             "occlusion and a sky, and strewn points are shaded by depth",
             &options.look.shade_word);
   command->effects.add_to(*sub);
-  add_text_option(
-      *sub, "--samples", "N",
-      [command](const std::string& text) -> std::string {
-        const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
-        for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
-          if (*number == across * across) {
-            command->viewer.look.across = across;
-            return {};
-          }
-        }
-        return "is not 1, 4, 9, 16, 25, 36, 49 or 64";
-      },
-      "samples a pixel of the picture at rest: 1, 4, 9, 16, 25, 36, 49 or 64")
-      .default_str("4");
+  add_samples(*sub, &command->viewer.look.across, "in the picture at rest", 2);
   add_threads(*sub, &options.threads, "threads that read and draw");
   add_whole_option(
       *sub, "--bench", "N", 1, 100000,

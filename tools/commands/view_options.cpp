@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "boards/board_table.h"
 #include "commands/arguments.h"
@@ -96,6 +97,14 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
   if (with_direction_bits) {
     add_direction_bits(app, &view->direction_bits);
   }
+  also_check(app, [&app, view] {
+    if (!view->orthographic && is_given(app, "--span")) {
+      refuse_usage("--span", "is the width of --projection orthographic; in perspective --fov is the angle");
+    }
+    if (view->orthographic && is_given(app, "--fov")) {
+      refuse_usage("--fov", "is the angle of --projection perspective; orthographic pictures have a --span");
+    }
+  });
 }
 
 void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
@@ -150,20 +159,30 @@ void add_direction_bits(CLI::App& app, int* bits) {
       "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
-void add_quality(CLI::App& app, Quality* quality) {
-  add_text_option(
-      app, "--samples", "N",
-      [quality](const std::string& text) {
-        quality->across = 0;
-        quality->is_sampled = true;
-        const auto number = parse_whole(text, 1, kMaxSamplesAcross * kMaxSamplesAcross);
-        for (int across = 1; number && across <= kMaxSamplesAcross; ++across) {
-          quality->across = *number == across * across ? across : quality->across;
+void add_samples(CLI::App& app, int* across, const std::string& of_what, int usual_across) {
+  add_whole_option(
+      app, "--samples", "N", 1, kMaxSamplesAcross * kMaxSamplesAcross,
+      [across](std::int64_t number) {
+        for (*across = 1; *across * *across < number; ++*across) {
         }
-        return quality->across != 0 ? "" : "is not 1, 4, 9, 16, 25, 36, 49 or 64";
       },
-      "samples a pixel, on a regular grid in it, averaged: 1, 4, 9, 16, 25, 36, 49 or 64")
-      .default_str("1");
+      "samples a pixel, " + of_what +
+          ": 1, 4, 9, 16, 25, 36, 49 or 64; what lies between is taken as the next of them")
+      .default_str(std::to_string(usual_across * usual_across));
+  also_check(app, [&app, across] {
+    const std::string asked = text_given(app, "--samples");
+    const std::string taken = std::to_string(*across * *across);
+    const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
+    if (!asked.empty() && asked != taken && !quiet) {
+      std::fprintf(stderr, "note: --samples %s is not a square; %s are taken\n", asked.c_str(),
+                   taken.c_str());
+    }
+  });
+}
+
+void add_quality(CLI::App& app, Quality* quality) {
+  add_samples(app, &quality->across, "on a regular grid in it, averaged", 1);
+  also_check(app, [&app, quality] { quality->is_sampled = is_given(app, "--samples"); });
   add_text_option(
       app, "--cutoff", "PX",
       [quality](const std::string& text) -> std::string {

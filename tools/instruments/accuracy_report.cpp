@@ -284,7 +284,7 @@ std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis) {
 
 std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::string& scene) {
   Scatter scatter;
-  scatter.title = std::string("Error against ") + axis_title(axis) + ": " + printable(scene);
+  scatter.title = std::string("Error against ") + axis_title(axis) + ": " + scene_title(scene);
   scatter.x_label = axis_label(axis);
   scatter.y_label = "PSNR against the reference, dB";
   scatter.infinite_name = "upper edge: equal to the reference";
@@ -326,7 +326,7 @@ std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::
   }
   const CostAxis light_axis = axis == CostAxis::kInstructions ? CostAxis::kVisits : axis;
   Scatter light = light_scatter(study, light_axis);
-  light.title += std::string(axis_title(light_axis)) + ": " + printable(scene);
+  light.title += std::string(axis_title(light_axis)) + ": " + scene_title(scene);
   light.x_label = axis_label(light_axis);
   light.front = front_of(study.light, light_axis);
   return stacked({scatter_text(scatter), scatter_text(light)});

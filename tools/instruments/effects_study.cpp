@@ -17,7 +17,7 @@
 namespace thimble::tools {
 namespace {
 
-// "material 3 is metal", "materials 3, 4, 7 are glass"; at most four numbers.
+// "material 3 is metal", "materials 3, glow, 7 are glass"; at most four of them.
 std::string materials(const LitDescription& lit, const UsedMaterials& used, SurfaceKind kind,
                       const std::string& what, const std::string& none) {
   constexpr std::size_t kMostNamed = 4;
@@ -28,7 +28,7 @@ std::string materials(const LitDescription& lit, const UsedMaterials& used, Surf
       continue;
     }
     if (++count <= kMostNamed) {
-      names += (names.empty() ? "" : ", ") + std::to_string(i);
+      names += (names.empty() ? "" : ", ") + lit.name_of(static_cast<std::uint8_t>(i));
     }
   }
   if (count == 0) {

@@ -66,6 +66,12 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string scene_title(std::string_view scene) {
+  const std::size_t slash = scene.rfind('/');
+  return printable(slash == std::string_view::npos || slash + 1 == scene.size() ? scene
+                                                                                : scene.substr(slash + 1));
+}
+
 std::string in_quotes(std::string_view text) {
   return '"' + printable(text) + '"';
 }

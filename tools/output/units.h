@@ -25,6 +25,8 @@ std::string digits17(double number);
 /// `text` for a sentence on a terminal: control characters, line feeds too, as \xNN, so that a file's name
 /// can neither break the sentence nor steer the terminal. UTF-8 stays as it is.
 std::string printable(std::string_view text);
+/// A scene for the title of a plot: of a path the file's name alone, printable.
+std::string scene_title(std::string_view scene);
 /// The same in double quotes.
 std::string in_quotes(std::string_view text);
 

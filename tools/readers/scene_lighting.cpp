@@ -167,6 +167,7 @@ void occlusion(TextLine& line, TextPlace, SceneText* scene) {
 }
 
 void effects(TextLine& line, TextPlace, SceneText* scene) {
+  constexpr EffectSet kEffectsOfLight = Effect::kShadows | Effect::kEmitterLight;
   const Word which = line.word();
   if (which.text != "on" && which.text != "off") {
     fail_at(which.place, "effects needs on or off" + (which.empty() ? "" : ", not " + quoted(which.text)));
@@ -191,6 +192,10 @@ void effects(TextLine& line, TextPlace, SceneText* scene) {
       fail_at(word.place, std::string(word.text) + " is turned on or off twice");
     }
     set |= found;
+    if ((scene->off & Effect::kDirectLight) != 0 && (scene->on & kEffectsOfLight) != 0) {
+      fail_at(word.place,
+              "without direct-light there are no shadows and no emitter-light: one is on, the other off");
+    }
   }
 }
 

@@ -33,6 +33,8 @@ EffectSet brought_by(EffectSet effects) {
          ((effects & Effect::kShadows) != 0 ? Effect::kDirectLight : Effect::kNone);
 }
 
+constexpr EffectSet kOfEveryScene = Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion |
+                                    Effect::kEmission | Effect::kEmitterLight | Effect::kSmoothNormals;
 constexpr Light kDefaultSun{};
 constexpr std::uint8_t kDefaultOcclusionRays = 8;
 constexpr std::uint32_t kDefaultFogDensity = 65536 / 64;
@@ -123,6 +125,11 @@ Material material_of(const Surface& surface) {
   return material;
 }
 
+std::string LitDescription::name_of(std::uint8_t material) const {
+  const auto named = material_names.find(material);
+  return named == material_names.end() ? std::to_string(material) : named->second;
+}
+
 LitDescription describe_palette(const Palette& palette) {
   LitDescription lit;
   std::transform(palette.begin(), palette.end(), lit.surfaces.begin(), surface_of);
@@ -166,6 +173,11 @@ std::optional<EffectChoice> parse_effects(std::string_view text) {
   if (text == "none") {
     return choice;
   }
+  if (text == "all") {
+    choice.effects = kOfEveryScene;
+    choice.on_top = true;
+    return choice;
+  }
   for (;;) {
     const std::size_t comma = std::min(text.find(','), text.size());
     const std::string_view name = text.substr(0, comma);
@@ -173,6 +185,9 @@ std::optional<EffectChoice> parse_effects(std::string_view text) {
     for (int bit = 0; bit < Effect::kCount; ++bit) {
       const EffectSet effect = EffectSet{1} << bit;
       found |= name == effect_name(effect) ? effect : Effect::kNone;
+    }
+    if (name == "ao") {
+      found = Effect::kAmbientOcclusion;
     }
     if (found == Effect::kNone || (choice.effects & found) != 0) {
       return std::nullopt;
@@ -201,7 +216,10 @@ std::string effect_names() {
 }
 
 EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice) {
-  const EffectSet set = choice.automatic ? called_for(lit, used) : brought_by(choice.effects);
+  const EffectSet asked = brought_by(choice.effects);
+  const EffectSet set = choice.automatic ? called_for(lit, used)
+                        : choice.on_top  ? asked | called_for(lit, used)
+                                         : asked;
   if (!choice.smooth) {
     return set;
   }

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +46,8 @@ struct LitDescription {
   /// By palette index, all 256 of them.
   std::vector<Surface> surfaces = std::vector<Surface>(kMaxSurfaces);
   std::vector<Light> lights;
+  /// What the scene's author calls them, where he does.
+  std::map<std::uint8_t, std::string> material_names;
   /// All the rest; its spans are empty.
   LitScene rest;
   /// Effects that the scene's author turned on or off, whatever materials and lights call for.
@@ -63,6 +66,8 @@ struct LitDescription {
   LitScene drawn(EffectSet effects) const;
   /// Looks for what glows in the tree. Of a baked scene the lamps are among the lights already.
   void find_glow(const CompactTree& tree);
+  /// "glow", or "5" for one without a name.
+  std::string name_of(std::uint8_t material) const;
   /// Before there is a tree: room for as many lamps as there may be.
   void expect_glow();
 };
@@ -95,10 +100,13 @@ EffectSet called_for(const LitDescription& lit, const UsedMaterials& used);
 struct EffectChoice {
   bool automatic = true;
   EffectSet effects = Effect::kNone;  ///< unless automatic
+  bool on_top = false;                ///< "all": they come on top of what the scene calls for
   std::optional<bool> smooth{};       ///< --normals: with Effect::kSmoothNormals, or without
   bool is_given = false;  ///< somebody said so; "auto" then adds nothing to what the scene calls for
 };
-/// "auto", "none" or names of effects with commas between them; nothing for anything else.
+/// "auto", "none", "all" or names of effects with commas between them, "ao" for ambient-occlusion; nothing for
+/// anything else. "all" is what the scene calls for and what every scene can have: direct light, shadows,
+/// occlusion, glow that lights its neighbours, and smooth normals.
 std::optional<EffectChoice> parse_effects(std::string_view text);
 /// The names of a set's effects with commas between them; "none" for the empty one.
 std::string effects_text(EffectSet effects);

@@ -343,6 +343,14 @@ class TextScene final : public SceneSource {
     }
   }
 
+  // The first name that a surface has is the one that it keeps.
+  std::uint8_t named_material(const SceneText::NamedSurface& named, const Surface& surface,
+                              const TextPlace& place) {
+    const std::uint8_t material = world_material(surface, place);
+    lit_.material_names.emplace(material, named.name);
+    return material;
+  }
+
   std::uint8_t world_material(const Surface& surface, const TextPlace& place) {
     const auto begin = lit_.surfaces.begin();
     const auto end = begin + static_cast<std::ptrdiff_t>(materials_);
@@ -365,7 +373,8 @@ class TextScene final : public SceneSource {
     for (std::size_t i = 0; i < text_.parts.size(); ++i) {
       const SceneText::Part& part = text_.parts[i];
       if (part.kind != SceneText::PartKind::kModel) {
-        part_material_[i] = world_material(text_.materials[part.material].surface, part.place);
+        const SceneText::NamedSurface& named = text_.materials[part.material];
+        part_material_[i] = named_material(named, named.surface, part.place);
         continue;
       }
       Placement& model = models_[number];
@@ -380,6 +389,8 @@ class TextScene final : public SceneSource {
           const Rgb8 own = surface.albedo;
           surface = named.surface;
           surface.albedo = named.has_color ? surface.albedo : own;
+          model.material[index] = named_material(named, surface, part.place);
+          continue;
         }
         model.material[index] = world_material(surface, part.place);
       }
