@@ -114,9 +114,9 @@ TEST_CASE("render quality: samples -> the mean of the same view drawn larger, pi
 TEST_CASE("render quality: samples that are no square -> the next square's picture, and it is said") {
   CHECK(render({"--samples", "8"}).bytes == render({"--samples", "9"}).bytes);
   CHECK(render({"--samples", "50"}).stats["samples"] == 64);
-  const Words words{"render", "spheres", "--size", "8x6", "--samples", "8", "-o", "-"};
+  const std::vector<std::string> words{"render", "spheres", "--size", "8x6", "--samples", "8", "-o", "-"};
   CHECK(run_command(words).err.find("note: --samples 8 is not a square; 9 are taken") != std::string::npos);
-  Words quiet = words;
+  std::vector<std::string> quiet = words;
   quiet.emplace_back("--quiet");
   CHECK(run_command(quiet).err.empty());
 }

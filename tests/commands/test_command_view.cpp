@@ -355,7 +355,7 @@ TEST_CASE("view: scenes that cannot be, options that contradict -> a sentence an
   check_refused({folder.write("empty.vox", "")}, 1, {"empty.vox"});
   check_refused({"points:x"}, 1, {"points"});
   check_refused({"view"}, 2, {"SCENE"});
-  check_refused({"view", "spheres", "--samples", "5"}, 2, {"--samples", "64"});
+  check_refused({"view", "spheres", "--samples", "65"}, 2, {"--samples", "1 to 64"});
   check_refused({"view", "spheres", "--display", "tv"}, 2, {"auto, window or terminal"});
   check_refused({"view", "spheres", "--shade", "depth", "--effects", "shadows"}, 2, {"--effects"});
   check_refused({"spheres", "--wheel"}, 2, {"thimble view"});

@@ -22,6 +22,7 @@ struct ViewCommand {
   EffectOptions effects;
   ShadeMode shade = ShadeMode::kDepth;
   int bench_frames = 0;
+  int across = 2;  ///< --samples, where it is given
 };
 
 void run(const ViewCommand& command) {
@@ -74,7 +75,12 @@ void add_view_command(CLI::App& app) {
             "occlusion and a sky, and strewn points are shaded by depth",
             &options.look.shade_word);
   command->effects.add_to(*sub);
-  add_samples(*sub, &command->viewer.look.across, "in the picture at rest", 2);
+  add_samples(*sub, &command->across, "in the picture at rest", 2);
+  also_check(*sub, [sub, command] {
+    if (is_given(*sub, "--samples")) {
+      command->viewer.look.across = command->across;
+    }
+  });
   add_threads(*sub, &options.threads, "threads that read and draw");
   add_whole_option(
       *sub, "--bench", "N", 1, 100000,
