@@ -14,6 +14,7 @@
 #include "output/units.h"
 #include "scene/board_fit.h"
 #include "support/check_command.h"
+#include "support/file_bytes.h"
 #include "thimble/bake/baked_scene.h"
 
 namespace {
@@ -57,20 +58,8 @@ BakedScene open_text(const std::string& text) {
   return scene;
 }
 
-std::string little(std::uint32_t number) {
-  std::string bytes;
-  for (int shift = 0; shift < 32; shift += 8) {
-    bytes += static_cast<char>(number >> shift & 255U);
-  }
-  return bytes;
-}
-
 // A .vox of a few voxels of three colours.
 std::string small_vox() {
-  const auto chunk = [](const std::string& id, const std::string& content, const std::string& children) {
-    return id + little(static_cast<std::uint32_t>(content.size())) +
-           little(static_cast<std::uint32_t>(children.size())) + content + children;
-  };
   std::string voxels;
   std::uint32_t count = 0;
   for (int i = 0; i < 300; ++i) {
@@ -81,24 +70,9 @@ std::string small_vox() {
         {static_cast<char>(x), static_cast<char>(y), static_cast<char>(z), static_cast<char>(1 + i % 3)};
     ++count;
   }
-  return "VOX " + little(150) +
-         chunk("MAIN", "",
-               chunk("SIZE", little(20) + little(18) + little(17), "") +
-                   chunk("XYZI", little(count) + voxels, ""));
-}
-
-std::string gzipped(const std::string& text) {
-  z_stream stream{};
-  REQUIRE(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK);
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
+  const std::string size = little(20, 4) + little(18, 4) + little(17, 4);
+  return "VOX " + little(150, 4) +
+         vox_chunk("MAIN", "", vox_chunk("SIZE", size) + vox_chunk("XYZI", little(count, 4) + voxels));
 }
 
 // What a picture of netpbm holds behind its header.
@@ -177,7 +151,7 @@ TEST_CASE("bake: a baked scene under gzip, with another ending or baked again ->
   const std::string bytes = read_text(oct);
   const Words size{"--size", "40x30"};
   const std::string expected = render(folder, oct, size);
-  CHECK(render(folder, folder.write("s.oct.gz", gzipped(bytes)), size) == expected);
+  CHECK(render(folder, folder.write("s.oct.gz", deflated(bytes, kGzip)), size) == expected);
   CHECK(render(folder, folder.write("s.bin", bytes), size) == expected);
   check_ok({"bake", oct, "-o", folder.path("again.oct"), "--quiet"});
   CHECK(render(folder, folder.path("again.oct"), size) == expected);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/file_bytes.h"
 #include "support/run_command.h"
 
 namespace {
@@ -30,19 +31,6 @@ std::map<std::string, std::string> info(const Words& words) {
   return rows;
 }
 
-std::string little(std::uint32_t number) {
-  std::string bytes;
-  for (int shift = 0; shift < 32; shift += 8) {
-    bytes += static_cast<char>(number >> shift & 255U);
-  }
-  return bytes;
-}
-
-std::string chunk(const std::string& id, const std::string& content, const std::string& children = "") {
-  return id + little(static_cast<std::uint32_t>(content.size())) +
-         little(static_cast<std::uint32_t>(children.size())) + content + children;
-}
-
 }  // namespace
 
 TEST_CASE("info: a generator -> depth, points, voxels, a sound compact tree") {
@@ -64,11 +52,11 @@ TEST_CASE("info: a generator -> depth, points, voxels, a sound compact tree") {
 
 TEST_CASE("info: a .vox of two voxels and two materials -> its own indices, the least world that holds it") {
   const TemporaryFolder folder;
-  const std::string size = little(20) + little(5) + little(9);
+  const std::string size = little(20, 4) + little(5, 4) + little(9, 4);
   const std::string voxels =
-      little(2) + std::string("\x00\x01\x02\x05", 4) + std::string("\x13\x04\x08\x07", 4);
+      little(2, 4) + std::string("\x00\x01\x02\x05", 4) + std::string("\x13\x04\x08\x07", 4);
   const std::string vox =
-      "VOX " + little(150) + chunk("MAIN", "", chunk("SIZE", size) + chunk("XYZI", voxels));
+      "VOX " + little(150, 4) + vox_chunk("MAIN", "", vox_chunk("SIZE", size) + vox_chunk("XYZI", voxels));
   const std::string path = folder.write("two.vox", vox);
   auto rows = info({path});
   CHECK(rows["scene"] == path);

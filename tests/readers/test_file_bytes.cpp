@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "readers/file_bytes.h"
+#include "support/file_bytes.h"
 
 using namespace thimble::tools;
 
@@ -62,19 +62,8 @@ Bytes noise(std::size_t count, std::uint32_t seed) {
 }
 
 Bytes gzip(const Bytes& bytes) {
-  z_stream stream{};
-  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY) == Z_OK);
-  Bytes out(deflateBound(&stream, bytes.size()) + 64);
-  Bytes in = bytes;
-  in.push_back(0);  // never an empty vector's null pointer
-  stream.next_in = in.data();
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = out.data();
-  stream.avail_out = static_cast<uInt>(out.size());
-  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
+  const std::string packed = thimble::tests::deflated({bytes.begin(), bytes.end()}, thimble::tests::kGzip);
+  return {packed.begin(), packed.end()};
 }
 
 Bytes operator+(Bytes a, const Bytes& b) {

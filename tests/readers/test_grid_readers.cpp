@@ -1,6 +1,5 @@
 // Readers of voxel grids: .binvox, .mts, .schematic and .schem, .qb, .kvx, NumPy arrays, grids of heights.
 #include <doctest/doctest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -16,37 +15,19 @@
 #include "readers/qb.h"
 #include "readers/read_any.h"
 #include "readers/schematic.h"
+#include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 
 using namespace thimble::tools;
 using namespace thimble::tools::test;
+using thimble::tests::deflated;
+using thimble::tests::little;
 
 namespace {
 
-std::string little(std::uint64_t value, std::size_t bytes) {
-  std::string out;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    out += i < 8 ? static_cast<char>(value >> (8 * i)) : '\0';
-  }
-  return out;
-}
 std::string big(std::uint64_t value, std::size_t bytes) {
   std::string out = little(value, bytes);
   std::reverse(out.begin(), out.end());
-  return out;
-}
-
-std::string deflated(const std::string& text, int window) {
-  z_stream stream{};
-  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, window, 9, Z_DEFAULT_STRATEGY) == Z_OK);
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
   return out;
 }
 

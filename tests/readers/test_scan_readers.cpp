@@ -11,27 +11,15 @@
 #include "readers/pcd.h"
 #include "readers/read_any.h"
 #include "readers/stl.h"
+#include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
 
 using namespace thimble::tools;
 using namespace thimble::tools::test;
+using thimble::tests::little;
 
 namespace {
-
-std::string little(std::uint64_t value, std::size_t bytes) {
-  std::string out;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    out += i < 8 ? static_cast<char>(value >> (8 * i)) : '\0';
-  }
-  return out;
-}
-std::string little(float value) {
-  return little(std::bit_cast<std::uint32_t>(value), 4);
-}
-std::string little(double value) {
-  return little(std::bit_cast<std::uint64_t>(value), 8);
-}
 
 std::string pcd_head(const std::string& data, int points = 2) {
   return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 8 4 4\nTYPE F F I U\nCOUNT 1 1 1 1\nWIDTH " +
