@@ -39,10 +39,10 @@ draw() {
 }
 
 printf '%-22s %12s %12s %10s %6s %16s\n' scene 'budget bytes' 'used bytes' voxels depth 'seconds a frame'
-paper="--shade depth --view paper --fov 60"
-draw spheres-perspective 64K spheres --projection perspective $paper
+paper="--shade depth --view paper"
+draw spheres-perspective 64K spheres --projection perspective --fov 60 $paper
 draw spheres-orthographic 64K spheres --projection orthographic $paper
-draw cluster-perspective 6M cluster:1000000 --projection perspective $paper
+draw cluster-perspective 6M cluster:1000000 --projection perspective --fov 60 $paper
 draw castle 256K "$(dirname "$0")/gallery/scenes/castle.vox" --shade color \
   --effects direct-light,shadows,sky,ambient-occlusion --eye 2,-118,72 --target 40,40,29 --fov 32
 echo "pictures: $out/*.png, $out/*.ppm"
