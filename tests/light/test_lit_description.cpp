@@ -147,17 +147,24 @@ TEST_CASE("--effects: auto, none, lists -> a choice; anything else -> nothing") 
   CHECK(parse_effects("sky")->effects == Effect::kSky);
   CHECK(parse_effects("shadows,fog,depth-cue")->effects ==
         (Effect::kShadows | Effect::kFog | Effect::kDepthCue));
-  for (const char* bad :
-       {"", "Sky", "sky,", ",sky", "sky,,fog", "sky,sky", "auto,sky", "none,sky", "sky fog", "all"}) {
+  for (const char* bad : {"", "Sky", "sky,", ",sky", "sky,,fog", "sky,sky", "auto,sky", "none,sky", "sky fog",
+                          "all,sky", "ao,ao"}) {
     CAPTURE(std::string(bad));
     CHECK_FALSE(parse_effects(bad).has_value());
   }
+  CHECK(parse_effects("sky,ao")->effects == (Effect::kSky | Effect::kAmbientOcclusion));
   CHECK(effects_text(Effect::kNone) == "none");
   CHECK(effects_text(Effect::kShadows | Effect::kSky) == "shadows,sky");
   CHECK(parse_effects(effect_names())->effects == Effect::kAll);
   const LitDescription lit = describe_palette(Palette{});
   CHECK(chosen_effects(lit, {}, *parse_effects("shadows")) == (Effect::kShadows | Effect::kDirectLight));
   CHECK(chosen_effects(lit, {}, *parse_effects("auto")) == Effect::kNone);
+  constexpr EffectSet kEverywhere = Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion |
+                                    Effect::kEmission | Effect::kEmitterLight | Effect::kSmoothNormals;
+  CHECK(chosen_effects(lit, {}, *parse_effects("all")) == kEverywhere);
+  LitDescription with_sky = lit;
+  with_sky.on = Effect::kSky;
+  CHECK(chosen_effects(with_sky, {}, *parse_effects("all")) == (kEverywhere | Effect::kSky));
 }
 
 TEST_CASE("with_defaults: effects asked for and not described -> something to show; what is there stays") {
@@ -295,7 +302,7 @@ TEST_CASE("bake: a header -> the set of effects as a macro; --effects as asked f
   CHECK(macro("spheres", {}) == "0x000u");
   const auto wrong = tests::run_command({"bake", "water", "-o", folder.path("b.h"), "--effects", "gloss"});
   CHECK(wrong.status == 2);
-  CHECK(contains(wrong.err, "--effects: \"gloss\" is not auto, none or a list"));
+  CHECK(contains(wrong.err, "--effects: \"gloss\" is not auto, none, all or a list"));
   REQUIRE(tests::run_command({"bake", "water", "-o", folder.path("a.oct")}).status == 0);
   const auto info = tests::run_command({"info", folder.path("a.oct")});
   CHECK(contains(info.out, "effects              direct-light,shadows,mirror,glass,water,sky\n"));
