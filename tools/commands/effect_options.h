@@ -32,7 +32,7 @@ struct EffectOptions {
   LitDescription lighting(const SceneSource& source) const;
 };
 
-/// --effects (auto, none or a list) and --normals alone.
+/// --effects (auto, none, all or a list) and --normals alone.
 /// `names_default`: the help ends with "(default: auto)".
 void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default = true);
 
