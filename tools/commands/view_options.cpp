@@ -171,11 +171,10 @@ void add_samples(CLI::App& app, int* across, const std::string& of_what, int usu
       .default_str(std::to_string(usual_across * usual_across));
   also_check(app, [&app, across] {
     const std::string asked = text_given(app, "--samples");
-    const std::string taken = std::to_string(*across * *across);
+    const int taken = *across * *across;
     const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
-    if (!asked.empty() && asked != taken && !quiet) {
-      std::fprintf(stderr, "note: --samples %s is not a square; %s are taken\n", asked.c_str(),
-                   taken.c_str());
+    if (!asked.empty() && parse_whole(asked, taken, taken) != taken && !quiet) {
+      std::fprintf(stderr, "note: --samples %s is not a square; %d are taken\n", asked.c_str(), taken);
     }
   });
 }
