@@ -266,10 +266,14 @@ TEST_CASE("command: an output that cannot be written -> status 1, its name, and 
   check_refused({"render", "spheres", "-o", folder.path("folder.ppm")}, 1, {"folder.ppm", "directory"});
   // One output of several: none appears.
   for (const char* option : {"--hits", "--depth-image", "--stats"}) {
-    check_refused({"render", "spheres", "--quiet", "-o", folder.path("p.ppm"), option, "/dev/full"}, 1,
-                  {"/dev/full"});
-    check_refused({"render", "spheres", "--quiet", "-o", folder.path("p.ppm"), option, folder.path("gone/x")},
-                  1, {"gone/x"});
+    const Words words{"render", "spheres", "--quiet", "--size", "64x48", "-o", folder.path("p.ppm"), option};
+    const auto to = [&](const std::string& path) {
+      Words all = words;
+      all.push_back(path);
+      return all;
+    };
+    check_refused(to("/dev/full"), 1, {"/dev/full"});
+    check_refused(to(folder.path("gone/x")), 1, {"gone/x"});
   }
   CHECK(folder.names() == Words{"folder.ppm", "rays.csv"});
 }
@@ -279,8 +283,9 @@ TEST_CASE("command: standard output that takes nothing -> status 1") {
   const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
   CommandLimits full;
   full.output_path = "/dev/full";
-  for (const Words& words : {Words{"info", "spheres"}, Words{"render", "spheres", "--quiet", "-o", "-"},
-                             Words{"trace", "spheres", "--rays", rays}, Words{"table", "--points", "1"}}) {
+  for (const Words& words :
+       {Words{"info", "spheres"}, Words{"render", "spheres", "--quiet", "--size", "64x48", "-o", "-"},
+        Words{"trace", "spheres", "--rays", rays}, Words{"table", "--points", "1"}}) {
     const CommandResult result = run_command(words, full);
     CAPTURE(words.front());
     CHECK(result.status == 1);
@@ -296,8 +301,9 @@ TEST_CASE("command: a failure -> a file of the output's name keeps its bytes") {
   const std::string bad = folder.write("bad.csv", "0,0,0,1,1,1\n0,0,0,0,0,0\n");
   check_refused({"render", "spheres", "-o", picture, "--hits", hits, "--memory", "1000"}, 1, {"1,000"});
   check_refused({"render", folder.path("none.vox"), "-o", picture, "--hits", hits}, 1, {"none.vox"});
-  check_refused({"render", "spheres", "-o", picture, "--hits", hits, "--stats", "/dev/full", "--quiet"}, 1,
-                {"/dev/full"});
+  check_refused({"render", "spheres", "-o", picture, "--hits", hits, "--stats", "/dev/full", "--quiet",
+                 "--size", "64x48"},
+                1, {"/dev/full"});
   check_refused({"trace", "spheres", "--rays", bad, "-o", hits}, 1, {"bad.csv", "line 2"});
   CHECK(read_text(picture) == "old picture");
   CHECK(read_text(hits) == "old hits");
