@@ -42,7 +42,7 @@ for sketch in SSD1306 ST7789; do
   color=$([ $sketch = ST7789 ] && echo true || echo false)
   logged g++ -std=c++20 -O1 -Iinclude -I"$WORK/sketches/$sketch" -DEXPECTED_COLOR=$color $here/expected.cpp "$LIBTHIMBLE" -o "$WORK/expected"
   "$WORK/expected" >"$WORK/$sketch.expected" || fail "the scene of $sketch draws nothing"
-  in_qemu arm "$all/build/$sketch/$sketch.ino.elf" </dev/null >"$WORK/$sketch.shown" 2>&1 || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
+  in_qemu arm "$all/build/$sketch/$sketch.ino.elf" </dev/null >"$WORK/$sketch.shown" 2>"$WORK/$sketch.err" || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
   cmp "$WORK/$sketch.expected" "$WORK/$sketch.shown" || fail "$sketch shows another picture than this machine draws"
 done
 say "the ball and both examples, built by arduino-builder, show what they should"

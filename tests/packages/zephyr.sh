@@ -17,12 +17,12 @@ logged cmake --build "$WORK/build" -- -j1
 need qemu-system-arm
 same_ball in_qemu arm "$WORK/build/ball"
 for order in RGB_565 BGR_565 RGB_888; do
-  in_qemu arm "$WORK/build/sample_$order" </dev/null >"$WORK/$order.shown" 2>&1 ||
+  in_qemu arm "$WORK/build/sample_$order" </dev/null >"$WORK/$order.shown" 2>"$WORK/$order.err" ||
     fail "the sample ends with $? on a display with $order: $(tail -n 1 "$WORK/$order.shown")"
 done
 # High byte first, low byte first: the same pixels.
 sed 's/\(..\)\(..\)/\2\1/g' "$WORK/BGR_565.shown" | cmp - "$WORK/RGB_565.shown" || fail "the orders of bytes show two pictures"
 [ "$(sort -u "$WORK/RGB_888.shown" | wc -l)" -gt 8 ] || fail "the sample shows no ball"
-in_qemu arm "$WORK/build/sample_MONO01" </dev/null >"$WORK/mono.shown" 2>&1 && fail "a display that the sample does not draw on is taken"
+in_qemu arm "$WORK/build/sample_MONO01" </dev/null >"$WORK/mono.shown" 2>"$WORK/mono.err" && fail "a display that the sample does not draw on is taken"
 grep -q 'RGB_565 and RGB_888' "$WORK/mono.shown" || fail "on another display the sample says: $(cat "$WORK/mono.shown")"
 say "module.yml, Kconfig, CMake and the sample: the ball is drawn"
