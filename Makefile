@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim install deb \
-  release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards bench-frames \
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim install deb packages \
+  release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages bench-frames \
   test-framebuffer format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
@@ -44,6 +44,15 @@ install: all ## Install command, library, scenes, manual, completions (PREFIX=/u
 	@echo "installed in $(DESTDIR)$(PREFIX)"
 deb: all ## Make a Debian package of what `make install` installs (build/release/thimble_*.deb)
 	@sh tools/package.sh build/release
+packages: all ## Make the packages of every ecosystem: Arduino, PlatformIO, ESP-IDF, ... (build/packages)
+	@.ci/deps packages
+	@mkdir -p build/packages && rm -f build/packages/*
+	@$(or $(wildcard /usr/bin/python3),python3) -B tools/packages/make.py
+	@sh tools/package.sh build/release build/packages
+test-packages: ## Unpack every package in an empty folder and build it by its ecosystem's rules
+	@.ci/deps boards
+	@$(MAKE) --no-print-directory packages
+	@sh tests/packages/run.sh
 
 # What is tested is built in four ways; STEP says which of how many steps this is.
 TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON

@@ -38,4 +38,6 @@ file(WRITE ${doc}/changelog "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) un
  -- ${CPACK_PACKAGE_CONTACT}  ${day}
 ")
 execute_process(COMMAND gzip -9n ${doc}/changelog)
+file(COPY ${CPACK_THIMBLE_SOURCE}/README.md DESTINATION ${doc})
+execute_process(COMMAND gzip -9n ${doc}/README.md)
 execute_process(COMMAND chmod -R u=rwX,go=rX ${root})

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Makes thimble_VERSION_ARCHITECTURE.deb of what a build installs, into the build's folder, and names it.
-#   package.sh BUILD_DIR
+# Makes thimble_VERSION_ARCHITECTURE.deb of what a build installs, into the build's folder or TO, and names it. A commit
+# makes one package: files are as old as SOURCE_DATE_EPOCH or the commit says.
+#   package.sh BUILD_DIR [TO]
 set -eu
 for need in dpkg-shlibdeps dpkg-deb gzip cpack; do
   if ! command -v $need >/dev/null 2>&1; then
@@ -8,6 +9,11 @@ for need in dpkg-shlibdeps dpkg-deb gzip cpack; do
     exit 1
   fi
 done
+to=$(cd "${2:-$1}" && pwd)
+if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
+  SOURCE_DATE_EPOCH=$(git -C "$(dirname "$0")/.." log -1 --format=%ct 2>/dev/null || date +%s)
+fi
+export SOURCE_DATE_EPOCH
 cd "$1"
 rm -rf _CPack_Packages thimble_*.deb
 umask 022
@@ -16,4 +22,12 @@ if ! cpack -G DEB >package.log 2>&1; then
   exit 1
 fi
 rm -rf _CPack_Packages
-echo "package: $1/$(ls thimble_*.deb)"
+# CPack keeps the day that a file was written on; dpkg-deb puts it no later than the commit.
+made=$(ls thimble_*.deb)
+rm -rf package.root
+dpkg-deb -R "$made" package.root
+find package.root -exec touch -h -d "@$SOURCE_DATE_EPOCH" {} +
+[ "$to" = "$PWD" ] || rm -f "$made"
+dpkg-deb --root-owner-group -Zxz -b package.root "$to/$made" >/dev/null
+rm -rf package.root
+echo "package: ${2:-$1}/$made"

@@ -1,0 +1,21 @@
+# The flags of the builds that look for faults while they run: sanitizers, fuzzers.
+if(THIMBLE_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=address,undefined)
+  # The tests start the command thousands of times; without relocations it starts faster. The words for each check
+  # are 26 MB, looked through for leaks at every end: without, a fault is an illegal instruction (handle_sigill=1).
+  add_compile_options(-fno-pie $<$<NOT:$<BOOL:${THIMBLE_SANITIZE_WORDS}>>:-fsanitize-undefined-trap-on-error>)
+  add_link_options(-no-pie)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options(-Wno-maybe-uninitialized)  # gcc sees ghosts through the instrumentation
+  else()
+    add_compile_definitions(__SANITIZE_ADDRESS__=1)  # as gcc does; the tests choose their counts by it
+  endif()
+  # Code that is long to compile and short to run: what parses command lines, and the test cases themselves.
+  set(THIMBLE_FRONT_OPTIONS -O0)
+endif()
+if(THIMBLE_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=address,undefined)
+endif()

@@ -1,0 +1,48 @@
+#!/bin/sh
+# The library as the Arduino IDE builds it, by its builder: both examples, and the README's ball as a sketch, compiled
+# with a platform of ours, run on a Cortex-M3 of QEMU; the pictures are those that this machine draws ray by ray.
+name=arduino
+. tests/packages/common.sh
+need arduino-builder arm-none-eabi-g++
+unpack "thimble-arduino-$VERSION.zip" libraries zipfile
+here=tests/packages/arduino
+cp -R $here/hardware $here/libraries "$WORK/"
+core=$WORK/hardware/thimble/arm/cores/stub
+cp tests/checks/arduino_macros.h tests/packages/bare/start.cpp tests/packages/bare/arm.ld platform/arch/common/memory.cpp "$core/"
+awk 'BEGIN {
+  for (digits = 1; digits <= 8; ++digits) {
+    for (value = 0; value < 2 ^ digits; ++value) {
+      name = ""
+      for (place = digits - 1; place >= 0; --place) { name = name int(value / 2 ^ place) % 2 }
+      print "#define B" name " " value
+    }
+  }
+}' >"$core/binary.h"
+mkdir -p "$WORK/sketches/Ball" "$WORK/tools"
+printf 'int ball();\nvoid setup() { exit(ball()); }\nvoid loop() {}\n' >"$WORK/sketches/Ball/Ball.ino"
+{ printf '#include <thimble.h>\n#define main ball\n'; cat platform/examples/ball/main.cpp; } >"$WORK/sketches/Ball/ball.cpp"
+cp -R "$WORK/libraries/thimble/examples/SSD1306" "$WORK/libraries/thimble/examples/ST7789" "$WORK/sketches/"
+
+# One folder for all, so that the library is compiled once.
+all=$(cd "$WORK" && pwd)
+mkdir -p "$all/cache"
+for sketch in Ball SSD1306 ST7789; do
+  mkdir -p "$all/build/$sketch"
+  logged arduino-builder -compile -hardware /usr/share/arduino-builder -hardware "$all/hardware" -tools "$all/tools" \
+    -libraries "$all/libraries" -fqbn thimble:arm:m3 -ide-version 10819 -warnings all -build-path "$all/build/$sketch" \
+    -build-cache "$all/cache" "$all/sketches/$sketch/$sketch.ino"
+  grep -hE '^Sketch uses|^Global variables' "$WORK/log" | sed "s/^/$name: $sketch: /" || true
+done
+command -v qemu-system-arm >/dev/null 2>&1 || {
+  say "skipped: nothing runs, for there is no qemu-system-arm"
+  exit 0
+}
+same_ball in_qemu arm "$all/build/Ball/Ball.ino.elf"
+for sketch in SSD1306 ST7789; do
+  color=$([ $sketch = ST7789 ] && echo true || echo false)
+  logged g++ -std=c++20 -O1 -Iinclude -I"$WORK/sketches/$sketch" -DEXPECTED_COLOR=$color $here/expected.cpp "$LIBTHIMBLE" -o "$WORK/expected"
+  "$WORK/expected" >"$WORK/$sketch.expected" || fail "the scene of $sketch draws nothing"
+  in_qemu arm "$all/build/$sketch/$sketch.ino.elf" </dev/null >"$WORK/$sketch.shown" 2>"$WORK/$sketch.err" || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
+  cmp "$WORK/$sketch.expected" "$WORK/$sketch.shown" || fail "$sketch shows another picture than this machine draws"
+done
+say "the ball and both examples, built by arduino-builder, show what they should"

@@ -1,0 +1,4 @@
+#ifndef STUB_SPI_H
+#define STUB_SPI_H
+
+#endif

@@ -1,0 +1,28 @@
+#!/bin/sh
+# The source archive with CMake: fetched by FetchContent from a file, where the ball is built; then by itself, installed in
+# an empty prefix, found by find_package and by pkg-config, moved elsewhere and found again.
+name=cmake
+. tests/packages/common.sh
+need cmake ninja
+archive=$(cd "$PACKAGES" && pwd)/thimble-$VERSION.tar.gz
+logged cmake -S tests/packages/cmake -B "$WORK/fetch" -G Ninja -DARCHIVE="$archive" -DBALL="$PWD/platform/examples/ball/main.cpp"
+logged cmake --build "$WORK/fetch" -- -j1
+same_ball "$WORK/fetch/ball"
+unpack "thimble-$VERSION.tar.gz"
+# The objects of the first build do for the second, where there is a compiler cache; else it compiles again.
+logged cmake -S "$WORK/thimble-$VERSION" -B "$WORK/build" -G Ninja
+logged cmake --build "$WORK/build" -- -j1
+logged cmake --install "$WORK/build" --prefix "$WORK/first"
+for prefix in first moved; do
+  [ $prefix = first ] || mv "$WORK/first" "$WORK/moved"
+  logged cmake -S tests/consumer -B "$WORK/found_$prefix" -G Ninja -DCMAKE_PREFIX_PATH="$(cd "$WORK/$prefix" && pwd)"
+  logged cmake --build "$WORK/found_$prefix"
+  same_ball "$WORK/found_$prefix/consumer"
+done
+if command -v pkg-config >/dev/null 2>&1; then
+  export PKG_CONFIG_PATH="$WORK/moved/lib/pkgconfig"
+  [ "$(pkg-config --modversion thimble)" = "$VERSION" ] || fail "pkg-config says version $(pkg-config --modversion thimble)"
+  logged c++ -std=c++17 platform/examples/ball/main.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/by_pkg_config"
+  same_ball "$WORK/by_pkg_config"
+fi
+say "FetchContent, find_package and pkg-config, the prefix moved: the ball is drawn (CPM is not here: it calls FetchContent)"

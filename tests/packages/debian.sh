@@ -1,0 +1,36 @@
+#!/bin/sh
+# The .deb, unpacked in an empty root: lintian has nothing to say, the command draws, the library is found by pkg-config.
+name=debian
+. tests/packages/common.sh
+need dpkg-deb
+deb=$(ls "$PACKAGES"/thimble_*.deb 2>/dev/null) || {
+  say "skipped: no .deb was made here"
+  exit 0
+}
+if command -v lintian >/dev/null 2>&1; then
+  logged lintian --fail-on error,warning --allow-root "$deb"
+else
+  say "skipped: lintian is not installed"
+fi
+case $(dpkg-deb -f "$deb" Version) in "$VERSION"*) ;; *) fail "its version is $(dpkg-deb -f "$deb" Version)" ;; esac
+mkdir -p "$WORK/root"
+# Installed as dpkg does it, but for what it depends on, in a root of its own.
+if [ "$(id -u)" -eq 0 ]; then
+  mkdir -p "$WORK/root/var/lib/dpkg/updates" "$WORK/root/var/lib/dpkg/info"
+  : >"$WORK/root/var/lib/dpkg/status"
+  logged dpkg --root="$(cd "$WORK/root" && pwd)" --force-depends --force-script-chrootless --log=/dev/null --install "$(cd "$PACKAGES" && pwd)/$(basename "$deb")"
+  dpkg --root="$(cd "$WORK/root" && pwd)" --verify thimble >"$WORK/verify" 2>&1 && [ ! -s "$WORK/verify" ] || fail "dpkg --verify: $(cat "$WORK/verify")"
+else
+  logged dpkg-deb -x "$deb" "$WORK/root"
+fi
+for file in bin/thimble include/thimble/thimble.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake lib/pkgconfig/thimble.pc \
+  share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz; do
+  [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
+done
+env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
+if command -v pkg-config >/dev/null 2>&1; then
+  export PKG_CONFIG_PATH="$WORK/root/usr/lib/pkgconfig"
+  logged c++ -std=c++17 platform/examples/ball/main.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/ball"
+  same_ball "$WORK/ball"
+fi
+say "$(basename "$deb"): lintian, dpkg, the command and the library: the ball is drawn"

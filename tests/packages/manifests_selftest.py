@@ -1,0 +1,90 @@
+"""Shows the rules of manifests.py archives with one fault each; every one must be named: manifests_selftest.py FOLDER"""
+
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import manifests  # noqa: E402
+from manifests import LINK, VERSION  # noqa: E402
+
+ARDUINO = f"thimble-arduino-{VERSION}.zip"
+PLATFORMIO = f"thimble-platformio-{VERSION}.tar.gz"
+IDF = f"thimble-esp-idf-{VERSION}.tar.gz"
+PAIR = f"thimble-pair-{VERSION}.zip"
+SOURCE = f"thimble-{VERSION}.tar.gz"
+
+
+def put(name, file, data):
+    return lambda loaded: loaded[name].__setitem__(file, data)
+
+
+def drop(name, file):
+    return lambda loaded: loaded[name].pop(file)
+
+
+def swap(name, file, old, new):
+    def change(loaded):
+        data = loaded[name][file]
+        assert old in data, f"{file} of {name} does not say {old}"
+        loaded[name][file] = data.replace(old, new)
+
+    return change
+
+
+PROPERTIES = "thimble/library.properties"
+version = VERSION.encode()
+CASES = [
+    ("was not made", lambda loaded: loaded.pop(PAIR)),
+    ("no plain file", put(ARDUINO, "thimble/src/link.h", LINK)),
+    ("leads out", put(SOURCE, f"thimble-{VERSION}/../evil.h", b"")),
+    ("lies outside", put(IDF, "other/file.h", b"")),
+    ("some system does not take", put(IDF, "thimble/a:b.h", b"")),
+    ("differ by case", put(PLATFORMIO, "license", b"")),
+    ("there is no LICENSE", drop(PLATFORMIO, "LICENSE")),
+    ("does not say Thimble", swap(PLATFORMIO, "README.md", version, b"9.9.9")),
+    ("not that of the tree", put(PAIR, "thimble/LICENSE", b"none")),
+    ("says @VERSION@", put(PAIR, "thimble/extra.txt", b"@VERSION@")),
+    ("include/thimble/base/vec.h is missing", drop(PLATFORMIO, "include/thimble/base/vec.h")),
+    ("src/base/bits.h is missing", drop(ARDUINO, "thimble/src/core/base/bits.h")),
+    ("which is not there", put(ARDUINO, "thimble/src/core/base/more.cpp", b'#include "thimble/base/vec.h"\n')),
+    ("include/thimble/base/vec.h is missing", swap(PAIR, "thimble/thimble.h", b"// ---- include/thimble/base/vec.h", b"//")),
+    ("not FIELD=VALUE", put(ARDUINO, PROPERTIES, b"name\n")),
+    ("says no url", swap(ARDUINO, PROPERTIES, b"url=", b"#url=")),
+    ("Arduino knows no license", swap(ARDUINO, PROPERTIES, b"url=", b"license=MIT\nurl=")),
+    ("is none", swap(ARDUINO, PROPERTIES, b"name=thimble", b"name=a:b")),
+    ("says version 1.x", swap(ARDUINO, PROPERTIES, b"version=" + version, b"version=1.x")),
+    ("no category Voxels", swap(ARDUINO, PROPERTIES, b"=Display", b"=Voxels")),
+    ("src/other.h is not there", swap(ARDUINO, PROPERTIES, b"includes=thimble.h", b"includes=other.h")),
+    ("expects none", put(ARDUINO, "thimble/thimble.h", b"")),
+    ("none of Arduino's", put(ARDUINO, "thimble/include/a.h", b"")),
+    ("has no Empty.ino", put(ARDUINO, "thimble/examples/Empty/scene.h", b"")),
+    ("is no JSON", put(PLATFORMIO, "library.json", b"{")),
+    ("PlatformIO knows no sources", swap(PLATFORMIO, "library.json", b'"name"', b'"sources": 1, "name"')),
+    ("library.json says version 9", swap(PLATFORMIO, "library.json", version, b"9.9.9")),
+    ("the srcDir sources is not there", swap(PLATFORMIO, "library.json", b'"srcDir": "src"', b'"srcDir": "sources"')),
+    ("include/none.h is not there", swap(PLATFORMIO, "library.json", b"thimble/thimble.h", b"none.h")),
+    ("idf_component.yml says version 9", swap(IDF, "thimble/idf_component.yml", version, b"9.9.9")),
+    ("which ESP-IDF", swap(IDF, "thimble/idf_component.yml", b">=5.0", b"any")),
+    ("before project()", swap(IDF, "thimble/CMakeLists.txt", b"if(ESP_PLATFORM)", b"if(OTHER)")),
+    ("meson.build does not say", swap(SOURCE, f"thimble-{VERSION}/meson.build", version, b"9.9.9")),
+    ("thimble.h does not say", swap(PAIR, "thimble/thimble.h", b"Thimble " + version, b"Thimble")),
+]
+
+
+def main():
+    sound = manifests.load(sys.argv[1])
+    failed = 0
+    for wanted, change in CASES:
+        loaded = {name: dict(files) for name, files in sound.items()}
+        change(loaded)
+        faults = list(manifests.check_all(loaded))
+        if not any(wanted in fault for fault in faults):
+            print(f'manifests_selftest: nothing says "{wanted}", but: {faults}', file=sys.stderr)
+            failed = 1
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main())

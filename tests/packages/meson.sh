@@ -1,0 +1,32 @@
+#!/bin/sh
+# The source archive with Meson: as a subproject by its wrap, and installed; what is installed is found by pkg-config, and
+# the golden frames and cases of the tests, built against it, have the CRCs that they have everywhere.
+name=meson
+. tests/packages/common.sh
+need meson ninja pkg-config
+mkdir -p "$WORK/app/subprojects/packagefiles"
+cp tests/packages/meson/meson.build platform/examples/ball/main.cpp "$WORK/app/"
+cp "$PACKAGES/thimble.wrap" "$WORK/app/subprojects/"
+cp "$PACKAGES/thimble-$VERSION.tar.gz" "$WORK/app/subprojects/packagefiles/"
+logged meson setup --buildtype=release --fatal-meson-warnings "$WORK/app/build" "$WORK/app"
+logged ninja -j1 -C "$WORK/app/build"
+same_ball "$WORK/app/build/ball"
+
+unpack "thimble-$VERSION.tar.gz"
+logged meson setup --prefix=/opt/thimble --libdir=lib "$WORK/build" "$WORK/thimble-$VERSION"
+logged ninja -j1 -C "$WORK/build"
+DESTDIR="$(cd "$WORK" && pwd)/root" logged meson install --no-rebuild -C "$WORK/build"
+installed=$WORK/root/opt/thimble
+[ "$(cd "$installed/include" && find thimble -name '*.h' | sort)" = "$(cd include && find thimble -name '*.h' | sort)" ] ||
+  fail "the headers installed are not those of the tree"
+export PKG_CONFIG_PATH="$installed/lib/pkgconfig"
+[ "$(pkg-config --modversion thimble)" = "$VERSION" ] || fail "pkg-config says version $(pkg-config --modversion thimble)"
+flags=$(pkg-config --define-variable=prefix="$installed" --cflags --libs thimble)
+case $flags in *"$installed/include"*"$installed/lib"*-lthimble*) ;; *) fail "pkg-config says $flags" ;; esac
+logged c++ -std=c++17 platform/examples/ball/main.cpp $flags -o "$WORK/ball"
+same_ball "$WORK/ball"
+apps=platform/apps
+logged c++ -std=c++17 -O1 -Itests -Iplatform tests/golden/*.cpp tests/portable/*.cpp $apps/selftest.cpp $apps/golden.cpp $apps/lit.cpp \
+  $apps/cases.cpp $flags -o "$WORK/golden"
+logged "$WORK/golden"
+say "subproject, installed and found by pkg-config: $(grep -c passed "$WORK/log") groups of golden frames and cases pass, the ball is drawn"

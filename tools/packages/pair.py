@@ -1,0 +1,75 @@
+"""The pair: all public headers as thimble.h, all of src as thimble.cpp; a C face stays a file of its own."""
+
+import posixpath
+
+import tree
+
+
+def is_c(name):
+    """A header that C can read cannot go into one that it cannot."""
+    return name.endswith("_c.h")
+
+
+def _resolve(of, path):
+    """The file that an include in `of` means."""
+    if path.startswith("thimble/"):
+        return "include/" + path
+    return posixpath.normpath(posixpath.join(posixpath.dirname(of), path))
+
+
+class _Text:
+    """Files one after the other, each once, what they include before them."""
+
+    def __init__(self, done=()):
+        self.parts = []
+        self.done = set(done)
+
+    def add(self, name):
+        if name in self.done:
+            return
+        self.done.add(name)
+        wanted = []
+
+        def drop(_, path):
+            target = _resolve(name, path)
+            if is_c(target):
+                return b'#include "' + posixpath.basename(target).encode() + b'"'
+            wanted.append(target)
+            return b""
+
+        data = tree.each_include(tree.read(name), drop)
+        for target in wanted:
+            self.add(target)
+        self.parts.append(f"// ---- {name}\n".encode() + data.strip() + b"\n")
+
+
+def _opening(what, version):
+    return (
+        f"// Thimble {version}: {what} Written by `make packages` from the tree; change that, not this.\n"
+        "// MIT licence, see LICENSE.\n"
+    ).encode()
+
+
+def files(_):
+    version = tree.version()
+    header = _Text()
+    # The tour of the first page goes first.
+    for name in ["include/thimble/thimble.h"] + tree.headers():
+        if not is_c(name):
+            header.add(name)
+    source = _Text(header.done)
+    for name in tree.sources():
+        if name.endswith(".cpp"):
+            source.add(name)
+    made = {
+        "thimble.h": _opening("the public headers, all in one.", version) + b"\n#pragma once\n\n"
+        + b"\n".join(header.parts),
+        "thimble.cpp": _opening("the core, to be compiled as C++17 beside your own files.", version)
+        + b'\n#include "thimble.h"\n\n' + b"\n".join(source.parts),
+        **tree.common("pair"),
+    }
+    for name in tree.headers():
+        if is_c(name):
+            made[posixpath.basename(name)] = tree.read(name)
+    # Below a folder of its name, so that "thimble/thimble.h" is what it is elsewhere.
+    return {"thimble-pair-{version}.zip": tree.below("thimble", made)}
