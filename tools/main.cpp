@@ -130,7 +130,10 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
     return name + (twice ? " is given more than once" : " needs a value") + advice;
   }
   const std::string text = error.what();
-  return (text == "scene is required" ? "SCENE is required" : text) + advice;
+  return (text == "scene is required"   ? "SCENE is required"
+          : text == "parts is required" ? "PARTS are required"
+                                        : text) +
+         advice;
 }
 
 // Standard streams that are closed would be taken by the next file opened, and a picture would get the

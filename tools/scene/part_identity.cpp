@@ -11,40 +11,46 @@
 namespace thimble::tools {
 namespace {
 
-// A structure that is no compact tree, by the bytes that it would have as one; a grid by its bits.
-void add_structure(const BuiltScene& built, CrcSum* sum) {
-  const Structure& traced = built.traced();
-  if (traced.kind == StructureKind::kDense) {
-    const Vec3i size = traced.dense.size();
-    std::vector<std::uint8_t> row(static_cast<std::size_t>(size.x + 7) / 8);
-    for (Vec3i at; at.z < size.z; ++at.z) {
-      for (at.y = 0; at.y < size.y; ++at.y) {
-        row.assign(row.size(), 0);
-        for (at.x = 0; at.x < size.x; ++at.x) {
-          row[static_cast<std::size_t>(at.x) / 8] |=
-              static_cast<std::uint8_t>(traced.dense.solid_at(at) ? 1U << (at.x & 7) : 0U);
-        }
-        sum->add(row);
+// A grid knows neither materials nor light.
+void add_grid(const DenseGrid& grid, CrcSum* sum) {
+  const Vec3i size = grid.size();
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(size.x + 7) / 8);
+  for (Vec3i at; at.z < size.z; ++at.z) {
+    for (at.y = 0; at.y < size.y; ++at.y) {
+      row.assign(row.size(), 0);
+      for (at.x = 0; at.x < size.x; ++at.x) {
+        const auto byte = static_cast<std::size_t>(at.x) / 8;
+        row[byte] = static_cast<std::uint8_t>(row[byte] | (grid.solid_at(at) ? 1U << (at.x & 7) : 0U));
       }
+      sum->add(row);
     }
-    return;
   }
-  if (traced.kind == StructureKind::kCompact) {
-    sum->add({traced.compact.bytes(), traced.compact.size_bytes()});
-    return;
-  }
-  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(traced.pool)));
+}
+
+void add_tree(const CompactTree& tree, const SceneSource& source, CrcSum* sum) {
+  sum->add(std::span(tree.bytes(), tree.size_bytes()));
+  LitDescription lit = source.lighting();
+  const UsedMaterials used = used_materials(tree);
+  lit.find_glow(tree);
+  add_lighting(lit, used, called_for(lit, used), tree.level(), sum);
+}
+
+// By the bytes that it has as a compact tree.
+void add_pool(const Octree& pool, const SceneSource& source, CrcSum* sum) {
+  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
   CompactTree tree;
-  if (CompactTree::make(traced.pool, {bytes.data(), bytes.size()}, &tree) != Status::kOk) {
+  if (CompactTree::make(pool, {bytes.data(), bytes.size()}, &tree) != Status::kOk) {
     throw InputError("is too large for parts of a picture with --structure pool");
   }
-  sum->add(bytes);
+  add_tree(tree, source, sum);
 }
 
 }  // namespace
 
 void CrcSum::add(std::span<const std::uint8_t> bytes) {
-  crc_ = static_cast<std::uint32_t>(crc32_z(crc_, bytes.data(), bytes.size()));
+  if (!bytes.empty()) {  // of no bytes at no address zlib says 0, whatever came before
+    crc_ = static_cast<std::uint32_t>(crc32_z(crc_, bytes.data(), bytes.size()));
+  }
 }
 
 void CrcSum::add(std::string_view text) {
@@ -61,17 +67,22 @@ void CrcSum::add(std::int64_t number) {
 }
 
 std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built) {
+  const Structure& traced = built.traced();
   CrcSum sum;
-  sum.add_all(built.level(), built.structure() == StructureKind::kDense);
-  add_structure(built, &sum);
+  sum.add_all(built.level(), traced.kind == StructureKind::kDense);
   for (const Rgb8& color : built.palette()) {
     sum.add_all(color.r, color.g, color.b);
   }
-  if (built.structure() == StructureKind::kCompact) {
-    LitDescription lit = source.lighting();
-    const UsedMaterials used = used_materials(built.compact());
-    lit.find_glow(built.compact());
-    add_lighting(lit, used, called_for(lit, used), built.level(), &sum);
+  switch (traced.kind) {
+    case StructureKind::kDense:
+      add_grid(traced.dense, &sum);
+      break;
+    case StructureKind::kPool:
+      add_pool(traced.pool, source, &sum);
+      break;
+    case StructureKind::kCompact:
+      add_tree(traced.compact, source, &sum);
+      break;
   }
   return sum.value();
 }
