@@ -17,6 +17,7 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/output_file.h"
+#include "output/suggestion.h"
 #include "output/units.h"
 #include "readers/source.h"
 #include "scene/generators.h"
@@ -49,6 +50,14 @@ std::vector<std::string> subcommand_names(const CLI::App& app) {
     names.push_back(command->get_name());
   }
   return names;
+}
+
+// What the first argument may be: a subcommand, or the name of a scene.
+std::vector<std::string> first_words(const CLI::App& app) {
+  std::vector<std::string> words = subcommand_names(app);
+  const std::vector<std::string> scenes = thimble::tools::scene_names();
+  words.insert(words.end(), scenes.begin(), scenes.end());
+  return words;
 }
 
 // Whether the first argument is a scene, so that the command is to show it: a file, a generator, the name of a
@@ -92,7 +101,7 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
     return first.starts_with("-") ? in_quotes(first) + " is not an option here" +
                                         thimble::tools::suggestion(first, option_names(app)) + advice
                                   : in_quotes(first) + " is neither a subcommand nor a file" +
-                                        thimble::tools::suggestion(first, subcommand_names(app)) + advice;
+                                        thimble::tools::suggestion(first, first_words(app)) + advice;
   }
   const std::vector<std::string> extras = app.remaining(true);
   // What is required may be missing because it follows an option that is not there.
@@ -121,7 +130,10 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
     return name + (twice ? " is given more than once" : " needs a value") + advice;
   }
   const std::string text = error.what();
-  return (text == "scene is required" ? "SCENE is required" : text) + advice;
+  return (text == "scene is required"   ? "SCENE is required"
+          : text == "parts is required" ? "PARTS are required"
+                                        : text) +
+         advice;
 }
 
 // Standard streams that are closed would be taken by the next file opened, and a picture would get the

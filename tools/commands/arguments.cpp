@@ -53,29 +53,6 @@ std::string entry(const std::string& label, const std::string& text) {
   return out + wrapped(text, kHelpColumn) + '\n';
 }
 
-// Letters to add, leave out, change or swap with their neighbour, to get from one word to the other (the
-// optimal string alignment distance).
-std::size_t typing_distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> before;
-  std::vector<std::size_t> last;
-  std::vector<std::size_t> row(to.size() + 1);
-  for (std::size_t j = 0; j <= to.size(); ++j) {
-    row[j] = j;
-  }
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    before = std::move(last);
-    last = row;
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (from[i - 1] == to[j - 1] ? 0U : 1U)});
-      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1]) {
-        row[j] = std::min(row[j], before[j - 2] + 1);
-      }
-    }
-  }
-  return row[to.size()];
-}
-
 class HelpFormatter final : public CLI::Formatter {
  public:
   std::string make_description(const CLI::App* app) const override {
@@ -177,6 +154,11 @@ Option add_argument(CLI::App& app, const std::string& name, const std::string& t
   return Option(app.add_option(name, *text, help)->type_name(type_name));
 }
 
+Option add_arguments(CLI::App& app, const std::string& name, const std::string& type_name,
+                     std::vector<std::string>* texts, const std::string& help) {
+  return Option(app.add_option(name, *texts, help)->type_name(type_name));
+}
+
 void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::string& help) {
   app.add_flag(name, *flag, help)->disable_flag_override();
 }
@@ -276,24 +258,6 @@ std::vector<std::string> options_given(const CLI::App& app) {
     }
   }
   return names;
-}
-
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& candidate : words) {
-    const std::size_t distance = typing_distance(word, candidate);
-    if (distance < least) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
-}
-
-std::string suggestion(std::string_view word, const std::vector<std::string>& words) {
-  const std::string nearest = nearest_word(word, words);
-  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
 void add_help_lines(CLI::App& command, const std::string& text) {

@@ -57,6 +57,9 @@ void also_check(CLI::App& command, std::function<void()> check);
 /// An argument without a name on the command line; `name` is for the functions below.
 Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
                     const std::string& help);
+/// The same for one or more of them, or none.
+Option add_arguments(CLI::App& app, const std::string& name, const std::string& type_name,
+                     std::vector<std::string>* texts, const std::string& help);
 /// An option without a value: `flag` becomes true.
 void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::string& help);
 
@@ -90,13 +93,6 @@ bool is_given(const CLI::App& app, const std::string& name);
 std::string text_given(const CLI::App& app, const std::string& name);
 /// The names of all that the user gave.
 std::vector<std::string> options_given(const CLI::App& app);
-
-/// The one of `words` that somebody who typed `word` most likely meant: at most a third of its letters are
-/// missing, too many, wrong or swapped with their neighbour. Empty for none.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
-
-/// " (did you mean render?)", or nothing.
-std::string suggestion(std::string_view word, const std::vector<std::string>& words);
 
 /// Lines below the options in the help of `command`, as they stand.
 void add_help_lines(CLI::App& command, const std::string& text);

@@ -14,6 +14,7 @@ namespace thimble::tools {
 // Each adds its subcommand with options, help and what it does when it is chosen.
 void add_view_command(CLI::App& app);
 void add_render(CLI::App& app);
+void add_join(CLI::App& app);
 void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
@@ -35,6 +36,7 @@ std::string version_text();
 inline void add_all_commands(CLI::App& app) {
   add_view_command(app);
   add_render(app);
+  add_join(app);
   add_trace(app);
   add_table(app);
   add_bake(app);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "commands/arguments.h"
+#include "output/suggestion.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {

@@ -10,6 +10,7 @@
 #include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "commands/part_options.h"
 #include "commands/render_command.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
@@ -22,6 +23,7 @@
 #include "scene/lit_setup.h"
 #include "scene/painter.h"
 #include "scene/painting.h"
+#include "scene/part_identity.h"
 
 namespace thimble::tools {
 namespace {
@@ -44,17 +46,17 @@ void check_look(const RenderCommand& command) {
         "--background and --ground are for pictures in the scene's own look, without --shade, --effects, "
         "--structure, --engine, --cutoff, --max-depth and --board");
   }
-  const bool is_film = command.output.ends_with(".gif") || command.output.ends_with(".y4m");
-  if (is_film != (command.turntable != 0)) {
-    refuse_usage(is_film ? "a .gif and a .y4m are films, which want --turntable"
-                         : "--turntable makes a film: -o wants a .gif or .y4m");
+  check_output(command);
+  const bool is_turned = command.turntable != 0;
+  if (command.is_film() && (!look || !command.hits_path.empty() || !command.depth_path.empty() ||
+                            (is_turned && command.view.eye))) {
+    refuse_usage(std::string(is_turned ? "--turntable shows the scene's own look from all sides"
+                                       : "--camera-path shows the scene's own look") +
+                 ", without --shade, --effects, --structure, --engine, --cutoff, --max-depth, --board, "
+                 "--eye, --hits and "
+                 "--depth-image");
   }
-  if (is_film && (!look || !command.hits_path.empty() || !command.depth_path.empty() || command.view.eye)) {
-    refuse_usage(
-        "--turntable shows the scene's own look from all sides, without --shade, --effects, --structure, "
-        "--engine, --cutoff, --max-depth, --board, --eye, --hits and --depth-image");
-  }
-  if (command.look.background.kind == BackgroundKind::kNone &&
+  if (command.look.background.kind == BackgroundKind::kNone && !command.rows &&
       image_kind(command.output) != ImageKind::kPng) {
     refuse_usage("--background none wants a .png, the one that holds what is transparent");
   }
@@ -177,10 +179,11 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
   return subject;
 }
 
+// The whole picture, or --rows of it.
 Status paint_with(const std::unique_ptr<BandPainter>& painter, const Subject& subject,
                   const Progress& progress, Painting* painting) {
-  return paint(*painter, subject.camera().width_px(), subject.camera().height_px(), subject.format, progress,
-               painting);
+  const RowRange rows = subject.command.rows.value_or(RowRange{0, subject.camera().height_px()});
+  return paint(*painter, subject.camera().width_px(), rows, subject.format, progress, painting);
 }
 
 // Throws InputError for a camera whose rays it does not take.
@@ -268,15 +271,65 @@ Stats stats_of(const Subject& subject, const SceneSource& source, const Light& l
   return stats;
 }
 
+// The part of a picture that --rows are, but for its size and place.
+PartHeader part_of(const Subject& subject, const SceneSource& source, const Light& light) {
+  const RenderCommand& command = subject.command;
+  const Quality& quality = command.quality;
+  const bool is_lit = light.effects != Effect::kNone;
+  PartHeader part;
+  part.has_finer_shades = is_lit && quality.across == 1 && subject.format == PixelFormat::kRgb888;
+  part.scene_crc32 = scene_crc32(source, subject.built);
+  CrcSum camera;
+  add_camera(subject.framing.kept, &camera);
+  part.camera_crc32 = camera.value();
+  CrcSum options;
+  options.add_all(command.shade, subject.format, quality.across, quality.cutoff.raw, quality.max_depth);
+  if (is_lit) {
+    add_lighting(light.lighting, light.used, light.effects, subject.built.level(), &options);
+  }
+  part.options_crc32 = options.value();
+  return part;
+}
+
+// What is wrong with the numbers of rows and frames.
+void check_part_size(RenderCommand* command) {
+  if (command->rows) {
+    check_range("--rows", *command->rows, command->view.height_px,
+                "the picture of " + std::to_string(command->view.height_px) + " rows");
+  }
+  if (!command->camera_path.empty()) {
+    command->path = read_camera_path(command->camera_path, command->view);
+    if (command->path.has_fov && (command->fov_given || command->view.orthographic)) {
+      refuse_usage("--camera-path", command->fov_given ? "its fov is the angle, without --fov"
+                                                       : "its fov is the angle of --projection perspective");
+    }
+  }
+  if (command->frames) {
+    const std::int64_t all = command->turntable != 0
+                                 ? command->turntable
+                                 : static_cast<std::int64_t>(command->path.cameras.size());
+    check_range("--part", *command->frames, all, "the film of " + std::to_string(all) + " frames");
+  }
+}
+
+// How the picture is kept: a part as a .ppm holds it, unless it is to be rows of a .pbm.
+ImageKind kind_of(const RenderCommand& command) {
+  if (command.rows) {
+    return is_mono_part(command.output) ? ImageKind::kPbm : ImageKind::kPpm;
+  }
+  return image_kind(command.output).value_or(ImageKind::kPpm);
+}
+
 // From a file to a picture: reader, source, builder, tree, painter, output.
 void run(const RenderCommand& given) {
   RenderCommand command = given;
   check_usage(command);
   use_display(command.scene.board, &command.view);
+  check_part_size(&command);
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
   OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},
-                    {command.scene.arguments.scene});
-  const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
+                    {command.scene.arguments.scene, command.camera_path});
+  const ImageKind kind = kind_of(command);
   // A board's picture is drawn as its display takes it.
   const PixelFormat format =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
@@ -309,7 +362,11 @@ void run(const RenderCommand& given) {
   bar.clear();
 
   const Image shown = converted(painting.image, pixel_format(kind));
-  write_image(outputs[kPicture], kind, shown);
+  if (command.rows) {
+    write_rows(outputs[kPicture], part_of(subject, *source, light), shown, subject.camera().height_px());
+  } else {
+    write_image(outputs[kPicture], kind, shown);
+  }
   if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
     write_hits(command, frame, subject.camera(), outputs[kHits], outputs[kDepths]);
   }
@@ -347,6 +404,21 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
       app, "--turntable", "N", 2, 1000,
       [command](std::int64_t frames) { command->turntable = static_cast<int>(frames); },
       "a film of N frames once around the scene, six seconds long");
+  add_path_option(
+      app, "--camera-path", "FILE.csv", &command->camera_path,
+      std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);
+  for (const char* const place : {"--eye", "--target", "--up", "--view", "--turn", "--tilt", "--turntable"}) {
+    exclude_each_other(app, "--camera-path", place);
+  }
+  add_range(
+      app, "--rows", &command->rows,
+      "draw only COUNT rows of the picture from row FIRST on, counted from 0 at the top, and write them as a "
+      "part for thimble join, called as you like but for the endings below (with light, F.pbm.part for a "
+      ".pbm); of several machines each may draw some");
+  add_range(
+      app, "--part", &command->frames,
+      "with --turntable or --camera-path: draw only COUNT frames from frame FIRST on, counted from 0, and "
+      "write them as a part for thimble join");
   add_flag(app, "--verbose", &command->verbose, "say on standard error what the scene's look came to");
 }
 
@@ -436,11 +508,10 @@ void add_render(CLI::App& app) {
       *sub, "-o,--output", "FILE",
       [command](const std::string& text) {
         command->output = text;
-        const bool is_film = text.ends_with(".gif") || text.ends_with(".y4m");
-        return image_kind(text) || is_film ? "" : "does not end in .ppm, .pgm, .pbm or .png";
+        return text.empty() ? "is not a file's name" : "";
       },
       "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output; with --turntable "
-      "a .gif or .y4m")
+      "or --camera-path a .gif or .y4m")
       .required();
   add_picture_view(*sub, &command->view);
   add_shade(*sub, &command->shade,
@@ -461,7 +532,10 @@ void add_render(CLI::App& app) {
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
   add_paragraph_below(*sub, kDefaultLookText);
-  when_chosen(*sub, [command] { run(*command); });
+  when_chosen(*sub, [command, sub] {
+    command->fov_given = is_given(*sub, "--fov");
+    run(*command);
+  });
 }
 
 }  // namespace thimble::tools

@@ -3,12 +3,15 @@
 #ifndef THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
 #define THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
 
+#include <optional>
 #include <string>
 
+#include "commands/camera_path.h"
 #include "commands/effect_options.h"
 #include "commands/engine_options.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
+#include "output/image.h"
 #include "output/output_set.h"
 #include "scene/default_look.h"
 #include "scene/framing.h"
@@ -26,12 +29,19 @@ struct RenderCommand {
   LookWishes look;
   bool wishes_look = false;  ///< --background or --ground
   bool verbose = false;
-  int turntable = 0;  ///< frames of a film; 0: a picture
+  int turntable = 0;        ///< frames of a film; 0: none
+  std::string camera_path;  ///< a file of a film's cameras; empty: none
+  bool fov_given = false;
+  CameraPath path;                 ///< what it holds, once it is read
+  std::optional<RowRange> rows;    ///< a part of a picture
+  std::optional<RowRange> frames;  ///< a part of a film
   ShadeMode shade = ShadeMode::kDepth;
   std::string shade_name;  ///< empty unless given
   std::string output;
   std::string hits_path;
   std::string depth_path;
+
+  bool is_film() const { return turntable != 0 || !camera_path.empty(); }
 };
 
 /// The files that it writes, by their place in the set.
@@ -50,7 +60,7 @@ void print_summary(const Stats& stats, const std::string& note);
 
 /// Whether the scene's own look is drawn: nobody said how to shade, and nothing that was said forbids light.
 bool takes_look(const RenderCommand& command);
-/// Draws that: a picture, or a film with --turntable.
+/// Draws that: a picture, or a film with --turntable or --camera-path; or a part of one.
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
 
 }  // namespace thimble::tools

@@ -6,16 +6,16 @@
 #include <memory>
 #include <vector>
 
+#include "commands/part_options.h"
 #include "commands/render_command.h"
-#include "host/packed_picture.h"
-#include "host/y4m.h"
-#include "output/gif.h"
 #include "output/image.h"
+#include "output/part_file.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "scene/film.h"
 #include "scene/lit_setup.h"
 #include "scene/look_picture.h"
-#include "scene/palette.h"
+#include "scene/part_identity.h"
 #include "scene/scene_shape.h"
 
 namespace thimble::tools {
@@ -44,7 +44,13 @@ class LookStudio {
   void look_from(const Framing& framing) {
     framing_ = framing;
     look_ = default_look(facts_, wishes_, framing_, command_.view.width_px, command_.view.height_px);
-    canvas_ = {&built_.compact(), &look_, &framing_, fine_camera(), built_.band(), command_.engine.threads};
+    canvas_ = {&built_.compact(),
+               &look_,
+               &framing_,
+               fine_camera(),
+               built_.band(),
+               command_.engine.threads,
+               command_.rows.value_or(RowRange{})};
     if (exposure_ == 0) {
       exposure_ = measured_exposure(canvas_);  // of the first view for all, so that a film does not flicker
     }
@@ -159,15 +165,39 @@ void end(const RenderCommand& command, const Stats& stats, const std::string& no
   }
 }
 
+// The part of a picture or of a film that is drawn, but for what it holds. The look and the exposure are those of the
+// first picture of the whole.
+PartHeader part_of(const SceneSource& source, LookStudio& studio, const std::vector<Framing>& framings) {
+  PartHeader part;
+  part.scene_crc32 = scene_crc32(source, studio.built());
+  CrcSum camera;
+  for (const Framing& framing : framings) {
+    add_camera(framing.kept, &camera);
+  }
+  part.camera_crc32 = camera.value();
+  CrcSum options;
+  add_look(studio.look(), studio.built().level(), &options);
+  options.add_all(studio.exposure());
+  part.options_crc32 = options.value();
+  return part;
+}
+
 void render_picture(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                     OutputSet& outputs) {
   studio.look_from(frame_scene(command.view, source, studio.shape()));
   ProgressBar bar("tracing", command.scene.quiet);
   const Painting painting = studio.paint([&](double done) { bar.update(done); });
   bar.clear();
-  const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
+  ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
+  if (command.rows) {
+    kind = is_mono_part(command.output) ? ImageKind::kPbm : ImageKind::kPng;
+  }
   const Image shown = converted(painting.image, pixel_format(kind));
-  write_image(outputs[kPicture], kind, shown);
+  if (command.rows) {
+    write_rows(outputs[kPicture], part_of(source, studio, {studio.framing()}), shown, command.view.height_px);
+  } else {
+    write_image(outputs[kPicture], kind, shown);
+  }
   if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
     const Camera& camera = studio.framing().camera;
     const QualityFrame frame(studio.built(), {}, camera, camera, {}, {});
@@ -179,126 +209,90 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   end(command, stats, studio.framing().note, outputs);
 }
 
-// What a GIF shows of pictures: one palette, and the entry of each pixel. An ordered dither of a bin's width
-// hides the steps of a gradient, and stands still from frame to frame.
-class GifColors {
+// A film's frames, each when it is asked for.
+class Filming {
  public:
-  explicit GifColors(const std::vector<Painting>& samples) : map_(histogram_of(samples)) {
-    for (std::size_t i = 0; i < colors_.size(); ++i) {
-      const Rgb color = map_.palette()[i].color;
-      colors_[i] = {color.r, color.g, color.b};
-    }
+  Filming(LookStudio& studio, std::vector<Framing> framings, bool quiet)
+      : studio_(studio), framings_(std::move(framings)), bar_("filming", quiet) {
+    studio_.look_from(framings_[0]);  // the exposure of all
   }
-  const GifPalette& palette() const { return colors_; }
-  std::vector<std::uint8_t> indices(const Image& image) const {
-    std::vector<std::uint8_t> result;
-    for_pixels(image, [&](Rgb color) { result.push_back(map_.index(color)); });
-    return result;
+  const std::vector<Framing>& framings() const { return framings_; }
+  const Image& draw(std::size_t number) {
+    studio_.look_from(framings_[number]);
+    bar_.update(static_cast<double>(number) / static_cast<double>(framings_.size()));
+    last_ = studio_.paint({});
+    return last_.image;
+  }
+  // The same for one that counts.
+  const Image& shoot(std::size_t number) {
+    draw(number);
+    crc_ = add_crc(crc_, last_.image.pixels);
+    seconds_ += last_.seconds;
+    ++shot_;
+    return last_.image;
+  }
+  std::uint32_t crc() const { return crc_; }
+  // The last one, with the mean time of all.
+  Painting end() {
+    bar_.clear();
+    last_.seconds = seconds_ / std::max(1, shot_);
+    return std::move(last_);
   }
 
  private:
-  template <class Visit>
-  static void for_pixels(const Image& image, const Visit& visit) {
-    for (std::int32_t y = 0; y < image.height_px; ++y) {
-      for (std::int32_t x = 0; x < image.width_px; ++x) {
-        const std::uint8_t* rgb = image.pixels.data() + 3 * (static_cast<std::size_t>(y) *
-                                                                 static_cast<std::size_t>(image.width_px) +
-                                                             static_cast<std::size_t>(x));
-        const int nudge = static_cast<int>(bayer_rank(x, y)) / 8 - 4;
-        const auto nudged = [nudge](int value) {
-          return static_cast<std::uint8_t>(std::clamp(value + nudge, 0, 255));
-        };
-        visit(Rgb{nudged(rgb[0]), nudged(rgb[1]), nudged(rgb[2])});
-      }
-    }
-  }
-  static ColorHistogram histogram_of(const std::vector<Painting>& samples) {
-    ColorHistogram histogram;
-    for (const Painting& painting : samples) {
-      for_pixels(painting.image, [&](Rgb color) { histogram.add(color); });
-    }
-    return histogram;
-  }
-
-  PaletteMap map_;
-  GifPalette colors_{};
+  LookStudio& studio_;
+  std::vector<Framing> framings_;
+  ProgressBar bar_;
+  Painting last_;
+  std::uint32_t crc_ = 0;
+  double seconds_ = 0;
+  int shot_ = 0;
 };
 
-// The film's bytes, frame by frame.
-class Film {
- public:
-  Film(OutputFile* file, bool is_gif, int frames) : file_(file), is_gif_(is_gif), frames_(frames) {}
-  void begin(const std::vector<Painting>& samples) {
-    const Image& first = samples.front().image;
-    if (is_gif_) {
-      colors_ = std::make_unique<GifColors>(samples);
-      file_->write(gif_header(first.width_px, first.height_px, colors_->palette()));
-    } else {
-      const int rate = std::clamp(frames_ / kSeconds, 1, 60);
-      file_->write(host::y4m_header(first.width_px, first.height_px, false, rate));
-    }
+void write_part(const RenderCommand& command, PartHeader header, Filming& filming, OutputFile* file) {
+  header.kind = command.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath;
+  header.width_px = static_cast<std::uint32_t>(command.view.width_px);
+  header.height_px = static_cast<std::uint32_t>(command.view.height_px);
+  header.first = static_cast<std::uint32_t>(command.frames->first);
+  header.count = static_cast<std::uint32_t>(command.frames->count);
+  header.all = static_cast<std::uint32_t>(filming.framings().size());
+  PartWriter part(file, header);
+  for (std::size_t i = 0; i < header.count; ++i) {
+    part.add(filming.shoot(header.first + i).pixels);
   }
-  void add(const Image& image) {
-    const int hundredths = std::clamp(100 * kSeconds / frames_, 2, 100);
-    file_->write(is_gif_ ? gif_frame(image.width_px, image.height_px, colors_->indices(image), hundredths)
-                         : host::y4m_color_frame({image.pixels.data(), image.width_px, image.height_px}));
-  }
-  void end() {
-    if (is_gif_) {
-      file_->write(gif_end());
-    }
-  }
-
- private:
-  static constexpr int kSeconds = 6;
-
-  OutputFile* file_;
-  bool is_gif_;
-  int frames_;
-  std::unique_ptr<GifColors> colors_;
-};
+  part.end();
+}
 
 void render_film(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                  OutputSet& outputs) {
-  const std::vector<Framing> framings = frame_turns(command.view, studio.shape(), command.turntable);
-  ProgressBar bar("filming", command.scene.quiet);
-  const auto frame = [&](std::size_t i) {
-    studio.look_from(framings[i]);
-    bar.update(static_cast<double>(i) / static_cast<double>(framings.size()));
-    return studio.paint({});
-  };
-  // The palette comes from a few frames all around, which are then drawn once more.
-  const bool is_gif = command.output.ends_with(".gif");
-  std::vector<Painting> samples;
-  for (std::size_t i = 0; i < (is_gif ? std::size_t{4} : std::size_t{1}); ++i) {
-    samples.push_back(frame(i * framings.size() / 4));
+  Filming filming(studio,
+                  command.turntable != 0 ? frame_turns(command.view, studio.shape(), command.turntable)
+                                         : frame_path(command.camera_path, command.path, studio.shape()),
+                  command.scene.quiet);
+  const std::string note = filming.framings().front().note;
+  if (command.frames) {
+    write_part(command, part_of(source, studio, filming.framings()), filming, outputs[kPicture]);
+  } else {
+    Film film(outputs[kPicture], command.output,
+              command.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath,
+              filming.framings().size(), [&](std::size_t number) { return filming.draw(number); });
+    for (std::size_t i = 0; i < filming.framings().size(); ++i) {
+      film.add(filming.shoot(i));
+    }
+    film.end();
   }
-  Film film(outputs[kPicture], is_gif, command.turntable);
-  film.begin(samples);
-  Painting last = std::move(samples.front());
-  samples.clear();
-  double seconds = 0;
-  std::uint32_t crc = 0;
-  for (std::size_t i = 0; i < framings.size(); ++i) {
-    last = frame(i);
-    film.add(last.image);
-    crc = add_crc(crc, last.image.pixels);
-    seconds += last.seconds;
-  }
-  film.end();
-  bar.clear();
-  last.seconds = seconds / static_cast<double>(framings.size());
+  const Painting last = filming.end();
   Stats stats = stats_of(command, source, studio, last);
-  stats.frame_crc32 = crc_text(crc);
+  stats.frame_crc32 = crc_text(filming.crc());
   print_look(command, studio);
-  end(command, stats, framings.front().note, outputs);
+  end(command, stats, note, outputs);
 }
 
 }  // namespace
 
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs) {
   LookStudio studio(command, source);
-  if (command.turntable != 0) {
+  if (command.is_film()) {
     render_film(command, source, studio, outputs);
   } else {
     render_picture(command, source, studio, outputs);

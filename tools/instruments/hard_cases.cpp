@@ -18,9 +18,9 @@ namespace {
 using Components = std::array<std::int64_t, 3>;
 
 // A random number generator whose numbers are the same in every library.
-class Draw {
+class HardDraw {
  public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  explicit HardDraw(std::uint64_t seed) : random_(seed) {}
   /// low .. high, both included.
   std::int64_t from(std::int64_t low, std::int64_t high) {
     return low + static_cast<std::int64_t>(random_() % (static_cast<std::uint64_t>(high - low) + 1));
@@ -69,7 +69,7 @@ struct CaseWorld {
   static reference::BitGrid filled(int level, int one_in, std::uint64_t seed) {
     const int side = 1 << level;
     reference::BitGrid grid({side, side, side});
-    Draw draw(seed);
+    HardDraw draw(seed);
     for (int z = 0; z < side; ++z) {
       for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
@@ -87,7 +87,7 @@ struct CaseWorld {
 
 constexpr std::int64_t kOneQ8 = 256;
 
-Components any_direction(Draw& draw) {
+Components any_direction(HardDraw& draw) {
   Components direction{};
   while (direction == Components{}) {
     for (std::int64_t& component : direction) {
@@ -99,7 +99,7 @@ Components any_direction(Draw& draw) {
 
 // Back from a point along a direction, so that the ray goes exactly through the point: as far as keeps it
 // near the world.
-Components before(Draw& draw, const Components& point, const Components& direction, std::int64_t side) {
+Components before(HardDraw& draw, const Components& point, const Components& direction, std::int64_t side) {
   std::int64_t most = 1;  // a direction is not zero
   for (const std::int64_t component : direction) {
     most = std::max(most, component < 0 ? -component : component);
@@ -112,7 +112,7 @@ Components before(Draw& draw, const Components& point, const Components& directi
   return origin;
 }
 
-Components short_direction(Draw& draw) {
+Components short_direction(HardDraw& draw) {
   Components direction{};
   for (std::int64_t& component : direction) {
     component = draw.sign() * draw.from(1, 300);
@@ -136,17 +136,17 @@ std::int64_t inverse(std::int64_t value, std::int64_t modulus) {
   return x < 0 ? x + modulus : x;
 }
 
-Components corner(Draw& draw, std::int64_t side) {
+Components corner(HardDraw& draw, std::int64_t side) {
   return {kOneQ8 * draw.from(0, side), kOneQ8 * draw.from(0, side), kOneQ8 * draw.from(0, side)};
 }
-Components inside(Draw& draw, std::int64_t side) {
+Components inside(HardDraw& draw, std::int64_t side) {
   return {draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1)};
 }
 
 struct HardCase {
   const char* name;
   int level;
-  reference::Ray (*make)(Draw& draw, std::int64_t side);
+  reference::Ray (*make)(HardDraw& draw, std::int64_t side);
 };
 
 constexpr int kSmall = 6;
@@ -154,11 +154,11 @@ constexpr int kLarge = 8;
 
 const HardCase kCases[] = {
     {"any ray", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        return reference::Ray{inside(draw, side), any_direction(draw)};
      }},
     {"through an edge", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        Components point = corner(draw, side);
        point[static_cast<std::size_t>(draw.from(0, 2))] = draw.from(0, kOneQ8 * side);
        const Components direction = short_direction(draw);
@@ -166,21 +166,21 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"through a corner", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
        const Components direction = short_direction(draw);
        const Components origin = before(draw, point, direction, side);
        return reference::Ray{origin, direction};
      }},
     {"through a row of corners", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
        const std::int64_t size = draw.from(1, 32767);
        const Components direction{draw.sign() * size, draw.sign() * size, draw.sign() * size};
        return reference::Ray{point, direction};
      }},
     {"in a face", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = inside(draw, side);
        origin[axis] = kOneQ8 * draw.from(0, side - 1);
@@ -190,7 +190,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"in an edge", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = corner(draw, side);
        origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
@@ -199,20 +199,20 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"starts on a face", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
        origin[static_cast<std::size_t>(draw.from(0, 2))] = kOneQ8 * draw.from(0, side);
        const Components direction = any_direction(draw);
        return reference::Ray{origin, direction};
      }},
     {"starts in a corner", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const Components origin = corner(draw, side);
        const Components direction = any_direction(draw);
        return reference::Ray{origin, direction};
      }},
     {"starts a hair off a face", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        origin[axis] = kOneQ8 * draw.from(0, side);
@@ -221,7 +221,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"almost along an axis", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = corner(draw, side);
        origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
@@ -233,7 +233,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"an edge, missed by the least", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        // The order of two planes, s_a * d_b - s_b * d_a, is 1: no ray with such directions comes closer to an
        // edge without touching it.
        std::int64_t d_a = 0;
@@ -259,7 +259,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"from four worlds away", kSmall,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        Components origin{};
        for (std::int64_t& component : origin) {
          component = draw.sign() < 0 ? draw.from(-4 * kOneQ8 * side, -3 * kOneQ8 * side)
@@ -273,11 +273,11 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"a large world, any ray", kLarge,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        return reference::Ray{inside(draw, side), any_direction(draw)};
      }},
     {"a large world, corners", kLarge,
-     [](Draw& draw, std::int64_t side) {
+     [](HardDraw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
        const Components direction = short_direction(draw);
        const Components origin = before(draw, point, direction, side);
@@ -377,7 +377,7 @@ std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
   for (std::size_t i = 0; i < count; ++i) {
     const HardCase& hard = kCases[i];
     const CaseWorld& world = hard.level == kSmall ? small : large;
-    Draw draw(seed * 1000003 + i);
+    HardDraw draw(seed * 1000003 + i);
     HardCaseRow row;
     row.name = hard.name;
     row.level = hard.level;

@@ -102,13 +102,14 @@ Image converted(const Image& image, PixelFormat format) {
                format,
                std::vector<std::uint8_t>(row_bytes(format, image.width_px) *
                                          static_cast<std::size_t>(image.height_px)),
-               {}};
+               {},
+               image.first_row};
   for (std::int32_t y = 0; y < image.height_px; ++y) {
     const std::size_t row = static_cast<std::size_t>(y);
     const std::uint8_t* from = image.pixels.data() + row * row_bytes(image.format, image.width_px);
     std::uint8_t* to = result.pixels.data() + row * row_bytes(format, image.width_px);
     for (std::int32_t x = 0; x < image.width_px; ++x) {
-      store_pixel(to, x, y, format, shown_pixel(from, x, image.format));
+      store_pixel(to, x, image.first_row + y, format, shown_pixel(from, x, image.format));
     }
   }
   return result;

@@ -30,6 +30,13 @@ struct Image {
   std::vector<std::uint8_t> pixels;
   /// How much of each pixel is covered, 0 .. 255, for pictures without a background: PNG, Rgb888. Empty: all.
   std::vector<std::uint8_t> alpha{};  // so that most need not name it
+  std::int32_t first_row{0};          ///< of the whole picture, where these are some rows of it
+};
+
+/// Rows of a picture, or frames of a film.
+struct RowRange {
+  std::int32_t first = 0;
+  std::int32_t count = 0;
 };
 
 /// The same picture in another format, pixel by pixel as a display shows it: 16 greys are 17 apart, channels

@@ -8,8 +8,8 @@
 namespace thimble::tools {
 namespace {
 
-constexpr Rgb8 kTop{150, 168, 190};
-constexpr Rgb8 kBottom{226, 224, 218};
+constexpr Rgb8 kSoftTop{150, 168, 190};
+constexpr Rgb8 kSoftBottom{226, 224, 218};
 
 std::uint8_t between(std::uint8_t from, std::uint8_t to, std::int32_t part, std::int32_t whole) {
   return static_cast<std::uint8_t>((from * (whole - part) + to * part + whole / 2) / whole);
@@ -79,8 +79,8 @@ Rgb8 backdrop_color(const Background& background, std::int32_t, std::int32_t y, 
     return background.kind == BackgroundKind::kColor ? background.color : Rgb8{};
   }
   const std::int32_t whole = std::max(1, height_px - 1);
-  return {between(kTop.r, kBottom.r, y, whole), between(kTop.g, kBottom.g, y, whole),
-          between(kTop.b, kBottom.b, y, whole)};
+  return {between(kSoftTop.r, kSoftBottom.r, y, whole), between(kSoftTop.g, kSoftBottom.g, y, whole),
+          between(kSoftTop.b, kSoftBottom.b, y, whole)};
 }
 
 bool light_behind(const CompactTree& tree, const Look& look, const Ray& ray, std::uint8_t* share) {

@@ -41,6 +41,7 @@ class BuiltScene {
   BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress = {});
 
   StructureKind structure() const { return traced_.kind; }
+  const Structure& traced() const { return traced_; }
   int level() const { return traced_.level(); }
   /// A box that holds everything solid.
   VoxelBox bounds() const { return traced_.bounds(); }

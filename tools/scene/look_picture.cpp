@@ -86,7 +86,8 @@ Status LookRows::draw(std::int32_t y, Bytes work, Image* image, LitCounts* count
 // The mean of a pixel's samples, each with its tone and what is behind it.
 void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const {
   const int across = canvas_.look->across;
-  const Rgb8 behind = backdrop_color(canvas_.look->background, x, y, image->width_px, image->height_px);
+  const Rgb8 behind =
+      backdrop_color(canvas_.look->background, x, y, image->width_px, camera_.height_px() / across);
   std::array<std::uint32_t, 3> sum{};
   std::uint32_t cover = 0;  // 255 a sample
   for (int j = 0; j < across; ++j) {
@@ -104,7 +105,8 @@ void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares
   }
   const auto count = static_cast<std::uint32_t>(across * across);
   const auto pixel =
-      static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width_px) + static_cast<std::size_t>(x);
+      static_cast<std::size_t>(y - image->first_row) * static_cast<std::size_t>(image->width_px) +
+      static_cast<std::size_t>(x);
   if (image->alpha.empty()) {
     for (std::size_t c = 0; c < 3; ++c) {
       image->pixels[3 * pixel + c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
@@ -151,7 +153,8 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progre
   *painting = {};
   Image& image = painting->image;
   image.width_px = canvas.framing->camera.width_px();
-  image.height_px = canvas.framing->camera.height_px();
+  image.height_px = canvas.rows.count != 0 ? canvas.rows.count : canvas.framing->camera.height_px();
+  image.first_row = canvas.rows.first;
   const auto pixels = static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
   image.pixels.resize(3 * pixels);
   if (look.background.kind == BackgroundKind::kNone) {
@@ -173,7 +176,7 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progre
       status = for_rows(
           std::min(at_once, image.height_px - y), canvas.threads, [&](std::int32_t row, std::size_t thread) {
             const Bytes work = canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
-            return rows.draw(y + row, work, &image, &counts[thread]);
+            return rows.draw(image.first_row + y + row, work, &image, &counts[thread]);
           });
       if (progress) {
         progress(static_cast<double>(y) / image.height_px);

@@ -31,6 +31,7 @@ struct LookCanvas {
   Camera fine;                       ///< the same view `look->across` times as wide and high
   Bytes work;                        ///< look_work_bytes for at least one row
   int threads = 1;
+  RowRange rows{};  ///< what is painted of the picture; a count of 0: all
 };
 
 /// A picture of a look by rows, for whoever shows it as it grows: those of `paint_look`. `camera` is
@@ -38,7 +39,8 @@ struct LookCanvas {
 class LookRows {
  public:
   LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t exposure_q8);
-  /// Row `y` of `image`, whose size is the camera's, a pixel for all samples. `work` holds look_work_bytes.
+  /// Row `y` of the picture, whose size is the camera's, a pixel for all samples, into `image`, which holds it.
+  /// `work` holds look_work_bytes.
   Status draw(std::int32_t y, Bytes work, Image* image, LitCounts* counts) const;
 
   /// The samples of rows of the camera, and what light is behind each (kFullShare of backdrop.h, or
@@ -61,7 +63,7 @@ class LookRows {
 /// none (256).
 std::uint32_t measured_exposure(const LookCanvas& canvas);
 
-/// Paints the whole picture in Rgb888, with `Image::alpha` where the background is none. Errors: those of the
+/// Paints the picture, or `canvas.rows` of it, in Rgb888, with `Image::alpha` where the background is none. Errors: those of the
 /// core's lit renderer (lights or surfaces beyond its limits).
 Status paint_look(const LookCanvas& canvas, std::uint32_t exposure_q8, const Progress& progress,
                   Painting* painting);

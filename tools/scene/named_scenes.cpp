@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "output/suggestion.h"
 #include "readers/source.h"
 
 namespace thimble::tools {
@@ -69,10 +70,12 @@ std::string scene_path(const std::string& scene) {
     return found->second;
   }
   std::string names;
+  std::vector<std::string> words;
   for (const auto& [name, path] : known) {
     names += (names.empty() ? "" : ", ") + name;
+    words.push_back(name);
   }
-  throw InputError("no such file, and no scene of that name" +
+  throw InputError("no such file, and no scene of that name" + suggestion(scene, words) +
                    (names.empty() ? " (none is installed beside the program)" : "; there are " + names));
 }
 

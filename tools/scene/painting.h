@@ -21,9 +21,9 @@ struct Painting {
   int threads = 1;
 };
 
-/// Draws a picture of that size from top to bottom into `painting`, whatever it held. The painter's first
+/// Draws these rows of a picture from top to bottom into `painting`, whatever it held. The painter's first
 /// error ends it.
-Status paint(BandPainter& painter, std::int32_t width_px, std::int32_t height_px, PixelFormat format,
+Status paint(BandPainter& painter, std::int32_t width_px, const RowRange& rows, PixelFormat format,
              const Progress& progress, Painting* painting);
 
 }  // namespace thimble::tools

@@ -183,7 +183,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
   painting->engine = "stars";
   Image& image = painting->image;
   const std::int32_t width = image.width_px;
-  const std::int32_t height = image.height_px;
+  const std::int32_t height = canvas.framing->camera.height_px();
   const auto at_once = static_cast<std::int32_t>(std::min<std::size_t>(
       canvas.work.size / (12 * static_cast<std::size_t>(width)), static_cast<std::size_t>(height)));
   Sky sky(canvas, canvas.tree->voxel_count());
@@ -220,12 +220,13 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
     below += counts[++step];
   }
   const std::uint64_t half_way = std::max<std::uint64_t>(64, std::uint64_t{step % 16} << (step / 16));
-  for (std::int32_t y = 0; y < height; y += at_once) {
-    const std::int32_t rows = std::min(at_once, height - y);
-    if (at_once < height) {
+  const std::int32_t end = image.first_row + image.height_px;
+  for (std::int32_t y = image.first_row; y < end; y += at_once) {
+    const std::int32_t rows = std::min(at_once, end - y);
+    if (at_once < height || image.first_row != 0) {
       gather(y, rows);
     }
-    const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    const auto first = static_cast<std::size_t>(y - image.first_row) * static_cast<std::size_t>(width);
     for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
       const std::array<std::uint8_t, 3> night{kNight.r, kNight.g, kNight.b};
       const Rgb8 own = canvas.look->background.color;
@@ -252,7 +253,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
       }
     }
     if (progress) {
-      progress(0.5 + static_cast<double>(y) / height / 2);
+      progress(0.5 + static_cast<double>(y - image.first_row) / image.height_px / 2);
     }
   }
   painting->counts.all.rays = 0;

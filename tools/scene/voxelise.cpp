@@ -185,6 +185,11 @@ TriangleBoxTest::TriangleBoxTest(const UnitTriangle& triangle) : origin_(triangl
   const auto& b = local[2];
   normal_ = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   normal_reach_ = std::abs(normal_[0]) + std::abs(normal_[1]) + std::abs(normal_[2]);
+  for (std::size_t child = 0; child < 8; ++child) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      steps_[child] += (child >> axis & 1) != 0 ? normal_[axis] : -normal_[axis];
+    }
+  }
 }
 
 bool TriangleBoxTest::meets_bounds(const UnitPoint& center, std::int32_t half) const {
@@ -210,13 +215,16 @@ bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std
   return true;
 }
 
-std::uint64_t TriangleBoxTest::cube_mask(const UnitPoint& voxel, unsigned inside) const {
+std::uint64_t TriangleBoxTest::slab_mask(const UnitPoint& voxel, unsigned inside) const {
   constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
   constexpr std::uint64_t kOnes = 0x1111111111111111U;
   std::array<std::int64_t, 3> at{};  // the first voxel's centre from vertex 0
   std::uint64_t mask = ~std::uint64_t{0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     at[axis] = voxel[axis] * kUnitsPerVoxel + kHalf - origin_[axis];
+    if ((inside & 8U) != 0) {
+      continue;
+    }
     const std::int32_t first = std::max(((low_[axis] - 1) >> kUnitBits) - voxel[axis], 0);
     const std::int32_t last = std::min((high_[axis] >> kUnitBits) - voxel[axis], 3);
     // Along x the bits of a nibble, along y nibbles, along z sixteen bits.
@@ -251,8 +259,14 @@ std::uint64_t TriangleBoxTest::cube_mask(const UnitPoint& voxel, unsigned inside
     }
     mask &= spread_plane(axis, cells);
   }
+  return mask;
+}
+
+std::uint64_t TriangleBoxTest::surface_mask(std::int64_t distance) const {
+  constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
   const std::int64_t reach = normal_reach_ * kHalf;
-  std::int64_t slice = normal_[0] * at[0] + normal_[1] * at[1] + normal_[2] * at[2] + reach;
+  // The first voxel's centre is a voxel and a half from the cube's on each axis.
+  std::int64_t slice = distance + steps_[0] * (3 * kHalf) + reach;
   const auto width = static_cast<std::uint64_t>(2 * reach);
   std::uint64_t passed = 0;
   for (int z = 0; z < 64; z += 16, slice += normal_[2] * kUnitsPerVoxel) {
@@ -264,7 +278,7 @@ std::uint64_t TriangleBoxTest::cube_mask(const UnitPoint& voxel, unsigned inside
       }
     }
   }
-  return mask & passed;
+  return passed;
 }
 
 bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
@@ -279,14 +293,6 @@ bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, st
     }
   }
   return true;
-}
-
-bool TriangleBoxTest::meets_surface(const UnitPoint& center, std::int32_t half) const {
-  std::int64_t distance = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    distance += normal_[axis] * (center[axis] - origin_[axis]);
-  }
-  return std::abs(distance) <= normal_reach_ * half;
 }
 
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up) {

@@ -24,6 +24,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <vector>
 
@@ -65,11 +66,37 @@ class TriangleBoxTest {
   bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
   /// Whether every cube within this one passes `meets_plane`: the cube lies inside the slabs of all edges.
   bool inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
-  /// Which of the 4 x 4 x 4 voxels from `voxel` on meet the triangle: bit x + 4 y + 16 z. Of a plane whose
-  /// bit is set in `inside`, all of them pass `meets_plane`.
-  std::uint64_t cube_mask(const UnitPoint& voxel, unsigned inside) const;
+  /// Which of the 4 x 4 x 4 voxels from `voxel` on pass `meets_bounds` and `meets_plane`: bit x + 4 y + 16 z. Of
+  /// a plane whose bit is set in `inside` all of them do, and where bit 3 is set all pass `meets_bounds`.
+  std::uint64_t slab_mask(const UnitPoint& voxel, unsigned inside) const;
+  /// Which of the 4 x 4 x 4 voxels pass `meets_surface`; `distance` is that of their cube's centre.
+  std::uint64_t surface_mask(std::int64_t distance) const;
   /// The triangle's plane against the cube.
-  bool meets_surface(const UnitPoint& center, std::int32_t half) const;
+  bool meets_surface(const UnitPoint& center, std::int32_t half) const {
+    return meets_surface(distance(center), half);
+  }
+  /// The same by the centre's distance from the plane, times the normal's length.
+  bool meets_surface(std::int64_t distance, std::int32_t half) const {
+    return std::abs(distance) <= normal_reach_ * half;
+  }
+  std::int64_t distance(const UnitPoint& center) const {
+    return normal_[0] * (center[0] - origin_[0]) + normal_[1] * (center[1] - origin_[1]) +
+           normal_[2] * (center[2] - origin_[2]);
+  }
+  /// How the distance changes from a cube's centre to that of an eighth of it (bit a: the upper half of axis a)
+  /// with sides of 2^`level` voxels.
+  std::int64_t distance_step(int child, int level) const {
+    return steps_[static_cast<std::size_t>(child)] << (level + 7);
+  }
+  /// Whether every cube within this one passes `meets_bounds`.
+  bool inside_bounds(const UnitPoint& center, std::int32_t half) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (low_[axis] > center[axis] - half || high_[axis] < center[axis] + half) {
+        return false;
+      }
+    }
+    return true;
+  }
 
   const UnitPoint& low() const { return low_; }
   const UnitPoint& high() const { return high_; }
@@ -87,7 +114,8 @@ class TriangleBoxTest {
   UnitPoint high_;
   std::array<std::array<Slab, 3>, 3> slabs_;  ///< [axis left out][edge]
   std::array<std::int64_t, 3> normal_;
-  std::int64_t normal_reach_;  ///< sum of the normal's absolute components
+  std::int64_t normal_reach_;            ///< sum of the normal's absolute components
+  std::array<std::int64_t, 8> steps_{};  ///< sums of the normal's components, each with the child's sign
 };
 
 /// Takes a solid block: its lowest voxel, the log2 of its side (0 for a voxel), its material.

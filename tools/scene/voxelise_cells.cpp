@@ -11,7 +11,8 @@
 namespace thimble::tools {
 namespace {
 
-constexpr int kCellLevel = 4;  ///< a cell has 16 voxels a side, and 4 x 4 x 4 cubes of 4 x 4 x 4 voxels
+constexpr int kCellLevel = 4;   ///< a cell has 16 voxels a side, and 4 x 4 x 4 cubes of 4 x 4 x 4 voxels
+constexpr int kGroupLevel = 6;  ///< cells that are filled together: 4 x 4 x 4
 constexpr std::size_t kCubes = 64;
 constexpr std::uint64_t kFull = ~std::uint64_t{0};
 
@@ -21,6 +22,33 @@ TriangleBlock child_of(const TriangleBlock& block, int child) {
     part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << part.level;
   }
   return part;
+}
+
+std::int32_t half_of(int level) {
+  return kUnitsPerVoxel / 2 << level;
+}
+
+UnitPoint center_of(const TriangleBlock& block) {
+  const std::int32_t half = half_of(block.level);
+  return {block.voxel[0] * kUnitsPerVoxel + half, block.voxel[1] * kUnitsPerVoxel + half,
+          block.voxel[2] * kUnitsPerVoxel + half};
+}
+
+/// A block and the distance of its centre from a triangle's plane, which steps from part to part.
+struct NearBlock {
+  TriangleBlock block;
+  std::int64_t distance;
+};
+
+/// Whether the triangle meets that part of `whole`, which becomes `part`.
+bool meets_part(const TriangleBoxTest& test, const NearBlock& whole, int child, NearBlock* part) {
+  const int level = whole.block.level - 1;
+  part->distance = whole.distance + test.distance_step(child, level);
+  if (!test.meets_surface(part->distance, half_of(level))) {
+    return false;
+  }
+  part->block = child_of(whole.block, child);
+  return meets_slabs(test, part->block);
 }
 
 /// What one cell holds: a bit and a material a voxel.
@@ -36,21 +64,20 @@ class Cell {
   }
   bool is_full() const { return full_cubes_ == kFull; }
 
-  /// Adds what `triangle` meets and no later triangle has. `cell` is of kCellLevel.
-  void add(const CellTriangle& triangle, const TriangleBlock& cell) {
-    const TriangleBoxTest test(triangle.corners);
+  /// Adds what a triangle meets and no later triangle has. `cell` is of kCellLevel.
+  void add(const TriangleBoxTest& test, std::uint8_t material, const NearBlock& cell) {
+    NearBlock part{};
+    NearBlock block{};
     for (int octant = 0; octant < 8; ++octant) {
       const std::uint64_t cubes = std::uint64_t{0xFF} << (8 * octant);
-      TriangleBlock part = child_of(cell, octant);
-      if ((full_cubes_ & cubes) == cubes || !meets_block(test, part)) {
+      if ((full_cubes_ & cubes) == cubes || !meets_part(test, cell, octant, &part)) {
         continue;
       }
       for (int child = 0; child < 8; ++child) {
         const std::size_t cube =
             std::size_t{8} * static_cast<std::size_t>(octant) + static_cast<std::size_t>(child);
-        TriangleBlock block = child_of(part, child);
-        if (covered_[cube] != kFull && meets_block(test, block)) {
-          take(cube, test.cube_mask(block.voxel, block.inside), triangle.material);
+        if (covered_[cube] != kFull && meets_part(test, part, child, &block)) {
+          take(cube, missing_met(test, block, ~covered_[cube]), material);
         }
       }
     }
@@ -78,8 +105,32 @@ class Cell {
   }
 
  private:
-  void take(std::size_t cube, std::uint64_t mask, std::uint8_t material) {
-    std::uint64_t added = mask & ~covered_[cube];
+  /// Which of the voxels `missing` of a cube the triangle meets. A few are asked one by one.
+  static std::uint64_t missing_met(const TriangleBoxTest& test, const NearBlock& cube,
+                                   std::uint64_t missing) {
+    constexpr std::uint64_t kSome = 8;
+    std::uint64_t left = missing;
+    for (std::uint64_t i = 0; i < kSome; ++i) {
+      left &= left - 1;
+    }
+    const TriangleBlock& block = cube.block;
+    if (left != 0) {
+      const std::uint64_t met = test.surface_mask(cube.distance) & missing;
+      return met == 0 || block.inside == kAllInside ? met : met & test.slab_mask(block.voxel, block.inside);
+    }
+    std::uint64_t met = 0;
+    for (; missing != 0; missing &= missing - 1) {
+      const int bit = std::countr_zero(missing);
+      TriangleBlock voxel{
+          {block.voxel[0] + (bit & 3), block.voxel[1] + (bit >> 2 & 3), block.voxel[2] + (bit >> 4)},
+          0,
+          block.inside};
+      met |= std::uint64_t{meets_block(test, voxel)} << bit;
+    }
+    return met;
+  }
+
+  void take(std::size_t cube, std::uint64_t added, std::uint8_t material) {
     if (added == 0) {
       return;
     }
@@ -122,6 +173,96 @@ class Cell {
   std::vector<std::uint8_t> materials_;
 };
 
+/// Cells that lie together, filled by one triangle after the other, the last one first, so that no triangle is
+/// asked of a cell that later ones have filled.
+class Group {
+ public:
+  Group(int level, bool has_materials)
+      : cells_(std::size_t{1} << (3 * (level - kCellLevel)), Cell(has_materials)) {
+    all_ = cells_.size() == 64 ? kFull : (std::uint64_t{1} << cells_.size()) - 1;
+  }
+
+  void clear() { touched_ = full_ = 0; }
+  bool is_full() const { return full_ == all_; }
+
+  void add(const CellTriangle& triangle, const TriangleBlock& group) {
+    const TriangleBoxTest test(triangle.corners);
+    add_to(test, triangle.material, {group, test.distance(center_of(group))}, 0);
+  }
+
+  /// Hands over what `block`, whose cells are `first` and on, holds; where it is full of one material says that and
+  /// leaves it to the caller.
+  std::optional<std::uint8_t> emit(const TriangleBlock& block, std::size_t first,
+                                   const BlockSink& sink) const {
+    if (block.level == kCellLevel) {
+      if ((touched_ >> first & 1) == 0) {
+        return std::nullopt;
+      }
+      const auto solid = cells_[first].solid();
+      if (!solid) {
+        cells_[first].emit(block, sink);
+      }
+      return solid;
+    }
+    std::array<std::optional<std::uint8_t>, 8> solid;
+    for (int child = 0; child < 8; ++child) {
+      solid[static_cast<std::size_t>(child)] =
+          emit(child_of(block, child), cell_of(block, first, child), sink);
+    }
+    return emit_solid(block, solid, sink);
+  }
+
+  /// Of eight parts, those that are full of one material: all of them as one where they are of the same.
+  static std::optional<std::uint8_t> emit_solid(const TriangleBlock& block,
+                                                const std::array<std::optional<std::uint8_t>, 8>& solid,
+                                                const BlockSink& sink) {
+    if (solid[0] && std::count(solid.begin(), solid.end(), solid[0]) == 8) {
+      return solid[0];
+    }
+    for (std::size_t child = 0; child < 8; ++child) {
+      if (solid[child]) {
+        const TriangleBlock part = child_of(block, static_cast<int>(child));
+        sink(part.voxel, part.level, *solid[child]);
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// The first cell of a part, in Morton order.
+  static std::size_t cell_of(const TriangleBlock& block, std::size_t first, int child) {
+    return first + (static_cast<std::size_t>(child) << (3 * (block.level - 1 - kCellLevel)));
+  }
+
+  void add_to(const TriangleBoxTest& test, std::uint8_t material, const NearBlock& whole, std::size_t first) {
+    const int level = whole.block.level - 1;
+    if (level < kCellLevel) {
+      const std::uint64_t bit = std::uint64_t{1} << first;
+      Cell& cell = cells_[first];
+      if ((touched_ & bit) == 0) {
+        touched_ |= bit;
+        cell.clear();
+      }
+      cell.add(test, material, whole);
+      full_ |= cell.is_full() ? bit : 0;
+      return;
+    }
+    const std::uint64_t some = (std::uint64_t{1} << (1 << (3 * (level - kCellLevel)))) - 1;
+    NearBlock part{};
+    for (int child = 0; child < 8; ++child) {
+      const std::size_t at = cell_of(whole.block, first, child);
+      if ((full_ >> at & some) != some && meets_part(test, whole, child, &part)) {
+        add_to(test, material, part, at);
+      }
+    }
+  }
+
+  std::vector<Cell> cells_;  ///< in Morton order
+  std::uint64_t all_ = 0;
+  std::uint64_t touched_ = 0;  ///< cells that hold anything; the others are not cleared yet
+  std::uint64_t full_ = 0;
+};
+
 class Voxeliser {
  public:
   Voxeliser(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
@@ -130,9 +271,11 @@ class Voxeliser {
         sink_(sink),
         progress_(progress),
         root_level_(std::max(level, kCellLevel)),
-        cell_(std::any_of(triangles.begin(), triangles.end(), [&](const CellTriangle& triangle) {
-          return triangle.material != triangles.front().material;
-        })) {}
+        group_level_(std::min(root_level_, kGroupLevel)),
+        group_(group_level_,
+               std::any_of(triangles.begin(), triangles.end(), [&](const CellTriangle& triangle) {
+                 return triangle.material != triangles.front().material;
+               })) {}
 
   void run() {
     std::vector<std::uint32_t> all(triangles_.size());
@@ -150,8 +293,8 @@ class Voxeliser {
 
   /// Hands over what `block` holds; where it is full of one material says that and leaves it to the caller.
   std::optional<std::uint8_t> visit(const TriangleBlock& block, const List& list) {
-    if (list.empty() || block.level == kCellLevel) {
-      const auto solid = list.empty() ? std::nullopt : visit_cell(block, list);
+    if (list.empty() || block.level == group_level_) {
+      const auto solid = list.empty() ? std::nullopt : visit_group(block, list);
       report(block.level);
       return solid;
     }
@@ -161,9 +304,10 @@ class Voxeliser {
     }
     for (const std::uint32_t index : list) {
       const TriangleBoxTest test(triangles_[index].corners);
+      const NearBlock whole{block, test.distance(center_of(block))};
+      NearBlock part{};
       for (int child = 0; child < 8; ++child) {
-        TriangleBlock part = child_of(block, child);
-        if (meets_block(test, part)) {
+        if (meets_part(test, whole, child, &part)) {
           parts[static_cast<std::size_t>(child)].push_back(index);
         }
       }
@@ -172,35 +316,22 @@ class Voxeliser {
     for (std::size_t child = 0; child < 8; ++child) {
       solid[child] = visit(child_of(block, static_cast<int>(child)), parts[child]);
     }
-    if (solid[0] && std::count(solid.begin(), solid.end(), solid[0]) == 8) {
-      return solid[0];
-    }
-    for (std::size_t child = 0; child < 8; ++child) {
-      if (solid[child]) {
-        const TriangleBlock part = child_of(block, static_cast<int>(child));
-        sink_(part.voxel, part.level, *solid[child]);
-      }
-    }
-    return std::nullopt;
+    return Group::emit_solid(block, solid, sink_);
   }
 
-  std::optional<std::uint8_t> visit_cell(const TriangleBlock& block, const List& list) {
-    cell_.clear();
-    for (auto index = list.rbegin(); index != list.rend() && !cell_.is_full(); ++index) {
-      cell_.add(triangles_[*index], block);
+  std::optional<std::uint8_t> visit_group(const TriangleBlock& block, const List& list) {
+    group_.clear();
+    for (auto index = list.rbegin(); index != list.rend() && !group_.is_full(); ++index) {
+      group_.add(triangles_[*index], block);
     }
-    const auto solid = cell_.solid();
-    if (!solid) {
-      cell_.emit(block, sink_);
-    }
-    return solid;
+    return group_.emit(block, 0, sink_);
   }
 
   void report(int level) {
-    done_ += std::uint64_t{1} << (3 * (level - kCellLevel));
+    done_ += std::uint64_t{1} << (3 * (level - group_level_));
     if (progress_) {
-      const std::uint64_t cells = std::uint64_t{1} << (3 * (root_level_ - kCellLevel));
-      progress_(static_cast<double>(done_) / static_cast<double>(cells));
+      const std::uint64_t groups = std::uint64_t{1} << (3 * (root_level_ - group_level_));
+      progress_(static_cast<double>(done_) / static_cast<double>(groups));
     }
   }
 
@@ -208,21 +339,31 @@ class Voxeliser {
   const BlockSink& sink_;
   const Progress& progress_;
   int root_level_;
-  Cell cell_;
+  int group_level_;
+  Group group_;
   std::array<std::array<List, 8>, 13> lists_;
-  std::uint64_t done_ = 0;  ///< cells
+  std::uint64_t done_ = 0;  ///< groups
 };
 
 }  // namespace
 
 bool meets_block(const TriangleBoxTest& test, TriangleBlock& block) {
-  const std::int32_t half = kUnitsPerVoxel / 2 << block.level;
-  UnitPoint center;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    center[axis] = block.voxel[axis] * kUnitsPerVoxel + half;
+  return test.meets_surface(center_of(block), half_of(block.level)) && meets_slabs(test, block);
+}
+
+bool meets_slabs(const TriangleBoxTest& test, TriangleBlock& block) {
+  if (block.inside == kAllInside) {
+    return true;
   }
-  if (!test.meets_bounds(center, half) || !test.meets_surface(center, half)) {
-    return false;
+  const std::int32_t half = half_of(block.level);
+  const UnitPoint center = center_of(block);
+  if ((block.inside & 8U) == 0) {
+    if (!test.meets_bounds(center, half)) {
+      return false;
+    }
+    if (block.level > 0 && test.inside_bounds(center, half)) {
+      block.inside |= 8U;
+    }
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if ((block.inside >> axis & 1) != 0) {

@@ -1,0 +1,165 @@
+#include "commands/camera_path.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "output/output_file.h"
+#include "output/part_file.h"
+#include "output/units.h"
+#include "readers/file_bytes.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::uint64_t kMostPathBytes = std::uint64_t{64} << 20;
+constexpr std::array<const char*, 10> kNames{"ex", "ey", "ez", "tx", "ty", "tz", "ux", "uy", "uz", "fov"};
+
+[[noreturn]] void fail_in_path(const std::string& path, std::uint64_t line, const std::string& sentence) {
+  throw OutputError(printable(path) + ": line " + std::to_string(line) + ": " + sentence);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    std::string_view cell = line.substr(0, comma);
+    while (!cell.empty() && is_space(cell.front())) {
+      cell.remove_prefix(1);
+    }
+    while (!cell.empty() && is_space(cell.back())) {
+      cell.remove_suffix(1);
+    }
+    cells.push_back(cell);
+    if (comma == std::string_view::npos) {
+      return cells;
+    }
+    line.remove_prefix(comma + 1);
+  }
+}
+
+bool is_names(const std::vector<std::string_view>& cells) {
+  return std::all_of(cells.begin(), cells.end(), [](std::string_view cell) {
+    double number = 0;
+    return parse_number(cell, number) == NumberKind::kGarbage;
+  });
+}
+
+// Which columns a line of so many has; empty where there is no such line.
+std::vector<std::size_t> columns_for(std::size_t cells) {
+  const bool has_up = cells >= 9;
+  std::vector<std::size_t> columns{0, 1, 2, 3, 4, 5};
+  if (has_up) {
+    columns.insert(columns.end(), {6, 7, 8});
+  }
+  if (cells == 7 || cells == 10) {
+    columns.push_back(9);
+  }
+  return columns.size() == cells ? columns : std::vector<std::size_t>{};
+}
+
+class PathReader {
+ public:
+  PathReader(const std::string& path, const ViewWishes& view) : path_(path), view_(view) {}
+
+  CameraPath read(std::string_view text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+    LineReader lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+      if (line.find_first_not_of(" \t") != std::string_view::npos) {
+        take(cells_of(line), lines.line_number());
+      }
+    }
+    if (result_.cameras.empty()) {
+      throw OutputError(printable(path_) + ": holds no camera");
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void take(const std::vector<std::string_view>& cells, std::uint64_t line) {
+    if (columns_.empty()) {
+      columns_ = columns_for(cells.size());
+      if (columns_.empty()) {
+        fail_in_path(path_, line,
+                     std::to_string(cells.size()) + " columns are none of a camera; " + kPathColumns);
+      }
+      result_.has_fov = columns_.back() == 9;
+      if (is_names(cells)) {
+        return;
+      }
+    }
+    if (cells.size() != columns_.size()) {
+      fail_in_path(
+          path_, line,
+          std::to_string(cells.size()) + " columns; the first line has " + std::to_string(columns_.size()));
+    }
+    std::array<double, 10> numbers{};
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      double& number = numbers[columns_[i]];
+      if (parse_number(cells[i], number) != NumberKind::kFinite) {
+        fail_in_path(path_, line,
+                     std::string(kNames[columns_[i]]) + " " + quoted(cells[i]) + " is no finite number");
+      }
+    }
+    add(numbers, line);
+  }
+
+  void add(const std::array<double, 10>& numbers, std::uint64_t line) {
+    PathCamera camera{view_, line};
+    camera.view.placed = true;
+    camera.view.eye = Real3{numbers[0], numbers[1], numbers[2]};
+    camera.view.target = Real3{numbers[3], numbers[4], numbers[5]};
+    if (columns_.size() >= 9) {
+      camera.view.up = Real3{numbers[6], numbers[7], numbers[8]};
+    }
+    if (result_.has_fov) {
+      camera.view.fov_degrees = numbers[9];
+      if (!(numbers[9] >= 1 && numbers[9] <= 120)) {
+        fail_in_path(path_, line, "fov " + shortest(numbers[9]) + " is not from 1 to 120 degrees");
+      }
+    }
+    if (result_.cameras.size() == kMostFilmFrames) {
+      fail_in_path(path_, line, "a film has at most " + grouped(kMostFilmFrames) + " frames");
+    }
+    result_.cameras.push_back(camera);
+  }
+
+  const std::string& path_;
+  const ViewWishes& view_;
+  std::vector<std::size_t> columns_;
+  CameraPath result_;
+};
+
+}  // namespace
+
+const char* const kPathColumns =
+    "ex,ey,ez,tx,ty,tz are where it stands and what it looks at, in voxels; ux,uy,uz for what is up, fov in "
+    "degrees, or both may follow";
+
+CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
+  FileBytes bytes;
+  try {
+    bytes = load_file(path, kMostPathBytes);
+  } catch (const InputError& error) {
+    throw OutputError(printable(path) + ": " + error.what());
+  }
+  return PathReader(path, view).read(bytes.text());
+}
+
+std::vector<Framing> frame_path(const std::string& path, const CameraPath& cameras, const SceneShape& shape) {
+  std::vector<Framing> framings;
+  for (const PathCamera& camera : cameras.cameras) {
+    try {
+      framings.push_back(frame_shape(camera.view, shape));
+    } catch (const InputError& error) {
+      fail_in_path(path, camera.line, error.what());
+    }
+  }
+  return framings;
+}
+
+}  // namespace thimble::tools

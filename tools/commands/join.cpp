@@ -1,0 +1,226 @@
+// thimble join: parts of a picture or of a film, drawn apart, as the file that one process would have written.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "output/image.h"
+#include "output/output_set.h"
+#include "output/part_file.h"
+#include "output/progress.h"
+#include "output/units.h"
+#include "readers/source.h"
+#include "scene/film.h"
+
+namespace thimble::tools {
+namespace {
+
+struct JoinCommand {
+  std::vector<std::string> parts;
+  std::string output;
+  bool quiet = false;
+};
+
+// The whole that parts make: for each row or frame the part that has it.
+class Whole {
+ public:
+  explicit Whole(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) {
+      parts_.push_back(PartFile::open(path));
+      check_belongs(parts_.back());
+    }
+    owners_.assign(header().all, kNone);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      place(i);
+    }
+    check_complete();
+  }
+
+  const PartHeader& header() const { return parts_.front().header(); }
+  std::vector<std::uint8_t> read(std::uint32_t unit) const { return parts_[owners_[unit]].read(unit); }
+
+ private:
+  static constexpr std::size_t kNone = SIZE_MAX;
+
+  void check_belongs(const PartFile& part) const {
+    const PartHeader& one = header();
+    const PartHeader& other = part.header();
+    const auto fail = [&](const std::string& why) {
+      throw InputError(printable(part.path()) + ": does not belong to " + printable(parts_.front().path()) +
+                       ": " + why);
+    };
+    const auto size_of = [](const PartHeader& header) {
+      return std::to_string(header.width_px) + "x" + std::to_string(header.height_px);
+    };
+    if (other.kind != one.kind) {
+      const auto name = [](PartKind kind) {
+        return kind == PartKind::kRows        ? "a picture"
+               : kind == PartKind::kTurntable ? "a film by --turntable"
+                                              : "a film by --camera-path";
+      };
+      fail(std::string("it is a part of ") + name(other.kind) + ", not of " + name(one.kind));
+    }
+    if (other.width_px != one.width_px || other.height_px != one.height_px) {
+      fail("its size is " + size_of(other) + ", not " + size_of(one));
+    }
+    if (other.all != one.all) {
+      fail("its film has " + std::to_string(other.all) + " frames, not " + std::to_string(one.all));
+    }
+    if (other.scene_crc32 != one.scene_crc32) {
+      fail("it shows another scene, or one built otherwise (--depth, --frame, --coarsen and the like)");
+    }
+    if (other.camera_crc32 != one.camera_crc32) {
+      fail("its camera is another");
+    }
+    if (other.options_crc32 != one.options_crc32 || other.pixels != one.pixels ||
+        other.has_finer_shades != one.has_finer_shades) {
+      fail("it was drawn with other options");
+    }
+  }
+
+  void place(std::size_t index) {
+    const PartFile& part = parts_[index];
+    const PartHeader& head = part.header();
+    for (std::uint32_t unit = head.first; unit < head.first + head.count; ++unit) {
+      if (owners_[unit] == kNone) {
+        owners_[unit] = index;
+      } else if (parts_[owners_[unit]].read(unit) != part.read(unit)) {
+        throw InputError(printable(part.path()) + ": differs from " +
+                         printable(parts_[owners_[unit]].path()) + " in " + head.unit() + " " +
+                         std::to_string(unit) + ", which both hold");
+      }
+    }
+  }
+
+  void check_complete() const {
+    constexpr int kMostNamed = 8;
+    std::string text;
+    std::uint32_t missing = 0;
+    int gaps = 0;
+    const auto all = static_cast<std::uint32_t>(owners_.size());
+    for (std::uint32_t unit = 0; unit < all;) {
+      std::uint32_t end = unit;
+      while (end < all && owners_[end] == kNone) {
+        ++end;
+      }
+      if (end != unit && ++gaps <= kMostNamed) {
+        text += (text.empty() ? "" : ", ") + std::to_string(unit) + ":" + std::to_string(end - unit);
+      }
+      missing += end - unit;
+      unit = std::max(end, unit + 1);
+    }
+    if (missing != 0) {
+      throw InputError("of " + std::to_string(all) + " " + header().unit() +
+                       "s these are missing (FIRST:COUNT): " + text +
+                       (gaps > kMostNamed ? " and " + std::to_string(gaps - kMostNamed) + " gaps more" : ""));
+    }
+  }
+
+  std::vector<PartFile> parts_;
+  std::vector<std::size_t> owners_;
+};
+
+Image frame_of(const PartHeader& header, std::vector<std::uint8_t> pixels) {
+  Image image;
+  image.width_px = static_cast<std::int32_t>(header.width_px);
+  image.height_px = static_cast<std::int32_t>(header.height_px);
+  image.pixels = std::move(pixels);
+  return image;
+}
+
+void join_film(const JoinCommand& command, const Whole& whole, OutputFile* file) {
+  const PartHeader& header = whole.header();
+  const auto frame = [&](std::size_t number) {
+    return frame_of(header, whole.read(static_cast<std::uint32_t>(number)));
+  };
+  ProgressBar bar("joining", command.quiet);
+  Film film(file, command.output, header.kind, header.all, frame);
+  for (std::uint32_t i = 0; i < header.all; ++i) {
+    film.add(frame(i));
+    bar.update(static_cast<double>(i) / header.all);
+  }
+  film.end();
+}
+
+void join_picture(const JoinCommand& command, const Whole& whole, OutputFile* file) {
+  const PartHeader& header = whole.header();
+  const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
+  Image image = frame_of(header, {});
+  image.format = header.pixels == PartPixels::kMono ? PixelFormat::kMono1 : PixelFormat::kRgb888;
+  for (std::uint32_t y = 0; y < header.all; ++y) {
+    const std::vector<std::uint8_t> row = whole.read(y);
+    if (header.pixels != PartPixels::kRgba) {
+      image.pixels.insert(image.pixels.end(), row.begin(), row.end());
+      continue;
+    }
+    for (std::size_t i = 0; i < row.size(); i += 4) {
+      image.pixels.insert(image.pixels.end(), {row[i], row[i + 1], row[i + 2]});
+      image.alpha.push_back(row[i + 3]);
+    }
+  }
+  write_image(file, kind, converted(image, pixel_format(kind)));
+}
+
+// What kind of file these parts can become.
+void check_kind(const JoinCommand& command, const PartHeader& header) {
+  const bool is_picture = header.kind == PartKind::kRows;
+  if (is_picture != image_kind(command.output).has_value()) {
+    refuse_usage("--output",
+                 in_quotes(command.output) + (is_picture ? " is no picture, of which these parts are: "
+                                                           ".png, .ppm, .pgm, .pbm"
+                                                         : " is no film, of which these parts are: .gif "
+                                                           "or .y4m"));
+  }
+  const auto kind = image_kind(command.output);
+  if (header.pixels == PartPixels::kRgba && kind != ImageKind::kPng) {
+    refuse_usage("--output",
+                 "parts with --background none want a .png, the one that holds what is transparent");
+  }
+  if (header.pixels == PartPixels::kMono && kind != ImageKind::kPbm) {
+    refuse_usage("--output", "parts named .pbm.part are of one bit a pixel and make a .pbm only");
+  }
+  if (header.has_finer_shades && kind == ImageKind::kPbm) {
+    refuse_usage("--output", "a .pbm with light is dithered as it is drawn: name its parts F.pbm.part");
+  }
+}
+
+void run(const JoinCommand& command) {
+  OutputSet outputs({command.output}, command.parts);
+  const Whole whole(command.parts);
+  check_kind(command, whole.header());
+  if (whole.header().kind == PartKind::kRows) {
+    join_picture(command, whole, outputs[0]);
+  } else {
+    join_film(command, whole, outputs[0]);
+  }
+  outputs.commit();
+}
+
+}  // namespace
+
+void add_join(CLI::App& app) {
+  auto command = std::make_shared<JoinCommand>();
+  CLI::App* sub = add_command(app, "join", "Put parts of a picture or a film together.");
+  add_arguments(
+      *sub, "parts", "FILES", &command->parts,
+      "what render --rows or --part wrote, in any order: of one scene, camera, size and options; where "
+      "they overlap they must agree")
+      .required();
+  add_text_option(
+      *sub, "-o,--output", "FILE",
+      [command](const std::string& text) {
+        command->output = text;
+        return image_kind(text) || is_film(text) ? ""
+                                                 : "does not end in .ppm, .pgm, .pbm, .png, .gif or .y4m";
+      },
+      "the picture (.ppm, .pgm, .pbm, .png; - is a PPM on standard output) or film (.gif, .y4m), byte for "
+      "byte what "
+      "one process would have written")
+      .required();
+  add_flag(*sub, "--quiet", &command->quiet, "no progress bar on standard error");
+  when_chosen(*sub, [command] { run(*command); });
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,208 @@
+#include "output/part_file.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <system_error>
+
+#include "output/output_file.h"
+#include "output/units.h"
+#include "readers/source.h"
+#include "thimble/picture/camera.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::string_view kMagic = "thmPART1";
+constexpr std::size_t kHeaderBytes = 48;
+constexpr std::size_t kCrcBytes = 4;
+using HeaderBytes = std::array<std::uint8_t, kHeaderBytes>;
+
+std::uint32_t crc_from(std::uint32_t crc, std::span<const std::uint8_t> bytes) {
+  return static_cast<std::uint32_t>(crc32_z(crc, bytes.data(), bytes.size()));
+}
+
+void put_32(std::uint8_t* to, std::uint32_t number) {
+  for (unsigned i = 0; i < 4; ++i) {
+    to[i] = static_cast<std::uint8_t>(number >> (8 * i));
+  }
+}
+
+std::uint32_t number_at(const std::uint8_t* from) {
+  std::uint32_t number = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    number |= std::uint32_t{from[i]} << (8 * i);
+  }
+  return number;
+}
+
+HeaderBytes bytes_of(const PartHeader& header) {
+  HeaderBytes bytes{};
+  std::copy(kMagic.begin(), kMagic.end(), bytes.begin());
+  bytes[8] = static_cast<std::uint8_t>(header.kind);
+  bytes[9] = static_cast<std::uint8_t>(header.pixels);
+  bytes[10] = header.has_finer_shades ? 1 : 0;
+  const std::array<std::uint32_t, 8> numbers{header.width_px,     header.height_px,    header.first,
+                                             header.count,        header.all,          header.scene_crc32,
+                                             header.camera_crc32, header.options_crc32};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    put_32(bytes.data() + 12 + 4 * i, numbers[i]);
+  }
+  put_32(bytes.data() + 44, crc_from(0, std::span(bytes).first(44)));
+  return bytes;
+}
+
+// What bytes with the right checksum say; false where no writer would say so.
+bool parse(const HeaderBytes& bytes, PartHeader* header) {
+  if (bytes[8] > static_cast<std::uint8_t>(PartKind::kCameraPath) ||
+      bytes[9] > static_cast<std::uint8_t>(PartPixels::kMono) || bytes[10] > 1 || bytes[11] != 0) {
+    return false;
+  }
+  header->kind = static_cast<PartKind>(bytes[8]);
+  header->pixels = static_cast<PartPixels>(bytes[9]);
+  header->has_finer_shades = bytes[10] == 1;
+  const auto number = [&](std::size_t i) { return number_at(bytes.data() + 12 + 4 * i); };
+  header->width_px = number(0);
+  header->height_px = number(1);
+  header->first = number(2);
+  header->count = number(3);
+  header->all = number(4);
+  header->scene_crc32 = number(5);
+  header->camera_crc32 = number(6);
+  header->options_crc32 = number(7);
+  const bool is_picture = header->kind == PartKind::kRows;
+  const auto is_side = [](std::uint32_t side) { return side >= 1 && side <= kMaxPicturePx; };
+  return is_side(header->width_px) && is_side(header->height_px) &&
+         (is_picture
+              ? header->all == header->height_px
+              : header->all >= 1 && header->all <= kMostFilmFrames && header->pixels == PartPixels::kRgb) &&
+         header->count >= 1 && header->first < header->all && header->count <= header->all - header->first;
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+    std::error_code error;
+    if (file_ == nullptr) {
+      fail(std::strerror(errno));
+    }
+    if (!std::filesystem::is_regular_file(path, error)) {
+      fail("is no file that can be read twice, as a part must be");
+    }
+    size_ = std::filesystem::file_size(path, error);
+    if (error) {
+      fail(error.message());
+    }
+  }
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw InputError(printable(path_) + ": " + sentence);
+  }
+  std::uint64_t size() const { return size_; }
+  void seek(std::uint64_t offset) const {
+    if (std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0) {
+      fail(std::strerror(errno));
+    }
+  }
+  // All of `bytes`, from where the last read ended.
+  void read(std::span<std::uint8_t> bytes) const {
+    if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
+      fail(std::ferror(file_.get()) != 0 ? "cannot be read" : "became shorter while it was read");
+    }
+  }
+
+ private:
+  const std::string& path_;
+  File file_;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace
+
+std::size_t PartHeader::unit_bytes() const {
+  const auto width = static_cast<std::int32_t>(width_px);
+  const std::size_t row = pixels == PartPixels::kMono   ? row_bytes(PixelFormat::kMono1, width)
+                          : pixels == PartPixels::kRgba ? std::size_t{4} * width_px
+                                                        : row_bytes(PixelFormat::kRgb888, width);
+  return kind == PartKind::kRows ? row : row * height_px;
+}
+
+PartWriter::PartWriter(OutputFile* file, const PartHeader& header) : file_(file) {
+  write(bytes_of(header));
+}
+
+void PartWriter::write(std::span<const std::uint8_t> bytes) {
+  crc_ = crc_from(crc_, bytes);
+  file_->write(bytes);
+}
+
+void PartWriter::add(std::span<const std::uint8_t> bytes) {
+  write(bytes);
+}
+
+void PartWriter::end() {
+  std::array<std::uint8_t, kCrcBytes> bytes{};
+  put_32(bytes.data(), crc_);
+  file_->write(bytes);
+}
+
+PartFile PartFile::open(const std::string& path) {
+  const Reader reader(path);
+  HeaderBytes head{};
+  const std::size_t begun = static_cast<std::size_t>(std::min<std::uint64_t>(reader.size(), kHeaderBytes));
+  reader.read(std::span(head).first(begun));
+  const std::size_t compared = std::min(begun, kMagic.size());
+  if (begun == 0 ||
+      !std::equal(kMagic.begin(), kMagic.begin() + static_cast<std::ptrdiff_t>(compared), head.begin())) {
+    reader.fail("is no part that thimble render --rows or --part wrote");
+  }
+  if (begun < kHeaderBytes) {
+    reader.fail("is cut off within its header of " + std::to_string(kHeaderBytes) + " bytes");
+  }
+  PartFile part;
+  part.path_ = path;
+  if (number_at(head.data() + 44) != crc_from(0, std::span(head).first(44)) || !parse(head, &part.header_)) {
+    reader.fail("is damaged: its header's checksum is wrong");
+  }
+  const std::uint64_t expected =
+      kHeaderBytes + std::uint64_t{part.header_.unit_bytes()} * part.header_.count + kCrcBytes;
+  if (reader.size() != expected) {
+    reader.fail((reader.size() < expected ? "is cut off: it has " : "goes on behind its end: it has ") +
+                grouped(reader.size()) + " bytes of " + grouped(expected));
+  }
+  std::uint32_t crc = crc_from(0, head);
+  std::vector<std::uint8_t> block(std::size_t{1} << 16);
+  for (std::uint64_t left = expected - kHeaderBytes - kCrcBytes; left != 0;) {
+    const auto bytes =
+        std::span(block).first(static_cast<std::size_t>(std::min<std::uint64_t>(left, block.size())));
+    reader.read(bytes);
+    crc = crc_from(crc, bytes);
+    left -= bytes.size();
+  }
+  std::array<std::uint8_t, kCrcBytes> stored{};
+  reader.read(stored);
+  if (number_at(stored.data()) != crc) {
+    reader.fail("is damaged: its checksum is wrong");
+  }
+  return part;
+}
+
+std::vector<std::uint8_t> PartFile::read(std::uint32_t unit) const {
+  const Reader reader(path_);
+  std::vector<std::uint8_t> bytes(header_.unit_bytes());
+  reader.seek(kHeaderBytes + std::uint64_t{unit - header_.first} * bytes.size());
+  reader.read(bytes);
+  return bytes;
+}
+
+}  // namespace thimble::tools

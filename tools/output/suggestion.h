@@ -1,0 +1,21 @@
+/// @file suggestion.h
+/// What somebody who mistyped a word most likely meant.
+#ifndef THIMBLE_TOOLS_OUTPUT_SUGGESTION_H
+#define THIMBLE_TOOLS_OUTPUT_SUGGESTION_H
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace thimble::tools {
+
+/// The one of `words` that somebody who typed `word` most likely meant: at most a third of its letters are
+/// missing, too many, wrong or swapped with their neighbour. Empty for none.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+
+/// " (did you mean render?)", or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& words);
+
+}  // namespace thimble::tools
+
+#endif

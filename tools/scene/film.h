@@ -1,0 +1,52 @@
+/// @file film.h
+/// Films as files: pictures one after the other as a GIF of one palette, or as YUV4MPEG2.
+#ifndef THIMBLE_TOOLS_SCENE_FILM_H
+#define THIMBLE_TOOLS_SCENE_FILM_H
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "output/image.h"
+#include "output/part_file.h"
+
+namespace thimble::tools {
+
+class OutputFile;
+class GifColors;
+
+/// Whether `path` ends as films do: .gif or .y4m.
+bool is_film(std::string_view path);
+
+/// A turntable takes about six seconds; along a path pass 25 frames a second.
+struct FilmTimes {
+  FilmTimes(PartKind kind, int frames);
+  int hundredths;  ///< of a second a frame, in a GIF
+  int rate;        ///< whole frames a second, in a .y4m
+};
+
+/// A film's bytes, frame by frame. They depend on the frames and on nothing else.
+class Film {
+ public:
+  /// Gives the frame of that number. Pictures are Rgb888 and of one size.
+  using Frame = std::function<Image(std::size_t number)>;
+
+  /// Writes what stands in front of `frames` frames. The palette of a .gif comes from a few of them all over the
+  /// film, which are asked for here already.
+  Film(OutputFile* file, std::string_view path, PartKind kind, std::size_t frames, const Frame& frame);
+  ~Film();
+  void add(const Image& image);
+  /// Writes what stands behind the last one. Committing is the caller's.
+  void end();
+
+ private:
+  OutputFile* file_;
+  FilmTimes times_;
+  std::unique_ptr<GifColors> colors_;  // of a GIF
+};
+
+}  // namespace thimble::tools
+
+#endif
