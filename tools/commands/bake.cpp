@@ -17,6 +17,7 @@
 #include "output/units.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/flash_baking.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 
@@ -31,32 +32,13 @@ struct BakeCommand {
   bool as_header = false;
   bool brick_map = false;
   EffectChoice effects;
-  EffectSet effects_found = Effect::kNone;  // once it was baked: their code takes flash too
+
+  FlashLimit limit() const { return {scene.board, scene.memory_bytes}; }
 };
-
-// --memory or what the board's flash has for a scene, the smaller of both.
-std::optional<std::uint64_t> limit_bytes(const BakeCommand& command) {
-  const SceneOptions& scene = command.scene;
-  if (scene.board == nullptr) {
-    return scene.memory_bytes;
-  }
-  return std::min(scene_flash_bytes(*scene.board, command.effects_found),
-                  scene.memory_bytes.value_or(UINT64_MAX));
-}
-
-std::string limit_text(const BakeCommand& command, std::uint64_t limit) {
-  const platform::BoardFacts* const board = command.scene.board;
-  if (board != nullptr && limit == scene_flash_bytes(*board, command.effects_found)) {
-    return std::string(board->name) + " has " + grouped(limit) + " bytes of flash for a scene (" +
-           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(command.effects_found)) +
-           " for code)";
-  }
-  return "the limit is " + grouped(limit) + " bytes (--memory)";
-}
 
 BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
   BakingOptions options;
-  options.limit_bytes = limit_bytes(command);
+  options.limit_bytes = command.limit().bytes();
   options.name = scene_name(command.scene.arguments.scene);
   options.brick_map = command.brick_map || command.scene.board != nullptr;
   options.effects = command.effects;
@@ -83,6 +65,7 @@ std::string advice(const BakeCommand& command, const SceneSource& source, std::u
     try {
       const auto smaller = open_scene(arguments);
       BakingOptions options = baking_options(command, *smaller, nullptr);
+      options.limit_bytes = limit;
       const Baked baked = bake_scene(*smaller, options, [&](double done) { bar.update(done); });
       if (baked.bytes.size() <= limit) {
         return "; --depth " + std::to_string(depth) + " fits with " + grouped(baked.bytes.size()) +
@@ -93,14 +76,6 @@ std::string advice(const BakeCommand& command, const SceneSource& source, std::u
     }
   }
   return "; --coarsen merges blocks until it fits";
-}
-
-// Whether the scene with its light keeps the limit, uncoarsened, and the board can draw it.
-bool has_room_for_light(const BakeCommand& command, const Baked& baked) {
-  const platform::BoardFacts* const board = command.scene.board;
-  return baked.fits && baked.bytes.size() <= limit_bytes(command).value_or(UINT64_MAX) &&
-         baked.scene.tree().solid_added() == 0 &&
-         (board == nullptr || drawing_ram_bytes(*board, baked.effects) <= board->ram_bytes);
 }
 
 void report(const BakeCommand& command, const Baked& baked, const std::string& note) {
@@ -170,27 +145,11 @@ void run(const BakeCommand& given) {
   Baked baked;
   {
     ProgressBar bar("baking", command.scene.quiet);
-    baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
-    command.effects_found = baked.effects;
-    if (options.default_look && baked.effects != Effect::kNone && !has_room_for_light(command, baked)) {
-      options.default_look = false;  // light that nobody asked for never costs a scene its place
-      baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
-      command.effects_found = baked.effects;
-    }
-    const std::optional<std::uint64_t> left = limit_bytes(command);
-    if (left < options.limit_bytes && (!baked.fits || baked.bytes.size() > *left)) {
-      // With the code of its effects it does not fit: smaller, without a brick map, or not at all.
-      options.limit_bytes = left;
-      baked = bake_scene(*source, options, [&](double done) { bar.update(done); });
-    }
+    baked = bake_within(command.limit(), *source, &options, [&](double done) { bar.update(done); });
   }
   if (!baked.fits) {
     const std::uint64_t limit = *options.limit_bytes;
-    const std::uint64_t over = baked.bytes.size() - limit;
-    throw InputError((options.coarsen ? "even the coarsest tree takes " : "takes ") +
-                     grouped(baked.bytes.size()) + " bytes at depth " + std::to_string(source->level()) +
-                     ", " + limit_text(command, limit) + ": " + grouped(over) +
-                     (over == 1 ? " byte" : " bytes") + " too many" +
+    throw InputError(too_large_text(command.limit(), baked, options, source->level()) +
                      (options.coarsen ? "" : advice(command, *source, limit)));
   }
 

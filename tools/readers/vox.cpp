@@ -156,7 +156,8 @@ ChunkHead read_head(ByteReader& reader) {
 void VoxFile::read_chunks(Reporter& reporter) {
   ByteReader file(file_.bytes);
   constexpr std::array<std::uint8_t, 4> kMagic{'V', 'O', 'X', ' '};
-  if (file.remaining() < kMagic.size() || !std::ranges::equal(file.take(kMagic.size()), kMagic)) {
+  if (file.remaining() < kMagic.size() ||
+      !std::equal(kMagic.begin(), kMagic.end(), file.take(kMagic.size()).begin())) {
     throw InputError("is not a MagicaVoxel file: it does not begin with \"VOX \"");
   }
   const std::uint32_t version = file.u32();

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <new>
 #include <string_view>
 
 #include "readers/oct.h"
+#include "scene/paths.h"
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/generators.h"
@@ -302,7 +302,7 @@ std::string scene_name(const std::string& scene) {
   if (parse_generator(scene)) {
     return scene;
   }
-  const std::string name = std::filesystem::path(scene).filename().string();
+  const std::string name = file_name(scene);
   std::string utf8;
   for (std::string_view rest = name; !rest.empty();) {
     const std::size_t bytes = character_bytes(rest);

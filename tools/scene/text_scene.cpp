@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "output/units.h"
+#include "scene/paths.h"
 #include "scene/generators.h"
 #include "thimble/trace/ray.h"
 
@@ -187,7 +187,7 @@ class TextScene final : public SceneSource {
     model.part = &part;
     try {
       if (!parse_generator(part.file)) {
-        arguments.scene = (std::filesystem::path(own_path).parent_path() / part.file).string();
+        arguments.scene = path_beside(own_path, part.file);
       }
       const std::string key = arguments.scene + '\n' + std::to_string(part.depth.value_or(0)) +
                               (part.as_voxels ? "v" : "") + (part.z_up ? "z" : "");
@@ -427,19 +427,13 @@ class TextScene final : public SceneSource {
   Vec3i extent_{1, 1, 1};
 };
 
-std::string canonical(const std::string& path) {
-  std::error_code error;
-  const auto result = std::filesystem::weakly_canonical(path, error);
-  return error ? path : result.string();
-}
-
 }  // namespace
 
 std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneArguments& arguments,
                                              SceneOpening* opening, const Progress& progress) {
   SceneOpening outermost;
   SceneOpening* const all = opening != nullptr ? opening : &outermost;
-  const std::string path = canonical(arguments.scene);
+  const std::string path = canonical_path(arguments.scene);
   if (std::find(all->path.begin(), all->path.end(), path) != all->path.end()) {
     throw InputError("this scene is a model of itself");
   }

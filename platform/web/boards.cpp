@@ -1,0 +1,165 @@
+// What the page calls: which boards there are, and the memory of one of them, set up for an application.
+#include "boards/board_table.h"
+
+#include "apps/text.h"
+#include "web/layout.h"
+
+extern "C" uint8_t __heap_base;  // the linker's: the end of constants and variables
+
+namespace thimble::web {
+
+Layout layout;
+
+namespace {
+
+// Where what a suspended application had on its stack is kept: two addresses, then bytes (binaryen's Asyncify).
+struct Suspension {
+  uint8_t* next;
+  uint8_t* end;
+  uint8_t bytes[8192];
+};
+Suspension suspension;
+
+constexpr size_t kPageBytes = 65536;
+constexpr size_t kGuardBytes = 64;
+constexpr uint32_t kStackBytes = 65536;  // CMakeLists.txt
+constexpr size_t kAlignment = 8;         // without it a baked brick map is not taken
+
+uint8_t* at(uintptr_t address) {
+  return reinterpret_cast<uint8_t*>(address);
+}
+
+void paint(uint8_t* from, uint8_t* to) {
+  for (volatile uint8_t* byte = from; byte < to; ++byte) {
+    *byte = port::kStackPaint;
+  }
+}
+
+void field(const char* name, uint32_t value) {
+  apps::put(name);
+  apps::put_number(value);
+}
+
+void text_field(const char* name, const char* value) {
+  apps::put(name);
+  apps::put(value);
+  apps::put("\"");
+}
+
+}  // namespace
+
+// The stack lies at the bottom of the memory, from address 0 to the first variable.
+__attribute__((noinline)) uint32_t used_stack() {
+  const uint8_t* const here = static_cast<uint8_t*>(__builtin_frame_address(0));
+  volatile const uint8_t* byte = at(sizeof(uint64_t));
+  while (byte < here && *byte == port::kStackPaint) {
+    byte = byte + 1;
+  }
+  return kStackBytes - static_cast<uint32_t>(reinterpret_cast<uintptr_t>(byte));
+}
+
+}  // namespace thimble::web
+
+using thimble::web::layout;
+
+extern "C" {
+
+// Writes the table of boards (boards/board_table.h) as JSON.
+[[clang::export_name("boards")]] void thimble_boards() {
+  using namespace thimble;
+  using web::field;
+  using web::text_field;
+  const char* between = "[";
+  for (const platform::BoardFacts& board : platform::boards()) {
+    apps::put(between);
+    text_field("{\"name\":\"", board.name);
+    text_field(",\"title\":\"", board.title);
+    field(",\"ram\":", board.ram_bytes);
+    field(",\"flash\":", board.flash_bytes);
+    field(",\"stack\":", board.stack_bytes);
+    field(",\"screen\":", static_cast<uint32_t>(board.screen));
+    field(",\"format\":", static_cast<uint32_t>(board.format));
+    field(",\"width\":", static_cast<uint32_t>(board.width_px));
+    field(",\"height\":", static_cast<uint32_t>(board.height_px));
+    field(",\"buttons\":", static_cast<uint32_t>(board.buttons));
+    apps::put("}");
+    between = ",\n";
+  }
+  apps::put("]");
+}
+
+// Sets the memory up for `app` on board number `index`, with a scene of so many bytes and `connected` saying whether
+// a display is shown: once in the life of a module. Where the scene is to be copied to; null where the memory cannot
+// be had or the scene exceeds the board's flash.
+[[clang::export_name("set_up")]] uint8_t* thimble_set_up(uint32_t index, const char* app,
+                                                         uint32_t scene_bytes, bool connected) {
+  using namespace thimble;
+  const Span<const platform::BoardFacts> all = platform::boards();
+  if (index >= all.size) {
+    return nullptr;
+  }
+  const platform::BoardFacts board = platform::board_for(all[index], app);
+  if (scene_bytes > board.flash_bytes || board.stack_bytes >= board.ram_bytes) {
+    return nullptr;
+  }
+  const auto up = [](uintptr_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; };
+  const uintptr_t scene = up(reinterpret_cast<uintptr_t>(&__heap_base), web::kAlignment);
+  const size_t arena_bytes = board.ram_bytes - board.stack_bytes;
+  const size_t pages =
+      up(scene + up(scene_bytes, web::kAlignment) + web::kGuardBytes + arena_bytes, web::kPageBytes) /
+      web::kPageBytes;
+  const size_t before = __builtin_wasm_memory_size(0);
+  if (pages > before && __builtin_wasm_memory_grow(0, pages - before) == SIZE_MAX) {
+    return nullptr;
+  }
+  uint8_t* const end = web::at(__builtin_wasm_memory_size(0) * web::kPageBytes);
+  layout.facts = {board.name,
+                  board.ram_bytes,
+                  board.flash_bytes,
+                  board.stack_bytes,
+                  {board.width_px, board.height_px, board.format, connected},
+                  board.visits_a_second,
+                  0};
+  layout.scene = {web::at(scene), scene_bytes};
+  layout.arena = {end - arena_bytes, arena_bytes};
+  layout.guard = {layout.arena.data - web::kGuardBytes, web::kGuardBytes};
+  web::paint(layout.guard.data, end);
+  web::paint(web::at(sizeof(uint64_t)), static_cast<uint8_t*>(__builtin_frame_address(0)) - 512);
+  return layout.scene.data;
+}
+
+// Readies the place where the application is to be suspended; its address.
+[[clang::export_name("suspension")]] void* thimble_suspension() {
+  using thimble::web::suspension;
+  suspension.next = suspension.bytes;
+  suspension.end = suspension.bytes + sizeof suspension.bytes;
+  return &suspension;
+}
+
+[[clang::export_name("arena_bytes")]] uint32_t thimble_arena_bytes() {
+  return static_cast<uint32_t>(layout.arena.size);
+}
+// Bytes of the arena up to the last one that was written to.
+[[clang::export_name("used_bytes")]] uint32_t thimble_used_bytes() {
+  const uint8_t* end = layout.arena.end();
+  while (end > layout.arena.begin() && end[-1] == thimble::port::kStackPaint) {
+    --end;
+  }
+  return static_cast<uint32_t>(end - layout.arena.begin());
+}
+[[clang::export_name("stack_limit")]] uint32_t thimble_stack_limit() {
+  return layout.facts.stack_bytes;
+}
+[[clang::export_name("stack_bytes")]] uint32_t thimble_stack_used() {
+  return thimble::web::used_stack();
+}
+// Whether nothing was written in front of the arena.
+[[clang::export_name("guard_is_whole")]] bool thimble_guard_is_whole() {
+  for (const uint8_t byte : layout.guard) {
+    if (byte != thimble::port::kStackPaint) {
+      return false;
+    }
+  }
+  return true;
+}
+}

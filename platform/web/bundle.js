@@ -1,0 +1,36 @@
+// Puts the page, its modules and its scenes into one file: node bundle.js MODULES ROOT OUT
+'use strict';
+const fs = require('fs');
+const path = require('path');
+const zlib = require('zlib');
+
+const [, , modules, root, out] = process.argv;
+const own = (name) => fs.readFileSync(path.join(__dirname, name), 'utf8');
+// The page's sources are scripts one after the other; each is a module of its own under Node.
+const script = ['machine.js', 'baker.js', 'orbit.js', 'page.js'].map((name) => own(name)
+  .replace(/^'use strict';\n/m, '')
+  .replace(/\nif \(typeof module !== 'undefined'\) \{[^]*?\n\}\n/, '\n')
+  .replace(/^\s*\/\/.*\n/gm, '')).join('\n');
+
+const packed = [];
+function pack(id, bytes) {
+  const gzip = zlib.gzipSync(bytes, {level: 9, memLevel: 9});
+  packed.push(`<script type="application/octet-stream" id="${id}">${gzip.toString('base64')}</script>`);
+}
+for (const name of ['scene', 'plane', 'bake']) {
+  pack(`module-${name}`, fs.readFileSync(path.join(modules, `${name}.wasm`)));
+}
+for (const name of ['castle.vox', 'room.scene', 'waves.scene']) {
+  pack(`file-${name}`, fs.readFileSync(path.join(root, 'tools/gallery/scenes', name)));
+}
+const page = own('page.html')
+  .replace('/*STYLE*/', () => own('page.css'))
+  .replace('<!--MODULES-->', () => packed.join('\n'))
+  .replace('/*SCRIPT*/', () => `'use strict';\n${script}`);
+fs.writeFileSync(out, page);
+const most = 600000;
+console.log(`${out}: ${page.length} of at most ${most} bytes`);
+if (page.length > most) {
+  console.error(`web: ${out} has ${page.length} bytes, ${page.length - most} too many`);
+  process.exit(1);
+}

@@ -1,0 +1,598 @@
+// The page: a board with one of its applications, or a scene to look around in.
+'use strict';
+
+const SCENES = {
+  valley: {title: 'Valley', app: 'demo', scene: 'demo', files: []},
+  castle: {title: 'Castle', app: 'demo', scene: 'castle.vox', files: ['castle.vox']},
+  room: {title: 'Lit room', app: 'demo', scene: 'room.scene', files: ['room.scene']},
+  water: {title: 'Water', app: 'water', scene: 'waves.scene', files: ['waves.scene']},
+  particles: {title: 'Particles', app: 'particles', scene: null, files: []},
+};
+// Keys over the UART, a button each.
+const APP_KEYS = {
+  demo: [['t', 'Turn'], ['l', 'Light'], ['b', 'Build on the chip'], ['s', 'Scene'], ['h', 'Hold a rate']],
+  water: [['m', 'Rain'], ['b', 'Drop'], ['t', 'Turn'], ['+', 'Nearer'], ['-', 'Farther'], ['k', 'Calm']],
+  particles: [['0', 'No gravity'], ['r', 'Again']],
+  look: [['+', 'Nearer'], ['-', 'Farther'], ['0', 'Own view']],
+};
+const MODULE_OF = {demo: 'scene', water: 'plane', particles: 'plane'};
+const VIEW_BOARD = 'raspi0';  // its display and flash are those of "look around"
+const FRAME_MS = 1000 / 30;
+const SLICE_MS = 12;
+const $ = (id) => document.getElementById(id);
+const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+const state = {
+  scene: 'valley', look: false, board: 'lm3s6965evb', paused: calm, depth: 0, coarsen: false,
+  dropped: null,  // {title, scene, files: [{name, bytes}]}
+};
+let machine = null;  // of the application that runs
+let viewer = null;
+let orbit = null;
+let baked = null;
+let boards = [];
+let generation = 0;  // of what is shown: what belongs to an older one ends
+let nextFrame = 0;
+const modules = {};
+const cache = new Map();
+
+// ---- what lies in the page
+
+async function inflate(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+function unpack(id) {
+  const text = atob($(id).textContent);
+  return inflate(Uint8Array.from(text, (character) => character.charCodeAt(0)));
+}
+async function moduleOf(name) {
+  modules[name] ??= WebAssembly.compile(await unpack(`module-${name}`));
+  return modules[name];
+}
+
+// ---- what is said
+
+const number = (value) => value.toLocaleString('en');
+function say(sentence, wrong = false) {
+  $('said').textContent = sentence;
+  $('said').classList.toggle('wrong', wrong);
+}
+function busy(sentence) {
+  $('busy').textContent = sentence ?? '';
+  $('busy').hidden = sentence === null;
+  return new Promise((done) => setTimeout(done, sentence === null ? 0 : 30));
+}
+function offer(offers) {
+  $('offers').replaceChildren(...offers.map(([title, run]) => {
+    const button = document.createElement('button');
+    button.textContent = title;
+    button.onclick = run;
+    return button;
+  }));
+  $('offers').hidden = offers.length === 0;
+}
+function share(meter, text, used, of) {
+  $(text).textContent = `${number(used)} of ${number(of)}`;
+  $(meter).value = of === 0 ? 0 : used / of;
+}
+
+// ---- from a scene to something that runs
+
+const current = () => state.dropped ?? SCENES[state.scene];
+const shownBoard = () => boards.find((board) => board.name === (state.look ? VIEW_BOARD : state.board));
+
+async function bakeCurrent(board) {
+  const entry = current();
+  if (entry.scene === null) return null;
+  const key = [entry.scene, board.name, state.depth, state.coarsen].join('|');
+  if (state.dropped === null && cache.has(key)) return cache.get(key);
+  await busy(`Baking for ${board.name} ...`);
+  const files = state.dropped?.files ??
+    await Promise.all(entry.files.map(async (name) => ({name, bytes: await unpack(`file-${name}`)})));
+  const baker = new Baker(await moduleOf('bake'), files);
+  try {
+    const made = baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen});
+    if (state.dropped === null) cache.set(key, made);
+    return made;
+  } catch (error) {
+    if (/bytes too many$/.test(error.message) && !state.coarsen) await offerSmaller(baker, entry, board, error);
+    throw error;
+  }
+}
+async function offerSmaller(baker, entry, board, error) {
+  const depth = Number(/at depth (\d+)/.exec(error.message)?.[1] ?? 0);
+  await busy('Trying smaller depths ...');
+  const smaller = baker.smaller(entry.scene, board, depth);
+  const offers = [['Merge blocks until it fits', () => restart({coarsen: true})]];
+  if (smaller !== null) {
+    error.message += `. Depth ${smaller.level} fits with ${number(smaller.bytes)} bytes.`;
+    offers.unshift([`Show it at depth ${smaller.level}`, () => restart({depth: smaller.level})]);
+  }
+  error.offers = offers;
+}
+
+function restart(changes) {
+  Object.assign(state, changes);
+  return start();
+}
+
+async function start() {
+  const own = ++generation;
+  machine = viewer = null;
+  offer([]);
+  const board = shownBoard();
+  showChoices(board);
+  try {
+    const made = await bakeCurrent(board);
+    if (own !== generation) return;
+    baked = made;
+    if (state.look) {
+      await openViewer(made, board);
+    } else {
+      await openMachine(made, board);
+    }
+    if (own !== generation) return;
+    say(sentenceOf(made, board));
+  } catch (error) {
+    if (own !== generation) return;
+    say(`${current().title}: ${error.message}`, true);
+    offer(error.offers ?? []);
+    clear(board);
+  } finally {
+    if (own === generation) await busy(null);
+  }
+  document.documentElement.dataset.ready = String(own);
+}
+
+function sentenceOf(made, board) {
+  if (made === null) return `${board.title}.`;
+  let text = `${current().title}: ${number(made.voxels)} voxels in ${number(made.bytes)} bytes, depth ${made.level}`;
+  if (made.added !== 0) text += `; ${number(made.added)} voxels of solid volume added by merging`;
+  return `${text}. ${board.title}.`;
+}
+
+async function openMachine(made, board) {
+  const entry = current();
+  const app = made?.water && made.kind !== 'generator water' ? 'water' : entry.app ?? 'demo';
+  machine = new Machine(await moduleOf(MODULE_OF[app]), {
+    board, app, scene: made?.baked, connected: true, slice_ms: SLICE_MS,
+  });
+  nextFrame = 0;
+  prepareCanvas(board);
+  showKeys(app);
+  $('uart').textContent = '';
+  if (app === 'demo' && calm) machine.type('t');
+  machine.step();
+  present(true);
+}
+
+async function openViewer(made, board) {
+  const x = new WebAssembly.Instance(await moduleOf('scene'), {env: {
+    flush() {}, running: () => 0, buttons: () => 0, read: () => -1, write() {}, microseconds: () => 0,
+  }}).exports;
+  const at = x.room(made.baked.length, board.width, board.height);
+  if (at === 0) throw new Error('there is no memory for it here');
+  new Uint8Array(x.memory.buffer).set(made.baked, at);
+  const wrong = x.open();
+  if (wrong !== 0) {
+    const memory = new Uint8Array(x.memory.buffer);
+    throw new Error(new TextDecoder().decode(memory.slice(wrong, memory.indexOf(0, wrong))));
+  }
+  const point = (ofTarget) => [0, 1, 2].map((axis) => x.own_camera(ofTarget, axis));
+  const view = orbit?.scene === current().scene ? orbit.text() : state.view;
+  orbit = new Orbit(point(false), point(true), 1 << x.level());
+  orbit.scene = current().scene;
+  if (view) orbit.take(view);
+  state.view = null;
+  const picture = new Display(board);
+  viewer = {x, board, picture, step: x.has_map() ? 1 : 4, phase: 'moved', row: 0, times: []};
+  prepareCanvas(board);
+  showKeys('look');
+  $('uart').textContent = '';
+}
+
+// ---- a scene to look around in: fast while it moves, then lit, then four samples a pixel
+
+function lookOn(now) {
+  const {x, board} = viewer;
+  const began = performance.now();
+  if (viewer.phase === 'moved') {
+    const {eye, target, zoom, own} = orbit.camera();
+    if (!x.look(...eye, ...target, zoom, own)) return;
+    x.draw(0, board.height, viewer.step, false);
+    viewer.time = performance.now() - began;
+    // Every few pixels where that is what a frame has time for.
+    if (viewer.time > 40 && viewer.step < 8) viewer.step *= 2;
+    if (viewer.time < 8 && viewer.step > 1) viewer.step /= 2;
+    viewer.phase = 'waits';
+    viewer.since = now;
+    showViewer(0, board.height);
+    $('frame').textContent = `${viewer.time.toFixed(1)} ms${viewer.step > 1 ? `, 1:${viewer.step}` : ''}`;
+  } else if (viewer.phase === 'waits' && now - viewer.since > 120) {
+    viewer.phase = 'lit';
+    viewer.row = 0;
+  } else if (viewer.phase === 'lit' || viewer.phase === 'fine') {
+    const first = viewer.row;
+    while (viewer.row < board.height && performance.now() - began < SLICE_MS) {
+      if (viewer.phase === 'lit') {
+        const rows = Math.min(4, board.height - viewer.row);
+        x.draw(viewer.row, rows, 1, true);
+        viewer.row += rows;
+      } else {
+        x.draw_fine(viewer.row++);
+      }
+    }
+    showViewer(first, viewer.row);
+    const percent = Math.floor(100 * viewer.row / board.height);
+    $('frame').textContent = `${viewer.phase === 'lit' ? 'lit' : 'four samples'} ${percent} %`;
+    if (viewer.row === board.height) {
+      viewer.phase = viewer.phase === 'lit' ? 'fine' : 'finished';
+      viewer.row = 0;
+    }
+  }
+  if (viewer.phase === 'finished') $('frame').textContent = 'finished';
+  document.documentElement.dataset.phase = viewer.phase;
+}
+function showViewer(first, end) {
+  const {x, board, picture} = viewer;
+  picture.bytes.set(new Uint8Array(x.memory.buffer, x.picture(), picture.bytes.length));
+  put(picture, first, end);
+  share('ram-meter', 'ram', x.memory.buffer.byteLength, x.memory.buffer.byteLength);
+  $('ram').textContent = `${number(x.memory.buffer.byteLength)} bytes`;
+  share('flash-meter', 'flash', baked.bytes + baked.code, board.flash);
+}
+function moved(change) {
+  change();
+  if (viewer !== null) viewer.phase = 'moved';
+}
+
+// ---- the canvas
+
+let image = null;
+function prepareCanvas(board) {
+  const canvas = $('canvas');
+  canvas.width = board.width;
+  canvas.height = board.height;
+  canvas.setAttribute('aria-label', `${current().title} on a display of ${board.width} by ${board.height} pixels`);
+  image = canvas.getContext('2d').createImageData(board.width, board.height);
+  $('ram').textContent = $('flash').textContent = $('frame').textContent = '–';
+  $('ram-meter').value = $('flash-meter').value = 0;
+  fit();
+}
+// Magnified by a whole number where the screen has room for it.
+function fit() {
+  const canvas = $('canvas');
+  const style = getComputedStyle($('screen'));
+  const room = $('screen').clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  const high = Math.max(240, innerHeight * 0.62);
+  let scale = Math.min(room / canvas.width, high / canvas.height);
+  if (scale >= 1) scale = Math.floor(scale * devicePixelRatio) / devicePixelRatio;
+  canvas.style.width = `${canvas.width * scale}px`;
+  canvas.style.height = `${canvas.height * scale}px`;
+  const gaps = $('gaps');
+  const board = shownBoard();
+  gaps.hidden = board === undefined || board.screen !== 1 || scale < 3;  // an OLED shows its pixels
+  if (!gaps.hidden) {
+    const line = `transparent 0 ${scale - Math.max(1, scale / 6)}px, #0007 0 ${scale}px`;
+    Object.assign(gaps.style, {
+      width: canvas.style.width, height: canvas.style.height, left: `${canvas.offsetLeft}px`, top: `${canvas.offsetTop}px`,
+      background: `repeating-linear-gradient(90deg, ${line}), repeating-linear-gradient(${line}), #e2f2ff`,
+    });
+    gaps.style.background = `repeating-linear-gradient(90deg, ${line}), repeating-linear-gradient(180deg, ${line})`;
+    gaps.style.backgroundColor = '#e2f2ff';
+  }
+}
+function put(display, first, end) {
+  expandRows(display, first, end, image.data);
+  $('canvas').getContext('2d').putImageData(image, 0, 0, 0, first, image.width, end - first);
+}
+function clear(board) {
+  prepareCanvas(board);
+}
+// What the machine has drawn since.
+function present(all) {
+  const {display} = machine;
+  const [first, end] = display.changed;
+  if (end > first) {
+    put(display, first, end);
+    display.changed = [machine.board.height, 0];
+  }
+  if (machine.output !== '') {
+    const uart = $('uart');
+    uart.textContent = (uart.textContent + machine.output).slice(-8000);
+    machine.output = '';
+  }
+  if (all) showUse();
+  if (machine.state === 'ended') tellEnd();
+}
+function tellEnd() {
+  say(machine.fault !== undefined ? `${machine.app} was stopped: ${machine.fault}.` :
+    machine.status === 0 ? `${machine.app} has ended.` :
+      `${machine.app}: ${/error: (.*)/.exec($('uart').textContent)?.[1] ?? `ended with status ${machine.status}`}.`,
+  machine.status !== 0);
+  offer([['Start again', () => restart({})]]);
+}
+let lastUse = 0;
+function showUse() {
+  if (machine.frameTime !== 0) $('frame').textContent = `${machine.frameTime.toFixed(1)} ms`;
+  const now = performance.now();
+  if (now - lastUse < 500 && $('ram-meter').value !== 0) return;
+  lastUse = now;
+  const use = machine.use();
+  share('ram-meter', 'ram', use.ram, use.ramLimit);
+  share('flash-meter', 'flash', baked === null ? 0 : baked.bytes + baked.code, machine.board.flash);
+  if (baked === null) $('flash').textContent = 'no scene';
+}
+
+function tick(now) {
+  requestAnimationFrame(tick);
+  if (viewer !== null) {
+    lookOn(now);
+    return;
+  }
+  if (machine === null || machine.state === 'ended') return;
+  if (machine.state === 'frame') {
+    if (now < nextFrame || (state.paused && !machine.wanted)) return;
+    machine.wanted = false;
+    nextFrame = Math.max(nextFrame + FRAME_MS, now);
+  }
+  machine.buttons = heldButtons();
+  machine.step();
+  present(machine.state === 'frame');
+}
+
+// ---- hands
+
+const held = new Map();  // what holds it: the button's bit
+const heldButtons = () => [...held.values()].reduce((all, bit) => all | bit, 0);
+function hold(by, name) {
+  if (viewer !== null) {
+    const step = 0.08;
+    const turns = {left: [-step, 0], right: [step, 0], up: [0, step], down: [0, -step]}[name];
+    if (turns !== undefined) moved(() => orbit.turn(...turns));
+    return;
+  }
+  held.set(by, BUTTONS[name]);
+  if (machine !== null) machine.wanted = true;
+}
+function type(text) {
+  if (viewer !== null) {
+    if (text === '+') moved(() => orbit.approach(0.85));
+    if (text === '-') moved(() => orbit.approach(1 / 0.85));
+    if (text === '0') moved(() => orbit.reset());
+  } else if (machine !== null) {
+    machine.type(text);
+    machine.wanted = true;
+  }
+}
+
+const KEY_BUTTONS = {ArrowUp: 'up', ArrowDown: 'down', ArrowLeft: 'left', ArrowRight: 'right', Enter: 'select', ' ': 'select'};
+addEventListener('keydown', (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || $('dialog').open) return;
+  if (event.key === '?') {
+    $('dialog').showModal();
+    return;
+  }
+  // What has the focus keeps the keys that it needs itself.
+  const own = event.target.closest?.('button, select, summary, input, pre');
+  const name = KEY_BUTTONS[event.key];
+  if (name !== undefined) {
+    if (own && (name === 'select' || own.matches('select, pre, [role="radio"]'))) return;
+    event.preventDefault();
+    hold(event.key, name);
+  } else if (event.key.length === 1 && !(own && own.matches('select'))) {
+    type(event.key);
+  }
+});
+addEventListener('keyup', (event) => held.delete(event.key));
+addEventListener('blur', () => held.clear());
+
+for (const button of document.querySelectorAll('[data-hold]')) {
+  const name = button.dataset.hold;
+  button.addEventListener('pointerdown', (event) => {
+    button.setPointerCapture(event.pointerId);
+    hold(button, name);
+  });
+  for (const end of ['pointerup', 'pointercancel']) button.addEventListener(end, () => held.delete(button));
+  // Pressed by a key: for a moment.
+  button.addEventListener('click', (event) => {
+    if (event.detail !== 0) return;
+    hold(button, name);
+    setTimeout(() => held.delete(button), 150);
+  });
+}
+
+const pointers = new Map();
+const canvas = $('canvas');
+function pixelAt(event) {
+  const box = canvas.getBoundingClientRect();
+  return [Math.floor((event.clientX - box.left) / box.width * canvas.width),
+    Math.floor((event.clientY - box.top) / box.height * canvas.height)];
+}
+canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+canvas.addEventListener('pointerdown', (event) => {
+  canvas.setPointerCapture(event.pointerId);
+  pointers.set(event.pointerId, {x: event.clientX, y: event.clientY, from: [event.clientX, event.clientY]});
+  if (machine?.app === 'water') type(`${event.button === 0 ? '@' : '!'}${pixelAt(event)}.`);
+});
+canvas.addEventListener('pointermove', (event) => {
+  const pointer = pointers.get(event.pointerId);
+  if (pointer === undefined) return;
+  const [dx, dy] = [event.clientX - pointer.x, event.clientY - pointer.y];
+  const before = spread();
+  Object.assign(pointer, {x: event.clientX, y: event.clientY});
+  if (viewer !== null && pointers.size === 2) {
+    moved(() => {
+      orbit.approach(before / Math.max(1, spread()));
+      orbit.move(-dx / canvas.clientHeight / 3, dy / canvas.clientHeight / 3);
+    });
+  } else if (viewer !== null && (event.buttons & 6 || event.shiftKey)) {
+    moved(() => orbit.move(-dx / canvas.clientHeight / 1.6, dy / canvas.clientHeight / 1.6));
+  } else if (viewer !== null) {
+    moved(() => orbit.turn(5 * dx / canvas.clientWidth, 4 * dy / canvas.clientWidth));
+  } else if (machine?.app === 'water') {
+    if (event.buttons & 1) type(`@${pixelAt(event)}.`);
+  } else {
+    steerBy(event.clientX - pointer.from[0], event.clientY - pointer.from[1]);
+  }
+});
+for (const end of ['pointerup', 'pointercancel']) {
+  canvas.addEventListener(end, (event) => {
+    pointers.delete(event.pointerId);
+    held.delete('drag x');
+    held.delete('drag y');
+  });
+}
+function spread() {
+  const [a, b] = [...pointers.values()];
+  return b === undefined ? 1 : Math.hypot(a.x - b.x, a.y - b.y);
+}
+// A drag holds the arrow that it goes along.
+function steerBy(dx, dy) {
+  const least = 12;
+  const set = (by, distance, less, more) => {
+    if (Math.abs(distance) < least) held.delete(by);
+    else hold(by, distance < 0 ? less : more);
+  };
+  set('drag x', dx, 'left', 'right');
+  set('drag y', dy, 'up', 'down');
+}
+canvas.addEventListener('wheel', (event) => {
+  event.preventDefault();
+  if (viewer !== null) moved(() => orbit.approach(Math.exp(Math.sign(event.deltaY) * 0.12)));
+  else if (machine?.app === 'water') type(event.deltaY < 0 ? '+' : '-');
+}, {passive: false});
+
+// ---- files
+
+async function take(list) {
+  const files = [];
+  for (const file of list) {
+    let bytes = new Uint8Array(await file.arrayBuffer());
+    if (bytes[0] === 0x1f && bytes[1] === 0x8b) {
+      try {
+        bytes = await inflate(bytes);
+      } catch {
+        say(`${file.name}: its gzip data is damaged or truncated`, true);
+        return;
+      }
+    }
+    files.push({name: file.name, bytes});
+  }
+  if (files.length === 0) return;
+  const main = files.find((file) => /\.scene(\.gz)?$/i.test(file.name)) ?? files[0];
+  await restart({dropped: {title: main.name, scene: main.name, files}, depth: 0, coarsen: false});
+}
+addEventListener('dragover', (event) => {
+  event.preventDefault();
+  document.body.classList.add('dropping');
+});
+addEventListener('dragleave', (event) => {
+  if (event.relatedTarget === null) document.body.classList.remove('dropping');
+});
+addEventListener('drop', (event) => {
+  event.preventDefault();
+  document.body.classList.remove('dropping');
+  take(event.dataTransfer.files);
+});
+$('open').onclick = () => $('file').click();
+$('file').onchange = () => take($('file').files).then(() => { $('file').value = ''; });
+
+// ---- the page's own buttons
+
+function saveAs(name, blob) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+$('save').onclick = () => canvas.toBlob((blob) => {
+  saveAs(`thimble-${current().title.replace(/[^\w.-]+/g, '-').toLowerCase()}.png`, blob);
+});
+$('link').onclick = async () => {
+  const view = new URLSearchParams({scene: state.scene, board: state.board});
+  if (state.look) view.set('look', orbit === null || orbit.isOwn ? '1' : orbit.text());
+  location.hash = view;
+  try {
+    await navigator.clipboard.writeText(location.href);
+    say(state.dropped === null ? 'The link is on the clipboard.' :
+      'The link is on the clipboard; it names no dropped file, which stays here.');
+  } catch {
+    say('The link stands in the address bar.');
+  }
+};
+$('help').onclick = () => $('dialog').showModal();
+$('pause').onclick = () => {
+  state.paused = !state.paused;
+  showPause();
+};
+function showPause() {
+  $('pause').setAttribute('aria-pressed', String(state.paused));
+}
+$('board').onchange = () => restart({board: $('board').value, depth: 0, coarsen: false});
+
+function radio(name, title, checked, run) {
+  const button = document.createElement('button');
+  button.textContent = title;
+  button.id = `scene-${name}`;
+  button.setAttribute('role', 'radio');
+  button.setAttribute('aria-checked', String(checked));
+  button.onclick = run;
+  return button;
+}
+function showChoices(board) {
+  const focused = document.activeElement?.id;
+  const buttons = Object.entries(SCENES).map(([name, {title}]) => radio(name, title,
+    state.dropped === null && state.scene === name, () => restart({
+      scene: name, dropped: null, depth: 0, coarsen: false, look: state.look && SCENES[name].scene !== null})));
+  if (state.dropped !== null) buttons.push(radio('dropped', state.dropped.title, true, () => {}));
+  const look = document.createElement('button');
+  look.id = 'look';
+  look.textContent = 'Look around';
+  look.setAttribute('aria-pressed', String(state.look));
+  look.disabled = current().scene === null;
+  look.onclick = () => restart({look: !state.look, depth: 0, coarsen: false});
+  $('scenes').replaceChildren(...buttons, look);
+  if (focused) $(focused)?.focus({preventScroll: true});
+  $('board').value = state.board;
+  $('board').disabled = state.look;
+  $('pause').disabled = state.look;
+  showPause();
+  fit();
+}
+function showKeys(app) {
+  $('keys').replaceChildren(...APP_KEYS[app].map(([key, title]) => {
+    const button = document.createElement('button');
+    button.textContent = title;
+    button.dataset.key = key;
+    button.title = `key ${key}`;
+    button.onclick = () => type(key);
+    return button;
+  }));
+}
+addEventListener('resize', fit);
+
+function readFragment() {
+  const view = new URLSearchParams(location.hash.slice(1));
+  if (view.get('scene') in SCENES) state.scene = view.get('scene');
+  if (boards.some((board) => board.name === view.get('board'))) state.board = view.get('board');
+  state.look = view.has('look') && current().scene !== null;
+  state.view = view.get('look')?.includes(',') ? view.get('look') : null;
+}
+
+async function main() {
+  boards = boardsOf(await moduleOf('scene'));
+  $('board').replaceChildren(...boards.map((board) => {
+    const option = document.createElement('option');
+    option.value = board.name;
+    option.textContent = `${board.title}: ${board.width} x ${board.height}, RAM ${number(board.ram / 1024)} KiB, ` +
+      `flash ${number(board.flash / 1024)} KiB`;
+    return option;
+  }));
+  readFragment();
+  await start();
+  requestAnimationFrame(tick);
+}
+main().catch((error) => say(`This browser does not run the page: ${error.message}`, true));

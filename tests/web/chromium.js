@@ -1,0 +1,116 @@
+// Headless Chromium by its own protocol over a pipe: no package is needed.
+'use strict';
+const {spawn} = require('child_process');
+const fs = require('fs');
+const os = require('os');
+const path = require('path');
+
+class Chromium {
+  static async open(url, {width = 1280, height = 900, mobile = false, media = []} = {}) {
+    const browser = new Chromium();
+    browser.folder = fs.mkdtempSync(path.join(os.tmpdir(), 'thimble-web-'));
+    browser.process = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe',
+      `--user-data-dir=${browser.folder}`, '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
+      '--hide-scrollbars', 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+    browser.next = 0;
+    browser.waiting = new Map();
+    browser.events = [];
+    let rest = '';
+    browser.process.stdio[4].on('data', (data) => {
+      rest += data;
+      for (let end = rest.indexOf('\0'); end >= 0; end = rest.indexOf('\0')) {
+        const message = JSON.parse(rest.slice(0, end));
+        rest = rest.slice(end + 1);
+        if (message.id !== undefined) {
+          const {done, fail} = browser.waiting.get(message.id);
+          browser.waiting.delete(message.id);
+          message.error ? fail(new Error(message.error.message)) : done(message.result);
+        } else {
+          browser.events.push(message);
+        }
+      }
+    });
+    const {targetInfos} = await browser.send('Target.getTargets');
+    const page = targetInfos.find((target) => target.type === 'page');
+    browser.session = (await browser.send('Target.attachToTarget', {targetId: page.targetId, flatten: true})).sessionId;
+    for (const domain of ['Page', 'Runtime', 'Network', 'Log']) await browser.send(`${domain}.enable`);
+    await browser.send('Emulation.setDeviceMetricsOverride',
+      {width, height, deviceScaleFactor: mobile ? 2 : 1, mobile});
+    if (mobile) await browser.send('Emulation.setTouchEmulationEnabled', {enabled: true, maxTouchPoints: 5});
+    await browser.send('Emulation.setEmulatedMedia', {features: media});
+    await browser.send('Page.navigate', {url});
+    return browser;
+  }
+  send(method, params = {}) {
+    const id = ++this.next;
+    this.process.stdio[3].write(JSON.stringify({id, method, params, sessionId: this.session}) + '\0');
+    return new Promise((done, fail) => this.waiting.set(id, {done, fail}));
+  }
+  async eval(expression) {
+    const {result, exceptionDetails} = await this.send('Runtime.evaluate',
+      {expression, awaitPromise: true, returnByValue: true});
+    if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
+    return result.value;
+  }
+  // Waits until the expression is true.
+  async until(expression, seconds = 20) {
+    for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
+      if (await this.eval(expression).catch(() => false)) return;
+      await new Promise((done) => setTimeout(done, 50));
+    }
+    throw new Error(`${expression} did not come true within ${seconds} s; the page says: ` +
+      await this.eval('document.getElementById("said").textContent').catch(() => 'nothing'));
+  }
+  async shot(file) {
+    const {data} = await this.send('Page.captureScreenshot', {format: 'png'});
+    fs.writeFileSync(file, Buffer.from(data, 'base64'));
+  }
+  async middle(selector) {
+    return this.eval(`(() => { const element = document.querySelector(${JSON.stringify(selector)});
+      element.scrollIntoView({block: 'center'}); const box = element.getBoundingClientRect();
+      return {x: box.x + box.width / 2, y: box.y + box.height / 2, width: box.width, height: box.height}; })()`);
+  }
+  async click(selector) {
+    const {x, y} = await this.middle(selector);
+    for (const type of ['mouseMoved', 'mousePressed', 'mouseReleased']) {
+      await this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: 1, clickCount: 1});
+    }
+  }
+  async drag(selector, dx, dy, button = 'left') {
+    const {x, y} = await this.middle(selector);
+    const event = (type, part) => this.send('Input.dispatchMouseEvent',
+      {type, x: x + dx * part, y: y + dy * part, button, buttons: 1, clickCount: 1});
+    await event('mousePressed', 0);
+    for (const part of [0.25, 0.5, 0.75, 1]) await event('mouseMoved', part);
+    await event('mouseReleased', 1);
+  }
+  async wheel(selector, deltaY) {
+    const {x, y} = await this.middle(selector);
+    await this.send('Input.dispatchMouseEvent', {type: 'mouseWheel', x, y, deltaX: 0, deltaY});
+  }
+  async key(key, code = key, text = key.length === 1 ? key : undefined) {
+    const windowsVirtualKeyCode = {ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13}[key];
+    await this.send('Input.dispatchKeyEvent', {type: 'keyDown', key, code, text, windowsVirtualKeyCode});
+    await new Promise((done) => setTimeout(done, 120));
+    await this.send('Input.dispatchKeyEvent', {type: 'keyUp', key, code, windowsVirtualKeyCode});
+  }
+  async touch(type, points) {
+    await this.send('Input.dispatchTouchEvent', {type, touchPoints: points});
+  }
+  // Files fall on the page, as from a file manager.
+  async drop(files) {
+    const {x, y} = await this.middle('#screen');
+    const data = {items: [], files, dragOperationsMask: 1};
+    for (const type of ['dragEnter', 'dragOver', 'drop']) await this.send('Input.dispatchDragEvent', {type, x, y, data});
+  }
+  async close() {
+    const ended = new Promise((done) => this.process.on('exit', done));
+    this.session = undefined;
+    this.send('Browser.close').catch(() => {});
+    setTimeout(() => this.process.kill('SIGKILL'), 3000).unref();
+    await ended;
+    fs.rmSync(this.folder, {recursive: true, force: true, maxRetries: 5});
+  }
+}
+
+module.exports = {Chromium};

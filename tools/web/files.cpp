@@ -1,0 +1,142 @@
+// What the readers ask of a system (readers/file_bytes.h, scene/paths.h, scene/...), from what the page handed over.
+#include "web/files.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <new>
+#include <utility>
+
+#include "readers/file_bytes.h"
+#include "scene/paths.h"
+#include "scene/host_memory.h"
+#include "scene/named_scenes.h"
+#include "scene/workers.h"
+
+namespace thimble::tools {
+namespace {
+
+std::map<std::string, std::span<const std::uint8_t>>& files() {
+  static std::map<std::string, std::span<const std::uint8_t>> all;
+  return all;
+}
+
+}  // namespace
+
+void add_file(const std::string& name, std::span<const std::uint8_t> bytes) {
+  files()[name] = bytes;
+}
+
+// ---- readers/file_bytes.h
+
+FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
+  const auto found = files().find(file_name(path));
+  if (found == files().end()) {
+    throw InputError("is not here: drop it together with the file that names it");
+  }
+  const std::span<const std::uint8_t> bytes = found->second;
+  if (bytes.empty()) {
+    throw InputError("is empty");
+  }
+  if (bytes.size() > limit_bytes) {
+    throw InputError("holds more than the limit of " + std::to_string(limit_bytes) + " bytes");
+  }
+  if (look) {
+    look(bytes.first(std::min(bytes.size(), kFirstLookBytes)));
+  }
+  return FileBytes::copy_of(bytes);
+}
+
+class FileBuffer {
+ public:
+  static FileBytes of(std::span<const std::uint8_t> bytes) {
+    FileBytes result;
+    auto* const copy = static_cast<std::uint8_t*>(std::malloc(std::max<std::size_t>(bytes.size(), 1)));
+    if (copy == nullptr) {
+      throw InputError("does not fit the memory that the browser gives");
+    }
+    std::copy(bytes.begin(), bytes.end(), copy);
+    result.data_.reset(copy);
+    result.size_ = bytes.size();
+    return result;
+  }
+};
+
+FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
+  return FileBuffer::of(bytes);
+}
+
+SharedBytes share(FileBytes bytes) {
+  auto kept = std::make_shared<const FileBytes>(std::move(bytes));
+  return {kept->bytes(), kept};
+}
+
+// ---- scene/paths.h
+
+std::string file_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+// All files lie in one folder.
+std::string path_beside(const std::string& /*path*/, const std::string& name) {
+  return name;
+}
+
+std::string canonical_path(const std::string& path) {
+  return file_name(path);
+}
+
+// ---- scene
+
+std::vector<std::string> scene_names() {
+  return {};
+}
+
+std::string scene_path(const std::string& scene) {
+  return scene;
+}
+
+void each_task(std::size_t tasks, int /*threads*/,
+               const std::function<void(std::size_t task, std::size_t worker)>& run) {
+  for (std::size_t task = 0; task < tasks; ++task) {
+    run(task, 0);
+  }
+}
+
+HostMemory::HostMemory(std::size_t size) : size_(size) {
+  if (size != 0) {
+    data_ = static_cast<std::uint8_t*>(std::malloc(size));
+    if (data_ == nullptr) {
+      throw std::bad_alloc();
+    }
+  }
+}
+
+// Pages of a WebAssembly memory take none of the machine's until they are written, but they are never given back.
+HostMemory HostMemory::largest() {
+  HostMemory memory;
+  for (std::size_t size = std::size_t{512} << 20; size >= std::size_t{1} << 20; size /= 2) {
+    memory.data_ = static_cast<std::uint8_t*>(std::malloc(size));
+    if (memory.data_ != nullptr) {
+      memory.size_ = size;
+      return memory;
+    }
+  }
+  throw std::bad_alloc();
+}
+
+HostMemory::~HostMemory() {
+  std::free(data_);
+}
+
+HostMemory::HostMemory(HostMemory&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+HostMemory& HostMemory::operator=(HostMemory&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+}  // namespace thimble::tools

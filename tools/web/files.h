@@ -1,0 +1,17 @@
+/// @file files.h
+/// The files that the page handed over, in place of a file system.
+#ifndef THIMBLE_TOOLS_WEB_FILES_H
+#define THIMBLE_TOOLS_WEB_FILES_H
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace thimble::tools {
+
+/// `bytes` stay where they are; those of a .gz are inflated already.
+void add_file(const std::string& name, std::span<const std::uint8_t> bytes);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,92 @@
+// The command's readers and bake as a WebAssembly module of the page: files that were dropped become the bytes of
+// `thimble bake FILE --board NAME`. One instance bakes one scene: what is wrong with a file ends it (runtime.cpp).
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+#include "boards/board_table.h"
+#include "output/units.h"
+#include "scene/board_fit.h"
+#include "scene/flash_baking.h"
+#include "scene/framing.h"
+#include "scene/generators.h"
+#include "scene/scene_source.h"
+#include "web/files.h"
+
+namespace thimble::tools {
+namespace {
+
+Baked baked;
+std::string facts;  // of what was baked, as JSON
+
+std::string number_field(const char* name, std::uint64_t value) {
+  return std::string(",\"") + name + "\":" + std::to_string(value);
+}
+
+void tell(const SceneSource& source, const platform::BoardFacts& board) {
+  const CompactTree& tree = baked.scene.tree();
+  facts = "{\"level\":" + std::to_string(tree.level()) + number_field("voxels", tree.voxel_count()) +
+          number_field("bytes", baked.bytes.size()) + number_field("added", tree.solid_added()) +
+          number_field("effects", baked.effects) + number_field("points", source.points()) +
+          number_field("code", code_flash_bytes(baked.effects)) +
+          number_field("ram", drawing_ram_bytes(board, baked.effects)) +
+          number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
+          source.kind() + "\"}";
+}
+
+}  // namespace
+}  // namespace thimble::tools
+
+extern "C" {
+
+// Room for the bytes of a file, or for a name.
+[[clang::export_name("room")]] std::uint8_t* thimble_room(std::size_t bytes) {
+  return new std::uint8_t[bytes == 0 ? 1 : bytes];
+}
+
+// A file of that name holds these bytes, which stay where they are.
+[[clang::export_name("add_file")]] void thimble_add_file(const char* name, const std::uint8_t* bytes,
+                                                         std::size_t size) {
+  thimble::tools::add_file(name, {bytes, size});
+}
+
+// Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own. How many bytes it takes.
+[[clang::export_name("bake")]] std::size_t thimble_bake(const char* scene, std::uint32_t index, int depth,
+                                                        bool coarsen) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const platform::BoardFacts& board = platform::boards()[index];
+  SceneArguments arguments;
+  arguments.scene = scene;
+  if (depth != 0) {
+    arguments.depth = depth;
+  }
+  const auto source = open_scene(arguments);
+  ViewWishes view;
+  view.side = NamedView::kBest;
+  view.fov_degrees = kPictureFov;
+  view.width_px = board.width_px;
+  view.height_px = board.height_px;
+  const FlashLimit limit{&board, std::nullopt};
+  BakingOptions options;
+  options.limit_bytes = limit.bytes();
+  options.name = scene_name(scene);
+  options.brick_map = true;
+  options.coarsen = coarsen;
+  options.default_look = source->baked() == nullptr && !parse_generator(scene);
+  options.camera = [&](const CompactTree& tree) { return frame_scene(view, *source, shape_of(tree)).kept; };
+  baked = bake_within(limit, *source, &options);
+  if (!baked.fits) {
+    throw InputError(too_large_text(limit, baked, options, source->level()));
+  }
+  tell(*source, board);
+  return baked.bytes.size();
+}
+
+[[clang::export_name("baked")]] const std::uint8_t* thimble_baked() {
+  return thimble::tools::baked.bytes.data();
+}
+[[clang::export_name("facts")]] const char* thimble_facts() {
+  return thimble::tools::facts.c_str();
+}
+}
