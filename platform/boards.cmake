@@ -29,12 +29,17 @@ macro(thimble_read_board name)
   endforeach()
 endmacro()
 
-# gray4 -> Gray4
-function(thimble_capitalise result word)
-  string(SUBSTRING ${word} 0 1 first)
-  string(SUBSTRING ${word} 1 -1 rest)
-  string(TOUPPER ${first} first)
-  set(${result} ${first}${rest} PARENT_SCOPE)
+# gray4 -> Gray4, gray4_low -> Gray4Low
+function(thimble_capitalise result words)
+  string(REPLACE "_" ";" words ${words})
+  set(all)
+  foreach(word IN LISTS words)
+    string(SUBSTRING ${word} 0 1 first)
+    string(SUBSTRING ${word} 1 -1 rest)
+    string(TOUPPER ${first} first)
+    string(APPEND all ${first}${rest})
+  endforeach()
+  set(${result} ${all} PARENT_SCOPE)
 endfunction()
 
 # Writes `file`: one line of C++ initialisers a board, in the order of the members of BoardFacts

@@ -4,6 +4,7 @@
 #                                               without it there is no scene in the image
 # In the environment: EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
 # SCENE=demo for the board's BOARD_DEMO_EFFECTS); FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then;
+# PANEL_FORMATS=MASK has other formats of panels than the board's (picture/pixel.h);
 # HOLD_FPS=N holds a rate of frames; THIMBLE_FIRMWARE is another place than build/firmware.
 set -eu
 cd "$(dirname "$0")/.."
@@ -36,5 +37,6 @@ esac
 export CCACHE_DISABLE=1
 cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH)/toolchain.cmake" -DTHIMBLE_BOARD="$board" \
   -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
-  -DTHIMBLE_HOLD="${HOLD:-false}" -DTHIMBLE_HOLD_FPS="${HOLD_FPS:-0}" --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
+  -DTHIMBLE_HOLD="${HOLD:-false}" -DTHIMBLE_HOLD_FPS="${HOLD_FPS:-0}" -DTHIMBLE_PANEL_FORMATS="${PANEL_FORMATS:-}" \
+  --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
 cmake --build "$work" -- --quiet

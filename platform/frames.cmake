@@ -13,6 +13,22 @@ foreach(fact IN LISTS THIMBLE_FACTS)
   set(BOARD_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
 endforeach()
 
+# The formats behind rgb888 that an image has: the board's, if it is one of them (picture/pixel.h). `selftest`
+# and `golden` try all of those that there are.
+set(THIMBLE_PANEL_FORMATS "" CACHE STRING "Formats behind rgb888 in the images, a mask; empty: the board's")
+function(thimble_choose_formats)
+  set(formats rgb565_be bgr565 rgb444 mono1_pages gray4_low gray2 paper3 paper7 rgb332)
+  list(FIND formats "${BOARD_FORMAT}" number)
+  set(mask ${THIMBLE_PANEL_FORMATS})
+  if("${mask}" STREQUAL "")
+    set(mask 0)
+    if(NOT number EQUAL -1)
+      math(EXPR mask "32 << ${number}")
+    endif()
+  endif()
+  target_compile_definitions(thimble PUBLIC THIMBLE_PANEL_FORMATS=${mask}U)
+endfunction()
+
 function(thimble_choose_frames)
   # Pictures of up to 160 x 128 do without what larger ones take (brick_render.h).
   if("${BOARD_FRAMES}" STREQUAL "small")

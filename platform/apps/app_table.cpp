@@ -9,7 +9,7 @@ namespace {
 constexpr Application kApplications[] = {
     {"demo", demo, true, true, false, true}, {"selftest", selftest, false, false},
     {"golden", golden, false, false},        {"lit", lit, false, false},
-    {"bench", bench, true, false},
+    {"formats", formats, false, false},      {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},
 #endif

@@ -18,6 +18,8 @@ int selftest();
 int golden();
 /// Lit pictures on the target, likewise.
 int lit();
+/// The pixel formats of panels on the target, in an image that has them all; likewise.
+int formats();
 /// Instructions a frame and a ray, nodes visited, RAM and stack used.
 int bench();
 /// The paper's particle world.

@@ -292,10 +292,12 @@ int bench() {
   const port::Display& screen = port::facts().display;
   const size_t row = row_bytes(screen.format, screen.width_px);
   bench->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  while (bench->band_rows > 1 && row * static_cast<size_t>(bench->band_rows) > bench->arena.free_bytes()) {
+  while (bench->band_rows > band_row_multiple(screen.format) &&
+         row * row_place(screen.format, bench->band_rows) > bench->arena.free_bytes()) {
     --bench->band_rows;
   }
-  bench->band = bench->arena.take(row * static_cast<size_t>(bench->band_rows));
+  bench->band =
+      bench->arena.take(row * row_place(screen.format, whole_rows(screen.format, bench->band_rows)));
   if (bench->band.empty()) {
     return refuse("the arena does not hold a row of the picture");
   }

@@ -92,8 +92,8 @@ void show_cross(Arena* arena) {
     return;
   }
   for (int32_t y = 0; y < screen.height_px; ++y) {
-    for (uint8_t& byte : row) {
-      byte = 0;
+    for (size_t i = 0; i < row.size && begins_bytes(screen.format, y); ++i) {
+      row[i] = 0;
     }
     const int32_t across = y * (screen.width_px - 1) / (screen.height_px > 1 ? screen.height_px - 1 : 1);
     const Rgb8 white{255, 255, 255};
@@ -101,7 +101,11 @@ void show_cross(Arena* arena) {
     if (2 * across != screen.width_px - 1) {
       store_pixel(row.data, screen.width_px - 1 - across, y, screen.format, white);
     }
-    port::flush({row, screen.format, 0, y, 1});
+    // A row at a time, or a page.
+    const int32_t together = band_row_multiple(screen.format);
+    if ((y + 1) % together == 0 || y + 1 == screen.height_px) {
+      port::flush({row, screen.format, 0, y - y % together, y % together + 1});
+    }
   }
 }
 
@@ -187,7 +191,7 @@ void flush(const Demo& demo, const Band& band, uint32_t* crc) {
       for (int32_t i = 0; i < band.rows; ++i) {
         const auto from = static_cast<size_t>((y + i) / step - thin_y);
         widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i,
-                  band.pixels.data + static_cast<size_t>(i) * row);
+                  band.pixels.data + row_place(screen.format, i) * row);
       }
       flush(*demo, band, crc);
     }
@@ -236,7 +240,7 @@ void flush(const Demo& demo, const Band& band, uint32_t* crc) {
 }
 
 /// The grey of a pixel as the display shows it, 0..255.
-uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
+uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
   const auto column = static_cast<uint32_t>(x);
   if (format == PixelFormat::kMono1) {
     return (row[column >> 3] << (column & 7U) & 0x80) != 0 ? 255 : 0;
@@ -244,14 +248,16 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   if (format == PixelFormat::kGray4) {
     return static_cast<uint8_t>((row[column >> 1] >> ((column & 1U) != 0 ? 0 : 4) & 15) * 17);
   }
+  if (kHasPanelFormats && format > PixelFormat::kRgb888) {
+    return load_pixel(row, x, y, format).r;
+  }
   return row[column];
 }
 
 /// The frame that was drawn last, once more and over the UART. Pictures in colour are sent in their greys.
 [[gnu::noinline]] void send_picture(const Demo& demo) {
   const port::Display& screen = display();
-  const bool is_color = bits_per_pixel(screen.format) > 8;
-  const PixelFormat format = is_color ? PixelFormat::kGray8 : screen.format;
+  const PixelFormat format = is_gray(screen.format) ? screen.format : PixelFormat::kGray8;
   put("P5\n");
   put_number(static_cast<uint32_t>(screen.width_px));
   put(" ");
@@ -259,15 +265,18 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, PixelFormat format) {
   put("\n255\n");
   for (int32_t y = 0; y < screen.height_px; ++y) {
     // A row of greys is shorter than a row in colour.
-    const Band band{demo.band.subspan(0, row_bytes(format, screen.width_px)), format, 0, y, 1};
-    if (draw(demo, band) != Status::kOk) {
+    const int32_t together = band_row_multiple(format);
+    const int32_t left = screen.height_px - y;
+    const Band band{demo.band.subspan(0, row_bytes(format, screen.width_px)), format, 0, y,
+                    left < together ? left : together};
+    if (begins_bytes(format, y) && draw(demo, band) != Status::kOk) {
       return;
     }
     uint8_t grays[32];
     for (int32_t x = 0; x < screen.width_px;) {
       size_t count = 0;
       for (; count < sizeof grays && x < screen.width_px; ++x) {
-        grays[count++] = shown_gray(band.pixels.data, x, format);
+        grays[count++] = shown_gray(band.pixels.data, x, y, format);
       }
       port::write({grays, count});
     }
@@ -471,11 +480,11 @@ int demo() {
   // At most half of what is left: the other half is for the pool.
   const size_t row = row_bytes(screen.format, screen.width_px);
   demo->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  while (demo->band_rows > 1 &&
+  while (demo->band_rows > band_row_multiple(screen.format) &&
          band_bytes(screen.format, screen.width_px, demo->band_rows) > demo->arena.free_bytes() / 2) {
     --demo->band_rows;
   }
-  demo->band = demo->arena.take(row * static_cast<size_t>(demo->band_rows));
+  demo->band = demo->arena.take(row * row_place(screen.format, whole_rows(screen.format, demo->band_rows)));
   if (demo->band.empty()) {
     return refuse_with_cross(&demo->arena, "the arena does not hold a row of the picture");
   }

@@ -75,7 +75,14 @@ inline int32_t thinning_for(uint32_t visits) {
 
 /// The format of a thinned picture, from which the display's pixels follow exactly.
 inline PixelFormat thin_format(PixelFormat format) {
-  return bits_per_pixel(format) <= 8 ? PixelFormat::kGray8 : format;
+  if (is_gray(format)) {
+    return PixelFormat::kGray8;
+  }
+  if (!kHasPanelFormats || format <= PixelFormat::kRgb888) {
+    return format;
+  }
+  return format == PixelFormat::kRgb565Be || format == PixelFormat::kBgr565 ? PixelFormat::kRgb565
+                                                                            : PixelFormat::kRgb888;
 }
 
 /// Takes what holding needs; null, and nothing taken, where the arena does not have it.
@@ -110,11 +117,11 @@ inline Rgb8 thin_color(const uint8_t* row, int32_t x, PixelFormat format) {
   return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
 }
 
-/// Row `y` of the display from row y / step of the thinned picture.
+/// Row `y` of the display from row y / step of the thinned picture; rows that share bytes from the first down.
 [[gnu::noinline]] inline void widen_row(const uint8_t* thin, PixelFormat from, int32_t step, int32_t y,
                                         uint8_t* row) {
   const port::Display& screen = port::facts().display;
-  for (size_t i = 0; i < row_bytes(screen.format, screen.width_px); ++i) {
+  for (size_t i = 0; i < row_bytes(screen.format, screen.width_px) && begins_bytes(screen.format, y); ++i) {
     row[i] = 0;
   }
   for (int32_t x = 0; x < screen.width_px;) {

@@ -53,7 +53,7 @@ const port::Display& display() {
     byte = 0;
   }
   const size_t stride = row_bytes(band.format, width);
-  const bool is_gray = bits_per_pixel(band.format) <= 8;
+  const bool is_gray = thimble::is_gray(band.format);
   const int32_t end = band.first_row + band.rows;
   uint32_t balls_left = world.count();
   for (uint32_t id = 0; balls_left > 0; ++id) {
@@ -69,7 +69,7 @@ const port::Display& display() {
       if (y < band.first_row || y >= end) {
         continue;
       }
-      uint8_t* const pixels = band.pixels.data + stride * static_cast<size_t>(y - band.first_row);
+      uint8_t* const pixels = band.pixels.data + stride * row_place(band.format, y - band.first_row);
       for (int32_t column = 0; column < ball.diameter; ++column) {
         if ((rows[row] >> column & 1U) != 0) {
           store_pixel(pixels, ball.corner.x + column, y, band.format, color);
@@ -161,7 +161,7 @@ int particles() {
   // Rows of the picture first, then as many balls as what is left holds.
   const size_t row = row_bytes(screen.format, screen.width_px);
   game->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  game->band = arena.take(row * static_cast<size_t>(game->band_rows));
+  game->band = arena.take(row * row_place(screen.format, whole_rows(screen.format, game->band_rows)));
   game->bytes = arena.rest();
   game->config = particles_config(screen.width_px, screen.height_px, game->bytes.size);
   if (game->band.empty() || game->config.capacity == 0 || !begin(game)) {

@@ -230,6 +230,8 @@ void store_over(uint8_t* row, int32_t x, int32_t y, PixelFormat format, const Rg
     row[column >> 3] = static_cast<uint8_t>(row[column >> 3] & ~(0x80U >> (column & 7U)));
   } else if (format == PixelFormat::kGray4) {
     row[column >> 1] = static_cast<uint8_t>(row[column >> 1] & ((column & 1U) != 0 ? 0xF0U : 0x0FU));
+  } else if (kHasPanelFormats && format > PixelFormat::kRgb888) {
+    clear_panel_pixel(row, x, y, format);
   }
   store_pixel(row, x, y, format, color);
 }
@@ -254,7 +256,7 @@ bool is_in_front(const Pool& pool, const WaterSurface& surface, const Ray& ray, 
   const WaterSurface surface = surface_of(pool.water, false);
   for (int32_t row = 0; row < band.rows; ++row) {
     const int32_t y = band.first_row + row;
-    uint8_t* const line = band.pixels.data + stride * static_cast<size_t>(row);
+    uint8_t* const line = band.pixels.data + stride * row_place(screen.format, row);
     RowRays rays(pool.camera, 0, y);
     for (int32_t x = 0; x < screen.width_px; ++x, rays.next()) {
       BallHit hit;
@@ -464,7 +466,7 @@ void zoom(Pool* pool, int32_t by) {
   const port::Display& screen = display();
   pool->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
   const size_t row = row_bytes(screen.format, screen.width_px);
-  pool->band = pool->arena.take(row * static_cast<size_t>(pool->band_rows));
+  pool->band = pool->arena.take(row * row_place(screen.format, whole_rows(screen.format, pool->band_rows)));
   const Bytes flags = pool->arena.take(DirtyBands::bytes_for(screen.height_px, pool->band_rows), 1);
   if (pool->band.empty() || flags.empty()) {
     return "the arena does not hold a band of the picture";

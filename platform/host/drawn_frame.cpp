@@ -50,11 +50,15 @@ void DrawnFrame::draw() {
 
 // Whether its rows are in the picture and have room: if not, it is for the core to say so.
 bool DrawnFrame::holds(const Band& band) const {
+  if (has_pages(band.format) && (band.first_row % 8 != 0 ||
+                                 (band.rows % 8 != 0 && band.first_row + band.rows != camera_.height_px()))) {
+    return false;
+  }
   const std::size_t row = row_bytes(format_, camera_.width_px());
   const std::size_t stride = band.stride_bytes == 0 ? row : band.stride_bytes;
   return band.first_row >= 0 && band.rows > 0 && band.rows <= camera_.height_px() - band.first_row &&
          stride >= row && row <= band.pixels.size &&
-         static_cast<std::size_t>(band.rows - 1) <= (band.pixels.size - row) / stride;
+         row_place(format_, whole_rows(format_, band.rows)) - 1 <= (band.pixels.size - row) / stride;
 }
 
 bool DrawnFrame::hand_out(const Band& band) {
@@ -70,10 +74,11 @@ bool DrawnFrame::hand_out(const Band& band) {
   }
   const std::size_t row = row_bytes(format_, camera_.width_px());
   const std::size_t stride = band.stride_bytes == 0 ? row : band.stride_bytes;
-  const std::uint8_t* from = pixels_.data() + static_cast<std::size_t>(band.first_row) * row;
-  for (std::int32_t i = 0; i < band.rows; ++i, from += row) {
+  const std::uint8_t* from = pixels_.data() + row_place(format_, band.first_row) * row;
+  const std::size_t places = row_place(format_, whole_rows(format_, band.rows));
+  for (std::size_t i = 0; i < places; ++i, from += row) {
     // By a function that the simulation has bound: see bind_functions.
-    std::memmove(band.pixels.data + static_cast<std::size_t>(i) * stride, from, row);
+    std::memmove(band.pixels.data + i * stride, from, row);
   }
   return true;
 }
@@ -86,8 +91,9 @@ bool DrawnFrame::contradicts(const Band& band) {
     return false;
   }
   const std::size_t row = row_bytes(format_, camera_.width_px());
-  const std::uint8_t* from = pixels_.data() + static_cast<std::size_t>(band.first_row) * row;
-  return !std::equal(band.pixels.begin(), band.pixels.begin() + static_cast<std::size_t>(rows) * row, from);
+  const std::uint8_t* from = pixels_.data() + row_place(format_, band.first_row) * row;
+  const std::size_t bytes = row_place(format_, whole_rows(format_, rows)) * row;
+  return !std::equal(band.pixels.begin(), band.pixels.begin() + bytes, from);
 }
 
 }  // namespace thimble::host

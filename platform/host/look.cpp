@@ -3,7 +3,7 @@
 namespace thimble::host {
 
 Look look_of(Theme theme, PixelFormat format) {
-  const bool is_color = format == PixelFormat::kRgb565 || format == PixelFormat::kRgb888;
+  const bool is_color = !is_gray(format);
   Look look;
   switch (theme) {
     case Theme::kPlain:

@@ -10,7 +10,7 @@
 
 namespace thimble::host {
 
-/// Rows from the top, without gaps, row_bytes(format, width_px) each.
+/// Rows (or pages) from the top, without gaps, row_bytes(format, width_px) each.
 struct PackedPicture {
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
@@ -18,13 +18,7 @@ struct PackedPicture {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Whether the format has greys only.
-constexpr bool is_gray(PixelFormat format) {
-  return bits_per_pixel(format) <= 8;
-}
-
-/// r, g, b of every pixel, 8 bits each. The darkest and the lightest value of a format become 0 and 255, and
-/// what lies between is spread evenly: a grey of 4 bits becomes its multiple of 17.
+/// r, g, b of every pixel, 8 bits each: `load_pixel`.
 std::vector<std::uint8_t> expand_rgb(const PackedPicture& picture);
 /// The same as greys, a byte a pixel, for the formats that are `is_gray`.
 std::vector<std::uint8_t> expand_gray(const PackedPicture& picture);

@@ -37,8 +37,12 @@ std::optional<std::string> StrictDisplay::flush(const Band& band) {
     return rows_text(band.first_row, band.rows) + " reached beyond the display's " + std::to_string(height) +
            " rows";
   }
+  if (has_pages(shown_.format) &&
+      (band.first_row % 8 != 0 || (band.rows % 8 != 0 && band.first_row + band.rows != height))) {
+    return rows_text(band.first_row, band.rows) + " were flushed, which are no whole pages of 8 rows";
+  }
   const std::size_t stride = row_bytes(shown_.format, shown_.width_px);
-  const std::size_t bytes = stride * static_cast<std::size_t>(band.rows);
+  const std::size_t bytes = band_bytes(shown_.format, shown_.width_px, band.rows);
   const bool is_kept = band.pixels.empty();
   if (is_kept && pictures_ == 0) {
     return rows_text(band.first_row, band.rows) + " were kept before there was a whole picture";
@@ -52,7 +56,7 @@ std::optional<std::string> StrictDisplay::flush(const Band& band) {
     return "row " + std::to_string(twice - has_row_.begin()) + " was flushed twice in one frame";
   }
   std::fill(first, first + band.rows, std::uint8_t{1});
-  const std::size_t place = stride * static_cast<std::size_t>(band.first_row);
+  const std::size_t place = stride * row_place(shown_.format, band.first_row);
   std::copy_n(is_kept ? shown_.bytes.data() + place : band.pixels.data, bytes, coming_.bytes.data() + place);
   (is_kept ? rows_kept_ : rows_sent_) += static_cast<std::uint64_t>(band.rows);
   rows_ += band.rows;

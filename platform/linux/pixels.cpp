@@ -66,30 +66,15 @@ Placement place(int32_t picture_width_px, int32_t picture_height_px, const Layou
   return placement;
 }
 
-Rgb8 load_pixel(const uint8_t* row, int32_t x, PixelFormat format) {
-  const size_t column = static_cast<size_t>(x);
-  switch (format) {
-    case PixelFormat::kMono1: {
-      const uint8_t gray = (row[column / 8] >> (7 - column % 8) & 1) != 0 ? 255 : 0;
-      return {gray, gray, gray};
-    }
-    case PixelFormat::kGray4: {
-      const int level = row[column / 2] >> (column % 2 == 0 ? 4 : 0) & 15;
-      const uint8_t gray = static_cast<uint8_t>(level * 17);
-      return {gray, gray, gray};
-    }
-    case PixelFormat::kGray8:
-      return {row[column], row[column], row[column]};
-    case PixelFormat::kRgb565: {
-      const int value = row[2 * column] | row[2 * column + 1] << 8;
-      return {static_cast<uint8_t>((value >> 11 & 31) * 255 / 31),
-              static_cast<uint8_t>((value >> 5 & 63) * 255 / 63),
-              static_cast<uint8_t>((value & 31) * 255 / 31)};
-    }
-    case PixelFormat::kRgb888:
-      return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
+Rgb8 load_pixel(const uint8_t* row, int32_t x, PixelFormat format, int32_t y) {
+  if (format == PixelFormat::kRgb565) {
+    const size_t column = static_cast<size_t>(x);
+    const int value = row[2 * column] | row[2 * column + 1] << 8;
+    return {static_cast<uint8_t>((value >> 11 & 31) * 255 / 31),
+            static_cast<uint8_t>((value >> 5 & 63) * 255 / 63),
+            static_cast<uint8_t>((value & 31) * 255 / 31)};
   }
-  return {};
+  return thimble::load_pixel(row, x, y, format);
 }
 
 void put_band(const Band& band, int32_t width_px, const Layout& layout, const Placement& placement,
@@ -98,12 +83,12 @@ void put_band(const Band& band, int32_t width_px, const Layout& layout, const Pl
   const int32_t pixel_bytes = layout.bits_per_pixel / 8;
   const size_t left = static_cast<size_t>(placement.left_px) * static_cast<size_t>(pixel_bytes);
   for (int32_t row = 0; row < band.rows; ++row) {
-    const uint8_t* from = band.pixels.data + band_stride * static_cast<size_t>(row);
+    const uint8_t* from = band.pixels.data + band_stride * row_place(band.format, row);
     const int32_t y = placement.top_px + (band.first_row + row) * placement.scale;
     uint8_t* first = screen.data + layout.stride_bytes * static_cast<size_t>(y) + left;
     uint8_t* to = first;
     for (int32_t x = 0; x < width_px; ++x) {
-      const uint32_t value = packed(load_pixel(from, x, band.format), layout);
+      const uint32_t value = packed(load_pixel(from, x, band.format, band.first_row + row), layout);
       for (int32_t copy = 0; copy < placement.scale; ++copy, to += pixel_bytes) {
         store(to, value, pixel_bytes);
       }

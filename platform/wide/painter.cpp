@@ -50,10 +50,14 @@ void TilePainter::fill_background(uint8_t* to, int32_t y, const Depths& depths) 
   const bool is_gray = background_.r == background_.g && background_.g == background_.b;
   if (background_ == Rgb8{} || (is_gray && band_.format == PixelFormat::kRgb888) ||
       band_.format == PixelFormat::kGray8) {
-    memset(to, gray_of(background_), bytes);
+    if (begins_bytes(band_.format, y)) {
+      memset(to, gray_of(background_), bytes);
+    }
     return;
   }
-  memset(to, 0, bytes);
+  if (begins_bytes(band_.format, y)) {
+    memset(to, 0, bytes);
+  }
   for (int32_t x = 0; x < width; ++x) {
     if ((depths.covered[depths.word(x, y)] >> (x & 31) & 1U) == 0) {
       store_pixel(to, x, y, band_.format, background_);
@@ -139,7 +143,9 @@ uint64_t TilePainter::paint_grays(const WideFrame& frame, const Depths& depths) 
       }
       continue;
     }
-    memset(to, 0, row_bytes(band_.format, width));
+    if (begins_bytes(band_.format, y)) {
+      memset(to, 0, row_bytes(band_.format, width));
+    }
     for (int32_t x = 0; x < width; ++x) {
       store_pixel(to, x, y, band_.format, grays[x] == 0 ? background_ : Rgb8{grays[x], grays[x], grays[x]});
     }

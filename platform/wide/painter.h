@@ -25,7 +25,7 @@ class TilePainter {
   void fill_background(uint8_t* line, int32_t y, const Depths& depths) const;
   void paint(const WideFrame& frame, const Depths& depths, Pixels* pixels) const;
   uint8_t* line(int32_t y) const {
-    return band_.pixels.data + stride_ * static_cast<size_t>(y - band_.first_row);
+    return band_.pixels.data + stride_ * row_place(band_.format, y - band_.first_row);
   }
 
   const VoxelLists& lists_;

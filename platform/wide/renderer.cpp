@@ -16,6 +16,11 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
       band.rows > camera.height_px() - band.first_row) {
     return Status::kBadArgument;
   }
+  const int32_t multiple = band_row_multiple(band.format);
+  const bool ends = band.first_row + band.rows == camera.height_px();
+  if (band.first_row % multiple != 0 || (!ends && band.rows % multiple != 0)) {
+    return Status::kBadArgument;
+  }
   const size_t line_bytes = row_bytes(band.format, width);
   const size_t stride = band.stride_bytes == 0 ? line_bytes : band.stride_bytes;
   if (stride < line_bytes) {
@@ -25,7 +30,8 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
     return Status::kOk;
   }
   if (line_bytes > band.pixels.size ||
-      static_cast<size_t>(band.rows - 1) > (band.pixels.size - line_bytes) / stride ||
+      row_place(band.format, whole_rows(band.format, band.rows)) - 1 >
+          (band.pixels.size - line_bytes) / stride ||
       workspace.size < workspace_bytes(width, band.rows, threads)) {
     return Status::kOutOfMemory;
   }

@@ -1,5 +1,6 @@
 // From a pixel's colour to its bytes, and what surrounds a band.
 #include "../picture/band.h"
+#include "../picture/panels.h"
 #include "arithmetic.h"
 #include "thimble/light/detail/pixel.h"
 
@@ -26,6 +27,51 @@ void expose(const Color& color, uint32_t (*channel)[3]) {
     const uint32_t cut = one < kWhite ? one : kWhite;
     (*channel)[i] = most == kWhite ? cut : (cut + one * kWhite / most) / 2;  // 16 bits by 14
   }
+}
+
+// The channels in 8 bits, rounded to the nearest.
+Rgb8 in_8_bits(const uint32_t (&channel)[3]) {
+  return {static_cast<uint8_t>((channel[0] + kLevel / 2) / kLevel),
+          static_cast<uint8_t>((channel[1] + kLevel / 2) / kLevel),
+          static_cast<uint8_t>((channel[2] + kLevel / 2) / kLevel)};
+}
+
+// The formats behind kRgb888: those with levels are dithered as the others, from all bits that there are. Paper has
+// its own dither, in store_pixel, of 8 bits; without one a colour is taken as in the middle of the cell.
+Rgb8 panel_color(const uint32_t (&channel)[3], uint32_t gray, PixelFormat format, const LitOptions& options,
+                 int32_t x, int32_t y) {
+  const auto step = [&](uint32_t value, uint32_t levels) {
+    return static_cast<uint8_t>((step_of(value, levels, options, x, y) * 255 + levels / 2) / levels);
+  };
+  if (has_pages(format)) {
+    const uint8_t value = step(gray, 1);
+    return {value, value, value};
+  }
+  if (has_format(PixelFormat::kGray4Low) && format == PixelFormat::kGray4Low) {
+    const uint8_t value = step(gray, 15);
+    return {value, value, value};
+  }
+  if (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2) {
+    const uint8_t value = step(gray, 3);
+    return {value, value, value};
+  }
+  if (has_format(PixelFormat::kRgb444) && format == PixelFormat::kRgb444) {
+    return {step(channel[0], 15), step(channel[1], 15), step(channel[2], 15)};
+  }
+  if (has_format(PixelFormat::kRgb332) && format == PixelFormat::kRgb332) {
+    return {step(channel[0], 7), step(channel[1], 7), step(channel[2], 3)};
+  }
+  if ((has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
+      (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)) {
+    return {static_cast<uint8_t>(step_of(channel[0], 31, options, x, y) << 3),
+            static_cast<uint8_t>(step_of(channel[1], 63, options, x, y) << 2),
+            static_cast<uint8_t>(step_of(channel[2], 31, options, x, y) << 3)};
+  }
+  Rgb8 color = in_8_bits(channel);
+  if (!options.dither) {
+    color = panels::flat(color, format);
+  }
+  return color;
 }
 
 }  // namespace
@@ -80,6 +126,19 @@ void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32
       stored = {static_cast<uint8_t>(step_of(channel[0], 31, frame.options, x, y) << 3),
                 static_cast<uint8_t>(step_of(channel[1], 63, frame.options, x, y) << 2),
                 static_cast<uint8_t>(step_of(channel[2], 31, frame.options, x, y) << 3)};
+      break;
+    case PixelFormat::kRgb565Be:
+    case PixelFormat::kBgr565:
+    case PixelFormat::kRgb444:
+    case PixelFormat::kMono1Pages:
+    case PixelFormat::kGray4Low:
+    case PixelFormat::kGray2:
+    case PixelFormat::kPaper3:
+    case PixelFormat::kPaper7:
+    case PixelFormat::kRgb332:
+      if constexpr (kHasPanelFormats) {
+        stored = panel_color(channel, gray, band.format, frame.options, x, y);
+      }
       break;
     case PixelFormat::kGray8:
     case PixelFormat::kRgb888:

@@ -48,6 +48,14 @@ bool within(Rgb8 a, Rgb8 b, int32_t tolerance) {
   return within(a.r, b.r, tolerance) && within(a.g, b.g, tolerance) && within(a.b, b.b, tolerance);
 }
 
+// A panel's pixel stored on its own, in the column of a row that has the same place in its bytes and in the dither,
+// and looked at again.
+[[gnu::noinline]] Rgb8 shown_by_panel(Rgb8 color, int32_t x, int32_t y, PixelFormat format) {
+  uint8_t row[16] = {};
+  store_panel_pixel(row, x & 7, y, format, color);
+  return load_pixel(row, x & 7, y, format);
+}
+
 // What a display shows of a colour, in 8 bits a channel: grey formats as a grey.
 Rgb8 shown(Rgb8 color, int32_t x, int32_t y, PixelFormat format) {
   const uint8_t gray = gray_of(color);
@@ -68,12 +76,25 @@ Rgb8 shown(Rgb8 color, int32_t x, int32_t y, PixelFormat format) {
               static_cast<uint8_t>((color.b & 0xF8) | color.b >> 5)};
     case PixelFormat::kRgb888:
       return color;
+    case PixelFormat::kRgb565Be:
+    case PixelFormat::kBgr565:
+    case PixelFormat::kRgb444:
+    case PixelFormat::kMono1Pages:
+    case PixelFormat::kGray4Low:
+    case PixelFormat::kGray2:
+    case PixelFormat::kPaper3:
+    case PixelFormat::kPaper7:
+    case PixelFormat::kRgb332:
+      if constexpr (kHasPanelFormats) {
+        return shown_by_panel(color, x, y, format);
+      }
+      return color;
   }
   return color;
 }
 
 // What a display shows of a stored pixel; the inverse of store_pixel.
-Rgb8 stored(const uint8_t* row, int32_t x, PixelFormat format) {
+Rgb8 stored(const uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
   const size_t column = static_cast<size_t>(x);
   switch (format) {
     case PixelFormat::kMono1: {
@@ -97,6 +118,19 @@ Rgb8 stored(const uint8_t* row, int32_t x, PixelFormat format) {
     }
     case PixelFormat::kRgb888:
       return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
+    case PixelFormat::kRgb565Be:
+    case PixelFormat::kBgr565:
+    case PixelFormat::kRgb444:
+    case PixelFormat::kMono1Pages:
+    case PixelFormat::kGray4Low:
+    case PixelFormat::kGray2:
+    case PixelFormat::kPaper3:
+    case PixelFormat::kPaper7:
+    case PixelFormat::kRgb332:
+      if constexpr (kHasPanelFormats) {
+        return load_pixel(row, x, y, format);
+      }
+      return {};
   }
   return {};
 }
@@ -108,24 +142,49 @@ void replace_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format, Rgb8 
     row[column >> 3] = static_cast<uint8_t>(row[column >> 3] & ~(0x80U >> (column & 7U)));
   } else if (format == PixelFormat::kGray4) {
     row[column >> 1] = static_cast<uint8_t>(row[column >> 1] & ((column & 1U) != 0 ? 0xF0U : 0x0FU));
+  } else if (kHasPanelFormats && format > PixelFormat::kRgb888) {
+    clear_panel_pixel(row, x, y, format);
   }
   store_pixel(row, x, y, format, color);
+}
+
+bool is_gray2(PixelFormat format) {
+  return has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2;
+}
+bool is_paper(PixelFormat format) {
+  return (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) ||
+         (has_format(PixelFormat::kPaper7) && format == PixelFormat::kPaper7);
 }
 
 // The greys that were seen, as the least and the greatest.
 struct GrayRange {
   int low = 255;
   int high = 0;
+  bool differ = false;  // colours that a paper dithers
+  Rgb8 first{};
 
   void add(Rgb8 color, PixelFormat format) {
+    if (is_paper(format)) {
+      differ = differ || (high != 0 && !(color == first));
+      first = color;
+      high = 1;
+      return;
+    }
     // The dither is looked at when the range is known.
-    const bool mono = format == PixelFormat::kMono1;
-    const int gray = gray_of(mono ? color : shown(color, 0, 0, format));
+    const bool dithers = format == PixelFormat::kMono1 || has_pages(format) || is_gray2(format);
+    const int gray = gray_of(dithers ? color : shown(color, 0, 0, format));
     low = gray < low ? gray : low;
     high = gray > high ? gray : high;
   }
   int range(PixelFormat format) const {
-    if (format != PixelFormat::kMono1) {
+    if (is_paper(format)) {
+      return differ ? 255 : 0;
+    }
+    if (is_gray2(format) && low < high) {
+      const int levels = (high * 3 + 254) / 255 - low * 3 / 255;  // 1 .. 3
+      return levels * 85;
+    }
+    if (format != PixelFormat::kMono1 && !has_pages(format)) {
       return high - low;
     }
     // A pixel can be lit by one and not by the other when the threshold of some place, 2 modulo 4, lies
@@ -216,15 +275,16 @@ Status AnytimeFrame::make_any(const Structure& structure, uint32_t reserve, cons
 void AnytimeFrame::clear() {
   constexpr int32_t kPeriod = 8;
   const int32_t height = camera_.height_px();
-  const int32_t drawn = height < kPeriod ? height : kPeriod;
-  const size_t all = row_bytes_ * static_cast<size_t>(height);
+  // The last page may be cut off, so pages are drawn to the end.
+  const int32_t drawn = height < kPeriod || has_pages(format_) ? height : kPeriod;
+  const size_t all = has_pages(format_) ? 0 : row_bytes_ * static_cast<size_t>(height);
   const size_t period = row_bytes_ * kPeriod;
-  for (size_t i = 0; i < row_bytes_ * static_cast<size_t>(drawn); ++i) {
+  for (size_t i = 0; i < row_bytes_ * row_place(format_, whole_rows(format_, drawn)); ++i) {
     picture_[i] = 0;
   }
   for (int32_t y = 0; y < drawn; ++y) {
     for (int32_t x = 0; x < camera_.width_px(); ++x) {
-      store_pixel(picture_ + row_bytes_ * static_cast<size_t>(y), x, y, format_, background_);
+      store_pixel(picture_ + row_bytes_ * row_place(format_, y), x, y, format_, background_);
     }
   }
   for (size_t i = period; i < all; ++i) {
@@ -323,12 +383,12 @@ bool AnytimeFrame::neighbours_differ() const {
     if (y < 0 || y >= camera_.height_px()) {
       continue;
     }
-    const uint8_t* row = picture_ + row_bytes_ * static_cast<size_t>(y);
+    const uint8_t* row = picture_ + row_bytes_ * row_place(format_, y);
     for (int32_t x = x_ - step; x <= x_ + step; x += step) {
       if (x < 0 || x >= camera_.width_px() || !exact(x, y)) {
         continue;  // x_, y_ itself is not exact
       }
-      const Rgb8 here = stored(row, x, format_);
+      const Rgb8 here = stored(row, x, y, format_);
       if (!found) {
         first = here;
         found = true;
@@ -346,7 +406,7 @@ void AnytimeFrame::take_sample(Rgb8 color) {
   const int32_t height = camera_.height_px();
   const int32_t step = kPasses[pass_].step;
   const size_t row = static_cast<size_t>(y_);
-  replace_pixel(picture_ + row_bytes_ * row, x_, y_, format_, color);
+  replace_pixel(picture_ + row_bytes_ * row_place(format_, y_), x_, y_, format_, color);
   uint8_t& bits = exact_[row * bit_row_bytes_ + (static_cast<size_t>(x_) >> 3)];
   bits = static_cast<uint8_t>(bits | 0x80 >> (x_ & 7));
   --inexact_;
@@ -367,7 +427,7 @@ void AnytimeFrame::take_sample(Rgb8 color) {
     if (place == 4 || x < 0 || y < 0 || x >= width || y >= height || !exact(x, y)) {
       continue;
     }
-    const Rgb8 other = stored(picture_ + row_bytes_ * static_cast<size_t>(y), x, format_);
+    const Rgb8 other = stored(picture_ + row_bytes_ * row_place(format_, y), x, y, format_);
     const bool is_like = within(mine, other, kAlike);
     there |= uint32_t{1} << place;
     alike |= is_like ? uint32_t{1} << place : 0;
@@ -401,7 +461,7 @@ void AnytimeFrame::take_sample(Rgb8 color) {
     const int32_t left = (corner & 1U) != 0 ? x_ : x_ - reach;
     const int32_t top = (corner & 2U) != 0 ? y_ : y_ - reach;
     for (int32_t y = top < 0 ? 0 : top; y <= top + reach && y < height; ++y) {
-      uint8_t* line = picture_ + row_bytes_ * static_cast<size_t>(y);
+      uint8_t* line = picture_ + row_bytes_ * row_place(format_, y);
       for (int32_t x = left < 0 ? 0 : left; x <= left + reach && x < width; ++x) {
         if (!exact(x, y)) {
           replace_pixel(line, x, y, format_, color);
@@ -460,8 +520,8 @@ Band AnytimeFrame::band(int32_t first_row, int32_t rows) const {
   const int32_t left = height - band.first_row;
   band.rows = rows < 0 ? 0 : rows < left ? rows : left;
   if (band.rows != 0) {
-    band.pixels = {picture_ + row_bytes_ * static_cast<size_t>(band.first_row),
-                   row_bytes_ * static_cast<size_t>(band.rows)};
+    band.pixels = {picture_ + row_bytes_ * row_place(format_, band.first_row),
+                   row_bytes_ * row_place(format_, whole_rows(format_, band.rows))};
   }
   return band;
 }

@@ -22,7 +22,7 @@ Status check_band(const Camera& camera, int level, const Band& band, size_t* str
   if (band.rows == 0) {
     return Status::kOk;
   }
-  const size_t rows_above = static_cast<size_t>(whole_rows(band.format, band.rows)) - 1;
+  const size_t rows_above = row_place(band.format, whole_rows(band.format, band.rows)) - 1;
   if (line_bytes > band.pixels.size || rows_above > (band.pixels.size - line_bytes) / *stride) {
     return Status::kOutOfMemory;
   }

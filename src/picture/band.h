@@ -32,8 +32,8 @@ static Status draw_rows(const Camera& camera, const VoxelBox& bounds, const Band
   RenderCounts done;
   for (int32_t row = 0; row < band.rows; ++row) {
     const int32_t y = band.first_row + row;
-    uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row);
-    for (size_t i = 0; i < line_bytes; ++i) {
+    uint8_t* line = band.pixels.data + stride * row_place(band.format, row);
+    for (size_t i = 0; i < line_bytes && begins_bytes(band.format, row); ++i) {
       line[i] = 0;
     }
     for (int32_t run = 0; run < width; run += kRunPx) {

@@ -17,6 +17,21 @@ namespace thimble {
 
 using namespace bricks;
 
+namespace {
+
+bool is_halfword(PixelFormat format) {
+  return format == PixelFormat::kRgb565 ||
+         (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
+         (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565);
+}
+// Of the formats behind kRgb888: whether pixels share bytes. (A page is a tile's height, so it may be cleared for
+// each of its rows before the first tile is drawn.)
+bool shares_bytes(PixelFormat format) {
+  return kHasPanelFormats && format > PixelFormat::kBgr565 && format != PixelFormat::kRgb332;
+}
+
+}  // namespace
+
 bool draws_fast(const BrickMap& map, const Camera& camera) {
   if (!camera.is_perspective() || camera.width_px() == 0 || camera.level() != map.level() ||
       camera.direction_bits() > kMaxBrickDirectionBits) {
@@ -61,8 +76,8 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   Inks inks;
   inks.forget();
   BrickFrame frame{tree, map, camera, shading, band.format, false, 0, {}, {}, {}, {}, {}, {}, {}};
-  frame.halfwords = band.format == PixelFormat::kRgb565 &&
-                    ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
+  frame.halfwords =
+      is_halfword(band.format) && ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
   frame.background = ink_of(band.format, shade(Hit{}, Ray{}, camera, shading));
   for (int axis = 0; axis < 3; ++axis) {
     frame.side[axis] = map.box().high[axis] - map.box().low[axis];
@@ -86,9 +101,10 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     const int32_t y1 = tile_end < end ? tile_end : end;
     // Pixels of less than a byte are put into what is there, where no quad stores whole bytes.
     const bool cleared = band.format == PixelFormat::kMono1 ||
-                         (band.format == PixelFormat::kGray4 && width % kQuadAcrossPx != 0);
+                         (band.format == PixelFormat::kGray4 && width % kQuadAcrossPx != 0) ||
+                         shares_bytes(band.format);
     for (int32_t row = y; row < y1 && cleared; ++row) {
-      uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row - band.first_row);
+      uint8_t* line = band.pixels.data + stride * row_place(band.format, row - band.first_row);
       for (size_t i = 0; i < line_bytes; ++i) {
         line[i] = 0;
       }

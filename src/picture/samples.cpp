@@ -11,7 +11,7 @@ Status average_samples(ConstBytes fine_rows, int across, int32_t width_px, int32
   if (fine_rows.size < samples_bytes(width_px, across) || row.size < line_bytes) {
     return Status::kOutOfMemory;
   }
-  for (size_t i = 0; i < line_bytes; ++i) {
+  for (size_t i = 0; i < line_bytes && begins_bytes(format, y); ++i) {
     row[i] = 0;
   }
   const size_t fine_line = row_bytes(PixelFormat::kRgb888, width_px * across);

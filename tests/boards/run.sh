@@ -37,7 +37,10 @@ case " $boards " in
     ;;
 esac
 case " $boards " in
-  *microbit*) sh "$here/emulate.sh" || failed=1 ;;
+  *microbit*)
+    sh "$here/emulate.sh" || failed=1
+    sh "$here/formats.sh" microbit || failed=1
+    ;;
 esac
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1

@@ -78,11 +78,13 @@ bool lists_agree() {
 int run_all() {
   // Each of them says what is wrong.
   const bool sound = lists_agree() && names_differ(portable::kCoreGroups) &&
-                     names_differ(portable::kGoldenGroups) && names_differ(portable::kLitGroups);
+                     names_differ(portable::kGoldenGroups) && names_differ(portable::kLitGroups) &&
+                     names_differ(portable::kPanelGroups);
   const int core = apps::selftest();
   const int frames = apps::golden();
+  const int formats = apps::formats();
   const int lit = apps::lit();
-  return sound && core == 0 && frames == 0 && lit == 0 ? 0 : 1;
+  return sound && core == 0 && frames == 0 && formats == 0 && lit == 0 ? 0 : 1;
 }
 
 bool print_crcs(const char* all, const char* common, Span<const portable::Group* const> groups) {
@@ -121,6 +123,10 @@ int print_crc() {
       "/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board "
       "runs.\n");
   if (!print_crcs("kGoldenCrc32", "kCommonGoldenCrc32", portable::kGoldenGroups)) {
+    return 1;
+  }
+  printf("/// Of the formats of panels, in an image that has them all.\n");
+  if (!print_crcs("kPanelCrc32", nullptr, portable::kPanelGroups)) {
     return 1;
   }
   printf("/// Of lit pictures, all of which every board draws.\n");

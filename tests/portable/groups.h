@@ -32,6 +32,7 @@ extern const Group kBakedSceneGroup;   ///< whole scenes as bytes
 extern const Group kGoldenGroup;       ///< golden frames
 extern const Group kAnytimeGroup;      ///< golden frames, from coarse to fine
 extern const Group kWaterGroup;        ///< moving water and its rays
+extern const Group kPanelGroup;        ///< pixels of panels, and a frame in each of their formats
 extern const Group kLitGroup;          ///< light, mirrors, glass, water in pictures
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
@@ -43,6 +44,8 @@ inline constexpr const Group* kCoreGroups[] = {
 /// `selftest` has no room left on the smallest chip.
 inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGroup, &kAnytimeGroup,
                                                  &kWaterGroup};
+/// The formats of panels (the application `formats`).
+inline constexpr const Group* kPanelGroups[] = {&kPanelGroup};
 /// Lit pictures (the application `lit`).
 inline constexpr const Group* kLitGroups[] = {&kLitGroup};
 

@@ -167,8 +167,8 @@ SimSession::SimSession(const SessionOptions& options)
   }
   if (options_.recording != nullptr) {
     const platform::BoardFacts& board = *options_.board;
-    options_.recording->write(host::y4m_header(board.width_px, board.height_px, host::is_gray(board.format),
-                                               options_.frames_a_second));
+    options_.recording->write(
+        host::y4m_header(board.width_px, board.height_px, is_gray(board.format), options_.frames_a_second));
   }
 }
 
@@ -298,7 +298,7 @@ void SimSession::take_picture() {
   ++frames_;
   seconds_ += simulation_.frame_seconds();
   const host::PackedPicture& picture = simulation_.picture();
-  const bool as_gray = options_.recording != nullptr && host::is_gray(picture.format);
+  const bool as_gray = options_.recording != nullptr && is_gray(picture.format);
   if (as_gray) {
     options_.recording->write(host::y4m_gray_frame(host::expand_gray(picture)));
   }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "output/output_file.h"
+#include "thimble/picture/render.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -31,34 +32,6 @@ std::string ending_of(const std::string& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending;
-}
-
-// What a display shows for the pixel of column `x` of a row.
-Rgb8 shown_pixel(const std::uint8_t* row, std::int32_t x, PixelFormat format) {
-  const std::size_t column = static_cast<std::size_t>(x);
-  const auto gray = [](unsigned level) {
-    const auto byte = static_cast<std::uint8_t>(level);
-    return Rgb8{byte, byte, byte};
-  };
-  switch (format) {
-    case PixelFormat::kMono1:
-      return gray((row[column >> 3] & 0x80U >> (column & 7U)) != 0 ? 255 : 0);
-    case PixelFormat::kGray4:
-      return gray((row[column >> 1] >> ((column & 1U) != 0 ? 0 : 4) & 0xFU) * 17U);
-    case PixelFormat::kGray8:
-      return gray(row[column]);
-    case PixelFormat::kRgb565: {
-      const unsigned packed = row[2 * column] | static_cast<unsigned>(row[2 * column + 1]) << 8;
-      const unsigned r = packed >> 11;
-      const unsigned g = packed >> 5 & 0x3FU;
-      const unsigned b = packed & 0x1FU;
-      return {static_cast<std::uint8_t>(r << 3 | r >> 2), static_cast<std::uint8_t>(g << 2 | g >> 4),
-              static_cast<std::uint8_t>(b << 3 | b >> 2)};
-    }
-    case PixelFormat::kRgb888:
-      return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
-  }
-  return {};
 }
 
 }  // namespace
@@ -100,16 +73,16 @@ Image converted(const Image& image, PixelFormat format) {
   Image result{image.width_px,
                image.height_px,
                format,
-               std::vector<std::uint8_t>(row_bytes(format, image.width_px) *
-                                         static_cast<std::size_t>(image.height_px)),
+               std::vector<std::uint8_t>(band_bytes(format, image.width_px, image.height_px)),
                {},
                image.first_row};
   for (std::int32_t y = 0; y < image.height_px; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y);
-    const std::uint8_t* from = image.pixels.data() + row * row_bytes(image.format, image.width_px);
-    std::uint8_t* to = result.pixels.data() + row * row_bytes(format, image.width_px);
+    const std::uint8_t* from =
+        image.pixels.data() + row_place(image.format, y) * row_bytes(image.format, image.width_px);
+    std::uint8_t* to = result.pixels.data() + row_place(format, y) * row_bytes(format, image.width_px);
     for (std::int32_t x = 0; x < image.width_px; ++x) {
-      store_pixel(to, x, image.first_row + y, format, shown_pixel(from, x, image.format));
+      const std::int32_t row = image.first_row + y;
+      store_pixel(to, x, row, format, load_pixel(from, x, row, image.format));
     }
   }
   return result;

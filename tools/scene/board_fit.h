@@ -64,6 +64,24 @@ inline const char* format_name(PixelFormat format) {
       return "rgb565";
     case PixelFormat::kRgb888:
       return "rgb888";
+    case PixelFormat::kRgb565Be:
+      return "rgb565_be";
+    case PixelFormat::kBgr565:
+      return "bgr565";
+    case PixelFormat::kRgb444:
+      return "rgb444";
+    case PixelFormat::kMono1Pages:
+      return "mono1_pages";
+    case PixelFormat::kGray4Low:
+      return "gray4_low";
+    case PixelFormat::kGray2:
+      return "gray2";
+    case PixelFormat::kPaper3:
+      return "paper3";
+    case PixelFormat::kPaper7:
+      return "paper7";
+    case PixelFormat::kRgb332:
+      return "rgb332";
   }
   return "unknown";
 }

@@ -113,7 +113,8 @@ class AnytimeFrame {
 
   const Camera& camera() const { return camera_; }
   PixelFormat format() const { return format_; }
-  /// The picture's rows from `first_row` on, for a flush; cut off at the end of the picture.
+  /// The picture's rows from `first_row` on, a multiple of `band_row_multiple`, for a flush; cut off at the end
+  /// of the picture.
   Band band(int32_t first_row, int32_t rows) const;
   /// Whether the pixel was traced or proved to be background, 0 <= x < width, 0 <= y < height.
   bool exact(int32_t x, int32_t y) const {

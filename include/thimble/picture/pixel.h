@@ -10,8 +10,29 @@
 ///   kRgb565  2 bytes, little-endian: rrrrrggg gggbbbbb
 ///   kRgb888  3 bytes: r, g, b
 ///
+/// and as panels want them over a wire:
+///
+///   kRgb565Be    2 bytes, big-endian: ST7735, ST7789, ILI9341 in 16 bits
+///   kBgr565      2 bytes, little-endian: bbbbbggg gggrrrrr
+///   kRgb444      two pixels in 3 bytes, rrrrgggg bbbbrrrr ggggbbbb: ST7735, ST7789 in 12 bits; rounded to the
+///                nearest of 16
+///   kMono1Pages  1 bit in pages of 8 rows: a byte is a column of 8 pixels, the topmost in the lowest bit, 1 =
+///                lit; dithered as kMono1. SSD1306, SH1106, ST7567. The page takes the place of a row: 8 rows
+///                share the same bytes, and a band starts at a multiple of 8 (`band_row_multiple`)
+///   kGray4Low    kGray4 with the left pixel in the low nibble
+///   kGray2       2 bits, the leftmost pixel in the highest two, 3 = white; dithered between its 4 greys
+///   kPaper3      black, white and red e-paper (SSD1680 and its like, which take two planes of 1 bit): for each
+///                8 pixels a byte as kMono1, 1 = white, and behind it one with 1 = red; dithered. Both 0: black
+///   kPaper7      4 bits, the left pixel in the high nibble, the colours of 7-colour e-paper (ACeP): 0 black, 1
+///                white, 2 green, 3 blue, 4 red, 5 yellow, 6 orange; dithered
+///   kRgb332      1 byte, rrrgggbb; rounded to the nearest
+///
 /// Rows start on whole bytes; unused bits at a row's end are 0. The grey of a colour is (77 r + 150 g + 29 b)
-/// / 256 (Rec. 601 luma in 8 bits).
+/// / 256 (Rec. 601 luma in 8 bits). All dithers are ordered ones in cells of 8 x 8 pixels.
+///
+/// What the core is compiled with chooses what an image has: THIMBLE_PANEL_FORMATS, a bit for each format by
+/// its number (0x20 kRgb565Be ... 0x2000 kRgb332; without it all are there). One that was left out takes no
+/// flash and no instruction; its bands are refused with kOutOfMemory. The first five are always there.
 #ifndef THIMBLE_PICTURE_PIXEL_H
 #define THIMBLE_PICTURE_PIXEL_H
 
@@ -20,7 +41,35 @@
 
 namespace thimble {
 
-enum class PixelFormat : uint8_t { kMono1, kGray4, kGray8, kRgb565, kRgb888 };
+enum class PixelFormat : uint8_t {
+  kMono1,
+  kGray4,
+  kGray8,
+  kRgb565,
+  kRgb888,
+  kRgb565Be,
+  kBgr565,
+  kRgb444,
+  kMono1Pages,
+  kGray4Low,
+  kGray2,
+  kPaper3,
+  kPaper7,
+  kRgb332,
+};
+inline constexpr int kPixelFormats = 14;
+
+#ifndef THIMBLE_PANEL_FORMATS
+#define THIMBLE_PANEL_FORMATS 0x3FE0U
+#endif
+
+/// Whether the core was compiled with that format.
+constexpr bool has_format(PixelFormat format) {
+  const unsigned number = static_cast<unsigned>(format);
+  return ((0x1FU | (THIMBLE_PANEL_FORMATS & 0x3FE0U)) >> number & 1U) != 0;
+}
+/// Whether it was compiled with any of those behind kRgb888.
+inline constexpr bool kHasPanelFormats = (THIMBLE_PANEL_FORMATS & 0x3FE0U) != 0;
 
 /// A colour, 8 bits a channel, display-referred (what a display is sent).
 struct Rgb8 {
@@ -31,6 +80,9 @@ struct Rgb8 {
     return one.r == other.r && one.g == other.g && one.b == other.b;
   }
 };
+
+/// What `bits_per_pixel` says of a format that was left out: more than anybody has bytes for.
+inline constexpr int kAbsentFormatBits = 1 << 16;
 
 constexpr int bits_per_pixel(PixelFormat format) {
   switch (format) {
@@ -44,12 +96,66 @@ constexpr int bits_per_pixel(PixelFormat format) {
       return 16;
     case PixelFormat::kRgb888:
       return 24;
+    case PixelFormat::kRgb565Be:
+      return has_format(PixelFormat::kRgb565Be) ? 16 : kAbsentFormatBits;
+    case PixelFormat::kBgr565:
+      return has_format(PixelFormat::kBgr565) ? 16 : kAbsentFormatBits;
+    case PixelFormat::kRgb444:
+      return has_format(PixelFormat::kRgb444) ? 12 : kAbsentFormatBits;
+    case PixelFormat::kMono1Pages:
+      return has_format(PixelFormat::kMono1Pages) ? 1 : kAbsentFormatBits;
+    case PixelFormat::kGray4Low:
+      return has_format(PixelFormat::kGray4Low) ? 4 : kAbsentFormatBits;
+    case PixelFormat::kGray2:
+      return has_format(PixelFormat::kGray2) ? 2 : kAbsentFormatBits;
+    case PixelFormat::kPaper3:
+      return has_format(PixelFormat::kPaper3) ? 2 : kAbsentFormatBits;
+    case PixelFormat::kPaper7:
+      return has_format(PixelFormat::kPaper7) ? 4 : kAbsentFormatBits;
+    case PixelFormat::kRgb332:
+      return has_format(PixelFormat::kRgb332) ? 8 : kAbsentFormatBits;
   }
-  return 0;
+  return kAbsentFormatBits;
 }
 
-/// Bytes of one row of `width_px` pixels (at least 0).
+/// Whether the format shows greys only.
+constexpr bool is_gray(PixelFormat format) {
+  return format == PixelFormat::kMono1 || format == PixelFormat::kGray4 || format == PixelFormat::kGray8 ||
+         (has_format(PixelFormat::kMono1Pages) && format == PixelFormat::kMono1Pages) ||
+         (has_format(PixelFormat::kGray4Low) && format == PixelFormat::kGray4Low) ||
+         (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2);
+}
+
+/// Whether 8 rows share the bytes of one, the page.
+constexpr bool has_pages(PixelFormat format) {
+  return has_format(PixelFormat::kMono1Pages) && format == PixelFormat::kMono1Pages;
+}
+/// Rows that a format keeps together: a band starts at a multiple of them and holds one, unless it ends with
+/// the picture. 8 for kMono1Pages, else 1.
+constexpr int32_t band_row_multiple(PixelFormat format) {
+  return has_pages(format) ? 8 : 1;
+}
+/// `rows` (0 .. 2^31 - 8), rounded up to that multiple.
+constexpr int32_t whole_rows(PixelFormat format, int32_t rows) {
+  return has_pages(format) ? (rows + 7) & ~7 : rows;
+}
+/// Where the bytes of a row lie, counted in `row_bytes`: its number, or that of its page.
+constexpr size_t row_place(PixelFormat format, int32_t row) {
+  return static_cast<size_t>(has_pages(format) ? row >> 3 : row);
+}
+/// Whether a row is the first of those that share its bytes, and so is to clear them.
+constexpr bool begins_bytes(PixelFormat format, int32_t row) {
+  return !has_pages(format) || (row & 7) == 0;
+}
+
+/// Bytes of one row of `width_px` pixels (at least 0), or of one page: a byte a column.
 constexpr size_t row_bytes(PixelFormat format, int32_t width_px) {
+  if (has_pages(format)) {
+    return static_cast<size_t>(width_px);
+  }
+  if (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) {
+    return (static_cast<size_t>(width_px) + 7) / 8 * 2;  // pairs of bytes
+  }
   return (static_cast<size_t>(width_px) * static_cast<size_t>(bits_per_pixel(format)) + 7) / 8;
 }
 
@@ -79,9 +185,15 @@ constexpr bool dithered(uint8_t gray, int32_t x, int32_t y) {
   return gray > 2 + bayer_rank(x, y) * 4;
 }
 
+/// Stores the pixel in one of the formats behind kRgb888, as `store_pixel` does: that is what calls it.
+void store_panel_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format, Rgb8 color);
+
+/// Clears a pixel of these formats, so that another one may be stored over it.
+void clear_panel_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format);
+
 /// Stores the pixel of column `x` into its `row` (row_bytes(format, width) bytes). `y` is the row's number on
-/// the picture, which only the dither looks at. For formats below a byte the row's bytes are cleared before
-/// its first pixel is stored.
+/// the picture, which tells the dither its place and a page the bit. For formats whose pixels share bytes
+/// (all below 8 bits, and kRgb444) the row's bytes are cleared before its first pixel is stored.
 constexpr void store_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format, Rgb8 color) {
   const size_t column = static_cast<size_t>(x);
   switch (format) {
@@ -110,8 +222,26 @@ constexpr void store_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat forma
       row[3 * column + 1] = color.g;
       row[3 * column + 2] = color.b;
       return;
+    case PixelFormat::kRgb565Be:
+    case PixelFormat::kBgr565:
+    case PixelFormat::kRgb444:
+    case PixelFormat::kMono1Pages:
+    case PixelFormat::kGray4Low:
+    case PixelFormat::kGray2:
+    case PixelFormat::kPaper3:
+    case PixelFormat::kPaper7:
+    case PixelFormat::kRgb332:
+      if constexpr (kHasPanelFormats) {
+        store_panel_pixel(row, x, y, format, color);
+      }
+      return;
   }
 }
+
+/// What a display shows of a stored pixel, 0 .. 255 a channel: the darkest and the lightest value of a format
+/// become 0 and 255, and what lies between is spread evenly (16 greys are 17 apart). Of kPaper7 the colours
+/// by their names: orange is 255, 128, 0.
+Rgb8 load_pixel(const uint8_t* row, int32_t x, int32_t y, PixelFormat format);
 
 }  // namespace thimble
 

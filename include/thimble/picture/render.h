@@ -41,29 +41,19 @@ namespace thimble {
 struct Band {
   Bytes pixels;
   PixelFormat format = PixelFormat::kRgb888;
-  /// Bytes from one row to the next, at least row_bytes(format, width); 0 means just that. Bytes between the
-  /// rows are not touched.
+  /// Bytes from one row to the next (of kMono1Pages: from one page to the next), at least row_bytes(format,
+  /// width); 0 means just that. Bytes between the rows are not touched.
   size_t stride_bytes = 0;
   int32_t first_row = 0;
   int32_t rows = 0;
 };
 
-/// Rows that a format keeps together: a band starts at a multiple of them and holds one, unless it ends with
-/// the picture. 1 for all formats that there are.
-constexpr int32_t band_row_multiple(PixelFormat) {
-  return 1;
-}
-/// `rows` (at least 0), rounded up to that multiple.
-constexpr int32_t whole_rows(PixelFormat format, int32_t rows) {
-  const int32_t multiple = band_row_multiple(format);
-  return (rows + multiple - 1) / multiple * multiple;
-}
-
 /// Bytes for `rows` rows of `width_px` pixels without gaps, the rows rounded up to what the format keeps
 /// together; SIZE_MAX when size_t cannot say it.
 constexpr size_t band_bytes(PixelFormat format, int32_t width_px, int32_t rows) {
   const size_t one = row_bytes(format, width_px);
-  const size_t count = static_cast<size_t>(whole_rows(format, rows));
+  const size_t all = static_cast<size_t>(rows);
+  const size_t count = has_pages(format) ? all / 8 + (all % 8 != 0 ? 1 : 0) : all;
   return one != 0 && count > SIZE_MAX / one ? SIZE_MAX : one * count;
 }
 
@@ -109,7 +99,8 @@ constexpr size_t samples_bytes(int32_t width_px, int across) {
 }
 
 /// Averages `fine_rows` (kRgb888, samples_bytes(width_px, across), without gaps) into row `y` of the picture
-/// and stores it in `row` (row_bytes(format, width_px)), which must not overlap them. Cost: 3 * across^2
+/// and stores it in `row` (row_bytes(format, width_px)), which must not overlap them. Rows that share their
+/// bytes (kMono1Pages) are averaged into them from the first down: it clears them. Cost: 3 * across^2
 /// additions and three 32-bit divisions a pixel.
 /// Errors, with nothing written: kOutOfRange (across, width_px * across beyond kMaxPicturePx), kOutOfMemory
 /// (either span too small).

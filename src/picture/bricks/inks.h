@@ -2,6 +2,7 @@
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_INKS_H
 #define THIMBLE_SRC_PICTURE_BRICKS_INKS_H
 
+#include "../panels.h"
 #include "course.h"
 
 namespace thimble::bricks {
@@ -43,7 +44,28 @@ uint32_t ink_of(PixelFormat format, Rgb8 color) {
       return gray_of(color);
     case PixelFormat::kRgb565:
       return (color.r & 0xF8U) << 8 | (color.g & 0xFCU) << 3 | color.b >> 3U;
+    case PixelFormat::kRgb565Be:
+      if constexpr (has_format(PixelFormat::kRgb565Be)) {
+        return panels::rgb565_be(color);
+      }
+      break;
+    case PixelFormat::kBgr565:
+      if constexpr (has_format(PixelFormat::kBgr565)) {
+        return panels::bgr565(color);
+      }
+      break;
+    case PixelFormat::kRgb332:
+      if constexpr (has_format(PixelFormat::kRgb332)) {
+        return panels::rgb332(color);
+      }
+      break;
     case PixelFormat::kRgb888:
+    case PixelFormat::kRgb444:
+    case PixelFormat::kMono1Pages:
+    case PixelFormat::kGray4Low:
+    case PixelFormat::kGray2:
+    case PixelFormat::kPaper3:
+    case PixelFormat::kPaper7:
       break;
   }
   return static_cast<uint32_t>(color.r) | static_cast<uint32_t>(color.g) << 8 |
@@ -67,8 +89,31 @@ void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t
       line[2 * x] = low;
       line[2 * x + 1] = static_cast<uint8_t>(ink >> 8);
       return;
+    case PixelFormat::kRgb565Be:
+    case PixelFormat::kBgr565:
+      if constexpr (has_format(PixelFormat::kRgb565Be) || has_format(PixelFormat::kBgr565)) {
+        line[2 * x] = low;
+        line[2 * x + 1] = static_cast<uint8_t>(ink >> 8);
+      }
+      return;
+    case PixelFormat::kRgb332:
+      if constexpr (has_format(PixelFormat::kRgb332)) {
+        line[x] = low;
+      }
+      return;
     case PixelFormat::kRgb888:
       store_pixel(line, x, y, format, {low, static_cast<uint8_t>(ink >> 8), static_cast<uint8_t>(ink >> 16)});
+      return;
+    case PixelFormat::kRgb444:
+    case PixelFormat::kMono1Pages:
+    case PixelFormat::kGray4Low:
+    case PixelFormat::kGray2:
+    case PixelFormat::kPaper3:
+    case PixelFormat::kPaper7:
+      if constexpr (kHasPanelFormats) {
+        store_panel_pixel(line, x, y, format,
+                          {low, static_cast<uint8_t>(ink >> 8), static_cast<uint8_t>(ink >> 16)});
+      }
       return;
   }
 }

@@ -167,7 +167,8 @@ class BrickPainter {
                                     int32_t* slab) {
     Sweep& sweep = *sweep_;
     set_sweep_course(course_, &sweep);
-    const TilePlace place{line_of(tile.y0), stride_, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
+    const TilePlace place{line_of(tile.y0), row_stride(),      tile.x0,
+                          tile.y0,          tile.x1 - tile.x0, tile.y1 - tile.y0};
     TileSweep tile_sweep(sweep, course_, value, place);
     course_.waiting = kWaiting;
     set_start(course_, *slab);
@@ -258,14 +259,19 @@ class BrickPainter {
     }
   }
 
-  uint8_t* line_of(int32_t y) const { return first_line_ + stride_ * static_cast<size_t>(y - first_row_); }
+  uint8_t* line_of(int32_t y) const {
+    return first_line_ + stride_ * row_place(frame_.format, y - first_row_);
+  }
+  // From row to row of a tile: a page is as high as a tile, so all of its rows lie in the same bytes.
+  size_t row_stride() const { return has_pages(frame_.format) ? 0 : stride_; }
 
   void store(const Tile& quad, const int32_t* inks) {
     const int32_t across = quad.x1 - quad.x0;
+    const size_t stride = row_stride();
     uint8_t* line = line_of(quad.y0);
     if (frame_.format == PixelFormat::kGray4 && across == kQuadAcrossPx) {
       line += quad.x0 >> 1;
-      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride) {
         for (int32_t i = 0; i < kQuadAcrossPx / 2; ++i, inks += 2) {
           line[i] = static_cast<uint8_t>(inks[0] << 4 | inks[1]);  // NOLINT: all of a quad are set
         }
@@ -273,7 +279,7 @@ class BrickPainter {
       return;
     }
     if (frame_.halfwords) {
-      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+      for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride) {
         Half* const pixels = static_cast<Half*>(static_cast<void*>(line)) + quad.x0;
         for (int32_t i = 0; i < across; ++i) {
           pixels[i] = static_cast<Half>(*inks++);
@@ -281,7 +287,7 @@ class BrickPainter {
       }
       return;
     }
-    for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride_) {
+    for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride) {
       for (int32_t x = quad.x0; x < quad.x1; ++x) {
         store_ink(line, x, y, frame_.format, static_cast<uint32_t>(*inks++));
       }

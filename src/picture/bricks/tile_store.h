@@ -83,7 +83,8 @@ template <class Pixel>
 void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame, uint32_t ink) {
   if (frame.halfwords) {
     store_whole<Half>(place, pixels, ink);
-  } else if (frame.format == PixelFormat::kGray8) {
+  } else if (frame.format == PixelFormat::kGray8 ||
+             (has_format(PixelFormat::kRgb332) && frame.format == PixelFormat::kRgb332)) {
     store_whole<uint8_t>(place, pixels, ink);
   } else {
     store_any(place, pixels, frame.format, ink);

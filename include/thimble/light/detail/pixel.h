@@ -421,8 +421,10 @@ Status draw(Frame frame, const Band& band, LitCounts* counts) {
   const int32_t width = frame.camera.width_px();
   for (int32_t row = 0; row < band.rows; ++row) {
     const int32_t y = band.first_row + row;
-    uint8_t* line = band.pixels.data + stride * static_cast<size_t>(row);
-    clear_row(frame, band, line);
+    uint8_t* line = band.pixels.data + stride * row_place(band.format, row);
+    if (begins_bytes(band.format, row)) {
+      clear_row(frame, band, line);
+    }
     RowRays rays(frame.camera, 0, y);
     for (int32_t x = 0; x < width; ++x, rays.next()) {
       store(frame, band, line, x, y, pixel<kSet>(frame, rays.ray()));
