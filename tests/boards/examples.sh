@@ -11,13 +11,18 @@ thimble=${THIMBLE:-build/release/thimble}
 library=${LIBTHIMBLE:-build/release/libthimble.a}
 core='-std=c++20 -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections -fdata-sections
   -Iinclude -Wall -Wextra -Wpedantic -Werror'
+# Of C programs more is asked: the header's own words go through their compiler.
+c99='-std=c99 -ffreestanding -ffunction-sections -fdata-sections -Iinclude -Wall -Wextra -Wpedantic -Wconversion
+  -Wsign-conversion -Wshadow -Wundef -Wcast-align -Wstrict-prototypes -Wmissing-prototypes -Werror'
 fail() {
   echo "examples: FAILED: $1" >&2
   exit 1
 }
 names=$(cd platform/examples && for folder in */; do echo "${folder%/}"; done)
-lines=$(grep -c '' platform/examples/ball/main.cpp)
-[ "$lines" -le 40 ] || fail "ball has grown to $lines lines"
+for source in ball/main.cpp c_scene/main.c; do
+  lines=$(grep -c '' "platform/examples/$source")
+  [ "$lines" -le 40 ] || fail "$source has grown to $lines lines"
+done
 
 # bake NAME SCENE [OPTION...]: scene.h for that example, and the same as a file.
 bake() {
@@ -30,6 +35,7 @@ bake() {
 }
 bake baked_scene tools/gallery/scenes/castle.vox --effects none
 bake lit_room tools/gallery/scenes/room.scene
+bake c_scene tools/gallery/scenes/castle.vox --effects none
 
 # grays FILE: how many greys a picture of 8192 bytes has.
 grays() {
@@ -48,22 +54,44 @@ like() {
     fail "$name draws another picture than the command"
 }
 
-# compile COMPILER FLAGS NAME OBJECT
+# compile PREFIX FLAGS NAME OBJECT: by g++, or by gcc what is written in C.
 compile() {
+  compiler=$1g++ source=platform/examples/$3/main.cpp flags="$core ${1:+-nostdinc++}"
+  if [ -f "platform/examples/$3/main.c" ]; then
+    compiler=$1gcc source=platform/examples/$3/main.c flags=$c99
+  fi
   # shellcheck disable=SC2086
-  $1 $core $2 -I"$work/$3" -c "platform/examples/$3/main.cpp" -o "$4" || fail "$3 does not compile with $1"
+  $compiler $flags $2 -I"$work/$3" -c "$source" -o "$4" || fail "$3 does not compile with $compiler"
+}
+# c_draws_as_cpp: the C program's frames are those of the C++ one, at rest and moved; clang compiles it, too.
+c_draws_as_cpp() {
+  if command -v clang >/dev/null 2>&1; then
+    # shellcheck disable=SC2086
+    clang $c99 -O2 -I"$work/c_scene" -c platform/examples/c_scene/main.c -o "$work/c_scene/clang.o" ||
+      fail "c_scene does not compile with clang"
+  else
+    echo "examples: c_scene was not compiled with clang, which is not installed"
+  fi
+  for frames in 1 5; do
+    for name in c_scene baked_scene; do
+      "$work/$name/run" $frames >"$work/$name/$frames.pgm" || fail "$name ends with status $?"
+    done
+    cmp "$work/c_scene/$frames.pgm" "$work/baked_scene/$frames.pgm" || fail "c_scene draws another frame $frames than baked_scene"
+  done
+  ! cmp -s "$work/c_scene/1.pgm" "$work/c_scene/5.pgm" || fail "the eye of c_scene does not move"
+  name=c_scene
 }
 for target in $targets; do
   for name in $names; do
     mkdir -p "$work/$name"
     object=$work/$name/$target.o
     case $target in
-      cortex-m0) compile arm-none-eabi-g++ '-mcpu=cortex-m0 -mthumb -Os -nostdinc++' "$name" "$object" ;;
+      cortex-m0) compile arm-none-eabi- '-mcpu=cortex-m0 -mthumb -Os' "$name" "$object" ;;
       rv32)
-        compile riscv64-unknown-elf-g++ '-march=rv32imac -misa-spec=2.2 -mabi=ilp32 -Os -nostdinc++' "$name" "$object"
+        compile riscv64-unknown-elf- '-march=rv32imac -misa-spec=2.2 -mabi=ilp32 -Os' "$name" "$object"
         ;;
       host)
-        compile g++ -O2 "$name" "$object"
+        compile '' -O2 "$name" "$object"
         display=
         [ "$name" = ball ] || display=platform/examples/display_host.cpp
         g++ -std=c++20 -O1 -o "$work/$name/run" "$object" $display "$library"
@@ -76,6 +104,7 @@ for target in $targets; do
           water) [ "$(grays "$work/water/picture.pgm")" -ge 8 ] || fail "water draws no water" ;;
           # 16 greys are 17 apart: plain pictures take the nearest, lit ones are dithered.
           baked_scene) like baked_scene 9 --shade color ;;
+          c_scene) c_draws_as_cpp ;;
           lit_room) like lit_room 17 --effects auto ;;
         esac
         ;;

@@ -46,4 +46,9 @@ sh "$here/symbols.sh" "$prefix" "$here/symbols_$target.txt" "$work"/*.o || faile
 echo "code and constants on $target, bytes:"
 ${prefix}size -t "$work"/*.o
 "$stack_bound" "$target" "$budgets" "$work"/*.ci || failed=1
+# Whole programs, where the tree has some.
+if [ -n "$prefix" ] && [ -f tests/budgets/c_programs.csv ]; then
+  # shellcheck disable=SC2086
+  sh "$here/c_programs.sh" "$target" "$prefix" "$work" "$stack_bound" $flags || failed=1
+fi
 exit $failed

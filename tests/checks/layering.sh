@@ -2,6 +2,7 @@
 # Who may include whom. layering.sh ROOT
 #   include, src     <stdint.h>, <stddef.h>, and headers of their own room or of a room below it; a public header
 #                    none of src; only src and public headers those of a folder `detail`
+#   src/c            all rooms, and thimble/thimble_c.h, which only it sees
 #   tools, platform  no header of src
 #   platform         nothing of the tests but "portable/..." in the applications that run them on boards
 #   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
@@ -34,6 +35,7 @@ rooms_below() {
     light) echo base tree trace picture ;;
     plane) echo base ;;
     bake) echo base tree trace picture ;;
+    c) echo base tree trace picture light plane bake ;;
     *) echo "layering: src/$1 is no room that tests/checks/layering.sh knows" >&2 && return 1 ;;
   esac
 }
@@ -67,12 +69,16 @@ for root in include/thimble src; do
     done
     places="include/thimble/($allowed)/"
     [ "$root" = src ] && places="$places|src/($allowed)/"
+    [ "$folder" = src/c/ ] && places="$places|include/thimble/thimble_"
     complain "$folder sees only itself and the rooms below it ($below)" \
       "$(includes "$folder" | resolve "$root" | grep -vE ": $room ($places)[a-z0-9_/]+\.h\$" || true)"
   done
-  complain "the files of $root stand in rooms (besides include/thimble/thimble.h)" \
-    "$(find "$root" -maxdepth 1 \( -name '*.h' -o -name '*.cpp' \) ! -path include/thimble/thimble.h)"
+  complain "the files of $root stand in rooms (besides thimble.h and thimble_c.h of include/thimble)" \
+    "$(find "$root" -maxdepth 1 \( -name '*.h' -o -name '*.cpp' \) ! -path include/thimble/thimble.h \
+      ! -path include/thimble/thimble_c.h)"
 done
+complain "thimble_c.h is read by C: it includes <stdint.h> and <stddef.h> alone" \
+  "$(includes include/thimble | grep '^include/thimble/thimble_c\.h:.*"' || true)"
 complain "a public header finds the others from where it stands, so that the folder can be moved" \
   "$(includes include | grep '"thimble/' || true)"
 complain "what lies in a folder detail is the core's own" \

@@ -257,6 +257,34 @@ for target in cortex-m0 cortex-m3 rv32; do
   catches core.$target 'dmul\|muldf3'
 done
 
+# What is written in C: its header, and programs with a budget.
+catches c_header 'there is no include/thimble/thimble_c.h'
+add include/thimble/thimble_c.h 'int thimble_sum(int count);'
+passes c_header
+add include/thimble/thimble_c.h 'int thimble_default(int count = 3);'
+catches c_header 'does not compile alone with gcc'
+add include/thimble/thimble_c.h 'int thimble_class(int class);'
+catches c_header 'does not compile alone with g++'
+add include/thimble/thimble_c.h 'int thimble_sum();'
+catches c_header 'does not compile alone with gcc'
+# program BUDGETS: a program in C over the tree's core, and its row.
+program() {
+  mkdir -p "$tree/tests/budgets" "$tree/tests/c/programs"
+  add src/base/sum.cpp 'extern "C" int32_t c_sum(const int32_t* values) { return thimble::sum(values, 3); }'
+  printf '#include <stdint.h>\nint32_t c_sum(const int32_t*);\nint32_t program(const int32_t*);\n' >"$tree/tests/c/programs/one.c"
+  add tests/c/programs/one.c 'int32_t program(const int32_t* v) { return c_sum(v) + c_sum(v + 3); }'
+  printf 'program,target,effects,flash_bytes,stack_bytes,without\none,cortex-m0,,%s\n' "$1" >"$tree/tests/budgets/c_programs.csv"
+}
+program '200,200,thimble::other'
+passes core.cortex-m0
+fresh
+program '1,200,thimble::other'
+catches core.cortex-m0 'bytes of flash on cortex-m0, budget 1'
+program '200,8,thimble::other'
+catches core.cortex-m0 'bytes of stack on cortex-m0, budget 8'
+program '200,200,thimble::sum'
+catches core.cortex-m0 'holds what it does not call'
+
 # The bound of a whole image: a chain through a constructor's second name, a call through a pointer, an interrupt on top.
 graph=$work/image.ci
 printf '%s\n' root taken unused _ZN5ThingC2Ev deep tick >"$work/kept"

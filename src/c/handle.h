@@ -1,0 +1,98 @@
+// What a handle of the C face holds: a mark that tells it from bytes that hold nothing, and an object of the
+// core. Internal to src/c.
+#ifndef THIMBLE_SRC_C_HANDLE_H
+#define THIMBLE_SRC_C_HANDLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/base/memory.h"
+#include "thimble/base/status.h"
+#include "thimble/base/vec.h"
+#include "thimble/thimble_c.h"
+
+namespace thimble::c_face {
+
+/// Which kind of object: what a handle's first word says. A handle of another kind holds nothing.
+template <class Object>
+struct Kind;
+
+template <class Object>
+struct Held {
+  uint32_t mark;
+  Object object;
+};
+
+template <class Object, class Handle>
+constexpr bool fits() {
+  static_assert(__is_trivially_copyable(Object), "C copies handles as bytes");
+  static_assert(sizeof(Held<Object>) <= sizeof(Handle),
+                "enum thimble_sizes has too few words for this handle");
+  static_assert(alignof(Held<Object>) <= alignof(Handle));
+  return true;
+}
+
+/// Whether a handle can be looked at: not null, and where C would have put it.
+template <class Handle>
+bool stands(const Handle* handle) {
+  return handle != nullptr && (reinterpret_cast<uintptr_t>(handle) & (alignof(Handle) - 1)) == 0;
+}
+
+/// The object that a handle holds; null when it holds none, or one of another kind.
+template <class Object, class Handle>
+Object* held(Handle* handle) {
+  static_assert(fits<Object, Handle>());
+  if (!stands(handle)) {
+    return nullptr;
+  }
+  Held<Object>* const here = reinterpret_cast<Held<Object>*>(handle);
+  return here->mark == Kind<Object>::kMark ? &here->object : nullptr;
+}
+template <class Object, class Handle>
+const Object* held(const Handle* handle) {
+  return held<Object>(const_cast<Handle*>(handle));
+}
+
+/// `status`; on kOk the handle holds a copy of `object`, otherwise it is as it was.
+template <class Object, class Handle>
+int32_t hold(Status status, const Object& object, Handle* handle) {
+  static_assert(fits<Object, Handle>());
+  if (status == Status::kOk) {
+    Held<Object>* const here = reinterpret_cast<Held<Object>*>(handle);
+    // As bytes, which makes an object of them.
+    __builtin_memcpy(&here->object, &object, sizeof object);
+    here->mark = Kind<Object>::kMark;
+  }
+  return static_cast<int32_t>(status);
+}
+
+constexpr int32_t number(Status status) {
+  return static_cast<int32_t>(status);
+}
+
+/// Bytes as C gives them. False for a null pointer with a size.
+template <class Byte, class Void>
+bool take_bytes(Void* bytes, size_t size, Span<Byte>* span) {
+  *span = {static_cast<Byte*>(bytes), size};
+  return bytes != nullptr || size == 0;
+}
+
+constexpr Vec3i vector_of(const thimble_vec3_t& from) {
+  return {from.x, from.y, from.z};
+}
+constexpr Vec3Q8 point_of(const thimble_vec3_t& from) {
+  return {Q8::from_raw(from.x), Q8::from_raw(from.y), Q8::from_raw(from.z)};
+}
+constexpr thimble_vec3_t to_c(const Vec3i& from) {
+  return {from.x, from.y, from.z};
+}
+constexpr thimble_vec3_t to_c(const Vec3Q8& from) {
+  return {from.x.raw, from.y.raw, from.z.raw};
+}
+constexpr thimble_box_t to_c(const VoxelBox& from) {
+  return {to_c(from.low), to_c(from.high)};
+}
+
+}  // namespace thimble::c_face
+
+#endif

@@ -1,0 +1,58 @@
+// Rays, hits, shading and bands between C and the core. Internal to src/c.
+#ifndef THIMBLE_SRC_C_PICTURE_H
+#define THIMBLE_SRC_C_PICTURE_H
+
+#include "kinds.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/trace.h"
+
+namespace thimble::c_face {
+
+inline Ray ray_of(const thimble_ray_t& from) {
+  return {point_of(from.origin_q8), vector_of(from.direction)};
+}
+
+/// picture.cpp. A hit as C sees it.
+void tell_hit(const Ray& ray, const Hit& hit, thimble_hit_t* to);
+
+constexpr bool is_format(int32_t format) {
+  return format >= 0 && format <= 255 && bits_per_pixel(static_cast<PixelFormat>(format)) != 0;
+}
+
+/// False for null, an unknown mode, or a palette that is not there.
+bool take_shading(const thimble_shading_t* from, Shading* to);
+/// False for null, an unknown format, or pixels that are not there.
+bool take_band(const thimble_band_t* from, Band* to);
+
+/// What all functions that draw a band do with their arguments; `draw(camera, shading, band)`.
+template <class Draw>
+int32_t draw_band(const thimble_camera_t* camera, const thimble_shading_t* shading,
+                  const thimble_band_t* band, Draw&& draw) {
+  const Camera* const view = held<Camera>(camera);
+  Shading look;
+  Band rows;
+  if (view == nullptr || !take_shading(shading, &look) || !take_band(band, &rows)) {
+    return number(Status::kBadArgument);
+  }
+  return number(draw(*view, look, rows));
+}
+
+/// The same for functions that trace a ray.
+template <class Structure>
+int32_t trace_ray(const Structure* structure, const Ray& ray, uint32_t max_visits, thimble_hit_t* to) {
+  if (structure == nullptr || to == nullptr) {
+    return number(Status::kBadArgument);
+  }
+  Hit hit;
+  const Status status = closest_hit(*structure, ray, &hit, {max_visits, Width::kAuto});
+  if (status == Status::kOk) {
+    tell_hit(ray, hit, to);
+  }
+  return number(status);
+}
+
+}  // namespace thimble::c_face
+
+#endif

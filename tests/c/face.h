@@ -1,0 +1,16 @@
+/* What tests/c/face.c, which is C, gives to the tests in C++. */
+#ifndef THIMBLE_TESTS_C_FACE_H
+#define THIMBLE_TESTS_C_FACE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Runs the program; 0, or the number of the line that failed. */
+int thimble_face_in_c(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
