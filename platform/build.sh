@@ -38,3 +38,16 @@ cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH
   -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
   -DTHIMBLE_HOLD="${HOLD:-false}" -DTHIMBLE_HOLD_FPS="${HOLD_FPS:-0}" --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
 cmake --build "$work" -- --quiet
+# A drive takes images for RAM, too (APP_ram.uf2), where they leave an arena.
+if [ -n "$(fact UF2)" ]; then
+  targets=
+  for app in $(echo "$apps" | tr ';' ' '); do
+    IFS=, read -r _ _ flash ram stack _ <"$work/$app.memory.csv"
+    if [ $((flash + ram + stack + 32768)) -le "$(fact RAM_BYTES)" ]; then
+      targets="$targets ${app}_ram"
+    else
+      echo "$board $app: too large for an image in RAM"
+    fi
+  done
+  [ -z "$targets" ] || ninja -C "$work" --quiet $targets
+fi
