@@ -111,13 +111,6 @@ set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPE
 
 include(${THIMBLE_PLATFORM_DIR}/image.cmake)
 foreach(app IN LISTS THIMBLE_APP)
-  thimble_add_image(${app} ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
-  target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
-  # Built by itself, since not all that fits into flash fits into RAM (build.sh).
-  if(BOARD_UF2)
-    thimble_add_image_in(ram ${app}_ram ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
-    set_target_properties(${app}_ram PROPERTIES EXCLUDE_FROM_ALL ON)
-    target_compile_definitions(${app}_ram PRIVATE THIMBLE_APPLICATION=${app})
-  endif()
+  thimble_add_application(${app})
 endforeach()
 include(${THIMBLE_PLATFORM_DIR}/effect_images.cmake)

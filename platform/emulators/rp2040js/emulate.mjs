@@ -4,7 +4,7 @@
 //
 // MODULES is where npm put rp2040js; an instruction takes 2^SHIFT ns. -qmp answers as QEMU's machine protocol does
 // to tests/boards/qemu_screen.cpp: screendump, input-send-event, quit. -shot writes what the display shows at the end.
-import { writeFileSync, writeSync } from 'node:fs';
+import { rmSync, writeFileSync, writeSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -106,6 +106,7 @@ function serve(path) {
       }
     });
   });
+  rmSync(path, { force: true });
   server.listen(path);
 }
 

@@ -25,9 +25,15 @@ export class Panel {
       this.restart();
     });
     const spi = chip.spi[1];
-    spi.onTransmit = (frame) => {
+    // A frame takes its bits' time; the pins count at its end.
+    let frame = 0;
+    const sent = chip.clock.createAlarm(() => {
       this.take(frame, spi);
       spi.completeTransmit(0);
+    });
+    spi.onTransmit = (next) => {
+      frame = next;
+      sent.schedule((1e9 * spi.dataBits) / (spi.clockFrequency || 1));
     };
   }
 
