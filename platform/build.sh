@@ -4,8 +4,9 @@
 #                                               without it there is no scene in the image
 # In the environment: EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
 # SCENE=demo for the board's BOARD_DEMO_EFFECTS); FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then;
-# PANEL_FORMATS=MASK has other formats of panels than the board's (picture/pixel.h);
-# HOLD_FPS=N holds a rate of frames; THIMBLE_FIRMWARE is another place than build/firmware.
+# PANEL_FORMATS=MASK has other formats of panels than the board's (picture/pixel.h); HOLD_FPS=N holds a rate of frames;
+# CASE_STEP=N runs every Nth test case, MEASURED=ON has bench measure the fastest engine alone; THIMBLE_FIRMWARE is another
+# place than build/firmware.
 set -eu
 cd "$(dirname "$0")/.."
 if [ "$1" = all ]; then
@@ -38,5 +39,19 @@ export CCACHE_DISABLE=1
 cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH)/toolchain.cmake" -DTHIMBLE_BOARD="$board" \
   -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
   -DTHIMBLE_HOLD="${HOLD:-false}" -DTHIMBLE_HOLD_FPS="${HOLD_FPS:-0}" -DTHIMBLE_PANEL_FORMATS="${PANEL_FORMATS:-}" \
-  --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
+  -DTHIMBLE_CASE_STEP="${CASE_STEP:-1}" -DTHIMBLE_MEASURED="${MEASURED:-OFF}" --log-level=WARNING -Wno-dev \
+  --no-warn-unused-cli >/dev/null
 cmake --build "$work" -- --quiet
+# A drive takes images for RAM, too (APP_ram.uf2), where they leave an arena. PLACE=flash: not wanted.
+if [ -n "$(fact UF2)" ] && [ "${PLACE:-}" != flash ]; then
+  targets=
+  for app in $(echo "$apps" | tr ';' ' '); do
+    IFS=, read -r _ _ flash ram stack _ <"$work/$app.memory.csv"
+    if [ $((flash + ram + stack + 32768)) -le "$(fact RAM_BYTES)" ]; then
+      targets="$targets ${app}_ram"
+    else
+      echo "$board $app: too large for an image in RAM"
+    fi
+  done
+  [ -z "$targets" ] || ninja -C "$work" --quiet $targets
+fi

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Runs an image under QEMU, the UART on stdin and stdout; the exit status is the application's.
+# Runs an image under QEMU, or the board's own emulator (BOARD_EMULATOR), the UART on stdin and stdout; the exit status is the application's.
 #   emulate.sh BOARD APP [QEMU ARGUMENTS...]      (-display gtk shows the display)
-# In the environment: SHOT=PICTURE asks the demonstration for its picture over the UART, writes it (.png, .ppm, .pgm,
+# In the environment: PLACE=ram runs the image for RAM where the board has one (BOARD_UF2). SHOT=PICTURE asks the demonstration for its picture over the UART, writes it (.png, .ppm, .pgm,
 # .pbm) and ends; CRC=1 shows the lines that the demonstration writes for each frame where the board has no display.
 # -icount: time is counted in instructions, so every run is the same.
 set -eu
@@ -14,7 +14,12 @@ if [ -n "${SHOT:-}" ] && [ "$app" != demo ]; then
   echo "thimble: SHOT asks the application demo for its picture, not $app" >&2
   exit 2
 fi
-image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app.elf
+emulator=$(fact EMULATOR)
+ending=elf
+[ -z "$(fact UF2)" ] || ending=uf2
+in=
+[ "${PLACE:-}" != ram ] || in=_ram
+image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app$in.$ending
 if [ ! -f "$image" ]; then
   echo "thimble: $image is not there; make firmware BOARD=$board APP=$app builds it" >&2
   exit 1
@@ -22,6 +27,9 @@ fi
 qemu="$(fact QEMU) -icount shift=$(fact ICOUNT_SHIFT) -display none -monitor none -serial stdio"
 semihosting=enable=on,target=native
 run() {
+  if [ -n "$emulator" ]; then
+    exec sh "platform/emulators/$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$image" "$@"
+  fi
   exec $qemu -semihosting-config $semihosting -kernel "$image" "$@"
 }
 

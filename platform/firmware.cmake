@@ -1,6 +1,6 @@
 # Firmware for one board: -DTHIMBLE_BOARD=NAME, the toolchain file of its kind of core, and
 #
-#   THIMBLE_APP            which applications, a list (demo): each becomes APP.elf, APP.bin and APP.hex
+#   THIMBLE_APP            which applications, a list (demo): each becomes APP.elf, APP.bin and APP.hex (and APP.uf2)
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
 #   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
@@ -36,7 +36,6 @@ if(BOARD_DISPLAY STREQUAL "none")
 endif()
 set(generated ${PROJECT_BINARY_DIR}/generated)
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/facts.h.in ${generated}/thimble_board_facts.h @ONLY)
-configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/firmware.ld.in ${generated}/firmware.ld @ONLY)
 if(THIMBLE_SCENE_HEADER)
   set(THIMBLE_SCENE_INCLUDE "#include \"${THIMBLE_SCENE_HEADER}\"")
   set(THIMBLE_SCENE_BYTES "{thimble_scene, sizeof(thimble_scene)}")
@@ -113,7 +112,6 @@ set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPE
 
 include(${THIMBLE_PLATFORM_DIR}/image.cmake)
 foreach(app IN LISTS THIMBLE_APP)
-  thimble_add_image(${app} ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
-  target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
+  thimble_add_application(${app})
 endforeach()
 include(${THIMBLE_PLATFORM_DIR}/effect_images.cmake)

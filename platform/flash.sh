@@ -1,11 +1,13 @@
 #!/bin/sh
 # Writes an image to a real board, the way its board.cmake says (BOARD_PROBE). flash.sh BOARD APP
+# In the environment: PLACE=ram writes the image for RAM where the board has one (BOARD_UF2).
 set -eu
 cd "$(dirname "$0")/.."
 board=$1
 app=$2
 . platform/board_facts.sh
 image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app
+[ "${PLACE:-}" != ram ] || image=${image}_ram
 probe=$(fact PROBE)
 with=${probe#* }
 fail() {
@@ -47,8 +49,10 @@ case $probe in
         break
       fi
     done
-    [ -n "$drive" ] || fail "no drive $with is mounted; connect the board, or say where it is: THIMBLE_DRIVE=/path"
-    case $file in *.hex) from=$image.hex ;; *.elf) from=$image.elf ;; *) from=$image.bin ;; esac
+    how="connect the board"
+    case $file in *.uf2) how="hold BOOTSEL while you connect the board, or copy $image.uf2 onto it by hand" ;; esac
+    [ -n "$drive" ] || fail "no drive $with is mounted; $how, or say where it is: THIMBLE_DRIVE=/path"
+    case $file in *.hex) from=$image.hex ;; *.elf) from=$image.elf ;; *.uf2) from=$image.uf2 ;; *) from=$image.bin ;; esac
     cp "$from" "$drive/$file" || fail "the drive does not take it"
     sync
     ;;

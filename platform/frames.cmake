@@ -2,8 +2,10 @@
 #
 #   THIMBLE_FACTS      facts of the board to replace, each NAME=VALUE (none): other pictures, another core
 #   THIMBLE_MEASURED   whether `bench` measures the fastest engine alone (OFF)
+#   THIMBLE_CASE_STEP  `golden` runs every Nth case (1), where the emulator is slow
 set(THIMBLE_FACTS "" CACHE STRING "Facts of the board to replace, NAME=VALUE")
 set(THIMBLE_MEASURED OFF CACHE BOOL "bench measures the fastest engine alone")
+set(THIMBLE_CASE_STEP 1 CACHE STRING "Every Nth test case is run")
 
 foreach(fact IN LISTS THIMBLE_FACTS)
   string(REGEX MATCH "^([A-Z_]+)=(.+)$" found "${fact}")
@@ -38,5 +40,9 @@ function(thimble_choose_frames)
   endif()
   if(THIMBLE_MEASURED)
     target_compile_definitions(thimble_apps PRIVATE THIMBLE_MEASURED)
+  endif()
+  if(NOT THIMBLE_CASE_STEP EQUAL 1)
+    set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/cases.cpp PROPERTIES
+      COMPILE_DEFINITIONS THIMBLE_CASE_STEP=${THIMBLE_CASE_STEP})
   endif()
 endfunction()

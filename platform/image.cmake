@@ -1,24 +1,69 @@
 # How an image is linked, for firmware.cmake.
+include(${THIMBLE_PLATFORM_DIR}/uf2.cmake)
 
-# An image: APP.elf, APP.bin, APP.hex from `ARGN`, with whatever of the libraries that needs.
-function(thimble_add_image app)
+# The linker scripts: flash.ld, and where a loader puts images into RAM, too, ram.ld (firmware.ld.in).
+function(thimble_write_linker_script place)
+  set(IMAGE_PLACE ${place})
+  if(place STREQUAL "flash")
+    set(IMAGE_ORIGIN ${BOARD_FLASH_ORIGIN})
+    set(IMAGE_BYTES ${BOARD_FLASH_BYTES})
+    set(IMAGE_DATA "RAM AT > FLASH")
+    set(IMAGE_BSS RAM)
+  else()
+    math(EXPR IMAGE_ORIGIN "${BOARD_RAM_ORIGIN} + ${BOARD_STACK_BYTES}" OUTPUT_FORMAT HEXADECIMAL)
+    math(EXPR IMAGE_BYTES "${BOARD_RAM_BYTES} - ${BOARD_STACK_BYTES}")
+    set(IMAGE_DATA FLASH)
+    set(IMAGE_BSS FLASH)
+  endif()
+  configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/firmware.ld.in ${generated}/${place}.ld @ONLY)
+endfunction()
+thimble_write_linker_script(flash)
+if(BOARD_UF2)
+  thimble_find_make_uf2()
+  thimble_write_linker_script(ram)
+endif()
+
+# An image: APP.elf, APP.bin, APP.hex from `ARGN`, with whatever of the libraries that needs; and APP.uf2 for
+# BOARD_UF2. `place` is flash or ram.
+function(thimble_add_image_in place app)
   add_executable(${app} ${ARGN})
-  set_target_properties(${app} PROPERTIES SUFFIX .elf LINK_DEPENDS ${generated}/firmware.ld)
+  set(script ${generated}/${place}.ld)
+  set_target_properties(${app} PROPERTIES SUFFIX .elf LINK_DEPENDS ${script})
   target_include_directories(${app} PRIVATE ${THIMBLE_PLATFORM_DIR})
   set(stack ${BOARD_STACK_BYTES})
   if(DEFINED BOARD_STACK_BYTES_${app})
     set(stack ${BOARD_STACK_BYTES_${app}})
   endif()
-  target_link_options(${app} PRIVATE ${THIMBLE_ARCH_FLAGS} -nostdlib -T ${generated}/firmware.ld
+  target_link_options(${app} PRIVATE ${THIMBLE_ARCH_FLAGS} -nostdlib -T ${script}
     -Wl,--defsym=thimble_stack_bytes=${stack}
     -Wl,--gc-sections,--no-warn-rwx-segments,-Map=${app}.map)
   target_link_libraries(${app} PRIVATE thimble_firmware_flags thimble_warnings thimble_board thimble_apps
     thimble thimble_port gcc)
+  if(BOARD_UF2)
+    thimble_add_uf2(${app})
+  endif()
   add_custom_command(TARGET ${app} POST_BUILD
     COMMAND ${CMAKE_OBJCOPY} -O binary ${app}.elf ${app}.bin
     COMMAND ${CMAKE_OBJCOPY} -O ihex ${app}.elf ${app}.hex
     COMMAND ${CMAKE_COMMAND} -DPREFIX=${THIMBLE_BINUTILS_PREFIX} -DBOARD=${BOARD_NAME} -DAPP=${app}
-      -DFLASH_BYTES=${BOARD_FLASH_BYTES} -DRAM_BYTES=${BOARD_RAM_BYTES}
+      -DFLASH_BYTES=${BOARD_FLASH_BYTES} -DRAM_BYTES=${BOARD_RAM_BYTES} -DPLACE=${place}
       -P ${THIMBLE_PLATFORM_DIR}/memory_table.cmake
     BYPRODUCTS ${app}.bin ${app}.hex VERBATIM)
+endfunction()
+
+function(thimble_add_image app)
+  thimble_add_image_in(flash ${app} ${ARGN})
+endfunction()
+
+# An application's image; for BOARD_UF2 also one for RAM, which is built by itself, since not all that fits into
+# flash fits there (build.sh).
+function(thimble_add_application app)
+  set(main ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
+  thimble_add_image(${app} ${main})
+  target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
+  if(BOARD_UF2)
+    thimble_add_image_in(ram ${app}_ram ${main})
+    set_target_properties(${app}_ram PROPERTIES EXCLUDE_FROM_ALL ON)
+    target_compile_definitions(${app}_ram PRIVATE THIMBLE_APPLICATION=${app})
+  endif()
 endfunction()

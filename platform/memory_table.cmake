@@ -1,5 +1,5 @@
 # Says what an image takes of its board, and writes it to APP.memory.csv: cmake -DPREFIX= -DBOARD= -DAPP=
-# -DFLASH_BYTES= -DRAM_BYTES= -P memory_table.cmake, in the folder of APP.elf.
+# -DFLASH_BYTES= -DRAM_BYTES= -DPLACE=flash|ram -P memory_table.cmake, in the folder of APP.elf.
 execute_process(COMMAND ${PREFIX}size -A -d ${APP}.elf OUTPUT_VARIABLE sizes COMMAND_ERROR_IS_FATAL ANY)
 foreach(section text rodata stack data bss)
   set(${section} 0)
@@ -9,6 +9,12 @@ foreach(section text rodata stack data bss)
 endforeach()
 math(EXPR flash "${text} + ${rodata} + ${data}")
 math(EXPR ram "${data} + ${bss}")
+string(COMPARE EQUAL "${PLACE}" ram is_in_ram)
+if(is_in_ram)
+  math(EXPR arena "${RAM_BYTES} - ${flash} - ${bss} - ${stack}")
+  message("${BOARD} ${APP}: RAM ${RAM_BYTES} = image ${flash} + bss ${bss} + stack ${stack} + arena ${arena}")
+  return()
+endif()
 math(EXPR arena "${RAM_BYTES} - ${ram} - ${stack}")
 file(WRITE ${APP}.memory.csv "${BOARD},${APP},${flash},${ram},${stack},${arena}\n")
 set(parts "data and bss ${ram} + stack ${stack} + arena ${arena}")

@@ -12,6 +12,18 @@ using portable::Failure;
 using portable::Group;
 using portable::Runner;
 
+// Where a place is slow, one of so many cases of a long group is run, and the results of all are not compared.
+#ifdef THIMBLE_CASE_STEP
+constexpr int kCaseStep = THIMBLE_CASE_STEP;
+#else
+constexpr int kCaseStep = 1;
+#endif
+constexpr int kLongGroup = 200;
+
+constexpr int step_of(const Group& group) {
+  return kCaseStep == 1 || group.count < kLongGroup ? 1 : kCaseStep;
+}
+
 void put_count(int count) {
   put_number(static_cast<uint32_t>(count));
 }
@@ -77,7 +89,7 @@ void put_what(const portable::What& what) {
 
 [[gnu::noinline]] void put_group(const Runner& runner, const Group& group) {
   int run = 0;
-  for (int i = 0; i < group.count; ++i) {
+  for (int i = 0; i < group.count; i += step_of(group)) {
     run += runner.fits(group.at(i)) ? 1 : 0;
   }
   put(group.name);
@@ -91,7 +103,7 @@ void put_what(const portable::What& what) {
 int put_skipped(const Runner& runner, Span<const Group* const> groups) {
   int skipped = 0;
   for (const Group* group : groups) {
-    for (int i = 0; i < group->count; ++i) {
+    for (int i = 0; i < group->count; i += step_of(*group)) {
       const Case one = group->at(i);
       if (!runner.fits(one)) {
         ++skipped;
@@ -125,9 +137,17 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
 [[gnu::noinline]] int put_results(const Runner& runner, Span<const Group* const> groups, uint32_t all_crc32,
                                   uint32_t common_crc32) {
   const int skipped = put_skipped(runner, groups);
+  bool is_whole = true;
+  if constexpr (kCaseStep != 1) {
+    for (const Group* group : groups) {
+      is_whole = is_whole && step_of(*group) == 1;
+    }
+  }
   int failed = runner.failed();
-  failed += judge_crc("the cases that every board runs", runner.common_crc32(), common_crc32);
-  if (skipped == 0) {
+  if (is_whole) {
+    failed += judge_crc("the cases that every board runs", runner.common_crc32(), common_crc32);
+  }
+  if (is_whole && skipped == 0) {
     failed += judge_crc("all cases", runner.crc32(), all_crc32);
   }
   put("result crc ");
@@ -138,7 +158,7 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
   put_hex(runner.common_crc32());
   put(" of the ");
   put_count(runner.common());
-  put(" cases that every board runs\n");
+  put(is_whole ? " cases that every board runs\n" : " cases among them that every board runs\n");
   put_count(skipped);
   put(" skipped\n");
   put_count(runner.passed());
@@ -162,7 +182,7 @@ int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_c
     return 1;
   }
   for (const Group* group : groups) {
-    for (int i = 0; i < group->count; ++i) {
+    for (int i = 0; i < group->count; i += step_of(*group)) {
       run_case(*runner, *group, i);
     }
     put_group(*runner, *group);

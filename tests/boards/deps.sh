@@ -4,5 +4,5 @@ set -eu
 cd "$(dirname "$0")/../.."
 packages=$(awk '$1 == "boards" { printf " %s", $2 }' .ci/packages)
 echo "test-boards: uses cross compilers and emulators:$packages"
-echo "test-boards: those that are missing are installed by apt-get, with what they need: at most 200 MB to fetch, 1.3 GB on disk"
+echo "test-boards: those that are missing are installed by apt-get, with what they need: at most 260 MB to fetch, 1.5 GB on disk"
 exec .ci/deps build tools boards

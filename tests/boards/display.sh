@@ -27,9 +27,11 @@ start() {
     sleep 0.1
   done >"$folder/keys.$1" &
 }
-# wait_for TEXT: until the UART has said it.
+# wait_for TEXT: until the UART has said it, 30 s at most; an emulator of the board's own is slow.
+patience=300
+[ -z "$(fact EMULATOR)" ] || patience=1200
 wait_for() {
-  for i in $(seq 300); do
+  for i in $(seq $patience); do
     grep -qs "$1" "$work/screen.log" && return 0
     sleep 0.1
   done

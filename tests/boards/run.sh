@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds and runs the firmware of every board under QEMU and judges it: a line a board and application, exit status 1
+# Builds and runs the firmware of every board under its emulator and judges it: a line a board and application, exit status 1
 # when anything failed. Two boards at a time.
 #   run.sh [--budgets] [BOARD...]      --budgets writes tests/budgets/firmware.csv anew from what was measured
 set -eu
@@ -41,6 +41,9 @@ case " $boards " in
     sh "$here/emulate.sh" || failed=1
     sh "$here/formats.sh" microbit || failed=1
     ;;
+esac
+case " $boards " in
+  *pico*) sh "$here/uf2.sh" pico || failed=1 ;;
 esac
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1

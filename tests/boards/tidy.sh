@@ -16,7 +16,7 @@ lint() {
   shift
   . platform/board_facts.sh
   case $(fact ARCH)-$(fact CPU) in
-    cortex-m-cortex-m0) target=thumbv6m-none-eabi ;;
+    cortex-m-cortex-m0 | cortex-m-cortex-m0plus) target=thumbv6m-none-eabi ;;
     cortex-m-cortex-m3) target=thumbv7m-none-eabi ;;
     cortex-m-*) target=thumbv7em-none-eabi ;;
     riscv-*) target=riscv32-none-elf ;;

@@ -22,6 +22,7 @@ inline constexpr ParticlesState kParticlesStates[] = {
     {128, 64, 96, 0x0B51EDC5},    // stm32vldiscovery, 8 KiB of RAM
     {320, 240, 110, 0x3B3C440B},  // mps2-an500
     {640, 480, 443, 0x535207F7},  // raspi0
+    {240, 240, 83, 0xEB5ABF04},   // pico
 };
 
 }  // namespace thimble::golden

@@ -1,0 +1,91 @@
+// Clocks, UART and keys of the Raspberry Pi Pico on a Pico-LCD-1.3.
+#include "board.h"
+
+#include <stdint.h>
+
+#include "drivers/pl011.h"
+#include "registers.h"
+#include "rp2040.h"
+#include "thimble_board_facts.h"
+
+namespace thimble::board {
+namespace {
+
+constexpr uint32_t kBaud = 115200;
+constexpr uint32_t kBlocks = rp2040::kBlockDma | rp2040::kBlockPins | rp2040::kBlockPads |
+                             rp2040::kBlockSpi1 | rp2040::kBlockUart0;
+
+struct Key {
+  uint32_t pin;
+  port::Button button;
+};
+constexpr Key kKeys[] = {{rp2040::kPinUp, port::kUp},       {rp2040::kPinDown, port::kDown},
+                         {rp2040::kPinLeft, port::kLeft},   {rp2040::kPinRight, port::kRight},
+                         {rp2040::kPinPress, port::kSelect}, {rp2040::kPinKeyA, port::kSelect}};
+
+// Through a reset, so that a block is as the data sheet says, whatever ran before us.
+void restart(uint32_t blocks) {
+  set_bits(rp2040::kReset, blocks);
+  clear_bits(rp2040::kReset, blocks);
+  for (uint32_t i = 0; i < kPatience && (register32(rp2040::kResetDone) & blocks) != blocks; ++i) {
+  }
+}
+
+// The reference clock from the crystal, then the core's from the PLL. It runs from the reference clock
+// meanwhile, since the PLL may be what it runs from.
+void start_core_clock() {
+  register32(rp2040::kXoscStartup) = rp2040::kXoscStartup1Ms;
+  register32(rp2040::kXoscCtrl) = rp2040::kXoscEnable;
+  wait_for_set(rp2040::kXoscStatus, rp2040::kXoscStable);
+  register32(rp2040::kClkSysCtrl) = rp2040::kClkSysRef;
+  wait_for_set(rp2040::kClkSysSelected, 1U << rp2040::kClkSysRef);
+  register32(rp2040::kClkRefCtrl) = rp2040::kClkRefXosc;
+  wait_for_set(rp2040::kClkRefSelected, 1U << rp2040::kClkRefXosc);
+  restart(rp2040::kBlockPllSys);
+  register32(rp2040::kPllCs) = rp2040::kPllRefDiv1;
+  register32(rp2040::kPllFeedback) = rp2040::kPllTimes;
+  clear_bits(rp2040::kPllPower, rp2040::kPllPowerDown);
+  if (wait_for_set(rp2040::kPllCs, rp2040::kPllLocked)) {
+    register32(rp2040::kPllPrim) = rp2040::kPllBy12;
+    clear_bits(rp2040::kPllPower, rp2040::kPllPostDown);
+    register32(rp2040::kClkSysCtrl) = rp2040::kClkSysPll;
+    wait_for_set(rp2040::kClkSysSelected, 1U << rp2040::kClkSysPll);
+  }
+  register32(rp2040::kClkPeriCtrl) = rp2040::kClkPeriSys;
+}
+
+}  // namespace
+
+void start() {
+  start_core_clock();
+  restart(kBlocks);
+  register32(rp2040::pin_control(rp2040::kPinUartSends)) = rp2040::kPinUart;
+  register32(rp2040::pin_control(rp2040::kPinUartReceives)) = rp2040::kPinUart;
+  pl011::start(rp2040::kUart0, kClockMhz * 1000000, kBaud);
+  for (const Key& key : kKeys) {
+    register32(rp2040::pad(key.pin)) = rp2040::kPadInputPulledUp;
+    register32(rp2040::pin_control(key.pin)) = rp2040::kPinSio;
+  }
+  rp2040::start_display();
+}
+
+void put(uint8_t byte) {
+  pl011::put(rp2040::kUart0, byte);
+}
+
+int get() {
+  return pl011::get(rp2040::kUart0);
+}
+
+uint32_t buttons() {
+  const uint32_t high = register32(rp2040::kSioIn);
+  uint32_t down = 0;
+  for (const Key& key : kKeys) {
+    if ((high >> key.pin & 1U) == 0) {
+      down |= key.button;
+    }
+  }
+  return down;
+}
+
+}  // namespace thimble::board
