@@ -396,7 +396,8 @@ TEST_CASE("render --board: the display's size and pixels as it shows them, its R
     const unsigned kept = static_cast<unsigned>(static_cast<unsigned char>(fine_color[i])) >> (8 - bits);
     REQUIRE(static_cast<unsigned char>(color[i]) == (kept << (8 - bits) | kept >> (2 * bits - 8)));
   }
-  CHECK(render(folder, oct, {"--board", "raspi0", "--effects", "none"}).substr(0, 15) == "P6\n640 480\n255\n");
+  CHECK(render(folder, oct, {"--board", "raspi0", "--effects", "none"}).substr(0, 15) ==
+        "P6\n640 480\n255\n");
 
   // A scene that is built in the board's RAM.
   const auto usable_bytes = [](const char* name) {
