@@ -185,13 +185,23 @@ typedef struct thimble_shading {
   uint8_t background_rgb[3];  ///< where a ray hits nothing
 } thimble_shading_t;
 
-/// Pixel formats, as `thimble::PixelFormat` in thimble/picture/pixel.h describes them.
+/// Pixel formats, as `thimble::PixelFormat` in thimble/picture/pixel.h describes them. A core compiled with
+/// THIMBLE_PANEL_FORMATS knows of those behind RGB888 only what that names; the others are unknown to it.
 enum thimble_format {
-  THIMBLE_FORMAT_MONO1 = 0,   ///< 1 bit, the leftmost pixel in the highest, 1 = lit; dithered
-  THIMBLE_FORMAT_GRAY4 = 1,   ///< 4 bits, the left pixel in the high nibble, 15 = white
-  THIMBLE_FORMAT_GRAY8 = 2,   ///< 1 byte, 255 = white
-  THIMBLE_FORMAT_RGB565 = 3,  ///< 2 bytes, little-endian: rrrrrggg gggbbbbb
-  THIMBLE_FORMAT_RGB888 = 4   ///< 3 bytes: r, g, b
+  THIMBLE_FORMAT_MONO1 = 0,        ///< 1 bit, the leftmost pixel in the highest, 1 = lit; dithered
+  THIMBLE_FORMAT_GRAY4 = 1,        ///< 4 bits, the left pixel in the high nibble, 15 = white
+  THIMBLE_FORMAT_GRAY8 = 2,        ///< 1 byte, 255 = white
+  THIMBLE_FORMAT_RGB565 = 3,       ///< 2 bytes, little-endian: rrrrrggg gggbbbbb
+  THIMBLE_FORMAT_RGB888 = 4,       ///< 3 bytes: r, g, b
+  THIMBLE_FORMAT_RGB565_BE = 5,    ///< RGB565, big-endian: ST7735, ST7789, ILI9341
+  THIMBLE_FORMAT_BGR565 = 6,       ///< 2 bytes, little-endian: bbbbbggg gggrrrrr
+  THIMBLE_FORMAT_RGB444 = 7,       ///< two pixels in 3 bytes: rrrrgggg bbbbrrrr ggggbbbb
+  THIMBLE_FORMAT_MONO1_PAGES = 8,  ///< pages of 8 rows, a byte a column, the topmost lowest: SSD1306
+  THIMBLE_FORMAT_GRAY4_LOW = 9,    ///< GRAY4 with the left pixel in the low nibble
+  THIMBLE_FORMAT_GRAY2 = 10,       ///< 2 bits, the leftmost pixel in the highest two, 3 = white; dithered
+  THIMBLE_FORMAT_PAPER3 = 11,      ///< e-paper in black, white and red: a byte of white, one of red
+  THIMBLE_FORMAT_PAPER7 = 12,      ///< e-paper in 7 colours, 4 bits, the left pixel in the high nibble
+  THIMBLE_FORMAT_RGB332 = 13       ///< 1 byte: rrrgggbb
 };
 
 /// Rows first_row .. first_row + rows - 1 of a picture, and the bytes that they go to.

@@ -27,6 +27,24 @@ constexpr int32_t c_format(PixelFormat format) {
       return THIMBLE_FORMAT_RGB565;
     case PixelFormat::kRgb888:
       return THIMBLE_FORMAT_RGB888;
+    case PixelFormat::kRgb565Be:
+      return THIMBLE_FORMAT_RGB565_BE;
+    case PixelFormat::kBgr565:
+      return THIMBLE_FORMAT_BGR565;
+    case PixelFormat::kRgb444:
+      return THIMBLE_FORMAT_RGB444;
+    case PixelFormat::kMono1Pages:
+      return THIMBLE_FORMAT_MONO1_PAGES;
+    case PixelFormat::kGray4Low:
+      return THIMBLE_FORMAT_GRAY4_LOW;
+    case PixelFormat::kGray2:
+      return THIMBLE_FORMAT_GRAY2;
+    case PixelFormat::kPaper3:
+      return THIMBLE_FORMAT_PAPER3;
+    case PixelFormat::kPaper7:
+      return THIMBLE_FORMAT_PAPER7;
+    case PixelFormat::kRgb332:
+      return THIMBLE_FORMAT_RGB332;
   }
   return -1;
 }

@@ -18,7 +18,7 @@ inline Ray ray_of(const thimble_ray_t& from) {
 void tell_hit(const Ray& ray, const Hit& hit, thimble_hit_t* to);
 
 constexpr bool is_format(int32_t format) {
-  return format >= 0 && format <= 255 && bits_per_pixel(static_cast<PixelFormat>(format)) != 0;
+  return format >= 0 && format < kPixelFormats && has_format(static_cast<PixelFormat>(format));
 }
 
 /// False for null, an unknown mode, or a palette that is not there.

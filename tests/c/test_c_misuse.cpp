@@ -158,7 +158,7 @@ thimble_band_t odd_band(OddValues& odd, ExactBytes* bytes) {
   band.pixels = odd.one_in(9) ? nullptr : bytes->bytes().data;
   band.size_bytes = odd.one_in(9) ? 0 : bytes->bytes().size;
   band.stride_bytes = odd.one_in(2) ? 0 : odd.one_in(2) ? odd.bits() % 100 : odd.any<std::size_t>();
-  band.format = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(0, 5);
+  band.format = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(0, kPixelFormats);
   band.first_row = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 2) * 8;
   band.rows = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 16);
   return band;
@@ -243,7 +243,8 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
     (void)thimble_band_bytes(values.any<std::int32_t>(), values.any<std::int32_t>(),
                              values.any<std::int32_t>());
     (void)thimble_band_row_multiple(values.any<std::int32_t>());
-    const std::int32_t frame_format = values.one_in(2) ? values.any<std::int32_t>() : values.between_32(0, 4);
+    const std::int32_t frame_format =
+        values.one_in(2) ? values.any<std::int32_t>() : values.between_32(0, kPixelFormats - 1);
     (void)thimble_frame_bytes(frame_format, values.any<std::int32_t>(), values.any<std::int32_t>());
     ExactBytes memory(values.bits() % 3000);
     thimble_frame_t frame = {};
