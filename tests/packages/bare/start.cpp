@@ -85,9 +85,10 @@ struct Vectors {
   uint32_t* stack;
   Handler handlers[15];
 };
-[[gnu::section(".vectors"), gnu::used]] static const Vectors vectors = {&stack_top,
-                         {start, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault,
-                          fault, fault}};
+[[gnu::section(".vectors"), gnu::used]] static const Vectors vectors = {
+    &stack_top,
+    {start, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault,
+     fault}};
 #else
 asm(".section .start,\"ax\"\n.globl start\nstart: la sp, stack_top\n j run\n.text\n");
 #endif

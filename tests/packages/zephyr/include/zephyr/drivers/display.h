@@ -36,7 +36,8 @@ inline void display_get_capabilities(const device*, display_capabilities* is) {
 inline int display_blanking_off(const device*) {
   return 0;
 }
-inline int display_write(const device*, uint16_t x, uint16_t y, const display_buffer_descriptor* rows, const void* bytes) {
+inline int display_write(const device*, uint16_t x, uint16_t y, const display_buffer_descriptor* rows,
+                         const void* bytes) {
   static uint16_t next_row = 0;
   const uint32_t row_bytes = 160U * (STUB_FORMAT == PIXEL_FORMAT_RGB_888 ? 3 : 2);
   if (x != 0 || y != next_row || rows->width != 160 || rows->pitch != 160 ||
