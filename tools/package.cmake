@@ -8,6 +8,15 @@ file(MAKE_DIRECTORY ${doc})
 # Debian's zsh looks here for what packages bring.
 file(RENAME ${root}/share/zsh/site-functions ${root}/share/zsh/vendor-completions)
 
+# Debian's pkg-config looks in the folder of the architecture, one deeper, when it compiles for that.
+execute_process(COMMAND dpkg-architecture -qDEB_HOST_MULTIARCH OUTPUT_VARIABLE machine OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(machine AND EXISTS ${root}/lib/pkgconfig)
+  file(READ ${root}/lib/pkgconfig/thimble.pc said)
+  string(REPLACE "\${pcfiledir}/../.." "\${pcfiledir}/../../.." said "${said}")
+  file(WRITE ${root}/lib/${machine}/pkgconfig/thimble.pc "${said}")
+  file(REMOVE_RECURSE ${root}/lib/pkgconfig)
+endif()
+
 file(READ ${CPACK_THIMBLE_SOURCE}/LICENSE licence)
 string(REGEX MATCH "Copyright[^\n]*" copyright "${licence}")
 string(REGEX REPLACE "^Copyright (\\(c\\) )?" "" copyright "${copyright}")

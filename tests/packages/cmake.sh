@@ -9,7 +9,6 @@ logged cmake -S tests/packages/cmake -B "$WORK/fetch" -G Ninja -DARCHIVE="$archi
 logged cmake --build "$WORK/fetch" -- -j1
 same_ball "$WORK/fetch/ball"
 unpack "thimble-$VERSION.tar.gz"
-# The objects of the first build do for the second, where there is a compiler cache; else it compiles again.
 logged cmake -S "$WORK/thimble-$VERSION" -B "$WORK/build" -G Ninja
 logged cmake --build "$WORK/build" -- -j1
 logged cmake --install "$WORK/build" --prefix "$WORK/first"
@@ -24,5 +23,7 @@ if command -v pkg-config >/dev/null 2>&1; then
   [ "$(pkg-config --modversion thimble)" = "$VERSION" ] || fail "pkg-config says version $(pkg-config --modversion thimble)"
   logged c++ -std=c++17 platform/examples/ball/main.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/by_pkg_config"
   same_ball "$WORK/by_pkg_config"
+  logged c++ -std=c++20 -O1 -Itests tests/packages/golden.cpp tests/golden/scenes.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/golden"
+  logged "$WORK/golden"
 fi
 say "FetchContent, find_package and pkg-config, the prefix moved: the ball is drawn (CPM is not here: it calls FetchContent)"

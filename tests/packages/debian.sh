@@ -23,13 +23,14 @@ if [ "$(id -u)" -eq 0 ]; then
 else
   logged dpkg-deb -x "$deb" "$WORK/root"
 fi
-for file in bin/thimble include/thimble/thimble.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake lib/pkgconfig/thimble.pc \
+for file in bin/thimble include/thimble/thimble.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake \
   share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
 env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
 if command -v pkg-config >/dev/null 2>&1; then
-  export PKG_CONFIG_PATH="$WORK/root/usr/lib/pkgconfig"
+  PKG_CONFIG_PATH=$(dirname "$(find "$WORK/root/usr/lib" -name thimble.pc)")
+  export PKG_CONFIG_PATH
   logged c++ -std=c++17 platform/examples/ball/main.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/ball"
   same_ball "$WORK/ball"
 fi

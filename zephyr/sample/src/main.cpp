@@ -59,7 +59,8 @@ Status build(CompactTree* tree) {
   return status == Status::kOk ? CompactTree::make(octree, arena, tree) : status;
 }
 
-Status draw(const CompactTree& tree, int32_t sideways, const device* panel, const display_capabilities& panel_is) {
+Status draw(const CompactTree& tree, int32_t sideways, const device* panel,
+            const display_capabilities& panel_is) {
   PerspectiveView view;
   view.eye = {Q8::saturate(sideways), Q8::saturate(-24), Q8::saturate(36)};
   view.forward = {16 - sideways, 40, -20};
@@ -97,11 +98,13 @@ int main() {
   display_get_capabilities(panel, &panel_is);
   const display_pixel_format format = panel_is.current_pixel_format;
   if (format != kHighByteFirst && format != kLowByteFirst && format != PIXEL_FORMAT_RGB_888) {
-    printk("thimble: this sample draws RGB_565 and RGB_888; the display has format %d\n", static_cast<int>(format));
+    printk("thimble: this sample draws RGB_565 and RGB_888; the display has format %d\n",
+           static_cast<int>(format));
     return 1;
   }
   if (panel_is.x_resolution > kMostWidth) {
-    printk("thimble: kMostWidth is %d; the display has %d columns\n", static_cast<int>(kMostWidth), panel_is.x_resolution);
+    printk("thimble: kMostWidth is %d; the display has %d columns\n", static_cast<int>(kMostWidth),
+           panel_is.x_resolution);
     return 1;
   }
   CompactTree tree;
