@@ -58,7 +58,7 @@ void check_fails(const Words& words, int status, const Words& named, const std::
 // A part of `rows` rows of the picture of 8 x 6 pixels that `fill` fills.
 std::string write_part(const TemporaryFolder& folder, const std::string& name, PartHeader header,
                        std::uint8_t fill) {
-  const std::string path = folder.path(name);
+  std::string path = folder.path(name);
   OutputFile file(path);
   PartWriter part(&file, header);
   part.add(std::vector<std::uint8_t>(header.unit_bytes() * header.count, fill));
