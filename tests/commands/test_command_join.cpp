@@ -1,5 +1,6 @@
 // `thimble render --rows` and `--part`, and `thimble join`: parts drawn apart are the picture or film of one process.
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -57,7 +58,7 @@ void check_fails(const Words& words, int status, const Words& named, const std::
 // A part of `rows` rows of the picture of 8 x 6 pixels that `fill` fills.
 std::string write_part(const TemporaryFolder& folder, const std::string& name, PartHeader header,
                        std::uint8_t fill) {
-  const std::string path = folder.path(name);
+  std::string path = folder.path(name);
   OutputFile file(path);
   PartWriter part(&file, header);
   part.add(std::vector<std::uint8_t>(header.unit_bytes() * header.count, fill));
@@ -263,6 +264,8 @@ TEST_CASE("join: every truncation and every flipped bit of a part -> refused, th
   check_fails({"join", folder.path("nothing.part"), "-o", out}, 1, {"nothing.part"}, out);
   check_fails({"join", folder.path(), "-o", out}, 1, {"file"}, out);
   check_fails({"join", "/dev/zero", "-o", out}, 1, {"/dev/zero"}, out);
+  REQUIRE(::mkfifo(folder.path("pipe").c_str(), 0600) == 0);
+  check_fails({"join", folder.path("pipe"), "-o", out}, 1, {"pipe", "twice"}, out);
 }
 
 TEST_CASE("join: a film of 48 frames by four processes, one killed and drawn again -> the film of one") {

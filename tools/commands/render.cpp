@@ -413,8 +413,7 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
   add_range(
       app, "--rows", &command->rows,
       "draw only COUNT rows of the picture from row FIRST on, counted from 0 at the top, and write them as a "
-      "part for thimble join, called as you like but for the endings below (with light, F.pbm.part for a "
-      ".pbm); of several machines each may draw some");
+      "part for thimble join; name it F.part, and with --effects for a .pbm F.pbm.part");
   add_range(
       app, "--part", &command->frames,
       "with --turntable or --camera-path: draw only COUNT frames from frame FIRST on, counted from 0, and "

@@ -92,13 +92,15 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+  explicit Reader(const std::string& path) : path_(path) {
     std::error_code error;
+    // Before it is opened, which waits for whoever writes into a pipe.
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+      fail("is no file that can be read twice, as a part must be");
+    }
+    file_.reset(std::fopen(path.c_str(), "rb"));
     if (file_ == nullptr) {
       fail(std::strerror(errno));
-    }
-    if (!std::filesystem::is_regular_file(path, error)) {
-      fail("is no file that can be read twice, as a part must be");
     }
     size_ = std::filesystem::file_size(path, error);
     if (error) {

@@ -185,11 +185,6 @@ TriangleBoxTest::TriangleBoxTest(const UnitTriangle& triangle) : origin_(triangl
   const auto& b = local[2];
   normal_ = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   normal_reach_ = std::abs(normal_[0]) + std::abs(normal_[1]) + std::abs(normal_[2]);
-  for (std::size_t child = 0; child < 8; ++child) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      steps_[child] += (child >> axis & 1) != 0 ? normal_[axis] : -normal_[axis];
-    }
-  }
 }
 
 bool TriangleBoxTest::meets_bounds(const UnitPoint& center, std::int32_t half) const {
@@ -266,7 +261,7 @@ std::uint64_t TriangleBoxTest::surface_mask(std::int64_t distance) const {
   constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
   const std::int64_t reach = normal_reach_ * kHalf;
   // The first voxel's centre is a voxel and a half from the cube's on each axis.
-  std::int64_t slice = distance + steps_[0] * (3 * kHalf) + reach;
+  std::int64_t slice = distance - (normal_[0] + normal_[1] + normal_[2]) * (3 * kHalf) + reach;
   const auto width = static_cast<std::uint64_t>(2 * reach);
   std::uint64_t passed = 0;
   for (int z = 0; z < 64; z += 16, slice += normal_[2] * kUnitsPerVoxel) {

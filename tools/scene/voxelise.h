@@ -83,11 +83,8 @@ class TriangleBoxTest {
     return normal_[0] * (center[0] - origin_[0]) + normal_[1] * (center[1] - origin_[1]) +
            normal_[2] * (center[2] - origin_[2]);
   }
-  /// How the distance changes from a cube's centre to that of an eighth of it (bit a: the upper half of axis a)
-  /// with sides of 2^`level` voxels.
-  std::int64_t distance_step(int child, int level) const {
-    return steps_[static_cast<std::size_t>(child)] << (level + 7);
-  }
+  /// Its length is twice the triangle's area.
+  const std::array<std::int64_t, 3>& normal() const { return normal_; }
   /// Whether every cube within this one passes `meets_bounds`.
   bool inside_bounds(const UnitPoint& center, std::int32_t half) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -114,8 +111,7 @@ class TriangleBoxTest {
   UnitPoint high_;
   std::array<std::array<Slab, 3>, 3> slabs_;  ///< [axis left out][edge]
   std::array<std::int64_t, 3> normal_;
-  std::int64_t normal_reach_;            ///< sum of the normal's absolute components
-  std::array<std::int64_t, 8> steps_{};  ///< sums of the normal's components, each with the child's sign
+  std::int64_t normal_reach_;  ///< sum of the normal's absolute components
 };
 
 /// Takes a solid block: its lowest voxel, the log2 of its side (0 for a voxel), its material.

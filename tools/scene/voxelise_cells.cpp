@@ -34,6 +34,25 @@ UnitPoint center_of(const TriangleBlock& block) {
           block.voxel[2] * kUnitsPerVoxel + half};
 }
 
+/// A test that knows how the distance from the plane changes from a cube's centre to that of an eighth of it.
+class SteppingTest : public TriangleBoxTest {
+ public:
+  explicit SteppingTest(const UnitTriangle& triangle) : TriangleBoxTest(triangle) {
+    for (std::size_t child = 0; child < 8; ++child) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        steps_[child] += (child >> axis & 1) != 0 ? normal()[axis] : -normal()[axis];
+      }
+    }
+  }
+  /// Bit a of `child`: the upper half of axis a. The eighth has sides of 2^`level` voxels.
+  std::int64_t distance_step(int child, int level) const {
+    return steps_[static_cast<std::size_t>(child)] * half_of(level);
+  }
+
+ private:
+  std::array<std::int64_t, 8> steps_{};  ///< sums of the normal's components, each with the child's sign
+};
+
 /// A block and the distance of its centre from a triangle's plane, which steps from part to part.
 struct NearBlock {
   TriangleBlock block;
@@ -41,7 +60,7 @@ struct NearBlock {
 };
 
 /// Whether the triangle meets that part of `whole`, which becomes `part`.
-bool meets_part(const TriangleBoxTest& test, const NearBlock& whole, int child, NearBlock* part) {
+bool meets_part(const SteppingTest& test, const NearBlock& whole, int child, NearBlock* part) {
   const int level = whole.block.level - 1;
   part->distance = whole.distance + test.distance_step(child, level);
   if (!test.meets_surface(part->distance, half_of(level))) {
@@ -65,7 +84,7 @@ class Cell {
   bool is_full() const { return full_cubes_ == kFull; }
 
   /// Adds what a triangle meets and no later triangle has. `cell` is of kCellLevel.
-  void add(const TriangleBoxTest& test, std::uint8_t material, const NearBlock& cell) {
+  void add(const SteppingTest& test, std::uint8_t material, const NearBlock& cell) {
     NearBlock part{};
     NearBlock block{};
     for (int octant = 0; octant < 8; ++octant) {
@@ -106,8 +125,7 @@ class Cell {
 
  private:
   /// Which of the voxels `missing` of a cube the triangle meets. A few are asked one by one.
-  static std::uint64_t missing_met(const TriangleBoxTest& test, const NearBlock& cube,
-                                   std::uint64_t missing) {
+  static std::uint64_t missing_met(const SteppingTest& test, const NearBlock& cube, std::uint64_t missing) {
     constexpr std::uint64_t kSome = 8;
     std::uint64_t left = missing;
     for (std::uint64_t i = 0; i < kSome; ++i) {
@@ -186,7 +204,7 @@ class Group {
   bool is_full() const { return full_ == all_; }
 
   void add(const CellTriangle& triangle, const TriangleBlock& group) {
-    const TriangleBoxTest test(triangle.corners);
+    const SteppingTest test(triangle.corners);
     add_to(test, triangle.material, {group, test.distance(center_of(group))}, 0);
   }
 
@@ -234,7 +252,7 @@ class Group {
     return first + (static_cast<std::size_t>(child) << (3 * (block.level - 1 - kCellLevel)));
   }
 
-  void add_to(const TriangleBoxTest& test, std::uint8_t material, const NearBlock& whole, std::size_t first) {
+  void add_to(const SteppingTest& test, std::uint8_t material, const NearBlock& whole, std::size_t first) {
     const int level = whole.block.level - 1;
     if (level < kCellLevel) {
       const std::uint64_t bit = std::uint64_t{1} << first;
@@ -303,7 +321,7 @@ class Voxeliser {
       part.clear();
     }
     for (const std::uint32_t index : list) {
-      const TriangleBoxTest test(triangles_[index].corners);
+      const SteppingTest test(triangles_[index].corners);
       const NearBlock whole{block, test.distance(center_of(block))};
       NearBlock part{};
       for (int child = 0; child < 8; ++child) {
