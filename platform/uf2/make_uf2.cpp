@@ -77,8 +77,9 @@ struct Segment {
 
 // By address, those that a loader must bring.
 std::map<std::uint32_t, Segment> segments_of(const Bytes& elf, const std::string& name) {
-  if (elf.size() < kElfHeaderBytes || elf.compare(0, 6, "\x7F"
-                                                        "ELF\x01\x01") != 0) {
+  if (elf.size() < kElfHeaderBytes || elf.compare(0, 6,
+                                                  "\x7F"
+                                                  "ELF\x01\x01") != 0) {
     fail(name + " is no ELF file of 32 bits, little-endian");
   }
   const std::size_t table = get(elf, 28, 4);
@@ -157,9 +158,14 @@ Bytes uf2_of(const Pages& pages, std::uint32_t family) {
   std::uint32_t number = 0;
   for (const auto& [address, page] : pages) {
     Bytes block(kBlockBytes, '\0');
-    const std::uint32_t words[] = {kMagic,   kSecondMagic, kHasFamily,
-                                   address,  kPageBytes,   number++,
-                                   static_cast<std::uint32_t>(pages.size()), family};
+    const std::uint32_t words[] = {kMagic,
+                                   kSecondMagic,
+                                   kHasFamily,
+                                   address,
+                                   kPageBytes,
+                                   number++,
+                                   static_cast<std::uint32_t>(pages.size()),
+                                   family};
     for (std::size_t i = 0; i < std::size(words); ++i) {
       put(block, 4 * i, words[i]);
     }

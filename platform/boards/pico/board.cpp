@@ -12,15 +12,15 @@ namespace thimble::board {
 namespace {
 
 constexpr uint32_t kBaud = 115200;
-constexpr uint32_t kBlocks = rp2040::kBlockDma | rp2040::kBlockPins | rp2040::kBlockPads |
-                             rp2040::kBlockSpi1 | rp2040::kBlockUart0;
+constexpr uint32_t kBlocks =
+    rp2040::kBlockDma | rp2040::kBlockPins | rp2040::kBlockPads | rp2040::kBlockSpi1 | rp2040::kBlockUart0;
 
 struct Key {
   uint32_t pin;
   port::Button button;
 };
-constexpr Key kKeys[] = {{rp2040::kPinUp, port::kUp},       {rp2040::kPinDown, port::kDown},
-                         {rp2040::kPinLeft, port::kLeft},   {rp2040::kPinRight, port::kRight},
+constexpr Key kKeys[] = {{rp2040::kPinUp, port::kUp},        {rp2040::kPinDown, port::kDown},
+                         {rp2040::kPinLeft, port::kLeft},    {rp2040::kPinRight, port::kRight},
                          {rp2040::kPinPress, port::kSelect}, {rp2040::kPinKeyA, port::kSelect}};
 
 // Through a reset, so that a block is as the data sheet says, whatever ran before us.

@@ -60,7 +60,8 @@ inline constexpr uint32_t kPinSio = 5;
 constexpr uintptr_t pad(uint32_t pin) {
   return 0x4001C004 + 4 * pin;
 }
-inline constexpr uint32_t kPadInputPulledUp = 1U << 6 | 1U << 4 | 1U << 3 | 1U << 1;  ///< 4 mA, Schmitt trigger
+inline constexpr uint32_t kPadInputPulledUp =
+    1U << 6 | 1U << 4 | 1U << 3 | 1U << 1;  ///< 4 mA, Schmitt trigger
 
 // Single-cycle IO, 2.3.1: a bit a pin.
 inline constexpr uintptr_t kSioIn = 0xD0000004;
@@ -91,9 +92,9 @@ inline constexpr uintptr_t kDmaCount = 0x50000008;
 inline constexpr uintptr_t kDmaControl = 0x5000000C;
 inline constexpr uint32_t kDmaEnable = 1U << 0;
 inline constexpr uint32_t kDmaHalfwords = 1U << 2;
-inline constexpr uint32_t kDmaReadsOn = 1U << 4;        ///< the address it reads grows
-inline constexpr uint32_t kDmaForSpi1 = 18U << 15;      ///< paced by DREQ_SPI1_TX
-inline constexpr uint32_t kDmaQuiet = 1U << 21;         ///< no interrupt
+inline constexpr uint32_t kDmaReadsOn = 1U << 4;    ///< the address it reads grows
+inline constexpr uint32_t kDmaForSpi1 = 18U << 15;  ///< paced by DREQ_SPI1_TX
+inline constexpr uint32_t kDmaQuiet = 1U << 21;     ///< no interrupt
 inline constexpr uint32_t kDmaSwapsBytes = 1U << 22;
 inline constexpr uint32_t kDmaBusy = 1U << 24;
 
