@@ -31,6 +31,7 @@ $thimble render "$data/vox/bevy/test.vox" $size --samples 9 --effects direct-lig
 $thimble particles --steps 45 --figures --quiet -o "$out/particles.png"
 $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
+$thimble sim demo --board pico --display none --frames 1 --quiet --shot "$out/demo-pico.png" >/dev/null
 # What the OLED shows with light, magnified (ImageMagick).
 $thimble bake "$scenes/castle.vox" --board lm3s6965evb --eye 2,-98,50 --target 40,38,27 --fov 28 \
   --effects direct-light,shadows,sky --quiet -o "$out/castle.oct" 2>/dev/null

@@ -15,6 +15,7 @@ import { Panel, kKeys } from './panel.mjs';
 const kRefused = 96;
 const kLockedUp = 98;
 const kInstructionsATime = 200000;
+const kLeftNs = 50e6;
 const kSemihosting = 0xab;
 const kExitExtended = 0x20;
 
@@ -112,6 +113,9 @@ function serve(path) {
 
 function end() {
   flush();
+  if (status < kRefused) {
+    chip.clock.tick(kLeftNs); // what DMA has begun still arrives
+  }
   if (panel.complaint !== '') {
     tell(`the display refused: ${panel.complaint}`);
     status = status === 0 ? kRefused : status;
