@@ -34,6 +34,7 @@ bake() {
   done
 }
 bake baked_scene tools/gallery/scenes/castle.vox --effects none
+bake panels tools/gallery/scenes/castle.vox --effects none
 bake lit_room tools/gallery/scenes/room.scene
 bake c_scene tools/gallery/scenes/castle.vox --effects none
 
@@ -52,6 +53,17 @@ like() {
     { difference = octal($2) - octal($3); if (difference < -most || difference > most) { worse++ } }
     END { if (worse > 0) { print worse " pixels differ by more than " most; exit 1 } }' >&2 ||
     fail "$name draws another picture than the command"
+}
+
+# What the models of the panels show: lit where the command's dither is, and its colours but for what 565 loses.
+panels() {
+  "$thimble" render "$work/panels/scene.oct" --size 128x64 --shade color -o "$work/panels/command.pbm" --quiet 2>/dev/null
+  cmp "$work/panels/ssd1306.pbm" "$work/panels/command.pbm" || fail "panels: the SSD1306 shows another picture"
+  "$thimble" render "$work/panels/scene.oct" --size 240x240 --shade color -o "$work/panels/command.ppm" --quiet 2>/dev/null
+  worse=$(cmp -l "$work/panels/st7789.ppm" "$work/panels/command.ppm" | awk '
+    function octal(text,   i, value) { for (i = 1; i <= length(text); i++) { value = value * 8 + substr(text, i, 1) } return value }
+    { difference = octal($2) - octal($3); if (difference < -7 || difference > 7) { worse++ } } END { print worse + 0 }')
+  [ "$worse" = 0 ] || fail "panels: $worse channels of the ST7789 are not the command's"
 }
 
 # compile PREFIX FLAGS NAME OBJECT: by g++, or by gcc what is written in C.
@@ -92,9 +104,20 @@ for target in $targets; do
         ;;
       host)
         compile '' -O2 "$name" "$object"
-        display=
-        [ "$name" = ball ] || display=platform/examples/display_host.cpp
-        g++ -std=c++20 -O1 -o "$work/$name/run" "$object" $display "$library"
+        display=platform/examples/display_host.cpp
+        case $name in
+          ball) display= ;;
+          panels)
+            display="tests/boards/panels_host.cpp tests/support/page_model.cpp tests/support/color_model.cpp
+              platform/drivers/page_panel.cpp platform/drivers/color_panel.cpp"
+            ;;
+        esac
+        g++ -std=c++20 -O1 -Iinclude -Iplatform -Itests -o "$work/$name/run" "$object" $display "$library"
+        if [ "$name" = panels ]; then
+          (cd "$work/panels" && ./run) || fail "panels ends with status $?"
+          panels
+          continue
+        fi
         frames=1
         case $name in particles | water) frames=40 ;; esac
         "$work/$name/run" $frames >"$work/$name/picture.pgm" || fail "$name ends with status $?"

@@ -1,0 +1,16 @@
+/// @file panels.h
+/// What the example wants of the board: bytes to panel 0, an SSD1306, and panel 1, an ST7789. Over SPI: chip select and
+/// D/C low for commands, D/C high for data, out with the bytes. platform/drivers/README.md has one in ten lines.
+#ifndef THIMBLE_EXAMPLES_PANELS_H
+#define THIMBLE_EXAMPLES_PANELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" bool panel_command(int panel, const uint8_t* bytes, size_t count);
+extern "C" bool panel_data(int panel, const uint8_t* bytes, size_t count);
+extern "C" void panel_wait(uint32_t milliseconds);
+/// The pictures are complete.
+extern "C" void panel_done();
+
+#endif

@@ -1,0 +1,146 @@
+/// @file panel_model.h
+/// Models of display controllers, written from their data sheets: they take what a driver sends, hold its memory, and
+/// give back what somebody before the glass sees. What a controller does not know, or forbids, is a fault.
+#ifndef THIMBLE_TESTS_SUPPORT_PANEL_MODEL_H
+#define THIMBLE_TESTS_SUPPORT_PANEL_MODEL_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/panel.h"
+
+namespace thimble::tests {
+
+/// Counts milliseconds, and holds what went wrong first.
+class PanelModel {
+ public:
+  const std::string& fault() const { return fault_; }
+  std::uint64_t bytes_sent() const { return bytes_sent_; }
+
+ protected:
+  void complain(const std::string& what) { fault_ = fault_.empty() ? what : fault_; }
+  /// Only what follows at least that long after `since` is allowed.
+  void expect_since(std::uint64_t since, std::uint64_t least_ms, const std::string& what) {
+    if (now_ms_ - since < least_ms) {
+      complain(what + " after " + std::to_string(now_ms_ - since) + " ms");
+    }
+  }
+
+  std::string fault_;
+  std::uint64_t now_ms_ = 0;
+  std::uint64_t bytes_sent_ = 0;
+};
+
+/// SSD1306, SH1106, ST7567.
+class PageModel : public PanelModel {
+ public:
+  enum class Kind : std::uint8_t { kSsd1306, kSh1106, kSt7567 };
+  PageModel(Kind kind, int width, int height, int first_column);
+
+  drivers::PanelBus spi();
+  /// One transfer over I2C, control byte and all.
+  bool i2c(const std::uint8_t* bytes, std::size_t count);
+  void wait(std::uint32_t milliseconds) { now_ms_ += milliseconds; }
+
+  /// Lit pixels before the glass, rows from the top; all dark while the display is off.
+  std::vector<bool> picture() const;
+  bool is_on() const { return is_on_; }
+  int contrast() const { return contrast_; }
+  std::size_t longest_transfer() const { return longest_; }
+
+ private:
+  void command(std::uint8_t byte);
+  void finish(const std::vector<std::uint8_t>& command);
+  void turn_on();
+  void data(std::uint8_t byte);
+  std::size_t parameters_of(std::uint8_t byte);
+
+  Kind kind_;
+  int width_;
+  int height_;
+  int first_column_;
+  int columns_;
+  std::vector<std::uint8_t> memory_;  // page by page
+  std::vector<bool> written_;
+  std::vector<std::uint8_t> pending_;
+  std::size_t wanted_ = 0;
+  std::size_t longest_ = 0;
+  int column_ = 0;
+  int page_ = 0;
+  int window_[4] = {0, 127, 0, 7};  // SSD1306: columns, pages
+  bool horizontal_ = false;
+  bool segments_backward_ = false;
+  bool rows_backward_ = false;
+  bool inverse_ = false;
+  bool all_on_ = false;
+  bool is_on_ = false;
+  bool has_pump_ = false;
+  int power_ = 0;
+  int multiplex_ = 64;
+  int row_pins_ = -1;
+  int contrast_ = -1;
+  std::uint64_t power_since_ = 0;
+};
+
+/// ST7735, ST7789, ILI9341.
+class ColorModel : public PanelModel {
+ public:
+  enum class Kind : std::uint8_t { kSt7735, kSt7789, kIli9341 };
+  /// The glass: which rectangle of the memory it shows, and how it sits on it.
+  struct Glass {
+    int width;
+    int height;
+    int memory_width;
+    int memory_height;
+    int first_column;
+    int first_row;
+    bool mirrors_x;
+    bool mirrors_y;
+    bool is_bgr;
+    bool is_inverse;
+  };
+  ColorModel(Kind kind, const Glass& glass);
+
+  drivers::PanelBus spi();
+  /// r, g, b of every pixel before the glass, turned by nothing: as the module's pins say. Black while off.
+  std::vector<std::uint8_t> picture() const;
+  bool is_on() const { return is_on_ && !sleeps_; }
+
+ private:
+  void command(std::uint8_t byte);
+  void data(std::uint8_t byte);
+  void parameter(std::uint8_t byte);
+  void pixel(unsigned r, unsigned g, unsigned b);
+  void leave_write();
+  std::size_t parameters_of(std::uint8_t byte);
+
+  Kind kind_;
+  Glass glass_;
+  std::vector<std::uint8_t> memory_;  // r, g, b
+  std::vector<bool> written_;
+  std::vector<std::uint8_t> bytes_;
+  std::uint8_t code_ = 0;
+  std::size_t wanted_ = 0;
+  bool writes_ = false;
+  int pixel_bits_ = 0;
+  int control_ = 0;
+  int first_column_ = 0;
+  int last_column_ = 0;
+  int first_row_ = 0;
+  int last_row_ = 0;
+  int column_ = 0;
+  int row_ = 0;
+  std::uint64_t pixels_left_ = 0;
+  bool sleeps_ = true;
+  bool is_on_ = false;
+  bool inverse_ = false;
+  bool was_reset_ = false;
+  std::uint64_t reset_at_ = 0;
+  std::uint64_t woke_at_ = 0;
+};
+
+}  // namespace thimble::tests
+
+#endif
