@@ -69,7 +69,7 @@ void tell_hit(const Ray& ray, const Hit& hit, thimble_hit_t* to) {
     return;
   }
   to->voxel = to_c(hit.voxel);
-  to->axis = hit.axis;
+  to->axis = hit.axis < 0 ? -1 : static_cast<uint8_t>(hit.axis);
   to->side = hit.axis < 0 ? 0 : looks_to_smaller(ray, hit) ? -1 : 1;
   to->material = hit.material;
   to->block_level = hit.block_level;
