@@ -17,8 +17,24 @@ inline Ray ray_of(const thimble_ray_t& from) {
 /// picture.cpp. A hit as C sees it.
 void tell_hit(const Ray& ray, const Hit& hit, thimble_hit_t* to);
 
+/// The number in C, -1 for no format. A line a format; the compiler names one that lacks.
+constexpr int32_t c_format(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kMono1:
+      return THIMBLE_FORMAT_MONO1;
+    case PixelFormat::kGray4:
+      return THIMBLE_FORMAT_GRAY4;
+    case PixelFormat::kGray8:
+      return THIMBLE_FORMAT_GRAY8;
+    case PixelFormat::kRgb565:
+      return THIMBLE_FORMAT_RGB565;
+    case PixelFormat::kRgb888:
+      return THIMBLE_FORMAT_RGB888;
+  }
+  return -1;
+}
 constexpr bool is_format(int32_t format) {
-  return format >= 0 && format <= 255 && bits_per_pixel(static_cast<PixelFormat>(format)) != 0;
+  return format >= 0 && format <= 255 && c_format(static_cast<PixelFormat>(format)) == format;
 }
 
 /// False for null, an unknown mode, or a palette that is not there.

@@ -190,6 +190,24 @@ TEST_CASE("C face: scene, tree and octree in every format, mode and projection -
   }
 }
 
+TEST_CASE("C face: bytes of a band -> those of C++; an unknown format, a negative size -> 0") {
+  for (const std::int32_t format : formats()) {
+    for (const auto& [width, rows] : {std::pair{0, 0}, {1, 1}, {43, 37}, {16384, 16384}}) {
+      CHECK(thimble_band_bytes(format, width, rows) ==
+            band_bytes(static_cast<PixelFormat>(format), width, rows));
+    }
+    CHECK(thimble_band_bytes(format, -1, 4) == 0);
+    CHECK(thimble_band_bytes(format, 4, -1) == 0);
+    CHECK(thimble_band_bytes(format, 16385, 1) == 0);
+    CHECK(thimble_band_bytes(format, 1, INT32_MAX) == 0);
+  }
+  for (const std::int32_t format : {-1, 200, 255, 256, 260, INT32_MIN, INT32_MAX}) {
+    CHECK(thimble_band_bytes(format, 8, 8) == 0);
+    CHECK(thimble_frame_bytes(format, 8, 8) == 0);
+    CHECK(thimble_band_row_multiple(format) == 0);
+  }
+}
+
 TEST_CASE("C face: another scene's brick map -> damaged; none in the scene -> damaged, as it was") {
   const CWorld world;
   const CWorld other(1);
