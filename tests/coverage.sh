@@ -28,7 +28,7 @@ count() {
 
 "$build/thimble_golden_tests_covered" >"$out/portable.out" 2>&1 || { cat "$out/portable.out"; exit 1; }
 count portable
-for room in base tree trace picture light plane bake; do
+for room in base tree trace picture light plane bake c; do
   "$build/thimble_tests_covered" --source-file="*/tests/$room/*" >"$out/$room.out" 2>&1 ||
     { cat "$out/$room.out"; exit 1; }
 done
@@ -38,7 +38,9 @@ count all
   echo room,suite,lines_per_mille,branches_per_mille
   for suite in portable all; do
     awk -F, -v OFS=, -v suite=$suite '
-      { print $1, suite, int(1000 * $3 / $2), int(1000 * $5 / $4); l += $2; t += $3; b += $4; g += $5 }
+      { print $1, suite, int(1000 * $3 / $2), int(1000 * $5 / $4) }
+      # The C face calls the core and is not counted as a part of it.
+      $1 != "c" { l += $2; t += $3; b += $4; g += $5 }
       END { print "core", suite, int(1000 * t / l), int(1000 * g / b) }' "$out/$suite.csv"
   done
 } >"$out/coverage.csv"

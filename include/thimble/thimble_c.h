@@ -2,7 +2,7 @@
 /// The core for C (C99), and for what calls C: LVGL, MicroPython, Rust, firmware. C++ may include it, too.
 ///
 ///     thimble_scene_t scene;
-///     int32_t status = thimble_scene_open(&scene, bytes, sizeof bytes);  // bytes in flash, used where they lie
+///     int32_t status = thimble_scene_open(&scene, bytes, sizeof bytes);  // in flash, used where they lie
 ///
 /// What holds everywhere
 ///   - A function that can fail returns a status, 0 (THIMBLE_OK) or a positive number of `enum
@@ -14,15 +14,17 @@
 ///   - No function allocates or keeps anything. A handle (`thimble_scene_t`, ...) is plain bytes of a fixed
 ///     size that you put where you like, on the stack too; it needs no clean-up. All bytes 0, it holds
 ///     nothing. What it was made of (flash, a pool) stays where it is for as long as the handle is used.
-///     Copies are made by assignment, and share those bytes.
+///     Copies are made by assignment, and share those bytes: of an octree, a frame or particles go on with
+///     one of them only.
 ///   - Reentrant: two calls may run at a time, on an interrupt or a second core, as long as neither writes
 ///     what the other uses.
 ///   - Numbers: `_q8` counts 1/256, `_q14` 1/16384, `_q16` 1/65536, `_q32` 2^-32. Lengths are in voxels.
 ///     Worlds are cubes of 2^level voxels a side, level 1 .. 12, z up; image right = forward x up; row 0 is
 ///     on top.
 ///
-/// Stack of the calls: tests/budgets/stack.csv. Flash of whole programs: tests/budgets/c_programs.csv. What is
-/// not called takes none, where the core is compiled with -ffunction-sections and linked with --gc-sections.
+/// Stack of the calls: tests/budgets/stack.csv. Flash of whole programs: tests/budgets/c_programs.csv. What
+/// is not called takes none, where the core is compiled with -ffunction-sections and linked with
+/// --gc-sections.
 #ifndef THIMBLE_THIMBLE_C_H
 #define THIMBLE_THIMBLE_C_H
 
@@ -62,9 +64,9 @@ enum thimble_versions { THIMBLE_BAKED_VERSION = 1 };
 
 // --- Handles ---------------------------------------------------------------------------------------------
 
-/// Sizes of the handles in words of 8 bytes: exact for pointers of 4 and of 8 bytes on ARM, RISC-V, x86-64 and
-/// whatever else aligns uint64_t to 8; an upper bound elsewhere. The core does not compile where one is too
-/// small.
+/// Sizes of the handles in words of 8 bytes: exact for pointers of 4 and of 8 bytes on ARM, RISC-V, x86-64
+/// and whatever else aligns uint64_t to 8; an upper bound elsewhere. The core does not compile where one is
+/// too small.
 enum thimble_sizes {
   THIMBLE_WORDS_SCENE = sizeof(void*) > 4 ? 27 : 20,
   THIMBLE_WORDS_TREE = sizeof(void*) > 4 ? 14 : 9,
@@ -88,7 +90,8 @@ typedef struct THIMBLE_HANDLE thimble_tree {
 typedef struct THIMBLE_HANDLE thimble_octree {
   uint64_t opaque[THIMBLE_WORDS_OCTREE];
 } thimble_octree_t;
-/// A camera for pictures of one size in worlds of one level. Made by thimble_camera_set, thimble_scene_camera.
+/// A camera for pictures of one size in worlds of one level. Made by thimble_camera_set,
+/// thimble_scene_camera.
 typedef struct THIMBLE_HANDLE thimble_camera {
   uint64_t opaque[THIMBLE_WORDS_CAMERA];
 } thimble_camera_t;
@@ -225,10 +228,10 @@ int32_t thimble_band_row_multiple(int32_t format);
 /// A perspective view of 60 degrees with the eye at 0, looking along y. Null: nothing.
 void thimble_view_default(thimble_view_t* view);
 
-/// Sets the camera up for a picture of width_px x height_px, each 1 .. 16384, in a world of 2^level. Cost: some
-/// thousand instructions, integers only.
-/// THIMBLE_BAD_ARGUMENT: null, projection, no pixels, nothing to look at, `up` along the view, no span.
-/// THIMBLE_OUT_OF_RANGE: level, size, angle, bits, a vector, the eye. THIMBLE_TOO_FINE: see there.
+/// Sets the camera up for a picture of width_px x height_px, each 1 .. 16384, in a world of 2^level. Cost:
+/// some thousand instructions, integers only. THIMBLE_BAD_ARGUMENT: null, projection, no pixels, nothing to
+/// look at, `up` along the view, no span. THIMBLE_OUT_OF_RANGE: level, size, angle, bits, a vector, the
+/// eye. THIMBLE_TOO_FINE: see there.
 int32_t thimble_camera_set(thimble_camera_t* camera, const thimble_view_t* view, int32_t width_px,
                            int32_t height_px, int32_t level);
 
@@ -250,12 +253,13 @@ int32_t thimble_shading_light(thimble_shading_t* shading, int32_t x, int32_t y, 
 
 // --- Baked scenes ----------------------------------------------------------------------------------------
 
-/// Opens a scene that `thimble bake` wrote, where it lies: at any address, in flash or not. Reads the header,
-/// not the tree: the cost does not grow with the scene. A scene that opens is safe to draw, whatever its bytes
-/// say. THIMBLE_BAD_ARGUMENT: null; THIMBLE_DAMAGED: no scene, or one of another version.
+/// Opens a scene that `thimble bake` wrote, where it lies: at any address, in flash or not. Reads the
+/// header, not the tree: the cost does not grow with the scene. A scene that opens is safe to draw,
+/// whatever its bytes say. THIMBLE_BAD_ARGUMENT: null; THIMBLE_DAMAGED: no scene, or one of another
+/// version.
 int32_t thimble_scene_open(thimble_scene_t* scene, const void* bytes, size_t size_bytes);
-/// Reads every byte once, the CRC-32 among them. Null for a sound scene, else a phrase that says what is wrong;
-/// `place` (may be null) gets the offset, or the number of the tree's node.
+/// Reads every byte once, the CRC-32 among them. Null for a sound scene, else a phrase that says what is
+/// wrong; `place` (may be null) gets the offset, or the number of the tree's node.
 const char* thimble_scene_validate(const void* bytes, size_t size_bytes, uint32_t* place);
 
 /// What a tree is.
@@ -291,8 +295,8 @@ int32_t thimble_scene_view(const thimble_scene_t* scene, thimble_view_t* view);
 /// thimble_camera_set with the scene's level; `view` null: the one that is stored.
 int32_t thimble_scene_camera(const thimble_scene_t* scene, const thimble_view_t* view, int32_t width_px,
                              int32_t height_px, thimble_camera_t* camera);
-/// thimble_shading_default with the scene's palette and THIMBLE_SHADE_COLOR. THIMBLE_BAD_ARGUMENT: null or not
-/// open.
+/// thimble_shading_default with the scene's palette and THIMBLE_SHADE_COLOR. THIMBLE_BAD_ARGUMENT: null or
+/// not open.
 int32_t thimble_scene_shading(const thimble_scene_t* scene, thimble_shading_t* shading);
 
 /// Draws a band. Each pixel is a function of scene, camera and shading alone: bands of any height, in any
@@ -307,8 +311,8 @@ int32_t thimble_scene_render(const thimble_scene_t* scene, const thimble_camera_
 /// THIMBLE_BAD_ARGUMENT: null, not open, a direction of all 0; THIMBLE_OUT_OF_RANGE: origin or direction.
 int32_t thimble_scene_trace(const thimble_scene_t* scene, const thimble_ray_t* ray, uint32_t max_visits,
                             thimble_hit_t* hit);
-/// What is under pixel (px, py) of the camera's picture: thimble_camera_ray and thimble_scene_trace, and their
-/// errors; THIMBLE_BAD_ARGUMENT also for a camera of another level.
+/// What is under pixel (px, py) of the camera's picture: thimble_camera_ray and thimble_scene_trace, and
+/// their errors; THIMBLE_BAD_ARGUMENT also for a camera of another level.
 int32_t thimble_scene_pick(const thimble_scene_t* scene, const thimble_camera_t* camera, int32_t px,
                            int32_t py, thimble_hit_t* hit);
 
@@ -316,8 +320,8 @@ int32_t thimble_scene_pick(const thimble_scene_t* scene, const thimble_camera_t*
 /// bytes suffice, and it wants the scene's bytes at a multiple of 8. THIMBLE_BAD_ARGUMENT: null, not open,
 /// address; THIMBLE_DAMAGED: none, or damaged. Cost: ten instructions a brick of the world's box.
 int32_t thimble_scene_bricks(const thimble_scene_t* scene, thimble_bricks_t* bricks);
-/// thimble_scene_render by the scene's brick map: the same picture. Takes 6 KiB of stack and 48 KB of flash
-/// more. THIMBLE_DAMAGED: the map is another scene's.
+/// thimble_scene_render by the scene's brick map: the same picture. On a Cortex-M0 it takes 55 KB of flash
+/// and 4.4 KB of stack more. THIMBLE_DAMAGED: the map is another scene's.
 int32_t thimble_scene_render_fast(const thimble_scene_t* scene, const thimble_bricks_t* bricks,
                                   const thimble_camera_t* camera, const thimble_shading_t* shading,
                                   const thimble_band_t* band);
@@ -361,23 +365,24 @@ uint32_t thimble_light_lamps(const thimble_light_t* light);
 /// Light `index`. THIMBLE_BAD_ARGUMENT: null or nothing held; THIMBLE_OUT_OF_RANGE: index.
 int32_t thimble_light_lamp(const thimble_light_t* light, uint32_t index, thimble_lamp_t* lamp);
 
-/// Draws a band with exactly `effects`; thimble_light_effects gives those that the scene was baked for, 0 is
-/// thimble_scene_render. Errors as there; bits that are no effect are passed over.
+/// Draws a band with exactly `effects`; thimble_light_effects gives those that the scene was baked for, 0
+/// is thimble_scene_render. Errors as there; bits that are no effect are passed over.
 ///
-/// A program that calls this holds the code of every effect. One that draws scenes of a known set compiles
-/// src/c/light_render.cpp with THIMBLE_C_EFFECTS=SET (in CMake: target_compile_definitions(thimble PRIVATE
-/// THIMBLE_C_EFFECTS=0x3); SET is THIMBLE_SCENE_EFFECTS in the header that `thimble bake` writes) and then
-/// holds the code of these alone. It draws SET, and what lacks of SET only effects that trace no ray of their
-/// own (direct light, emission, fog, sky, depth cue, smooth normals, emitter light), but not 0;
-/// THIMBLE_OUT_OF_RANGE for other sets. A program that does not call this holds no light at all.
+/// A program that calls this holds the code of every effect (86 KB on a Cortex-M0). One that draws scenes
+/// of a known set compiles src/c/light_render.cpp with THIMBLE_C_EFFECTS=SET (in CMake:
+/// target_compile_definitions(thimble PRIVATE THIMBLE_C_EFFECTS=0x3); SET is THIMBLE_SCENE_EFFECTS in the
+/// header that `thimble bake` writes) and then holds the code of these alone (25 KB for 0x3). It draws SET,
+/// and what lacks of SET only effects that trace no ray of their own (direct light, emission, fog, sky,
+/// depth cue, smooth normals, emitter light), but not 0; THIMBLE_OUT_OF_RANGE for other sets. A program
+/// that does not call this holds no light at all.
 int32_t thimble_scene_render_lit(const thimble_scene_t* scene, const thimble_light_t* light, uint32_t effects,
                                  const thimble_camera_t* camera, const thimble_shading_t* shading,
                                  const thimble_band_t* band);
 
 // --- An octree that changes ------------------------------------------------------------------------------
 
-/// Bytes of a pool of so many nodes; SIZE_MAX where size_t cannot say it. A voxel of its own takes up to 12
-/// nodes, one of a surface 1 to 2.
+/// Bytes of a pool of so many nodes; SIZE_MAX where size_t cannot say it. A ball of 20 voxels across takes
+/// 700.
 size_t thimble_octree_bytes(uint32_t nodes);
 /// An empty world of 2^level voxels a side, level 1 .. 12, with as many nodes as `bytes` (any address) holds.
 /// Constant time. THIMBLE_BAD_ARGUMENT: null; THIMBLE_OUT_OF_RANGE: level.
@@ -391,8 +396,8 @@ int32_t thimble_octree_set_coarsen(thimble_octree_t* octree, int32_t yes);
 /// fastest. THIMBLE_BAD_ARGUMENT: null or not made; THIMBLE_OUT_OF_RANGE: outside the world, material;
 /// THIMBLE_OUT_OF_MEMORY: no room.
 int32_t thimble_octree_insert(thimble_octree_t* octree, int32_t x, int32_t y, int32_t z, int32_t material);
-/// Makes the voxels of a box within the world solid. Errors as above; with THIMBLE_OUT_OF_MEMORY a part of the
-/// box may be there, and the call can be repeated. Cost: about the box's surface.
+/// Makes the voxels of a box within the world solid. Errors as above; with THIMBLE_OUT_OF_MEMORY a part of
+/// the box may be there, and the call can be repeated. Cost: about the box's surface.
 int32_t thimble_octree_insert_box(thimble_octree_t* octree, const thimble_box_t* box, int32_t material);
 /// Makes a voxel empty. Errors as thimble_octree_insert: a hole in a solid block takes nodes, too.
 int32_t thimble_octree_erase(thimble_octree_t* octree, int32_t x, int32_t y, int32_t z);
@@ -421,8 +426,8 @@ int32_t thimble_octree_trace(const thimble_octree_t* octree, const thimble_ray_t
 
 // --- Compact trees ---------------------------------------------------------------------------------------
 
-/// Bytes of the compact tree of an octree as it is now; 0 where the handle holds nothing or it would take more
-/// than 2^32 - 1. Cost: one pass.
+/// Bytes of the compact tree of an octree as it is now; 0 where the handle holds nothing or it would take
+/// more than 2^32 - 1. Cost: one pass.
 size_t thimble_tree_bytes(const thimble_octree_t* octree);
 /// Writes the compact tree of an octree to the front of `bytes` (any address): smaller, read-only, faster.
 /// Cost: level + 1 passes. THIMBLE_BAD_ARGUMENT: null or not made; THIMBLE_OUT_OF_MEMORY: size_bytes below
@@ -451,8 +456,9 @@ size_t thimble_frame_bytes(int32_t format, int32_t width_px, int32_t height_px);
 int32_t thimble_frame_begin(thimble_frame_t* frame, const thimble_tree_t* tree,
                             const thimble_camera_t* camera, const thimble_shading_t* shading, int32_t format,
                             void* bytes, size_t size_bytes);
-/// Goes on with so many visits of nodes more, each some 50 to 100 instructions, from coarse to fine: the bytes
-/// hold a whole picture at all times. THIMBLE_BAD_ARGUMENT: null, not begun, another tree's level.
+/// Goes on with so many visits of nodes more, from coarse to fine: the bytes hold a whole picture at all
+/// times. What is left over, less than a ray may need, is kept for the next call. THIMBLE_BAD_ARGUMENT:
+/// null, not begun, another tree's level.
 int32_t thimble_frame_refine(thimble_frame_t* frame, const thimble_tree_t* tree, uint32_t max_visits);
 /// Pixels that may still differ from the exact picture, that of thimble_tree_render; 0 when it is done, and
 /// where the handle is null or holds nothing.
@@ -492,8 +498,8 @@ enum thimble_particle_ids { THIMBLE_NO_PARTICLE = -1 };
 
 /// The paper's world: 800 x 600 cells, 693 balls. Null: nothing.
 void thimble_particle_config_default(thimble_particle_config_t* config);
-/// Bytes of a world; 0 for null and for a number beyond its limits. 3,604 for 60 balls of up to 8 cells on 128
-/// x 64.
+/// Bytes of a world; 0 for null and for a number beyond its limits. 3,604 for 60 balls of up to 8 cells on
+/// 128 x 64.
 size_t thimble_particles_bytes(const thimble_particle_config_t* config);
 /// An empty world in `bytes` (any address). THIMBLE_BAD_ARGUMENT: null; THIMBLE_OUT_OF_RANGE: the
 /// configuration; THIMBLE_OUT_OF_MEMORY: size_bytes below thimble_particles_bytes. Cost: clears the bytes.
@@ -514,9 +520,10 @@ int32_t thimble_particles_set_velocity(thimble_particles_t* world, int32_t id, i
                                        int32_t vy_q16);
 /// +-2^26 each, else THIMBLE_OUT_OF_RANGE. A change wakes every ball. THIMBLE_BAD_ARGUMENT: null or not made.
 int32_t thimble_particles_set_gravity(thimble_particles_t* world, int32_t x_q16, int32_t y_q16);
-/// Fills the cells x .. x + width - 1, y .. y + height - 1 with a wall, or clears walls there and wakes what
-/// rested on them. Cells of balls, and what lies outside the field, are passed over. THIMBLE_BAD_ARGUMENT: null
-/// or not made; THIMBLE_OUT_OF_RANGE: a negative size. Cost: the words of the box and the balls near it.
+/// Fills the cells x .. x + width - 1, y .. y + height - 1 with a wall, or clears walls there and wakes
+/// what rested on them. Cells of balls, and what lies outside the field, are passed over.
+/// THIMBLE_BAD_ARGUMENT: null or not made; THIMBLE_OUT_OF_RANGE: a negative size. Cost: the words of the
+/// box and the balls near it.
 int32_t thimble_particles_draw_box(thimble_particles_t* world, int32_t x, int32_t y, int32_t width,
                                    int32_t height);
 int32_t thimble_particles_erase_box(thimble_particles_t* world, int32_t x, int32_t y, int32_t width,
@@ -540,8 +547,8 @@ int32_t thimble_particles_get(const thimble_particles_t* world, int32_t id, thim
 /// The ball that covers a cell, or THIMBLE_NO_PARTICLE; that also where the handle holds nothing. Constant
 /// time.
 int32_t thimble_particles_at(const thimble_particles_t* world, int32_t x, int32_t y);
-/// Cells x .. x + 31 of row y, the lowest bit on the left, 1 where a ball or a wall is; 0 outside the field and
-/// where the handle holds nothing. Any x, any y. Two words are read.
+/// Cells x .. x + 31 of row y, the lowest bit on the left, 1 where a ball or a wall is; 0 outside the field
+/// and where the handle holds nothing. Any x, any y. Two words are read.
 uint32_t thimble_particles_cells(const thimble_particles_t* world, int32_t x, int32_t y);
 /// CRC-32 of the whole state, equal on every machine; 0 where the handle holds nothing. A pass over all.
 uint32_t thimble_particles_crc32(const thimble_particles_t* world);

@@ -1,5 +1,5 @@
-// Lit bands for C. A C program cannot choose a renderer by a template's argument, so it does when this file is
-// compiled: with THIMBLE_C_EFFECTS=SET it holds the renderer for that set, without, those of all.
+// Lit bands for C. A C program cannot choose a renderer by a template's argument, so it does when this file
+// is compiled: with THIMBLE_C_EFFECTS=SET it holds the renderer for that set, without, those of all.
 #include "picture.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/baked_lighting.h"

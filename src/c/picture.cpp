@@ -14,49 +14,16 @@ static_assert(THIMBLE_SHADE_DEPTH == static_cast<int>(ShadeMode::kDepth) &&
               THIMBLE_SHADE_MONO == static_cast<int>(ShadeMode::kMono));
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
-// A line a format; the compiler names one that lacks.
-constexpr int32_t c_format(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono1:
-      return THIMBLE_FORMAT_MONO1;
-    case PixelFormat::kGray4:
-      return THIMBLE_FORMAT_GRAY4;
-    case PixelFormat::kGray8:
-      return THIMBLE_FORMAT_GRAY8;
-    case PixelFormat::kRgb565:
-      return THIMBLE_FORMAT_RGB565;
-    case PixelFormat::kRgb888:
-      return THIMBLE_FORMAT_RGB888;
-    case PixelFormat::kRgb565Be:
-      return THIMBLE_FORMAT_RGB565_BE;
-    case PixelFormat::kBgr565:
-      return THIMBLE_FORMAT_BGR565;
-    case PixelFormat::kRgb444:
-      return THIMBLE_FORMAT_RGB444;
-    case PixelFormat::kMono1Pages:
-      return THIMBLE_FORMAT_MONO1_PAGES;
-    case PixelFormat::kGray4Low:
-      return THIMBLE_FORMAT_GRAY4_LOW;
-    case PixelFormat::kGray2:
-      return THIMBLE_FORMAT_GRAY2;
-    case PixelFormat::kPaper3:
-      return THIMBLE_FORMAT_PAPER3;
-    case PixelFormat::kPaper7:
-      return THIMBLE_FORMAT_PAPER7;
-    case PixelFormat::kRgb332:
-      return THIMBLE_FORMAT_RGB332;
-  }
-  return -1;
-}
 constexpr bool formats_are_equal() {
   for (int32_t format = 0; format <= 255; ++format) {
-    if (is_format(format) && c_format(static_cast<PixelFormat>(format)) != format) {
+    const int32_t named = c_format(static_cast<PixelFormat>(format));
+    if (named != -1 && named != format) {
       return false;
     }
   }
   return true;
 }
-static_assert(formats_are_equal(), "enum thimble_format lacks a format, or has another number for it");
+static_assert(formats_are_equal(), "enum thimble_format has another number than PixelFormat");
 
 // floor(2^32 * numerator / denominator): numerator 0 .. 2^24, denominator 1 .. 2^28. One 32-bit division and
 // 32 steps.
@@ -87,7 +54,7 @@ void tell_hit(const Ray& ray, const Hit& hit, thimble_hit_t* to) {
     return;
   }
   to->voxel = to_c(hit.voxel);
-  to->axis = hit.axis;
+  to->axis = hit.axis < 0 ? -1 : static_cast<uint8_t>(hit.axis);
   to->side = hit.axis < 0 ? 0 : looks_to_smaller(ray, hit) ? -1 : 1;
   to->material = hit.material;
   to->block_level = hit.block_level;

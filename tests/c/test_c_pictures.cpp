@@ -12,6 +12,13 @@
 #include "thimble/picture/brick_render.h"
 #include "thimble/trace/secondary_ray.h"
 
+// thimble_scene_render_lit, compiled for one set (tests/CMakeLists.txt).
+extern "C" std::int32_t thimble_scene_render_lit_of_set(const thimble_scene_t* scene,
+                                                        const thimble_light_t* light, std::uint32_t effects,
+                                                        const thimble_camera_t* camera,
+                                                        const thimble_shading_t* shading,
+                                                        const thimble_band_t* band);
+
 namespace {
 
 using namespace thimble;
@@ -183,6 +190,24 @@ TEST_CASE("C face: scene, tree and octree in every format, mode and projection -
   }
 }
 
+TEST_CASE("C face: bytes of a band -> those of C++; an unknown format, a negative size -> 0") {
+  for (const std::int32_t format : formats()) {
+    for (const auto& [width, rows] : {std::pair{0, 0}, {1, 1}, {43, 37}, {16384, 16384}}) {
+      CHECK(thimble_band_bytes(format, width, rows) ==
+            band_bytes(static_cast<PixelFormat>(format), width, rows));
+    }
+    CHECK(thimble_band_bytes(format, -1, 4) == 0);
+    CHECK(thimble_band_bytes(format, 4, -1) == 0);
+    CHECK(thimble_band_bytes(format, 16385, 1) == 0);
+    CHECK(thimble_band_bytes(format, 1, INT32_MAX) == 0);
+  }
+  for (const std::int32_t format : {-1, 200, 255, 256, 260, INT32_MIN, INT32_MAX}) {
+    CHECK(thimble_band_bytes(format, 8, 8) == 0);
+    CHECK(thimble_frame_bytes(format, 8, 8) == 0);
+    CHECK(thimble_band_row_multiple(format) == 0);
+  }
+}
+
 TEST_CASE("C face: another scene's brick map -> damaged; none in the scene -> damaged, as it was") {
   const CWorld world;
   const CWorld other(1);
@@ -339,6 +364,35 @@ TEST_CASE("C face: every effect alone and many together -> the lit bytes of C++"
             return thimble_scene_render_lit(&scene, &light, set, &look.c_camera, &look.c_shading, band);
           }) == expected);
   }
+}
+
+TEST_CASE("C face: compiled for a set of effects -> the same bytes for that set, other sets are refused") {
+  const CWorld world;
+  const thimble_scene_t scene = open(world);
+  thimble_light_t light = {};
+  REQUIRE(thimble_scene_light(&scene, &light) == THIMBLE_OK);
+  const Look look = looks(world, scene)[2];
+  // What tests/CMakeLists.txt compiled it for.
+  constexpr std::uint32_t kSet = Effect::kDirectLight | Effect::kShadows | Effect::kFog | Effect::kSky;
+  for (const std::uint32_t set : {kSet, kSet & ~Effect::kFog, kSet & ~Effect::kSky & ~Effect::kDirectLight}) {
+    CAPTURE(set);
+    const Picture expected = cpp_picture(THIMBLE_FORMAT_RGB888, [&](const Band& band) {
+      return render_lit_band(set, world.scene.tree(), look.camera, look.shading, world.lighting.scene, band);
+    });
+    CHECK(c_picture(THIMBLE_FORMAT_RGB888, [&](const thimble_band_t* band) {
+            return thimble_scene_render_lit_of_set(&scene, &light, set, &look.c_camera, &look.c_shading,
+                                                   band);
+          }) == expected);
+  }
+  Picture untouched(kWidth, 0x77);
+  const thimble_band_t band = {untouched.data(), untouched.size(), 0, THIMBLE_FORMAT_GRAY8, 0, 1};
+  for (const std::uint32_t set : {std::uint32_t{0}, kSet & ~Effect::kShadows, kSet | Effect::kMirror,
+                                  kSet | Effect::kEmission, std::uint32_t{Effect::kAll}}) {
+    CAPTURE(set);
+    CHECK(thimble_scene_render_lit_of_set(&scene, &light, set, &look.c_camera, &look.c_shading, &band) ==
+          THIMBLE_OUT_OF_RANGE);
+  }
+  CHECK(untouched == Picture(kWidth, 0x77));
 }
 
 TEST_CASE("C face: a frame that is refined -> the picture of C++ after every step, the exact one at last") {
