@@ -23,26 +23,29 @@ printf 'int ball();\nvoid setup() { exit(ball()); }\nvoid loop() {}\n' >"$WORK/s
 { printf '#include <thimble.h>\n#define main ball\n'; cat platform/examples/ball/main.cpp; } >"$WORK/sketches/Ball/ball.cpp"
 cp -R "$WORK/libraries/thimble/examples/SSD1306" "$WORK/libraries/thimble/examples/ST7789" "$WORK/sketches/"
 
-# One folder for all, so that the library is compiled once.
+# One place for all, so that the library is compiled once.
 all=$(cd "$WORK" && pwd)
-mkdir -p "$all/cache"
-for sketch in Ball SSD1306 ST7789; do
-  mkdir -p "$all/build/$sketch"
+mkdir -p "$all/build" "$all/sketches/Sketch"
+for sketch in SSD1306 ST7789 Ball; do
+  rm -f "$all/sketches/Sketch/"*
+  cp "$all/sketches/$sketch/"* "$all/sketches/Sketch/"
+  mv "$all/sketches/Sketch/$sketch.ino" "$all/sketches/Sketch/Sketch.ino"
   logged arduino-builder -compile -hardware /usr/share/arduino-builder -hardware "$all/hardware" -tools "$all/tools" \
-    -libraries "$all/libraries" -fqbn thimble:arm:m3 -ide-version 10819 -warnings all -build-path "$all/build/$sketch" \
-    -build-cache "$all/cache" "$all/sketches/$sketch/$sketch.ino"
+    -libraries "$all/libraries" -fqbn thimble:arm:m3 -ide-version 10819 -warnings all -build-path "$all/build" \
+    "$all/sketches/Sketch/Sketch.ino"
+  cp "$all/build/Sketch.ino.elf" "$all/$sketch.elf"
   grep -hE '^Sketch uses|^Global variables' "$WORK/log" | sed "s/^/$name: $sketch: /" || true
 done
 command -v qemu-system-arm >/dev/null 2>&1 || {
   say "skipped: nothing runs, for there is no qemu-system-arm"
   exit 0
 }
-same_ball in_qemu arm "$all/build/Ball/Ball.ino.elf"
+same_ball in_qemu arm "$all/Ball.elf"
 for sketch in SSD1306 ST7789; do
   color=$([ $sketch = ST7789 ] && echo true || echo false)
   logged g++ -std=c++20 -O1 -Iinclude -I"$WORK/sketches/$sketch" -DEXPECTED_COLOR=$color $here/expected.cpp "$LIBTHIMBLE" -o "$WORK/expected"
   "$WORK/expected" >"$WORK/$sketch.expected" || fail "the scene of $sketch draws nothing"
-  in_qemu arm "$all/build/$sketch/$sketch.ino.elf" </dev/null >"$WORK/$sketch.shown" 2>"$WORK/$sketch.err" || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
+  in_qemu arm "$all/$sketch.elf" </dev/null >"$WORK/$sketch.shown" 2>"$WORK/$sketch.err" || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
   cmp "$WORK/$sketch.expected" "$WORK/$sketch.shown" || fail "$sketch shows another picture than this machine draws"
 done
 say "the ball and both examples, built by arduino-builder, show what they should"
