@@ -31,7 +31,7 @@ struct ColorGeometry {
   bool is_inverse;  ///< glass that shows the inverse (IPS)
 };
 
-/// What the three share. 48 bytes on a 32-bit chip.
+/// What the three share. 36 bytes on a 32-bit chip.
 class ColorPanel {
  public:
   /// Where the next data go, row by row, pixels as wide as the format. In kRgb444 the width is even.
