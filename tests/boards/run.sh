@@ -57,6 +57,10 @@ if [ $update = 1 ]; then
         # A little room, so that the table does not change with every line of code: flash in KiB, stacks in 64 bytes.
         awk -F, -v OFS=, 'function up(value, step) { return int((value + step - 1) / step) * step }
           { print $1, $2, up($3, 1024), $4, up($5, 64), up($6, 64) }' "$work/$board.measured"
+        # What was left out this time (LONG) keeps its row.
+        grep "^$board," "$budgets" | while IFS=, read -r _ app rest; do
+          grep -q "^$board,$app," "$work/$board.measured" || echo "$board,$app,$rest"
+        done
       else
         grep "^$board," "$budgets" || true
       fi
