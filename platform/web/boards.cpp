@@ -139,9 +139,15 @@ extern "C" {
 [[clang::export_name("arena_bytes")]] uint32_t thimble_arena_bytes() {
   return static_cast<uint32_t>(layout.arena.size);
 }
-// Bytes of the arena up to the last one that was written to.
+// Bytes of the arena up to the last one that was written to; whole words are looked at, since a board may have 8 MiB.
 [[clang::export_name("used_bytes")]] uint32_t thimble_used_bytes() {
+  using Word [[gnu::may_alias]] = uint64_t;
+  constexpr uint64_t kPaint = 0x0101010101010101U * thimble::port::kStackPaint;
   const uint8_t* end = layout.arena.end();
+  while (end - layout.arena.begin() >= static_cast<ptrdiff_t>(sizeof(Word)) &&
+         *reinterpret_cast<const Word*>(end - sizeof(Word)) == kPaint) {
+    end -= sizeof(Word);
+  }
   while (end > layout.arena.begin() && end[-1] == thimble::port::kStackPaint) {
     --end;
   }

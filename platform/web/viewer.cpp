@@ -61,7 +61,8 @@ Status draw(const Camera& camera, const Band& band, bool lit) {
 extern "C" {
 
 // Room for a scene of so many bytes and a picture of that size; null where there is none. Once in a module's life.
-[[clang::export_name("room")]] uint8_t* thimble_room(uint32_t scene_bytes, int32_t width_px, int32_t height_px) {
+[[clang::export_name("room")]] uint8_t* thimble_room(uint32_t scene_bytes, int32_t width_px,
+                                                     int32_t height_px) {
   using namespace thimble;
   using namespace thimble::web;
   uintptr_t next = reinterpret_cast<uintptr_t>(&__heap_base);
@@ -124,8 +125,8 @@ extern "C" {
 
 // Looks from there to there, in 1/256 voxel; the width of a parallel view is `zoom` / 256 of the scene's own. False,
 // and the camera as it was, where there is no such camera. `own`: the scene's, to the last bit.
-[[clang::export_name("look")]] bool thimble_look(int32_t ex, int32_t ey, int32_t ez, int32_t tx, int32_t ty, int32_t tz,
-                                                 int32_t zoom, bool own) {
+[[clang::export_name("look")]] bool thimble_look(int32_t ex, int32_t ey, int32_t ez, int32_t tx, int32_t ty,
+                                                 int32_t tz, int32_t zoom, bool own) {
   using namespace thimble;
   using namespace thimble::web;
   SceneCamera at = viewer.at;
@@ -196,7 +197,8 @@ extern "C" {
   for (size_t x = 0; x < width; ++x) {
     for (size_t i = 0; i < kPixelBytes; ++i) {
       const uint8_t* const from = band.pixels.data + 2 * kPixelBytes * x + i;
-      const uint32_t sum = 2U + from[0] + from[kPixelBytes] + from[fine_stride] + from[fine_stride + kPixelBytes];
+      const uint32_t sum =
+          2U + from[0] + from[kPixelBytes] + from[fine_stride] + from[fine_stride + kPixelBytes];
       row[kPixelBytes * x + i] = static_cast<uint8_t>(sum >> 2);
     }
   }

@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "readers/oct.h"
-#include "scene/paths.h"
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
+#include "scene/paths.h"
 #include "scene/scene_source.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "output/units.h"
-#include "scene/paths.h"
 #include "scene/generators.h"
+#include "scene/paths.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "readers/file_bytes.h"
-#include "scene/paths.h"
 #include "scene/host_memory.h"
 #include "scene/named_scenes.h"
+#include "scene/paths.h"
 #include "scene/workers.h"
 
 namespace thimble::tools {
