@@ -1,8 +1,8 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-format deps-coverage all run sim install deb packages \
-  release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages bench-frames \
-  test-framebuffer format tidy clean
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install deb \
+  packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
+  bench-frames test-framebuffer web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -21,6 +21,8 @@ deps-bench:
 	@.ci/deps build tools bench
 deps-boards:
 	@.ci/deps build tools boards
+deps-web:
+	@.ci/deps build web
 deps-format:
 	@.ci/deps format
 deps-coverage:
@@ -125,6 +127,13 @@ test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says f
 	@.ci/build "static build" build/static thimble_framebuffer
 	@mkdir -p build/framebuffer && build/release/thimble bake demo -o build/framebuffer/demo.oct --quiet
 	@sh tests/linux/framebuffer.sh . build/framebuffer build/static/thimble-fb build/framebuffer/demo.oct
+
+web: deps-web ## Make the page: one file that works from the disk and offline (build/web/thimble.html)
+	@sh platform/web/build.sh
+test-web: web all ## Test the page: its modules under Node, and itself in headless Chromium
+	@sh tests/web/run.sh
+bench-web: web ## Time frames in headless Chromium
+	@node tests/web/bench.js
 
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i

@@ -12,7 +12,8 @@ Layout layout;
 
 namespace {
 
-// Where what a suspended application had on its stack is kept: two addresses, then bytes (binaryen's Asyncify).
+// Where what a suspended application had on its stack is kept: two addresses, then bytes (binaryen's
+// Asyncify).
 struct Suspension {
   uint8_t* next;
   uint8_t* end;
@@ -88,9 +89,9 @@ extern "C" {
   apps::put("]");
 }
 
-// Sets the memory up for `app` on board number `index`, with a scene of so many bytes and `connected` saying whether
-// a display is shown: once in the life of a module. Where the scene is to be copied to; null where the memory cannot
-// be had or the scene exceeds the board's flash.
+// Sets the memory up for `app` on board number `index`, with a scene of so many bytes and `connected` saying
+// whether a display is shown: once in the life of a module. Where the scene is to be copied to; null where
+// the memory cannot be had or the scene exceeds the board's flash.
 [[clang::export_name("set_up")]] uint8_t* thimble_set_up(uint32_t index, const char* app,
                                                          uint32_t scene_bytes, bool connected) {
   using namespace thimble;
@@ -139,9 +140,16 @@ extern "C" {
 [[clang::export_name("arena_bytes")]] uint32_t thimble_arena_bytes() {
   return static_cast<uint32_t>(layout.arena.size);
 }
-// Bytes of the arena up to the last one that was written to.
+// Bytes of the arena up to the last one that was written to; whole words are looked at, since a board may
+// have 8 MiB.
 [[clang::export_name("used_bytes")]] uint32_t thimble_used_bytes() {
+  using Word [[gnu::may_alias]] = uint64_t;
+  constexpr uint64_t kPaint = 0x0101010101010101U * thimble::port::kStackPaint;
   const uint8_t* end = layout.arena.end();
+  while (end - layout.arena.begin() >= static_cast<ptrdiff_t>(sizeof(Word)) &&
+         *reinterpret_cast<const Word*>(end - sizeof(Word)) == kPaint) {
+    end -= sizeof(Word);
+  }
   while (end > layout.arena.begin() && end[-1] == thimble::port::kStackPaint) {
     --end;
   }

@@ -3,9 +3,9 @@
 ///
 ///     stack | constants and variables | scene ("flash") | guard | arena, to the last byte of the memory
 ///
-/// The arena has exactly the bytes that the board's RAM leaves beside its stack. A byte behind it is none of the
-/// memory: whoever touches it is stopped by the browser. The guard in front of it is looked at after each frame.
-/// The stack is larger than the board's, since frames of WebAssembly are not the chip's.
+/// The arena has exactly the bytes that the board's RAM leaves beside its stack. A byte behind it is none of
+/// the memory: whoever touches it is stopped by the browser. The guard in front of it is looked at after each
+/// frame. The stack is larger than the board's, since frames of WebAssembly are not the chip's.
 #ifndef THIMBLE_PLATFORM_WEB_LAYOUT_H
 #define THIMBLE_PLATFORM_WEB_LAYOUT_H
 

@@ -238,7 +238,6 @@ function showViewer(first, end) {
   const {x, board, picture} = viewer;
   picture.bytes.set(new Uint8Array(x.memory.buffer, x.picture(), picture.bytes.length));
   put(picture, first, end);
-  share('ram-meter', 'ram', x.memory.buffer.byteLength, x.memory.buffer.byteLength);
   $('ram').textContent = `${number(x.memory.buffer.byteLength)} bytes`;
   share('flash-meter', 'flash', baked.bytes + baked.code, board.flash);
 }
@@ -258,6 +257,7 @@ function prepareCanvas(board) {
   image = canvas.getContext('2d').createImageData(board.width, board.height);
   $('ram').textContent = $('flash').textContent = $('frame').textContent = '–';
   $('ram-meter').value = $('flash-meter').value = 0;
+  $('ram-meter').hidden = state.look;
   fit();
 }
 // Magnified by a whole number where the screen has room for it.
@@ -265,7 +265,7 @@ function fit() {
   const canvas = $('canvas');
   const style = getComputedStyle($('screen'));
   const room = $('screen').clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-  const high = Math.max(240, innerHeight * 0.62);
+  const high = Math.max(240, innerHeight * 0.72);
   let scale = Math.min(room / canvas.width, high / canvas.height);
   if (scale >= 1) scale = Math.floor(scale * devicePixelRatio) / devicePixelRatio;
   canvas.style.width = `${canvas.width * scale}px`;
@@ -277,7 +277,6 @@ function fit() {
     const line = `transparent 0 ${scale - Math.max(1, scale / 6)}px, #0007 0 ${scale}px`;
     Object.assign(gaps.style, {
       width: canvas.style.width, height: canvas.style.height, left: `${canvas.offsetLeft}px`, top: `${canvas.offsetTop}px`,
-      background: `repeating-linear-gradient(90deg, ${line}), repeating-linear-gradient(${line}), #e2f2ff`,
     });
     gaps.style.background = `repeating-linear-gradient(90deg, ${line}), repeating-linear-gradient(180deg, ${line})`;
     gaps.style.backgroundColor = '#e2f2ff';
@@ -315,7 +314,10 @@ function tellEnd() {
 }
 let lastUse = 0;
 function showUse() {
-  if (machine.frameTime !== 0) $('frame').textContent = `${machine.frameTime.toFixed(1)} ms`;
+  if (machine.display.pictures !== machine.told) {  // a frame in which nothing changes is not drawn
+    machine.told = machine.display.pictures;
+    $('frame').textContent = `${machine.frameTime.toFixed(1)} ms`;
+  }
   const now = performance.now();
   if (now - lastUse < 500 && $('ram-meter').value !== 0) return;
   lastUse = now;
@@ -378,7 +380,7 @@ addEventListener('keydown', (event) => {
   const own = event.target.closest?.('button, select, summary, input, pre');
   const name = KEY_BUTTONS[event.key];
   if (name !== undefined) {
-    if (own && (name === 'select' || own.matches('select, pre, [role="radio"]'))) return;
+    if (own && (name === 'select' || own.matches('select, pre'))) return;
     event.preventDefault();
     hold(event.key, name);
   } else if (event.key.length === 1 && !(own && own.matches('select'))) {
@@ -533,21 +535,20 @@ function showPause() {
 }
 $('board').onchange = () => restart({board: $('board').value, depth: 0, coarsen: false});
 
-function radio(name, title, checked, run) {
+function choice(name, title, checked, run) {
   const button = document.createElement('button');
   button.textContent = title;
   button.id = `scene-${name}`;
-  button.setAttribute('role', 'radio');
-  button.setAttribute('aria-checked', String(checked));
+  button.setAttribute('aria-pressed', String(checked));
   button.onclick = run;
   return button;
 }
 function showChoices(board) {
   const focused = document.activeElement?.id;
-  const buttons = Object.entries(SCENES).map(([name, {title}]) => radio(name, title,
+  const buttons = Object.entries(SCENES).map(([name, {title}]) => choice(name, title,
     state.dropped === null && state.scene === name, () => restart({
       scene: name, dropped: null, depth: 0, coarsen: false, look: state.look && SCENES[name].scene !== null})));
-  if (state.dropped !== null) buttons.push(radio('dropped', state.dropped.title, true, () => {}));
+  if (state.dropped !== null) buttons.push(choice('dropped', state.dropped.title, true, () => {}));
   const look = document.createElement('button');
   look.id = 'look';
   look.textContent = 'Look around';

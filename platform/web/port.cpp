@@ -1,5 +1,5 @@
-// The contract of port.h in a WebAssembly module: what the page supplies is imported, and the memory is laid out as
-// on a board (layout.h).
+// The contract of port.h in a WebAssembly module: what the page supplies is imported, and the memory is laid
+// out as on a board (layout.h).
 #include "port.h"
 
 #include "web/layout.h"

@@ -1,7 +1,9 @@
-// A scene to look around in: what the page calls from frame to frame. Everything is exported; nothing is suspended.
+// A scene to look around in: what the page calls from frame to frame. Everything is exported; nothing is
+// suspended.
 //
-// While the camera moves frames are fast and without light: by the brick map, or of every few pixels where there is
-// none. At rest the page asks for rows of the picture with all of the light, then for rows with four samples a pixel.
+// While the camera moves frames are fast and without light: by the brick map, or of every few pixels where
+// there is none. At rest the page asks for rows of the picture with all of the light, then for rows with four
+// samples a pixel.
 #include "apps/demo_view.h"
 #include "apps/place.h"
 #include "apps/scene_light.h"
@@ -60,7 +62,8 @@ Status draw(const Camera& camera, const Band& band, bool lit) {
 
 extern "C" {
 
-// Room for a scene of so many bytes and a picture of that size; null where there is none. Once in a module's life.
+// Room for a scene of so many bytes and a picture of that size; null where there is none. Once in a module's
+// life.
 [[clang::export_name("room")]] uint8_t* thimble_room(uint32_t scene_bytes, int32_t width_px,
                                                      int32_t height_px) {
   using namespace thimble;
@@ -123,8 +126,8 @@ extern "C" {
   return axis == 0 ? point.x.raw : axis == 1 ? point.y.raw : point.z.raw;
 }
 
-// Looks from there to there, in 1/256 voxel; the width of a parallel view is `zoom` / 256 of the scene's own. False,
-// and the camera as it was, where there is no such camera. `own`: the scene's, to the last bit.
+// Looks from there to there, in 1/256 voxel; the width of a parallel view is `zoom` / 256 of the scene's own.
+// False, and the camera as it was, where there is no such camera. `own`: the scene's, to the last bit.
 [[clang::export_name("look")]] bool thimble_look(int32_t ex, int32_t ey, int32_t ez, int32_t tx, int32_t ty,
                                                  int32_t tz, int32_t zoom, bool own) {
   using namespace thimble;

@@ -21,9 +21,9 @@ struct FlashLimit {
   std::optional<std::uint64_t> bytes(EffectSet effects = Effect::kNone) const;
 };
 
-/// Bakes `source`. Light of the default look is left out where the scene would lose its place by it, and what does
-/// not fit beside the code of its effects is baked smaller, without a brick map, or not at all (`fits`). `options`
-/// are then those of the last try.
+/// Bakes `source`. Light of the default look is left out where the scene would lose its place by it, and what
+/// does not fit beside the code of its effects is baked smaller, without a brick map, or not at all (`fits`).
+/// `options` are then those of the last try.
 Baked bake_within(const FlashLimit& limit, const SceneSource& source, BakingOptions* options,
                   const Progress& progress = {});
 

@@ -1,4 +1,5 @@
-// What the readers ask of a system (readers/file_bytes.h, scene/paths.h, scene/...), from what the page handed over.
+// What the readers ask of a system (readers/file_bytes.h, scene/paths.h, scene/...), from what the page
+// handed over.
 #include "web/files.h"
 
 #include <algorithm>
@@ -113,7 +114,8 @@ HostMemory::HostMemory(std::size_t size) : size_(size) {
   }
 }
 
-// Pages of a WebAssembly memory take none of the machine's until they are written, but they are never given back.
+// Pages of a WebAssembly memory take none of the machine's until they are written, but they are never given
+// back.
 HostMemory HostMemory::largest() {
   HostMemory memory;
   for (std::size_t size = std::size_t{512} << 20; size >= std::size_t{1} << 20; size /= 2) {

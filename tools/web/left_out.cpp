@@ -1,5 +1,6 @@
-// Readers that the page does without: they need zlib, a JSON parser or pictures, half a megabyte for files that few
-// drop. The table of readers (readers/read_any.cpp) knows them still, so that the sentence names the format.
+// Readers that the page does without: they need zlib, a JSON parser or pictures, half a megabyte for files
+// that few drop. The table of readers (readers/read_any.cpp) knows them still, so that the sentence names the
+// format.
 #include "readers/gltf.h"
 #include "readers/mts.h"
 #include "readers/npy.h"

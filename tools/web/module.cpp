@@ -1,5 +1,6 @@
-// The command's readers and bake as a WebAssembly module of the page: files that were dropped become the bytes of
-// `thimble bake FILE --board NAME`. One instance bakes one scene: what is wrong with a file ends it (runtime.cpp).
+// The command's readers and bake as a WebAssembly module of the page: files that were dropped become the
+// bytes of `thimble bake FILE --board NAME`. One instance bakes one scene: what is wrong with a file ends it
+// (runtime.cpp).
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -50,7 +51,8 @@ extern "C" {
   thimble::tools::add_file(name, {bytes, size});
 }
 
-// Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own. How many bytes it takes.
+// Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own. How many bytes
+// it takes.
 [[clang::export_name("bake")]] std::size_t thimble_bake(const char* scene, std::uint32_t index, int depth,
                                                         bool coarsen) {
   using namespace thimble;

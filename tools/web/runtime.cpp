@@ -49,7 +49,8 @@ void __cxa_end_catch() {}
 
 namespace {
 
-// The end of the number that stands at `at`, as the standard's std::from_chars reads it; `at` where there is none.
+// The end of the number that stands at `at`, as the standard's std::from_chars reads it; `at` where there is
+// none.
 const char* end_of_number(const char* at, const char* last) {
   const char* here = at;
   const auto digits = [&] {
@@ -124,9 +125,9 @@ from_chars_result from_chars(const char* first, const char* last, double& value)
 
 }  // namespace std
 
-// In place of the C++ library's, whose tables take 130 KB: as few digits as give the number back. Only sentences hold
-// such numbers; where the standard's would write 100000 this may write 1e+05.
-// The linker puts it in the place of std::to_chars(char*, char*, double).
+// In place of the C++ library's, whose tables take 130 KB: as few digits as give the number back. Only
+// sentences hold such numbers; where the standard's would write 100000 this may write 1e+05. The linker puts
+// it in the place of std::to_chars(char*, char*, double).
 extern "C" std::to_chars_result __wrap__ZNSt3__28to_charsEPcS0_d(char* first, char* last, double value) {
   char text[40];
   int size = 0;

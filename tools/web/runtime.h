@@ -1,8 +1,9 @@
 /// @file runtime.h
-/// What Debian's C++ library for WebAssembly lacks and the readers use; included before every file of the module.
+/// What Debian's C++ library for WebAssembly lacks and the readers use; included before every file of the
+/// module.
 ///
-/// Its std::from_chars takes no floating point. The overload here takes what the standard's does: no blanks, no `+`,
-/// no `0x`; and rounds as it does, since the C library's strtod is exact.
+/// Its std::from_chars takes no floating point. The overload here takes what the standard's does: no blanks,
+/// no `+`, no `0x`; and rounds as it does, since the C library's strtod is exact.
 #ifndef THIMBLE_TOOLS_WEB_RUNTIME_H
 #define THIMBLE_TOOLS_WEB_RUNTIME_H
 
