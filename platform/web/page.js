@@ -339,7 +339,10 @@ function tick(now) {
     machine.wanted = false;
     nextFrame = Math.max(nextFrame + FRAME_MS, now);
   }
-  machine.buttons = heldButtons();
+  // A tap shorter than a frame counts for one.
+  const asks = machine.state === 'frame';
+  machine.buttons = heldButtons() | (asks ? tapped : 0);
+  if (asks) tapped = 0;
   machine.step();
   present(machine.state === 'frame');
 }
@@ -347,6 +350,7 @@ function tick(now) {
 // ---- hands
 
 const held = new Map();  // what holds it: the button's bit
+let tapped = 0;  // buttons that went down since the last frame
 const heldButtons = () => [...held.values()].reduce((all, bit) => all | bit, 0);
 function hold(by, name) {
   if (viewer !== null) {
@@ -356,6 +360,7 @@ function hold(by, name) {
     return;
   }
   held.set(by, BUTTONS[name]);
+  tapped |= BUTTONS[name];
   if (machine !== null) machine.wanted = true;
 }
 function type(text) {

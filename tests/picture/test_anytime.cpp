@@ -60,8 +60,10 @@ Shown shown(const std::uint8_t* picture, int width, int x, int y, PixelFormat fo
     }
     case PixelFormat::kRgb888:
       return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
+    default:
+      FAIL("test_panel_formats.cpp has this format");
+      return {};
   }
-  return {};
 }
 
 struct Error {
