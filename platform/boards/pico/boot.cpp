@@ -26,7 +26,7 @@ boot_flash:
   str r1, [r0, r2]        @ SPI_CTRLR0
   movs r1, #1
   str r1, [r0, #0x08]     @ SSIENR: on
-  ldr r0, =thimble_vectors
+  ldr r0, =thimble_image_vectors
   ldr r1, =0xE000ED08     @ VTOR
   str r0, [r1]
   ldr r1, [r0, #0]
@@ -46,7 +46,7 @@ asm(R"(
   .syntax unified
   .thumb
 boot_ram:
-  ldr r0, =thimble_vectors
+  ldr r0, =thimble_image_vectors
   ldr r1, =0xE000ED08     @ VTOR
   str r0, [r1]
   ldr r1, [r0, #0]
