@@ -1,5 +1,5 @@
 /// @file panel_model.h
-/// Models of display controllers, written from their data sheets: they take what a driver sends, hold its memory, and
+/// Models of display controllers: they take what a driver sends, hold its memory, and
 /// give back what somebody before the glass sees. What a controller does not know, or forbids, is a fault.
 #ifndef THIMBLE_TESTS_SUPPORT_PANEL_MODEL_H
 #define THIMBLE_TESTS_SUPPORT_PANEL_MODEL_H
