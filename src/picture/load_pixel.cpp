@@ -50,7 +50,7 @@ Rgb8 load_panel_pixel(const uint8_t* row, size_t column, int32_t y, PixelFormat 
     return gray(nibble(row, column, false) * 17);
   }
   if (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2) {
-    return gray((row[column >> 2] >> (6 - 2 * (column & 3U)) & 3U) * 85);
+    return gray((static_cast<unsigned>(row[column >> 2]) >> (6 - 2 * (column & 3U)) & 3U) * 85);
   }
   if (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) {
     const unsigned bit = 0x80U >> (column & 7U);
