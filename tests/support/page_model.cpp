@@ -55,8 +55,8 @@ bool PageModel::i2c(const std::uint8_t* bytes, std::size_t count) {
   return true;
 }
 
-// Bytes that follow a command; nothing is known of others.
-std::size_t PageModel::parameters_of(std::uint8_t byte) {
+// Bytes that follow a command; nothing where the controller knows no such command.
+std::optional<std::size_t> PageModel::parameters_of(std::uint8_t byte) {
   const bool st7567 = kind_ == Kind::kSt7567;
   const bool ssd1306 = kind_ == Kind::kSsd1306;
   if (byte == 0x81) {
@@ -83,6 +83,7 @@ std::size_t PageModel::parameters_of(std::uint8_t byte) {
       (st7567 && ((byte >= 0x20 && byte <= 0x2F) || byte == 0xA2 || byte == 0xA3 || byte == 0xE2));
   if (!is_known) {
     complain("unknown command " + hex(byte));
+    return std::nullopt;
   }
   return 0;
 }
@@ -90,7 +91,11 @@ std::size_t PageModel::parameters_of(std::uint8_t byte) {
 void PageModel::command(std::uint8_t byte) {
   ++bytes_sent_;
   if (pending_.empty()) {
-    wanted_ = 1 + parameters_of(byte);
+    const std::optional<std::size_t> parameters = parameters_of(byte);
+    if (!parameters) {
+      return;
+    }
+    wanted_ = 1 + *parameters;
   }
   pending_.push_back(byte);
   if (pending_.size() == wanted_) {

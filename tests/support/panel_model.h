@@ -55,7 +55,7 @@ class PageModel : public PanelModel {
   void finish(const std::vector<std::uint8_t>& command);
   void turn_on();
   void data(std::uint8_t byte);
-  std::size_t parameters_of(std::uint8_t byte);
+  std::optional<std::size_t> parameters_of(std::uint8_t byte);
 
   Kind kind_;
   int width_;
