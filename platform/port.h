@@ -47,6 +47,7 @@ struct Facts {
   uint32_t visits_a_second = 0;
   /// The rate that an application is to hold from its start; 0: it draws exact frames as fast as it can.
   uint32_t hold_fps = 0;
+  uint32_t core_mhz = 0;  ///< 0: not known, or another machine's
 };
 const Facts& facts();
 

@@ -4,6 +4,7 @@
 //
 //   ENGINE.instructions_median, _min, _max    a frame
 //   ENGINE.instructions_a_ray                 the median over the pixels
+//   ENGINE.frames_a_second_estimate           the core's clock by the median: one instruction a cycle
 //   ENGINE.node_visits                        tree nodes a frame, on average
 //   ENGINE.crc.N                              of frame N: equal for all engines that are exact
 //   lit.instructions_median, ...              with the effects that the scene was baked for, if any
@@ -178,6 +179,12 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
   tell(name, "instructions_min", bench->costs[0]);
   tell(name, "instructions_max", bench->costs[kGoldenFrames - 1]);
   tell(name, "instructions_a_ray", *median / pixels);
+  if (bench->counts_instructions && *median >= 1000) {
+    put(name);
+    put(".frames_a_second_estimate,");
+    put_thousandths(port::facts().core_mhz * 1000000 / (*median / 1000), 2);
+    put("\n");
+  }
   if (engine == Engine::kLit) {
     return Status::kOk;
   }

@@ -33,7 +33,9 @@ struct BoardFacts {
   int32_t height_px;
   int32_t buttons;
   uint32_t visits_a_second;  ///< port::Facts::visits_a_second
-  AppStack app_stacks[5];    ///< those that there are, then empty ones
+  uint32_t core_mhz;
+  uint32_t frame_instructions;  ///< of the demonstration, the median of its golden frames (bench)
+  AppStack app_stacks[5];       ///< those that there are, then empty ones
 };
 
 /// All boards, by name in alphabetical order.

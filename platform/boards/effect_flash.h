@@ -21,7 +21,7 @@
 namespace thimble {
 
 /// The loop of a lit picture with no effect in it, its dither and what opens the lighting of a baked scene.
-inline constexpr uint32_t kLitBaseFlashBytes = 1868;
+inline constexpr uint32_t kLitBaseFlashBytes = 1876;
 
 struct EffectFlash {
   EffectSet effect;  ///< one
@@ -32,15 +32,15 @@ struct EffectFlash {
 };
 // clang-format off
 inline constexpr EffectFlash kEffectFlash[] = {
-    {Effect::kDirectLight, 1852},
-    {Effect::kShadows, 456},
-    {Effect::kAmbientOcclusion, 576},
+    {Effect::kDirectLight, 1844},
+    {Effect::kShadows, 464},
+    {Effect::kAmbientOcclusion, 568},
     {Effect::kEmission, 84},
-    {Effect::kMirror, 1788},
+    {Effect::kMirror, 1780},
     {Effect::kGlass, 15760},
     {Effect::kMedia, 11168},
-    {Effect::kWater, 11112},
-    {Effect::kFog, 1156},
+    {Effect::kWater, 11104},
+    {Effect::kFog, 1148},
     {Effect::kSky, 720},
     {Effect::kDepthCue, 656},
     {Effect::kSmoothNormals, 5520},

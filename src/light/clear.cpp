@@ -2,60 +2,12 @@
 // way.
 #include "arithmetic.h"
 #include "thimble/light/detail/pixel.h"
+#include "through.h"
 
 namespace thimble::lit {
-namespace {
-
-// Sorts what was entered.
-void enter(const Frame& frame, Meeting* meeting) {
-  meeting->found = true;
-  meeting->opaque = !is_clear(frame, meeting->hit.material);
-  meeting->beyond = {Medium::kSolid, meeting->hit.material};
-}
-
-void meet(Frame& frame, LitRayKind kind, const Ray& ray, const Leg& leg, Meeting* meeting) {
-  const TraceOptions options{frame.options.max_visits, Width::kAuto};
-  if (leg.medium.kind == Medium::kSolid) {
-    MediumExit exit;
-    if (leave_medium(frame.tree, ray, leg.medium.material, &exit, leg.from, options) != Status::kOk) {
-      return;
-    }
-    count_result(frame, kind,
-                 exit.hit.kind == HitKind::kHit && !exit.into_solid ? HitKind::kMiss : exit.hit.kind,
-                 exit.hit.visits);
-    meeting->hit = exit.hit;
-    if (exit.hit.kind != HitKind::kHit || (exit.left_world && exit.hit.axis < 0)) {
-      return;
-    }
-    meeting->found = true;
-    if (exit.into_solid) {
-      enter(frame, meeting);
-    }
-    return;
-  }
-  const Status status = leg.from.t_numerator == 0
-                            ? closest_hit(frame.tree, ray, &meeting->hit, options)
-                            : closest_hit_from(frame.tree, ray, leg.from, &meeting->hit, options);
-  if (status != Status::kOk) {
-    return;
-  }
-  count_result(frame, kind, meeting->hit.kind, meeting->hit.visits);
-  if (meeting->hit.kind == HitKind::kHit) {
-    enter(frame, meeting);
-  }
-}
-
-void begin(const Frame& frame, const Ray& ray, Leg* leg) {
-  uint8_t material = 0;
-  if (material_at(frame.tree, starting_voxel(ray), &material) && is_clear(frame, material)) {
-    leg->medium = {Medium::kSolid, material};
-  }
-}
-
-}  // namespace
 
 void begin_leg(const Frame& frame, const PendingRay& now, Leg* leg) {
-  begin(frame, now.ray, leg);
+  begin_way(frame, now.ray, leg);
 }
 
 void meet_clear(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting) {
@@ -63,40 +15,7 @@ void meet_clear(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* me
 }
 
 bool light_arrives_through(Frame& frame, LightRay* light) {
-  count_ray(frame, LitRayKind::kShadow);
-  Leg leg;
-  begin(frame, light->ray, &leg);
-  for (int legs = 0; legs < kMaxLegs; ++legs) {
-    Meeting meeting;
-    meet(frame, LitRayKind::kShadow, light->ray, leg, &meeting);
-    const bool past_light =
-        light->is_point && meeting.found && is_before(light->place, point_of(meeting.hit));
-    if (past_light) {
-      meeting.hit.t_numerator = light->place.t_numerator;
-      meeting.hit.t_denominator = light->place.t_denominator;
-    }
-    if (leg.medium.kind == Medium::kSolid && meeting.found) {
-      const Surface surface = surface_of(frame, leg.medium.material);
-      const uint32_t length = stretch_q8(light->ray, leg, meeting);
-      bool shines = false;
-      for (int i = 0; i < 3; ++i) {
-        light->brightness[i] = weighed_32(light->brightness[i], left_q16(surface, i, length));
-        shines = shines || light->brightness[i] != 0;
-      }
-      if (!shines) {
-        return false;
-      }
-    }
-    if (past_light || !meeting.found) {
-      return true;
-    }
-    if (meeting.opaque) {
-      return spares_light(frame, *light, meeting.hit);
-    }
-    leg.medium = meeting.beyond;
-    leg.from = point_of(meeting.hit);
-  }
-  return false;
+  return arrives_through(frame, light);
 }
 
 void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting) {

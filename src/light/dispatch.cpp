@@ -1,13 +1,11 @@
 // The lit renderers that the library holds, 32 of them: one for each choice of the effects that trace rays of
 // their own. The others are in all of them, and cost a test a ray where they are off.
+#include "folded.h"
 #include "thimble/light/render.h"
 
 namespace thimble {
 namespace lit {
 namespace {
-
-constexpr EffectSet kFolded = Effect::kDirectLight | Effect::kEmission | Effect::kFog | Effect::kSky |
-                              Effect::kDepthCue | Effect::kSmoothNormals;
 
 // With or without each of the effects that are left to choose.
 template <EffectSet kChosen>

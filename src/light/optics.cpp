@@ -18,7 +18,26 @@ constexpr int32_t rounded(int64_t value, int shift) {
   return static_cast<int32_t>(with_sign_of(value, shift_rounded(magnitude(value), shift)));
 }
 
-// The integer nearest to the root. 16 steps of compare and subtract.
+// The integer nearest to the root.
+#if UINTPTR_MAX > 0xFFFFFFFFU
+// Where divisions are fast: two steps of Heron's, from a straight line within 4 per cent of the root, never below it
+// afterwards: within 1 / 1,000 and 1 / 1,000,000.
+constexpr uint32_t root_rounded(uint32_t value) {
+  if (value == 0) {
+    return 0;
+  }
+  const int shift = (32 - bits::bit_length(value)) & ~1;
+  const uint32_t scaled = value << shift;  // 2^30 .. 2^32 - 1
+  // 2^15 (0.695 + 0.358 scaled / 2^30): 4 per cent too much or too little.
+  uint32_t root = 22774 + static_cast<uint32_t>(uint64_t{scaled} * 11731 >> 30);
+  root = (root + scaled / root) >> 1;
+  root = ((root + scaled / root) >> 1) >> (shift / 2);
+  // The root rounded down, or 1 more. No branch: nobody could predict it.
+  root -= uint64_t{root} * root > value ? 1U : 0U;
+  return root + (value - root * root > root ? 1U : 0U);
+}
+#else
+// 16 steps of compare and subtract.
 constexpr uint32_t root_rounded(uint32_t value) {
   uint32_t root = 0;
   for (uint32_t bit = 1U << 30; bit != 0; bit >>= 2) {
@@ -32,6 +51,7 @@ constexpr uint32_t root_rounded(uint32_t value) {
   // What is left exceeds the root exactly when the true root lies above root + 1/2.
   return value > root ? root + 1 : root;
 }
+#endif
 
 constexpr uint32_t largest_of(const Vec3i& vector) {
   const uint32_t x = magnitude_32(vector.x);

@@ -94,6 +94,12 @@ for app in $apps; do
         fail bench "${times:-not} times faster than the textbook's tracer, at least $least"
       fi
     done <tests/budgets/frames.csv
+    # BOARD_FRAME_INSTRUCTIONS, to a twentieth.
+    cost=$(sed -n 's/^brick_map\.instructions_median,\([0-9]*\).*/\1/p' "$log")
+    told=$(fact FRAME_INSTRUCTIONS)
+    if [ "$((${cost:-0} * 20))" -lt "$((told * 19))" ] || [ "$((${cost:-0} * 20))" -gt "$((told * 21))" ]; then
+      fail bench "BOARD_FRAME_INSTRUCTIONS is $told, measured: ${cost:-nothing}"
+    fi
     # BOARD_VISITS_A_SECOND, by which a rate is held: what was measured, to a quarter.
     mhz=$(fact CORE_MHZ)
     if ! awk -F, -v mhz="${mhz:-$(fact CLOCK_MHZ)}" -v said="$(fact VISITS_A_SECOND)" '

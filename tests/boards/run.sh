@@ -5,6 +5,28 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
+# One job of those below: what it says comes at its end, all at once. What needs a board's images comes after them.
+if [ "${1:-}" = --job ]; then
+  log=$THIMBLE_FIRMWARE/$2.said
+  status=0
+  {
+    case $2 in
+      examples) sh "$here/examples.sh" "$THIMBLE_FIRMWARE/examples" || status=1 ;;
+      emulate) sh "$here/emulate.sh" || status=1 ;;
+      formats) sh "$here/formats.sh" microbit || status=1 ;;
+      *) sh "$here/board.sh" "$2" || status=1 ;;
+    esac
+    case $2 in
+      lm3s6965evb)
+        sh "$here/effects.sh" || status=1
+        sh "$here/own_scene.sh" || status=1
+        ;;
+      pico) sh "$here/uf2.sh" pico || status=1 ;;
+    esac
+  } >"$log" 2>&1
+  cat "$log"
+  exit $status
+fi
 update=0
 if [ "${1:-}" = --budgets ]; then
   update=1
@@ -23,28 +45,18 @@ for board in $boards; do
   rm -rf "${work:?}/$board.results" "${work:?}/$board.measured"
 done
 failed=0
-# Those with the largest pictures take longest, so they begin.
-for board in $boards; do
-  . platform/board_facts.sh
-  echo "$(($(fact WIDTH_PX) * $(fact HEIGHT_PX))) $board"
-done | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/board.sh" || failed=1
-
-sh "$here/examples.sh" "$work/examples" || failed=1
-case " $boards " in
-  *lm3s6965evb*)
-    sh "$here/effects.sh" || failed=1
-    sh "$here/own_scene.sh" || failed=1
-    ;;
-esac
-case " $boards " in
-  *microbit*)
-    sh "$here/emulate.sh" || failed=1
-    sh "$here/formats.sh" microbit || failed=1
-    ;;
-esac
-case " $boards " in
-  *pico*) sh "$here/uf2.sh" pico || failed=1 ;;
-esac
+# Those with the largest pictures take longest, so they begin; then those with jobs of their own behind them.
+{
+  for board in $boards; do
+    . platform/board_facts.sh
+    case $board in
+      lm3s6965evb) echo "100000 $board" ;;
+      *) echo "$(($(fact WIDTH_PX) * $(fact HEIGHT_PX))) $board" ;;
+    esac
+  done
+  echo "0 examples"
+  case " $boards " in *microbit*) printf '2 emulate\n1 formats\n' ;; esac
+} | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/run.sh" --job || failed=1
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1
 

@@ -24,7 +24,7 @@ lint() {
   esac
   cmake -DROOT="$PWD" -DBOARD="$board" -DOUT="$work/$board" -P tests/boards/facts.cmake
   for file; do
-    echo "$file -- --target=$target -std=c++20 -ffreestanding -fno-exceptions -fno-rtti -Iinclude -Iplatform -Iplatform/arch" \
+    echo "$file -- --target=$target -std=c++20 -Wreserved-identifier -Werror -ffreestanding -fno-exceptions -fno-rtti -Iinclude -Iplatform -Iplatform/arch" \
       "-Iplatform/boards/$board -I$work/$board -DTHIMBLE_APPLICATION=demo" >>"$jobs"
   done
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -49,7 +50,7 @@ std::string line_of(const std::string& text, const std::string& name, std::size_
 
 TEST_CASE("boards: without a scene -> every board's limits, in order, in 100 columns") {
   const std::string text = table({});
-  CHECK(lines_of(text).size() == 1 + platform::boards().size);
+  CHECK(lines_of(text).size() == 2 * (1 + platform::boards().size) + 4);
   std::size_t last = 0;
   for (const platform::BoardFacts& board : platform::boards()) {
     const std::size_t at = text.find(board.name);
@@ -60,6 +61,12 @@ TEST_CASE("boards: without a scene -> every board's limits, in order, in 100 col
   CHECK(line_of(text, "lm3s6965evb") ==
         "lm3s6965evb       cortex-m3      128x64 gray4    oled           5     65,536    262,144   " +
             tools::grouped(platform::find_board("lm3s6965evb")->stack_bytes));
+  // 700 MHz by 51 million instructions.
+  const platform::BoardFacts* const pi = platform::find_board("raspi0");
+  const std::string rate = line_of(text, "raspi0", text.find("instructions counted"));
+  CHECK(rate.find(" 700 ") != std::string::npos);
+  CHECK(rate.find(" " + tools::grouped(pi->frame_instructions) + " ") != std::string::npos);
+  CHECK(std::abs(std::stod(rate.substr(rate.rfind(' '))) - 7e8 / pi->frame_instructions) < 0.05);
 }
 
 TEST_CASE("boards: with a scene -> what fits is what bake and render say") {

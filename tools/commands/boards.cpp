@@ -142,6 +142,11 @@ std::uint64_t building_ram_bytes(const SceneSizes& sizes, const BoardFacts& boar
   return drawing_ram_bytes(board) + sizes.pool_bytes;
 }
 
+// One instruction a cycle: no waiting for flash, and no two at once.
+double frames_per_second(const BoardFacts& board) {
+  return board.core_mhz * 1e6 / board.frame_instructions;
+}
+
 JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
   JsonRow row;
   row["board"] = board.name;
@@ -155,6 +160,9 @@ JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
   row["height_px"] = board.height_px;
   row["pixel_format"] = format_name(board.format);
   row["buttons"] = board.buttons;
+  row["core_mhz"] = board.core_mhz;
+  row["frame_instructions"] = board.frame_instructions;
+  row["frames_per_second_estimate"] = frames_per_second(board);
   row["scene_flash_bytes"] = scene_flash_bytes(board);
   row["state_bytes"] = render_bytes();
   row["band_bytes"] = board_band_bytes(board);
@@ -182,7 +190,18 @@ std::string boards_text() {
                     screen_name(board.screen), std::to_string(board.buttons), grouped(board.ram_bytes),
                     grouped(board.flash_bytes), grouped(board.stack_bytes)});
   }
-  return columns_of(rows, 4);
+  std::string text = columns_of(rows, 4);
+  text +=
+      "\nExact frames of the demonstration: instructions counted; frames a second estimated, at one\n"
+      "instruction a cycle.\n\n";
+  rows = {{"board", "MHz", "instructions", "frames a second"}};
+  for (const BoardFacts& board : platform::boards()) {
+    std::array<char, 32> rate{};
+    std::snprintf(rate.data(), rate.size(), "%.1f", frames_per_second(board));
+    rows.push_back(
+        {board.name, std::to_string(board.core_mhz), grouped(board.frame_instructions), rate.data()});
+  }
+  return text + columns_of(rows, 1);
 }
 
 std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
@@ -248,7 +267,9 @@ void add_boards(CLI::App& app) {
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->files.csv,
       "a line a board: board, title, core, ram_bytes, flash_bytes, stack_bytes, screen, width_px, height_px, "
-      "pixel_format, buttons, scene_flash_bytes (flash less code), state_bytes, band_bytes, "
+      "pixel_format, buttons, core_mhz, frame_instructions (the demonstration's), "
+      "frames_per_second_estimate (at one instruction a cycle), scene_flash_bytes (flash less code), "
+      "state_bytes, band_bytes, "
       "drawing_ram_bytes (state, band and stack); with a scene also depth, voxels, baked_bytes, fits_flash, "
       "pool_bytes, building_ram_bytes (those and the pool), builds_in_ram, deepest_depth (0: none tried), "
       "deepest_tried_depth");

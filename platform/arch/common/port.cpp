@@ -13,7 +13,7 @@ const Facts& facts() {
       board::kFacts.name,        board::kFacts.ram_bytes,
       board::kFacts.flash_bytes, static_cast<uint32_t>(reinterpret_cast<uintptr_t>(thimble_stack_bytes)),
       board::kFacts.display,     board::kFacts.visits_a_second,
-      board::kFacts.hold_fps};
+      board::kFacts.hold_fps,    board::kFacts.core_mhz};
   return kFacts;
 }
 

@@ -1,11 +1,14 @@
 // Ambient occlusion: how much of the hemisphere above a face is open. A fixed pattern of rays; what is met
 // darkens the less the farther away it is, so that no edge of a layer shows.
 #include "../arithmetic.h"
+#include "../asking.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {
+namespace {
 
-void occlude(Frame& frame, const Spot& spot, Color* light) {
+template <class AnyFrame>
+void occlude_face(AnyFrame& frame, const Spot& spot, Color* light) {
   const Occlusion& occlusion = frame.scene.occlusion;
   const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
   if (rays == 0 || occlusion.reach == 0) {
@@ -17,7 +20,12 @@ void occlude(Frame& frame, const Spot& spot, Color* light) {
     const Ray ray{spot.at, occlusion_direction(i, spot.face.axis, spot.face.negative)};
     count_ray(frame, LitRayKind::kOcclusion);
     Hit hit;
-    find_solid(frame, LitRayKind::kOcclusion, ray, &hit);
+    find_before(
+        frame, LitRayKind::kOcclusion, ray,
+        [&] {
+          return RayPoint{occlusion.reach, kOcclusionLength};
+        },
+        &hit);
     uint32_t share = kOpen;
     if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
       // All directions of the pattern have one length, 7 bits; the numerator has 23.
@@ -35,6 +43,15 @@ void occlude(Frame& frame, const Spot& spot, Color* light) {
   for (uint32_t& channel : light->c) {
     channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
   }
+}
+
+}  // namespace
+
+void occlude(Frame& frame, const Spot& spot, Color* light) {
+  occlude_face(frame, spot, light);
+}
+void occlude(AskedFrame& frame, const Spot& spot, Color* light) {
+  occlude_face(frame, spot, light);
 }
 
 }  // namespace thimble::lit

@@ -2,6 +2,7 @@
 // a ray then meets, is as exact as without; only where rays go out from changes, and only where the slope is
 // not the face's own: from above the steps of the slope, or each of them would lie in the shadow of the next.
 #include "../arithmetic.h"
+#include "../asking.h"
 #include "slope_rays.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/light/slope.h"
@@ -39,6 +40,46 @@ struct Turn {
     return {-turned.x, -turned.y, -turned.z};
   }
 };
+
+// A place on the ray from which on `distance_q8` gives the reach and more: its length is rounded, by at most
+// 2^-15 of itself, and so is the distance.
+RayPoint beyond_reach(const Ray& ray, const Occlusion& occlusion) {
+  return {occlusion.reach + (occlusion.reach >> 13) + 1, static_cast<int32_t>(length_of(ray.direction)) - 1};
+}
+
+template <class AnyFrame>
+[[gnu::always_inline]] inline void occlude_slope(AnyFrame& frame, const Spot& spot, const Slope& slope,
+                                                 Color* light) {
+  const Occlusion& occlusion = frame.scene.occlusion;
+  const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
+  if (!slope.raised || rays == 0 || occlusion.reach == 0) {
+    occlude(frame, spot, light);
+    return;
+  }
+  constexpr uint32_t kOpen = 1U << 12;
+  const Turn turn(slope.normal);
+  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
+  uint32_t open = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Ray ray{slope.start, turn.direction(i)};
+    count_ray(frame, LitRayKind::kOcclusion);
+    Hit hit;
+    find_before(
+        frame, LitRayKind::kOcclusion, ray, [&] { return beyond_reach(ray, occlusion); }, &hit);
+    uint32_t share = kOpen;
+    if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
+      const uint32_t distance =
+          static_cast<uint32_t>(distance_q8(ray.direction, hit.t_numerator, hit.t_denominator));
+      share = distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+    }
+    open += share;
+  }
+  const uint32_t closed = kOpen - open / static_cast<uint32_t>(rays);
+  const uint32_t factor = kOpen - closed * occlusion.strength / 255;
+  for (uint32_t& channel : light->c) {
+    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
+  }
+}
 
 }  // namespace
 
@@ -94,34 +135,10 @@ bool light_ray(const Light& light, const Spot& spot, const Slope& slope, LightRa
 }
 
 void occlude(Frame& frame, const Spot& spot, const Slope& slope, Color* light) {
-  const Occlusion& occlusion = frame.scene.occlusion;
-  const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
-  if (!slope.raised || rays == 0 || occlusion.reach == 0) {
-    occlude(frame, spot, light);
-    return;
-  }
-  constexpr uint32_t kOpen = 1U << 12;
-  const Turn turn(slope.normal);
-  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
-  uint32_t open = 0;
-  for (int i = 0; i < rays; ++i) {
-    const Ray ray{slope.start, turn.direction(i)};
-    count_ray(frame, LitRayKind::kOcclusion);
-    Hit hit;
-    find_solid(frame, LitRayKind::kOcclusion, ray, &hit);
-    uint32_t share = kOpen;
-    if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
-      const uint32_t distance =
-          static_cast<uint32_t>(distance_q8(ray.direction, hit.t_numerator, hit.t_denominator));
-      share = distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
-    }
-    open += share;
-  }
-  const uint32_t closed = kOpen - open / static_cast<uint32_t>(rays);
-  const uint32_t factor = kOpen - closed * occlusion.strength / 255;
-  for (uint32_t& channel : light->c) {
-    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
-  }
+  occlude_slope(frame, spot, slope, light);
+}
+void occlude(AskedFrame& frame, const Spot& spot, const Slope& slope, Color* light) {
+  occlude_slope(frame, spot, slope, light);
 }
 
 void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope& slope, PendingRay* pending,

@@ -1,6 +1,7 @@
 /// @file pixel.h
 /// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
-/// which the set names. Not for callers; it is here because the loop is compiled with the caller's set.
+/// which the set names. Not for callers; it is here because the loop is compiled with the caller's set. A
+/// frame asks the tree itself; or it is asked.h's, to which somebody else gives the answers.
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
 /// since the weights of a pixel's rays never add up to more than 1.
@@ -63,6 +64,8 @@ constexpr size_t pending_rays(EffectSet effects) {
 
 /// What all pixels of a band share.
 struct Frame {
+  static constexpr bool kIsAsked = false;  ///< its questions are answered at once
+
   const CompactTree& tree;
   const Camera& camera;
   const Shading& shading;
@@ -202,6 +205,15 @@ void fade_in_fog(const Frame& frame, const Ray& ray, const Leg& leg, const Meeti
 /// Brightness by depth of what the camera sees first.
 void cue_depth(const Frame& frame, const Meeting& meeting, Weight* weight);
 
+[[gnu::always_inline]] inline bool light_ray_of(const Frame& frame, size_t number, const Spot& spot,
+                                                LightRay* ray) {
+  return light_ray(frame.scene.lights[number], spot, ray);
+}
+[[gnu::always_inline]] inline bool light_ray_of(const Frame& frame, size_t number, const Spot& spot,
+                                                const Slope& slope, LightRay* ray) {
+  return light_ray(frame.scene.lights[number], spot, slope, ray);
+}
+
 // --- the loops -------------------------------------------------------------------------------------------
 
 /// Whether the effect is on, where the code has it at all.
@@ -217,8 +229,8 @@ template <EffectSet kSet>
 inline constexpr bool kBends = (kSet & (Effect::kGlass | Effect::kWater)) != 0;
 
 /// The colour that a face shows of itself.
-template <EffectSet kSet>
-Color face_color(Frame& frame, const Spot& spot) {
+template <EffectSet kSet, class AnyFrame>
+Color face_color(AnyFrame& frame, const Spot& spot) {
   Color light;
   if (has<kSet, Effect::kDirectLight>(frame)) {
     ambient_light(frame, spot, &light);
@@ -235,7 +247,7 @@ Color face_color(Frame& frame, const Spot& spot) {
         has<kSet, Effect::kDirectLight>(frame) && !spot.inside ? frame.scene.lights.size : 0;
     for (size_t i = 0; i < lights; ++i) {
       LightRay ray;
-      if (!light_ray(frame.scene.lights[i], spot, &ray)) {
+      if (!light_ray_of(frame, i, spot, &ray)) {
         continue;
       }
       if constexpr ((kSet & Effect::kShadows) != 0) {
@@ -263,8 +275,8 @@ Color face_color(Frame& frame, const Spot& spot) {
 }
 
 /// The same by the slope at the spot, where it is bent.
-template <EffectSet kSet>
-Color slope_color(Frame& frame, const Spot& spot, const Slope& slope) {
+template <EffectSet kSet, class AnyFrame>
+Color slope_color(AnyFrame& frame, const Spot& spot, const Slope& slope) {
   Color light;
   light_on_slope(frame, slope, has<kSet, Effect::kDirectLight>(frame), &light);
   if constexpr ((kSet & Effect::kAmbientOcclusion) != 0) {
@@ -274,7 +286,7 @@ Color slope_color(Frame& frame, const Spot& spot, const Slope& slope) {
     const size_t lights = has<kSet, Effect::kDirectLight>(frame) ? frame.scene.lights.size : 0;
     for (size_t i = 0; i < lights; ++i) {
       LightRay ray;
-      if (!light_ray(frame.scene.lights[i], spot, slope, &ray)) {
+      if (!light_ray_of(frame, i, spot, slope, &ray)) {
         continue;
       }
       if constexpr ((kSet & Effect::kShadows) != 0) {
@@ -302,8 +314,8 @@ Color slope_color(Frame& frame, const Spot& spot, const Slope& slope) {
 }
 
 /// Follows one ray to its end: adds what it shows, and puts what comes out of it with the pending ones.
-template <EffectSet kSet>
-void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Color* sum) {
+template <EffectSet kSet, class AnyFrame>
+void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count, Color* sum) {
   constexpr bool kStretches = kHasClear<kSet> || kHasWater<kSet>;
   Leg leg;
   if constexpr (kHasClear<kSet>) {
@@ -318,6 +330,11 @@ void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Co
       meet_clear(frame, now, leg, &meeting);
     } else {
       meet_solid(frame, now, &meeting);
+    }
+    if constexpr (AnyFrame::kIsAsked) {
+      if (frame.is_open) {
+        return;
+      }
     }
     if constexpr (kHasWater<kSet>) {
       meet_water(frame, now, leg, &meeting);
@@ -357,7 +374,11 @@ void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Co
             if constexpr ((kSet & Effect::kMirror) != 0) {
               send_mirrored(frame, &now, spot, slope, pending, count);
             }
-            add(slope_color<kSet>(frame, spot, slope), now.weight, sum);
+            if constexpr (AnyFrame::kIsAsked) {
+              frame.show(spot, &slope, now.weight);
+            } else {
+              add(slope_color<kSet>(frame, spot, slope), now.weight, sum);
+            }
             return;
           }
         }
@@ -365,7 +386,11 @@ void follow(Frame& frame, PendingRay now, PendingRay* pending, size_t* count, Co
       if constexpr ((kSet & Effect::kMirror) != 0) {
         send_mirrored(frame, &now, spot, pending, count);
       }
-      add(face_color<kSet>(frame, spot), now.weight, sum);
+      if constexpr (AnyFrame::kIsAsked) {
+        frame.show(spot, nullptr, now.weight);
+      } else {
+        add(face_color<kSet>(frame, spot), now.weight, sum);
+      }
       return;
     }
     if constexpr (kBends<kSet> && (kSet & Effect::kSmoothNormals) != 0) {

@@ -1,0 +1,184 @@
+/// @file asked.h
+/// Lit pictures whose rays somebody else traces, many at once: the code of render.h, with its questions to the
+/// tree written down instead of answered.
+///
+/// What a picture is made of stands in detail/pixel.h and is compiled twice: with a `Frame` that asks the tree
+/// at once, as a chip does, and with an `AskedFrame`, whose questions are noted and answered by whoever drives it,
+/// those of many rays at once. A ray then takes steps, each of them a function called again and again until all
+/// that it asks is known, and what it gives counts:
+///
+///     follow   the ray's way: what it meets, what it sends on. Stops where an answer is wanted, and has then sent
+///              nothing on. Without clear solids and water the only one is that of `closest_hit` for the ray, and
+///              nothing is counted before it is there.
+///     shine    where it met a surface: the light there. Asks for all of it, shadows and occlusion, at once;
+///              where it asks nothing it counts nothing.
+///
+/// What counts is what the core's own renderer gives: the same code with the same answers.
+///
+///     AskedFrame frame(...);  // and room for questions and answers
+///     const Steps steps = steps_of(frame.effects);
+///     for each pixel: pending[0] = its ray, count = 1; then until count is 0:
+///       take the last of `pending`; begin and follow it, until frame.is_answered();
+///       if frame.shows(): begin and shine, until frame.is_answered()
+///     store(frame, band, line, x, y, sum)
+///
+/// What is rare is asked of the tree at once all the same: ways through clear solids, slopes, single voxels, water.
+#ifndef THIMBLE_LIGHT_ASKED_H
+#define THIMBLE_LIGHT_ASKED_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../base/status.h"
+#include "../trace/ray.h"
+#include "../trace/secondary_ray.h"
+#include "../tree/compact_tree.h"
+#include "detail/pixel.h"
+#include "scene.h"
+
+namespace thimble::lit {
+
+enum class Question : uint8_t {
+  kClosest,  ///< `closest_hit`
+  kAny,      ///< `any_hit`: of the answer `hit.kind` alone counts
+  kBefore,   ///< `closest_hit`, where a hit at or after `before` may be given or left out
+};
+inline constexpr int kQuestions = 3;
+
+/// Questions of one kind, in the order in which they were asked. All rays pass `check_ray`.
+struct Asked {
+  Ray* rays = nullptr;
+  RayPoint* before = nullptr;  ///< kBefore alone; else null
+  uint32_t* answer = nullptr;  ///< the number of the answer that is wanted
+  uint32_t count = 0;
+};
+
+/// Where an answer is put: `hit` as the core's, its visits what whoever answered counted; `into_solid` is false.
+using Answer = MediumExit;
+
+/// The most answers that a step of one ray takes.
+constexpr size_t most_answers(EffectSet effects, const LitScene& scene) {
+  constexpr EffectSet kStretching = Effect::kGlass | Effect::kMedia | Effect::kWater;
+  const size_t on_way = (effects & kStretching) != 0 ? kMaxLegs : 1U;
+  const size_t light = ((effects & Effect::kAmbientOcclusion) != 0 ? scene.occlusion.rays : 0U) +
+                       ((effects & Effect::kShadows) != 0 ? scene.lights.size : 0U);
+  return on_way > light ? on_way : light;
+}
+
+/// The ray to a light, from when it was asked about.
+struct KnownLight {
+  LightRay ray;
+  bool shines = false;    ///< else the face is turned away from it
+  bool is_known = false;  ///< of `AskedFrame::suns`
+};
+
+/// What is kept of a ray from one call to the next.
+struct KnownRay {
+  // Of its way:
+  Medium begins_in;  ///< if `has_begun`
+  bool has_begun = false;
+  // Of the light where it ends:
+  bool has_spot = false;
+  bool has_slope = false;
+  bool has_lights = false;  ///< one for each light of the scene is in AskedFrame::lights
+  Spot spot;
+  Slope slope;
+  Weight weight;
+};
+
+/// A frame that is told the answers of one ray after another.
+struct AskedFrame : Frame {
+  static constexpr bool kIsAsked = true;
+
+  explicit AskedFrame(const Frame& frame) : Frame(frame) {}
+
+  /// Before a step: the answers that it has, `count` of them from number `first` on, at `given` with room for
+  /// `most_answers`; what is known of the ray, and of its lights, with room for all of the scene.
+  void begin(Answer* given, uint32_t first, uint32_t count, KnownRay* of_ray, KnownLight* of_lights) {
+    answers = given;
+    number = first;
+    known = count;
+    asked = 0;
+    is_open = false;
+    ray = of_ray;
+    lights = of_lights;
+  }
+  /// After it: whether all was answered, so that what it gave counts. Else it is to be taken again when the
+  /// questions have their answers: then `asked` are known.
+  bool is_answered() const { return asked <= known; }
+  /// After `follow`: whether the ray ended on a surface, of which `shine` is to work out the light.
+  bool shows() const { return ray->has_spot; }
+
+  // --- For the parts of detail/pixel.h. Each `look` is for the next answer, whether it is there or not.
+
+  /// The next answer; null when it is not known.
+  const Answer* look() {
+    const uint32_t index = asked++;
+    return index < known ? answers + index : nullptr;
+  }
+  /// Asks for what `look` did not find. A ray that `check_ray` refuses has missed.
+  void note(Question question, const Ray& from, const RayPoint& before) {
+    if (check_ray(from, tree.level()) != Status::kOk) {
+      answers[asked - 1] = Answer{};
+      return;
+    }
+    Asked& to = questions[static_cast<int>(question)];
+    to.rays[to.count] = from;
+    if (question == Question::kBefore) {
+      to.before[to.count] = before;
+    }
+    to.answer[to.count++] = number + asked - 1;
+  }
+  /// Where to put what `look` did not find, found at once: all before it is known.
+  Answer* remember() {
+    known = asked;
+    answers[asked - 1] = Answer{};
+    return answers + (asked - 1);
+  }
+  const Answer& latest() const { return answers[asked - 1]; }
+  /// Leaves a surface's light to `shine`.
+  void show(const Spot& spot, const Slope* slope, const Weight& weight) {
+    ray->spot = spot;
+    ray->weight = weight;
+    ray->has_spot = true;
+    ray->has_slope = slope != nullptr;
+    if (slope != nullptr) {
+      ray->slope = *slope;
+    }
+  }
+
+  Asked* questions = nullptr;  ///< of each kind; may be shared
+  /// Six for each light of the scene: rays to distant lights differ only by the face that they start on. As they are
+  /// made at first; may be shared.
+  KnownLight* suns = nullptr;
+  Answer* answers = nullptr;
+  KnownRay* ray = nullptr;
+  KnownLight* lights = nullptr;
+  uint32_t number = 0;
+  uint32_t known = 0;
+  uint32_t asked = 0;
+  bool is_open = false;  ///< the ray's own way is asked: nothing that follows it counts
+};
+
+/// The steps with the effects of a set compiled in, and those that `AskedFrame::effects` has not left out.
+struct Steps {
+  void (*follow)(AskedFrame& frame, const PendingRay& now, PendingRay* pending, size_t* count, Color* sum);
+  void (*shine)(AskedFrame& frame, Color* sum);
+};
+Steps steps_of(EffectSet effects);
+
+// The parts of detail/pixel.h that ask.
+
+void meet_solid(AskedFrame& frame, const PendingRay& now, Meeting* meeting);
+void meet_clear(AskedFrame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting);
+bool light_arrives(AskedFrame& frame, const LightRay& light);
+bool light_arrives_through(AskedFrame& frame, LightRay* light);
+void occlude(AskedFrame& frame, const Spot& spot, Color* light);
+void occlude(AskedFrame& frame, const Spot& spot, const Slope& slope, Color* light);
+void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg);
+bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, LightRay* ray);
+bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, const Slope& slope, LightRay* ray);
+
+}  // namespace thimble::lit
+
+#endif

@@ -1,0 +1,94 @@
+// What the parts of a lit picture ask the tree, for both kinds of frame: one that asks at once, and one that is
+// told the answers (asked.h). Internal to src/.
+#ifndef THIMBLE_SRC_LIGHT_ASKING_H
+#define THIMBLE_SRC_LIGHT_ASKING_H
+
+#include "thimble/light/asked.h"
+#include "thimble/light/detail/pixel.h"
+#include "thimble/trace/trace.h"
+
+namespace thimble::lit {
+
+/// The solid voxel met first, counted; a frame that is told may leave out what is not before `place()`.
+template <class Place>
+[[gnu::always_inline]] inline void find_before(Frame& frame, LitRayKind kind, const Ray& ray,
+                                               const Place& /*place*/, Hit* hit) {
+  find_solid(frame, kind, ray, hit);
+}
+/// A miss as long as there is no answer.
+template <class Place>
+inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, const Place& place, Hit* hit) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.note(Question::kBefore, ray, place());
+    *hit = Hit{};
+    return;
+  }
+  *hit = answer->hit;
+  count_result(frame, kind, hit->kind, hit->visits);
+}
+
+/// What a frame that is told says where there is no answer yet.
+inline constexpr Status kUnknown = Status::kBadArgument;
+
+/// Whether there is a hit, not counted.
+[[gnu::always_inline]] inline Status find_any(Frame& frame, const Ray& ray, HitKind* kind, uint32_t* visits) {
+  return any_hit(frame.tree, ray, kind, visits, {frame.options.max_visits, Width::kAuto});
+}
+inline Status find_any(AskedFrame& frame, const Ray& ray, HitKind* kind, uint32_t* visits) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.note(Question::kAny, ray, {});
+    return kUnknown;
+  }
+  *kind = answer->hit.kind;
+  *visits = answer->hit.visits;
+  return Status::kOk;
+}
+
+/// A stretch of a ray's own way, not counted.
+[[gnu::always_inline]] inline Status find_closest(Frame& frame, const Ray& ray, Hit* hit,
+                                                  const TraceOptions& options) {
+  return closest_hit(frame.tree, ray, hit, options);
+}
+[[gnu::always_inline]] inline Status find_from(Frame& frame, const Ray& ray, const RayPoint& from, Hit* hit,
+                                               const TraceOptions& options) {
+  return closest_hit_from(frame.tree, ray, from, hit, options);
+}
+[[gnu::always_inline]] inline Status find_exit(Frame& frame, const Ray& ray, uint8_t material,
+                                               const RayPoint& from, MediumExit* exit,
+                                               const TraceOptions& options) {
+  return leave_medium(frame.tree, ray, material, exit, from, options);
+}
+/// Without an answer the frame is open.
+inline Status find_closest(AskedFrame& frame, const Ray& ray, Hit* hit, const TraceOptions& /*options*/) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.note(Question::kClosest, ray, {});
+    frame.is_open = true;
+    return kUnknown;
+  }
+  *hit = answer->hit;
+  return Status::kOk;
+}
+/// What the tree answers at once is remembered with the answers; a ray that it refuses has missed.
+inline Status find_from(AskedFrame& frame, const Ray& ray, const RayPoint& from, Hit* hit,
+                        const TraceOptions& options) {
+  if (frame.look() == nullptr) {
+    (void)find_from(static_cast<Frame&>(frame), ray, from, &frame.remember()->hit, options);
+  }
+  *hit = frame.latest().hit;
+  return Status::kOk;
+}
+inline Status find_exit(AskedFrame& frame, const Ray& ray, uint8_t material, const RayPoint& from,
+                        MediumExit* exit, const TraceOptions& options) {
+  if (frame.look() == nullptr) {
+    (void)find_exit(static_cast<Frame&>(frame), ray, material, from, frame.remember(), options);
+  }
+  *exit = frame.latest();
+  return Status::kOk;
+}
+
+}  // namespace thimble::lit
+
+#endif
