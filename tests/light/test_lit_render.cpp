@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/formats.h"
 #include "support/lit_world.h"
 #include "thimble/light/render.h"
 
@@ -11,9 +12,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::testing;
-
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
-                                    PixelFormat::kRgb565, PixelFormat::kRgb888};
 
 /// Something of everything: materials 0 stone, 1 metal, 2 glass, 3 lamp, 4 cloud, 5 rough metal.
 class EveryEffect : public LitWorld {

@@ -15,15 +15,15 @@ namespace {
 using namespace thimble;
 using namespace thimble::testing;
 
-constexpr int kSide = 24;  // columns
+constexpr int kWavesSide = 24;  // columns
 constexpr int kRestQ8 = 5 * 256;
 constexpr int kGreatestQ8 = 9 * 256;
 
 struct Waves {
-  Waves() : bytes(water_bytes(kSide, kSide)) {
+  Waves() : bytes(water_bytes(kWavesSide, kWavesSide)) {
     WaterConfig config;
-    config.width = kSide;
-    config.depth = kSide;
+    config.width = kWavesSide;
+    config.depth = kWavesSide;
     config.rest_q8 = kRestQ8;
     config.least_q8 = 256;
     config.greatest_q8 = kGreatestQ8;
@@ -91,8 +91,8 @@ double way_in_water(const Ray& ray, const Water& water) {
     solid = part.to > part.from ? std::min(solid, part.from) : solid;
   }
   double way = 0;
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
+  for (int y = 0; y < kWavesSide; ++y) {
+    for (int x = 0; x < kWavesSide; ++x) {
       const Box column{{4.0 + x, 4.0 + y, 4}, {5.0 + x, 5.0 + y, 4 + water.height_q8(x, y) / 256.0}};
       const Part part = part_in(ray, column);
       way += std::max(0.0, std::min(part.to, solid) - part.from);

@@ -11,6 +11,7 @@
 #include "thimble/picture/anytime.h"
 #include "thimble/picture/brick_render.h"
 #include "thimble/picture/cutoff.h"
+#include "thimble/picture/edge_samples.h"
 #include "thimble/picture/pixel.h"
 
 namespace {
@@ -148,6 +149,16 @@ TEST_CASE("misuse: samples, colours and pixels of any numbers -> refused, or wit
     ExactBytes row(odd_size(odd, small ? row_bytes(format, width) : 64));
     (void)average_samples(fine.bytes(), across, width, odd.any<std::int32_t>(), format, row.bytes());
 
+    const int channels = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 5);
+    const std::size_t line =
+        small && channels > 0 && channels < 5 ? static_cast<std::size_t>(width * channels) : 8;
+    ExactBytes above(odd.one_in(3) ? 0 : odd_size(odd, line));
+    ExactBytes below(odd.one_in(3) ? 0 : odd_size(odd, line));
+    ExactBytes middle(odd_size(odd, line));
+    ExactBytes strengths(odd_size(odd, small ? static_cast<std::size_t>(width) : 8));
+    (void)edge_strengths(above.bytes(), middle.bytes(), below.bytes(), channels, width, strengths.bytes());
+    (void)place_edge_samples(strengths.bytes(), width, strengths.bytes());
+
     Hit hit;
     hit.kind = static_cast<HitKind>(odd.bits() % 3);
     hit.axis = static_cast<std::int8_t>(odd.between(-1, 2));
@@ -167,6 +178,10 @@ TEST_CASE("misuse: samples, colours and pixels of any numbers -> refused, or wit
     if (camera.width_px() != 0) {
       const Camera thin = camera.thinned(odd.between_32(1, 100));
       (void)thin.ray(thin.width_px() - 1, thin.height_px() - 1);
+      const std::int32_t px = odd.between_32(0, camera.width_px() - 1);
+      const std::int32_t py = odd.between_32(0, camera.height_px() - 1);
+      const Camera window = camera.window(px, py, camera.width_px() - px, camera.height_px() - py);
+      (void)window.ray(window.width_px() - 1, window.height_px() - 1);
     }
     (void)look_at(odd.any_point(), odd.any_point());
   });

@@ -10,15 +10,15 @@
 #include "golden/scenes.h"
 #include "host/deadline.h"
 #include "scene/random.h"
+#include "support/formats.h"
 #include "thimble/picture/anytime.h"
 
 namespace {
 
 using namespace thimble;
+using testing::kFormats;
 using thimble::tools::SplitMix64;
 
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
-                                    PixelFormat::kRgb565, PixelFormat::kRgb888};
 constexpr std::uint8_t kGuard = 0xA5;
 
 #ifdef __SANITIZE_ADDRESS__

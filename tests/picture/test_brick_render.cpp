@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/compact_damage.h"
+#include "support/formats.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/brick_render.h"
@@ -18,6 +19,7 @@
 namespace {
 
 using namespace thimble;
+using testing::kFormats;
 using namespace thimble::tests;
 
 #if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
@@ -28,15 +30,10 @@ constexpr int kScenes = 400;
 constexpr int kDamages = 1500;
 #endif
 
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
-                                    PixelFormat::kRgb565, PixelFormat::kRgb888};
 constexpr ShadeMode kModes[] = {ShadeMode::kColor, ShadeMode::kNormal, ShadeMode::kMono, ShadeMode::kDepth};
 
-int any(std::mt19937_64& random, int low, int high) {
-  return static_cast<int>(pick(random, low, high));
-}
 bool one_in(std::mt19937_64& random, int n) {
-  return any(random, 1, n) == 1;
+  return pick_int(random, 1, n) == 1;
 }
 
 /// A random world with everything that a compact tree may hold: voxels, solid blocks, merged blocks, many
@@ -47,31 +44,31 @@ HeapBytes random_tree(std::mt19937_64& random, int level, unsigned materials) {
   Octree pool;
   REQUIRE(Octree::make(level, {pool_bytes.data(), pool_bytes.size()}, &pool) == Status::kOk);
   const auto material = [&] {
-    return static_cast<std::uint8_t>(any(random, 0, static_cast<int>(materials) - 1));
+    return static_cast<std::uint8_t>(pick_int(random, 0, static_cast<int>(materials) - 1));
   };
   const auto cell = [&] {
-    return Vec3i{any(random, 0, side - 1), any(random, 0, side - 1), any(random, 0, side - 1)};
+    return Vec3i{pick_int(random, 0, side - 1), pick_int(random, 0, side - 1), pick_int(random, 0, side - 1)};
   };
-  const int kind = any(random, 0, 7);
+  const int kind = pick_int(random, 0, 7);
   if (kind == 1) {
     REQUIRE(pool.insert_block({0, 0, 0}, level, material()) == Status::kOk);
   } else if (kind >= 2) {
-    const int blocks = kind == 2 ? 0 : any(random, 0, 30);
+    const int blocks = kind == 2 ? 0 : pick_int(random, 0, 30);
     for (int i = 0; i < blocks; ++i) {
-      const int block = any(random, 0, level - 1);
+      const int block = pick_int(random, 0, level - 1);
       const Vec3i at = cell();
       const int mask = ~((1 << block) - 1);
       REQUIRE(pool.insert_block({at.x & mask, at.y & mask, at.z & mask}, block, material()) == Status::kOk);
     }
-    const int voxels = kind == 3 ? 0 : any(random, 1, one_in(random, 3) ? 4000 : 60);
+    const int voxels = kind == 3 ? 0 : pick_int(random, 1, one_in(random, 3) ? 4000 : 60);
     for (int i = 0; i < voxels; ++i) {
       REQUIRE(pool.insert(cell(), material()) == Status::kOk);
     }
     if (kind == 6) {  // hills
-      const int top = any(random, 1, side);
+      const int top = pick_int(random, 1, side);
       for (int x = 0; x < std::min(side, 32); ++x) {
         for (int y = 0; y < std::min(side, 32); ++y) {
-          const int height = any(random, 0, top) / 2 + 1;
+          const int height = pick_int(random, 0, top) / 2 + 1;
           for (int z = std::max(0, height - 6); z < height; ++z) {
             REQUIRE(pool.insert({x, y, z}, material()) == Status::kOk);
           }
@@ -82,7 +79,7 @@ HeapBytes random_tree(std::mt19937_64& random, int level, unsigned materials) {
       REQUIRE(pool.coarsen_to(pool.nodes_used() / 2) == Status::kOk);
     }
   }
-  return compact_of(pool, any(random, kMinRankShift, 7));
+  return compact_of(pool, pick_int(random, kMinRankShift, 7));
 }
 
 HeapBytes map_of(const CompactTree& tree) {
@@ -103,39 +100,40 @@ BrickMap open_map(const HeapBytes& bytes) {
 Camera random_camera(std::mt19937_64& random, int level) {
   const int side_q8 = 256 << level;
   for (;;) {
-    const int place = any(random, 0, 5);
+    const int place = pick_int(random, 0, 5);
     Vec3Q8 eye;
     for (int axis = 0; axis < 3; ++axis) {
-      const int raw = place == 0   ? any(random, -side_q8, 2 * side_q8)
-                      : place == 1 ? any(random, 0, side_q8)
-                      : place == 2 ? any(random, -1, (1 << level) + 1) * 256
-                      : place == 3 ? any(random, -4 * side_q8, 5 * side_q8)
-                      : place == 4 ? any(random, 0, 2) * side_q8 / 2
-                                   : any(random, -side_q8 / 4, side_q8 + side_q8 / 4);
+      const int raw = place == 0   ? pick_int(random, -side_q8, 2 * side_q8)
+                      : place == 1 ? pick_int(random, 0, side_q8)
+                      : place == 2 ? pick_int(random, -1, (1 << level) + 1) * 256
+                      : place == 3 ? pick_int(random, -4 * side_q8, 5 * side_q8)
+                      : place == 4 ? pick_int(random, 0, 2) * side_q8 / 2
+                                   : pick_int(random, -side_q8 / 4, side_q8 + side_q8 / 4);
       eye[axis] = Q8::from_raw(raw);
     }
     Vec3i forward;
-    const int look = any(random, 0, 3);
+    const int look = pick_int(random, 0, 3);
     for (int axis = 0; axis < 3; ++axis) {
-      forward[axis] = look == 0   ? any(random, -1, 1)
-                      : look == 1 ? any(random, -1000, 1000)
-                                  : any(random, 0, side_q8) - eye[axis].raw;
+      forward[axis] = look == 0   ? pick_int(random, -1, 1)
+                      : look == 1 ? pick_int(random, -1000, 1000)
+                                  : pick_int(random, 0, side_q8) - eye[axis].raw;
     }
-    const int width = any(random, 1, 70);
-    const int height = any(random, 1, 40);
+    const int width = pick_int(random, 1, 70);
+    const int height = pick_int(random, 1, 40);
     Camera camera;
     if (one_in(random, 12)) {
-      const OrthographicView view{eye,   forward, {}, Q14::saturate(any(random, 1, 2 << level)),
+      const OrthographicView view{eye,   forward, {}, Q14::saturate(pick_int(random, 1, 2 << level)),
                                   width, height,  0};
       if (camera.set(view, level) == Status::kOk) {
         return camera;
       }
       continue;
     }
-    const int bits = one_in(random, 3) ? any(random, kMinDirectionBits, 14) : 0;
-    const Vec3i up =
-        one_in(random, 3) ? Vec3i{any(random, -9, 9), any(random, -9, 9), any(random, -9, 9)} : Vec3i{};
-    const PerspectiveView view{eye,   forward, up,  Q16::from_raw(any(random, 65536, 120 * 65536)),
+    const int bits = one_in(random, 3) ? pick_int(random, kMinDirectionBits, 14) : 0;
+    const Vec3i up = one_in(random, 3)
+                         ? Vec3i{pick_int(random, -9, 9), pick_int(random, -9, 9), pick_int(random, -9, 9)}
+                         : Vec3i{};
+    const PerspectiveView view{eye,   forward, up,  Q16::from_raw(pick_int(random, 65536, 120 * 65536)),
                                width, height,  bits};
     if (camera.set(view, level) == Status::kOk) {
       return camera;
@@ -146,9 +144,9 @@ Camera random_camera(std::mt19937_64& random, int level) {
 Shading random_shading(std::mt19937_64& random, const Camera& camera, const CompactTree& tree,
                        Span<const Rgb8> palette) {
   Shading shading;
-  shading.mode = kModes[any(random, 0, 3)];
+  shading.mode = kModes[pick_int(random, 0, 3)];
   shading.palette = palette;
-  shading.background = {static_cast<std::uint8_t>(any(random, 0, 255)), 90, 17};
+  shading.background = {static_cast<std::uint8_t>(pick_int(random, 0, 255)), 90, 17};
   const DepthRange range = depth_range(camera, tree.bounds());
   shading.near_q8 = range.near_q8;
   shading.far_q8 = range.far_q8;
@@ -199,10 +197,10 @@ TEST_CASE("brick frames: any scene, camera, shading, format and band -> the byte
     const std::uint64_t seed = random();
     CAPTURE(seed);
     std::mt19937_64 own(seed);
-    const int level = any(own, 2, one_in(own, 4) ? 8 : 6);
+    const int level = pick_int(own, 2, one_in(own, 4) ? 8 : 6);
     CAPTURE(level);
     const HeapBytes tree_bytes =
-        random_tree(own, level, static_cast<unsigned>(one_in(own, 3) ? 1 : any(own, 2, 250)));
+        random_tree(own, level, static_cast<unsigned>(one_in(own, 3) ? 1 : pick_int(own, 2, 250)));
     const CompactTree tree = open_or_throw(tree_bytes);
     const HeapBytes map_bytes = map_of(tree);
     REQUIRE(BrickMap::validate(map_bytes.view()) == nullptr);
@@ -211,7 +209,7 @@ TEST_CASE("brick frames: any scene, camera, shading, format and band -> the byte
     for (int view = 0; view < 6; ++view) {
       const Camera camera = random_camera(own, level);
       const Shading shading = random_shading(own, camera, tree, {palette.data(), palette.size()});
-      const PixelFormat format = kFormats[any(own, 0, 4)];
+      const PixelFormat format = kFormats[pick_int(own, 0, 4)];
       CAPTURE(view);
       CAPTURE(static_cast<int>(format));
       CAPTURE(static_cast<int>(shading.mode));
@@ -228,8 +226,8 @@ TEST_CASE("brick frames: any scene, camera, shading, format and band -> the byte
       REQUIRE(drawn.counts.rays == wanted.counts.rays);
       fast += draws_fast(map, camera) ? 1U : 0U;
       hits += drawn.counts.hits;
-      const std::size_t gap = static_cast<std::size_t>(any(own, 0, 5));
-      const int rows = any(own, 1, 11);
+      const std::size_t gap = static_cast<std::size_t>(pick_int(own, 0, 5));
+      const int rows = pick_int(own, 1, 11);
       const Drawn banded = in_bands(camera, format, rows, gap, [&](const Band& band, RenderCounts* counts) {
         return render_band(tree, map, camera, shading, band, counts);
       });
@@ -374,13 +372,13 @@ TEST_CASE(
     const std::uint64_t seed = random();
     CAPTURE(seed);
     std::mt19937_64 own(seed);
-    const int level = any(own, 2, 5);
+    const int level = pick_int(own, 2, 5);
     const HeapBytes tree_bytes = random_tree(own, level, 5);
     const HeapBytes map_bytes = map_of(open_or_throw(tree_bytes));
     const bool in_tree = one_in(own, 3);
     const Bytes target = in_tree ? tree_bytes.span() : map_bytes.span();
     const std::size_t first = in_tree ? 16 : 0;
-    const int flips = any(own, 1, 6);
+    const int flips = pick_int(own, 1, 6);
     for (int i = 0; i < flips; ++i) {
       const std::size_t at = first + static_cast<std::size_t>(own() % (target.size - first));
       target[at] = static_cast<std::uint8_t>(target[at] ^ (1 + own() % 255));

@@ -31,16 +31,12 @@ std::uint64_t pixels_to_draw() {
 #endif
 }
 
-int any(std::mt19937_64& random, int low, int high) {
-  return static_cast<int>(pick(random, low, high));
-}
-
 enum class World { kHills, kBlocks, kDust, kRoom, kMerged, kTower };
 constexpr World kWorlds[] = {World::kHills, World::kBlocks, World::kDust,
                              World::kRoom,  World::kMerged, World::kTower};
 
 void fill_hills(std::mt19937_64& random, int side, Octree* pool) {
-  const int steep = any(random, 1, 3);
+  const int steep = pick_int(random, 1, 3);
   for (int x = 0; x < side; ++x) {
     for (int y = 0; y < side; ++y) {
       const int height = side / 4 + (x * steep + y * 2) % 7 + (x / 5 + y / 6) % 5;
@@ -54,9 +50,9 @@ void fill_hills(std::mt19937_64& random, int side, Octree* pool) {
 void fill(std::mt19937_64& random, World world, int level, Octree* pool) {
   const int side = 1 << level;
   const auto cell = [&] {
-    return Vec3i{any(random, 0, side - 1), any(random, 0, side - 1), any(random, 0, side - 1)};
+    return Vec3i{pick_int(random, 0, side - 1), pick_int(random, 0, side - 1), pick_int(random, 0, side - 1)};
   };
-  const auto material = [&] { return static_cast<std::uint8_t>(any(random, 0, 9)); };
+  const auto material = [&] { return static_cast<std::uint8_t>(pick_int(random, 0, 9)); };
   switch (world) {
     case World::kHills:
       fill_hills(random, side, pool);
@@ -64,7 +60,7 @@ void fill(std::mt19937_64& random, World world, int level, Octree* pool) {
     case World::kBlocks:
     case World::kMerged:
       for (int i = 0; i < 40; ++i) {
-        const int block = any(random, 0, level - 2);
+        const int block = pick_int(random, 0, level - 2);
         const Vec3i at = cell();
         const int mask = ~((1 << block) - 1);
         REQUIRE(pool->insert_block({at.x & mask, at.y & mask, at.z & mask}, block, material()) ==
@@ -124,31 +120,31 @@ Camera hard_camera(std::mt19937_64& random, int level) {
   const int side = 1 << level;
   const int side_q8 = 256 * side;
   for (;;) {
-    const int place = any(random, 0, 5);
+    const int place = pick_int(random, 0, 5);
     Vec3Q8 eye;
     for (int axis = 0; axis < 3; ++axis) {
-      const int raw = place == 0   ? any(random, -side_q8 / 2, side_q8 + side_q8 / 2)
-                      : place == 1 ? 256 * any(random, 0, side)
-                      : place == 2 ? 256 * any(random, 0, side) + any(random, -1, 1)
-                      : place == 3 ? 256 * any(random, -side / 4, side + side / 4) + 128
-                                   : any(random, 0, side_q8);
+      const int raw = place == 0   ? pick_int(random, -side_q8 / 2, side_q8 + side_q8 / 2)
+                      : place == 1 ? 256 * pick_int(random, 0, side)
+                      : place == 2 ? 256 * pick_int(random, 0, side) + pick_int(random, -1, 1)
+                      : place == 3 ? 256 * pick_int(random, -side / 4, side + side / 4) + 128
+                                   : pick_int(random, 0, side_q8);
       eye[axis] = Q8::from_raw(raw);
     }
     Vec3i forward;
-    const int look = any(random, 0, 2);
+    const int look = pick_int(random, 0, 2);
     for (int axis = 0; axis < 3; ++axis) {
-      forward[axis] = look == 0   ? any(random, -1, 1)
-                      : look == 1 ? any(random, -1000, 1000)
-                                  : any(random, 0, side_q8) - eye[axis].raw;
+      forward[axis] = look == 0   ? pick_int(random, -1, 1)
+                      : look == 1 ? pick_int(random, -1000, 1000)
+                                  : pick_int(random, 0, side_q8) - eye[axis].raw;
     }
-    const Q16 fov = Q16::from_raw(any(random, 0, 2) == 0 ? any(random, 65536, 8 * 65536)
-                                                         : any(random, 20 * 65536, 120 * 65536));
-    const int width = any(random, 0, 2) == 0 ? 320 : any(random, 1, 250);
-    const int height = width == 320 ? any(random, 1, 80) : any(random, 1, 120);
-    const int bits = any(random, 0, 3) == 0 ? any(random, kMinDirectionBits, 15) : 0;
+    const Q16 fov = Q16::from_raw(pick_int(random, 0, 2) == 0 ? pick_int(random, 65536, 8 * 65536)
+                                                              : pick_int(random, 20 * 65536, 120 * 65536));
+    const int width = pick_int(random, 0, 2) == 0 ? 320 : pick_int(random, 1, 250);
+    const int height = width == 320 ? pick_int(random, 1, 80) : pick_int(random, 1, 120);
+    const int bits = pick_int(random, 0, 3) == 0 ? pick_int(random, kMinDirectionBits, 15) : 0;
     Camera camera;
-    if (any(random, 0, 15) == 0) {
-      const OrthographicView view{eye,   forward, {}, Q14::saturate(any(random, 1, 2 * side)),
+    if (pick_int(random, 0, 15) == 0) {
+      const OrthographicView view{eye,   forward, {}, Q14::saturate(pick_int(random, 1, 2 * side)),
                                   width, height,  0};
       if (camera.set(view, level) == Status::kOk) {
         return camera;
@@ -196,18 +192,18 @@ TEST_CASE("brick sweep: a million pixels of hard cameras -> the bytes and hits o
     const std::uint64_t seed = random();
     CAPTURE(seed);
     std::mt19937_64 own(seed);
-    const int level = any(own, 3, 6);
+    const int level = pick_int(own, 3, 6);
     const Scene scene = make_scene(own, kWorlds[turn % 6], level);
     for (int view = 0; view < 6; ++view) {
       CAPTURE(view);
       const Camera camera = hard_camera(own, level);
       Shading shading;
-      shading.mode = any(own, 0, 5) == 0 ? ShadeMode::kDepth : ShadeMode::kColor;
+      shading.mode = pick_int(own, 0, 5) == 0 ? ShadeMode::kDepth : ShadeMode::kColor;
       shading.palette = {palette.data(), palette.size()};
       shading.far_q8 = 256 << level;
-      const PixelFormat format = static_cast<PixelFormat>(any(own, 0, 4));
+      const PixelFormat format = static_cast<PixelFormat>(pick_int(own, 0, 4));
       const std::size_t stride =
-          row_bytes(format, camera.width_px()) + static_cast<std::size_t>(any(own, 0, 3));
+          row_bytes(format, camera.width_px()) + static_cast<std::size_t>(pick_int(own, 0, 3));
       RenderCounts counts;
       RenderCounts counts_wanted;
       const auto wanted = drawn(
@@ -217,7 +213,8 @@ TEST_CASE("brick sweep: a million pixels of hard cameras -> the bytes and hits o
           },
           &counts_wanted);
       const auto got = drawn(
-          scene, camera, shading, format, stride, any(own, 0, 1) == 0 ? camera.height_px() : any(own, 1, 20),
+          scene, camera, shading, format, stride,
+          pick_int(own, 0, 1) == 0 ? camera.height_px() : pick_int(own, 1, 20),
           [](const Scene& of, const Camera& by, const Shading& with, const Band& band, RenderCounts* sum) {
             return render_band(of.tree, of.map, by, with, band, sum);
           },

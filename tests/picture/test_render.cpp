@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "scene/random.h"
+#include "support/formats.h"
 #include "thimble/picture/render.h"
 
 namespace {
 
 using namespace thimble;
+using testing::kFormats;
 using thimble::tools::SplitMix64;
 
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
-                                    PixelFormat::kRgb565, PixelFormat::kRgb888};
 constexpr ShadeMode kModes[] = {ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor, ShadeMode::kMono};
 constexpr int kWidthPx = 29;
 constexpr int kHeightPx = 23;

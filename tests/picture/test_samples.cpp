@@ -5,14 +5,12 @@
 #include <random>
 #include <vector>
 
+#include "support/formats.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tests {
 namespace {
-
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
-                                    PixelFormat::kRgb565, PixelFormat::kRgb888};
 
 TEST_CASE("samples: random fine rows -> each channel's mean to the nearest, halves up, in every format") {
   std::mt19937_64 random(5);

@@ -159,6 +159,19 @@ class Camera {
     return camera;
   }
 
+  /// A camera of `width_px` x `height_px` pixels of this one, from (px, py) on, all of them on this one's
+  /// picture: the ray of its pixel (i, j) is this one's of (px + i, py + j), integer for integer. For a few
+  /// pixels of a finer picture (edge_samples.h).
+  Camera window(int32_t px, int32_t py, int32_t width_px, int32_t height_px) const {
+    Camera camera = *this;
+    camera.width_px_ = width_px;
+    camera.height_px_ = height_px;
+    for (int axis = 0; axis < 3; ++axis) {
+      camera.affine_.base[axis] = value(px, py, axis);
+    }
+    return camera;
+  }
+
   bool is_perspective() const { return is_perspective_; }
   int32_t width_px() const { return width_px_; }
   int32_t height_px() const { return height_px_; }
