@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "wide/hidden.h"
+
 namespace thimble::wide {
 namespace {
 
@@ -21,6 +23,11 @@ constexpr float kTableTest = 0.67F;
 constexpr float kTableBlock = 62;
 constexpr float kBoxInBlock = 0.24F;
 constexpr float kBlocks = 110;
+// A pixel that is painted from a list with blocks, beyond one whose grey was found as its voxel was met. And
+// what a surface takes, in perspective, for the work that is expected of it; fitted to 140 views, to be no
+// slower than boxes rather than to be fastest.
+constexpr float kPaintedBlock = 0.8F;
+constexpr float kSurface = 1.75F;
 // Boxes of so many pixels are drawn row by row, in the mean of both orders (kernels/runs-inl.h).
 constexpr float kLargePx = 40;
 // The mean numbers of boxes of a block, and pixels of its side (limits in tile_drawer.cpp: kTableBoxes,
@@ -76,6 +83,8 @@ class Haze {
   Outlook outlook() const {
     Outlook outlook = outlook_;
     outlook.blocks_pay = count_ != 0 && blocks_ + kBlocks <= flat_;
+    outlook.work = outlook.blocks_pay ? blocks_ + kBlocks : flat_;
+    outlook.painted_px = painted_px_;
     return outlook;
   }
 
@@ -146,14 +155,14 @@ class Haze {
   float faces_of(const Cell& cell, float area) const { return cell.voxel_px * area * cell.share; }
 
   bool is_cut(const Cell& cell) const {
-    return lists_.tree().mask(cell.node) != 0 && cell.level > lists_.block_level() &&
+    return lists_.children(cell.node) != 0 && cell.level > lists_.block_level() &&
            lists_.nodes()[cell.node].entries > kFewBoxes;
   }
 
   // Puts the children of the cell that are in sight behind the last cell, front to back. Returns how many it
   // has.
   int split(const Cell& cell) {
-    const unsigned mask = lists_.tree().mask(cell.node);
+    const unsigned mask = lists_.children(cell.node);
     const uint32_t side = uint32_t{1} << (cell.level - 1);
     unsigned first = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -171,7 +180,8 @@ class Haze {
       for (unsigned axis = 0; axis < 3; ++axis) {
         child.corner[axis] = cell.corner[axis] + ((octant >> axis & 1U) != 0 ? side : 0);
       }
-      if (place(&child)) {
+      const unsigned ways = ways_to(eye_cell_, child.corner, uint32_t{1} << child.level);
+      if ((lists_.facing(lists_.nodes()[child.node]) & ways) != 0 && place(&child)) {
         cells_[count_++] = child;
       }
     }
@@ -193,7 +203,8 @@ class Haze {
       for (int i = 0; i < count_; ++i) {
         const Cell& cell = cells_[i];
         cuts += is_cut(cell) ? 1 : 0;
-        work += boxes_of(cell) + 6 * faces_of(cell, static_cast<float>(lists_.nodes()[cell.node].face_area));
+        work += boxes_of(cell) +
+                6 * faces_of(cell, static_cast<float>(lists_.face_area(lists_.nodes()[cell.node])));
       }
       const int most = 1 + static_cast<int>(fminf(work / kWorkPerCell, kMostCells));
       // About half of the children are in sight.
@@ -237,7 +248,7 @@ class Haze {
     for (int i = 0; i < count_; ++i) {
       const Cell& cell = cells_[i];
       const BlockNode& node = lists_.nodes()[cell.node];
-      const float faces_px = faces_of(cell, static_cast<float>(node.face_area));
+      const float faces_px = faces_of(cell, static_cast<float>(lists_.face_area(node)));
       const float rectangle = (cell.x1 - cell.x0) * (cell.y1 - cell.y0);
       const float density = fminf(faces_px / rectangle, 50);
       const float left = exp2_about(-1.4427F * density);
@@ -258,6 +269,7 @@ class Haze {
         }
       }
       const float before = area > 0 ? open_area / area : 1;
+      painted_px_ += rectangle * before * (1 - left);
       // So much of what the cell's boxes would cover is still open when they are drawn. A block is left out
       // when all of its pixels are covered.
       const float seen = fminf(density > 1e-6F ? before * (1 - left) / density : before, 1);
@@ -279,7 +291,7 @@ class Haze {
         // A cell of that size has so many blocks if each is cut like the cell: into eight, or into four on
         // a surface.
         const float across = fmaxf(cell.side_px / table_px_, 1);
-        const float parts = static_cast<float>(__builtin_popcount(lists_.tree().mask(cell.node)));
+        const float parts = static_cast<float>(__builtin_popcount(lists_.children(cell.node)));
         const float table_blocks = parts > 1 ? power_about(across, log2_about(parts)) : 1;
         const float per_box = fmaxf(fminf(table_blocks / entries, 1), 1 / kMeanTableBoxes);
         work += kTableBlock * per_box * looked_at;
@@ -319,6 +331,7 @@ class Haze {
   int count_ = 0;
   float flat_ = 0;  // the work of either order
   float blocks_ = 0;
+  float painted_px_ = 0;  // about
   Outlook outlook_;
 };
 
@@ -326,6 +339,10 @@ class Haze {
 
 Outlook outlook_of(const VoxelLists& lists, const WideFrame& frame, bool by_rows) {
   return lists.entries().size > kFewBoxes ? Haze(lists, frame, by_rows).outlook() : Outlook{};
+}
+
+bool boxes_pay(const Outlook& boxes, const Outlook& surface, bool perspective) {
+  return boxes.work + kPaintedBlock * boxes.painted_px < surface.work * (perspective ? kSurface : 1);
 }
 
 }  // namespace thimble::wide

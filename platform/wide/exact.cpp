@@ -1,6 +1,7 @@
 #include "wide/exact.h"
 
 #include "thimble/tree/morton.h"
+#include "wide/kernels.h"
 
 namespace thimble::wide {
 
@@ -13,11 +14,22 @@ uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down)
   return static_cast<uint32_t>(morton_code(place[0], place[1], place[2]));
 }
 
+uint64_t cube_value(const uint32_t (&corner)[3], uint32_t down) {
+  uint64_t key = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const uint32_t cube = corner[axis] >> 10 ^ ((down >> axis & 1U) != 0 ? 3U : 0U);
+    key |= uint64_t{cube & 1U} << (30 + axis) | uint64_t{cube >> 1 & 1U} << (33 + axis);
+  }
+  return key << kEntryBits;
+}
+
 // Take planes of two axes a and b, and c, the box's centre less the origin. The ray passes the lower plane
 // of each axis before the upper one of the other exactly when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|).
-// Along an axis with d = 0 the ray must lie between the planes, or in the lower one. Centres are below 2^25
+// Along an axis with d = 0 the ray must lie between the planes, or in the lower one. Where the two are
+// equal, the ray touches an edge. Centres are below 2^25
 // in 1/512 voxel, directions have 20 bits.
-bool hits_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down) {
+Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
+                     uint32_t* down) {
   const int32_t level = level_of(entry);
   const uint32_t corner[3] = {x_of(entry), entry >> 10 & 1023U, entry >> 20 & 1023U};
   const int64_t half = int64_t{256} << level;
@@ -33,27 +45,30 @@ bool hits_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uin
     *down |= direction[axis] < 0 ? 1U << axis : 0U;
     if (size[axis] == 0) {
       if (center[axis] > half || center[axis] <= -half) {
-        return false;
+        return Meeting::kMiss;
       }
       continue;
     }
     // The farther plane must lie ahead.
     if ((direction[axis] < 0 ? -center[axis] : center[axis]) <= -half) {
-      return false;
+      return Meeting::kMiss;
     }
   }
+  Meeting meeting = Meeting::kHit;
   for (unsigned a = 0; a < 3; ++a) {
     const unsigned b = a == 2 ? 0 : a + 1;
     if (size[a] == 0 || size[b] == 0) {
       continue;
     }
     const int64_t cross = center[a] * direction[b] - center[b] * direction[a];
-    if ((cross < 0 ? -cross : cross) >= half * (size[a] + size[b])) {
-      return false;
+    const int64_t beyond = (cross < 0 ? -cross : cross) - half * (size[a] + size[b]);
+    if (beyond > 0) {
+      return Meeting::kMiss;
     }
+    meeting = beyond == 0 ? Meeting::kTouch : meeting;
   }
   *key = mirrored_key(corner, level, *down);
-  return true;
+  return meeting;
 }
 
 }  // namespace thimble::wide

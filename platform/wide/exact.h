@@ -31,10 +31,20 @@ inline uint32_t mirrored_sum(uint32_t entry, uint32_t down) {
   return sum;
 }
 
-/// Decides whether the ray spends a positive length, at t >= 0, in the entry of the cube at `cube`
-/// (voxels). If so, `down` gets the axes along which the ray runs downwards, and `key` the entry's key
-/// mirrored in them.
-bool hits_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key, uint32_t* down);
+/// The key of a cube's corner (in voxels), as values of Depths::nearest hold it, mirrored in the axes of
+/// `down`.
+uint64_t cube_value(const uint32_t (&corner)[3], uint32_t down);
+
+enum class Meeting : uint8_t {
+  kMiss,
+  kTouch,  ///< a point in common, ahead of the origin
+  kHit,    ///< a positive length, at t >= 0
+};
+
+/// Decides how the ray meets the entry of the cube at `cube` (voxels). Unless it misses, `down` gets the axes
+/// along which the ray runs downwards, and `key` the entry's key mirrored in them.
+Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
+                     uint32_t* down);
 
 }  // namespace thimble::wide
 

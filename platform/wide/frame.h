@@ -31,6 +31,7 @@
 #include <stdint.h>
 
 #include "thimble/picture/camera.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::wide {
 
@@ -75,6 +76,11 @@ struct WideFrame {
   double step_x_high[3], step_x_low[3];
   double step_y_high[3], step_y_low[3];
   Camera camera;
+
+  /// Set by the caller where the lists leave out hidden voxels (hidden.h): the tree that they are in, and the
+  /// number of one with material 0. Null: nothing is left out.
+  const CompactTree* hidden_in = nullptr;
+  uint32_t first_hidden = 0;
 };
 
 /// Whether the camera's map can be inverted and its numbers fit: false for cameras so narrow or so far off

@@ -38,11 +38,23 @@ GrayScale gray_scale_of(const Camera& camera, const Shading& shading) {
   return made;
 }
 
-uint8_t gray_exactly(const Camera& camera, const Shading& shading, const Ray& ray, uint32_t entry,
-                     const uint32_t (&cube)[3]) {
-  // The latest of the nearer planes; one at or behind the origin is not entered through.
+uint8_t code_of(GrayScale::Code code, const Hit& hit, const Ray& ray, const Camera& camera,
+                const Shading& shading) {
+  if (code == GrayScale::Code::kFace) {
+    const Face face = face_of(hit, ray.direction);
+    return static_cast<uint8_t>(1 + 2 * face.axis + (face.negative ? 0 : 1));
+  }
+  return shade(hit, ray, camera, shading).r;
+}
+
+uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, const Ray& ray,
+                     uint32_t entry, const uint32_t (&cube)[3]) {
+  // The latest of the nearer planes, on a tie that of the lowest axis; one at or behind the origin is not
+  // entered through.
   int64_t numerator = 0;
   int64_t speed = 1;
+  Hit hit;
+  hit.axis = -1;
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t direction = ray.direction[axis];
     const int64_t low = int64_t{256} * (cube[axis] + (entry >> (10 * axis) & 1023U)) - ray.origin[axis].raw;
@@ -51,13 +63,13 @@ uint8_t gray_exactly(const Camera& camera, const Shading& shading, const Ray& ra
     if (step != 0 && distance > 0 && distance * speed > numerator * step) {
       numerator = distance;
       speed = step;
+      hit.axis = static_cast<int8_t>(axis);
     }
   }
-  Hit hit;
   hit.kind = HitKind::kHit;
   hit.t_numerator = static_cast<int32_t>(numerator);
   hit.t_denominator = numerator == 0 ? 1 : static_cast<int32_t>(256 * speed);
-  return shade(hit, ray, camera, shading).r;
+  return code_of(code, hit, ray, camera, shading);
 }
 
 }  // namespace thimble::wide

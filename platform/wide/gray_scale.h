@@ -1,5 +1,5 @@
 /// @file gray_scale.h
-/// ShadeMode::kDepth as numbers for the kernels, which find greys from where rays enter their boxes.
+/// ShadeMode::kDepth as numbers for the kernels, which find greys, or faces, from where rays enter their boxes.
 #ifndef THIMBLE_PLATFORM_WIDE_GRAY_SCALE_H
 #define THIMBLE_PLATFORM_WIDE_GRAY_SCALE_H
 
@@ -22,6 +22,11 @@ namespace thimble::wide {
 /// within margin = per_depth * (1.01 + greatest / 2^19) + 2^-12, where `greatest` is a little beyond the far
 /// plane. Beyond that plane the margin grows no faster than the fall.
 struct GrayScale {
+  /// What is kept of a voxel as it is hit: its grey, or 1 + the number of the face that is entered (2 * axis,
+  /// and 1 more where the face looks towards larger coordinates).
+  enum class Code : uint8_t { kGray, kFace };
+  Code code;
+
   double dividend;  ///< depth per t, in the upper of 32 bits
   double scale;     ///< 2^-(shift + 8)
   int shift;
@@ -41,9 +46,14 @@ struct GrayScale {
 
 GrayScale gray_scale_of(const Camera& camera, const Shading& shading);
 
-/// Finds the core's grey of a ray that hits an entry of one voxel (voxel_lists.h) of the cube at `cube`.
-uint8_t gray_exactly(const Camera& camera, const Shading& shading, const Ray& ray, uint32_t entry,
-                     const uint32_t (&cube)[3]);
+/// The code of what the core's ray hits.
+uint8_t code_of(GrayScale::Code code, const Hit& hit, const Ray& ray, const Camera& camera,
+                const Shading& shading);
+
+/// Finds the core's grey of a ray that hits an entry of one voxel (voxel_lists.h) of the cube at `cube`, or
+/// the code of the face that it enters.
+uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, const Ray& ray,
+                     uint32_t entry, const uint32_t (&cube)[3]);
 
 }  // namespace thimble::wide
 

@@ -25,10 +25,10 @@ namespace thimble::wide {
 /// node where their paths part, the ray passes the children in the order of their mirrored numbers. So
 /// depths are compared exactly, as integers.
 ///
-/// Where only greys by depth are wanted, of single voxels in one cube, a pixel keeps the grey of its voxel,
-/// which is found when the ray hits it, in place of the voxel's number. In place of the code it keeps the
-/// sum of the voxel's mirrored coordinates: from voxel to voxel a ray raises one or more of them and lowers
-/// none. That takes 3 bytes a pixel instead of 8, and nothing is left to look up.
+/// Where a pixel shows no more than a grey by depth or a face, of single voxels in one cube, it keeps a code of
+/// that (GrayScale::Code), which is found when the ray hits the voxel, in place of the voxel's number. In place
+/// of the key it keeps the sum of the voxel's mirrored coordinates: from voxel to voxel a ray raises one or
+/// more of them and lowers none. That takes 3 bytes a pixel instead of 8, and nothing is left to look up.
 ///
 /// The picture is cut into strips of 32 columns, and each strip stands row by row: neighbours in the
 /// picture are neighbours in memory.
@@ -37,18 +37,24 @@ struct Depths {
   const GrayScale* gray_scale;  ///< null: `nearest` is in use; else the next three are
   const Shading* shading;
   uint16_t* nearest_sum;  ///< of the voxel's mirrored coordinates; holds something only where `gray` does
-  uint8_t* gray;          ///< 0 where there is nothing: greys are at least kFarBrightness
+  uint8_t* gray;          ///< the code; 0 where there is nothing: greys are at least kFarBrightness
   uint32_t* covered;      ///< a bit a pixel, a word a row of a strip, the leftmost pixel in the lowest bit;
                           ///< behind the last strip one more can be read
   bool marks;             ///< whether `covered` is in use; not where `gray` does as well
-  int32_t rows;           ///< of the picture, and words from a strip to the next
-  int32_t first_row;      ///< the row of the picture that comes first
+  /// Where few boxes are drawn, by one thread: a byte for each kPieceWords words of pixels, whether their codes
+  /// were cleared. That is done when the first of them is written, so most of a picture that holds little is
+  /// never looked at. Null: all were cleared at first.
+  uint8_t* is_touched;
+  uint32_t* touched;  ///< which those are, behind their number
+  int32_t rows;       ///< of the picture, and words from a strip to the next
+  int32_t first_row;  ///< the row of the picture that comes first
 
   /// Where the word that holds the pixel is in `covered`; 32 times that and x & 31 in the others.
   size_t word(int32_t x, int32_t y) const {
     return static_cast<size_t>(x >> 5) * static_cast<size_t>(rows) + static_cast<size_t>(y - first_row);
   }
 };
+inline constexpr int kPieceWords = 8;
 inline constexpr int kEntryBits = 28;
 inline constexpr int kKeyBits = 36;
 
@@ -59,6 +65,7 @@ struct Counts {
   uint64_t hits = 0;        ///< tests that were hits
   uint64_t nodes = 0;       ///< blocks looked at
   uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
+  uint64_t asked = 0;       ///< pixels asked of the core (hidden.h)
 
   void add(const Counts& other) {
     boxes += other.boxes;
@@ -67,6 +74,7 @@ struct Counts {
     hits += other.hits;
     nodes += other.nodes;
     crossing += other.crossing;
+    asked += other.asked;
   }
 };
 
@@ -227,9 +235,21 @@ void unpack(const Depths& depths, Pixels* pixels);
 /// Finds the greys that shade() gives for ShadeMode::kDepth. `gray` has room for `count`, and a vector
 /// behind them.
 void find_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray);
-/// Copies the greys of row `y`, and `background` where there is none, to `to[width_px]`; only where greys
-/// are kept. Returns how many there are.
-uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to);
+/// The bytes that pixels are stored as, by the codes that Depths keeps, where pixels are whole bytes.
+struct CodeBytes {
+  int size;         ///< of a pixel in bytes: 1 .. 3
+  bool is_gray;     ///< codes are greys, of which a channel takes 8 bits, or 5 or 6 of the 16 of two bytes
+  bool high_first;  ///< of two bytes of grey: the one with the higher bits
+  /// Byte by byte, 16 codes; with `is_gray` only the first, which is the background's.
+  alignas(16) uint8_t of[3][16];
+};
+/// Stores row `y` in `to`, which has room for width_px pixels; only where codes are kept. Returns how many
+/// pixels hold anything.
+uint32_t put_colors(const Depths& depths, int32_t y, int32_t width_px, const CodeBytes& bytes, uint8_t* to);
+/// The same for what was touched of the whole picture (Depths::is_touched): the pieces, not what is between
+/// them. `to` is its first row.
+uint32_t put_touched(const Depths& depths, int32_t width_px, const CodeBytes& bytes, uint8_t* to,
+                     size_t stride);
 /// Finds the faces that face_of() gives, as 2 * axis, and 1 more where the face looks towards larger
 /// coordinates. `face` has the same room.
 void find_faces(const WideFrame& frame, const Pixels& pixels, uint8_t* face);

@@ -14,15 +14,25 @@ class TilePainter {
  public:
   TilePainter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
 
-  /// The scale for greys that are found as voxels are hit (Depths); null where they are found at the end.
+  /// The scale for greys, or faces, that are found as voxels are hit (Depths); null where they are found at the
+  /// end.
   const GrayScale* gray_scale() const;
+
+  /// Whether it paints pictures of which only parts were written (Depths::is_touched).
+  bool takes_sparse() const { return gray_scale() != nullptr && has_bytes_; }
 
   /// Paints the rows of the frame's tile. Returns how many pixels hold anything.
   uint64_t paint_tile(const WideFrame& frame, const Depths& depths) const;
 
  private:
-  uint64_t paint_grays(const WideFrame& frame, const Depths& depths) const;
-  void fill_background(uint8_t* line, int32_t y, const Depths& depths) const;
+  uint64_t paint_codes(const WideFrame& frame, const Depths& depths) const;
+  bool find_bytes();
+  Rgb8 color_of_code(unsigned code) const;
+  void fill_background(const WideFrame& frame, const Depths& depths) const;
+  template <PixelFormat kFormat>
+  void store_as(const Pixels& pixels, const Rgb8* colors) const;
+  void store_colors(const Pixels& pixels, const Rgb8* colors) const;
+  void find_colors(const WideFrame& frame, const Pixels& pixels, Rgb8* colors) const;
   void paint(const WideFrame& frame, const Depths& depths, Pixels* pixels) const;
   uint8_t* line(int32_t y) const {
     return band_.pixels.data + stride_ * row_place(band_.format, y - band_.first_row);
@@ -35,7 +45,10 @@ class TilePainter {
   size_t stride_;
   Rgb8 background_;
   GrayScale gray_scale_;
-  Rgb8 faces_[6];  ///< where there is one material
+  bool has_bytes_;  ///< whether codes are all that the format's pixels take; then `bytes_` says what they are
+  CodeBytes bytes_{};
+  uint32_t material_count_ = 1;  ///< of those that look different; 1 where a voxel's own does not count
+  Rgb8 colors_[256][6];          ///< by material and face, where faces are shown
 };
 
 }  // namespace thimble::wide

@@ -1,6 +1,7 @@
 #include "wide/renderer.h"
 
 #include "wide/choice.h"
+#include "wide/coverage.h"
 #include "wide/crew.h"
 
 namespace thimble::wide {
@@ -9,6 +10,15 @@ namespace {
 // From so many boxes on, in the order of the list, up to kMostCopies threads draw a picture each. Fewer are
 // drawn in the time that merging the pictures takes.
 constexpr size_t kCopyBoxes = 150000;
+
+// A picture of fewer boxes than it has pieces (Depths::is_touched) mostly holds nothing.
+bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, bool by_blocks, int threads,
+               const TilePainter& painter) {
+  const size_t words = strips_of(camera.width_px()) * static_cast<size_t>(band.rows);
+  // What the core is asked (hidden.h) is written without a look at pieces.
+  return threads == 1 && !by_blocks && !lists.is_surface() && painter.takes_sparse() &&
+         words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
+}
 
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace, int threads) {
   const int32_t width = camera.width_px();
@@ -40,15 +50,25 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 
 // How a frame is drawn.
 struct Plan {
+  bool has_boxes;  // whether the list of boxes is drawn that stands beside that of the surface
   Order order;
   bool copies;  // whether each thread draws a picture of its own
   Outlook outlook;
 };
 
-Plan plan_of(const VoxelLists& lists, const WideFrame& frame, Order wanted, int threads) {
-  Plan plan{wanted, false, {}};
-  if (wanted == Order::kAuto || threads > 1) {
-    plan.outlook = outlook_of(lists, frame, threads > 1);
+Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& options, int threads) {
+  const Order wanted = options.order;
+  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), wanted, false, {}};
+  const bool chooses = lists.has_boxes_beside() && options.list == List::kAuto;
+  if (wanted == Order::kAuto || threads > 1 || chooses) {
+    plan.outlook = outlook_of(plan.has_boxes ? lists.boxes_beside() : lists, frame, threads > 1);
+  }
+  if (chooses) {
+    const Outlook other = outlook_of(lists.boxes_beside(), frame, threads > 1);
+    if (boxes_pay(other, plan.outlook, frame.perspective)) {
+      plan.outlook = other;
+      plan.has_boxes = true;
+    }
   }
   if (wanted == Order::kAuto) {
     plan.order = plan.outlook.blocks_pay ? Order::kBlocks : Order::kFlat;
@@ -64,10 +84,10 @@ size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
   return Workspace::bytes(width_px, rows, threads);
 }
 
-Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
+Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& shading, const Band& band,
               Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
   const int threads = options.threads == nullptr ? 1 : options.threads->count();
-  const Status status = check(lists, camera, band, workspace, threads);
+  const Status status = check(all_lists, camera, band, workspace, threads);
   if (status != Status::kOk || band.rows == 0) {
     return status;
   }
@@ -75,12 +95,21 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
   if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
     return Status::kTooFine;
   }
-  const Plan plan = plan_of(lists, frame, options.order, threads);
+  const Plan plan = plan_of(all_lists, frame, options, threads);
+  const VoxelLists lists = plan.has_boxes ? all_lists.boxes_beside() : all_lists;
+  SolidStarts starts;
+  if (lists.is_surface()) {
+    frame.hidden_in = &lists.tree();
+    frame.first_hidden = static_cast<uint32_t>(lists.entries().size);
+    starts = find_solid_starts(lists.tree(), frame);
+  }
   const bool by_blocks = plan.order == Order::kBlocks;
   const TilePainter painter(lists, camera, shading, band);
-  const Workspace space(workspace, {camera.width_px(), band.first_row, band.rows, threads,
-                                    plan.copies ? threads : 1, by_blocks, painter.gray_scale(), &shading});
-  const TileDrawer::Task task{lists, frame, by_blocks};
+  const Workspace space(
+      workspace,
+      {camera.width_px(), band.first_row, band.rows, threads, plan.copies ? threads : 1, by_blocks,
+       is_sparse(lists, camera, band, by_blocks, threads, painter), painter.gray_scale(), &shading});
+  const TileDrawer::Task task{lists, frame, by_blocks, lists.is_surface() ? &starts : nullptr};
   const Crew crew(options.threads, task, painter, space);
   uint64_t hits = 0;
   uint32_t splits = 0;
@@ -97,7 +126,7 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
     counts->node_visits += done.nodes;
   }
   if (stats != nullptr) {
-    *stats = {done, plan.order, splits};
+    *stats = {done, plan.order, splits, plan.has_boxes};
   }
   return Status::kOk;
 }

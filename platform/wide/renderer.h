@@ -27,15 +27,24 @@ enum class Order : uint8_t {
   kBlocks,  ///< small blocks front to back, without those that are covered
 };
 
+/// Which list is drawn, where one of boxes stands beside that of the surface. The picture is the same.
+enum class List : uint8_t {
+  kAuto,     ///< chosen by what is expected; Stats::has_boxes tells which
+  kSurface,  ///< the voxels of the surface
+  kBoxes,    ///< the boxes, where there are any beside
+};
+
 struct Options {
   Threads* threads = nullptr;  ///< null: the calling one alone
   Order order = Order::kAuto;
+  List list = List::kAuto;
 };
 
 struct Stats {
   Counts counts;
   Order order = Order::kAuto;  ///< the one chosen
   uint32_t splits = 0;         ///< how often a thread gave some of its rows to one that had none left
+  bool has_boxes = false;      ///< whether the list of boxes was drawn that stands beside that of the surface
 };
 
 /// The bytes of workspace that `render` needs for bands of `rows` rows of this width.

@@ -4,19 +4,53 @@
 #ifndef THIMBLE_PLATFORM_WIDE_THREADS_H
 #define THIMBLE_PLATFORM_WIDE_THREADS_H
 
+#include <stddef.h>
+
+#include <algorithm>
+#ifdef THIMBLE_STD_THREADS
+#include <atomic>
+#include <thread>
+#include <vector>
+#else
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
-#include <stddef.h>
 
-#include <algorithm>
 #include <optional>
+#endif
 
 #include "wide/limits.h"
 
 namespace thimble::wide {
 
+#ifdef THIMBLE_STD_THREADS
+/// The same by threads of the C++ library, made for each call: what ThreadSanitizer looks into.
+class Threads {
+ public:
+  explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)) {}
+
+  int count() const { return count_; }
+
+  template <typename Run>
+  void each(int tasks, const Run& run) {
+    std::atomic<int> next{0};
+    const auto work = [&] {
+      for (int task = next++; task < tasks; task = next++) {
+        run(task);
+      }
+    };
+    std::vector<std::jthread> others;
+    for (int thread = 1; thread < std::min(count_, tasks); ++thread) {
+      others.emplace_back(work);
+    }
+    work();
+  }
+
+ private:
+  int count_;
+};
+#else
 /// Not to be copied. One frame at a time.
 class Threads {
  public:
@@ -42,6 +76,7 @@ class Threads {
   std::optional<oneapi::tbb::global_control> allowed_;
   oneapi::tbb::task_arena arena_;
 };
+#endif
 
 }  // namespace thimble::wide
 

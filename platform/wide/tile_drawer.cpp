@@ -4,6 +4,7 @@
 
 #include "wide/choice.h"
 #include "wide/coverage.h"
+#include "wide/surface_list.h"
 
 namespace thimble::wide {
 namespace {
@@ -20,7 +21,8 @@ constexpr int32_t kTablePx = 56;
 constexpr float kMostBend = 0.24F;
 // Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
 constexpr float kSortedPx = 6.0F;
-constexpr float kSortedVoxelPx = 8.0F;  // where all are single voxels
+constexpr float kSortedVoxelPx = 5.0F;    // where all are single voxels
+constexpr float kSortedSurfacePx = 8.0F;  // of a surface, in perspective: few lie behind one another
 constexpr uint32_t kRunsPerShare = 2;
 constexpr uint32_t kMostLines = 64;
 // Tiles with fewer rows, or fewer remaining boxes, are not split.
@@ -41,6 +43,7 @@ TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Ba
                        std::atomic<uint32_t>* next_share)
     : lists_(task.lists),
       frame_(task.frame),
+      starts_(task.starts),
       depths_(depths),
       full_(full),
       by_blocks_(task.by_blocks),
@@ -67,6 +70,39 @@ void TileDrawer::start(int32_t y0, int32_t y1) {
     world.level = static_cast<uint16_t>(tree.level() + 1);
     depth_ = find_children(frame_, world, 1, 0, 0, stack_);
   }
+  if (starts_ != nullptr && share_ == 0) {
+    draw_starts();
+  }
+}
+
+// Draws the voxels in which rays begin, before all others. Only for lists that may leave them out.
+void TileDrawer::draw_starts() {
+  if (starts_->on_plane) {
+    draw_plane_starts(frame_, depths_, frame_.tile.y0, frame_.tile.y1, batch_);
+  }
+  for (uint32_t i = 0; i < starts_->count; ++i) {
+    const SolidStarts::Voxel& voxel = starts_->voxels[i];
+    ++batch_->counts.nodes;
+    Block parent{};
+    parent.level = 1;
+    unsigned octant = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      parent.corner[axis] = static_cast<uint16_t>(voxel.at[axis] & ~1U);
+      octant |= (voxel.at[axis] & 1U) << axis;
+    }
+    Block block[8];
+    if (find_children(frame_, parent, 1U << octant, 0, 0, block) == 0) {
+      continue;
+    }
+    uint32_t entries[1 + kReadAhead] = {};
+    Run run = run_of(block[0]);
+    entries[0] = packed({voxel.at[0], voxel.at[1], voxel.at[2]}, 0);
+    run.entries = entries;
+    run.count = 1;
+    run.first = frame_.first_hidden + voxel.material;
+    draw_run(frame_, run, depths_, batch_);
+  }
+  depth_ = starts_->are_all ? 0 : depth_;
 }
 
 void TileDrawer::draw() {
@@ -80,11 +116,11 @@ void TileDrawer::draw() {
     const Block block = stack_[--depth_];
     ++batch_->counts.nodes;
     const bool is_tabled = has_table(block);
-    if (is_hidden(block, is_tabled)) {
+    const BlockNode& node = lists_.nodes()[block.node];
+    if (!faces_eye(block, node) || is_hidden(block, is_tabled)) {
       continue;
     }
-    const BlockNode& node = lists_.nodes()[block.node];
-    const unsigned mask = lists_.tree().mask(block.node);
+    const unsigned mask = lists_.children(block.node);
     if (!is_leaf(block, node, mask, is_tabled)) {
       push_children(block, node, mask);
     } else if (is_ours()) {
@@ -96,6 +132,12 @@ void TileDrawer::draw() {
     draw_oldest();
   }
   finish(frame_, depths_, batch_);
+}
+
+// Whether any voxel of the block may be seen from where the eye is.
+bool TileDrawer::faces_eye(const Block& block, const BlockNode& node) const {
+  const uint32_t corner[3] = {block.corner[0], block.corner[1], block.corner[2]};
+  return (lists_.facing(node) & ways_to(eye_cell_, corner, uint32_t{1} << block.level)) != 0;
 }
 
 // Whether all pixels of the block are known to be covered. Blocks with tables are looked up as they are
@@ -208,29 +250,35 @@ void TileDrawer::draw_oldest() {
   draw_block(block, lists_.nodes()[block.node]);
 }
 
-void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
-  Run run;
-  run.entries = lists_.entries().data + node.first_entry;
-  run.numbers = nullptr;
-  run.count = node.entries;
-  run.first = node.first_entry;
+// The run of a block, as yet without entries.
+Run TileDrawer::run_of(const Block& block) const {
+  Run run{};
   run.unit = !lists_.has_blocks();
   run.place = block.place;
   run.behind = by_blocks_;
-  run.sorted = false;
   run.voxel_px = voxel_px(block);
   run.side = uint32_t{1} << block.level;
-  if (block.level > kCubeLevel) {
-    draw_cubes(block, node, &run);
-    return;
-  }
   const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
   for (int axis = 0; axis < 3; ++axis) {
     run.corner[axis] = block.corner[axis] & ~cube;
     run.block[axis] = block.corner[axis] & cube;
   }
-  const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(node.face_area);
-  const float sorted_px = run.unit ? kSortedVoxelPx : kSortedPx;
+  return run;
+}
+
+void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
+  Run run = run_of(block);
+  run.entries = lists_.entries().data + node.first_entry;
+  run.count = node.entries;
+  run.first = node.first_entry;
+  if (block.level > kCubeLevel) {
+    draw_cubes(block, node, &run);
+    return;
+  }
+  const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(lists_.face_area(node));
+  const float sorted_px = !run.unit                                   ? kSortedPx
+                          : lists_.is_surface() && frame_.perspective ? kSortedSurfacePx
+                                                                      : kSortedVoxelPx;
   const bool is_large = face_px >= sorted_px * sorted_px * static_cast<float>(node.entries);
   if (by_blocks_ && run.count > 1 && run.count <= SortedRun::kMostBoxes && is_large &&
       !sorted_.cull_and_sort(frame_, block, eye_cell_, depths_, batch_, &run)) {

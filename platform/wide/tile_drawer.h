@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "wide/handover.h"
+#include "wide/hidden.h"
 #include "wide/kernels.h"
 #include "wide/sorted_run.h"
 #include "wide/voxel_lists.h"
@@ -23,6 +24,7 @@ class TileDrawer {
     const VoxelLists& lists;
     const WideFrame& frame;
     bool by_blocks;
+    const SolidStarts* starts;  ///< null where lists leave nothing out
   };
 
   /// `full`: see all_covered(); may be null without blocks. `others`: null, or the threads that draw other
@@ -47,6 +49,7 @@ class TileDrawer {
   static constexpr uint32_t kAhead = 8;
 
   bool is_leaf(const Block& block, const BlockNode& node, unsigned mask, bool is_tabled) const;
+  bool faces_eye(const Block& block, const BlockNode& node) const;
   bool is_hidden(const Block& block, bool is_tabled) const;
   bool has_table(const Block& block) const;
   bool is_flat(const Block& block) const;
@@ -58,6 +61,8 @@ class TileDrawer {
   void enqueue(const Block& block, const BlockNode& node);
   void fetch(const BlockNode& node, uint32_t done) const;
   void draw_oldest();
+  void draw_starts();
+  Run run_of(const Block& block) const;
   void draw_block(const Block& block, const BlockNode& node);
   void draw_cubes(const Block& block, const BlockNode& node, Run* run);
 
@@ -68,6 +73,7 @@ class TileDrawer {
 
   const VoxelLists& lists_;
   WideFrame frame_;
+  const SolidStarts* starts_;
   const Depths& depths_;
   uint8_t* full_;
   bool by_blocks_;

@@ -1,6 +1,8 @@
 #include "wide/voxel_lists.h"
 
 #include "thimble/tree/morton.h"
+#include "wide/surface.h"
+#include "wide/surface_list.h"
 
 namespace thimble::wide {
 namespace {
@@ -9,6 +11,9 @@ namespace {
 struct Census {
   uint32_t level_begin[kMaxLevel + 2];  // by level; [0] is the number of nodes
   uint64_t boxes = 0;
+  uint64_t added = 0;      // by splitting blocks into voxels
+  uint64_t volume = 0;     // in voxels
+  uint64_t removable = 0;  // voxels that may be hidden: no more are
   bool has_blocks = false;
   bool splits = false;  // whether blocks are given as their voxels; then `boxes` counts these
 };
@@ -16,6 +21,11 @@ struct Census {
 // Lists of single voxels are drawn faster. Blocks are split into voxels when that adds at most a box for so
 // many.
 constexpr uint64_t kBoxesPerAdded = 8;
+// And a surface is listed when more than one voxel in so many may be hidden.
+constexpr uint64_t kVoxelsPerHidden = 4;
+// A list of boxes stands beside a surface when it has at most so many, or one for so many voxels of it.
+constexpr uint64_t kFewBoxesBeside = uint64_t{1} << 20;
+constexpr uint64_t kVoxelsPerBoxBeside = 4;
 
 // Solid blocks larger than a cube of entries are given as cubes.
 uint32_t pieces_of(int level) {
@@ -23,7 +33,6 @@ uint32_t pieces_of(int level) {
 }
 
 bool count(const CompactTree& tree, Census* census) {
-  uint64_t added = 0;  // by splitting
   uint32_t begin = 0;
   uint32_t end = tree.empty() ? 0 : 1;
   for (int level = tree.level(); level >= 1; --level) {
@@ -35,12 +44,16 @@ bool count(const CompactTree& tree, Census* census) {
       if (mask == 0) {
         census->boxes += pieces_of(level);
         census->has_blocks = true;
-        // Where a block is too large to be split, any number that is too many will do.
-        added += level < kCubeLevel ? (uint64_t{1} << (3 * level)) - 1 : UINT32_MAX;
+        census->volume += uint64_t{1} << (3 * level);
+        census->removable += uint64_t{1} << (3 * level);
+        census->added += (uint64_t{1} << (3 * level)) - pieces_of(level);
+      } else if (level == 1) {
+        census->removable += most_hidden(mask);
       }
     }
     if (level == 1) {
       census->boxes += children;
+      census->volume += children;
     } else if (children > tree.node_count() - end) {
       return false;
     }
@@ -48,37 +61,35 @@ bool count(const CompactTree& tree, Census* census) {
     end += level == 1 ? 0 : static_cast<uint32_t>(children);
   }
   census->level_begin[0] = begin;
-  census->splits = census->has_blocks && !tree.merged() && added <= census->boxes / kBoxesPerAdded;
+  return begin == tree.node_count() && census->boxes <= UINT32_MAX;
+}
+
+// Gives blocks as their voxels where that adds few, or where voxels are wanted.
+void split_blocks(const CompactTree& tree, bool wants_voxels, Census* census) {
+  const uint64_t voxels = census->boxes + census->added;
+  const bool are_few = census->added <= census->boxes / kBoxesPerAdded && voxels <= UINT32_MAX;
+  census->splits =
+      census->has_blocks && !tree.merged() && (are_few || (wants_voxels && voxels <= kMostSurface));
   if (census->splits) {
-    census->boxes += added;
+    census->boxes = voxels;
     census->has_blocks = false;
   }
-  return begin == tree.node_count() && census->boxes <= UINT32_MAX;
 }
 
 // So many nodes cost little, whatever the boxes: a megabyte.
 constexpr uint64_t kFreeNodes = 65536;
 
-// Chooses the lowest level whose nodes, with all above them, are at most a sixteenth of the boxes, or few.
-int choose_block_level(const CompactTree& tree, const Census& census) {
+// Chooses the lowest level, `least` or above, whose nodes, with all above them, are at most a sixteenth of the
+// boxes, or few. `level_begin[level - 1]`: how many nodes there are of that level and above.
+int choose_block_level(int world_level, const uint32_t* level_begin, uint64_t boxes, int least) {
   // A sixteenth suits the mean of a tree; one that is crowded in a corner wants more nodes.
-  const uint64_t quarter = census.boxes / 4 < kFreeNodes ? census.boxes / 4 : kFreeNodes;
-  const uint64_t most = census.boxes / 16 > quarter ? census.boxes / 16 : quarter > 4096 ? quarter : 4096;
-  int level = tree.level() < kCubeLevel ? tree.level() : kCubeLevel;
-  while (level > 1 && census.level_begin[level - 2] <= most) {
+  const uint64_t quarter = boxes / 4 < kFreeNodes ? boxes / 4 : kFreeNodes;
+  const uint64_t most = boxes / 16 > quarter ? boxes / 16 : quarter > 4096 ? quarter : 4096;
+  int level = world_level < kCubeLevel ? world_level : kCubeLevel;
+  while (level > least && level_begin[level - 2] <= most) {
     --level;
   }
   return level;
-}
-
-uint32_t packed(const uint32_t (&corner)[3], int level) {
-  const uint32_t within = (uint32_t{1} << kCubeLevel) - 1;
-  const uint32_t x = corner[0] & within;
-  const uint32_t y = corner[1] & within;
-  const uint32_t z = corner[2] & within;
-  const uint32_t side = level < 3 ? static_cast<uint32_t>(level) : 3;
-  const uint32_t more = level < 3 ? 0 : static_cast<uint32_t>(level - 3);
-  return x | more | y << 10 | z << 20 | side << 30;
 }
 
 template <class T>
@@ -89,15 +100,7 @@ T* array(Arena* arena, uint64_t count) {
 // Walks the tree down and across, in Morton order, and writes entries and block nodes.
 class ListWriter {
  public:
-  // Where the lists are written. `materials` and `merged` are null where the tree has none.
-  struct Lists {
-    uint32_t* entries;
-    BlockNode* nodes;
-    uint8_t* materials;
-    uint8_t* merged;
-  };
-
-  ListWriter(const CompactTree& tree, const Census& census, int block_level, const Lists& to)
+  ListWriter(const CompactTree& tree, const Census& census, int block_level, const ListTo& to)
       : tree_(tree), census_(census), block_level_(block_level), to_(to), voxel_(tree.node_count()) {
     for (int level = 1; level <= tree.level(); ++level) {
       next_node_[level] = census.level_begin[level];
@@ -124,7 +127,8 @@ class ListWriter {
       if (level >= block_level_) {
         BlockNode& node = to_.nodes[visit.node];
         node.entries = written_ - node.first_entry;
-        node.face_area = static_cast<uint32_t>(face_area_) - node.face_area;
+        node.area_or_mask = census_.has_blocks ? static_cast<uint32_t>(face_area_) - node.area_or_mask
+                                               : 0xFF00U | tree_.mask(visit.node);
       }
       if (level == tree_.level()) {
         return;
@@ -197,7 +201,7 @@ class ListWriter {
   const CompactTree& tree_;
   const Census& census_;
   int block_level_;
-  Lists to_;
+  ListTo to_;
   uint32_t next_node_[kMaxLevel + 1];
   Visit visits_[kMaxLevel + 1];
   uint32_t corner_[3] = {0, 0, 0};
@@ -206,53 +210,154 @@ class ListWriter {
   uint64_t face_area_ = 0;
 };
 
-}  // namespace
+// What is listed of a tree.
+struct Plan {
+  Census census;  // of the boxes
+  SurfaceCount surface;
+  bool has_surface = false;
+  bool has_boxes = true;
+  int box_level = 0;      // the block level of either list
+  int surface_level = 0;  // the same
 
-size_t VoxelLists::bytes(const CompactTree& tree) {
-  Census census;
+  uint64_t box_nodes() const { return census.boxes == 0 ? 0 : census.level_begin[box_level - 1]; }
+  uint64_t surface_nodes() const { return surface.level_begin[surface_level - 1]; }
+};
+
+bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
+  Census& census = plan->census;
   if (!count(tree, &census)) {
-    return 0;
+    return false;
   }
-  const int level = choose_block_level(tree, census);
-  const size_t nodes = tree.empty() ? 0 : census.level_begin[level - 1];
-  return census.boxes * (sizeof(uint32_t) + (tree.many_materials() ? 1 : 0) + (tree.merged() ? 1 : 0)) +
-         kEntriesAhead * sizeof(uint32_t) + nodes * sizeof(BlockNode) + 4 * 64;
+  const bool may_be_surface = kind == ListKind::kFastest && !tree.merged() && tree.level() >= 2;
+  const bool is_solid = census.removable > census.volume / kVoxelsPerHidden;
+  if (may_be_surface && is_solid && !tree.empty()) {
+    plan->surface = count_surface(tree, census.level_begin);
+    plan->has_surface = plan->surface.entries < kMostSurface;
+  }
+  if (plan->has_surface) {
+    plan->has_boxes =
+        census.boxes <= kFewBoxesBeside || census.boxes <= plan->surface.entries / kVoxelsPerBoxBeside;
+    // Beside the surface, only blocks as blocks are of use.
+    plan->has_boxes = plan->has_boxes && census.has_blocks;
+    plan->surface_level =
+        choose_block_level(tree.level(), plan->surface.level_begin, plan->surface.entries, 2);
+  } else {
+    split_blocks(tree, may_be_surface && !is_solid, &census);
+  }
+  plan->box_level = choose_block_level(tree.level(), census.level_begin, census.boxes, 1);
+  return true;
 }
 
-Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists) {
-  Census census;
-  if (!count(tree, &census)) {
+size_t bytes_of(uint64_t entries, uint64_t nodes, bool has_materials, bool has_merged) {
+  return static_cast<size_t>(entries * (sizeof(uint32_t) + (has_materials ? 1 : 0) + (has_merged ? 1 : 0)) +
+                             kEntriesAhead * sizeof(uint32_t) + nodes * sizeof(BlockNode) + 4 * 64);
+}
+
+// Takes room for a list. Returns whether there was enough.
+bool take_list(uint64_t entries, uint64_t nodes, bool has_materials, uint64_t materials_behind,
+               bool has_merged, Arena* arena, ListTo* to) {
+  to->entries = array<uint32_t>(arena, entries + kEntriesAhead);
+  to->nodes = array<BlockNode>(arena, nodes);
+  to->materials = has_materials ? array<uint8_t>(arena, entries + materials_behind) : nullptr;
+  to->merged = has_merged ? array<uint8_t>(arena, entries) : nullptr;
+  if (to->entries == nullptr || (to->nodes == nullptr && nodes != 0) ||
+      (to->materials == nullptr && has_materials && entries != 0) ||
+      (to->merged == nullptr && has_merged && entries != 0)) {
+    return false;
+  }
+  for (uint32_t i = 0; i < kEntriesAhead; ++i) {
+    to->entries[entries + i] = 0;
+  }
+  return true;
+}
+
+}  // namespace
+
+class ListMaker {
+ public:
+  ListMaker(const CompactTree& tree, const Plan& plan) : tree_(tree), plan_(plan) {}
+
+  bool make_boxes(Arena* arena, VoxelLists::List* list) const {
+    const Census& census = plan_.census;
+    ListTo to{};
+    if (!take_list(census.boxes, plan_.box_nodes(), tree_.many_materials(), 0, tree_.merged(), arena, &to)) {
+      return false;
+    }
+    ListWriter writer(tree_, census, plan_.box_level, to);
+    if (!tree_.empty()) {
+      writer.write();
+    }
+    fill(to, writer.written(), plan_.box_nodes(), 0, list);
+    list->block_level = plan_.box_level;
+    list->face_area = writer.face_area();
+    list->has_blocks = census.has_blocks;
+    return true;
+  }
+
+  bool make_surface(Arena* arena, VoxelLists::List* list) const {
+    const uint64_t entries = plan_.surface.entries;
+    ListTo to{};
+    if (!take_list(entries, plan_.surface_nodes(), tree_.many_materials(), kMaterials, false, arena, &to)) {
+      return false;
+    }
+    write_surface(tree_, plan_.census.level_begin, plan_.surface, plan_.surface_level, to);
+    for (uint32_t material = 0; to.materials != nullptr && material < kMaterials; ++material) {
+      to.materials[entries + material] = static_cast<uint8_t>(material);
+    }
+    fill(to, entries, plan_.surface_nodes(), kMaterials, list);
+    list->block_level = plan_.surface_level;
+    list->face_area = entries;
+    list->is_surface = true;
+    return true;
+  }
+
+ private:
+  static constexpr uint32_t kMaterials = 256;
+
+  static void fill(const ListTo& to, uint64_t entries, uint64_t nodes, uint64_t materials_behind,
+                   VoxelLists::List* list) {
+    const size_t size = static_cast<size_t>(entries);
+    list->entries = Span<const uint32_t>(to.entries, size);
+    list->nodes = Span<const BlockNode>(to.nodes, static_cast<size_t>(nodes));
+    list->merged = Span<const uint8_t>(to.merged, to.merged == nullptr ? 0 : size);
+    list->materials = Span<const uint8_t>(
+        to.materials, to.materials == nullptr ? 0 : size + static_cast<size_t>(materials_behind));
+  }
+
+  const CompactTree& tree_;
+  const Plan& plan_;
+};
+
+VoxelLists VoxelLists::boxes_beside() const {
+  VoxelLists other;
+  other.tree_ = tree_;
+  other.list_ = beside_;
+  return other;
+}
+
+size_t VoxelLists::bytes(const CompactTree& tree, ListKind kind) {
+  Plan plan;
+  if (!make_plan(tree, kind, &plan)) {
+    return 0;
+  }
+  const bool many = tree.many_materials();
+  return (plan.has_surface ? bytes_of(plan.surface.entries, plan.surface_nodes(), many, false) + 256 : 0) +
+         (plan.has_boxes ? bytes_of(plan.census.boxes, plan.box_nodes(), many, tree.merged()) : 0);
+}
+
+Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists, ListKind kind) {
+  Plan plan;
+  if (!make_plan(tree, kind, &plan)) {
     return Status::kDamaged;
   }
   VoxelLists made;
   made.tree_ = tree;
-  made.has_blocks_ = census.has_blocks;
-  made.block_level_ = choose_block_level(tree, census);
-  const size_t node_count = tree.empty() ? 0 : census.level_begin[made.block_level_ - 1];
   Arena taken = *arena;
-  ListWriter::Lists to{};
-  to.entries = array<uint32_t>(&taken, census.boxes + kEntriesAhead);
-  to.nodes = array<BlockNode>(&taken, node_count);
-  to.materials = tree.many_materials() ? array<uint8_t>(&taken, census.boxes) : nullptr;
-  to.merged = tree.merged() ? array<uint8_t>(&taken, census.boxes) : nullptr;
-  if (to.entries == nullptr || (to.nodes == nullptr && node_count != 0) ||
-      (to.materials == nullptr && tree.many_materials() && census.boxes != 0) ||
-      (to.merged == nullptr && tree.merged() && census.boxes != 0)) {
+  const ListMaker maker(tree, plan);
+  if ((plan.has_surface && !maker.make_surface(&taken, &made.list_)) ||
+      (plan.has_boxes && !maker.make_boxes(&taken, plan.has_surface ? &made.beside_ : &made.list_))) {
     return Status::kOutOfMemory;
   }
-  ListWriter writer(tree, census, made.block_level_, to);
-  if (!tree.empty()) {
-    writer.write();
-  }
-  const uint32_t written = writer.written();
-  for (uint32_t i = 0; i < kEntriesAhead; ++i) {
-    to.entries[written + i] = 0;
-  }
-  made.face_area_ = writer.face_area();
-  made.entries_ = Span<const uint32_t>(to.entries, written);
-  made.nodes_ = Span<const BlockNode>(to.nodes, node_count);
-  made.merged_ = Span<const uint8_t>(to.merged, to.merged == nullptr ? 0 : written);
-  made.materials_ = Span<const uint8_t>(to.materials, to.materials == nullptr ? 0 : written);
   *arena = taken;
   *lists = made;
   return Status::kOk;

@@ -9,12 +9,17 @@
 ///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner
 ///     8-aligned
 ///
-/// Where a tree has so few solid blocks that splitting them into voxels adds at most an eighth to its
-/// boxes, they are given as single voxels, since lists of nothing else are drawn faster. Blocks that
-/// coarsening made stay blocks.
+/// Lists of nothing but single voxels are drawn faster than blocks of several sizes. So where a tree holds
+/// solid blocks, or voxels crowded so that many are hidden, only its surface is listed: voxels with six solid
+/// neighbours are left out. A ray enters such a voxel either where it begins, or through an edge or corner,
+/// between two listed ones that it touches without hitting them; hidden.h says how these pixels are found.
+/// Where little would be left out (a quarter at most) all voxels are listed. Where the boxes are few beside
+/// the surface, a list of them stands beside it, for views in which voxels look large. Trees that were
+/// coarsened are given as their boxes: a merged block stays one.
 ///
-/// Every node of the tree covers a run of entries. The lists keep the nodes of `block_level` and above with
-/// their runs, so that whole blocks can be skipped, or drawn front to back.
+/// A node covers a run of entries. The lists keep the nodes of `block_level` and above with their runs, so
+/// that whole blocks can be skipped, or drawn front to back. A list of boxes has the tree's nodes, one of a
+/// surface has nodes of its own, also within solid blocks, and none without entries.
 #ifndef THIMBLE_PLATFORM_WIDE_VOXEL_LISTS_H
 #define THIMBLE_PLATFORM_WIDE_VOXEL_LISTS_H
 
@@ -33,12 +38,25 @@ inline constexpr int kCubeLevel = 10;
 /// So many zeros stand behind the entries, so that vectors can be read to the end.
 inline constexpr uint32_t kEntriesAhead = 64;
 
-/// A node of the tree at block level or above.
+/// A surface has fewer entries than this: behind them materials 0 .. 255 have numbers (VoxelLists::hidden).
+inline constexpr uint64_t kMostSurface = (uint64_t{1} << 28) - 256;
+
+/// A node of the lists at block level or above.
 struct BlockNode {
   uint32_t first_entry;
   uint32_t entries;
-  uint32_t first_child;  ///< number of its first child; the mask is the tree's
-  uint32_t face_area;    ///< the sum over its entries of the area of a face, in square voxels, modulo 2^32
+  uint32_t first_child;  ///< number of its first child
+  /// With blocks, the sum over its entries of the area of a face, in square voxels, modulo 2^32. Else the mask
+  /// of its children; and from bit 8 on a bit for each of the eight ways in which rays run (downwards along an
+  /// axis where the bit's number says so): whether any of its voxels may be seen so. Behind solid neighbours on
+  /// all three sides that face the eye none is (hidden.h).
+  uint32_t area_or_mask;
+};
+
+/// Which lists are made.
+enum class ListKind : uint8_t {
+  kFastest,  ///< what is drawn fastest
+  kBoxes,    ///< the boxes of the tree alone, in voxels where that adds at most an eighth
 };
 
 /// The lists of one tree, in bytes that the caller gave. 4 bytes a box, 1 more with many materials, 1 more
@@ -46,35 +64,63 @@ struct BlockNode {
 /// boxes, or 4096, or one in 4 boxes up to 65536.
 class VoxelLists {
  public:
-  /// Makes the lists; takes `bytes(tree)` from the arena. One pass over the masks and one over the boxes.
-  /// kOutOfMemory, with nothing taken, when they do not fit; kDamaged for a tree that does not validate.
-  static Status make(const CompactTree& tree, Arena* arena, VoxelLists* lists);
-  /// What `make` takes at most. Reads all masks.
-  static size_t bytes(const CompactTree& tree);
+  /// Makes the lists; takes `bytes(tree, kind)` from the arena. One pass over the masks and one over the
+  /// boxes; over the surface two. kOutOfMemory, with nothing taken, when they do not fit; kDamaged for a tree
+  /// that does not validate.
+  static Status make(const CompactTree& tree, Arena* arena, VoxelLists* lists,
+                     ListKind kind = ListKind::kFastest);
+  /// What `make` takes at most. Reads all masks, and walks the surface once.
+  static size_t bytes(const CompactTree& tree, ListKind kind = ListKind::kFastest);
 
   const CompactTree& tree() const { return tree_; }
-  Span<const uint32_t> entries() const { return entries_; }
-  /// Materials of the entries; empty where the tree has one material.
-  Span<const uint8_t> materials() const { return materials_; }
+  Span<const uint32_t> entries() const { return list_.entries; }
+  /// Materials of the entries; empty where the tree has one material. Behind those of a surface stand all
+  /// 256, in their order.
+  Span<const uint8_t> materials() const { return list_.materials; }
   /// 1 for entries that coarsening made: a hit on one is a hit on the block, not on a voxel of it. Empty
   /// where the tree has none.
-  Span<const uint8_t> merged() const { return merged_; }
-  Span<const BlockNode> nodes() const { return nodes_; }
-  int block_level() const { return block_level_; }
+  Span<const uint8_t> merged() const { return list_.merged; }
+  Span<const BlockNode> nodes() const { return list_.nodes; }
+  int block_level() const { return list_.block_level; }
   /// The sum over all entries of the area of a face, in square voxels.
-  uint64_t face_area() const { return face_area_; }
+  uint64_t face_area() const { return list_.face_area; }
   /// Whether any entry is more than one voxel.
-  bool has_blocks() const { return has_blocks_; }
+  bool has_blocks() const { return list_.has_blocks; }
+  /// Whether voxels are left out that have six solid neighbours. A hidden voxel that is hit after all has the
+  /// number of its material, entries().size and on.
+  bool is_surface() const { return list_.is_surface; }
+  /// Whether a list of boxes stands beside that of the surface; and it.
+  bool has_boxes_beside() const { return beside_.entries.size != 0; }
+  VoxelLists boxes_beside() const;
+
+  /// The children of a node that have entries; a node of the block level may have none, or some that are not
+  /// kept.
+  unsigned children(uint32_t node) const {
+    return list_.has_blocks ? tree_.mask(node) : list_.nodes[node].area_or_mask & 0xFFU;
+  }
+  /// In which of eight ways rays must run to meet any voxel of the node first (BlockNode).
+  unsigned facing(const BlockNode& node) const {
+    return list_.has_blocks ? 0xFFU : node.area_or_mask >> 8 & 0xFFU;
+  }
+  uint32_t face_area(const BlockNode& node) const {
+    return list_.has_blocks ? node.area_or_mask : node.entries;
+  }
 
  private:
+  friend class ListMaker;
+  struct List {
+    Span<const uint32_t> entries;
+    Span<const uint8_t> materials;
+    Span<const uint8_t> merged;
+    Span<const BlockNode> nodes;
+    uint64_t face_area = 0;
+    int block_level = 0;
+    bool has_blocks = false;
+    bool is_surface = false;
+  };
   CompactTree tree_;
-  Span<const uint32_t> entries_;
-  Span<const uint8_t> materials_;
-  Span<const uint8_t> merged_;
-  Span<const BlockNode> nodes_;
-  uint64_t face_area_ = 0;
-  int block_level_ = 0;
-  bool has_blocks_ = false;
+  List list_;
+  List beside_;
 };
 
 }  // namespace thimble::wide

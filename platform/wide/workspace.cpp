@@ -41,6 +41,17 @@ Depths Workspace::make_depths(const Layout& layout, Arena* arena) const {
   depths.covered =
       reinterpret_cast<uint32_t*>(arena->take(covered_words(layout.width_px, rows_) * sizeof(uint32_t)).data);
   depths.marks = layout.by_blocks || layout.gray_scale == nullptr;
+  // In the bytes of the marks, which sparse pictures have no use for: a byte and a number for each piece, where
+  // marks take 32.
+  depths.is_touched = nullptr;
+  depths.touched = nullptr;
+  if (layout.is_sparse) {
+    const size_t pieces = pixels / (32 * kPieceWords) + 1;
+    depths.touched = depths.covered;
+    depths.is_touched = reinterpret_cast<uint8_t*>(depths.covered + 1 + pieces);
+    depths.touched[0] = 0;
+    memset(depths.is_touched, 0, pieces);
+  }
   depths.rows = rows_;
   depths.first_row = layout.first_row;
   return depths;
@@ -52,7 +63,7 @@ void Workspace::clear(const Depths& depths, int32_t y, int32_t rows) const {
     if (depths.marks) {
       memset(depths.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
     }
-    if (depths.gray_scale != nullptr) {
+    if (depths.gray_scale != nullptr && depths.is_touched == nullptr) {
       memset(depths.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
     }
   }

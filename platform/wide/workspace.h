@@ -21,9 +21,12 @@ class Workspace {
     int threads;
     int copies;  ///< of the picture: 1 .. kMostCopies
     bool by_blocks;
+    bool is_sparse;               ///< whether codes are cleared where they are written (Depths::is_touched)
     const GrayScale* gray_scale;  ///< null: without greys
     const Shading* shading;
   };
+  /// A smaller picture is never sparse: there is nothing to be had.
+  static constexpr size_t kLeastSparseWords = 64;
   /// What a layout takes at most.
   static size_t bytes(int32_t width_px, int32_t rows, int threads);
 

@@ -101,6 +101,10 @@ TEST_CASE("join: rows drawn apart, in any order -> byte for byte the picture of 
       {tower, {}},
       {tower, {"--ground", "on", "--background", "gradient", "--samples", "1"}},
       {tower, {"--background", "none"}, {"png"}},
+      {tower, {"--samples", "auto"}},
+      {tower, {"--samples", "auto", "--background", "none"}, {"png"}},
+      {tower, {"--effects", "all", "--samples", "auto"}},
+      {tower, {"--shade", "color", "--samples", "auto", "--cutoff", "2"}},
       {tower, {"--shade", "depth"}},
       {tower, {"--shade", "color", "--samples", "4", "--cutoff", "2"}},
       {tower, {"--shade", "normal", "--structure", "pool"}},
@@ -162,6 +166,7 @@ TEST_CASE("join: who draws and how fast is not in a part, what changes the pictu
   check_other({"--shade", "depth", "--size", "40x31"}, "40x31");
   check_other({"--shade", "normal", "--size", "40x30"}, "options");
   check_other({"--shade", "depth", "--size", "40x30", "--samples", "4"}, "options");
+  check_other({"--shade", "depth", "--size", "40x30", "--samples", "auto"}, "options");
   check_other({"--size", "40x30"}, "options");
   const std::string other =
       folder.write("other.scene", std::string(kTower) + "box roof from 1 1 1 to 2 2 2\n");

@@ -208,7 +208,8 @@ TEST_CASE("render effects: every format -> the pixels that the core gives; greys
   for (const std::string& scene : {std::string("water"), folder.write("a.scene", kScene)}) {
     CAPTURE(scene);
     const Direct color = draw_directly(scene, thimble::PixelFormat::kRgb888);
-    const Picture ppm = render(scene, {});
+    CHECK(render(scene, {}).bytes == "P6\n48 36\n255\n" + color.pixels);
+    const Picture ppm = render(scene, {"--engine", "ray64"});  // the visits are those of what traces
     CHECK(ppm.bytes == "P6\n48 36\n255\n" + color.pixels);
     CHECK(render(scene, {}, ".pgm").bytes ==
           "P5\n48 36\n255\n" + draw_directly(scene, thimble::PixelFormat::kGray8).pixels);
@@ -240,7 +241,7 @@ TEST_CASE("render effects: baked, or read again -> the same picture") {
 TEST_CASE("render effects: a short budget -> the same picture in bands of fewer rows, or a sentence") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kScene);
-  const Picture drawn = render(scene, {"--threads", "1"});  // as within a budget
+  const Picture drawn = render(scene, {"--engine", "ray64", "--threads", "1"});  // as within a budget
   // The least budget, by halving.
   const auto fits = [&](int bytes) {
     return run_command({"render", scene, "--size", "48x36", "--quiet", "-o", folder.path("b.ppm"),
@@ -305,6 +306,7 @@ TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 
     check_refused("spheres", {"--bounces", wrong}, 2, {"--bounces", "0 to 8"});
   }
   for (const Words& more : {Words{"--samples", "4"},
+                            {"--samples", "auto"},
                             {"--cutoff", "2"},
                             {"--max-depth", "3"},
                             {"--effects", "sky"},

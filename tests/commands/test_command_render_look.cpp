@@ -17,7 +17,7 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 
 // Coloured boxes on legs, so that there is something to cast a shadow.
-constexpr const char* kScene = R"(depth 5
+constexpr const char* kLookScene = R"(depth 5
 material wall color 200 60 40
 material roof color 60 90 200
 box wall from 8 8 6 to 24 20 18
@@ -171,7 +171,7 @@ Gif decode(const std::string& file) {
 
 TEST_CASE("render look: a scene with colours and nothing said -> light, shadows, a backdrop, four samples") {
   const TemporaryFolder folder;
-  const Drawn drawn = draw(folder.write("a.scene", kScene), {"--verbose"});
+  const Drawn drawn = draw(folder.write("a.scene", kLookScene), {"--verbose"});
   CHECK(drawn.stats["engine"] == "lit");
   CHECK(drawn.stats["effects"] == json({"direct-light", "shadows", "ambient-occlusion"}));
   CHECK(drawn.stats["samples"] == 4);
@@ -190,7 +190,7 @@ TEST_CASE("render look: a scene with colours and nothing said -> light, shadows,
 
 TEST_CASE("render look: any number of threads, any budget that fits -> the same pixels") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("a.scene", kScene);
+  const std::string scene = folder.write("a.scene", kLookScene);
   for (const std::string& one : {scene, std::string("points:3000,depth=7")}) {
     const Drawn first = draw(one, {"--quiet"});
     for (const char* const threads : {"2", "3", "5"}) {
@@ -226,7 +226,7 @@ TEST_CASE("render look: nothing in the scene -> the backdrop, and no crash") {
 TEST_CASE(
     "render look: --background -> a colour behind; none -> an alpha that is 0 there and 255 on the model") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("a.scene", kScene);
+  const std::string scene = folder.write("a.scene", kLookScene);
   const Drawn red = draw(scene, {"--quiet", "--background", "ff2010", "--ground", "off"});
   CHECK(red.pixels.substr(0, 3) == std::string("\xff\x20\x10"));
   const Drawn shadow = draw(scene, {"--quiet", "--background", "ff2010", "--ground", "on"});
@@ -246,7 +246,7 @@ TEST_CASE(
 
 TEST_CASE("render look: --view, --turn and --tilt -> other pictures, and the same by another name") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("a.scene", kScene);
+  const std::string scene = folder.write("a.scene", kLookScene);
   const auto pixels = [&](const Words& words) {
     Words all{"--quiet"};
     all.insert(all.end(), words.begin(), words.end());
@@ -265,7 +265,7 @@ TEST_CASE("render look: --view, --turn and --tilt -> other pictures, and the sam
 
 TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each near its own picture") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("a.scene", kScene);
+  const std::string scene = folder.write("a.scene", kLookScene);
   const std::string path = folder.path("a.gif");
   const CommandResult result =
       run_command({"render", scene, "--size", "90x70", "--turntable", "7", "-o", path, "--quiet"});

@@ -17,12 +17,12 @@ namespace {
 using namespace thimble::tests;
 using nlohmann::json;
 
-struct Picture {
+struct QualityPicture {
   std::string bytes;
   json stats;
 };
 
-Picture render(const std::vector<std::string>& more, const std::string& scene = "spheres") {
+QualityPicture render_ppm(const std::vector<std::string>& more, const std::string& scene = "spheres") {
   const TemporaryFolder folder;
   std::vector<std::string> words{"render",
                                  scene,
@@ -44,11 +44,12 @@ Picture render(const std::vector<std::string>& more, const std::string& scene = 
 
 TEST_CASE("render quality: the least of each option -> the very picture and counts without it") {
   for (const char* projection : {"perspective", "orthographic"}) {
-    const Picture plain = render({"--projection", projection, "--shade", "color"});
+    const QualityPicture plain = render_ppm({"--projection", projection, "--shade", "color"});
     for (const std::vector<std::string>& option :
          {std::vector<std::string>{"--samples", "1"}, {"--cutoff", "0"}, {"--max-depth", "6"}}) {
       INFO(option[0]);
-      const Picture same = render({"--projection", projection, "--shade", "color", option[0], option[1]});
+      const QualityPicture same =
+          render_ppm({"--projection", projection, "--shade", "color", option[0], option[1]});
       CHECK(same.bytes == plain.bytes);
       CHECK(same.stats["node_visits"] == plain.stats["node_visits"]);
       CHECK(same.stats["hits"] == plain.stats["hits"]);
@@ -59,25 +60,26 @@ TEST_CASE("render quality: the least of each option -> the very picture and coun
 }
 
 TEST_CASE("render quality: more of each -> samples multiply rays, a cut-off and a depth save visits") {
-  const Picture plain = render({"--shade", "color"});
-  const Picture sampled = render({"--shade", "color", "--samples", "9"});
+  const QualityPicture plain = render_ppm({"--shade", "color"});
+  const QualityPicture sampled = render_ppm({"--shade", "color", "--samples", "9"});
   CHECK(sampled.stats["rays"] == 9 * 64 * 48);
   CHECK(sampled.stats["samples"] == 9);
   CHECK(sampled.bytes != plain.bytes);
   CHECK(sampled.bytes.size() == plain.bytes.size());
   std::uint64_t before = plain.stats["node_visits"];
   for (const char* pixels : {"2", "4", "16"}) {
-    const Picture cut = render({"--shade", "color", "--cutoff", pixels});
+    const QualityPicture cut = render_ppm({"--shade", "color", "--cutoff", pixels});
     const std::uint64_t visits = cut.stats["node_visits"];
     CHECK(visits < before);
     CHECK(cut.stats["hits"] >= plain.stats["hits"]);
     CHECK(cut.stats["cutoff_px"] == std::atof(pixels));
     before = visits;
   }
-  const Picture shallow = render({"--shade", "color", "--max-depth", "4"});
+  const QualityPicture shallow = render_ppm({"--shade", "color", "--max-depth", "4"});
   CHECK(shallow.stats["node_visits"] < plain.stats["node_visits"]);
   CHECK(shallow.stats["max_depth"] == 4);
-  const Picture all = render({"--shade", "color", "--max-depth", "5", "--cutoff", "3", "--samples", "4"});
+  const QualityPicture all =
+      render_ppm({"--shade", "color", "--max-depth", "5", "--cutoff", "3", "--samples", "4"});
   CHECK(all.stats["rays"] == 4 * 64 * 48);
 }
 
@@ -112,8 +114,8 @@ TEST_CASE("render quality: samples -> the mean of the same view drawn larger, pi
 }
 
 TEST_CASE("render quality: samples that are no square -> the next square's picture, and it is said") {
-  CHECK(render({"--samples", "8"}).bytes == render({"--samples", "9"}).bytes);
-  CHECK(render({"--samples", "50"}).stats["samples"] == 64);
+  CHECK(render_ppm({"--samples", "8"}).bytes == render_ppm({"--samples", "9"}).bytes);
+  CHECK(render_ppm({"--samples", "50"}).stats["samples"] == 64);
   const std::vector<std::string> words{"render", "spheres", "--size", "8x6", "--samples", "8", "-o", "-"};
   CHECK(run_command(words).err.find("note: --samples 8 is not a square; 9 are taken") != std::string::npos);
   std::vector<std::string> quiet = words;
@@ -178,6 +180,10 @@ TEST_CASE("render quality: bad values -> status 2; what cannot be done -> status
   refused({"--cutoff", "1", "--structure", "pool"}, 1, "--structure compact");
   refused({"--max-depth", "4", "--structure", "dense"}, 1, "--structure compact");
   refused({"--samples", "64", "--size", "2049x10"}, 1, "2048");
+  for (const char* value : {"autos", "aut", "auto,4", "auto4"}) {
+    refused({"--samples", value}, 2, "neither auto nor");
+  }
+  refused({"--samples", "auto", "--size", "10x4097"}, 1, "--samples auto wants a picture of at most 4096");
 }
 
 TEST_CASE(
@@ -185,7 +191,7 @@ TEST_CASE(
   const TemporaryFolder folder;
   const std::string baked = folder.path("s.oct");
   REQUIRE(run_command({"bake", "spheres", "--quiet", "-o", baked}).status == 0);
-  const Picture plain = render({"--shade", "color", "--cutoff", "0"}, baked);
+  const QualityPicture plain = render_ppm({"--shade", "color", "--cutoff", "0"}, baked);
   const std::string budget = std::to_string(plain.stats["high_water_bytes"].get<std::uint64_t>());
   const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"render", baked,      "--size", "64x48",    "--quiet", "-o",

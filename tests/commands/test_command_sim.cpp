@@ -15,7 +15,7 @@ using namespace thimble::tests;
 using Words = std::vector<std::string>;
 
 // Small, so that baking takes no time worth the name.
-constexpr const char* kScene = "spheres,depth=4";
+constexpr const char* kSimScene = "spheres,depth=4";
 
 CommandResult sim(Words words) {
   words.insert(words.begin(), "sim");
@@ -23,7 +23,7 @@ CommandResult sim(Words words) {
   return run_command(words);
 }
 
-void check_refused(const Words& words, int status, const Words& named) {
+void check_sim_refused(const Words& words, int status, const Words& named) {
   const CommandResult result = sim(words);
   CAPTURE(words.back());
   CAPTURE(result.describe());
@@ -47,12 +47,12 @@ std::string pixels_of(const std::string& pgm) {
 TEST_CASE("sim: --shot, then --check with it -> equal; with another frame -> status 1, how many and where") {
   const TemporaryFolder folder;
   const std::string shot = folder.path("a.png");
-  CHECK(sim({kScene, "--frames", "2", "--shot", shot, "--quiet"}).status == 0);
-  const CommandResult equal = sim({kScene, "--frames", "2", "--check", shot});
+  CHECK(sim({kSimScene, "--frames", "2", "--shot", shot, "--quiet"}).status == 0);
+  const CommandResult equal = sim({kSimScene, "--frames", "2", "--check", shot});
   CAPTURE(equal.describe());
   CHECK(equal.status == 0);
   CHECK(equal.err.find("equal") != std::string::npos);
-  const CommandResult differs = sim({kScene, "--frames", "9", "--check", shot, "--quiet"});
+  const CommandResult differs = sim({kSimScene, "--frames", "9", "--check", shot, "--quiet"});
   CAPTURE(differs.describe());
   CHECK(differs.status == 1);
   CHECK(is_one_sentence(differs.err));
@@ -64,13 +64,13 @@ TEST_CASE("sim: --shot, then --check with it -> equal; with another frame -> sta
 TEST_CASE("sim: one pixel changed by hand -> that pixel is named, with both values") {
   const TemporaryFolder folder;
   const std::string shot = folder.path("a.ppm");
-  REQUIRE(sim({kScene, "--shot", shot, "--quiet"}).status == 0);
+  REQUIRE(sim({kSimScene, "--shot", shot, "--quiet"}).status == 0);
   std::string bytes = read_text(shot);
   // From the end: 3 bytes a pixel, 128 pixels a row.
   const std::size_t at = bytes.size() - 3 * (2 * 128 - 5);
   const char before = bytes[at];
   bytes[at] = static_cast<char>(before ^ 1);
-  const CommandResult result = sim({kScene, "--check", folder.write("b.ppm", bytes), "--quiet"});
+  const CommandResult result = sim({kSimScene, "--check", folder.write("b.ppm", bytes), "--quiet"});
   CAPTURE(result.describe());
   CHECK(result.status == 1);
   CHECK(result.err.find("1 of 8,192 pixels differs; the first is at 5,62: #") != std::string::npos);
@@ -80,10 +80,10 @@ TEST_CASE("sim: the picture that the application sends over the UART -> the disp
   const TemporaryFolder folder;
   const std::string keys = folder.write("keys.txt", "0: down left\n5: up left\n8: type p\n");
   const std::string shot = folder.path("a.pgm");
-  const CommandResult result = sim({kScene, "--frames", "8", "--keys", keys, "--shot", shot, "--quiet"});
+  const CommandResult result = sim({kSimScene, "--frames", "8", "--keys", keys, "--shot", shot, "--quiet"});
   CHECK(result.status == 0);
   // `p` comes before the ninth frame, which is not drawn, so what is sent is the eighth.
-  const CommandResult sent = sim({kScene, "--frames", "9", "--keys", keys, "--quiet"});
+  const CommandResult sent = sim({kSimScene, "--frames", "9", "--keys", keys, "--quiet"});
   const std::size_t at = sent.out.find("P5\n128 64\n255\n");
   REQUIRE(at != std::string::npos);
   CHECK(pixels_of(sent.out.substr(at)).substr(0, 8192) == pixels_of(read_text(shot)));
@@ -93,11 +93,11 @@ TEST_CASE("sim: --keys -> buttons change the picture, the same script gives the 
   const TemporaryFolder folder;
   const std::string keys = folder.write("keys.txt", "0: down left\n");
   const std::string with = folder.path("with.png");
-  REQUIRE(sim({kScene, "--frames", "6", "--keys", keys, "--shot", with, "--quiet"}).status == 0);
-  CHECK(sim({kScene, "--frames", "6", "--keys", keys, "--check", with, "--quiet"}).status == 0);
-  CHECK(sim({kScene, "--frames", "6", "--check", with, "--quiet"}).status == 1);
+  REQUIRE(sim({kSimScene, "--frames", "6", "--keys", keys, "--shot", with, "--quiet"}).status == 0);
+  CHECK(sim({kSimScene, "--frames", "6", "--keys", keys, "--check", with, "--quiet"}).status == 0);
+  CHECK(sim({kSimScene, "--frames", "6", "--check", with, "--quiet"}).status == 1);
   const std::string quits = folder.write("quits.txt", "3: type q\n");
-  const CommandResult ended = sim({kScene, "--frames", "1000000", "--keys", quits});
+  const CommandResult ended = sim({kSimScene, "--frames", "1000000", "--keys", quits});
   CHECK(ended.status == 0);
   CHECK(ended.err.find(": 3 frames") != std::string::npos);
 }
@@ -107,7 +107,7 @@ TEST_CASE("sim: --record -> a YUV4MPEG2 file of so many frames, the last one as 
   const std::string video = folder.path("a.y4m");
   const std::string shot = folder.path("a.pgm");
   REQUIRE(
-      sim({kScene, "--frames", "4", "--fps", "25", "--record", video, "--shot", shot, "--quiet"}).status ==
+      sim({kSimScene, "--frames", "4", "--fps", "25", "--record", video, "--shot", shot, "--quiet"}).status ==
       0);
   const std::string bytes = read_text(video);
   const std::string header = "YUV4MPEG2 W128 H64 F25:1 Ip A1:1 Cmono\n";
@@ -117,7 +117,7 @@ TEST_CASE("sim: --record -> a YUV4MPEG2 file of so many frames, the last one as 
   CHECK(bytes.substr(bytes.size() - 8192) == pixels_of(read_text(shot)));
 
   const std::string color = folder.path("color.y4m");
-  REQUIRE(sim({kScene, "--board", "raspi0", "--frames", "2", "--record", color, "--quiet"}).status == 0);
+  REQUIRE(sim({kSimScene, "--board", "raspi0", "--frames", "2", "--record", color, "--quiet"}).status == 0);
   const std::string color_header = "YUV4MPEG2 W640 H480 F30:1 Ip A1:1 C444\n";
   CHECK(read_text(color).substr(0, color_header.size()) == color_header);
   CHECK(read_text(color).size() == color_header.size() + 2 * (6 + 3 * 640 * 480));
@@ -126,7 +126,7 @@ TEST_CASE("sim: --record -> a YUV4MPEG2 file of so many frames, the last one as 
 TEST_CASE("sim: every board -> its own arena, a whole frame, and use within the limits") {
   for (const char* const board : {"lm3s6965evb", "microbit", "mps2-an500", "netduinoplus2", "pico", "raspi0",
                                   "sifive_e", "stm32vldiscovery"}) {
-    const CommandResult result = sim({kScene, "--board", board});
+    const CommandResult result = sim({kSimScene, "--board", board});
     CAPTURE(board);
     CAPTURE(result.describe());
     CHECK(result.status == 0);
@@ -142,8 +142,8 @@ TEST_CASE("sim: a baked scene -> the same picture as the scene that it was baked
   const TemporaryFolder folder;
   const std::string baked = folder.path("a.oct");
   const std::string shot = folder.path("a.png");
-  REQUIRE(run_command({"bake", kScene, "--board", "lm3s6965evb", "-o", baked, "--quiet"}).status == 0);
-  REQUIRE(sim({kScene, "--frames", "3", "--shot", shot, "--quiet"}).status == 0);
+  REQUIRE(run_command({"bake", kSimScene, "--board", "lm3s6965evb", "-o", baked, "--quiet"}).status == 0);
+  REQUIRE(sim({kSimScene, "--frames", "3", "--shot", shot, "--quiet"}).status == 0);
   CHECK(sim({baked, "--frames", "3", "--check", shot, "--quiet"}).status == 0);
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("sim: the core's own cases on every board -> all passed, one result") 
     CHECK((result_line.empty() || line == result_line));
     result_line = line;
   }
-  check_refused({kScene, "--app", "selftest"}, 2, {"\"spheres,depth=4\"", "selftest"});
+  check_sim_refused({kSimScene, "--app", "selftest"}, 2, {"\"spheres,depth=4\"", "selftest"});
 }
 
 TEST_CASE("sim: an application that goes wrong -> status 97, what it did, and no files") {
@@ -187,46 +187,47 @@ TEST_CASE("sim: an application that goes wrong -> status 97, what it did, and no
 }
 
 TEST_CASE("sim: wrong usage -> status 2 and a sentence that quotes what is wrong") {
-  check_refused({"--board", "toaster"}, 2, {"\"toaster\"", "lm3s6965evb"});
-  check_refused({"--app", "editor"}, 2, {"\"editor\"", "demo"});
-  check_refused({"--theme", "neon"}, 2, {"\"neon\"", "oled"});
-  check_refused({"--scale", "0"}, 2, {"\"0\""});
-  check_refused({"--frames", "0"}, 2, {"\"0\""});
-  check_refused({"--frames", "many"}, 2, {"\"many\""});
-  check_refused({"--shot", "a.jpg"}, 2, {"\"a.jpg\"", ".png"});
-  check_refused({"--shot", "-"}, 2, {"\"-\""});
-  check_refused({"--record", "a.mp4"}, 2, {"\"a.mp4\"", ".y4m"});
-  check_refused({kScene, "more"}, 2, {"\"more\""});
+  check_sim_refused({"--board", "toaster"}, 2, {"\"toaster\"", "lm3s6965evb"});
+  check_sim_refused({"--app", "editor"}, 2, {"\"editor\"", "demo"});
+  check_sim_refused({"--theme", "neon"}, 2, {"\"neon\"", "oled"});
+  check_sim_refused({"--scale", "0"}, 2, {"\"0\""});
+  check_sim_refused({"--frames", "0"}, 2, {"\"0\""});
+  check_sim_refused({"--frames", "many"}, 2, {"\"many\""});
+  check_sim_refused({"--shot", "a.jpg"}, 2, {"\"a.jpg\"", ".png"});
+  check_sim_refused({"--shot", "-"}, 2, {"\"-\""});
+  check_sim_refused({"--record", "a.mp4"}, 2, {"\"a.mp4\"", ".y4m"});
+  check_sim_refused({kSimScene, "more"}, 2, {"\"more\""});
 }
 
 TEST_CASE(
     "sim: files that cannot be used -> status 1, a sentence that names them, and nothing is left behind") {
   const TemporaryFolder folder;
-  check_refused({folder.path("none.vox")}, 1, {"none.vox", "cannot be opened"});
-  check_refused({kScene, "--check", folder.path("none.png")}, 1, {"none.png: cannot be opened"});
-  check_refused({kScene, "--check", folder.write("bad.png", "not a picture")}, 1, {"bad.png: is no PNG"});
-  check_refused({kScene, "--check", folder.write("small.ppm", "P6\n2 1\n255\nabcdef")}, 1,
-                {"small.ppm: is 2 x 1 pixels, not 128 x 64"});
-  check_refused({kScene, "--keys", folder.path("none.txt")}, 1, {"none.txt: cannot be opened"});
-  check_refused({kScene, "--keys", folder.write("keys.txt", "0: down up\n1: jump")}, 1,
-                {"keys.txt: line 2: \"jump\""});
-  check_refused({kScene, "--shot", folder.path("none/a.png")}, 1, {"none/a.png"});
-  check_refused({kScene, "--record", folder.path("none/a.y4m")}, 1, {"none/a.y4m"});
+  check_sim_refused({folder.path("none.vox")}, 1, {"none.vox", "cannot be opened"});
+  check_sim_refused({kSimScene, "--check", folder.path("none.png")}, 1, {"none.png: cannot be opened"});
+  check_sim_refused({kSimScene, "--check", folder.write("bad.png", "not a picture")}, 1,
+                    {"bad.png: is no PNG"});
+  check_sim_refused({kSimScene, "--check", folder.write("small.ppm", "P6\n2 1\n255\nabcdef")}, 1,
+                    {"small.ppm: is 2 x 1 pixels, not 128 x 64"});
+  check_sim_refused({kSimScene, "--keys", folder.path("none.txt")}, 1, {"none.txt: cannot be opened"});
+  check_sim_refused({kSimScene, "--keys", folder.write("keys.txt", "0: down up\n1: jump")}, 1,
+                    {"keys.txt: line 2: \"jump\""});
+  check_sim_refused({kSimScene, "--shot", folder.path("none/a.png")}, 1, {"none/a.png"});
+  check_sim_refused({kSimScene, "--record", folder.path("none/a.y4m")}, 1, {"none/a.y4m"});
   const std::string both = folder.path("keys.txt");
-  check_refused({kScene, "--keys", both, "--check", both}, 1, {"keys.txt"});
-  check_refused({"points:200000,depth=8", "--board", "stm32vldiscovery"}, 1,
-                {"stm32vldiscovery has 90,112 bytes of flash for a scene", "--coarsen"});
+  check_sim_refused({kSimScene, "--keys", both, "--check", both}, 1, {"keys.txt"});
+  check_sim_refused({"points:200000,depth=8", "--board", "stm32vldiscovery"}, 1,
+                    {"stm32vldiscovery has 90,112 bytes of flash for a scene", "--coarsen"});
   CHECK(folder.names() == Words{"bad.png", "keys.txt", "small.ppm"});
 }
 
 TEST_CASE("sim: a damaged baked scene -> status 1, and no picture is written") {
   const TemporaryFolder folder;
   const std::string baked = folder.path("a.oct");
-  REQUIRE(run_command({"bake", kScene, "-o", baked, "--quiet"}).status == 0);
+  REQUIRE(run_command({"bake", kSimScene, "-o", baked, "--quiet"}).status == 0);
   std::string bytes = read_text(baked);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
   const std::string damaged = folder.write("b.oct", bytes);
-  check_refused({damaged, "--shot", folder.path("b.png")}, 1, {"b.oct"});
+  check_sim_refused({damaged, "--shot", folder.path("b.png")}, 1, {"b.oct"});
   CHECK(folder.names() == Words{"a.oct", "b.oct"});
 }
 
@@ -234,7 +235,7 @@ TEST_CASE(
     "sim: in a terminal -> picture, memory and UART in it; afterwards the UART's text and the summary") {
   Pty pty(140, 40, [] {
     ::unsetenv("DISPLAY");
-    ::execl(THIMBLE_COMMAND_PATH, "thimble", "sim", kScene, "--display", "terminal",
+    ::execl(THIMBLE_COMMAND_PATH, "thimble", "sim", kSimScene, "--display", "terminal",
             static_cast<char*>(nullptr));
     return 127;
   });

@@ -2,11 +2,14 @@
 // reference.
 #include <doctest/doctest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/hit_rows.h"
@@ -332,4 +335,74 @@ TEST_CASE("trace: empty scene, one voxel, deepest world -> answers, not errors")
       trace(folder, folder.write("corner.xyz", "4095 4095 4095\n"), "-16384,4095.5,4095.5,1,0,0\n");
   CHECK(one.rows[0].hit);
   CHECK(one.rows[0].t == "20479");
+}
+
+TEST_CASE(
+    "trace: a file of many rays -> by vectors, and but for nodes the lines of ray64; small budgets: ray64") {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(77);
+  std::string rays = "ox,oy,oz,dx,dy,dz\n\n";
+  constexpr int kRays = 100000;
+  const std::string kScene = "points:20000,depth=8";
+  for (int i = 0; i < kRays; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      rays += std::to_string(static_cast<double>(pick(random, -256 * 100, 256 * 356)) / 256) + ',';
+    }
+    rays += std::to_string(pick(random, 1, 9)) + ',' + std::to_string(pick(random, -9, 9)) + ',' +
+            std::to_string(pick(random, -70000, 70000)) + (i % 3 == 0 ? "\r\n" : "\n");
+  }
+  const std::string path = folder.write("rays.csv", rays);
+  // The columns without `nodes`, and the engine.
+  const auto lines_of = [&](const Words& options, std::string* engine, std::string* nodes) {
+    Words words{
+        "trace", kScene, "--rays", path, "-o", folder.path("hits.csv"), "--stats", folder.path("s.json")};
+    words.insert(words.end(), options.begin(), options.end());
+    const CommandResult result = run_command(words);
+    CAPTURE(result.describe());
+    REQUIRE(result.status == 0);
+    const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
+    *engine = stats["engine"];
+    CHECK(stats["rays"] == kRays);
+    std::string kept;
+    nodes->clear();
+    int column = 0;
+    for (const char letter : read_text(folder.path("hits.csv"))) {
+      column = letter == '\n' ? 0 : letter == ',' ? column + 1 : column;
+      (column == 6 ? *nodes : kept) += letter;
+    }
+    return kept;
+  };
+  std::string engine;
+  std::string nodes;
+  std::string tree_nodes;
+  const std::string expected = lines_of({"--engine", "ray64", "--threads", "1"}, &engine, &tree_nodes);
+  CHECK(engine == "ray64");
+  CHECK(lines_of({"--threads", "3"}, &engine, &nodes) == expected);
+  CHECK(engine == "wide");
+  CHECK(nodes != tree_nodes);
+  // Just what the scene needs is no room for the map.
+  const std::string sentence = run_command({"trace", kScene, "--rays", path, "--memory", "1K"}).err;
+  constexpr std::string_view kBefore = "needs ";
+  REQUIRE(sentence.find(kBefore) != std::string::npos);
+  std::string least = sentence.substr(sentence.find(kBefore) + kBefore.size());
+  least = least.substr(0, least.find(' '));
+  std::erase(least, ',');
+  CHECK(lines_of({"--memory", least}, &engine, &nodes) == expected);
+  CHECK(engine == "ray64");
+  CHECK(nodes == tree_nodes);
+}
+
+TEST_CASE("trace: the first line that is no ray, far on in a long file -> its number") {
+  const TemporaryFolder folder;
+  std::string rays = "ox,oy,oz,dx,dy,dz\n";
+  constexpr int kGood = 60000;
+  for (int i = 0; i < kGood; ++i) {
+    rays += i % 1000 == 0 ? "\n" : "1,2,3,4,5,6\n";
+  }
+  const std::string path = folder.write("rays.csv", rays + "1,2,3,4,5\n" + rays);
+  const CommandResult result =
+      run_command({"trace", "spheres", "--rays", path, "-o", folder.path("hits.csv")});
+  CHECK(result.status == 1);
+  CHECK(result.err.find("line " + std::to_string(kGood + 2) + ": these are not the six numbers") !=
+        std::string::npos);
 }

@@ -32,10 +32,6 @@ bool above(UInt128 a, UInt128 b) {
   return a.high > b.high || (a.high == b.high && a.low > b.low);
 }
 
-constexpr std::int32_t q16(double value) {
-  return static_cast<std::int32_t>(value * 65536);
-}
-
 TEST_CASE("particles: worlds of every kind -> field, discs and sleepers are right after every step") {
   std::mt19937 random(20240607);
   const auto below = [&random](std::uint32_t limit) {

@@ -10,10 +10,6 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::int32_t q16(double value) {
-  return static_cast<std::int32_t>(value * 65536);
-}
-
 ParticleConfig box(std::int32_t width, std::int32_t height, std::uint32_t capacity) {
   ParticleConfig config;
   config.width = width;

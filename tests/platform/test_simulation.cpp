@@ -32,7 +32,7 @@ const platform::BoardFacts& flagship() {
 }
 
 // The application of the test that runs; a simulation takes plain functions only.
-struct Ran {
+struct SimRan {
   int status = -1;
   std::string fault;
   std::string output;
@@ -42,14 +42,14 @@ struct Ran {
   std::vector<std::uint32_t> asked;
 };
 
-Ran run(int (*application)(), std::uint32_t frames = 1, ConstBytes scene = {}, const std::string& typed = "",
-        std::uint32_t buttons = 0) {
+SimRan run(int (*application)(), std::uint32_t frames = 1, ConstBytes scene = {},
+           const std::string& typed = "", std::uint32_t buttons = 0) {
   Simulation simulation({&flagship(), true, scene, application});
   for (const char byte : typed) {
     REQUIRE(simulation.type(static_cast<std::uint8_t>(byte)));
   }
   simulation.set_buttons(buttons);
-  Ran ran;
+  SimRan ran;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
   for (Moment moment = Moment::kNothing; moment != Moment::kEnded;) {
     REQUIRE(std::chrono::steady_clock::now() < end);
@@ -101,7 +101,7 @@ int draws_bands_backwards() {
 }  // namespace
 
 TEST_CASE("simulation: bands in any order -> the whole picture, asked once a frame, status 0") {
-  const Ran ran = run(draws_bands_backwards, 3);
+  const SimRan ran = run(draws_bands_backwards, 3);
   CHECK(ran.status == 0);
   CHECK(ran.fault.empty());
   CHECK(ran.pictures == 3);
@@ -142,7 +142,7 @@ TEST_CASE("simulation: facts and arena -> the board's RAM less its stack, to the
 
 TEST_CASE("simulation: RAM used -> up to the last byte changed; flash used -> the scene") {
   const std::vector<std::uint8_t> scene(1001, 7);
-  const Ran ran = run(
+  const SimRan ran = run(
       [] {
         port::arena()[999] = 1;
         const ConstBytes flash = port::scene();
@@ -165,14 +165,14 @@ TEST_CASE("simulation: stack used -> at least the application's frames, and not 
     }
     return port::stack_high_water() >= 3000 ? 0 : 1;
   };
-  const Ran ran = run(application);
+  const SimRan ran = run(application);
   CHECK(ran.status == 0);
   CHECK(ran.use.stack_bytes >= 3000);
 #ifndef __SANITIZE_ADDRESS__
   CHECK(ran.use.stack_bytes < 3600);
 #endif
   // And the port itself takes little of it.
-  const Ran idle = run(draws_bands_backwards, 2);
+  const SimRan idle = run(draws_bands_backwards, 2);
 #ifndef __SANITIZE_ADDRESS__
   CHECK(idle.use.stack_bytes < 1200);
 #endif
@@ -284,7 +284,7 @@ TEST_CASE(
   };
   for (const Case& each : cases) {
     CAPTURE(each.what);
-    const Ran ran = run(each.application, 9, {scene.data(), scene.size()});
+    const SimRan ran = run(each.application, 9, {scene.data(), scene.size()});
     CAPTURE(ran.fault);
     CHECK(ran.status == port::kFaultStatus);
     for (const std::string& words : each.says) {
@@ -302,7 +302,7 @@ TEST_CASE("simulation: status, buttons and UART -> what the application returns,
     }
     return static_cast<int>(port::buttons());
   };
-  const Ran ran = run(echo, 1, {}, "abc", port::kLeft | port::kSelect);
+  const SimRan ran = run(echo, 1, {}, "abc", port::kLeft | port::kSelect);
   CHECK(ran.output == "a!b!c!");
   CHECK(ran.status == (port::kLeft | port::kSelect));
   CHECK(ran.fault.empty());

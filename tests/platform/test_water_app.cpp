@@ -26,10 +26,10 @@ namespace {
 using namespace thimble;
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr const char* kScene = "water,depth=5";
+constexpr const char* kWaterScene = "water,depth=5";
 constexpr bool kIsSlow = true;
 #else
-constexpr const char* kScene = "water";
+constexpr const char* kWaterScene = "water";
 constexpr bool kIsSlow = false;
 #endif
 
@@ -105,7 +105,7 @@ std::string at_pixel(char what, std::int32_t x, std::int32_t y) {
 
 TEST_CASE("water app: nobody touches anything -> no column is stepped, one picture is drawn and then none") {
   const platform::BoardFacts board = board_of("raspi0", 96, 72);
-  const Run run = run_water(board, bytes_of(baked(kScene)), 12, {});
+  const Run run = run_water(board, bytes_of(baked(kWaterScene)), 12, {});
   CHECK(run.fault.empty());
   CHECK(run.status == 0);
   REQUIRE(run.counters.size() == 1);
@@ -156,7 +156,7 @@ TEST_CASE("water app: touches, drops, rain and a moving camera -> every frame as
     std::int32_t width;
     std::int32_t height;
   };
-  for (const Case& each : {Case{"raspi0", kScene, 56, 42}, Case{"lm3s6965evb", "water,depth=5", 64, 48},
+  for (const Case& each : {Case{"raspi0", kWaterScene, 56, 42}, Case{"lm3s6965evb", "water,depth=5", 64, 48},
                            Case{"raspi0", "water,seed=3,depth=5", 50, 70}}) {
     platform::BoardFacts board = board_of(each.board, each.width, each.height);
     CAPTURE(each.scene);
@@ -207,7 +207,7 @@ TEST_CASE("water app: touches, drops, rain and a moving camera -> every frame as
 
 TEST_CASE("water app: its first picture -> that of the scene as it was baked, its water at rest") {
   const platform::BoardFacts board = board_of("raspi0", 96, 72);
-  const std::vector<std::uint8_t>& bytes = baked(kScene);
+  const std::vector<std::uint8_t>& bytes = baked(kWaterScene);
   const Run run = run_water(board, bytes_of(bytes), 1, {});
   BakedScene scene;
   REQUIRE(BakedScene::open(bytes_of(bytes), &scene) == Status::kOk);

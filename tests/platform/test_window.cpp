@@ -47,14 +47,14 @@ void drain(Screen* screen) {
   }
 }
 
-constexpr std::int32_t kWidthPx = 128;
-constexpr std::int32_t kHeightPx = 64;
+constexpr std::int32_t kWindowWidthPx = 128;
+constexpr std::int32_t kWindowHeightPx = 64;
 
 ScreenOptions options_of(Theme theme) {
   ScreenOptions options;
   options.title = "thimble window test";
-  options.width_px = kWidthPx;
-  options.height_px = kHeightPx;
+  options.width_px = kWindowWidthPx;
+  options.height_px = kWindowHeightPx;
   options.look = look_of(theme, PixelFormat::kGray4);
   options.status_lines = 2;
   return options;
@@ -62,8 +62,8 @@ ScreenOptions options_of(Theme theme) {
 
 // Black, but for one pixel.
 std::vector<std::uint8_t> one_pixel(std::int32_t x, std::int32_t y, Rgb8 color) {
-  std::vector<std::uint8_t> rgb(3 * kWidthPx * kHeightPx);
-  const std::size_t at = 3 * static_cast<std::size_t>(y * kWidthPx + x);
+  std::vector<std::uint8_t> rgb(3 * kWindowWidthPx * kWindowHeightPx);
+  const std::size_t at = 3 * static_cast<std::size_t>(y * kWindowWidthPx + x);
   rgb[at] = color.r;
   rgb[at + 1] = color.g;
   rgb[at + 2] = color.b;
@@ -80,9 +80,9 @@ TEST_CASE("window: keys, pointer, wheel, size and close -> events in the picture
   const auto screen = open_screen(ScreenKind::kAuto, options_of(Theme::kPlain));
   REQUIRE(std::string(screen->name()) == "window");
   const auto rgb = one_pixel(0, 0, {255, 255, 255});
-  screen->show({rgb.data(), kWidthPx, kHeightPx});
-  CHECK(screen->width_px() == 8 * kWidthPx);
-  CHECK(screen->height_px() == 8 * kHeightPx);
+  screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
+  CHECK(screen->width_px() == 8 * kWindowWidthPx);
+  CHECK(screen->height_px() == 8 * kWindowHeightPx);
   drain(screen.get());
 
   CHECK(display.xdotool("mousemove 20 9"));
@@ -130,7 +130,7 @@ TEST_CASE("window: keys, pointer, wheel, size and close -> events in the picture
   CHECK(display.xdotool("search --name 'thimble window test' windowsize 600 400"));
   REQUIRE(wait_for(screen.get(), of_kind(EventKind::kResize)));
   CHECK(screen->width_px() == 600);
-  CHECK(display.xdotool("mousemove 44 " + std::to_string((screen->height_px() - 4 * kHeightPx) / 2)));
+  CHECK(display.xdotool("mousemove 44 " + std::to_string((screen->height_px() - 4 * kWindowHeightPx) / 2)));
   const auto corner = wait_for(screen.get(), of_kind(EventKind::kMouseMove));
   REQUIRE(corner);
   CHECK(corner->x_px == 0);
@@ -157,7 +157,7 @@ TEST_CASE("window: themes -> lit pixels, gaps and ground in their colours, eight
     const auto screen = open_screen(ScreenKind::kWindow, options);
     const auto rgb = one_pixel(5, 3, {255, 255, 255});
     drain(screen.get());
-    screen->show({rgb.data(), kWidthPx, kHeightPx});
+    screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
     const int border = look.has_gaps ? 8 : 0;
     const auto at = [&](int x, int y) { return display.pixel(border + x, border + y); };
     CHECK(at(5 * 8, 3 * 8) == looks(look, {255, 255, 255}));
@@ -178,7 +178,7 @@ TEST_CASE("window: a display of 16 bits -> the same picture in its colours") {
   const auto screen = open_screen(ScreenKind::kWindow, options_of(Theme::kPlain));
   const auto rgb = one_pixel(1, 1, {255, 128, 8});
   drain(screen.get());
-  screen->show({rgb.data(), kWidthPx, kHeightPx});
+  screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
   CHECK(display.pixel(12, 12) == Rgb8{248, 128, 8});
   CHECK(display.pixel(4, 4) == Rgb8{0, 0, 0});
 }
@@ -191,17 +191,17 @@ TEST_CASE("window: destroyed by somebody else, or its server gone -> close, and 
   const auto rgb = one_pixel(0, 0, {1, 2, 3});
   {
     const auto screen = open_screen(ScreenKind::kWindow, options_of(Theme::kPlain));
-    screen->show({rgb.data(), kWidthPx, kHeightPx});
+    screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
     CHECK(display.xdotool("search --name 'thimble window test' windowclose"));
-    screen->show({rgb.data(), kWidthPx, kHeightPx});
+    screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
     CHECK(wait_for(screen.get(), of_kind(EventKind::kClose)));
-    screen->show({rgb.data(), kWidthPx, kHeightPx});
+    screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
   }
   const auto screen = open_screen(ScreenKind::kWindow, options_of(Theme::kPlain));
-  screen->show({rgb.data(), kWidthPx, kHeightPx});
+  screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
   display.stop();
   CHECK(wait_for(screen.get(), of_kind(EventKind::kClose)));
-  screen->show({rgb.data(), kWidthPx, kHeightPx});
+  screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
   screen->set_title("gone");
   CHECK_THROWS_AS(open_screen(ScreenKind::kWindow, options_of(Theme::kPlain)), ScreenError);
 }

@@ -16,7 +16,7 @@ namespace {
 
 using namespace thimble::tools;
 
-UnitTriangle random_triangle(SplitMix64& random, int level) {
+UnitTriangle any_triangle(SplitMix64& random, int level) {
   const std::int32_t top = (kUnitsPerVoxel << level) - 1;
   const std::int32_t reach = random.below(2) == 0 ? top : std::int32_t{kUnitsPerVoxel} * 6;
   UnitTriangle triangle{};
@@ -82,7 +82,7 @@ TEST_CASE("voxelise_cells: random triangles -> what each of them meets, with the
     const int count = round < 50 ? random.between(1, 30) : 1500;
     for (int i = 0; i < count; ++i) {
       triangles.push_back(
-          {random_triangle(random, level), static_cast<std::uint8_t>(many_materials ? random.below(3) : 0)});
+          {any_triangle(random, level), static_cast<std::uint8_t>(many_materials ? random.below(3) : 0)});
     }
     CAPTURE(round);
     CHECK((by_cell(triangles, level, &blocks) == by_triangle(triangles)));

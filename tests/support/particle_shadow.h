@@ -13,6 +13,11 @@
 
 namespace thimble::tools {
 
+/// In 1/65536.
+constexpr std::int32_t q16(double value) {
+  return static_cast<std::int32_t>(value * 65536);
+}
+
 /// Whether cell (column, row) of a square of `diameter` cells belongs to the disc in it.
 inline bool in_disc(int diameter, int column, int row) {
   const int u = 2 * column + 1 - diameter;

@@ -19,6 +19,9 @@ namespace thimble::tests {
 
 /// A uniformly random integer of low .. high, both included.
 std::int64_t pick(std::mt19937_64& random, std::int64_t low, std::int64_t high);
+inline int pick_int(std::mt19937_64& random, int low, int high) {
+  return static_cast<int>(pick(random, low, high));
+}
 
 /// What the rays may be, both ends included. An arithmetic path with smaller limits passes its own.
 struct RayLimits {

@@ -41,6 +41,10 @@ void limit(int resource, std::uint64_t bytes) {
   limit(RLIMIT_FSIZE, limits.file_size_bytes);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+  // Whoever started the tests may ignore some (nohup does); the command must not begin so.
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+    ::signal(number, SIG_DFL);
+  }
   ::execv(arguments.front(), arguments.data());
   ::_exit(127);
 }

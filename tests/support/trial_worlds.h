@@ -27,19 +27,38 @@ class TrialWorld {
   ///     wall:L     one voxel thick, along y            slant:L    a diagonal plane, two voxels thick
   ///     columns:L  one voxel wide, every eighth        islands:L  noise in two far corners, dust between
   ///     screen:L   a solid wall before single voxels   ball:L     single voxels in a ball's hull
+  ///
+  /// and those of solid_worlds.h, at least of level 6:
+  ///
+  ///     globe:L    a ball, full                        terrain:L  hills on thick ground
+  ///     city:L     houses, full                        filled:F   a file, its inside full
+  ///     plummer:N  N points in clusters
   explicit TrialWorld(const std::string& name);
 
   const std::string& name() const { return name_; }
   const CompactTree& tree() const { return tree_; }
   const wide::VoxelLists& lists() const { return lists_; }
+  /// The lists of boxes alone, which are those drawn where a budget does not hold the others.
+  const wide::VoxelLists& box_lists() const { return box_lists_; }
+  std::uint64_t list_bytes() const { return list_bytes_.size(); }
+  std::uint64_t box_list_bytes() const { return box_list_bytes_.size(); }
+  /// What making each took.
+  double list_seconds() const { return list_seconds_; }
+  double box_list_seconds() const { return box_list_seconds_; }
 
  private:
+  void make_solid(const std::string& name);
+
   std::string name_;
   std::unique_ptr<tools::BuiltScene> built_;  // or `bytes_`
   std::vector<std::uint8_t> bytes_;
   std::vector<std::uint8_t> list_bytes_;
+  std::vector<std::uint8_t> box_list_bytes_;
   CompactTree tree_;
   wide::VoxelLists lists_;
+  wide::VoxelLists box_lists_;
+  double list_seconds_ = 0;
+  double box_list_seconds_ = 0;
 };
 
 struct TrialView {

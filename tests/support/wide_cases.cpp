@@ -10,11 +10,11 @@
 namespace thimble::tests {
 namespace {
 
-void make_lists(WideScene* scene) {
+void make_lists(WideScene* scene, wide::ListKind kind) {
   scene->tree = open_or_throw(*scene->bytes);
-  scene->list_bytes = std::make_unique<HeapBytes>(wide::VoxelLists::bytes(scene->tree));
+  scene->list_bytes = std::make_unique<HeapBytes>(wide::VoxelLists::bytes(scene->tree, kind));
   Arena arena(scene->list_bytes->span());
-  REQUIRE(wide::VoxelLists::make(scene->tree, &arena, &scene->lists) == Status::kOk);
+  REQUIRE(wide::VoxelLists::make(scene->tree, &arena, &scene->lists, kind) == Status::kOk);
 }
 
 // Fills the octree with something; says what.
@@ -164,7 +164,8 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
 
 }  // namespace
 
-WideScene make_scene(int level, const std::function<void(Octree*)>& fill, std::size_t pool_bytes) {
+WideScene make_scene(int level, const std::function<void(Octree*)>& fill, std::size_t pool_bytes,
+                     wide::ListKind kind) {
   WideScene scene;
   scene.level = level;
   const HeapBytes pool(pool_bytes);
@@ -172,7 +173,7 @@ WideScene make_scene(int level, const std::function<void(Octree*)>& fill, std::s
   REQUIRE(Octree::make(level, pool.span(), &octree) == Status::kOk);
   fill(&octree);
   scene.bytes = std::make_unique<HeapBytes>(compact_of(octree));
-  make_lists(&scene);
+  make_lists(&scene, kind);
   return scene;
 }
 
@@ -185,7 +186,11 @@ Vec3i random_voxel(std::mt19937_64& random, std::int64_t low, std::int64_t high)
 WideScene random_scene(std::mt19937_64& random) {
   const int level = static_cast<int>(pick(random, 1, 12));
   std::string what;
-  WideScene scene = make_scene(level, [&](Octree* octree) { what = fill_randomly(random, level, octree); });
+  // Lists of boxes alone are made where a budget holds no others.
+  const wide::ListKind kind = pick(random, 0, 2) == 0 ? wide::ListKind::kBoxes : wide::ListKind::kFastest;
+  WideScene scene = make_scene(
+      level, [&](Octree* octree) { what = fill_randomly(random, level, octree); }, std::size_t{4} << 20,
+      kind);
   scene.what = what;
   return scene;
 }
@@ -217,11 +222,15 @@ bool random_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* fr
     shading.far_q8 = static_cast<std::int32_t>(pick(random, INT32_MIN, INT32_MAX));
   }
   Band& band = frame->band;
-  band.format = static_cast<PixelFormat>(pick(random, 0, 4));
+  band.format = static_cast<PixelFormat>(pick(random, 0, kPixelFormats - 1));
   const std::int32_t height = frame->camera.height_px();
   band.first_row = pick(random, 0, 1) == 0 ? 0 : static_cast<std::int32_t>(pick(random, 0, height - 1));
+  band.first_row -= band.first_row % band_row_multiple(band.format);
   band.rows = pick(random, 0, 1) == 0 ? height - band.first_row
                                       : static_cast<std::int32_t>(pick(random, 0, height - band.first_row));
+  if (band.first_row + band.rows < height) {
+    band.rows -= band.rows % band_row_multiple(band.format);
+  }
   if (pick(random, 0, 2) == 0) {
     band.stride_bytes =
         row_bytes(band.format, frame->camera.width_px()) + static_cast<std::size_t>(pick(random, 0, 9));
@@ -232,7 +241,10 @@ bool random_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* fr
 std::size_t band_size(const FrameCase& frame) {
   const std::size_t line = row_bytes(frame.band.format, frame.camera.width_px());
   const std::size_t stride = frame.band.stride_bytes == 0 ? line : frame.band.stride_bytes;
-  return frame.band.rows == 0 ? 0 : stride * static_cast<std::size_t>(frame.band.rows - 1) + line;
+  if (frame.band.rows == 0) {
+    return 0;
+  }
+  return stride * (row_place(frame.band.format, whole_rows(frame.band.format, frame.band.rows)) - 1) + line;
 }
 
 wide::Threads* threads_of(int count) {
@@ -254,6 +266,8 @@ std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const
   std::memset(pixels.span().data, 0xA5, pixels.span().size);
   const HeapBytes workspace(
       wide::workspace_bytes(frame.camera.width_px(), frame.band.rows, thread_count(options)));
+  std::memset(workspace.span().data, 0xA5,
+              workspace.span().size);  // a frame reads nothing that it did not write
   Band band = frame.band;
   band.pixels = pixels.span();
   RenderCounts counts;
@@ -303,6 +317,7 @@ wide::Options random_options(std::mt19937_64& random) {
   constexpr int kThreads[] = {1, 1, 1, 2, 5};
   options.threads = threads_of(kThreads[pick(random, 0, 4)]);
   options.order = static_cast<wide::Order>(pick(random, 0, 2));
+  options.list = static_cast<wide::List>(pick(random, 0, 2));
   return options;
 }
 

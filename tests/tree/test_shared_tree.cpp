@@ -24,9 +24,9 @@ using namespace thimble;
 using namespace thimble::tests;
 
 #if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kScale = 1;
+constexpr int kWorldScale = 1;
 #else
-constexpr int kScale = 8;
+constexpr int kWorldScale = 8;
 #endif
 
 // A shared tree that owns its bytes, exactly as many as it takes, made in exactly the workspace that it
@@ -124,7 +124,7 @@ struct Pool {
 TEST_CASE(
     "shared tree: random worlds, rays and widths -> the hits of the compact tree and of the reference") {
   std::mt19937_64 random(601);
-  for (int world = 0; world < 40 * kScale; ++world) {
+  for (int world = 0; world < 40 * kWorldScale; ++world) {
     const int level = static_cast<int>(pick(random, 1, world % 8 == 0 ? 12 : 6));
     const WorldKind kind = level > 6 ? WorldKind::kSparse
                                      : static_cast<WorldKind>(pick(random, 0, std::int64_t{kWorldKinds} - 1));
@@ -168,7 +168,7 @@ TEST_CASE(
 TEST_CASE("shared tree: solid blocks of several materials, coarsened ones -> the hits of the compact tree") {
   std::mt19937_64 random(77);
   int merged = 0;
-  for (int world = 0; world < 40 * kScale; ++world) {
+  for (int world = 0; world < 40 * kWorldScale; ++world) {
     const int level = static_cast<int>(pick(random, 1, 7));
     CAPTURE(world);
     Pool pool(level, random, world % 3 == 0 ? 1U : 200U, world % 2 == 0);
@@ -221,7 +221,7 @@ TEST_CASE("shared tree: every second voxel of a large world -> one node a level"
   // Two nodes of one child, six of eight; the whole is below 256 bytes, so a link is one.
   CHECK(shared.build.bytes == (64 + 4 * 8 + 2 * 2 + 6 * 9 + 3) / 4 * 4);
   CHECK(compact.view().size > 250000);
-  check_same_hits(shared.tree, open_or_throw(compact), 9, 300 * kScale);
+  check_same_hits(shared.tree, open_or_throw(compact), 9, 300 * kWorldScale);
 }
 
 TEST_CASE("shared tree: the golden frames -> the pictures of the compact tree, and the same visits") {
@@ -373,7 +373,7 @@ TEST_CASE("shared tree: damaged bytes -> found, or traced within the bytes to an
     }
     CHECK(found * 3 > static_cast<int>(size));
     // Noise behind a sound header.
-    for (int round = 0; round < 50 * kScale; ++round) {
+    for (int round = 0; round < 50 * kWorldScale; ++round) {
       const HeapBytes damaged(size);
       std::copy_n(shared.bytes.view().begin(), size, damaged.span().begin());
       for (std::size_t at = 64; at < size; ++at) {

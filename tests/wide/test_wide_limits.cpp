@@ -10,15 +10,18 @@ namespace thimble::tests {
 
 TEST_CASE("wide: a few solid blocks among single voxels -> given as voxels; more of them, or merged, not") {
   const auto made = [&](int blocks, int voxels, int block_level) {
-    return make_scene(8, [&](Octree* octree) {
-      for (int i = 0; i < blocks; ++i) {
-        REQUIRE(octree->insert_block({i << 4, 64, 0}, block_level, static_cast<std::uint8_t>(i)) ==
-                Status::kOk);
-      }
-      for (int i = 0; i < voxels; ++i) {
-        REQUIRE(octree->insert({2 * (i % 100), 0, 2 * (i / 100)}, 200) == Status::kOk);
-      }
-    });
+    return make_scene(
+        8,
+        [&](Octree* octree) {
+          for (int i = 0; i < blocks; ++i) {
+            REQUIRE(octree->insert_block({i << 4, 64, 0}, block_level, static_cast<std::uint8_t>(i)) ==
+                    Status::kOk);
+          }
+          for (int i = 0; i < voxels; ++i) {
+            REQUIRE(octree->insert({2 * (i % 100), 0, 2 * (i / 100)}, 200) == Status::kOk);
+          }
+        },
+        std::size_t{4} << 20, wide::ListKind::kBoxes);
   };
   // 8 voxels for 1 box: 7 more.
   const WideScene few = made(2, 7 * 2 * 8 - 2, 1);

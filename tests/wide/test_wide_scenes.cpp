@@ -267,7 +267,8 @@ TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the co
       wide::Counts work;
       RenderCounts counts;
       REQUIRE(renderer->render(camera, shading, band, &counts, &work) == Status::kOk);
-      CHECK(work.exact < work.candidates / 50);  // floats decide nearly all
+      // Floats decide nearly all. A surface has fewer candidates; as many of them are ties.
+      CHECK(work.exact < work.candidates / (renderer->lists().is_surface() ? 30 : 50));
       band.pixels = Bytes(expected.data(), expected.size());
       RenderCounts expected_counts;
       REQUIRE(built.render_band(camera, shading, band, &expected_counts, {}) == Status::kOk);

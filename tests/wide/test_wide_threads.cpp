@@ -96,7 +96,7 @@ TEST_CASE("wide: work in some rows, several threads -> parts change hands, every
         }
       }
     };
-    const WideScene scene = make_scene(9, fill, std::size_t{64} << 20);
+    const WideScene scene = make_scene(9, fill, std::size_t{64} << 20, wide::ListKind::kBoxes);
     REQUIRE(scene.lists.has_blocks() == has_blocks);
     for (int v = 0; v < 4; ++v) {
       CAPTURE(v);

@@ -6,7 +6,9 @@
 
 #include "commands/arguments.h"
 #include "scene/built_scene.h"
+#include "scene/lit_streams.h"
 #include "scene/wide_renderer.h"
+#include "thimble/light/render.h"
 #include "thimble/trace/trace.h"
 #include "wide/limits.h"
 
@@ -64,7 +66,10 @@ void EngineOptions::add_ray_engines_to(CLI::App& app) {
   static const std::vector<std::string> kNames{"auto", "ray64", "ray32"};
   add_choice_option(
       app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
-      "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more")
+      "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more; auto: "
+      "with vectors from 100,000 rays on, where there is room and not with --board (then nodes are its "
+      "steps, "
+      "else those of the tree), else ray64")
       .default_str("auto");
 }
 
@@ -80,6 +85,17 @@ std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, st
                          : "--engine wide draws --structure compact only");
   }
   return renderer;
+}
+
+std::unique_ptr<LitStreams> EngineOptions::lit_streams(BuiltScene* built, EffectSet effects,
+                                                       const LitScene& scene) const {
+  return name == "auto" ? LitStreams::make(built->compact(), &built->arena(), effects, scene, threads)
+                        : nullptr;
+}
+
+int EngineOptions::lit_threads(BuiltScene* built, EffectSet effects) const {
+  const std::size_t more = built->arena().free_bytes() / lit_render_bytes(effects);
+  return static_cast<int>(std::min(static_cast<std::size_t>(threads), 1 + more));
 }
 
 void EngineOptions::add_board_engines_to(CLI::App& app) {

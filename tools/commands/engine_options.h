@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "thimble/light/scene.h"
+
 namespace CLI {
 class App;
 }
@@ -22,6 +24,7 @@ int all_cores();
 void add_threads(CLI::App& app, int* threads, const std::string& help);
 
 class BuiltScene;
+class LitStreams;
 class WideRenderer;
 
 struct EngineOptions {
@@ -44,6 +47,11 @@ struct EngineOptions {
   /// scene's budget; else null. Throws InputError when it was asked for by name and cannot be had.
   std::unique_ptr<WideRenderer> wide_renderer(BuiltScene* built, std::int32_t width_px,
                                               std::int32_t height_px) const;
+  /// Streams of rays for lit pictures, where they are to draw and there is room for them within the scene's budget;
+  /// else null.
+  std::unique_ptr<LitStreams> lit_streams(BuiltScene* built, EffectSet effects, const LitScene& scene) const;
+  /// How many threads draw lit pictures with the core: each keeps rays of its own, in what the budget has left.
+  int lit_threads(BuiltScene* built, EffectSet effects) const;
   /// What was used.
   std::string resolved(bool is_wide) const { return is_wide ? "wide" : name == "ray32" ? "ray32" : "ray64"; }
 };

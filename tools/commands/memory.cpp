@@ -356,12 +356,12 @@ std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
   plot.x_label = "depth (a world of 2^depth voxels a side)";
   plot.y_label = "bytes (log scale)";
   plot.whole_x = true;
-  constexpr std::array<const char*, kMemoryStructures> kNames{
+  constexpr std::array<const char*, kMemoryStructures> kPlotNames{
       "dense grid, a bit a unit", "pool, 8 bytes a node", "compact tree, no pointers",
       "DAG, equal subtrees once"};
   double most = 0;
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    Series series{kNames[i], false, {}};
+    Series series{kPlotNames[i], false, {}};
     for (const DepthRow& row : study.depths) {
       const double bytes = static_cast<double>(row.structures[i].bytes);
       if (bytes > 0) {

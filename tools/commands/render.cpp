@@ -21,6 +21,7 @@
 #include "output/units.h"
 #include "scene/framing.h"
 #include "scene/lit_setup.h"
+#include "scene/lit_streams.h"
 #include "scene/painter.h"
 #include "scene/painting.h"
 #include "scene/part_identity.h"
@@ -29,6 +30,7 @@ namespace thimble::tools {
 namespace {
 
 constexpr std::int32_t kMostBandRows = 16;
+constexpr std::int32_t kMostEdgeRows = 64;
 
 std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
   return band_rows(command, row_bytes(format, command.view.width_px), kMostBandRows);
@@ -96,8 +98,8 @@ void check_lit(const RenderCommand& command, EffectSet effects) {
   if (command.scene.structure != StructureKind::kCompact) {
     refuse("wants --structure compact");
   }
-  if (command.engine.name != "auto") {
-    refuse("takes no --engine but auto");
+  if (command.engine.name != "auto" && command.engine.name != "ray64") {
+    refuse("takes no --engine but auto and ray64");
   }
   if (command.quality.cuts()) {
     refuse("takes no --cutoff and no --max-depth");
@@ -135,12 +137,15 @@ SceneOptions::DrawingBytes drawing_bytes(const RenderCommand& command, const Sce
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
   bytes.band = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
   bytes.least_band = plain ? band_bytes(format, width, 1) : quality_bytes;
+  if (command.quality.at_edges) {
+    const int threads = light.effects == Effect::kNone ? 1 : command.engine.threads;
+    const std::uint64_t row = edge_band_bytes(format, width, 1, 1);
+    bytes.band = edge_band_bytes(format, width,
+                                 band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
+    bytes.least_band = edge_band_bytes(format, width, 1, threads);
+  }
   const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
   bytes.state = in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
-  if (light.effects != Effect::kNone) {
-    // Each thread that draws with effects keeps rays of its own.
-    bytes.state += static_cast<std::uint64_t>(command.engine.threads - 1) * lit_render_bytes(light.effects);
-  }
   return bytes;
 }
 
@@ -193,8 +198,11 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
   const TraceOptions options = engine.trace_options();
   Painting painting;
   if (!command.quality.plain()) {
-    if (paint_with(make_quality_painter(subject.built, frame, options), subject, progress, &painting) !=
-        Status::kOk) {
+    const auto painter = command.quality.at_edges
+                             ? make_ray_edge_painter(subject.built, frame, subject.camera(), subject.fine,
+                                                     subject.format, options)
+                             : make_quality_painter(subject.built, frame, options);
+    if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
       fail_camera(command);
     }
     return painting;
@@ -226,12 +234,23 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   picture.effects = light.effects;
   picture.scene = light.scene();
   picture.across = subject.command.quality.across;
-  picture.threads = subject.command.engine.threads;
+  const EngineOptions& engine = subject.command.engine;
+  const bool at_edges = subject.command.quality.at_edges;
+  // With --board nothing of the host's stands in the board's RAM. Samples at edges are runs of a few pixels.
+  const auto streams = subject.command.scene.board == nullptr && !at_edges
+                           ? engine.lit_streams(&subject.built, picture.effects, picture.scene)
+                           : nullptr;
+  picture.streams = streams.get();
+  picture.threads = engine.lit_threads(&subject.built, picture.effects);
   Painting painting;
-  if (paint_with(make_lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture),
-                 subject, progress, &painting) != Status::kOk) {
+  const auto painter =
+      at_edges ? make_lit_edge_painter(subject.built, subject.camera(), subject.fine, subject.shading,
+                                       subject.format, picture)
+               : make_lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
+  if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
     throw InputError("its lights or surfaces are beyond the limits of a lit picture");
   }
+  painting.preparation_seconds = streams != nullptr ? streams->seconds() : 0;
   return painting;
 }
 
@@ -259,6 +278,7 @@ Stats stats_of(const Subject& subject, const SceneSource& source, const Light& l
   }
   if (!command.quality.plain()) {
     stats.samples = command.quality.samples();
+    stats.samples_at_edges = command.quality.at_edges;
     stats.cutoff_px = static_cast<double>(command.quality.cutoff.raw) / Q16::kOne;
   }
   if (command.quality.max_depth != 0) {
@@ -283,7 +303,8 @@ PartHeader part_of(const Subject& subject, const SceneSource& source, const Ligh
   add_camera(subject.framing.kept, &camera);
   part.camera_crc32 = camera.value();
   CrcSum options;
-  options.add_all(command.shade, subject.format, quality.across, quality.cutoff.raw, quality.max_depth);
+  options.add_all(command.shade, subject.format, quality.samples_key(), quality.cutoff.raw,
+                  quality.max_depth);
   if (is_lit) {
     add_lighting(light.lighting, light.used, light.effects, subject.built.level(), &options);
   }
@@ -325,6 +346,11 @@ void run(const RenderCommand& given) {
   RenderCommand command = given;
   check_usage(command);
   use_display(command.scene.board, &command.view);
+  if (command.quality.at_edges &&
+      std::max(command.view.width_px, command.view.height_px) > kMaxPicturePx / kEdgeGrid) {
+    throw InputError("--samples auto wants a picture of at most " +
+                     std::to_string(kMaxPicturePx / kEdgeGrid) + " pixels a side");
+  }
   check_part_size(&command);
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
   OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},

@@ -44,13 +44,18 @@ class LookStudio {
   void look_from(const Framing& framing) {
     framing_ = framing;
     look_ = default_look(facts_, wishes_, framing_, command_.view.width_px, command_.view.height_px);
+    const bool is_lit = look_.kind == LookKind::kLit;
+    if (is_lit && !look_.at_edges && streams_ == nullptr) {
+      streams_ = command_.engine.lit_streams(&built_, look_.effects, look_.lit_scene());
+    }
     canvas_ = {&built_.compact(),
                &look_,
                &framing_,
                fine_camera(),
-               built_.band(),
-               command_.engine.threads,
-               command_.rows.value_or(RowRange{})};
+               work(),
+               is_lit ? command_.engine.lit_threads(&built_, look_.effects) : command_.engine.threads,
+               command_.rows.value_or(RowRange{}),
+               streams_.get()};
     if (exposure_ == 0) {
       exposure_ = measured_exposure(canvas_);  // of the first view for all, so that a film does not flicker
     }
@@ -63,6 +68,7 @@ class LookStudio {
     return painting;
   }
   std::uint32_t exposure() const { return exposure_; }
+  double preparation_seconds() const { return streams_ != nullptr ? streams_->seconds() : 0; }
 
  private:
   // Lit by what glows in the tree as well.
@@ -75,19 +81,41 @@ class LookStudio {
   // hold.
   BuiltScene build() {
     wishes_.across = command_.quality.is_sampled ? command_.quality.across : 0;
+    wishes_.at_edges = command_.quality.at_edges;
     wishes_.smooth = command_.effects.choice.smooth;
     lighting_.expect_glow();
     Framing any;
     any.kept.forward = {0, kMaxViewComponent, 0};
     const Look most = default_look(facts_expected(source_, lighting_), wishes_, any, 1, 1);
-    const std::size_t row = look_work_bytes(command_.view.width_px, most.across);
-    const auto more_threads = static_cast<std::uint64_t>(command_.engine.threads - 1);
+    const std::int32_t width = command_.view.width_px;
+    const int threads = command_.engine.threads;
     SceneOptions::DrawingBytes bytes;
-    bytes.band = row * static_cast<std::size_t>(band_rows(command_, row, kMostRowsAtOnce));
-    bytes.least_band = row;
-    bytes.state =
-        lit_state_bytes(most.lit_scene(), most.effects) + more_threads * lit_render_bytes(most.effects);
+    bytes.state = lit_state_bytes(most.lit_scene(), most.effects);
+    if (wishes_.at_edges) {
+      bytes.least_band = look_edge_bytes(width, 1, threads);
+      bytes.band = look_edge_bytes(width, band_rows(command_, bytes.least_band, kMostRowsAtOnce), threads);
+      bytes.state += static_cast<std::uint64_t>(threads - 1) * lit_render_bytes(most.effects);
+    } else {
+      const std::size_t row = look_work_bytes(width, most.across);
+      bytes.band = row * static_cast<std::size_t>(band_rows(command_, row, kMostRowsAtOnce));
+      bytes.least_band = row;
+    }
     return command_.scene.build(source_, bytes);
+  }
+
+  // Stars go through the whole tree for each part of the picture. Where there are many, all rows at once are
+  // worth their bytes, if the budget has them.
+  Bytes work() {
+    constexpr std::uint32_t kMany = 1U << 16;
+    if (look_.kind != LookKind::kStars || built_.compact().voxel_count() < kMany) {
+      return built_.band();
+    }
+    if (whole_.empty()) {
+      const std::size_t pixels = static_cast<std::size_t>(command_.view.width_px) *
+                                 static_cast<std::size_t>(command_.view.height_px);
+      whole_ = built_.arena().take(kStarBytes * pixels);
+    }
+    return whole_.empty() ? built_.band() : whole_;
   }
 
   Camera fine_camera() {
@@ -105,6 +133,7 @@ class LookStudio {
     };
     if (set() != Status::kOk) {
       look_.across = 1;  // such a camera has no rays between the pixels'
+      look_.at_edges = false;
       camera = framing_.camera;
     }
     return camera;
@@ -115,11 +144,13 @@ class LookStudio {
   LitDescription lighting_;
   LookWishes wishes_;
   BuiltScene built_;
+  Bytes whole_;  // for sums of all pixels
   SceneShape shape_;
   SceneFacts facts_;
   Framing framing_;
   Look look_;
   LookCanvas canvas_;
+  std::unique_ptr<LitStreams> streams_;
   std::uint32_t exposure_ = 0;
 };
 
@@ -134,6 +165,7 @@ void print_look(const RenderCommand& command, const LookStudio& studio) {
 Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                const Painting& painting) {
   Stats stats(command.scene.arguments.scene, source, studio.built());
+  stats.build_seconds += studio.preparation_seconds();
   stats.frame_seconds = painting.seconds;
   stats.rays = painting.counts.all.rays;
   stats.hits = painting.counts.all.hits;
@@ -145,6 +177,7 @@ Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStud
     stats.bounces = studio.look().lit_scene().bounces;
     stats.lit_counts = painting.counts.lit;
     stats.samples = studio.look().across * studio.look().across;
+    stats.samples_at_edges = studio.look().at_edges;
   } else {
     stats.effects = Effect::kNone;
   }

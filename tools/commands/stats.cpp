@@ -57,7 +57,12 @@ std::string stats_text(const Stats& stats) {
   add("baked_bytes", stats.baked_bytes);
   add("baked_crc32", stats.baked_crc32);
   add("board", stats.board);
-  add("samples", stats.samples);
+  add("trace_seconds", stats.trace_seconds);
+  if (stats.samples_at_edges) {
+    json["samples"] = "auto";
+  } else {
+    add("samples", stats.samples);
+  }
   add("cutoff_px", stats.cutoff_px);
   add("max_depth", stats.max_depth);
   if (stats.effects) {

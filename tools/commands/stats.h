@@ -39,7 +39,9 @@ struct Stats {
   std::optional<std::uint64_t> baked_bytes;
   std::optional<std::string> baked_crc32;
   std::optional<std::string> board;
+  std::optional<double> trace_seconds;  ///< of rays from a file: tracing alone, summed over the threads
   std::optional<int> samples;
+  bool samples_at_edges = false;  ///< "auto" instead of their number
   std::optional<double> cutoff_px;
   std::optional<int> max_depth;
   std::optional<EffectSet> effects;     ///< an array of names

@@ -1,26 +1,27 @@
 // thimble trace: rays from a file, hits to a file.
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/engine_options.h"
+#include "commands/ray_file.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
 #include "output/hit_csv.h"
 #include "output/output_set.h"
 #include "output/progress.h"
-#include "output/units.h"
 #include "readers/file_bytes.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
+#include "scene/wide_rays.h"
+#include "scene/workers.h"
 
 namespace thimble::tools {
 namespace {
@@ -31,128 +32,76 @@ struct TraceCommand {
   std::string rays_path;
   std::string output = "-";
   int direction_bits = 0;
+  int threads = 1;
 };
 
-[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& sentence) {
-  throw OutputError(path + ": line " + std::to_string(line) + ": " + sentence);
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The six numbers of a line, or nothing when it does not hold just six numbers.
-std::optional<std::array<double, 6>> parse_line(std::string_view line) {
-  std::array<double, 6> numbers{};
-  const char* at = line.data();
-  const char* end = at + line.size();
-  const auto skip_blanks = [&] {
-    while (at != end && (*at == ' ' || *at == '\t')) {
-      ++at;
-    }
+// Files with so many rays are worth the map.
+constexpr std::size_t kRaysForMap = 100000;
+
+// Judges all rays before the first answer is written, since standard output cannot be taken back: throws for the
+// first line that is none. Returns their number.
+std::size_t judge(const TraceCommand& command, const RayFile& file) {
+  struct Judged {
+    std::optional<RayFault> fault;
+    std::size_t lines = 0;
+    std::size_t rays = 0;
   };
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    skip_blanks();
-    if (end - at > 1 && *at == '+' && at[1] != '-') {
-      ++at;
+  std::vector<Judged> chunks(file.chunks());
+  std::vector<std::vector<Ray>> rays(static_cast<std::size_t>(command.threads));
+  each_task(chunks.size(), command.threads, [&](std::size_t task, std::size_t worker) {
+    chunks[task].fault = file.read(task, &rays[worker], &chunks[task].lines);
+    chunks[task].rays = rays[worker].size();
+  });
+  std::size_t line = file.first_line();
+  std::size_t count = 0;
+  for (const Judged& chunk : chunks) {
+    if (chunk.fault) {
+      throw OutputError(command.rays_path + ": line " + std::to_string(line + chunk.fault->line) + ": " +
+                        chunk.fault->sentence);
     }
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    if (error == std::errc::result_out_of_range) {
-      // Too large or too small for a double: infinite or zero, which the caller judges.
-      numbers[i] = std::strtod(std::string(at, next).c_str(), nullptr);
-    } else if (error != std::errc{}) {
-      return std::nullopt;
-    }
-    at = next;
-    skip_blanks();
-    if (i + 1 < numbers.size() && (at == end || *at++ != ',')) {
-      return std::nullopt;
-    }
+    line += chunk.lines;
+    count += chunk.rays;
   }
-  return at == end ? std::optional(numbers) : std::nullopt;
+  return count;
 }
 
-// The ray as it is traced: origin to the nearest 1/256 voxel; a direction of integers within the limit as it
-// is, any other scaled so that its largest component is the limit. A zero component stays zero.
-Ray quantise(const std::array<double, 6>& numbers, int level, int direction_bits, const std::string& path,
-             std::size_t line) {
-  const double low = static_cast<double>(kMinOriginWorlds) * (1 << level);
-  const double high = static_cast<double>(kMaxOriginWorlds) * (1 << level);
-  for (const double number : numbers) {
-    if (!std::isfinite(number)) {
-      fail(path, line, "a ray has a coordinate that is not a finite number");
-    }
-  }
-  Ray ray;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value = numbers[static_cast<std::size_t>(axis)];
-    if (value < low || value > high) {
-      fail(path, line,
-           "the origin's " + shortest(value) + " is outside the accepted " + shortest(low) + " to " +
-               shortest(high) + " (-4 to 5 world sizes)");
-    }
-    ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(std::lround(value * Q8::kOne)));
-  }
-  double largest = 0;
-  bool whole = true;
-  for (std::size_t i = 3; i < 6; ++i) {
-    largest = std::max(largest, std::abs(numbers[i]));
-    whole = whole && numbers[i] == std::trunc(numbers[i]);
-  }
-  if (largest == 0) {
-    fail(path, line, "the direction is zero");
-  }
-  const double limit = direction_bits == 0 ? kMaxDirection : (1 << direction_bits) - 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value = numbers[static_cast<std::size_t>(axis) + 3];
-    const double scaled = whole && largest <= limit ? value : value / largest * limit;
-    ray.direction[axis] = static_cast<std::int32_t>(std::lround(scaled));
-  }
-  return ray;
-}
+// What a worker keeps from chunk to chunk.
+struct Tracing {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  std::uint64_t hit_count = 0;
+  std::uint64_t visits = 0;
+  double seconds = 0;  // of tracing alone
+};
 
-// Whether a line holds names only: a header. A line with a number among its columns is a ray gone wrong.
-bool is_header(std::string_view line) {
-  while (true) {
-    const std::size_t comma = line.find(',');
-    std::string_view column = line.substr(0, comma);
-    column.remove_prefix(std::min(column.find_first_not_of(" \t+"), column.size()));
-    double number = 0;
-    if (std::from_chars(column.data(), column.data() + column.size(), number).ec !=
-        std::errc::invalid_argument) {
-      return false;
+// Traces the rays of a chunk and writes their lines.
+void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built, const WideRays* wide,
+                 const TraceOptions& options, Tracing* tracing, std::string* lines) {
+  std::size_t count = 0;
+  (void)file.read(chunk, &tracing->rays, &count);  // judged before
+  const std::vector<Ray>& rays = tracing->rays;
+  std::vector<Hit>& hits = tracing->hits;
+  hits.resize(rays.size());
+  const auto start = Clock::now();
+  if (wide != nullptr) {
+    (void)wide->first_hit({rays.data(), rays.size()}, {hits.data(), hits.size()});
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      (void)built.closest_hit(rays[i], &hits[i], options);
     }
-    if (comma == std::string_view::npos) {
-      return true;
-    }
-    line.remove_prefix(comma + 1);
   }
-}
-
-// Calls `visit` with each ray of the file; throws for the first line that is none.
-void for_each_ray(const TraceCommand& command, std::string_view text, int level,
-                  const std::function<void(const Ray&, std::size_t line, std::size_t offset)>& visit) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  std::size_t line_number = 0;
-  bool first = true;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    std::string_view line = text.substr(at, end - at);
-    at = end + 1;
-    ++line_number;
-    if (!line.empty() && line.back() == '\r') {
-      line.remove_suffix(1);
-    }
-    if (line.find_first_not_of(" \t") == std::string_view::npos) {
-      continue;
-    }
-    const auto numbers = parse_line(line);
-    const bool header = !numbers && first && is_header(line);
-    first = false;
-    if (header) {
-      continue;
-    }
-    if (!numbers) {
-      fail(command.rays_path, line_number, "these are not the six numbers ox,oy,oz,dx,dy,dz");
-    }
-    visit(quantise(*numbers, level, command.direction_bits, command.rays_path, line_number), line_number, at);
+  tracing->seconds += seconds_since(start);
+  lines->clear();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    append_hit(lines, rays[i], hits[i]);
+    tracing->hit_count += hits[i].kind == HitKind::kHit ? 1U : 0U;
+    tracing->visits += hits[i].visits;
   }
 }
 
@@ -161,7 +110,7 @@ void run(const TraceCommand& command) {
                     {command.scene.arguments.scene, command.rays_path});
   OutputFile& output = *outputs[0];
   const auto source = command.scene.open();
-  const BuiltScene built = command.scene.build(*source);
+  BuiltScene built = command.scene.build(*source);
   FileBytes bytes;
   try {
     bytes = load_file(command.rays_path);
@@ -169,41 +118,44 @@ void run(const TraceCommand& command) {
     throw OutputError(command.rays_path + ": " + error.what());
   }
   const std::string_view text = bytes.text();
-  const TraceOptions options = command.engine.trace_options();
-
-  // All rays are judged before the first answer is written: standard output cannot be taken back.
-  for_each_ray(command, text, built.level(), [&](const Ray& ray, std::size_t line, std::size_t) {
-    if (command.engine.name == "ray32" && !accepts_32(ray, built.level())) {
-      fail(command.rays_path, line, "--engine ray32 does not take this ray; auto does");
-    }
-  });
-  output.write(std::string(kHitColumns) + "\n");
-  ProgressBar bar("tracing", command.scene.quiet);
+  const RayFile file(text, {built.level(), command.direction_bits, command.engine.name == "ray32"});
   Stats stats(command.scene.arguments.scene, *source, built);
-  stats.engine = command.engine.resolved(false);
+  stats.rays = judge(command, file);
+  std::unique_ptr<WideRays> wide;
+  if (stats.rays >= kRaysForMap && command.engine.name == "auto" && command.scene.board == nullptr) {
+    wide = WideRays::make(&built);
+    stats.budget_bytes = built.budget_bytes();
+    stats.high_water_bytes = built.high_water_bytes();
+  }
+  stats.engine = command.engine.resolved(wide != nullptr);
+  stats.threads = command.threads;
   if (command.scene.board != nullptr) {
     stats.board = command.scene.board->name;
   }
-  std::string lines;
-  const auto start = std::chrono::steady_clock::now();
-  for_each_ray(command, text, built.level(), [&](const Ray& ray, std::size_t line, std::size_t offset) {
-    Hit hit;
-    if (built.closest_hit(ray, &hit, options) != Status::kOk) {
-      fail(command.rays_path, line, "--engine " + command.engine.name + " does not take this ray");
+  output.write(std::string(kHitColumns) + "\n");
+  ProgressBar bar("tracing", command.scene.quiet);
+  const auto start = Clock::now();
+  const auto threads = static_cast<std::size_t>(command.threads);
+  std::vector<Tracing> workers(threads);
+  std::vector<std::string> lines(8 * threads);
+  for (std::size_t first = 0; first < file.chunks(); first += lines.size()) {
+    const std::size_t count = std::min(lines.size(), file.chunks() - first);
+    each_task(count, command.threads, [&](std::size_t task, std::size_t worker) {
+      trace_chunk(file, first + task, built, wide.get(), command.engine.trace_options(), &workers[worker],
+                  &lines[task]);
+    });
+    for (std::size_t task = 0; task < count; ++task) {
+      output.write(lines[task]);
     }
-    append_hit(&lines, ray, hit);
-    ++stats.rays;
-    stats.hits += hit.kind == HitKind::kHit ? 1U : 0U;
-    stats.node_visits += hit.visits;
-    constexpr std::size_t kFlushBytes = 1 << 20;
-    if (lines.size() > kFlushBytes) {
-      output.write(lines);
-      lines.clear();
-      bar.update(static_cast<double>(offset) / static_cast<double>(text.size()));
-    }
-  });
-  stats.frame_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  output.write(lines);
+    bar.update(static_cast<double>(file.end(first + count - 1)) / static_cast<double>(text.size()));
+  }
+  stats.frame_seconds = seconds_since(start);
+  stats.trace_seconds = 0;
+  for (const Tracing& worker : workers) {
+    stats.hits += worker.hit_count;
+    stats.node_visits += worker.visits;
+    *stats.trace_seconds += worker.seconds;
+  }
   if (outputs[1] != nullptr) {
     outputs[1]->write(stats_text(stats));
   }
@@ -225,6 +177,7 @@ void add_trace(CLI::App& app) {
       .default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);
+  add_threads(*sub, &command->threads, "threads that read, trace and write");
   when_chosen(*sub, [command] { run(*command); });
 }
 

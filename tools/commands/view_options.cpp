@@ -1,5 +1,6 @@
 #include "commands/view_options.h"
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -39,6 +40,31 @@ void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* va
         return *value ? "" : "is not three numbers X,Y,Z";
       },
       help);
+}
+
+constexpr int kMostSamples = kMaxSamplesAcross * kMaxSamplesAcross;
+
+void take_samples(std::int64_t number, int* across) {
+  for (*across = 1; *across * *across < number; ++*across) {
+  }
+}
+
+std::string samples_help(const std::string& of_what) {
+  return "samples a pixel, " + of_what +
+         ": 1, 4, 9, 16, 25, 36, 49 or 64; what lies between is taken as the next of them";
+}
+
+// Says so where a number was taken as another one.
+void note_samples(CLI::App& app, const int* across) {
+  also_check(app, [&app, across] {
+    const std::string asked = text_given(app, "--samples");
+    const auto number = parse_whole(asked, 1, kMostSamples);
+    const int taken = *across * *across;
+    const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
+    if (number && *number != taken && !quiet) {
+      std::fprintf(stderr, "note: --samples %s is not a square; %d are taken\n", asked.c_str(), taken);
+    }
+  });
 }
 
 }  // namespace
@@ -161,26 +187,28 @@ void add_direction_bits(CLI::App& app, int* bits) {
 
 void add_samples(CLI::App& app, int* across, const std::string& of_what, int usual_across) {
   add_whole_option(
-      app, "--samples", "N", 1, kMaxSamplesAcross * kMaxSamplesAcross,
-      [across](std::int64_t number) {
-        for (*across = 1; *across * *across < number; ++*across) {
-        }
-      },
-      "samples a pixel, " + of_what +
-          ": 1, 4, 9, 16, 25, 36, 49 or 64; what lies between is taken as the next of them")
+      app, "--samples", "N", 1, kMostSamples, [across](std::int64_t number) { take_samples(number, across); },
+      samples_help(of_what))
       .default_str(std::to_string(usual_across * usual_across));
-  also_check(app, [&app, across] {
-    const std::string asked = text_given(app, "--samples");
-    const int taken = *across * *across;
-    const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
-    if (!asked.empty() && parse_whole(asked, taken, taken) != taken && !quiet) {
-      std::fprintf(stderr, "note: --samples %s is not a square; %d are taken\n", asked.c_str(), taken);
-    }
-  });
+  note_samples(app, across);
 }
 
 void add_quality(CLI::App& app, Quality* quality) {
-  add_samples(app, &quality->across, "on a regular grid in it, averaged", 1);
+  add_text_option(
+      app, "--samples", "auto|N",
+      [quality](const std::string& text) -> std::string {
+        quality->at_edges = CLI::detail::to_lower(text) == "auto";
+        const auto number = parse_whole(text, 1, kMostSamples);
+        if (!quality->at_edges && !number) {
+          return "is neither auto nor a whole number from 1 to " + std::to_string(kMostSamples);
+        }
+        take_samples(number.value_or(kEdgeGrid * kEdgeGrid), &quality->across);
+        return {};
+      },
+      samples_help("on a regular grid in it, averaged") +
+          "; auto: one, and 2 or 4 more where the picture of one has edges")
+      .default_str("1");
+  note_samples(app, &quality->across);
   also_check(app, [&app, quality] { quality->is_sampled = is_given(app, "--samples"); });
   add_text_option(
       app, "--cutoff", "PX",

@@ -1,27 +1,51 @@
 #include "output/hit_csv.h"
 
-#include "output/units.h"
+#include <algorithm>
+#include <charconv>
+#include <string_view>
 
 namespace thimble::tools {
+namespace {
+
+// A line is shorter: twelve whole numbers of up to 11 characters, one of up to 24, commas.
+constexpr std::size_t kMostCharacters = 256;
+constexpr int kDigits = 17;
+
+}  // namespace
 
 void append_hit(std::string* text, const Ray& ray, const Hit& hit) {
+  const std::size_t before = text->size();
+  text->resize(before + kMostCharacters);
+  char* at = text->data() + before;
+  char* const end = at + kMostCharacters;
+  const auto put_letters = [&](std::string_view letters) {
+    at = std::copy(letters.begin(), letters.end(), at);
+  };
+  const auto put = [&](auto number) { at = std::to_chars(at, end, number).ptr; };
+  const auto put_next = [&](auto number) {
+    put_letters(",");
+    put(number);
+  };
   if (hit.kind == HitKind::kHit) {
-    *text += "1,";
+    put_letters("1");
     for (int axis = 0; axis < 3; ++axis) {
-      *text += std::to_string(hit.voxel[axis]) + ',';
+      put_next(hit.voxel[axis]);
     }
-    *text += digits17(hit_t(hit)) + ',' + std::to_string(hit.axis) + ',';
+    put_letters(",");
+    at = std::to_chars(at, end, hit_t(hit), std::chars_format::general, kDigits).ptr;
+    put_next(int{hit.axis});
   } else {
-    *text += "0,,,,,,";
+    put_letters("0,,,,,");
   }
-  *text += std::to_string(hit.visits);
+  put_next(hit.visits);
   for (int axis = 0; axis < 3; ++axis) {
-    *text += ',' + std::to_string(ray.origin[axis].raw);
+    put_next(ray.origin[axis].raw);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    *text += ',' + std::to_string(ray.direction[axis]);
+    put_next(ray.direction[axis]);
   }
-  *text += '\n';
+  put_letters("\n");
+  text->resize(static_cast<std::size_t>(at - text->data()));
 }
 
 }  // namespace thimble::tools

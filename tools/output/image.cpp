@@ -7,17 +7,8 @@
 #include <span>
 
 #include "output/output_file.h"
+#include "output/png.h"
 #include "thimble/picture/render.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace thimble::tools {
 namespace {
@@ -122,21 +113,10 @@ void write_image(OutputFile* file, ImageKind kind, const Image& image) {
     case ImageKind::kPbm:
       file->write("P4\n" + size);
       break;
-    case ImageKind::kPng: {
-      std::vector<unsigned char> png;
-      const auto append = [](void* context, void* data, int count) {
-        auto* out = static_cast<std::vector<unsigned char>*>(context);
-        const auto* bytes = static_cast<const unsigned char*>(data);
-        out->insert(out->end(), bytes, bytes + count);
-      };
-      const int channels = image.alpha.empty() ? 3 : 4;
-      if (stbi_write_png_to_func(append, &png, image.width_px, image.height_px, channels, pixels.data(),
-                                 channels * image.width_px) == 0) {
-        throw OutputError("the PNG encoder ran out of memory");
-      }
-      file->write(std::span<const unsigned char>(png));
+    case ImageKind::kPng:
+      file->write(std::span<const unsigned char>(
+          png_file(image.width_px, image.height_px, image.alpha.empty() ? 3 : 4, pixels)));
       return;
-    }
   }
   file->write(std::span<const unsigned char>(pixels));
 }

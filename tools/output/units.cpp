@@ -45,12 +45,6 @@ std::string shortest(double number) {
   return error == std::errc{} ? std::string(text.data(), end) : std::string();
 }
 
-std::string digits17(double number) {
-  std::array<char, 40> text{};
-  const int length = std::snprintf(text.data(), text.size(), "%.17g", number);
-  return std::string(text.data(), static_cast<std::size_t>(length));
-}
-
 std::string printable(std::string_view text) {
   std::string out;
   for (const char letter : text) {

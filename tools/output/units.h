@@ -19,8 +19,6 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text);
 
 /// A double with the fewest digits up to 17 significant ones that read back as the same double.
 std::string shortest(double number);
-/// A double with 17 significant digits.
-std::string digits17(double number);
 
 /// `text` for a sentence on a terminal: control characters, line feeds too, as \xNN, so that a file's name
 /// can neither break the sentence nor steer the terminal. UTF-8 stays as it is.

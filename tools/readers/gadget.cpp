@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kGadgetHeaderBytes = 256;
 constexpr std::size_t kMarkerBytes = 4;
-constexpr std::size_t kTypes = 6;
+constexpr std::size_t kParticleTypes = 6;
 
 enum class ByteOrder : std::uint8_t { kLittle, kBig };
 
@@ -62,14 +62,14 @@ class GadgetCloud final : public PointCloud {
  public:
   SharedBytes file;
   ByteOrder order = ByteOrder::kLittle;
-  std::array<std::uint32_t, kTypes> counts{};
+  std::array<std::uint32_t, kParticleTypes> counts{};
   std::size_t positions_offset = 0;
   std::size_t number_bytes = sizeof(float);
 
   void for_each(const Visit& visit) const override {
     CloudPoint point;
     std::size_t offset = positions_offset;
-    for (std::size_t type = 0; type < kTypes; ++type) {
+    for (std::size_t type = 0; type < kParticleTypes; ++type) {
       point.color = kGadgetColors[type];
       for (std::uint32_t i = 0; i < counts[type]; ++i) {
         point.x = number(offset);
@@ -130,7 +130,7 @@ Source read_gadget(const SharedBytes& file, const Progress& progress) {
   cloud->order = byte_order(bytes);
   const Record header = record_at(bytes, 0, cloud->order);
   std::uint64_t particles = 0;
-  for (std::size_t type = 0; type < kTypes; ++type) {
+  for (std::size_t type = 0; type < kParticleTypes; ++type) {
     cloud->counts[type] = static_cast<std::uint32_t>(load(bytes, header.offset + 4 * type, 4, cloud->order));
     particles += cloud->counts[type];
   }

@@ -80,49 +80,7 @@ Source read_oct(const SharedBytes& file, const Progress&) {
 }
 
 void for_each_block(const CompactTree& tree, const VisitBlock& visit) {
-  if (tree.empty()) {
-    return;
-  }
-  struct Frame {
-    std::uint32_t node = 0;
-    std::uint32_t next_child = 0;
-    unsigned next_octant = 0;
-    Vec3i corner;
-  };
-  std::array<Frame, kMaxLevel + 1> stack{};
-  int level = tree.level();
-  const auto enter = [&](std::uint32_t node, const Vec3i& corner) {
-    if (tree.mask(node) == 0) {
-      visit(corner, level, tree.block_material(node));
-      ++level;
-      return;
-    }
-    stack[static_cast<std::size_t>(level)] = {node, tree.first_child(node), 0, corner};
-  };
-  enter(0, {});
-  while (level <= tree.level()) {
-    Frame& frame = stack[static_cast<std::size_t>(level)];
-    const unsigned mask = tree.mask(frame.node);
-    while (frame.next_octant < 8 && ((mask >> frame.next_octant) & 1U) == 0) {
-      ++frame.next_octant;
-    }
-    if (frame.next_octant == 8) {
-      ++level;
-      continue;
-    }
-    const unsigned octant = frame.next_octant++;
-    const std::uint32_t child = frame.next_child++;
-    Vec3i corner = frame.corner;
-    for (int axis = 0; axis < 3; ++axis) {
-      corner[axis] += ((octant >> axis) & 1U) != 0 ? std::int32_t{1} << (level - 1) : 0;
-    }
-    if (level == 1) {
-      visit(corner, 0, tree.voxel_material(child));
-      continue;
-    }
-    --level;
-    enter(child, corner);
-  }
+  walk_blocks(tree, visit);
 }
 
 }  // namespace thimble::tools

@@ -4,6 +4,8 @@
 #ifndef THIMBLE_TOOLS_READERS_OCT_H
 #define THIMBLE_TOOLS_READERS_OCT_H
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -25,6 +27,63 @@ using VisitBlock = std::function<void(const Vec3i& corner, int level, std::uint8
 
 /// Visits everything solid of a sound tree, in Morton order.
 void for_each_block(const CompactTree& tree, const VisitBlock& visit);
+
+/// The same with the call inlined, for walks that many wait for: visit(corner, level, material).
+template <class Visit>
+void walk_blocks(const CompactTree& tree, const Visit& visit) {
+  if (tree.empty()) {
+    return;
+  }
+  struct Frame {
+    std::uint32_t left = 0;  // the children that are not yet visited
+    Vec3i corner;
+  };
+  std::array<Frame, kMaxLevel + 1> stack{};
+  // Nodes of a level stand in the order of this walk: each one's children come right after the last one's.
+  constexpr std::uint32_t kUnknown = UINT32_MAX;
+  std::array<std::uint32_t, kMaxLevel + 1> next{};
+  next.fill(kUnknown);
+  next[static_cast<std::size_t>(tree.level())] = 0;
+  const bool many_materials = tree.many_materials();
+  const std::uint8_t only_material = tree.uniform_material();
+  const auto child_corner = [](Frame* frame, int child_level) {
+    const auto octant = static_cast<unsigned>(std::countr_zero(frame->left));
+    frame->left &= frame->left - 1;
+    const auto along = [&](unsigned axis) {
+      return static_cast<std::int32_t>(octant >> axis & 1U) << child_level;
+    };
+    return Vec3i{frame->corner.x + along(0), frame->corner.y + along(1), frame->corner.z + along(2)};
+  };
+  Frame world{1, {}};
+  for (int level = tree.level();;) {  // of the frame's children
+    Frame& frame = level == tree.level() ? world : stack[static_cast<std::size_t>(level) + 1];
+    if (frame.left == 0) {
+      if (level == tree.level()) {
+        return;
+      }
+      ++level;
+      continue;
+    }
+    const Vec3i corner = child_corner(&frame, level);
+    const std::uint32_t node = next[static_cast<std::size_t>(level)]++;
+    const std::uint32_t mask = tree.mask(node);
+    if (mask == 0) {
+      visit(corner, level, many_materials ? tree.block_material(node) : only_material);
+      continue;
+    }
+    std::uint32_t& child = next[static_cast<std::size_t>(level - 1)];
+    child = child == kUnknown ? tree.first_child(node) : child;
+    Frame inner{mask, corner};
+    if (level > 1) {
+      stack[static_cast<std::size_t>(level)] = inner;
+      --level;
+      continue;
+    }
+    for (; inner.left != 0; ++child) {
+      visit(child_corner(&inner, 0), 0, many_materials ? tree.voxel_material(child) : only_material);
+    }
+  }
+}
 
 }  // namespace thimble::tools
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "readers/source.h"
+#include "scene/workers.h"
 #include "thimble/picture/shading.h"
 #include "thimble/trace/trace.h"
 
@@ -43,10 +45,8 @@ ViewAngles best_angles(const SceneShape& shape) {
   if (shape.tree == nullptr || shape.corners.empty()) {
     return kCandidates[0];
   }
-  std::size_t best = 0;
-  std::size_t most = 0;
-  std::size_t front = 0;  // the most of the views from there
-  for (std::size_t i = 0; i < kCandidates.size(); ++i) {
+  std::array<std::optional<std::size_t>, kCandidates.size()> seen{};
+  each_task(kCandidates.size(), shape.threads, [&](std::size_t i, std::size_t) {
     ViewWishes wishes;
     wishes.width_px = kWidth;
     wishes.height_px = kHeight;
@@ -54,16 +54,23 @@ ViewAngles best_angles(const SceneShape& shape) {
     wishes.onward = {kCandidates[i].turn - angles_of(NamedView::kIso).turn,
                      kCandidates[i].tilt - angles_of(NamedView::kIso).tilt};
     wishes.fov_degrees = kPictureFov;
-    std::size_t seen = 0;
     try {
-      seen = planes_seen(*shape.tree, frame_shape(wishes, shape).camera);
+      seen[i] = planes_seen(*shape.tree, frame_shape(wishes, shape).camera);
     } catch (const InputError&) {
-      continue;  // a side from which this world cannot be seen whole
+      // A side from which this world cannot be seen whole.
+    }
+  });
+  std::size_t best = 0;
+  std::size_t most = 0;
+  std::size_t front = 0;  // the most of the views from there
+  for (std::size_t i = 0; i < kCandidates.size(); ++i) {
+    if (!seen[i]) {
+      continue;
     }
     const bool from_behind = i >= kCandidates.size() / 2;
-    if (from_behind ? 2 * seen > 3 * front && seen > most : seen > most) {
+    if (from_behind ? 2 * *seen[i] > 3 * front && *seen[i] > most : *seen[i] > most) {
       best = i;
-      most = seen;
+      most = *seen[i];
     }
     front = from_behind ? front : most;
   }

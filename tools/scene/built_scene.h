@@ -25,7 +25,7 @@ struct BuildOptions {
   std::uint64_t band_bytes = 0;                       ///< one band of pixels; 0: nothing is rendered
   std::uint64_t render_state_bytes = render_bytes();  ///< what draws keeps beside the band
   std::uint64_t least_band_bytes = 0;                 ///< what will do for a band when the budget is short
-  int threads = 1;                                    ///< that may sort voxels
+  int threads = 1;                                    ///< that may sort voxels, and look for the best view
   std::string budget_name = "--memory";               ///< who set the budget, for errors
   /// A baked scene is traced where the source has it, as a board does in flash: not part of the budget, and
   /// the source must outlive the result. Otherwise its tree is copied into the arena. Compact trees only.
@@ -42,6 +42,8 @@ class BuiltScene {
 
   StructureKind structure() const { return traced_.kind; }
   const Structure& traced() const { return traced_; }
+  /// Those that it was built with.
+  int threads() const { return options_.threads; }
   int level() const { return traced_.level(); }
   /// A box that holds everything solid.
   VoxelBox bounds() const { return traced_.bounds(); }

@@ -9,7 +9,7 @@
 #include "scene/lit_setup.h"
 #include "scene/scene_source.h"
 #include "scene/tone.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/secondary_ray.h"
 
 namespace thimble::tools {
 
@@ -32,15 +32,7 @@ constexpr std::uint8_t kOcclusionRays = 16;
 constexpr Sky kStudio{{120, 142, 172}, {214, 218, 222}, {150, 146, 140}};
 
 bool is_solid(const CompactTree& tree, const Vec3i& at) {
-  const std::int32_t side = std::int32_t{1} << tree.level();
-  if (at.x < 0 || at.y < 0 || at.z < 0 || at.x >= side || at.y >= side || at.z >= side) {
-    return false;
-  }
-  constexpr std::int32_t kHalf = Q8::kOne / 2;
-  const auto middle = [](std::int32_t v) { return Q8::from_raw(v * Q8::kOne + kHalf); };
-  Hit hit;
-  return closest_hit(tree, {{middle(at.x), middle(at.y), middle(at.z)}, {1, 0, 0}}, &hit) == Status::kOk &&
-         hit.kind == HitKind::kHit && hit.axis < 0;
+  return material_at(tree, at, nullptr);
 }
 
 bool has_neighbours(const CompactTree& tree, const Vec3i& at) {
@@ -59,7 +51,7 @@ int surface_share(const CompactTree& tree) {
   std::uint64_t seen = 0;
   std::uint64_t asked = 0;
   std::uint64_t have = 0;
-  for_each_block(tree, [&](const Vec3i& corner, int level, std::uint8_t) {
+  walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t) {
     if (seen++ % every == 0) {
       ++asked;
       have += level > 0 || has_neighbours(tree, corner) ? 1U : 0U;
@@ -164,6 +156,9 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light,
   text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";
   text += ", effects " + effects_text(look.effects);
   text += look.has_ground ? ", a ground" : ", no ground";
+  if (look.at_edges) {
+    return text + ", samples where edges are";
+  }
   text += ", " + std::to_string(look.across * look.across) + (look.across == 1 ? " sample" : " samples") +
           " a pixel (" + grouped(rays) + " rays at most; four want at most " + grouped(kMostLookRays) + ")";
   return text;
@@ -258,6 +253,7 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
 
   const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);
   const std::uint64_t rays = pixels * 4 * rays_a_sample(look.lit_scene(), look.effects);
+  look.at_edges = wishes.at_edges;
   look.across = wishes.across != 0 ? wishes.across : rays <= kMostLookRays ? 2 : 1;
   dim(&lighting, &look.used);
   look.text = look_text(facts, look, own_light, rays);

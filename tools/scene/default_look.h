@@ -76,6 +76,7 @@ struct LookWishes {
   Background background;
   std::optional<bool> ground;  ///< else where the sun is the rule's
   int across = 0;              ///< samples a pixel are its square; 0: the rule's
+  bool at_edges = false;       ///< samples where edges are (edge_rows.h); `across` is then kEdgeGrid
   std::optional<bool>
       smooth;  ///< slopes instead of the faces of voxels; else for meshes and surfaces of points
 };
@@ -101,7 +102,8 @@ struct Look {
   Vec3i toward_sun;           ///< for the ground's shadow
   std::uint16_t reach = 8;    ///< voxels within which the ground darkens under the model
   int across = 1;
-  std::string text;  ///< what was chosen and why, a sentence
+  bool at_edges = false;  ///< samples where edges are, on a camera of `across` times the pixels
+  std::string text;       ///< what was chosen and why, a sentence
 
   /// Views into `lighting`.
   LitScene lit_scene() const;

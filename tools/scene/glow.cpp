@@ -27,9 +27,15 @@ struct GlowingFace {
 
 std::vector<GlowingFace> glowing_faces(const CompactTree& tree, const std::vector<Surface>& surfaces) {
   std::vector<GlowingFace> faces;
+  const auto glows = [](const Surface& surface) {
+    return surface.kind == SurfaceKind::kEmit && surface.emission_q8 != 0;
+  };
+  if (std::none_of(surfaces.begin(), surfaces.end(), glows)) {
+    return faces;
+  }
   for_each_block(tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
     const Surface& surface = surfaces[material];
-    if (surface.kind != SurfaceKind::kEmit || surface.emission_q8 == 0) {
+    if (!glows(surface)) {
       return;
     }
     const std::int32_t side = std::int32_t{1} << level;

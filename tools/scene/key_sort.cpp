@@ -18,21 +18,21 @@ constexpr std::size_t kShortList = std::size_t{1} << 16;
 // Bytes of scratch a thread: with the bucket itself half of a usual second-level cache.
 constexpr std::size_t kMostScratch = std::size_t{512} << 10;
 
-using Bounds = std::array<std::size_t, kBuckets + 1>;
+using BucketBounds = std::array<std::size_t, kBuckets + 1>;
 
 // Brings `keys` into the order of the 8 bits at `shift`, in place: keys are swapped into the bucket that they
 // belong to. Going through what is left of each bucket, rather than along cycles, leaves swaps independent.
 template <class Key>
-Bounds deal(Span<Key> keys, int shift) {
+BucketBounds deal(Span<Key> keys, int shift) {
   const auto bucket_of = [shift](Key key) { return static_cast<std::size_t>(key >> shift) % kBuckets; };
-  Bounds bounds{};
+  BucketBounds bounds{};
   for (std::size_t i = 0; i < keys.size; ++i) {
     ++bounds[bucket_of(keys[i]) + 1];
   }
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
     bounds[bucket + 1] += bounds[bucket];
   }
-  Bounds next = bounds;
+  BucketBounds next = bounds;
   bool moved = true;
   while (moved) {
     moved = false;
@@ -92,7 +92,7 @@ void sort_bucket(Span<Key> keys, int bits, Span<Key> scratch) {
     sort_keys(keys, bits);
     return;
   }
-  const Bounds bounds = deal(keys, bits - kDealBits);
+  const BucketBounds bounds = deal(keys, bits - kDealBits);
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
     sort_bucket(keys.subspan(bounds[bucket], bounds[bucket + 1] - bounds[bucket]), bits - kDealBits, scratch);
   }
@@ -106,7 +106,7 @@ void sort_all(Span<Key> keys, int key_bits, Bytes scratch, int threads) {
     return;
   }
   const int bits = key_bits - kDealBits;
-  const Bounds bounds = deal(keys, bits);
+  const BucketBounds bounds = deal(keys, bits);
   const auto sort_one = [&](std::size_t bucket, Span<Key> own) {
     sort_bucket(keys.subspan(bounds[bucket], bounds[bucket + 1] - bounds[bucket]), bits, own);
   };

@@ -25,7 +25,9 @@ class LitPainter final : public BandPainter {
         row_bytes_(std::max<std::size_t>(1, row_bytes(format, width_px_))) {}
 
   const char* engine() const override { return "lit"; }
-  int threads() const override { return picture_.threads; }
+  int threads() const override {
+    return picture_.streams != nullptr ? picture_.streams->threads() : picture_.threads;
+  }
   std::int32_t most_rows() const override {
     return picture_.across == 1 ? static_cast<std::int32_t>(built_.band().size / row_bytes_) : 1;
   }
@@ -43,6 +45,9 @@ class LitPainter final : public BandPainter {
                            counts);
   }
   Status draw_band(const Band& band, LitCounts* counts) const {
+    if (picture_.streams != nullptr) {
+      return picture_.streams->render(picture_.effects, camera_, shading_, picture_.scene, band, counts);
+    }
     if (picture_.threads == 1) {
       return draw_rows(band, counts);
     }
@@ -91,6 +96,16 @@ std::unique_ptr<BandPainter> make_lit_painter(const BuiltScene& built, const Cam
                                               const Shading& shading, PixelFormat format,
                                               const LitPicture& picture) {
   return std::make_unique<LitPainter>(built, camera, shading, format, picture);
+}
+
+std::unique_ptr<BandPainter> make_lit_edge_painter(const BuiltScene& built, const Camera& camera,
+                                                   const Camera& fine, const Shading& shading,
+                                                   PixelFormat format, const LitPicture& picture) {
+  const auto draw = [&built, shading, picture](const SampleRun& run, Bytes samples, PaintCounts* counts) {
+    return render_lit_band(picture.effects, built.compact(), run.camera, shading, picture.scene,
+                           {samples, PixelFormat::kRgb888, 0, run.row, 1}, &counts->lit);
+  };
+  return make_edge_painter(built, camera, fine, format, {"lit", picture.threads, true, draw});
 }
 
 }  // namespace thimble::tools

@@ -51,22 +51,37 @@ LookRows::LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t
       scene_(canvas.look->lit_scene()),
       tone_(tone_table(exposure)) {}
 
-Status LookRows::trace(std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
-                       LitCounts* counts) const {
+Status LookRows::trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
+                              LitCounts* counts) const {
   Band band;
   band.pixels = colors;
   band.first_row = first_row;
   band.rows = rows;
+  const EffectSet effects = canvas_.look->effects;
+  return canvas_.streams != nullptr
+             ? canvas_.streams->render(effects, camera, shading_, scene_, band, counts)
+             : render_lit_band(effects, *canvas_.tree, camera, shading_, scene_, band, counts);
+}
+
+void LookRows::find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows,
+                           Bytes shares) const {
   const Look& look = *canvas_.look;
-  const Status status = render_lit_band(look.effects, *canvas_.tree, camera_, shading_, scene_, band, counts);
   std::uint8_t* share = shares.data;
-  for (std::int32_t y = first_row; status == Status::kOk && y < first_row + rows; ++y) {
-    RowRays rays(camera_, 0, y);
-    for (std::int32_t x = 0; x < camera_.width_px(); ++x, rays.next(), ++share) {
+  for (std::int32_t y = first_row; y < first_row + rows; ++y) {
+    RowRays rays(camera, 0, y);
+    for (std::int32_t x = 0; x < camera.width_px(); ++x, rays.next(), ++share) {
       if (!look.has_backdrop || !light_behind(*canvas_.tree, look, rays.ray(), share)) {
         *share = kNothingBehind;
       }
     }
+  }
+}
+
+Status LookRows::trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
+                       Bytes shares, LitCounts* counts) const {
+  const Status status = trace_colors(camera, first_row, rows, colors, counts);
+  if (status == Status::kOk) {
+    find_shares(camera, first_row, rows, shares);
   }
   return status;
 }
@@ -83,42 +98,99 @@ Status LookRows::draw(std::int32_t y, Bytes work, Image* image, LitCounts* count
   return status;
 }
 
-// The mean of a pixel's samples, each with its tone and what is behind it.
+Status LookRows::draw_rows(std::int32_t y, std::int32_t rows, Bytes work, Image* image,
+                           LitCounts* counts) const {
+  const int across = canvas_.look->across;
+  const auto samples = static_cast<std::size_t>(camera_.width_px()) * static_cast<std::size_t>(across);
+  const Bytes all_colors = work.subspan(0, 3 * samples * static_cast<std::size_t>(rows));
+  const Bytes all_shares = work.subspan(all_colors.size, samples * static_cast<std::size_t>(rows));
+  const Status status = trace_colors(camera_, y * across, rows * across, all_colors, counts);
+  if (status != Status::kOk) {
+    return status;
+  }
+  return for_rows(rows, canvas_.streams->threads(), [&](std::int32_t row, std::size_t /*thread*/) {
+    const Bytes colors = all_colors.subspan(3 * samples * static_cast<std::size_t>(row), 3 * samples);
+    const Bytes shares = all_shares.subspan(samples * static_cast<std::size_t>(row), samples);
+    find_shares(camera_, (y + row) * across, across, shares);
+    for (std::int32_t x = 0; x < image->width_px; ++x) {
+      finish(x, y + row, colors, shares, image);
+    }
+    return Status::kOk;
+  });
+}
+
+Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts) const {
+  constexpr std::int32_t kMost = kEdgeSegmentPx;
+  std::array<std::uint8_t, std::size_t{4} * kMost> traced{};
+  const Camera& whole = canvas_.framing->camera;
+  for (std::int32_t first = 0; first < run.count; first += kMost) {
+    const std::int32_t count = std::min(kMost, run.count - first);
+    const Bytes colors(traced.data(), 3 * static_cast<std::size_t>(count));
+    const Bytes shares(traced.data() + colors.size, static_cast<std::size_t>(count));
+    const Status status = trace(run.camera.window(first, run.row, count, 1), 0, 1, colors, shares, counts);
+    if (status != Status::kOk) {
+      return status;
+    }
+    std::uint8_t* to = samples.data + std::size_t{4} * static_cast<std::size_t>(first);
+    for (std::int32_t x = 0; x < count; ++x, to += 4) {
+      const std::uint8_t* color = colors.data + std::size_t{3} * static_cast<std::size_t>(x);
+      const Rgb8 behind = backdrop_color(canvas_.look->background, run.px + first + x, run.py,
+                                         whole.width_px(), whole.height_px());
+      const Sample sample =
+          sample_of({color[0], color[1], color[2]}, shares[static_cast<std::size_t>(x)], behind);
+      std::copy(sample.begin(), sample.end(), to);
+    }
+  }
+  return Status::kOk;
+}
+
+void LookRows::finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* sums, std::uint32_t count,
+                           Image* image) {
+  const auto pixel =
+      static_cast<std::size_t>(y - image->first_row) * static_cast<std::size_t>(image->width_px) +
+      static_cast<std::size_t>(x);
+  const std::uint32_t cover = sums[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    image->pixels[3 * pixel + c] = static_cast<std::uint8_t>(
+        image->alpha.empty() ? (sums[c] + count / 2) / count
+        : cover == 0         ? 0  // what is behind is black, so the sum is the cover's colour
+                             : std::min(255U, (sums[c] * 255 + cover / 2) / cover));
+  }
+  if (!image->alpha.empty()) {
+    image->alpha[pixel] = static_cast<std::uint8_t>((cover + count / 2) / count);
+  }
+}
+
+// A sample with its tone, or with what is behind it, and how much of it covers that.
+LookRows::Sample LookRows::sample_of(Rgb8 color, std::uint8_t share, Rgb8 behind) const {
+  if (share == kNothingBehind) {
+    return {tone_[color.r], tone_[color.g], tone_[color.b], 255};
+  }
+  const auto shaded = [share](std::uint32_t back) {
+    return static_cast<std::uint8_t>((back * share + kFullShare / 2) / kFullShare);
+  };
+  return {shaded(behind.r), shaded(behind.g), shaded(behind.b),
+          static_cast<std::uint8_t>((kFullShare - share) * 255U / kFullShare)};
+}
+
+// The mean of a pixel's samples.
 void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const {
   const int across = canvas_.look->across;
   const Rgb8 behind =
       backdrop_color(canvas_.look->background, x, y, image->width_px, camera_.height_px() / across);
-  std::array<std::uint32_t, 3> sum{};
-  std::uint32_t cover = 0;  // 255 a sample
+  std::array<std::uint32_t, 4> sums{};
   for (int j = 0; j < across; ++j) {
     for (int i = 0; i < across; ++i) {
       const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(camera_.width_px()) +
                       static_cast<std::size_t>(x * across + i);
-      const std::uint32_t share = shares[at];
       const std::uint8_t* color = colors.data + 3 * at;
-      const std::array<std::uint32_t, 3> back{behind.r, behind.g, behind.b};
-      for (std::size_t c = 0; c < 3; ++c) {
-        sum[c] += share == kNothingBehind ? tone_[color[c]] : (back[c] * share + kFullShare / 2) / kFullShare;
+      const Sample sample = sample_of({color[0], color[1], color[2]}, shares[at], behind);
+      for (std::size_t c = 0; c < sums.size(); ++c) {
+        sums[c] += sample[c];
       }
-      cover += share == kNothingBehind ? 255U : (kFullShare - share) * 255U / kFullShare;
     }
   }
-  const auto count = static_cast<std::uint32_t>(across * across);
-  const auto pixel =
-      static_cast<std::size_t>(y - image->first_row) * static_cast<std::size_t>(image->width_px) +
-      static_cast<std::size_t>(x);
-  if (image->alpha.empty()) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      image->pixels[3 * pixel + c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
-    }
-    return;
-  }
-  for (std::size_t c = 0; c < 3; ++c) {  // what is behind is black, so the sum is the cover's colour
-    image->pixels[3 * pixel + c] =
-        cover == 0 ? std::uint8_t{0}
-                   : static_cast<std::uint8_t>(std::min(255U, (sum[c] * 255 + cover / 2) / cover));
-  }
-  image->alpha[pixel] = static_cast<std::uint8_t>((cover + count / 2) / count);
+  finish_sums(x, y, sums.data(), static_cast<std::uint32_t>(across * across), image);
 }
 
 std::uint32_t measured_exposure(const LookCanvas& canvas) {
@@ -147,6 +219,39 @@ std::uint32_t measured_exposure(const LookCanvas& canvas) {
   return exposure_q8(counts);
 }
 
+namespace {
+
+// With samples where edges are: the rows that `canvas.work` has room for at a time.
+Status paint_at_edges(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
+                      Painting* painting) {
+  Image& image = painting->image;
+  const LookRows look(canvas, canvas.framing->camera, exposure);
+  std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
+  EdgeRows rows(canvas.framing->camera, canvas.fine, 4, canvas.threads,
+                {[&](const SampleRun& run, Bytes samples, std::size_t worker) {
+                   return look.draw_run(run, samples, &counts[worker]);
+                 },
+                 [&](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
+                   LookRows::finish_sums(px, py, sums, count, &image);
+                 }});
+  const std::int32_t at_once = std::min(
+      EdgeRows::rows_within(canvas.work.size, 4, image.width_px, canvas.threads, 0), image.height_px);
+  Status status = Status::kOk;
+  for (std::int32_t y = 0; y < image.height_px && status == Status::kOk; y += at_once) {
+    status = rows.draw(image.first_row + y, std::min(at_once, image.height_px - y), canvas.work);
+    if (progress) {
+      progress(static_cast<double>(y) / image.height_px);
+    }
+  }
+  for (const LitCounts& part : counts) {
+    add_counts(part, &painting->counts.lit);
+  }
+  painting->counts.all = totals_of(painting->counts.lit);
+  return status;
+}
+
+}  // namespace
+
 Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
                   Painting* painting) {
   const Look& look = *canvas.look;
@@ -166,18 +271,26 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progre
     status = paint_stars(canvas, progress, painting);
   } else {
     painting->engine = "lit";
-    painting->threads = canvas.threads;
+    painting->threads = canvas.streams != nullptr ? canvas.streams->threads() : canvas.threads;
+    if (look.at_edges) {
+      status = paint_at_edges(canvas, exposure, progress, painting);
+      painting->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      return status;
+    }
     const LookRows rows(canvas, canvas.fine, exposure);
     const std::size_t row_bytes = look_work_bytes(image.width_px, look.across);
     const auto at_once = static_cast<std::int32_t>(
         std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
     std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
     for (std::int32_t y = 0; y < image.height_px && status == Status::kOk; y += at_once) {
-      status = for_rows(
-          std::min(at_once, image.height_px - y), canvas.threads, [&](std::int32_t row, std::size_t thread) {
-            const Bytes work = canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
-            return rows.draw(image.first_row + y + row, work, &image, &counts[thread]);
-          });
+      const std::int32_t count = std::min(at_once, image.height_px - y);
+      status = canvas.streams != nullptr
+                   ? rows.draw_rows(image.first_row + y, count, canvas.work, &image, &counts[0])
+                   : for_rows(count, canvas.threads, [&](std::int32_t row, std::size_t thread) {
+                       const Bytes work =
+                           canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
+                       return rows.draw(image.first_row + y + row, work, &image, &counts[thread]);
+                     });
       if (progress) {
         progress(static_cast<double>(y) / image.height_px);
       }

@@ -6,21 +6,31 @@
 #ifndef THIMBLE_TOOLS_SCENE_LOOK_PICTURE_H
 #define THIMBLE_TOOLS_SCENE_LOOK_PICTURE_H
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "output/image.h"
 #include "scene/default_look.h"
+#include "scene/edge_rows.h"
+#include "scene/lit_streams.h"
 #include "scene/painting.h"
 #include "scene/tone.h"
 
 namespace thimble::tools {
 
+/// Bytes of work for each pixel of stars: sums of light.
+inline constexpr std::size_t kStarBytes = 12;
 /// Bytes of work for a row of the picture: `look_work_bytes(...) * rows` for so many at once.
 constexpr std::size_t look_work_bytes(std::int32_t width_px, int across) {
-  // A colour and a share of light behind for each sample; a sum of light for each pixel of stars.
+  // A colour and a share of light behind for each sample; sums of light for each pixel of stars.
   const auto samples = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
-  return static_cast<std::size_t>(width_px) * (samples < 3 ? 12 : 4 * samples);
+  return static_cast<std::size_t>(width_px) * (samples < 3 ? kStarBytes : 4 * samples);
+}
+
+/// The same of a picture with samples where edges are: for `rows` rows at a time, on so many threads.
+constexpr std::size_t look_edge_bytes(std::int32_t width_px, std::int32_t rows, int threads) {
+  return EdgeRows::work_bytes(4, width_px, rows, threads);
 }
 
 /// What a picture of a look is painted with. What it refers to must live as long as it does.
@@ -31,7 +41,8 @@ struct LookCanvas {
   Camera fine;                       ///< the same view `look->across` times as wide and high
   Bytes work;                        ///< look_work_bytes for at least one row
   int threads = 1;
-  RowRange rows{};  ///< what is painted of the picture; a count of 0: all
+  RowRange rows{};                ///< what is painted of the picture; a count of 0: all
+  LitStreams* streams = nullptr;  ///< made for the look's effects; null: the core draws
 };
 
 /// A picture of a look by rows, for whoever shows it as it grows: those of `paint_look`. `camera` is
@@ -42,15 +53,34 @@ class LookRows {
   /// Row `y` of the picture, whose size is the camera's, a pixel for all samples, into `image`, which holds it.
   /// `work` holds look_work_bytes.
   Status draw(std::int32_t y, Bytes work, Image* image, LitCounts* counts) const;
+  /// The same for `rows` rows from `y` on, by `canvas.streams`, which there is, and its threads. `work` holds
+  /// look_work_bytes for each.
+  Status draw_rows(std::int32_t y, std::int32_t rows, Bytes work, Image* image, LitCounts* counts) const;
+
+  /// What an edge painter draws: samples with their tone and what is behind them, red, green, blue and cover,
+  /// a byte each.
+  Status draw_run(const SampleRun& run, Bytes samples, LitCounts* counts) const;
+  /// The pixel of such samples' sums.
+  static void finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* sums, std::uint32_t count,
+                          Image* image);
 
   /// The samples of rows of the camera, and what light is behind each (kFullShare of backdrop.h, or
   /// kNothingBehind), from `first_row` on.
   Status trace(std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
-               LitCounts* counts) const;
+               LitCounts* counts) const {
+    return trace(camera_, first_row, rows, colors, shares, counts);
+  }
   static constexpr std::uint8_t kNothingBehind = 255;
 
  private:
+  Status trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
+               LitCounts* counts) const;
+  Status trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
+                      LitCounts* counts) const;
+  void find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes shares) const;
   void finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const;
+  using Sample = std::array<std::uint8_t, 4>;
+  Sample sample_of(Rgb8 color, std::uint8_t share, Rgb8 behind) const;
 
   const LookCanvas& canvas_;
   Camera camera_;

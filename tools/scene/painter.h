@@ -3,17 +3,21 @@
 ///
 ///   ray painter      the core, ray by ray
 ///   quality painter  the same with several samples a pixel, a cut-off or a depth
+///   edge painter     samples where edges are, of rays or of light
 ///   wide painter     object order, with vectors and threads (platform/wide)
-///   lit painter      light, shadows, glass, water: the core's light/render.h
+///   lit painter      light, shadows, glass, water: the core's light/render.h, or the same by streams of rays
 ///
 /// The first three give the same picture where their options are the same.
 #ifndef THIMBLE_TOOLS_SCENE_PAINTER_H
 #define THIMBLE_TOOLS_SCENE_PAINTER_H
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "scene/built_scene.h"
+#include "scene/edge_rows.h"
+#include "scene/lit_streams.h"
 #include "scene/quality.h"
 #include "scene/wide_renderer.h"
 #include "thimble/light/render.h"
@@ -56,6 +60,11 @@ std::unique_ptr<BandPainter> make_ray_painter(const BuiltScene& built, const Cam
 std::unique_ptr<BandPainter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
                                                   const TraceOptions& options);
 
+/// The same with samples where edges are.
+std::unique_ptr<BandPainter> make_ray_edge_painter(const BuiltScene& built, const QualityFrame& frame,
+                                                   const Camera& camera, const Camera& fine,
+                                                   PixelFormat format, const TraceOptions& options);
+
 /// For pictures of the size that `renderer` was made for.
 std::unique_ptr<BandPainter> make_wide_painter(WideRenderer* renderer, const Camera& camera,
                                                const Shading& shading);
@@ -68,7 +77,27 @@ struct LitPicture {
   /// that of a picture so many times as wide and high.
   int across = 1;
   int threads = 1;  ///< that draw rows of a band, each with a state of its own (lit_render_bytes)
+  LitStreams* streams = nullptr;  ///< made for these effects; null: the core draws, and those threads with it
 };
+
+/// Who draws the samples of an edge painter.
+struct EdgeEngine {
+  const char* name;
+  int threads;
+  bool is_lit;  ///< whether it counts by kind of ray
+  /// A row of a camera in kRgb888; called by so many threads at a time, each with counts of its own.
+  std::function<Status(const SampleRun& run, Bytes samples, PaintCounts* counts)> draw;
+};
+/// Of such pictures, for `fine` with kEdgeGrid times the pixels of `camera` each way.
+std::unique_ptr<BandPainter> make_edge_painter(const BuiltScene& built, const Camera& camera,
+                                               const Camera& fine, PixelFormat format, EdgeEngine engine);
+/// Bytes of a band in which it draws `rows` rows at a time.
+std::uint64_t edge_band_bytes(PixelFormat format, std::int32_t width_px, std::int32_t rows, int threads);
+
+/// As make_lit_painter, with samples where edges are; `picture.across` is not looked at.
+std::unique_ptr<BandPainter> make_lit_edge_painter(const BuiltScene& built, const Camera& camera,
+                                                   const Camera& fine, const Shading& shading,
+                                                   PixelFormat format, const LitPicture& picture);
 
 /// For compact trees. Formats with fewer than 8 bits a channel are dithered.
 std::unique_ptr<BandPainter> make_lit_painter(const BuiltScene& built, const Camera& camera,

@@ -114,7 +114,7 @@ void add_look(const Look& look, int level, CrcSum* sum) {
   sum->add_all(look.kind, look.has_own_colors, look.has_backdrop, look.background.kind, behind.r, behind.g,
                behind.b);
   sum->add_all(look.has_ground, look.ground_z, look.toward_sun.x, look.toward_sun.y, look.toward_sun.z,
-               look.reach, look.across);
+               look.reach, look.at_edges ? 0 : look.across);
 }
 
 }  // namespace thimble::tools

@@ -4,10 +4,14 @@
 
 #include "output/units.h"
 #include "readers/source.h"
+#include "scene/painter.h"
 
 namespace thimble::tools {
 
 std::uint64_t quality_band_bytes(const Quality& quality, PixelFormat format, std::int32_t width_px) {
+  if (quality.at_edges) {
+    return edge_band_bytes(format, width_px, 1, 1);
+  }
   const std::uint64_t row = row_bytes(format, width_px);
   return quality.across == 1 ? row : row + samples_bytes(width_px, quality.across);
 }
@@ -34,13 +38,24 @@ Status QualityFrame::draw_row(std::int32_t y, PixelFormat format, Bytes work, Re
   band.rows = quality_.across;
   band.format = quality_.across == 1 ? format : PixelFormat::kRgb888;
   band.pixels = quality_.across == 1 ? work : work.subspan(row);
-  const Status status = quality_.cuts() ? render_band_cut(built_.compact(), fine_, shading_, fine_cutoff_,
-                                                          colors_, band, counts, options)
-                                        : built_.render_band(fine_, shading_, band, counts, options);
+  const Status status = draw_band(fine_, fine_cutoff_, band, counts, options);
   if (status != Status::kOk || quality_.across == 1) {
     return status;
   }
   return average_samples(band.pixels, quality_.across, width_px, y, format, work.subspan(0, row));
+}
+
+Status QualityFrame::draw_run(const SampleRun& run, Bytes samples, RenderCounts* counts,
+                              const TraceOptions& options) const {
+  return draw_band(run.camera, run.is_fine ? fine_cutoff_ : cutoff_,
+                   {samples, PixelFormat::kRgb888, 0, run.row, 1}, counts, options);
+}
+
+Status QualityFrame::draw_band(const Camera& camera, const Cutoff& cutoff, const Band& band,
+                               RenderCounts* counts, const TraceOptions& options) const {
+  return quality_.cuts()
+             ? render_band_cut(built_.compact(), camera, shading_, cutoff, colors_, band, counts, options)
+             : built_.render_band(camera, shading_, band, counts, options);
 }
 
 Status QualityFrame::closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const {

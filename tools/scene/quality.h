@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "scene/built_scene.h"
+#include "scene/edge_rows.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
@@ -16,7 +17,8 @@ namespace thimble::tools {
 inline constexpr int kMostCutoffPx = 64;
 
 struct Quality {
-  int across = 1;           ///< samples a pixel are its square
+  int across = 1;           ///< samples a pixel are its square; kEdgeGrid for samples where edges are
+  bool at_edges = false;    ///< samples where edges are (edge_rows.h) instead of the square in each pixel
   bool is_sampled = false;  ///< whether somebody chose that
   Q16 cutoff;               ///< in pixels, up to kMostCutoffPx; 0: none
   int max_depth = 0;        ///< nodes that deep are solid through; 0: all levels
@@ -25,9 +27,12 @@ struct Quality {
   /// Whether nodes are cut at all.
   bool cuts() const { return cutoff.raw != 0 || max_depth != 0; }
   bool plain() const { return across == 1 && !cuts(); }
+  /// What tells the samples apart from others: parts of pictures are put together by it.
+  int samples_key() const { return at_edges ? 0 : across; }
 };
 
-/// Bytes of a band that `QualityFrame::draw_row` works in, for pictures of `width_px`.
+/// Bytes of a band that `QualityFrame::draw_row` works in, for pictures of `width_px`; with samples at edges
+/// those of an edge painter for a row.
 std::uint64_t quality_band_bytes(const Quality& quality, PixelFormat format, std::int32_t width_px);
 
 /// Draws pictures of a scene with a quality. The scene, and a colour table where one is needed, stay the
@@ -38,13 +43,20 @@ class QualityFrame {
   QualityFrame(const BuiltScene& built, const Quality& quality, const Camera& camera, const Camera& fine,
                const Shading& shading, const NodeColors& colors);
 
-  /// Draws row `y` of the picture into the front of `work` (quality_band_bytes); `counts` is added to.
+  /// Draws row `y` of the picture into the front of `work` (quality_band_bytes); `counts` is added to. Not for
+  /// samples at edges, whose rows want their neighbours: draw_run draws those.
   Status draw_row(std::int32_t y, PixelFormat format, Bytes work, RenderCounts* counts,
+                  const TraceOptions& options) const;
+  /// Draws samples of an edge painter, in kRgb888, cut off as `camera` or `fine` are.
+  Status draw_run(const SampleRun& run, Bytes samples, RenderCounts* counts,
                   const TraceOptions& options) const;
   /// What a ray of `camera` meets with this quality's cut-off.
   Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
 
  private:
+  Status draw_band(const Camera& camera, const Cutoff& cutoff, const Band& band, RenderCounts* counts,
+                   const TraceOptions& options) const;
+
   const BuiltScene& built_;
   Quality quality_;
   Camera fine_;

@@ -24,6 +24,16 @@ class QualityPainter final : public BandPainter {
 
 }  // namespace
 
+std::unique_ptr<BandPainter> make_ray_edge_painter(const BuiltScene& built, const QualityFrame& frame,
+                                                   const Camera& camera, const Camera& fine,
+                                                   PixelFormat format, const TraceOptions& options) {
+  const auto draw = [&frame, options](const SampleRun& run, Bytes samples, PaintCounts* counts) {
+    return frame.draw_run(run, samples, &counts->all, options);
+  };
+  const char* const name = options.width == Width::k32 ? "ray32" : "ray64";
+  return make_edge_painter(built, camera, fine, format, {name, 1, false, draw});
+}
+
 std::unique_ptr<BandPainter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
                                                   const TraceOptions& options) {
   return std::make_unique<QualityPainter>(built, frame, options);

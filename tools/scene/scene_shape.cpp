@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 
 #include "readers/oct.h"
 #include "scene/built_scene.h"
@@ -14,40 +15,38 @@ namespace {
 constexpr int kMostLevel = 10;
 
 // Twice the area of the triangle a, b, c by its axes u and v; positive when it turns left.
-std::int64_t turn(const Vec3i& a, const Vec3i& b, const Vec3i& c, int u, int v) {
+inline std::int64_t turn(const Vec3i& a, const Vec3i& b, const Vec3i& c, int u, int v) {
   return std::int64_t{b[u] - a[u]} * (c[v] - a[v]) - std::int64_t{b[v] - a[v]} * (c[u] - a[u]);
 }
 
-// Appends the plane hull of points that share a slab: A. M. Andrew, "Another efficient algorithm for convex
-// hulls in two dimensions", 1979. `slab` is sorted on the way.
-void add_plane_hull(std::vector<Vec3i>* slab, int u, int v, std::vector<Vec3i>* hull) {
-  std::sort(slab->begin(), slab->end(),
-            [u, v](const Vec3i& a, const Vec3i& b) { return a[u] != b[u] ? a[u] < b[u] : a[v] < b[v]; });
-  const auto half = [&](auto begin, auto end) {
-    const std::size_t first = hull->size();
-    for (auto point = begin; point != end; ++point) {
-      while (hull->size() >= first + 2 && turn((*hull)[hull->size() - 2], hull->back(), *point, u, v) <= 0) {
-        hull->pop_back();
-      }
-      hull->push_back(*point);
+// Appends one half of a plane hull: the corners of `begin` .. `end`, in their order, that are not to the right.
+template <class Point>
+void add_half_hull(Point begin, Point end, int u, int v, std::vector<Vec3i>* hull) {
+  const std::size_t first = hull->size();
+  for (Point point = begin; point != end; ++point) {
+    while (hull->size() >= first + 2 && turn((*hull)[hull->size() - 2], hull->back(), *point, u, v) <= 0) {
+      hull->pop_back();
     }
-  };
-  half(slab->begin(), slab->end());
-  half(slab->rbegin(), slab->rend());
+    hull->push_back(*point);
+  }
 }
 
-// The corners that the plane hulls of all slabs across `axis` leave.
-std::vector<Vec3i> thinned(std::vector<Vec3i> points, int axis) {
-  std::stable_sort(points.begin(), points.end(),
-                   [axis](const Vec3i& a, const Vec3i& b) { return a[axis] < b[axis]; });
+// Appends the plane hulls of points, slab by slab across z: A. M. Andrew, "Another efficient algorithm for
+// convex hulls in two dimensions", 1979.
+std::vector<Vec3i> thinned_across_z(std::vector<Vec3i> points) {
+  std::sort(points.begin(), points.end(), [](const Vec3i& a, const Vec3i& b) {
+    return a.z != b.z ? a.z < b.z : a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
   std::vector<Vec3i> hull;
-  std::vector<Vec3i> slab;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    slab.push_back(points[i]);
-    if (i + 1 == points.size() || points[i + 1][axis] != points[i][axis]) {
-      add_plane_hull(&slab, (axis + 1) % 3, (axis + 2) % 3, &hull);
-      slab.clear();
+  for (std::size_t begin = 0; begin < points.size();) {
+    std::size_t end = begin;
+    while (end < points.size() && points[end].z == points[begin].z) {
+      ++end;
     }
+    const auto at = [&](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
+    add_half_hull(at(begin), at(end), 0, 1, &hull);
+    add_half_hull(std::make_reverse_iterator(at(end)), std::make_reverse_iterator(at(begin)), 0, 1, &hull);
+    begin = end;
   }
   return hull;
 }
@@ -58,41 +57,63 @@ class Columns {
   explicit Columns(int level)
       : shift_(std::max(0, level - kMostLevel)),
         side_((std::size_t{1} << (level - shift_)) + 1),
-        low_(side_ * side_, INT16_MAX),
-        high_(side_ * side_, INT16_MIN) {}
+        ends_(side_ * side_) {}
 
   void add(const Vec3i& corner, int level) {
     const std::int32_t size = std::int32_t{1} << level;
     const Vec3i from{corner.x >> shift_, corner.y >> shift_, corner.z >> shift_};
     const Vec3i to{up(corner.x + size), up(corner.y + size), up(corner.z + size)};
-    for (const std::int32_t y : {from.y, to.y}) {
-      for (const std::int32_t x : {from.x, to.x}) {
-        const std::size_t at = static_cast<std::size_t>(y) * side_ + static_cast<std::size_t>(x);
-        low_[at] = static_cast<std::int16_t>(std::min<std::int32_t>(low_[at], from.z));
-        high_[at] = static_cast<std::int16_t>(std::max<std::int32_t>(high_[at], to.z));
-      }
-    }
+    const Ends added{static_cast<std::int16_t>(from.z), static_cast<std::int16_t>(to.z)};
+    Ends* const first = ends_.data() + static_cast<std::size_t>(from.x) * side_;
+    Ends* const last = ends_.data() + static_cast<std::size_t>(to.x) * side_;
+    first[from.y].add(added);
+    first[to.y].add(added);
+    last[from.y].add(added);
+    last[to.y].add(added);
   }
-  std::vector<Vec3i> ends() const {
-    std::vector<Vec3i> points;
-    for (std::size_t at = 0; at < low_.size(); ++at) {
-      if (low_[at] <= high_[at]) {
-        const auto x = static_cast<std::int32_t>(at % side_) << shift_;
-        const auto y = static_cast<std::int32_t>(at / side_) << shift_;
-        points.push_back({x, y, low_[at] << shift_});
-        points.push_back({x, y, high_[at] << shift_});
+  // The corners that the plane hulls of all slabs across x leave.
+  std::vector<Vec3i> thinned() const {
+    std::vector<Vec3i> hull;
+    std::vector<Vec3i> lows;
+    std::vector<Vec3i> highs;
+    for (std::size_t x = 0; x < side_; ++x) {
+      lows.clear();
+      highs.clear();
+      for (std::size_t y = 0; y < side_; ++y) {
+        const Ends& ends = ends_[x * side_ + y];
+        if (ends.low <= ends.high) {
+          const Vec3i corner{static_cast<std::int32_t>(x) << shift_, static_cast<std::int32_t>(y) << shift_,
+                             0};
+          lows.push_back({corner.x, corner.y, ends.low << shift_});
+          highs.push_back({corner.x, corner.y, ends.high << shift_});
+        }
+      }
+      if (!lows.empty()) {
+        // There the lower half of the hull turns into the upper one, and here that into it.
+        lows.push_back(highs.back());
+        highs.insert(highs.begin(), lows.front());
+        add_half_hull(lows.begin(), lows.end(), 1, 2, &hull);
+        add_half_hull(highs.rbegin(), highs.rend(), 1, 2, &hull);
       }
     }
-    return points;
+    return hull;
   }
 
  private:
+  struct Ends {
+    std::int16_t low = INT16_MAX;
+    std::int16_t high = INT16_MIN;
+    void add(const Ends& other) {
+      low = std::min(low, other.low);
+      high = std::max(high, other.high);
+    }
+  };
+
   std::int32_t up(std::int32_t value) const { return (value + (1 << shift_) - 1) >> shift_; }
 
   int shift_;
   std::size_t side_;
-  std::vector<std::int16_t> low_;
-  std::vector<std::int16_t> high_;
+  std::vector<Ends> ends_;
 };
 
 std::vector<Vec3i> corners_of(const VoxelBox& box) {
@@ -114,15 +135,17 @@ SceneShape shape_of(const CompactTree& tree) {
   shape.tree = &tree;
   Columns columns(tree.level());
   if (!tree.empty()) {
-    for_each_block(tree, [&](const Vec3i& corner, int level, std::uint8_t) { columns.add(corner, level); });
+    walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t) { columns.add(corner, level); });
   }
-  shape.corners = thinned(thinned(columns.ends(), 0), 2);
+  shape.corners = thinned_across_z(columns.thinned());
   return shape;
 }
 
 SceneShape shape_of(const BuiltScene& built) {
   if (built.structure() == StructureKind::kCompact) {
-    return shape_of(built.compact());
+    SceneShape shape = shape_of(built.compact());
+    shape.threads = built.threads();
+    return shape;
   }
   SceneShape shape;
   shape.level = built.level();

@@ -20,6 +20,7 @@ struct SceneShape {
   std::vector<Vec3i> corners;
   /// Null where another structure was built.
   const CompactTree* tree = nullptr;
+  int threads = 1;  ///< that may look for a place
 };
 
 /// One pass over the blocks. In worlds of more than 1,024 a side corners are rounded outwards, to a

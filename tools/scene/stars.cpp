@@ -7,6 +7,7 @@
 
 #include "readers/oct.h"
 #include "scene/look_picture.h"
+#include "scene/workers.h"
 
 namespace thimble::tools {
 namespace {
@@ -81,8 +82,8 @@ class Sky {
     std::int64_t light[3];    // at its middle, 65,536 for a white one half way
   };
 
-  // False where it lies behind the eye or beside the picture.
-  bool shine(const Vec3i& corner, int level, std::uint8_t material, Star* star) const {
+  // False where it lies behind the eye or beside those rows of the picture.
+  bool shine(const Vec3i& corner, int level, std::uint8_t material, RowRange rows, Star* star) const {
     const std::int64_t half = std::int64_t{Q8::kOne / 2} << level;
     const std::int64_t dx = std::int64_t{corner.x} * Q8::kOne + half - eye_.x.raw;
     const std::int64_t dy = std::int64_t{corner.y} * Q8::kOne + half - eye_.y.raw;
@@ -93,13 +94,20 @@ class Sky {
       return false;
     }
     const std::int64_t divisor = perspective ? depth : Q8::kOne;
-    star->x_q8 = camera_.width_px() * 128 + floor_divide(right_.along(dx, dy, dz) * pixels_q8_, divisor);
     star->y_q8 = camera_.height_px() * 128 + floor_divide(down_.along(dx, dy, dz) * pixels_q8_, divisor);
     const std::int64_t side =
         (pixels_q8_ << level) * (perspective ? Q8::kOne : 1) / (perspective ? divisor : 1);
     const std::int64_t ratio_q8 =
         perspective ? std::clamp<std::int64_t>(middle_ * 256 / depth, 96, 700) : 256;
     star->radius_q8 = std::max({radius_q8_ * ratio_q8 / 256 * 2, side * 3 / 4, std::int64_t{300}});
+    if (star->y_q8 + star->radius_q8 <= rows.first * 256LL ||
+        star->y_q8 - star->radius_q8 >= (rows.first + rows.count) * 256LL) {
+      return false;
+    }
+    star->x_q8 = camera_.width_px() * 128 + floor_divide(right_.along(dx, dy, dz) * pixels_q8_, divisor);
+    if (star->x_q8 + star->radius_q8 <= 0 || star->x_q8 - star->radius_q8 >= camera_.width_px() * 256LL) {
+      return false;
+    }
     const std::int64_t place = std::clamp<std::int64_t>((far_ - depth) * 256 / (far_ - near_), 0, 256);
     const std::int64_t bright = ratio_q8 * ratio_q8 / 256 * (96 + place * 160 / 256) / 256;
     const Rgb8 color = canvas_.look->palette.empty() ? kNear : canvas_.look->palette[material];
@@ -111,9 +119,7 @@ class Sky {
           colored_ ? channels[c] : (near_colors[c] * place + far_colors[c] * (256 - place)) / 256;
       star->light[c] = own * bright;
     }
-    return star->x_q8 + star->radius_q8 > 0 && star->y_q8 + star->radius_q8 > 0 &&
-           star->x_q8 - star->radius_q8 < camera_.width_px() * 256LL &&
-           star->y_q8 - star->radius_q8 < camera_.height_px() * 256LL;
+    return true;
   }
   void set_colored(bool colored) { colored_ = colored; }
 
@@ -139,22 +145,23 @@ class Sky {
 };
 
 // Adds a star's light to the rows first .. first + rows - 1.
-void add_star(const Sky::Star& star, std::int32_t width, std::int32_t first, std::int32_t rows,
-              std::uint32_t* sums) {
+void add_star(const Sky::Star& star, std::int32_t width, RowRange rows, std::uint32_t* sums) {
   const std::int64_t r = star.radius_q8;
+  const std::int64_t square = r * r;
+  const std::int32_t first = rows.first;
   const auto y_from = std::max<std::int64_t>(first, floor_divide(star.y_q8 - r, 256));
-  const auto y_to = std::min<std::int64_t>(first + rows - 1, floor_divide(star.y_q8 + r, 256));
+  const auto y_to = std::min<std::int64_t>(first + rows.count - 1, floor_divide(star.y_q8 + r, 256));
   const auto x_from = std::max<std::int64_t>(0, floor_divide(star.x_q8 - r, 256));
   const auto x_to = std::min<std::int64_t>(width - 1, floor_divide(star.x_q8 + r, 256));
   for (std::int64_t y = y_from; y <= y_to; ++y) {
     const std::int64_t dy = y * 256 + 128 - star.y_q8;
     for (std::int64_t x = x_from; x <= x_to; ++x) {
       const std::int64_t dx = x * 256 + 128 - star.x_q8;
-      const std::int64_t inside = r * r - dx * dx - dy * dy;
+      const std::int64_t inside = square - dx * dx - dy * dy;
       if (inside <= 0) {
         continue;
       }
-      const std::int64_t share = inside * 1024 / (r * r);  // 0 .. 1024
+      const std::int64_t share = inside * 1024 / square;  // 0 .. 1024
       std::uint32_t* const sum = sums + 3 * ((y - first) * width + x);
       for (int c = 0; c < 3; ++c) {
         const std::int64_t light = star.light[c] * share / 1024 * share / 1024 / 16;
@@ -181,22 +188,35 @@ int step_of(std::uint32_t value) {
 
 Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting* painting) {
   painting->engine = "stars";
+  painting->threads = canvas.threads;
   Image& image = painting->image;
   const std::int32_t width = image.width_px;
   const std::int32_t height = canvas.framing->camera.height_px();
   const auto at_once = static_cast<std::int32_t>(std::min<std::size_t>(
-      canvas.work.size / (12 * static_cast<std::size_t>(width)), static_cast<std::size_t>(height)));
+      canvas.work.size / (kStarBytes * static_cast<std::size_t>(width)), static_cast<std::size_t>(height)));
   Sky sky(canvas, canvas.tree->voxel_count());
   sky.set_colored(canvas.look->has_own_colors);
   auto* const sums = reinterpret_cast<std::uint32_t*>(canvas.work.data);
+  // The light of some rows, a part of them on each thread. Sums do not depend on who adds to them when.
   const auto gather = [&](std::int32_t first, std::int32_t rows) {
-    std::fill(sums, sums + std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(rows),
-              0U);
-    for_each_block(*canvas.tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
-      Sky::Star star{};
-      if (sky.shine(corner, level, material, &star)) {
-        add_star(star, width, first, rows, sums);
-      }
+    const auto parts = std::min(canvas.threads, rows);
+    each_task(static_cast<std::size_t>(parts), canvas.threads, [&](std::size_t part, std::size_t) {
+      const auto cut = [&](std::size_t number) {
+        return static_cast<std::int32_t>(static_cast<std::int64_t>(number) * rows / parts);
+      };
+      const RowRange own{first + cut(part), cut(part + 1) - cut(part)};
+      std::uint32_t* const own_sums = sums + std::size_t{3} * static_cast<std::size_t>(width) *
+                                                 static_cast<std::size_t>(own.first - first);
+      std::fill(
+          own_sums,
+          own_sums + std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(own.count),
+          0U);
+      walk_blocks(*canvas.tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
+        Sky::Star star{};
+        if (sky.shine(corner, level, material, own, &star)) {
+          add_star(star, width, own, own_sums);
+        }
+      });
     });
   };
   // First the light that is half way to white: three fifths of the pixels that have any have less.

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "scene/built_scene.h"
+#include "scene/host_memory.h"
 #include "wide/renderer.h"
 #include "wide/threads.h"
 
@@ -36,17 +37,24 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena*
                                                  std::int32_t height_px, int threads) {
   const auto start = std::chrono::steady_clock::now();
   const std::size_t mark = arena->used_bytes();
-  // Asked before the lists are made: what does not fit costs no time.
-  const std::size_t list_bytes = wide::VoxelLists::bytes(tree);
   const std::int32_t least_rows = std::min(height_px, kLeastRows);
   const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
-  if (list_bytes > arena->free_bytes() || arena->free_bytes() - list_bytes < workspace(least_rows)) {
+  // What the least workspace leaves is the lists', and where the fastest do not fit, those of boxes alone may.
+  // Lists are counted before they are made: what does not fit costs little time.
+  const std::size_t kept = workspace(least_rows) + kWorkspaceAlignment;
+  if (arena->free_bytes() < kept) {
     return nullptr;
   }
+  Arena part(arena->rest().subspan(0, arena->free_bytes() - kept));
+  // About as much will be written, whichever lists are made.
+  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
+  use_large_pages(part.rest().subspan(0, std::min(box_bytes, part.free_bytes())));
   wide::VoxelLists lists;
-  if (wide::VoxelLists::make(tree, arena, &lists) != Status::kOk) {
+  if (wide::VoxelLists::make(tree, &part, &lists) != Status::kOk &&
+      wide::VoxelLists::make(tree, &part, &lists, wide::ListKind::kBoxes) != Status::kOk) {
     return nullptr;
   }
+  arena->take(part.used_bytes(), 1);
   std::int32_t rows = height_px;
   while (rows > least_rows && workspace(rows) > arena->free_bytes()) {
     rows = std::max(least_rows, rows / 2);

@@ -52,6 +52,7 @@ class WideRenderer {
   /// Most rows in a band for `render`.
   std::int32_t rows() const { return rows_; }
   int threads() const;
+  const wide::VoxelLists& lists() const { return lists_; }
   /// What making it took.
   double seconds() const { return seconds_; }
   /// The pixels of `render_band`; Status::kTooFine for cameras that are left to it. `counts` may be null.

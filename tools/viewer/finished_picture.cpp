@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <cstring>
+#include <new>
 
 #include "scene/backdrop.h"
 #include "scene/lit_setup.h"
@@ -95,6 +96,24 @@ void FinishedLook::choose(const LookWishes& wishes) {
     const int across = wishes.across.value_or(2);
     words_.insert(words_.end(), {"--samples", std::to_string(across * across)});
   }
+}
+
+// Null where there is no room: then the core draws.
+LitStreams* FinishedLook::streams_for(EffectSet effects, const LitScene& scene, int threads) const {
+  const std::size_t bytes = LitStreams::bytes(scene_->tree(), effects, scene, threads);
+  if (bytes > streams_bytes_ || (effects & ~streams_effects_) != 0) {
+    streams_bytes_ = bytes;
+    streams_effects_ = effects;
+    streams_.reset();
+    try {
+      streams_memory_ = HostMemory(bytes);
+    } catch (const std::bad_alloc&) {
+      return nullptr;
+    }
+    Arena arena(streams_memory_.bytes());
+    streams_ = LitStreams::make(scene_->tree(), &arena, effects, scene, threads);
+  }
+  return streams_.get();
 }
 
 FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes)
@@ -225,6 +244,10 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
     canvas.fine = drawn;
   }
   std::call_once(exposed_, [&] { exposure_ = measured_exposure(finished); });
+  const std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::try_to_lock);
+  if (lock.owns_lock()) {
+    canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
+  }
   const LookRows rows(canvas, drawn, exposure_);
   Image image;
   image.width_px = thinned_px(width_px(), std::max(step, 1));
@@ -232,14 +255,21 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   const std::size_t line = 3 * static_cast<std::size_t>(image.width_px);
   image.pixels.resize(line * static_cast<std::size_t>(image.height_px));
   rgb->resize(image.pixels.size());
+  std::vector<std::uint8_t> together;  // work of all rows of a chunk
   const std::int32_t chunk = kRowsAThread * threads->count();
   for (std::int32_t first = 0; first < image.height_px; first += chunk) {
     const std::int32_t count = std::min(chunk, image.height_px - first);
-    threads->each(count, [&](int i) {
-      thread_local std::vector<std::uint8_t> work;
-      work.resize(look_work_bytes(image.width_px, canvas.look->across));
-      check(rows.draw(first + i, Bytes(work.data(), work.size()), &image, nullptr));
-    });
+    const std::size_t row_bytes = look_work_bytes(image.width_px, canvas.look->across);
+    if (canvas.streams != nullptr) {
+      together.resize(row_bytes * static_cast<std::size_t>(count));
+      check(rows.draw_rows(first, count, Bytes(together.data(), together.size()), &image, nullptr));
+    } else {
+      threads->each(count, [&](int i) {
+        thread_local std::vector<std::uint8_t> work;
+        work.resize(row_bytes);
+        check(rows.draw(first + i, Bytes(work.data(), work.size()), &image, nullptr));
+      });
+    }
     std::memcpy(rgb->data() + line * static_cast<std::size_t>(first),
                 image.pixels.data() + line * static_cast<std::size_t>(first),
                 line * static_cast<std::size_t>(count));

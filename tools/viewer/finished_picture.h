@@ -17,7 +17,9 @@
 
 #include "scene/default_look.h"
 #include "scene/framing.h"
+#include "scene/host_memory.h"
 #include "scene/lit_description.h"
+#include "scene/lit_streams.h"
 #include "scene/look_picture.h"
 #include "scene/scene_shape.h"
 #include "thimble/picture/render.h"
@@ -69,6 +71,14 @@ class FinishedLook {
   std::vector<std::uint8_t> empty_bytes_;
   CompactTree empty_;  // a world with nothing in it
   std::vector<std::string> words_;
+
+  // Lit pictures by streams of rays: made when the first is drawn, for one that draws at a time.
+  LitStreams* streams_for(EffectSet effects, const LitScene& scene, int threads) const;
+  mutable std::mutex streams_mutex_;  // of the next four
+  mutable HostMemory streams_memory_;
+  mutable std::size_t streams_bytes_ = 0;  // that were asked for
+  mutable EffectSet streams_effects_ = Effect::kNone;
+  mutable std::unique_ptr<LitStreams> streams_;
 };
 
 /// Frames the scene from the side from which `forward` leads to its middle.

@@ -105,6 +105,8 @@ void each_task(std::size_t tasks, int /*threads*/,
   }
 }
 
+void use_large_pages(Bytes /*bytes*/) {}  // there are none
+
 HostMemory::HostMemory(std::size_t size) : size_(size) {
   if (size != 0) {
     data_ = static_cast<std::uint8_t*>(std::malloc(size));

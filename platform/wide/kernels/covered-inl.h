@@ -93,34 +93,6 @@ void unpack(const Depths& depths, Pixels* pixels) {
   }
 }
 
-uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to) {
-  const hn::CappedTag<uint8_t, 32> d;
-  const size_t lanes = hn::Lanes(d);
-  const auto behind = hn::Set(d, background);
-  const size_t stride = 32 * static_cast<size_t>(depths.rows);
-  const uint8_t* from = depths.gray + 32 * depths.word(0, y);
-  size_t count = 0;
-  const auto put_strip = [&](uint8_t* into) {
-    for (size_t part = 0; part < 32; part += lanes) {
-      const auto gray = hn::LoadU(d, from + part);
-      const auto is_none = hn::Eq(gray, hn::Zero(d));
-      count += lanes - hn::CountTrue(d, is_none);
-      hn::StoreU(hn::IfThenElse(is_none, behind, gray), d, into + part);
-    }
-    from += stride;
-  };
-  int32_t left = 0;
-  for (; left + 32 <= width_px; left += 32) {
-    put_strip(to + left);
-  }
-  if (left < width_px) {
-    HWY_ALIGN uint8_t last[32];
-    put_strip(last);
-    __builtin_memcpy(to + left, last, static_cast<size_t>(width_px - left));
-  }
-  return static_cast<uint32_t>(count);
-}
-
 // Merges the pixels of one word of coverage.
 void merge_word(const Depths& from, size_t word, const Depths& to) {
   for (uint32_t bits = from.covered[word]; bits != 0; bits &= bits - 1) {

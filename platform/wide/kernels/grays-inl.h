@@ -108,6 +108,45 @@ HWY_INLINE hn::Vec<U32> grays_of(const WideFrame& frame, const GrayScale& scale,
   return grays_in_floats(scale, hn::Mul(plane.numerator, ratio), 0.5F, unclear);
 }
 
+// Finds the faces, plus 1, through which single voxels are entered. Adds to `unclear` where floats do not tell
+// them. From inside: the face opposed to the direction's largest component, the lowest axis on a tie.
+template <bool kPerspective>
+HWY_INLINE hn::Vec<U32> faces_of(const WideFrame& frame, const Aims& aims, hn::Mask<F32>* unclear) {
+  const F32 d;
+  const U32 du;
+  EntryPlane plane;
+  auto code = hn::Zero(du);
+  auto inside_code = hn::Zero(du);
+  auto largest = hn::Set(d, -1.0F);
+#pragma GCC unroll 3
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!kPerspective && frame.camera.direction()[axis] == 0) {
+      continue;
+    }
+    const auto size = hn::Abs(aims.direction[axis]);
+    const auto distance = hn::Sub(ahead_of(aims.center[axis], aims.direction[axis]), hn::Set(d, 256.0F));
+    const auto first = hn::Set(du, static_cast<uint32_t>(1 + 2 * axis));
+    const auto is_upper = hn::RebindMask(du, hn::Lt(aims.direction[axis], hn::Zero(d)));
+    const auto ours = hn::Add(first, hn::IfThenElseZero(is_upper, hn::Set(du, 1U)));
+    const auto later = plane.take_later(axis, distance, size, unclear);
+    code = hn::IfThenElse(hn::RebindMask(du, later), ours, code);
+    const auto is_larger = hn::Gt(size, largest);
+    inside_code = hn::IfThenElse(hn::RebindMask(du, is_larger), ours, inside_code);
+    largest = hn::Max(largest, size);
+  }
+  return hn::IfThenElse(hn::Eq(code, hn::Zero(du)), inside_code, code);
+}
+
+// What is kept of a voxel that is hit.
+enum class Keep : uint8_t { kNumbers, kGrays, kFaces };
+
+template <bool kPerspective, Keep kKeep>
+HWY_INLINE hn::Vec<U32> codes_of(const WideFrame& frame, const GrayScale& scale, const Aims& aims,
+                                 hn::Mask<F32>* unclear) {
+  return kKeep == Keep::kFaces ? faces_of<kPerspective>(frame, aims, unclear)
+                               : grays_of<kPerspective>(frame, scale, aims, unclear);
+}
+
 // Finds the greys of t = numerator / (256 * speed) with the core's three roundings (src/picture/shading.cpp).
 // The ratio of integers below 2^32 is exact after Floor: one that is no integer lies farther from the next
 // integer than a double's last bit. The product has up to 55 bits and is taken in two parts. The last

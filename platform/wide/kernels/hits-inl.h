@@ -19,6 +19,25 @@ inline uint64_t value_of(const Batch& batch, uint32_t key, uint32_t down, uint32
   return batch.cube_value[down] | uint64_t{key} << kEntryBits | number;
 }
 
+// Clears the codes of a piece of the picture that is written for the first time.
+HWY_INLINE void touch(const Depths& depths, size_t piece) {
+  if (depths.is_touched[piece] == 0) {
+    depths.is_touched[piece] = 1;
+    depths.touched[++depths.touched[0]] = static_cast<uint32_t>(piece);
+    __builtin_memset(depths.gray + 32 * kPieceWords * piece, 0, 32 * kPieceWords);
+  }
+}
+
+// Clears what a box of these pixels may write to.
+inline void touch_all(const Depths& depths, const Rectangle& where) {
+  for (int32_t left = where.x0 & -32; left < where.x1; left += 32) {
+    const size_t last = depths.word(left, where.y1 - 1) / kPieceWords;
+    for (size_t piece = depths.word(left, where.y0) / kPieceWords; piece <= last; ++piece) {
+      touch(depths, piece);
+    }
+  }
+}
+
 // Writes the hits of the batch into the picture.
 template <bool kGray, bool kMarks>
 HWY_INLINE void write_hits_of(const Depths& depths, Batch* batch) {
@@ -72,6 +91,9 @@ HWY_NOINLINE void write_hits(const Depths& depths, Batch* batch) {
   } else if (depths.marks) {
     write_hits_of<true, true>(depths, batch);
   } else {
+    for (size_t i = 0; depths.is_touched != nullptr && i < batch->hits; ++i) {
+      touch(depths, batch->pixel[i] / (32 * kPieceWords));
+    }
     write_hits_of<true, false>(depths, batch);
   }
 }

@@ -8,6 +8,7 @@
 #endif
 
 #include "wide/exact.h"
+#include "wide/hidden.h"
 #include "wide/kernels.h"
 #include "wide/kernels/pairs-inl.h"
 #include "wide/kernels/project-inl.h"
@@ -57,9 +58,14 @@ class LargeBox {
       uint32_t down = 0;
       ++batch_->counts.exact;
       const Ray ray = frame.camera.ray(x + lane, y);
-      if (hits_exactly(ray, entry_, batch_->corner, &key, &down)) {
-        const uint8_t gray =
-            kGray ? gray_exactly(frame.camera, *depths_.shading, ray, entry_, batch_->corner) : uint8_t{0};
+      const Meeting meeting = meet_exactly(ray, entry_, batch_->corner, &key, &down);
+      if (meeting == Meeting::kTouch && frame.hidden_in != nullptr) {
+        ask_core_behind(frame, depths_, x + lane, y, entry_, key, down, batch_);
+      }
+      if (meeting == Meeting::kHit) {
+        const uint8_t gray = kGray ? code_exactly(frame.camera, *depths_.shading, depths_.gray_scale->code,
+                                                  ray, entry_, batch_->corner)
+                                   : uint8_t{0};
         put(test, static_cast<uint32_t>(lane),
             kGray ? mirrored_sum(entry_, down) : value_of(*batch_, key, down, number_), gray);
         ++batch_->counts.hits;
@@ -163,9 +169,10 @@ class LargeBox {
 
 // Draws a box that covers many pixels along the rows of its rectangle, a vector of pixels at a time.
 // `reject`: skips covered pixels.
-template <bool kPerspective, bool kGray>
+template <bool kPerspective, Keep kKeep>
 HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t number,
                                 const Rectangle& where, bool reject, const Depths& depths, Batch* batch) {
+  constexpr bool kGray = kKeep != Keep::kNumbers;
   const F32 d;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
   const uint32_t all_lanes = lanes == 32 ? UINT32_MAX : (uint32_t{1} << lanes) - 1;
@@ -201,7 +208,7 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
       if (kGray) {
         auto no_gray = hn::Lt(half, hn::Zero(d));
         const hn::Rebind<uint8_t, I32> bytes;
-        const auto found = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
+        const auto found = codes_of<kPerspective, kKeep>(frame, *depths.gray_scale, aims, &no_gray);
         hn::Store(hn::DemoteTo(bytes, hn::BitCast(I32(), found)), bytes, grays);
         unclear |= bits_of(d, no_gray) & test.hits;
       }
@@ -224,9 +231,16 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
 template <bool kPerspective>
 void draw_large(const WideFrame& frame, uint32_t entry, uint32_t number, const Rectangle& where, bool reject,
                 const Depths& depths, Batch* batch) {
-  depths.gray_scale != nullptr
-      ? draw_large_in<kPerspective, true>(frame, entry, number, where, reject, depths, batch)
-      : draw_large_in<kPerspective, false>(frame, entry, number, where, reject, depths, batch);
+  if (depths.is_touched != nullptr && where.x0 < where.x1 && where.y0 < where.y1) {
+    touch_all(depths, where);
+  }
+  if (depths.gray_scale == nullptr) {
+    draw_large_in<kPerspective, Keep::kNumbers>(frame, entry, number, where, reject, depths, batch);
+  } else if (depths.gray_scale->code == GrayScale::Code::kGray) {
+    draw_large_in<kPerspective, Keep::kGrays>(frame, entry, number, where, reject, depths, batch);
+  } else {
+    draw_large_in<kPerspective, Keep::kFaces>(frame, entry, number, where, reject, depths, batch);
+  }
 }
 
 // Tells whether a box that crosses the eye's plane may be seen through the tile: not when it lies wholly

@@ -8,6 +8,7 @@
 #endif
 
 #include "wide/exact.h"
+#include "wide/hidden.h"
 #include "wide/kernels.h"
 #include "wide/kernels/grays-inl.h"
 #include "wide/kernels/hits-inl.h"
@@ -47,7 +48,11 @@ void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, B
     const int32_t y = static_cast<int32_t>(pairs.place[i] >> 16);
     uint32_t key = 0;
     uint32_t down = 0;
-    if (!hits_exactly(frame.camera.ray(x, y), pairs.entry[i], batch->corner, &key, &down)) {
+    const Meeting meeting = meet_exactly(frame.camera.ray(x, y), pairs.entry[i], batch->corner, &key, &down);
+    if (meeting == Meeting::kTouch && frame.hidden_in != nullptr) {
+      ask_core_behind(frame, depths, x, y, pairs.entry[i], key, down, batch);
+    }
+    if (meeting != Meeting::kHit) {
       continue;
     }
     if (batch->hits >= Pairs::kSize) {
@@ -59,8 +64,8 @@ void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, B
     batch->number[batch->hits] = pairs.number[i];
     if (depths.gray_scale != nullptr) {
       batch->key[batch->hits] = mirrored_sum(pairs.entry[i], down);
-      batch->number[batch->hits] =
-          gray_exactly(frame.camera, *depths.shading, frame.camera.ray(x, y), pairs.entry[i], batch->corner);
+      batch->number[batch->hits] = code_exactly(frame.camera, *depths.shading, depths.gray_scale->code,
+                                                frame.camera.ray(x, y), pairs.entry[i], batch->corner);
     }
     batch->pixel[batch->hits] =
         static_cast<uint32_t>(32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U));
@@ -204,8 +209,9 @@ HWY_NOINLINE void drop_missed(const WideFrame& frame, const float (&origin)[3], 
 // A perspective camera first drops the pairs that were not hit, so that greys are found only for those that
 // were. A parallel camera's rays hit nearly all of theirs, and its greys take no division: there one pass
 // does both.
-template <bool kPerspective, bool kUnit, bool kGray>
+template <bool kPerspective, bool kUnit, Keep kKeep>
 HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
+  constexpr bool kGray = kKeep != Keep::kNumbers;
   const F32 d;
   const U32 du;
   const size_t lanes = hn::Lanes(d);
@@ -232,7 +238,7 @@ HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, 
     hn::Vec<U32> number;
     if (kGray) {
       auto no_gray = hn::Lt(hn::Zero(d), hn::Zero(d));
-      number = grays_of<kPerspective>(frame, *depths.gray_scale, aims, &no_gray);
+      number = codes_of<kPerspective, kKeep>(frame, *depths.gray_scale, aims, &no_gray);
       unclear = hn::Or(unclear, hn::And(no_gray, hit));
     } else {
       number = hn::Load(du, pairs.number + at);
@@ -246,11 +252,13 @@ HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, 
 
 template <bool kPerspective, bool kUnit>
 HWY_INLINE void test_waiting(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
-  if (depths.gray_scale != nullptr) {  // all boxes are single voxels
-    test_waiting_of<kPerspective, true, true>(frame, depths, written, batch);
-    return;
+  if (depths.gray_scale == nullptr) {
+    test_waiting_of<kPerspective, kUnit, Keep::kNumbers>(frame, depths, written, batch);
+  } else if (depths.gray_scale->code == GrayScale::Code::kGray) {  // all boxes are single voxels
+    test_waiting_of<kPerspective, true, Keep::kGrays>(frame, depths, written, batch);
+  } else {
+    test_waiting_of<kPerspective, true, Keep::kFaces>(frame, depths, written, batch);
   }
-  test_waiting_of<kPerspective, kUnit, false>(frame, depths, written, batch);
 }
 
 }  // namespace

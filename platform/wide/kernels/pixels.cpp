@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "wide/kernels/blocks-inl.h"
+#include "wide/kernels/colors-inl.h"
 #include "wide/kernels/covered-inl.h"
 #include "wide/kernels/finish-inl.h"
 
@@ -29,7 +30,8 @@ HWY_EXPORT(find_children);
 HWY_EXPORT(find_covered);
 HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
-HWY_EXPORT(put_grays);
+HWY_EXPORT(put_colors);
+HWY_EXPORT(put_touched);
 HWY_EXPORT(merge_rows);
 HWY_EXPORT(find_faces);
 HWY_EXPORT(instruction_set);
@@ -47,8 +49,12 @@ void unpack(const Depths& depths, Pixels* pixels) {
 void find_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
   HWY_DYNAMIC_DISPATCH(find_grays)(frame, pixels, scale, gray);
 }
-uint32_t put_grays(const Depths& depths, int32_t y, int32_t width_px, uint8_t background, uint8_t* to) {
-  return HWY_DYNAMIC_DISPATCH(put_grays)(depths, y, width_px, background, to);
+uint32_t put_colors(const Depths& depths, int32_t y, int32_t width_px, const CodeBytes& bytes, uint8_t* to) {
+  return HWY_DYNAMIC_DISPATCH(put_colors)(depths, y, width_px, bytes, to);
+}
+uint32_t put_touched(const Depths& depths, int32_t width_px, const CodeBytes& bytes, uint8_t* to,
+                     size_t stride) {
+  return HWY_DYNAMIC_DISPATCH(put_touched)(depths, width_px, bytes, to, stride);
 }
 void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to) {
   HWY_DYNAMIC_DISPATCH(merge_rows)(from, width_px, y0, y1, to);

@@ -193,12 +193,7 @@ void enter_cube(const WideFrame& frame, const Run& run, const Depths& depths, Ba
     batch->corner[axis] = run.corner[axis];
   }
   for (unsigned down = 0; down < 8; ++down) {
-    uint64_t key = 0;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      const uint32_t cube = run.corner[axis] >> 10 ^ ((down >> axis & 1U) != 0 ? 3U : 0U);
-      key |= uint64_t{cube & 1U} << (30 + axis) | uint64_t{cube >> 1 & 1U} << (33 + axis);
-    }
-    batch->cube_value[down] = key << kEntryBits;
+    batch->cube_value[down] = cube_value(run.corner, down);
   }
 }
 

@@ -12,15 +12,17 @@
 
 #include "benchmarks/measure.h"
 #include "benchmarks/peers/peer.h"
+#include "instruments/timed_frames.h"
 #include "scene/built_scene.h"
 #include "scene/wide_renderer.h"
 
 namespace thimble::benchmarks {
 
-/// What one of them did. Times are processor time on one thread, the median of the frames.
+/// What one of them did. Times are as instruments/timed_frames.h says.
 struct Entrant {
   std::string name;
-  double ms = 0;
+  double ms = 0;       ///< a frame with cold caches: 64 MiB were written just before
+  double warm_ms = 0;  ///< a frame that comes after its own; 0 where that was not measured: beyond 20 ms
   double build_seconds = 0;
   std::uint64_t bytes = 0;         ///< of what it keeps between frames
   std::uint64_t differing_px = 0;  ///< pixels that show another voxel than the core's ray, in one frame
@@ -43,15 +45,15 @@ struct Result {
 
 class Contest {
  public:
-  static constexpr std::int32_t kWidthPx = 800;
-  static constexpr std::int32_t kHeightPx = 600;
+  static constexpr std::int32_t kWidthPx = tools::kTimedWidthPx;
+  static constexpr std::int32_t kHeightPx = tools::kTimedHeightPx;
   static constexpr std::uint64_t kPixels = std::uint64_t{kWidthPx} * kHeightPx;
 
   /// `kind` is points or cluster. Peers are left out where their structures would take more than
   /// `most_bytes`.
   Contest(const std::string& kind, std::uint64_t points, std::uint64_t most_bytes);
 
-  /// `frames` frames each; each is seen from a slightly different place.
+  /// `frames` frames each that count, by turns.
   Result run(bool orthographic, int frames);
 
  private:
@@ -71,11 +73,6 @@ class Contest {
   std::vector<std::uint8_t> pixels_;
 };
 
-/// The table's view of a world of that level, from a slightly different place each frame: from outside with
-/// the cube filling the picture, or along y, as `thimble table` does.
-Camera contest_camera(int level, bool orthographic, int frame);
-/// Depth shading between the planes that bound the scene.
-Shading contest_shading(const Camera& camera, const VoxelBox& bounds);
 /// Every voxel of the tree, in its order.
 std::vector<Voxel> voxels_of(const tools::BuiltScene& built);
 /// All of a picture in greys.

@@ -7,8 +7,8 @@
 //
 // A frame is 800 x 600 pixels with depth shading, processor time on one thread, all by turns, the median of
 // the frames. The core draws once where that takes longer than 0.2 s. Every picture is compared with the
-// core's. `choice`: the time as chosen over the better order's; `core`: the same over the core's. Files take
-// part where THIMBLE_DATA names their folder.
+// core's. `choice`: the time as chosen over the better order's; `core`: the same over the core's; `boxes`: over
+// the time with lists of boxes alone. Files take part where THIMBLE_DATA names their folder.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -28,7 +28,8 @@ constexpr double kSlowSeconds = 0.2;
 constexpr double kMost = 1.3;
 constexpr std::size_t kWorstRows = 12;
 
-enum Engine : std::size_t { kAuto, kFlat, kBlocks, kCore, kEngines };
+// kBoxes: as chosen, over lists of boxes alone.
+enum Engine : std::size_t { kAuto, kFlat, kBlocks, kBoxes, kCore, kEngines };
 
 struct Row {
   std::string world;
@@ -36,15 +37,23 @@ struct Row {
   std::uint64_t voxels = 0;
   std::uint64_t boxes = 0;
   double ms[kEngines] = {};
-  wide::Stats stats[3];
+  wide::Stats stats[4];
+  std::uint64_t list_bytes = 0;
+  std::uint64_t box_list_bytes = 0;
   std::uint64_t hits = 0;
   bool left_to_core = false;
   bool wrong = false;
 
   double choice() const { return left_to_core ? 1 : ms[kAuto] / std::min(ms[kFlat], ms[kBlocks]); }
   double against_core() const { return left_to_core ? 1 : ms[kAuto] / ms[kCore]; }
+  double against_boxes() const { return left_to_core ? 1 : ms[kAuto] / ms[kBoxes]; }
   const char* chosen() const {
-    return left_to_core ? "core" : stats[kAuto].order == wide::Order::kFlat ? "flat" : "blocks";
+    const wide::Stats& stat = stats[kAuto];
+    if (left_to_core) {
+      return "core";
+    }
+    return stat.order == wide::Order::kFlat ? (stat.has_boxes ? "flat, boxes" : "flat")
+                                            : (stat.has_boxes ? "blocks, boxes" : "blocks");
   }
 };
 
@@ -56,7 +65,9 @@ class Table {
     row.camera = view.name;
     row.voxels = world.tree().voxel_count();
     row.boxes = world.lists().entries().size;
-    shading_ = contest_shading(view.camera, world.tree().bounds());
+    row.list_bytes = world.list_bytes();
+    row.box_list_bytes = world.box_list_bytes();
+    shading_ = tools::timed_shading(view.camera, world.tree().bounds());
     std::vector<double> seconds[kEngines];
     // What takes a millisecond is drawn more often: a median of few would be the clock's.
     int turns = frames;
@@ -65,8 +76,10 @@ class Table {
         // Who comes first finds other caches than who comes last.
         const std::size_t engine = (i + static_cast<std::size_t>(turn)) % kCore;
         double taken = 0;
-        const Status status = draw_wide(world, view.camera, static_cast<wide::Order>(engine), &taken,
-                                        &row.stats[engine], &pictures_[engine]);
+        const bool is_boxes = engine == kBoxes;
+        const Status status = draw_wide(is_boxes ? world.box_lists() : world.lists(), view.camera,
+                                        is_boxes ? wide::Order::kAuto : static_cast<wide::Order>(engine),
+                                        &taken, &row.stats[engine], &pictures_[engine]);
         if (status != Status::kOk && status != Status::kTooFine) {
           throw std::runtime_error("the wide renderer refuses a view");
         }
@@ -94,13 +107,13 @@ class Table {
   }
 
  private:
-  Status draw_wide(const tests::TrialWorld& world, const Camera& camera, wide::Order order, double* seconds,
+  Status draw_wide(const wide::VoxelLists& lists, const Camera& camera, wide::Order order, double* seconds,
                    wide::Stats* stats, std::vector<std::uint8_t>* pixels) {
     wide::Options options;
     options.order = order;
     Status status = Status::kOk;
     *seconds = seconds_of([&] {
-      status = wide::render(world.lists(), camera, shading_, gray_band(pixels, kHeightPx),
+      status = wide::render(lists, camera, shading_, gray_band(pixels, kHeightPx),
                             Bytes(workspace_.data(), workspace_.size()), nullptr, options, stats);
     });
     return status;
@@ -122,8 +135,42 @@ class Table {
       std::vector<std::uint8_t>(wide::workspace_bytes(kWidthPx, kHeightPx));
   std::vector<std::uint8_t> pictures_[kEngines] = {
       std::vector<std::uint8_t>(kWidthPx * kHeightPx), std::vector<std::uint8_t>(kWidthPx* kHeightPx),
-      std::vector<std::uint8_t>(kWidthPx* kHeightPx), std::vector<std::uint8_t>(kWidthPx* kHeightPx)};
+      std::vector<std::uint8_t>(kWidthPx* kHeightPx), std::vector<std::uint8_t>(kWidthPx* kHeightPx),
+      std::vector<std::uint8_t>(kWidthPx* kHeightPx)};
 };
+
+// The views of large and of real worlds, of which there are many.
+bool is_one_of_six(const std::string& view) {
+  for (const char* name : {"outside", "near", "grazing", "along", "parallel", "parallel oblique"}) {
+    if (view == name) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Worlds that are drawn in six views.
+std::vector<std::string> large_world_names(std::uint64_t most_points) {
+  std::vector<std::string> names{"globe:9", "terrain:10", "city:9", "city:10"};
+  for (const std::uint64_t count : std::initializer_list<std::uint64_t>{1'000'000, 20'000'000}) {
+    if (count <= most_points) {
+      names.push_back("plummer:" + std::to_string(count));
+      names.push_back("points:" + std::to_string(count));
+    }
+  }
+  if (const char* data = std::getenv("THIMBLE_DATA")) {
+    names.push_back("filled:" + std::string(data) + "/mesh/dragon_vrip_res2.ply.gz@10");
+    for (const char* file :
+         {"mesh/armadillo.off", "mesh/bunny00.off", "mesh/camel.off", "mesh/ChineseDragon-10kv.off",
+          "mesh/elephant.off", "mesh/fandisk.off", "mesh/lion-head.off", "mesh/triceratops.off",
+          "mesh/npm_snowden.obj", "mesh/trimesh_Duck.glb", "cloud/hippo1.ply", "cloud/kitten.xyz"}) {
+      for (const char* depth : {"@8", "@10"}) {
+        names.push_back(std::string(data) + "/" + file + depth);
+      }
+    }
+  }
+  return names;
+}
 
 std::vector<std::string> world_names(std::uint64_t most_points) {
   std::vector<std::string> names;
@@ -160,17 +207,18 @@ std::string short_name(const std::string& world) {
 }
 
 void print(const Row& row) {
-  std::printf("%-28s %-16s %10llu %9.3f %9.3f %9.3f %10.3f  %-6s %6.2f %6.2f%s%s\n",
+  std::printf("%-28s %-16s %10llu %9.3f %9.3f %9.3f %9.3f %10.3f  %-13s %6.2f %6.2f %6.2f%s%s\n",
               short_name(row.world).c_str(), row.camera.c_str(), static_cast<unsigned long long>(row.voxels),
-              row.ms[kAuto], row.ms[kFlat], row.ms[kBlocks], row.ms[kCore], row.chosen(), row.choice(),
-              row.against_core(), row.choice() > kMost || row.against_core() > kMost ? "  above" : "",
+              row.ms[kAuto], row.ms[kFlat], row.ms[kBlocks], row.ms[kBoxes], row.ms[kCore], row.chosen(),
+              row.choice(), row.against_core(), row.against_boxes(),
+              row.choice() > kMost || row.against_core() > kMost ? "  above" : "",
               row.wrong ? "  OTHER PICTURE" : "");
   std::fflush(stdout);
 }
 
 void print_head() {
-  std::printf("%-28s %-16s %10s %9s %9s %9s %10s  %-6s %6s %6s\n", "world", "camera", "voxels", "auto ms",
-              "flat ms", "blocks ms", "core ms", "chosen", "choice", "core");
+  std::printf("%-28s %-16s %10s %9s %9s %9s %9s %10s  %-13s %6s %6s %6s\n", "world", "camera", "voxels",
+              "auto ms", "flat ms", "blocks ms", "boxes ms", "core ms", "chosen", "choice", "core", "boxes");
 }
 
 void print_worst(const char* title, std::vector<Row> rows, double (Row::*ratio)() const) {
@@ -187,9 +235,20 @@ void print_worst(const char* title, std::vector<Row> rows, double (Row::*ratio)(
   }
 }
 
+void print_slowest(std::vector<Row> rows) {
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.ms[kAuto] > b.ms[kAuto]; });
+  std::printf("\nthe slowest\n");
+  print_head();
+  rows.resize(std::min(rows.size(), kWorstRows));
+  for (const Row& row : rows) {
+    print(row);
+  }
+}
+
 std::string csv_text(const std::vector<Row>& rows) {
   std::string text =
-      "world,camera,voxels,boxes,hits,auto_ms,flat_ms,blocks_ms,core_ms,chosen,choice,core,equal";
+      "world,camera,voxels,boxes,bytes,boxes_bytes,hits,auto_ms,flat_ms,blocks_ms,boxes_ms,core_ms,"
+      "chosen,choice,core,against_boxes,asked,equal";
   for (const char* order : {"flat", "blocks"}) {
     for (const char* what : {"boxes", "candidates", "exact", "hits", "nodes", "crossing"}) {
       text += std::string(",") + order + "_" + what;
@@ -198,11 +257,15 @@ std::string csv_text(const std::vector<Row>& rows) {
   text += "\n";
   for (const Row& row : rows) {
     char line[640];
-    std::snprintf(line, sizeof(line), "\"%s\",%s,%llu,%llu,%llu,%.4f,%.4f,%.4f,%.4f,%s,%.3f,%.3f,%d",
-                  short_name(row.world).c_str(), row.camera.c_str(),
-                  static_cast<unsigned long long>(row.voxels), static_cast<unsigned long long>(row.boxes),
-                  static_cast<unsigned long long>(row.hits), row.ms[kAuto], row.ms[kFlat], row.ms[kBlocks],
-                  row.ms[kCore], row.chosen(), row.choice(), row.against_core(), row.wrong ? 0 : 1);
+    std::snprintf(
+        line, sizeof(line),
+        "\"%s\",%s,%llu,%llu,%llu,%llu,%llu,%.4f,%.4f,%.4f,%.4f,%.4f,\"%s\",%.3f,%.3f,%.3f,%llu,%d",
+        short_name(row.world).c_str(), row.camera.c_str(), static_cast<unsigned long long>(row.voxels),
+        static_cast<unsigned long long>(row.boxes), static_cast<unsigned long long>(row.list_bytes),
+        static_cast<unsigned long long>(row.box_list_bytes), static_cast<unsigned long long>(row.hits),
+        row.ms[kAuto], row.ms[kFlat], row.ms[kBlocks], row.ms[kBoxes], row.ms[kCore], row.chosen(),
+        row.choice(), row.against_core(), row.against_boxes(),
+        static_cast<unsigned long long>(row.stats[kAuto].counts.asked), row.wrong ? 0 : 1);
     text += line;
     for (const Engine engine : {kFlat, kBlocks}) {
       const wide::Counts& counts = row.stats[engine].counts;
@@ -234,15 +297,29 @@ int run(int count, char** words) {
   Table table;
   std::vector<Row> rows;
   print_head();
-  for (const std::string& name : worlds.empty() ? world_names(most_points) : worlds) {
+  const std::vector<std::string> large = large_world_names(most_points);
+  if (worlds.empty()) {
+    worlds = world_names(most_points);
+    worlds.insert(worlds.end(), large.begin(), large.end());
+  }
+  for (const std::string& name : worlds) {
+    const bool is_large = std::find(large.begin(), large.end(), name) != large.end();
     const auto wanted = [&](const std::string& view) {
-      return (short_name(name) + " " + view).find(filter) != std::string::npos;
+      return (short_name(name) + " " + view).find(filter) != std::string::npos &&
+             (!is_large || is_one_of_six(view));
     };
     const std::vector<std::string> all_views = tests::trial_view_names();
     if (std::none_of(all_views.begin(), all_views.end(), wanted)) {
       continue;
     }
     const tests::TrialWorld world(name);
+    std::printf("%s: %zu entries%s%s, %.1f MB and %.3f s; boxes alone %zu, %.1f MB and %.3f s\n",
+                short_name(name).c_str(), world.lists().entries().size,
+                world.lists().is_surface() ? " of the surface" : "",
+                world.lists().has_boxes_beside() ? " and boxes beside" : "",
+                static_cast<double>(world.list_bytes()) / 1e6, world.list_seconds(),
+                world.box_lists().entries().size, static_cast<double>(world.box_list_bytes()) / 1e6,
+                world.box_list_seconds());
     for (const tests::TrialView& view : tests::trial_views(world.tree(), kWidthPx, kHeightPx)) {
       if (wanted(view.name)) {
         rows.push_back(table.draw(world, view, frames));
@@ -256,6 +333,8 @@ int run(int count, char** words) {
   }
   print_worst("auto over the better order", rows, &Row::choice);
   print_worst("auto over the core", rows, &Row::against_core);
+  print_worst("auto over lists of boxes alone", rows, &Row::against_boxes);
+  print_slowest(rows);
   write_text(csv_path, csv_text(rows));
   const bool equal = std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.wrong; });
   std::printf("\n%s\n", equal ? "all pictures are the core's" : "PICTURES DIFFER from the core's");

@@ -5,8 +5,7 @@
 //   thimble_peer_table --csv F --json F --plot F.svg --plot-bytes F.svg
 //                                                           the same for machines and readers
 //
-// A frame is 800 x 600 pixels with depth shading, processor time on one thread, clearing and all that depends
-// on the view included. `faster` is the time of the fastest peer that counts over this renderer's.
+// Frames are those of `thimble table` (instruments/timed_frames.h). `faster` is the time of the fastest peer that counts over this renderer's.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -24,7 +23,7 @@ struct Choice {
   std::vector<std::uint64_t> points{1,         10,        100,       1'000,      10'000,    100'000,
                                     1'000'000, 3'000'000, 5'000'000, 10'000'000, 20'000'000};
   std::vector<std::string> scenes{"points", "cluster"};
-  int frames = 3;
+  int frames = tools::kTimedFrames;
   std::uint64_t most_bytes = 6'000'000'000;
   std::string csv_path;
   std::string json_path;
@@ -37,6 +36,9 @@ void print(const Result& result) {
               projection(result.orthographic));
   for (const Entrant& entrant : result.entrants) {
     std::printf("  %s %.3f ms", entrant.name.c_str(), entrant.ms);
+    if (entrant.warm_ms != 0) {
+      std::printf(" (warm %.3f)", entrant.warm_ms);
+    }
     if (entrant.differing_px != 0) {
       std::printf(" (%llu px)", static_cast<unsigned long long>(entrant.differing_px));
     }
@@ -51,16 +53,16 @@ void print(const Result& result) {
 
 std::string csv_text(const std::vector<Result>& results) {
   std::string text =
-      "scene,points,voxels,projection,hits,engine,frame_ms,build_seconds,bytes,differing_px,counts,"
+      "scene,points,voxels,projection,hits,engine,frame_ms,warm_ms,build_seconds,bytes,differing_px,counts,"
       "times_slower\n";
   for (const Result& result : results) {
     for (const Entrant& entrant : result.entrants) {
       char line[320];
-      std::snprintf(line, sizeof(line), "%s,%llu,%llu,%s,%llu,\"%s\",%.4f,%.3f,%llu,%llu,%d,%.2f\n",
+      std::snprintf(line, sizeof(line), "%s,%llu,%llu,%s,%llu,\"%s\",%.4f,%.4f,%.3f,%llu,%llu,%d,%.2f\n",
                     result.scene.c_str(), static_cast<unsigned long long>(result.points),
                     static_cast<unsigned long long>(result.voxels), projection(result.orthographic),
                     static_cast<unsigned long long>(result.hits), entrant.name.c_str(), entrant.ms,
-                    entrant.build_seconds, static_cast<unsigned long long>(entrant.bytes),
+                    entrant.warm_ms, entrant.build_seconds, static_cast<unsigned long long>(entrant.bytes),
                     static_cast<unsigned long long>(entrant.differing_px),
                     entrant.counts(Contest::kPixels) ? 1 : 0, entrant.ms / result.entrants[0].ms);
       text += line;
@@ -84,6 +86,7 @@ std::string json_text(const std::vector<Result>& results) {
     for (const Entrant& entrant : result.entrants) {
       row["engines"].push_back({{"engine", entrant.name},
                                 {"frame_ms", entrant.ms},
+                                {"warm_ms", entrant.warm_ms},
                                 {"build_seconds", entrant.build_seconds},
                                 {"bytes", entrant.bytes},
                                 {"differing_px", entrant.differing_px},
@@ -101,7 +104,7 @@ std::optional<std::pair<double, double>> crossover(const std::vector<const Resul
   double last_x = 0;
   double last_y = 0;
   for (const Result* row : rows) {
-    const Entrant* const raster = row->find("exact raster");
+    const Entrant* const raster = row->find("raster in floats");
     double tracing = std::numeric_limits<double>::infinity();
     for (const char* name : {"Thimble, ray by ray", "Embree", "NanoVDB"}) {
       const Entrant* const tracer = row->find(name);
@@ -141,7 +144,8 @@ std::vector<const Result*> plotted_rows(const std::vector<Result>& results) {
 tools::Plot plot_of(const std::vector<const Result*>& rows, double (*value)(const Entrant& entrant)) {
   tools::Plot plot;
   plot.x_label = "points in the world of 1024 a side (" + rows.front()->scene + ")";
-  for (const char* name : {"Thimble", "exact raster", "Embree", "NanoVDB", "Thimble, ray by ray"}) {
+  for (const char* name :
+       {"Thimble", "raster in floats", "exact loop", "Embree", "NanoVDB", "Thimble, ray by ray"}) {
     tools::Series series{name, name == std::string("Thimble, ray by ray"), {}};
     for (const Result* row : rows) {
       if (const Entrant* const entrant = row->find(name)) {

@@ -3,7 +3,7 @@
 ///
 /// A peer is given the voxels once and then draws frames: clearing, rays, all that depends on the view, and a
 /// grey by depth for every pixel. Each is made as fast as its interface allows, and is told the rays just as
-/// the core quantises them. None is exact; how many of its pixels show another voxel is counted.
+/// the core quantises them. How many pixels show another voxel than the core's ray hits is counted.
 #ifndef THIMBLE_TESTS_BENCHMARKS_PEERS_PEER_H
 #define THIMBLE_TESTS_BENCHMARKS_PEERS_PEER_H
 
@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "thimble/picture/shading.h"
 #include "wide/frame.h"
 
 namespace thimble::benchmarks {
@@ -34,6 +35,7 @@ struct View {
   float depth_per_t = 0;  ///< in 1/256 voxel
   float near_q8 = 0;
   float per_q8 = 0;
+  Shading shading;  ///< the same for the core's shade()
 
   View(const Camera& camera, std::int32_t near_plane_q8, std::int32_t far_plane_q8);
 
@@ -89,6 +91,8 @@ class Peer {
 
 /// Every point's box, tested at each pixel centre that it can cover, into a depth buffer.
 std::unique_ptr<Peer> make_raster(const std::vector<Voxel>& voxels);
+/// The same in integers, exact.
+std::unique_ptr<Peer> make_loop(const std::vector<Voxel>& voxels);
 /// Packets of 16 rays through Embree's hierarchy over unit boxes; null where it is not installed.
 std::unique_ptr<Peer> make_embree(const std::vector<Voxel>& voxels);
 /// The same through Embree's own triangles: nine numbers each, in voxels.

@@ -22,9 +22,11 @@
 #include "readers/read_any.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
+#include "scene/host_memory.h"
 #include "scene/scene_source.h"
 #include "scene/wide_renderer.h"
 #include "scene/world_fit.h"
+#include "wide/rays/ray_map.h"
 
 namespace thimble::benchmarks {
 namespace {
@@ -146,12 +148,46 @@ void trace_core(const tools::BuiltScene& built, const Kind& kind, std::vector<fl
   }
 }
 
+// The same by the map of masks, in vectors; from and to the core's form, as its caller has them.
+struct MapRays {
+  std::vector<Ray> rays;
+  std::vector<std::uint8_t> any;
+  std::vector<Hit> hits;
+
+  explicit MapRays(const Kind& kind)
+      : any(kind.any ? kind.rays.size() : 0), hits(kind.any ? 0 : kind.rays.size()) {
+    for (const FloatRay& ray : kind.rays) {
+      rays.push_back(to_core(ray));
+    }
+  }
+  void trace(const wide::RayMap& map) {
+    const Span<const Ray> all{rays.data(), rays.size()};
+    if (hits.empty()) {
+      (void)wide::any_hit(map, all, {any.data(), any.size()});
+    } else {
+      (void)wide::first_hit(map, all, {hits.data(), hits.size()});
+    }
+  }
+  void copy_to(std::vector<float>* t) const {
+    constexpr float kNothing = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits.empty()) {
+        (*t)[i] = any[i] != 0 ? 0 : kNothing;
+      } else {
+        (*t)[i] = hits[i].kind != HitKind::kHit
+                      ? kNothing
+                      : static_cast<float>(hits[i].t_numerator) / static_cast<float>(hits[i].t_denominator);
+      }
+    }
+  }
+};
+
 // Draws the picture of the primary rays, which must have so many hits.
 void draw_wide(tools::WideRenderer* renderer, const VoxelBox& bounds, const Camera& camera, std::size_t hits,
                std::vector<std::uint8_t>* pixels) {
   RenderCounts counts;
   wide::Counts work;
-  if (renderer->render(camera, contest_shading(camera, bounds), gray_band(pixels, kHeightPx), &counts,
+  if (renderer->render(camera, tools::timed_shading(camera, bounds), gray_band(pixels, kHeightPx), &counts,
                        &work) != Status::kOk ||
       counts.hits != hits) {
     throw std::runtime_error("the wide renderer's picture is another");
@@ -189,6 +225,12 @@ int run(int count, char** words) {
   if (renderer == nullptr) {
     throw std::runtime_error("no room for the wide renderer");
   }
+  const tools::HostMemory map_memory(wide::RayMap::bytes(built.compact()));
+  Arena map_arena(map_memory.bytes());
+  wide::RayMap map;
+  if (wide::RayMap::make(built.compact(), &map_arena, &map) != Status::kOk) {
+    throw std::runtime_error("no room for the map of masks");
+  }
   const std::vector<Voxel> voxels = voxels_of(built);
   // As the gallery's picture sees it, closer.
   const double unit = (1 << depth) / 1024.0;
@@ -205,7 +247,7 @@ int run(int count, char** words) {
   peers.push_back(make_embree_triangles(corners_of(path, depth)));
   peers.push_back(make_nanovdb(voxels));
   std::erase(peers, nullptr);
-  std::printf("%zu voxels of %d a side\n%-10s %-22s %10s %10s %9s %10s\n", voxels.size(), 1 << depth, "rays",
+  std::printf("%zu voxels of %d a side\n%-10s %-24s %10s %10s %9s %10s\n", voxels.size(), 1 << depth, "rays",
               "engine", "number", "hits", "Mrays/s", "wrong");
   std::string csv = "kind,engine,rays,hits,mega_rays_a_second,wrong\n";
 
@@ -213,7 +255,8 @@ int run(int count, char** words) {
     std::vector<float> t(kind.rays.size());
     kind.expected.resize(kind.rays.size());
     trace_core(built, kind, &kind.expected);
-    const std::size_t engines = 2 + peers.size();
+    const std::size_t engines = 3 + peers.size();
+    MapRays ours(kind);
     std::vector<double> best(engines, 1e30);
     std::vector<std::size_t> wrong(engines, 0);
     std::size_t hits = 0;
@@ -231,11 +274,16 @@ int run(int count, char** words) {
             draw_wide(renderer.get(), built.bounds(), camera, hits, &pixels);
           } else if (engine == 1) {
             trace_core(built, kind, &t);
+          } else if (engine == 2) {
+            ours.trace(map);
           } else {
-            peers[engine - 2]->trace(kind.rays, kind.any, t.data());
+            peers[engine - 3]->trace(kind.rays, kind.any, t.data());
           }
         });
         best[engine] = std::min(best[engine], seconds);
+        if (engine == 2) {
+          ours.copy_to(&t);
+        }
         if (engine >= 2 && turn == 0) {
           wrong[engine] = count_wrong(kind, t);
         }
@@ -247,9 +295,10 @@ int run(int count, char** words) {
       }
       const std::string name = engine == 0   ? "Thimble, wide"
                                : engine == 1 ? "Thimble, ray by ray"
-                                             : peers[engine - 2]->name();
+                               : engine == 2 ? "Thimble, rays in vectors"
+                                             : peers[engine - 3]->name();
       const double rate = static_cast<double>(kind.rays.size()) / best[engine] / 1e6;
-      std::printf("%-10s %-22s %10zu %10zu %9.3f %10zu\n", kind.name.c_str(), name.c_str(), kind.rays.size(),
+      std::printf("%-10s %-24s %10zu %10zu %9.3f %10zu\n", kind.name.c_str(), name.c_str(), kind.rays.size(),
                   hits, rate, wrong[engine]);
       std::fflush(stdout);
       csv += kind.name + ",\"" + name + "\"," + std::to_string(kind.rays.size()) + "," +

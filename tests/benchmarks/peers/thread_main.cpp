@@ -47,7 +47,7 @@ class ThreadTable {
       for (std::size_t i = 0; i < threads.size(); ++i) {
         wide::Threads ready(threads[i]);
         for (int turn = 0; turn < kInARow; ++turn) {
-          const Camera camera = contest_camera(built_->level(), orthographic, first + turn);
+          const Camera camera = tools::timed_camera(built_->level(), orthographic, first + turn);
           const double took = draw(camera, &ready);
           if (turn >= kUncounted) {
             seconds[i].push_back(took);
@@ -79,7 +79,7 @@ class ThreadTable {
         workspace_.size(), wide::workspace_bytes(Contest::kWidthPx, Contest::kHeightPx, threads->count())));
     wide::Options options;
     options.threads = threads;
-    const Shading shading = contest_shading(camera, built_->bounds());
+    const Shading shading = tools::timed_shading(camera, built_->bounds());
     const auto frame = [&] {
       if (wide::render(lists_, camera, shading, gray_band(&pixels_, Contest::kHeightPx),
                        Bytes(workspace_.data(), workspace_.size()), nullptr, options) != Status::kOk) {

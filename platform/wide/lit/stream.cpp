@@ -1,0 +1,292 @@
+#include "wide/lit/stream.h"
+
+#include <algorithm>
+#include <new>
+
+namespace thimble::wide {
+namespace {
+
+constexpr size_t kAlignment = 64;
+
+// Takes arrays from bytes, or only counts them.
+class Taker {
+ public:
+  explicit Taker(uint8_t* at) : at_(at) {}
+  template <typename T>
+  T* take(size_t count) {
+    used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
+    T* array = at_ == nullptr ? nullptr : reinterpret_cast<T*>(at_ + used_);
+    used_ += count * sizeof(T);
+    for (size_t i = 0; array != nullptr && i < count; ++i) {
+      new (array + i) T;
+    }
+    return array;
+  }
+  size_t used() const { return used_; }
+
+ private:
+  uint8_t* at_;
+  size_t used_ = 0;
+};
+
+}  // namespace
+
+void StreamParts::lay_out(const StreamShape& shape, uint8_t* at) {
+  Taker taker(at);
+  slots = taker.take<StreamSlot>(shape.slots);
+  pending = taker.take<lit::PendingRay>(size_t{shape.slots} * shape.pending);
+  lights = taker.take<lit::KnownLight>(size_t{shape.slots} * shape.lights);
+  suns = taker.take<lit::KnownLight>(size_t{6} * shape.lights);
+  answers = taker.take<lit::Answer>(size_t{shape.slots} * shape.answers);
+  waiting = taker.take<uint32_t>(shape.slots);
+  uint32_t most_hits = 0;
+  for (int i = 0; i < lit::kQuestions; ++i) {
+    const bool names = i != static_cast<int>(lit::Question::kAny);
+    most_hits = names ? std::max(most_hits, shape.most[i]) : most_hits;
+    questions[i].rays = taker.take<Ray>(shape.most[i]);
+    questions[i].answer = taker.take<uint32_t>(shape.most[i]);
+    questions[i].before =
+        i == static_cast<int>(lit::Question::kBefore) ? taker.take<RayPoint>(shape.most[i]) : nullptr;
+  }
+  any = taker.take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
+  hits = taker.take<Hit>(most_hits);
+  bytes = taker.used();
+}
+
+StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot_count)
+    : slots(slot_count),
+      pending(std::max(1U, static_cast<uint32_t>(lit::pending_rays(effects)))),
+      answers(static_cast<uint32_t>(lit::most_answers(effects, scene))),
+      lights(static_cast<uint32_t>(scene.lights.size)),
+      most{} {
+  const bool clear = (effects & (Effect::kGlass | Effect::kMedia)) != 0;
+  const bool shadows = (effects & Effect::kShadows) != 0;
+  uint32_t suns = 0;
+  for (size_t i = 0; shadows && i < scene.lights.size; ++i) {
+    suns += scene.lights[i].is_point ? 0U : 1U;
+  }
+  const uint32_t lamps = shadows ? static_cast<uint32_t>(scene.lights.size) - suns : 0;
+  const uint32_t around = (effects & Effect::kAmbientOcclusion) != 0 ? scene.occlusion.rays : 0U;
+  most[static_cast<int>(lit::Question::kClosest)] = slots * (1 + (clear ? suns : 0));
+  most[static_cast<int>(lit::Question::kAny)] = slots * (clear ? 0 : suns);
+  most[static_cast<int>(lit::Question::kBefore)] = slots * (around + lamps);
+}
+
+size_t StreamShape::bytes() const {
+  StreamParts parts;
+  parts.lay_out(*this, nullptr);
+  return parts.bytes + kAlignment;
+}
+
+Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes)
+    : frame_(frame),
+      asking_(frame),
+      map_(map),
+      shape_(shape),
+      steps_(lit::steps_of(frame.effects)),
+      is_clear_((frame.effects & (Effect::kGlass | Effect::kMedia)) != 0),
+      is_wet_((frame.effects & Effect::kWater) != 0) {
+  const size_t skew = reinterpret_cast<uintptr_t>(bytes.data) % kAlignment;
+  parts_.lay_out(shape, bytes.data + (skew == 0 ? 0 : kAlignment - skew));
+  frame_.questions = parts_.questions;
+  asking_.questions = parts_.questions;
+  frame_.suns = parts_.suns;
+  asking_.suns = parts_.suns;
+}
+
+void Stream::begin(uint32_t number, const Ray& ray) {
+  StreamSlot& slot = parts_.slots[number];
+  slot.sum = {};
+  slot.pending = 1;
+  lit::PendingRay first;
+  first.ray = ray;
+  parts_.pending[size_t{number} * shape_.pending] = first;
+  frame_.counts.rays[static_cast<int>(LitRayKind::kPrimary)] += 1;
+  begin_ray(number);
+}
+
+void Stream::begin_step(uint32_t number, lit::AskedFrame* frame) {
+  const uint32_t first = number * shape_.answers;
+  StreamSlot& slot = parts_.slots[number];
+  frame->begin(parts_.answers + first, first, slot.known, &slot.ray,
+               parts_.lights + size_t{number} * shape_.lights);
+}
+
+void Stream::begin_ray(uint32_t number) {
+  StreamSlot& slot = parts_.slots[number];
+  slot.ray.has_spot = false;
+  slot.ray.has_lights = false;
+  slot.ray.has_begun = false;
+  slot.known = 0;
+  if (!is_clear_) {
+    // What it will ask first, without going there.
+    begin_step(number, &frame_);
+    (void)frame_.look();
+    frame_.note(lit::Question::kClosest,
+                parts_.pending[size_t{number} * shape_.pending + slot.pending - 1].ray, {});
+    slot.known = 1;
+  }
+}
+
+bool Stream::follow(uint32_t number) {
+  StreamSlot& slot = parts_.slots[number];
+  lit::PendingRay* const pending = parts_.pending + size_t{number} * shape_.pending;
+  // The last one first, as the core does.
+  size_t count = slot.pending - 1;
+  lit::Color sum;
+  begin_step(number, &frame_);
+  if (is_clear_ || is_wet_) {
+    const LitCounts counts = frame_.counts;
+    steps_.follow(frame_, pending[count], pending, &count, &sum);
+    if (!frame_.is_answered()) {
+      frame_.counts = counts;
+      slot.known = frame_.asked;
+      return false;
+    }
+  } else {
+    steps_.follow(frame_, pending[count], pending, &count, &sum);
+  }
+  for (int i = 0; i < 3; ++i) {
+    slot.sum.c[i] += sum.c[i];
+  }
+  slot.pending = count;
+  slot.known = 0;
+  frame_.counts.pending_high_water = std::max(frame_.counts.pending_high_water, static_cast<uint32_t>(count));
+  return true;
+}
+
+bool Stream::shine(uint32_t number) {
+  StreamSlot& slot = parts_.slots[number];
+  // What is counted while it asks is counted again with the answers.
+  lit::AskedFrame& frame = slot.known == 0 ? asking_ : frame_;
+  lit::Color sum;
+  begin_step(number, &frame);
+  steps_.shine(frame, &sum);
+  if (!frame.is_answered()) {
+    slot.known = frame.asked;
+    return false;
+  }
+  for (int i = 0; i < 3; ++i) {
+    slot.sum.c[i] += sum.c[i];
+  }
+  slot.ray.has_spot = false;
+  return true;
+}
+
+bool Stream::go_on(uint32_t number) {
+  StreamSlot& slot = parts_.slots[number];
+  for (;;) {
+    if (slot.ray.has_spot) {
+      if (!shine(number)) {
+        return false;
+      }
+    } else {
+      if (!follow(number)) {
+        return false;
+      }
+      if (slot.ray.has_spot) {
+        continue;
+      }
+    }
+    if (slot.pending == 0) {
+      return true;
+    }
+    begin_ray(number);
+    if (slot.known != 0) {
+      return false;
+    }
+  }
+}
+
+void Stream::answer() {
+  const auto asked = [&](lit::Question question) -> lit::Asked& {
+    return parts_.questions[static_cast<int>(question)];
+  };
+  const auto put = [&](uint32_t number, const Hit& hit) {
+    lit::Answer& answer = parts_.answers[number];
+    answer.hit = hit;
+    answer.into_solid = false;
+  };
+  // Rays were checked when they were asked, so none is refused.
+  lit::Asked& closest = asked(lit::Question::kClosest);
+  (void)first_hit(map_, {closest.rays, closest.count}, {parts_.hits, closest.count});
+  for (uint32_t i = 0; i < closest.count; ++i) {
+    put(closest.answer[i], parts_.hits[i]);
+  }
+  lit::Asked& before = asked(lit::Question::kBefore);
+  (void)first_hit_before(map_, {before.rays, before.count}, {before.before, before.count},
+                         {parts_.hits, before.count});
+  for (uint32_t i = 0; i < before.count; ++i) {
+    put(before.answer[i], parts_.hits[i]);
+  }
+  lit::Asked& any = asked(lit::Question::kAny);
+  (void)any_hit(map_, {any.rays, any.count}, {parts_.any, any.count});
+  for (uint32_t i = 0; i < any.count; ++i) {
+    lit::Answer& answer = parts_.answers[any.answer[i]];
+    answer.hit.kind = parts_.any[i] != 0 ? HitKind::kHit : HitKind::kMiss;
+    answer.hit.visits = 0;  // which it does not tell
+  }
+  closest.count = 0;
+  before.count = 0;
+  any.count = 0;
+}
+
+void Stream::finish(uint32_t slots) {
+  uint32_t waiting = slots;
+  for (uint32_t i = 0; i < slots; ++i) {
+    parts_.waiting[i] = i;
+  }
+  answer();
+  // It ends: each turn gives every ray that waits an answer more, and a pixel has a bounded number of rays.
+  while (waiting != 0) {
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < waiting; ++i) {
+      const uint32_t slot = parts_.waiting[i];
+      if (!go_on(slot)) {
+        parts_.waiting[left++] = slot;
+      }
+    }
+    answer();
+    waiting = left;
+  }
+}
+
+void Stream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
+  const int32_t width = frame_.camera.width_px();
+  // Pixels in reading order, cut into as many as are under way at once.
+  int32_t row = first;
+  int32_t x = 0;
+  while (row < end) {
+    const int32_t from_row = row;
+    const int32_t from_x = x;
+    uint32_t count = 0;
+    while (row < end && count < shape_.slots) {
+      const int32_t to =
+          static_cast<int32_t>(std::min(int64_t{width}, x + static_cast<int64_t>(shape_.slots - count)));
+      RowRays rays(frame_.camera, x, band.first_row + row);
+      for (; x < to; ++x, rays.next()) {
+        begin(count++, rays.ray());
+      }
+      if (x == width) {
+        x = 0;
+        ++row;
+      }
+    }
+    finish(count);
+    int32_t to_row = from_row;
+    int32_t to_x = from_x;
+    for (uint32_t i = 0; i < count; ++i) {
+      uint8_t* const line = band.pixels.data + stride * row_place(band.format, to_row);
+      if (to_x == 0 && begins_bytes(band.format, to_row)) {
+        lit::clear_row(frame_, band, line);
+      }
+      lit::store(frame_, band, line, to_x, band.first_row + to_row, parts_.slots[i].sum);
+      if (++to_x == width) {
+        to_x = 0;
+        ++to_row;
+      }
+    }
+  }
+}
+
+}  // namespace thimble::wide

@@ -1,0 +1,44 @@
+/// @file job.h
+/// What one call of ray_map.h asks of the vectors, and what they ask of plain code for a single ray.
+#ifndef THIMBLE_PLATFORM_WIDE_RAYS_JOB_H
+#define THIMBLE_PLATFORM_WIDE_RAYS_JOB_H
+
+#include "wide/rays/ray_map.h"
+
+namespace thimble::wide {
+
+enum class Bound : uint8_t {
+  kNone,
+  kBefore,  ///< hits count below the points
+  kFrom,    ///< rays begin at the points
+};
+
+struct Job {
+  const RayMap* map;
+  const Ray* rays;
+  size_t count;
+  const RayPoint* points;  ///< with a bound
+  Bound bound;
+  uint8_t* any;  ///< null: `hits` is wanted. One of the two; all say "a miss" before the call
+  Hit* hits;
+  Status status = Status::kOk;  ///< the first error
+};
+
+/// Traces all rays of a job that has a map. kernels/trace.cpp.
+void trace_in_vectors(Job* job);
+
+/// Traces one ray by the core.
+void trace_by_core(Job* job, size_t ray);
+
+/// What ray number `ray` met in voxel `cell` of the map's world, mirrored along its negative components, after
+/// `visits` steps.
+void put_hit(Job* job, size_t ray, const Vec3i& cell, uint32_t visits);
+
+/// Whether t = numerator / denominator lies before the point.
+inline bool is_before(int64_t numerator, int64_t denominator, const RayPoint& before) {
+  return numerator * before.t_denominator < before.t_numerator * denominator;  // 23 + 31 and 31 + 28 bits
+}
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,215 @@
+/// @file enqueue-inl.h
+/// From rays as they are given to columns of the queue: mirrored, clipped to what is occupied, biased.
+#if defined(THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_
+#undef THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_
+#else
+#define THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_
+#endif
+
+#include "wide/rays/kernels/ray_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace thimble::wide::HWY_NAMESPACE {
+namespace {
+
+// t is off by 2^-52 of itself at most, and two planes' t differ by 2^-43: a factor on the end that moves it before
+// every crossing at that t, and after all others; and one that moves a bound of any fraction behind all below it.
+constexpr double kJustBefore = 1.0 - 0x1p-46;
+constexpr double kJustAfter = 1.0 + 0x1p-46;
+// Numerators of a plane's t.
+constexpr double kMostNumerator = 8388608.0;
+
+// A group of new rays, a lane each.
+struct NewRays {
+  VF origin[3];  // biased
+  VF direction[3];
+  VF inverse[3];
+  VF begin;
+  VF end;
+  VU top_flip;
+  VU cell_flip;
+  VU octant;
+  MF taken;   // by the vectors
+  MF inside;  // they come to the box of what is occupied
+};
+
+// Where the numbers of each lane's ray, or point, begin; lanes beyond the last one repeat it.
+struct Rows {
+  const int32_t* of[kLanes];
+  Rows(const int32_t* first, size_t stride, size_t count) {
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      of[lane] = first + stride * std::min(lane, count - 1);
+    }
+  }
+};
+
+HWY_INLINE VF load_column(const Rows& rows, size_t column) {
+  const auto* const* of = rows.of;
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return VF{_mm512_cvtepi32_pd(_mm256_set_epi32(of[7][column], of[6][column], of[5][column], of[4][column],
+                                                of[3][column], of[2][column], of[1][column], of[0][column]))};
+#elif HWY_TARGET == HWY_AVX2
+  return VF{_mm256_cvtepi32_pd(_mm_set_epi32(of[3][column], of[2][column], of[1][column], of[0][column]))};
+#else
+  const I32 d;
+  HWY_ALIGN int32_t numbers[kLanes];
+  for (size_t lane = 0; lane < kLanes; ++lane) {
+    numbers[lane] = of[lane][column];
+  }
+  return hn::PromoteTo(F64(), hn::Load(d, numbers));
+#endif
+}
+
+// One axis: the mirrored origin and direction, and the planes of the occupied box.
+HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewRays* rays, VF* low,
+                         VF* high) {
+  const F64 d;
+  const U64 du;
+  const MapCells& cells = *job.map->cells();
+  const VoxelBox& box = job.map->tree().bounds();
+  const int level = job.map->tree().level();
+  const auto number = [&](int32_t whole) { return hn::Set(d, static_cast<double>(whole)); };
+  rays->taken = hn::And(rays->taken, hn::And(hn::Ge(origin, number(kMinOriginWorlds * (Q8::kOne << level))),
+                                             hn::Le(origin, number(kMaxOriginWorlds * (Q8::kOne << level)))));
+  const MF down = hn::Lt(direction, hn::Zero(d));
+  direction = hn::Abs(direction);
+  rays->taken = hn::And(rays->taken, hn::Le(direction, number(kMaxDirection)));
+  const int32_t side = int32_t{1} << cells.level;
+  origin = hn::IfThenElse(down, hn::Sub(number(side * Q8::kOne), origin), origin);
+  origin = hn::Add(hn::Mul(origin, hn::Set(d, 1.0 / Q8::kOne)), hn::Set(d, kBias));
+  rays->origin[axis] = origin;
+  rays->direction[axis] = direction;
+  rays->inverse[axis] =
+      hn::IfThenElse(hn::Eq(direction, hn::Zero(d)), hn::Set(d, kNever), hn::Div(hn::Set(d, 1.0), direction));
+  const auto biased = [&](int32_t whole) { return hn::Set(d, kBias + whole); };
+  *low = hn::IfThenElse(down, biased(side - box.high[axis]), biased(box.low[axis]));
+  *high = hn::IfThenElse(down, biased(side - box.low[axis]), biased(box.high[axis]));
+  rays->begin = hn::Max(rays->begin, hn::Mul(hn::Sub(*low, origin), rays->inverse[axis]));
+  rays->end = hn::Min(rays->end, hn::Mul(hn::Sub(*high, origin), rays->inverse[axis]));
+  const MU down_u = hn::RebindMask(du, down);
+  const int bits = cells.level - 4;
+  const auto flip = [&](uint64_t mask) { return hn::IfThenElseZero(down_u, hn::Set(du, mask)); };
+  rays->top_flip = hn::Or(rays->top_flip, flip(((uint64_t{1} << bits) - 1) << (bits * axis)));
+  rays->cell_flip = hn::Or(rays->cell_flip, flip(uint64_t{3} << (2 * axis)));
+  rays->octant = hn::Or(rays->octant, flip(uint64_t{4} << axis));
+}
+
+// Where rays begin or end besides.
+HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* rays) {
+  static_assert(sizeof(RayPoint) == 8 && offsetof(RayPoint, t_denominator) == 4);
+  const F64 d;
+  const Rows points(reinterpret_cast<const int32_t*>(job.points + first), 2, count);
+  const VF numerator = load_column(points, 0);
+  const VF denominator = load_column(points, 1);
+  if (job.bound == Bound::kBefore) {
+    const VF t = hn::Div(numerator, denominator);
+    rays->end = hn::Min(rays->end, hn::Mul(t, hn::Set(d, kJustAfter)));
+    return;
+  }
+  // 256 times a component, of which the core takes the whole part.
+  const VF divisor = hn::Floor(hn::Mul(denominator, hn::Set(d, 1.0 / 256)));
+  const VF zero = hn::Zero(d);
+  const MF at_start = hn::Or(hn::Le(numerator, zero), hn::Le(divisor, zero));
+  const VF t = hn::Div(numerator, hn::Mul(divisor, hn::Set(d, 256.0)));
+  rays->begin = hn::Max(rays->begin, hn::IfThenElse(at_start, zero, t));
+  // The point of a plane of one of the three axes: of others the proof does not tell.
+  const MF of_plane =
+      hn::Or(hn::Eq(divisor, rays->direction[0]),
+             hn::Or(hn::Eq(divisor, rays->direction[1]), hn::Eq(divisor, rays->direction[2])));
+  const MF known = hn::And(of_plane, hn::Le(numerator, hn::Set(d, kMostNumerator)));
+  rays->taken = hn::And(rays->taken, hn::Or(at_start, known));
+}
+
+HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&place)[3]) {
+  static_assert(sizeof(Ray) == 24 && offsetof(Ray, direction) == 12);
+  const F64 d;
+  const Rows numbers(reinterpret_cast<const int32_t*>(job.rays + first), 6, count);
+  NewRays rays;
+  rays.begin = hn::Zero(d);
+  rays.end = hn::Set(d, 1e300);
+  rays.top_flip = rays.cell_flip = rays.octant = hn::Zero(U64());
+  rays.taken = hn::FirstN(d, count);
+  VF low[3];
+  VF high[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const size_t column = static_cast<size_t>(axis);
+    add_axis(job, axis, load_column(numbers, column), load_column(numbers, 3 + column), &rays, &low[axis],
+             &high[axis]);
+  }
+  const VF sum = hn::Add(hn::Add(rays.direction[0], rays.direction[1]), rays.direction[2]);
+  rays.taken = hn::And(rays.taken, hn::Gt(sum, hn::Zero(d)));
+  rays.end = hn::Mul(rays.end, hn::Set(d, kJustBefore));
+  if (job.bound != Bound::kNone) {
+    add_bound(job, first, count, &rays);
+  }
+  rays.inside = hn::And(rays.taken, hn::Lt(rays.begin, rays.end));
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = hn::MulAdd(rays.begin, rays.direction[axis], rays.origin[axis]);
+    rays.inside =
+        hn::And(rays.inside, hn::And(hn::Ge(place[axis], low[axis]), hn::Lt(place[axis], high[axis])));
+  }
+  return rays;
+}
+
+// Puts up to kLanes rays, from number `first` on, into the queue; those that never come to anything are left out,
+// and those that are beyond the limits are traced by the core.
+HWY_INLINE void enqueue(Job* job, size_t first, size_t count, Queue* queue) {
+  const F64 d;
+  const U64 du;
+  VF place[3];
+  const NewRays rays = load_rays(*job, first, count, place);
+  const uint32_t all = (1U << count) - 1;
+  for (uint32_t rest = all & ~lane_bits(d, rays.taken); rest != 0; rest &= rest - 1) {
+    trace_by_core(job, first + static_cast<unsigned>(__builtin_ctz(rest)));
+  }
+  const uint32_t bits = lane_bits(d, rays.inside);
+  if (bits == 0) {
+    return;
+  }
+  const size_t at = queue->count;
+  const auto put = [&](Column column, VF v) {
+    hn::StoreU(pack(v, rays.inside, bits), d, queue->doubles[column] + at);
+  };
+  const auto put_word = [&](Column column, VU v) {
+    hn::StoreU(hn::BitCast(du, pack(hn::BitCast(d, v), rays.inside, bits)), du,
+               queue->words[column - kDoubles] + at);
+  };
+  for (size_t axis = 0; axis < 3; ++axis) {
+    put(static_cast<Column>(kOriginX + axis), rays.origin[axis]);
+    put(static_cast<Column>(kDirectionX + axis), rays.direction[axis]);
+    put(static_cast<Column>(kInverseX + axis), rays.inverse[axis]);
+    put(static_cast<Column>(kPlaceX + axis), place[axis]);
+  }
+  put(kEnd, rays.end);
+  put_word(kTopFlip, rays.top_flip);
+  const VU numbers = hn::ShiftLeft<32>(hn::Iota(du, first));
+  put_word(kCellFlip, hn::Or(rays.cell_flip, numbers));
+  put_word(kOctant, rays.octant);
+  queue->count += static_cast<size_t>(__builtin_popcount(bits));
+}
+
+// Fills the queue from the job's rays, of which `*next` is the first not taken yet.
+inline void fill_queue(Job* job, size_t* next, Queue* queue) {
+  const size_t left = queue->count - queue->next;  // less than a vector
+  for (size_t column = 0; column < kDoubles; ++column) {
+    std::copy_n(queue->doubles[column] + queue->next, left, queue->doubles[column]);
+  }
+  for (size_t column = 0; column < kColumns - kDoubles; ++column) {
+    std::copy_n(queue->words[column] + queue->next, left, queue->words[column]);
+  }
+  queue->next = 0;
+  queue->count = left;
+  const size_t lanes = hn::Lanes(F64());
+  while (*next < job->count && queue->count + lanes <= Queue::kSize) {
+    const size_t count = std::min(lanes, job->count - *next);
+    enqueue(job, *next, count, queue);
+    *next += count;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,308 @@
+// The map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes reach.
+#include <algorithm>
+
+#include "wide/rays/ray_map.h"
+
+namespace thimble::wide {
+namespace {
+
+constexpr int kBrickLevel = 4;
+constexpr int kLeafLevel = 2;
+constexpr unsigned kLeaves = 64;  // of a brick
+constexpr uint32_t kMaxReach = 15;
+constexpr uint64_t kMostWords = uint64_t{1} << 28;  // of bricks, so that a cube says where its own begins
+
+// How much the map takes, and where each level of the tree begins.
+struct MapShape {
+  uint32_t level_begin[kMaxLevel + 1];
+  uint64_t top = 0;
+  uint64_t words = 0;  // of bricks
+};
+
+bool has_nodes(const CompactTree& tree) {
+  return tree.many_materials() || tree.merged();
+}
+
+int map_level(const CompactTree& tree) {
+  return std::max(tree.level(), kBrickLevel);
+}
+
+// False for a tree whose masks do not add up.
+bool measure(const CompactTree& tree, MapShape* shape) {
+  uint64_t begin = 0;
+  uint64_t end = tree.empty() ? 0 : 1;
+  shape->top = (uint64_t{1} << (3 * (map_level(tree) - kBrickLevel))) + 1;
+  uint64_t bricks = 1;  // one that is solid through, which all such cubes share
+  uint64_t leaves = kLeaves;
+  for (int level = tree.level(); level >= 1; --level) {
+    shape->level_begin[level] = static_cast<uint32_t>(begin);
+    uint64_t children = 0;
+    uint64_t solid = 0;
+    for (uint64_t node = begin; node < end; ++node) {
+      const unsigned mask = tree.mask(static_cast<uint32_t>(node));
+      children += static_cast<unsigned>(__builtin_popcount(mask));
+      solid += mask == 0 ? 1 : 0;
+    }
+    const bool is_root = level == tree.level();
+    if (level == kBrickLevel || (is_root && level < kBrickLevel)) {
+      bricks += end - begin;
+    }
+    if (level == kLeafLevel || (is_root && level < kLeafLevel)) {
+      leaves += end - begin;
+    }
+    if (level == kLeafLevel + 1) {
+      leaves += 8 * solid;
+    }
+    if (level > 1 && children > tree.node_count() - end) {
+      return false;
+    }
+    begin = end;
+    end += level == 1 ? 0 : children;
+  }
+  shape->words = leaves + bricks * (has_nodes(tree) ? 2 : 1);
+  return begin == tree.node_count();
+}
+
+size_t map_bytes(const MapShape& shape) {
+  constexpr uint64_t kPadding = 2 * 64;
+  return static_cast<size_t>(shape.top * sizeof(uint32_t) + shape.words * sizeof(uint64_t) + kPadding);
+}
+
+struct Corner {
+  uint32_t x;
+  uint32_t y;
+  uint32_t z;
+};
+
+Corner child_corner(const Corner& corner, unsigned octant, int level) {
+  const uint32_t half = uint32_t{1} << (level - 1);
+  return {corner.x + ((octant & 1U) != 0 ? half : 0), corner.y + ((octant & 2U) != 0 ? half : 0),
+          corner.z + ((octant & 4U) != 0 ? half : 0)};
+}
+
+// A cell within a cube of 4^3 of them.
+unsigned bit_of(const Corner& corner, int level) {
+  return ((corner.x >> level) & 3U) | ((corner.y >> level) & 3U) << 2 | ((corner.z >> level) & 3U) << 4;
+}
+
+// The eight voxels of a node of level 1 as the bits of a leaf whose first voxel is theirs.
+uint64_t spread(unsigned mask) {
+  return uint64_t{mask & 3U} | uint64_t{(mask >> 2) & 3U} << 4 | uint64_t{(mask >> 4) & 3U} << 16 |
+         uint64_t{(mask >> 6) & 3U} << 20;
+}
+
+// Walks down the tree in depth: in each level it meets the nodes in the order in which they stand.
+class MapWriter {
+ public:
+  MapWriter(const CompactTree& tree, const MapShape& shape, uint32_t* top, uint64_t* bricks)
+      : tree_(tree),
+        top_(top),
+        bricks_(bricks),
+        bits_(map_level(tree) - kBrickLevel),
+        has_nodes_(has_nodes(tree)) {
+    std::copy(shape.level_begin, shape.level_begin + kMaxLevel + 1, next_node_);
+    std::fill(top, top + shape.top, kEmpty);
+    std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
+    put_brick(UINT64_MAX);
+  }
+
+  void write() {
+    if (tree_.level() < kBrickLevel) {
+      write_brick(next_node_[tree_.level()], tree_.level(), {0, 0, 0});
+    } else {
+      enter(tree_.level(), {0, 0, 0});
+    }
+  }
+
+ private:
+  // Calls enter_child(octant) for each child of the next node of `level`, or enter_block() where it is solid.
+  template <class EnterChild, class EnterBlock>
+  void visit(int level, const EnterChild& enter_child, const EnterBlock& enter_block) {
+    unsigned mask = tree_.mask(next_node_[level]++);
+    if (mask == 0) {
+      enter_block();
+    }
+    for (; mask != 0; mask &= mask - 1) {
+      enter_child(static_cast<unsigned>(__builtin_ctz(mask)));
+    }
+  }
+
+  // A node of the brick's level or above.
+  void enter(int level, const Corner& corner) {
+    if (level == kBrickLevel && tree_.mask(next_node_[level]) != 0) {
+      write_brick(next_node_[level], level, corner);
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
+        [&] { fill_cubes(level, corner); });
+  }
+
+  uint32_t* cube(uint32_t x, uint32_t y, uint32_t z) const {
+    return top_ + ((uint64_t{z} << bits_ | y) << bits_ | x);
+  }
+  void fill_cubes(int level, const Corner& corner) {
+    const uint32_t side = uint32_t{1} << (level - kBrickLevel);
+    const Corner low{corner.x >> kBrickLevel, corner.y >> kBrickLevel, corner.z >> kBrickLevel};
+    for (uint32_t z = low.z; z < low.z + side; ++z) {
+      for (uint32_t y = low.y; y < low.y + side; ++y) {
+        std::fill_n(cube(low.x, y, z), side, 0U);  // the first brick
+      }
+    }
+  }
+
+  // The brick whose node, or what there is of it in a smaller world, is `node`.
+  void write_brick(uint32_t node, int level, const Corner& corner) {
+    std::fill(brick_, brick_ + kLeaves, 0);
+    collect(level, corner);
+    *cube(corner.x >> kBrickLevel, corner.y >> kBrickLevel, corner.z >> kBrickLevel) = next_word_ << 4;
+    put_brick(node);
+  }
+
+  void put_brick(uint64_t node) {
+    uint64_t& mask = bricks_[next_word_++];
+    mask = 0;
+    if (has_nodes_) {
+      bricks_[next_word_++] = node;
+    }
+    for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
+      if (brick_[leaf] != 0) {
+        mask |= uint64_t{1} << leaf;
+        bricks_[next_word_++] = brick_[leaf];
+      }
+    }
+  }
+
+  void collect(int level, const Corner& corner) {
+    if (level == 1) {
+      const unsigned mask = tree_.mask(next_node_[1]++);
+      brick_[bit_of(corner, kLeafLevel)] |= spread(mask == 0 ? 0xFF : mask) << bit_of(corner, 0);
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { collect(level - 1, child_corner(corner, octant, level)); },
+        [&] {
+          const uint32_t side = level > kLeafLevel ? uint32_t{1} << (level - kLeafLevel) : 1;
+          for (uint32_t i = 0; i < side * side * side; ++i) {
+            const Corner leaf{corner.x + i % side * 4, corner.y + i / side % side * 4,
+                              corner.z + i / side / side * 4};
+            brick_[bit_of(leaf, kLeafLevel)] = ~uint64_t{0};
+          }
+        });
+  }
+
+  static constexpr uint32_t kEmpty = 0x11111111U;
+
+  const CompactTree& tree_;
+  uint32_t* top_;
+  uint64_t* bricks_;
+  int bits_;
+  bool has_nodes_;
+  uint32_t next_node_[kMaxLevel + 1];
+  uint32_t next_word_ = 0;
+  uint64_t brick_[kLeaves];
+};
+
+// Writes how far the empty cubes reach along one octant after the other. One of side k + 1 is a cube and those of
+// side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell bricks, comes last.
+class Reaches {
+ public:
+  Reaches(uint32_t* top, int bits) : top_(top), side_(size_t{1} << bits) {}
+
+  void write() {
+    for (unsigned octant = 8; octant-- > 0;) {
+      write_octant(octant);
+    }
+  }
+
+ private:
+  static constexpr size_t kMostSide = size_t{1} << (kMaxLevel - kBrickLevel);
+  using Row = uint32_t[kMostSide];
+
+  // Lowers `reach` to those of a row.
+  void lower(const uint32_t* row, unsigned octant, Row& reach) const {
+    for (size_t x = 0; x < side_; ++x) {
+      const uint32_t cube = row[x];
+      reach[x] = std::min(reach[x], (cube & 15U) == 0 ? 0 : (cube >> (4 * octant)) & 15U);
+    }
+  }
+
+  void write_octant(unsigned octant) {
+    for (size_t i = 0; i < side_; ++i) {
+      const size_t z = (octant & 4U) != 0 ? i : side_ - 1 - i;
+      const size_t z_ahead = (octant & 4U) != 0 ? z - 1 : z + 1;
+      for (size_t j = 0; j < side_; ++j) {
+        const size_t y = (octant & 2U) != 0 ? j : side_ - 1 - j;
+        const size_t y_ahead = (octant & 2U) != 0 ? y - 1 : y + 1;
+        Row reach;
+        std::fill(reach, reach + side_, kMaxReach);
+        if (j != 0) {
+          lower(row(y_ahead, z), octant, reach);
+        }
+        if (i != 0) {
+          lower(row(y, z_ahead), octant, reach);
+        }
+        if (i != 0 && j != 0) {
+          lower(row(y_ahead, z_ahead), octant, reach);
+        }
+        write_row(row(y, z), octant, reach);
+      }
+    }
+  }
+
+  // `reach` is that of the three rows ahead.
+  void write_row(uint32_t* cubes, unsigned octant, const Row& reach) const {
+    const unsigned shift = 4 * octant;
+    uint32_t ahead = kMaxReach;  // of the cube ahead in the row, and of the three beside that
+    for (size_t k = 0; k < side_; ++k) {
+      const size_t x = (octant & 1U) != 0 ? k : side_ - 1 - k;
+      const uint32_t cube = cubes[x];
+      const uint32_t largest = std::min(std::min(ahead, reach[x]) + 1, kMaxReach);
+      const bool empty = (cube & 15U) != 0;
+      cubes[x] = empty ? (cube & ~(15U << shift)) | largest << shift : cube;
+      ahead = std::min(empty ? largest : 0, reach[x]);
+    }
+  }
+
+  uint32_t* row(size_t y, size_t z) const { return top_ + (z * side_ + y) * side_; }
+
+  uint32_t* top_;
+  size_t side_;
+};
+
+template <class T>
+T* array(Arena* arena, uint64_t count) {
+  return reinterpret_cast<T*>(arena->take(static_cast<size_t>(count) * sizeof(T), 64).data);
+}
+
+}  // namespace
+
+size_t RayMap::bytes(const CompactTree& tree) {
+  MapShape shape;
+  return measure(tree, &shape) ? map_bytes(shape) : 0;
+}
+
+Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map) {
+  MapShape shape;
+  if (!measure(tree, &shape)) {
+    return Status::kDamaged;
+  }
+  const Arena before = *arena;
+  uint32_t* top = array<uint32_t>(arena, shape.top);
+  uint64_t* bricks = shape.words < kMostWords ? array<uint64_t>(arena, shape.words) : nullptr;
+  if (top == nullptr || bricks == nullptr) {
+    *arena = before;
+    return Status::kOutOfMemory;
+  }
+  MapWriter writer(tree, shape, top, bricks);
+  if (!tree.empty()) {
+    writer.write();
+  }
+  const int level = map_level(tree);
+  Reaches(top, level - kBrickLevel).write();
+  *map = RayMap(tree);
+  map->cells_ = {top, bricks, level, has_nodes(tree)};
+  return Status::kOk;
+}
+
+}  // namespace thimble::wide

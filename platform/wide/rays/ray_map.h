@@ -1,0 +1,91 @@
+/// @file ray_map.h
+/// Many rays at a time through one compact tree: shadows, occlusion, mirrors, rays from files.
+///
+/// A map of the tree, made once, is what vectors of rays walk through (README.md beside this file). Every
+/// answer is the core's, for every instruction set: what is hit, where, by which face and at which t. A ray
+/// that the vectors do not take is traced by the core, within the same call.
+///
+/// Everything here is const and reentrant: any number of threads may trace through one map, each a share of
+/// the rays. Nothing is allocated; a call takes less than 64 KiB of stack.
+#ifndef THIMBLE_PLATFORM_WIDE_RAYS_RAY_MAP_H
+#define THIMBLE_PLATFORM_WIDE_RAYS_RAY_MAP_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/base/memory.h"
+#include "thimble/base/status.h"
+#include "thimble/trace/ray.h"
+#include "thimble/trace/secondary_ray.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::wide {
+
+/// What the vectors read.
+///
+/// The world is cut into cubes of 16^3 voxels, a cube that holds something (a brick) into 4^3 leaves of 4^3
+/// voxels. In all three numberings x comes first and z last.
+struct MapCells {
+  /// A word a cube, and one more. Of an empty one, the four bits from 4 * o on are the side, in cubes, of the
+  /// largest empty cube that begins there and extends along octant o (bit a: to smaller coordinates on axis
+  /// a), 1 .. 15; what lies outside the world is empty. Else 16 times where its brick begins.
+  const uint32_t* top = nullptr;
+  /// Bricks one after the other: a bit for each leaf that holds something; with `has_nodes` the number of the
+  /// tree's node of this cube, or UINT64_MAX; then for each of these leaves its voxels, a bit each. The first
+  /// brick is solid through, and serves all such cubes.
+  const uint64_t* bricks = nullptr;
+  int level = 0;           ///< the map's world is 2^level voxels a side: the tree's, or 16
+  bool has_nodes = false;  ///< the tree has several materials, or blocks made by coarsening
+
+  /// Words of a brick before its leaves.
+  uint64_t header() const { return has_nodes ? 2 : 1; }
+};
+
+/// The map of one tree, in bytes that the caller gave; both outlive it. Copy it freely.
+class RayMap {
+ public:
+  RayMap() = default;
+  /// Without a map: the core traces every ray. For trees that `make` refuses, and where there is no room.
+  explicit RayMap(const CompactTree& tree) : tree_(tree) {}
+
+  /// Makes the map; takes at most `bytes(tree)` from the arena. kOutOfMemory when that does not fit, kDamaged
+  /// for a tree whose masks do not add up; nothing is taken then, and `map` is as it was.
+  static Status make(const CompactTree& tree, Arena* arena, RayMap* map);
+  /// What `make` takes at most. Reads all masks.
+  static size_t bytes(const CompactTree& tree);
+
+  const CompactTree& tree() const { return tree_; }
+  /// Null without a map.
+  const MapCells* cells() const { return cells_.top == nullptr ? nullptr : &cells_; }
+
+ private:
+  CompactTree tree_;
+  MapCells cells_;
+};
+
+// In all that follow, `rays` are those of ray.h and the spans of a call are equally long. A ray that
+// `check_ray` refuses counts as a miss, and the call returns its status (the first such ray's); the others are
+// answered. Visits are steps of this engine, or nodes where the core answered.
+
+/// Whether each ray meets anything: 1 or 0, as `thimble::any_hit`.
+Status any_hit(const RayMap& map, Span<const Ray> rays, Span<uint8_t> hit);
+
+/// Whether each ray enters anything solid at a t below `before[i]` (as `thimble::any_hit_before`): point
+/// lights, occlusion within a reach.
+Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
+                      Span<uint8_t> hit);
+
+/// The solid voxel that each ray enters first: as `closest_hit` in kind, voxel, axis, t, material and block
+/// level.
+Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
+
+/// The same, where what is entered at a t of `before[i]` or later is a miss.
+Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before, Span<Hit> hits);
+
+/// The first solid voxel in which each ray spends a positive length after `from[i]`: as `closest_hit_from`. So
+/// a ray goes on behind glass that it passed.
+Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits);
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,240 @@
+// Rays in vectors against the core ray by ray: shadows, occlusion and what is seen, by every instruction set.
+//
+//   thimble_ray_table dragon.ply.gz@10 monu10.vox points:1000000@10
+//
+// A scene is a file or a generator, @ and a depth. Its rays are those of its picture of 1280 x 800, framed as
+// `thimble render` frames it; from every second hit a shadow ray to one light; from every fourth hit four rays
+// anywhere in the half space above the face (occlusion), once without an end and once within a reach of 8 voxels.
+// All by turns on one thread, processor time, the least of so many turns. `wrong`: rays whose answer is not the
+// core's (in kind, voxel, axis, t and material where what is hit is asked for).
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "benchmarks/peers/contest.h"
+#include "output/output_file.h"
+#include "scene/built_scene.h"
+#include "scene/framing.h"
+#include "scene/host_memory.h"
+#include "scene/scene_source.h"
+#include "thimble/trace/secondary_ray.h"
+#include "wide/kernels.h"
+#include "wide/rays/ray_map.h"
+
+namespace thimble::benchmarks {
+namespace {
+
+constexpr std::int32_t kWidthPx = 1280;
+constexpr std::int32_t kHeightPx = 800;
+constexpr double kReach = 8;  // voxels
+
+struct Kind {
+  std::string name;
+  bool any = true;
+  std::vector<Ray> rays;
+  std::vector<RayPoint> before;  // empty: none
+};
+
+// What a way of tracing said.
+struct Answers {
+  std::vector<std::uint8_t> any;
+  std::vector<Hit> hits;
+
+  explicit Answers(const Kind& kind)
+      : any(kind.any ? kind.rays.size() : 0), hits(kind.any ? 0 : kind.rays.size()) {}
+};
+
+void add_occlusion(std::mt19937_64& random, const Ray& ray, const Hit& hit, Kind* free, Kind* within) {
+  for (int more = 0; more < 4; ++more) {
+    Ray next;
+    next.origin = start_on_face(ray, hit);
+    double square = 0;
+    do {
+      square = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        next.direction[axis] = static_cast<std::int32_t>(static_cast<std::int64_t>(random() % 65535) - 32767);
+        square += static_cast<double>(next.direction[axis]) * next.direction[axis];
+      }
+    } while (square > 32767.0 * 32767.0 || next.direction[hit.axis] == 0);
+    if ((ray.direction[hit.axis] < 0) != (next.direction[hit.axis] > 0)) {
+      next.direction[hit.axis] = -next.direction[hit.axis];
+    }
+    free->rays.push_back(next);
+    within->rays.push_back(next);
+    within->before.push_back(
+        {static_cast<std::int32_t>(kReach * 65536), static_cast<std::int32_t>(std::sqrt(square) * 65536)});
+  }
+}
+
+std::vector<Kind> make_rays(const tools::BuiltScene& built, const Camera& camera) {
+  std::vector<Kind> kinds{{"primary", false, {}, {}},
+                          {"shadow", true, {}, {}},
+                          {"occlusion", true, {}, {}},
+                          {"reach 8", true, {}, {}}};
+  constexpr Vec3i kLight{-20000, -30000, 40000};
+  std::mt19937_64 random(1);
+  std::size_t hits = 0;
+  for (std::int32_t tile = 0; tile < kWidthPx / 4 * (kHeightPx / 4); ++tile) {
+    for (int i = 0; i < 16; ++i) {
+      const Ray ray = camera.ray(tile % (kWidthPx / 4) * 4 + i % 4, tile / (kWidthPx / 4) * 4 + i / 4);
+      kinds[0].rays.push_back(ray);
+      Hit hit;
+      if (built.closest_hit(ray, &hit, {}) != Status::kOk || hit.kind != HitKind::kHit || hit.axis < 0) {
+        continue;
+      }
+      ++hits;
+      if (hits % 2 == 0 && leaves_face(kLight, hit.axis, looks_to_smaller(ray, hit))) {
+        kinds[1].rays.push_back({start_on_face(ray, hit), kLight});
+      }
+      if (hits % 4 == 0) {
+        add_occlusion(random, ray, hit, &kinds[2], &kinds[3]);
+      }
+    }
+  }
+  return kinds;
+}
+
+void trace_by_core(const CompactTree& tree, const Kind& kind, Answers* to) {
+  for (std::size_t i = 0; i < kind.rays.size(); ++i) {
+    HitKind met = HitKind::kMiss;
+    if (!kind.any) {
+      to->hits[i] = Hit{};
+      (void)closest_hit(tree, kind.rays[i], &to->hits[i]);
+    } else if (kind.before.empty()) {
+      (void)any_hit(tree, kind.rays[i], &met);
+      to->any[i] = met == HitKind::kHit;
+    } else {
+      (void)any_hit_before(tree, kind.rays[i], kind.before[i], &met);
+      to->any[i] = met == HitKind::kHit;
+    }
+  }
+}
+
+void trace_by_map(const wide::RayMap& map, const Kind& kind, Answers* to) {
+  const Span<const Ray> rays{kind.rays.data(), kind.rays.size()};
+  if (!kind.any) {
+    (void)wide::first_hit(map, rays, {to->hits.data(), to->hits.size()});
+  } else if (kind.before.empty()) {
+    (void)wide::any_hit(map, rays, {to->any.data(), to->any.size()});
+  } else {
+    (void)wide::any_hit_before(map, rays, {kind.before.data(), kind.before.size()},
+                               {to->any.data(), to->any.size()});
+  }
+}
+
+bool same(const Hit& a, const Hit& b) {
+  return a.kind == b.kind &&
+         (a.kind != HitKind::kHit ||
+          (a.voxel == b.voxel && a.axis == b.axis && a.t_numerator == b.t_numerator &&
+           a.t_denominator == b.t_denominator && a.material == b.material && a.block_level == b.block_level));
+}
+
+std::size_t count_wrong(const Answers& expected, const Answers& found) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < expected.any.size(); ++i) {
+    wrong += expected.any[i] != found.any[i] ? 1U : 0U;
+  }
+  for (std::size_t i = 0; i < expected.hits.size(); ++i) {
+    wrong += same(expected.hits[i], found.hits[i]) ? 0U : 1U;
+  }
+  return wrong;
+}
+
+struct SetBack {
+  ~SetBack() { wide::use_instruction_set(-1); }
+};
+
+void measure(const std::string& name, const tools::BuiltScene& built, const wide::RayMap& map,
+             const Kind& kind, int turns, int most_sets, std::string* csv) {
+  if (kind.rays.empty()) {
+    return;
+  }
+  const SetBack after;
+  const int sets = std::min(most_sets, wide::instruction_set_count());
+  Answers expected(kind);
+  Answers found(kind);
+  double core = 1e30;
+  std::vector<double> best(static_cast<std::size_t>(sets), 1e30);
+  std::vector<std::size_t> wrong(static_cast<std::size_t>(sets), 0);
+  for (int turn = 0; turn < turns; ++turn) {
+    core = std::min(core, seconds_of([&] { trace_by_core(built.compact(), kind, &expected); }));
+    for (int set = 0; set < sets; ++set) {
+      wide::use_instruction_set(set);
+      double& least = best[static_cast<std::size_t>(set)];
+      least = std::min(least, seconds_of([&] { trace_by_map(map, kind, &found); }));
+      wrong[static_cast<std::size_t>(set)] += count_wrong(expected, found);
+    }
+  }
+  const auto put = [&](const std::string& engine, double seconds, std::size_t mistakes) {
+    const double rate = static_cast<double>(kind.rays.size()) / seconds / 1e6;
+    std::printf("%-22s %-10s %-8s %9zu %9.2f %8.2f %7zu\n", name.c_str(), kind.name.c_str(), engine.c_str(),
+                kind.rays.size(), rate, core / seconds, mistakes);
+    *csv += "\"" + name + "\"," + kind.name + "," + engine + "," + std::to_string(kind.rays.size()) + "," +
+            std::to_string(rate) + "," + std::to_string(core / seconds) + "," + std::to_string(mistakes) +
+            "\n";
+  };
+  put("core", core, 0);
+  for (int set = 0; set < sets; ++set) {
+    wide::use_instruction_set(set);
+    put(wide::instruction_set(), best[static_cast<std::size_t>(set)], wrong[static_cast<std::size_t>(set)]);
+  }
+  std::fflush(stdout);
+}
+
+int run(int count, char** words) {
+  std::vector<std::string> scenes;
+  std::string csv_path;
+  int turns = 3;
+  int most_sets = 100;
+  CLI::App app("Rays a second by the map and by the core");
+  app.add_option("SCENE@DEPTH", scenes, "files or generators")->required();
+  app.add_option("--turns", turns, "of each way of tracing")->check(CLI::Range(1, 100));
+  app.add_option("--sets", most_sets, "only so many instruction sets, the best first")
+      ->check(CLI::Range(1, 100));
+  app.add_option("--csv", csv_path, "the table as CSV");
+  CLI11_PARSE(app, count, words);
+  std::printf("%-22s %-10s %-8s %9s %9s %8s %7s\n", "scene", "rays", "engine", "number", "Mrays/s", "to core",
+              "wrong");
+  std::string csv = "scene,kind,engine,rays,mega_rays_a_second,to_core,wrong\n";
+  for (const std::string& scene : scenes) {
+    tools::SceneArguments arguments;
+    const std::size_t at = scene.rfind('@');
+    arguments.scene = scene.substr(0, at);
+    if (at != std::string::npos) {
+      arguments.depth = std::stoi(scene.substr(at + 1));
+    }
+    const auto source = tools::open_scene(arguments);
+    const tools::BuiltScene built(*source, {});
+    const std::size_t bytes = wide::RayMap::bytes(built.compact());
+    const tools::HostMemory memory(bytes);
+    Arena arena(memory.bytes());
+    wide::RayMap map;
+    Status status = Status::kOk;
+    const double seconds = seconds_of([&] { status = wide::RayMap::make(built.compact(), &arena, &map); });
+    if (status != Status::kOk) {
+      throw std::runtime_error("no map");
+    }
+    const std::string name = scene.substr(scene.rfind('/') + 1);
+    std::printf("%s: map of %.1f MB (tree %.1f) in %.3f s\n", name.c_str(),
+                static_cast<double>(arena.used_bytes()) / 1e6, static_cast<double>(built.tree_bytes()) / 1e6,
+                seconds);
+    tools::ViewWishes view;
+    view.width_px = kWidthPx;
+    view.height_px = kHeightPx;
+    const Camera camera = tools::frame_box(view, built.level(), built.bounds()).camera;
+    for (const Kind& kind : make_rays(built, camera)) {
+      measure(name, built, map, kind, turns, most_sets, &csv);
+    }
+  }
+  write_text(csv_path, csv);
+  return 0;
+}
+
+}  // namespace
+}  // namespace thimble::benchmarks
+
+int main(int count, char** words) {
+  return thimble::benchmarks::run_program("thimble_ray_table",
+                                          [&] { return thimble::benchmarks::run(count, words); });
+}

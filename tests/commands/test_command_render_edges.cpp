@@ -1,0 +1,174 @@
+// `thimble render --samples auto`: the rule of thimble/picture/edge_samples.h, whoever draws, in bands of any
+// height, on any number of threads, within any budget.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/run_command.h"
+#include "thimble/picture/edge_samples.h"
+
+namespace {
+
+using namespace thimble::tests;
+using Words = std::vector<std::string>;
+
+struct Picture {
+  std::vector<std::uint8_t> rgb;
+  nlohmann::json stats;
+};
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+Picture render(const Words& words, const std::string& size) {
+  const TemporaryFolder folder;
+  const CommandResult result = run_command(
+      Words{"render"} + words +
+      Words{"--size", size, "--quiet", "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")});
+  INFO(result.describe());
+  REQUIRE(result.status == 0);
+  const std::string text = read_text(folder.path("a.ppm"));
+  const std::string pixels = text.substr(text.find("255\n") + 4);
+  return {{pixels.begin(), pixels.end()}, nlohmann::json::parse(read_text(folder.path("a.json")))};
+}
+
+constexpr int kWidth = 90;
+constexpr int kHeight = 60;
+const char* const kSize = "90x60";
+const char* const kFineSize = "360x240";
+
+// The rule once more, from the picture of one sample and the one four times as large.
+std::vector<std::uint8_t> with_samples_at_edges(const Picture& one, const Picture& fine, int* more) {
+  using thimble::Bytes;
+  using thimble::ConstBytes;
+  constexpr std::size_t kLine = 3 * kWidth;
+  std::vector<std::uint8_t> picture = one.rgb;
+  std::vector<std::uint8_t> samples(kWidth);
+  for (int y = 0; y < kHeight; ++y) {
+    const auto row = [&](int at) {
+      return at < 0 || at >= kHeight
+                 ? ConstBytes()
+                 : ConstBytes(one.rgb.data() + kLine * static_cast<std::size_t>(at), kLine);
+    };
+    const Bytes bytes(samples.data(), samples.size());
+    REQUIRE(thimble::edge_strengths(row(y - 1), row(y), row(y + 1), 3, kWidth, bytes) ==
+            thimble::Status::kOk);
+    REQUIRE(thimble::place_edge_samples(bytes, kWidth, bytes) == thimble::Status::kOk);
+    for (int x = 0; x < kWidth; ++x) {
+      const int count = samples[static_cast<std::size_t>(x)];
+      *more += count;
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        std::uint8_t& value =
+            picture[kLine * static_cast<std::size_t>(y) + 3 * static_cast<std::size_t>(x) + channel];
+        int sum = value;
+        for (int i = 0; i < count; ++i) {
+          const auto place = thimble::edge_sample_place(i);
+          sum += fine.rgb[4 * kLine * static_cast<std::size_t>(4 * y + place.y) +
+                          3 * static_cast<std::size_t>(4 * x + place.x) + channel];
+        }
+        value = static_cast<std::uint8_t>(std::lround(static_cast<double>(sum) / (count + 1)));
+      }
+    }
+  }
+  return picture;
+}
+
+double rms(const Picture& one, const Picture& other) {
+  double sum = 0;
+  for (std::size_t i = 0; i < one.rgb.size(); ++i) {
+    const double difference = int{one.rgb[i]} - int{other.rgb[i]};
+    sum += difference * difference;
+  }
+  return std::sqrt(sum / static_cast<double>(one.rgb.size()));
+}
+
+TEST_CASE("render --samples auto: plain and lit -> one sample, and the fine picture's where edges are") {
+  const std::vector<Words> cases{
+      {"castle", "--shade", "color"},
+      {"castle", "--shade", "depth", "--projection", "orthographic", "--engine", "ray64"},
+      {"spheres", "--shade", "normal", "--engine", "ray32"},
+      {"points:3000,depth=7", "--shade", "mono"},
+      {"castle", "--shade", "color", "--structure", "pool"},
+      {"castle", "--effects", "direct-light,shadows,ambient-occlusion"},
+      {"water", "--effects", "auto"},
+      {"glass", "--effects", "auto", "--projection", "orthographic"},
+  };
+  for (const Words& words : cases) {
+    CAPTURE(words);
+    const Picture one = render(words, kSize);
+    const Picture fine = render(words, kFineSize);
+    const Picture drawn = render(words + Words{"--samples", "auto"}, kSize);
+    int more = 0;
+    CHECK(drawn.rgb == with_samples_at_edges(one, fine, &more));
+    CHECK(drawn.rgb != one.rgb);
+    CHECK(more > 0);
+    CHECK(drawn.stats["samples"] == "auto");
+    if (!drawn.stats.contains("rays_by_kind")) {
+      CHECK(drawn.stats["rays"] == kWidth * kHeight + more);
+    } else {
+      CHECK(drawn.stats["rays_by_kind"]["primary"] == kWidth * kHeight + more);
+    }
+  }
+}
+
+TEST_CASE("render --samples auto: threads, budgets and structures -> the same picture") {
+  const std::vector<std::pair<Words, std::vector<Words>>> cases{
+      {{"castle"}, {{"--threads", "1"}, {"--threads", "3"}, {"--memory", "300K"}, {"--memory", "2M"}}},
+      {{"castle", "--background", "123456", "--ground", "off"}, {{"--threads", "2"}, {"--memory", "400K"}}},
+      {{"room", "--effects", "auto"}, {{"--threads", "1"}, {"--threads", "5"}, {"--memory", "200K"}}},
+      {{"castle", "--shade", "normal"},
+       {{"--engine", "ray64"}, {"--memory", "220K"}, {"--structure", "pool"}}},
+      {{"castle", "--shade", "color", "--cutoff", "3"}, {{"--memory", "400K"}, {"--threads", "2"}}},
+  };
+  for (const auto& [words, ways] : cases) {
+    CAPTURE(words);
+    const Picture first = render(words + Words{"--samples", "auto"}, kSize);
+    for (const Words& way : ways) {
+      CAPTURE(way);
+      const Picture other = render(words + Words{"--samples", "auto"} + way, kSize);
+      CHECK(other.rgb == first.rgb);
+      if (way[0] == "--memory") {
+        CHECK(other.stats["high_water_bytes"] <= other.stats["budget_bytes"]);
+      }
+    }
+  }
+}
+
+TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by half, with few rays") {
+  for (const Words& words : {Words{"castle", "--shade", "color"}, Words{"ship", "--shade", "color"},
+                             Words{"castle", "--effects", "direct-light,shadows"}, Words{"castle"}}) {
+    CAPTURE(words);
+    const Picture best = render(words + Words{"--samples", "64"}, "240x180");
+    const Picture one = render(words + Words{"--samples", "1"}, "240x180");
+    const Picture edges = render(words + Words{"--samples", "auto"}, "240x180");
+    CHECK(rms(edges, best) < 0.6 * rms(one, best));
+    CHECK(edges.stats["rays"].get<double>() < 3 * one.stats["rays"].get<double>());
+  }
+}
+
+TEST_CASE("render --samples auto: one film of parts, and stars -> as ever") {
+  const TemporaryFolder folder;
+  const Words film{"render", "castle", "--size", "40x30", "--turntable", "3", "--samples", "auto", "--quiet"};
+  const auto run_well = [](const Words& words) {
+    const CommandResult result = run_command(words);
+    INFO(result.describe());
+    REQUIRE(result.status == 0);
+  };
+  run_well(film + Words{"-o", folder.path("whole.gif")});
+  run_well(film + Words{"--part", "0:1", "-o", folder.path("a.part"), "--threads", "1"});
+  run_well(film + Words{"--part", "1:2", "-o", folder.path("b.part"), "--threads", "2"});
+  run_well({"join", folder.path("b.part"), folder.path("a.part"), "-o", folder.path("joined.gif")});
+  CHECK(read_text(folder.path("joined.gif")) == read_text(folder.path("whole.gif")));
+  CHECK(render({"points:900,depth=7", "--samples", "auto"}, "60x40").rgb ==
+        render({"points:900,depth=7"}, "60x40").rgb);
+}
+
+}  // namespace

@@ -1,0 +1,14 @@
+// The pixel formats that every build has.
+#ifndef THIMBLE_TESTS_SUPPORT_FORMATS_H
+#define THIMBLE_TESTS_SUPPORT_FORMATS_H
+
+#include "thimble/picture/pixel.h"
+
+namespace thimble::testing {
+
+inline constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kGray8,
+                                           PixelFormat::kRgb565, PixelFormat::kRgb888};
+
+}  // namespace thimble::testing
+
+#endif

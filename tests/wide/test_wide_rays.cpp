@@ -1,0 +1,215 @@
+// Rays in vectors give the core's answers: hard rays through random worlds, by every instruction set.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "support/wide_cases.h"
+#include "thimble/trace/secondary_ray.h"
+#include "wide/rays/ray_map.h"
+
+namespace thimble::tests {
+namespace {
+
+struct MapUnderTest {
+  std::unique_ptr<HeapBytes> bytes;
+  wide::RayMap map;
+};
+
+MapUnderTest make_map(const CompactTree& tree) {
+  MapUnderTest made;
+  made.bytes = std::make_unique<HeapBytes>(wide::RayMap::bytes(tree));
+  Arena arena(made.bytes->span());
+  REQUIRE(wide::RayMap::make(tree, &arena, &made.map) == Status::kOk);
+  return made;
+}
+
+// Rays, a bound for each, and what the core says of them.
+struct RayBatch {
+  std::vector<Ray> rays;
+  std::vector<RayPoint> before;
+  std::vector<RayPoint> from;
+  std::vector<Hit> first;
+  std::vector<Hit> first_from;
+};
+
+bool is_before(const Hit& hit, const RayPoint& point) {
+  return static_cast<std::int64_t>(hit.t_numerator) * point.t_denominator <
+         static_cast<std::int64_t>(point.t_numerator) * hit.t_denominator;
+}
+
+RayPoint random_bound(std::mt19937_64& random, const Hit& hit) {
+  switch (pick(random, 0, 5)) {
+    case 0:
+      return {static_cast<std::int32_t>(pick(random, 0, 1)), 1};
+    case 1:
+      return {INT32_MAX, static_cast<std::int32_t>(pick(random, 1, INT32_MAX))};
+    case 2:  // a reach of some voxels, about
+      return {static_cast<std::int32_t>(pick(random, 1, 1 << 12)),
+              static_cast<std::int32_t>(pick(random, 1, 1 << 22))};
+    default: {  // the hit itself, or just beside it
+      const std::int32_t scale = static_cast<std::int32_t>(
+          pick(random, 1, INT32_MAX / std::max(hit.t_numerator, hit.t_denominator)));
+      return {std::max(hit.t_numerator * scale + static_cast<std::int32_t>(pick(random, -1, 1)), 0),
+              hit.t_denominator * scale};
+    }
+  }
+}
+
+// A plane that the ray crosses, or its start.
+RayPoint random_place(std::mt19937_64& random, const Ray& ray, const Hit& hit) {
+  if (pick(random, 0, 2) == 0) {
+    return point_of(hit);
+  }
+  const int axis = static_cast<int>(pick(random, 0, 2));
+  const std::int32_t direction = ray.direction[axis];
+  if (direction == 0 || pick(random, 0, 7) == 0) {
+    return {};
+  }
+  const std::int64_t ahead = pick(random, 0, pick(random, 0, 1) == 0 ? 64 : 4096);
+  const std::int64_t origin = ray.origin[axis].raw;
+  const std::int64_t plane = (direction > 0 ? origin / 256 + ahead : origin / 256 - ahead) * 256;
+  const std::int64_t way = direction > 0 ? plane - origin : origin - plane;
+  if (way < 0 || way > 1 << 23) {
+    return {};
+  }
+  return {static_cast<std::int32_t>(way), 256 * std::abs(direction)};
+}
+
+void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, RayBatch* batch) {
+  Hit hit;
+  REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
+  batch->rays.push_back(ray);
+  batch->first.push_back(hit);
+  batch->before.push_back(random_bound(random, hit));
+  const RayPoint from = random_place(random, ray, hit);
+  batch->from.push_back(from);
+  REQUIRE(closest_hit_from(tree, ray, from, &hit) == Status::kOk);
+  batch->first_from.push_back(hit);
+}
+
+// Hard rays, and those that go on from what they hit.
+RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_t count) {
+  const int side = 1 << tree.level();
+  const auto within = [&](int low, int high) { return static_cast<int>(pick(random, low, high - 1)); };
+  std::vector<reference::Voxel> targets;
+  const VoxelBox& bounds = tree.bounds();
+  for (int i = 0; i < 8 && !tree.empty(); ++i) {
+    targets.push_back({within(bounds.low.x, bounds.high.x), within(bounds.low.y, bounds.high.y),
+                       within(bounds.low.z, bounds.high.z)});
+  }
+  RayCases cases(random(), {side, side, side}, targets);
+  RayBatch batch;
+  while (batch.rays.size() < count) {
+    add_ray(random, tree, to_core(cases.next().ray), &batch);
+    const Hit hit = batch.first.back();
+    if (hit.kind != HitKind::kHit) {
+      continue;
+    }
+    const Ray seen = batch.rays.back();
+    for (std::int64_t more = pick(random, 0, 2); more > 0; --more) {
+      Ray next;
+      next.origin = start_on_face(seen, hit);
+      next.direction = to_core(cases.next().ray).direction;
+      if (hit.axis >= 0 && pick(random, 0, 1) == 0) {  // mirrored
+        next.direction = seen.direction;
+        next.direction[hit.axis] = -next.direction[hit.axis];
+      }
+      add_ray(random, tree, next, &batch);
+    }
+  }
+  return batch;
+}
+
+bool same(const Hit& a, const Hit& b) {
+  return a.kind == b.kind &&
+         (a.kind != HitKind::kHit ||
+          (a.voxel == b.voxel && a.axis == b.axis && a.t_numerator == b.t_numerator &&
+           a.t_denominator == b.t_denominator && a.material == b.material && a.block_level == b.block_level));
+}
+
+template <class Same>
+void check_each(const char* what, const RayBatch& batch, const Same& is_same) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < batch.rays.size(); ++i) {
+    if (!is_same(i) && ++wrong == 1) {
+      const Ray& ray = batch.rays[i];
+      MESSAGE(what, " ray ", i, ": ", ray.origin.x.raw, " ", ray.origin.y.raw, " ", ray.origin.z.raw,
+              " + t * ", ray.direction.x, " ", ray.direction.y, " ", ray.direction.z,
+              "; core: ", describe(batch.first[i]));
+    }
+  }
+  INFO(what);
+  CHECK(wrong == 0);
+}
+
+void check_answers(const wide::RayMap& map, const RayBatch& batch) {
+  const std::size_t count = batch.rays.size();
+  const Span<const Ray> rays{batch.rays.data(), count};
+  const Span<const RayPoint> before{batch.before.data(), count};
+  const Span<const RayPoint> from{batch.from.data(), count};
+  std::vector<std::uint8_t> any(count, 7);
+  std::vector<Hit> hits(count);
+  const Span<std::uint8_t> to_any{any.data(), count};
+  const Span<Hit> to_hits{hits.data(), count};
+  const auto hit_before = [&](std::size_t i) {
+    return batch.first[i].kind == HitKind::kHit && is_before(batch.first[i], batch.before[i]);
+  };
+  CHECK(wide::any_hit(map, rays, to_any) == Status::kOk);
+  check_each("any_hit", batch,
+             [&](std::size_t i) { return any[i] == (batch.first[i].kind == HitKind::kHit); });
+  CHECK(wide::any_hit_before(map, rays, before, to_any) == Status::kOk);
+  check_each("any_hit_before", batch, [&](std::size_t i) { return any[i] == hit_before(i); });
+  CHECK(wide::first_hit(map, rays, to_hits) == Status::kOk);
+  check_each("first_hit", batch, [&](std::size_t i) { return same(hits[i], batch.first[i]); });
+  CHECK(wide::first_hit_before(map, rays, before, to_hits) == Status::kOk);
+  check_each("first_hit_before", batch,
+             [&](std::size_t i) { return same(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
+  CHECK(wide::first_hit_from(map, rays, from, to_hits) == Status::kOk);
+  check_each("first_hit_from", batch, [&](std::size_t i) { return same(hits[i], batch.first_from[i]); });
+}
+
+// Scenes of random_scene, and so many rays through each by each of the instruction sets: counts the rays.
+std::uint64_t check_random_scenes(std::uint64_t first_seed, int scenes, std::size_t rays) {
+  const BestInstructionSet after;
+  const int sets = wide::instruction_set_count();
+  std::uint64_t traced = 0;
+  for (int i = 0; i < scenes; ++i) {
+    const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    const WideScene scene = random_scene(random);
+    CAPTURE(seed);
+    CAPTURE(scene.what);
+    CAPTURE(scene.level);
+    const MapUnderTest made = make_map(scene.tree);
+    const RayBatch batch = make_batch(random, scene.tree, rays);
+    for (int set = 0; set < sets; ++set) {
+      wide::use_instruction_set(set);
+      CAPTURE(wide::instruction_set());
+      check_answers(made.map, batch);
+    }
+    traced += batch.rays.size();
+  }
+  return traced;
+}
+
+}  // namespace
+
+TEST_CASE("rays: hard rays through random worlds -> the core's answers by every instruction set") {
+  CHECK(check_random_scenes(31000, many_or_few(300, 40), 300) > 10000);
+}
+
+// THIMBLE_LONG=1: ten million rays and more, each by every instruction set.
+TEST_CASE("rays: a long run -> the core's answers") {
+  if (std::getenv("THIMBLE_LONG") == nullptr) {
+    return;
+  }
+  std::uint64_t traced = 0;
+  for (std::uint64_t seed = 500000; traced < 10'000'000; seed += 100) {
+    traced += check_random_scenes(seed, 100, 10000);
+  }
+  MESSAGE(traced, " rays");
+}
+
+}  // namespace thimble::tests

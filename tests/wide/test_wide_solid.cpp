@@ -1,0 +1,350 @@
+// Lists of surfaces: which voxels they hold, and that every pixel is the core's all the same, where rays slip
+// between listed voxels into hidden ones or begin in them.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scene/host_memory.h"
+#include "support/wide_cases.h"
+#include "thimble/tree/morton.h"
+#include "wide/exact.h"
+#include "wide/surface.h"
+
+namespace thimble::tests {
+namespace {
+
+std::int32_t number(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
+  return static_cast<std::int32_t>(pick(random, low, high));
+}
+
+// Something solid within some forty voxels, around where cubes of entries meet if the world has several: boxes,
+// balls and stairs, now and then with holes.
+void fill_solidly(std::mt19937_64& random, int level, Octree* octree) {
+  const std::int32_t side = std::int32_t{1} << level;
+  const std::int32_t size = std::min(side, 40);
+  Vec3i low{};
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] =
+        side > 1024 ? 1024 * number(random, 1, (side >> 10) - 1) - size / 2 : number(random, 0, side - size);
+  }
+  const bool is_colored = pick(random, 0, 1) == 0;
+  const std::int64_t holes = pick(random, 0, 1) == 0 ? 0 : pick(random, 1, 30);
+  for (std::int64_t part = pick(random, 1, 3); part > 0; --part) {
+    const std::int64_t kind = pick(random, 0, 3);
+    const Vec3i middle = random_voxel(random, 0, size - 1);
+    const std::int32_t radius = number(random, 1, size / 2);
+    for (std::int32_t z = 0; z < size; ++z) {
+      for (std::int32_t y = 0; y < size; ++y) {
+        for (std::int32_t x = 0; x < size; ++x) {
+          const Vec3i from{x - middle.x, y - middle.y, z - middle.z};
+          const std::int32_t farthest = std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)});
+          const bool is_solid = kind == 0 ? farthest <= radius
+                                : kind == 1
+                                    ? from.x * from.x + from.y * from.y + from.z * from.z < radius * radius
+                                : kind == 2 ? x + y <= z + middle.x  // stairs
+                                            : z <= middle.z / 2;
+          if (is_solid && pick(random, 0, 999) >= holes) {
+            const auto material =
+                static_cast<std::uint8_t>(is_colored ? 1 + (x / 5 + 3 * (y / 7) + z) % 9 : 1);
+            (void)octree->insert({low.x + x, low.y + y, low.z + z}, material);
+          }
+        }
+      }
+    }
+  }
+}
+
+WideScene solid_scene(std::mt19937_64& random, int level, wide::ListKind kind = wide::ListKind::kFastest) {
+  return make_scene(
+      level, [&](Octree* octree) { fill_solidly(random, level, octree); }, std::size_t{8} << 20, kind);
+}
+
+bool is_solid(const CompactTree& tree, const Vec3i& at) {
+  int level = 0;
+  return wide::solid_at(tree, {at.x, at.y, at.z}, &level);
+}
+
+// A point on the lattice or off it, in what is solid or near.
+Vec3Q8 hard_point(std::mt19937_64& random, const WideScene& scene) {
+  const VoxelBox& bounds = scene.tree.bounds();
+  Vec3Q8 point;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t raw =
+        pick(random, std::int64_t{256} * (bounds.low[axis] - 3), std::int64_t{256} * (bounds.high[axis] + 3));
+    point[axis] = Q8::from_raw(static_cast<std::int32_t>(pick(random, 0, 2) == 0 ? raw : raw / 256 * 256));
+  }
+  return point;
+}
+
+// Along axes, and diagonals of faces and of cubes.
+Vec3i hard_direction(std::mt19937_64& random) {
+  Vec3i direction{};
+  while (direction == Vec3i{}) {
+    direction = random_voxel(random, -1, 1);
+  }
+  return direction;
+}
+
+bool hard_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera) {
+  const Vec3i along = pick(random, 0, 3) == 0 ? random_voxel(random, -9, 9) : hard_direction(random);
+  if (along == Vec3i{}) {
+    return false;
+  }
+  Vec3Q8 eye = hard_point(random, scene);
+  const std::int32_t width = number(random, 20, 90);
+  if (pick(random, 0, 1) == 0) {
+    OrthographicView view;
+    if (pick(random, 0, 2) != 0) {  // outside
+      for (int axis = 0; axis < 3; ++axis) {
+        eye[axis] = Q8::from_raw(eye[axis].raw - along[axis] * 256 * 60);
+      }
+    }
+    view.eye = eye;
+    view.forward = along;
+    // Pixels of a part of a voxel to some, lattice points among them.
+    const std::int32_t parts = number(random, 1, 12);
+    view.span = Q14::from_raw(width * Q14::kOne / parts);
+    if (pick(random, 0, 2) == 0) {
+      view.span = Q14::from_raw(static_cast<std::int32_t>(width * Q14::kOne / std::sqrt(2.0) / parts));
+    }
+    view.width_px = width;
+    view.height_px = number(random, 10, 60);
+    return camera->set(view, scene.level) == Status::kOk;
+  }
+  PerspectiveView view;
+  view.eye = eye;
+  view.forward = along;
+  view.fov_degrees = Q16::from_raw(number(random, 5, 120) * 65536);
+  view.width_px = width;
+  view.height_px = number(random, 10, 60);
+  if (pick(random, 0, 1) == 0) {
+    view.direction_bits = number(random, 8, 12);  // few directions, so many ties
+  }
+  return camera->set(view, scene.level) == Status::kOk;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "wide surface: random solid worlds -> the voxels with a neighbour that is not solid, and their nodes") {
+  constexpr int kScenes = many_or_few(60, 12);
+  int surfaces = 0;
+  for (int i = 0; i < kScenes; ++i) {
+    const std::uint64_t seed = 400 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    const int level = 2 + i % 11;
+    CAPTURE(seed);
+    CAPTURE(level);
+    const WideScene scene = solid_scene(random, level);
+    if (!scene.lists.is_surface()) {
+      continue;
+    }
+    ++surfaces;
+    const CompactTree& tree = scene.tree;
+    const VoxelBox& bounds = tree.bounds();
+    // Of each listed voxel the code, with its material; entries stand cube by cube in the order of codes.
+    std::vector<std::pair<std::uint64_t, std::uint8_t>> expected;
+    for (std::int32_t z = bounds.low.z; z < bounds.high.z; ++z) {
+      for (std::int32_t y = bounds.low.y; y < bounds.high.y; ++y) {
+        for (std::int32_t x = bounds.low.x; x < bounds.high.x; ++x) {
+          const bool is_hidden = is_solid(tree, {x - 1, y, z}) && is_solid(tree, {x + 1, y, z}) &&
+                                 is_solid(tree, {x, y - 1, z}) && is_solid(tree, {x, y + 1, z}) &&
+                                 is_solid(tree, {x, y, z - 1}) && is_solid(tree, {x, y, z + 1});
+          if (is_solid(tree, {x, y, z}) && !is_hidden) {
+            Ray ray;
+            ray.origin = {Q8::from_raw(256 * x + 128), Q8::from_raw(256 * y + 128),
+                          Q8::from_raw(256 * z + 128)};
+            ray.direction = {1, 0, 0};
+            Hit hit;
+            REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
+            expected.emplace_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                              static_cast<std::uint32_t>(z)),
+                                  hit.material);
+          }
+        }
+      }
+    }
+    std::sort(expected.begin(), expected.end());
+    const wide::VoxelLists& lists = scene.lists;
+    REQUIRE(lists.entries().size == expected.size());
+    CHECK(lists.face_area() == expected.size());
+    int wrong = 0;
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+      const Vec3i at = morton_voxel(expected[n].first);
+      const auto entry =
+          static_cast<std::uint32_t>((at.x & 1023) | (at.y & 1023) << 10 | (at.z & 1023) << 20);
+      wrong += lists.entries()[n] != entry ? 1 : 0;
+      wrong += !lists.materials().empty() && lists.materials()[n] != expected[n].second ? 1 : 0;
+    }
+    CHECK(wrong == 0);
+    // Every node holds the entries of its cube of the world, and its children's in their order.
+    struct Visit {
+      std::uint32_t node;
+      int level;
+      std::uint64_t code;
+    };
+    std::vector<Visit> open{{0, tree.level(), 0}};
+    std::size_t visited = 0;
+    while (!open.empty()) {
+      const Visit visit = open.back();
+      open.pop_back();
+      ++visited;
+      const wide::BlockNode& node = lists.nodes()[visit.node];
+      const auto first = std::lower_bound(expected.begin(), expected.end(),
+                                          std::pair<std::uint64_t, std::uint8_t>{visit.code, 0});
+      const auto end = std::lower_bound(
+          expected.begin(), expected.end(),
+          std::pair<std::uint64_t, std::uint8_t>{visit.code + (std::uint64_t{1} << (3 * visit.level)), 0});
+      wrong += node.first_entry != static_cast<std::uint32_t>(first - expected.begin()) ? 1 : 0;
+      wrong += node.entries != static_cast<std::uint32_t>(end - first) || node.entries == 0 ? 1 : 0;
+      unsigned mask = 0;
+      for (auto at = first; at != end; ++at) {
+        mask |= 1U << ((at->first - visit.code) >> (3 * (visit.level - 1)));
+      }
+      wrong += lists.children(visit.node) != mask ? 1 : 0;
+      std::uint32_t child = node.first_child;
+      for (unsigned octant = 0; octant < 8 && visit.level > lists.block_level(); ++octant) {
+        if ((mask >> octant & 1U) != 0) {
+          open.push_back(
+              {child++, visit.level - 1, visit.code + (std::uint64_t{octant} << (3 * (visit.level - 1)))});
+        }
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(visited == lists.nodes().size);
+  }
+  CHECK(surfaces > kScenes / 2);
+}
+
+TEST_CASE("wide surface: solid worlds, rays along the lattice and from inside -> every pixel is the core's") {
+  const BestInstructionSet after;
+  constexpr int kScenes = many_or_few(700, 40);
+  std::uint64_t asked = 0;
+  int drawn = 0;
+  int surfaces = 0;
+  for (int i = 0; i < kScenes; ++i) {
+    const std::uint64_t seed = 61000 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    const int level = number(random, 2, 12);
+    const WideScene scene = solid_scene(random, level);
+    surfaces += scene.lists.is_surface() ? 1 : 0;
+    for (int v = 0; v < 6; ++v) {
+      FrameCase frame;
+      if (!random_frame(random, scene, &frame) || !hard_camera(random, scene, &frame.camera)) {
+        continue;
+      }
+      frame.shading.mode = static_cast<ShadeMode>(v % 4);
+      set_depth_range(scene, &frame);
+      frame.band.stride_bytes = 0;
+      frame.band.first_row = 0;
+      frame.band.rows = frame.camera.height_px();
+      use_random_instruction_set(random);
+      CAPTURE(seed);
+      CAPTURE(v);
+      CAPTURE(level);
+      CAPTURE(wide::instruction_set());
+      CAPTURE(frame.camera.is_perspective());
+      wide::Options options = random_options(random);
+      CAPTURE(thread_count(options));
+      CAPTURE(static_cast<int>(options.order));
+      CAPTURE(static_cast<int>(options.list));
+      wide::Stats stats;
+      std::uint64_t hits = 0;
+      const auto ours = draw_wide(scene, frame, options, &hits, &stats);
+      if (!ours) {
+        continue;
+      }
+      std::uint64_t expected_hits = 0;
+      const auto expected = draw_core(scene, frame, &expected_hits);
+      CHECK(hits == expected_hits);
+      CHECK(count_different(*ours, expected) == 0);
+      asked += stats.counts.asked;
+      ++drawn;
+    }
+  }
+  MESSAGE(drawn << " frames, " << asked << " pixels asked of the core, " << surfaces << " surfaces");
+  CHECK(drawn > 2 * kScenes);
+  CHECK(surfaces > kScenes / 2);
+  CHECK(asked > static_cast<std::uint64_t>(drawn));
+}
+
+TEST_CASE("wide surface: every instruction set, order, list and number of threads -> the same bytes") {
+  const BestInstructionSet after;
+  constexpr int kScenes = many_or_few(40, 6);
+  for (int i = 0; i < kScenes; ++i) {
+    const std::uint64_t seed = 77000 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    const WideScene scene = solid_scene(random, 3 + i % 9);
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame) || !hard_camera(random, scene, &frame.camera)) {
+      continue;
+    }
+    frame.band.stride_bytes = 0;
+    frame.band.first_row = 0;
+    frame.band.rows = frame.camera.height_px();
+    CAPTURE(seed);
+    std::uint64_t hits = 0;
+    const auto expected = draw_core(scene, frame, &hits);
+    for (int set = 0; set < wide::instruction_set_count(); ++set) {
+      wide::use_instruction_set(set);
+      CAPTURE(wide::instruction_set());
+      for (const int threads : {1, 2, 5}) {
+        for (const wide::Order order : {wide::Order::kFlat, wide::Order::kBlocks}) {
+          for (const wide::List list : {wide::List::kSurface, wide::List::kBoxes}) {
+            wide::Options options = options_of(threads, order);
+            options.list = list;
+            const auto ours = draw_wide(scene, frame, options);
+            CHECK((!ours || *ours == expected));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothing, and boxes alone may fit") {
+  const auto full = [](int level) {
+    return make_scene(level, [&](Octree* octree) {
+      REQUIRE(octree->insert_block({0, 0, 0}, level, 7) == Status::kOk);
+    });
+  };
+  std::size_t before = 0;
+  for (const int level : {5, 6, 7, 8, 9}) {
+    CAPTURE(level);
+    const WideScene scene = full(level);
+    const std::size_t side = std::size_t{1} << level;
+    REQUIRE(scene.lists.is_surface());
+    REQUIRE(scene.lists.has_boxes_beside());
+    CHECK(scene.lists.boxes_beside().entries().size == 1);
+    CHECK(scene.lists.entries().size == 6 * side * side - 12 * side + 8);
+    const std::size_t bytes = wide::VoxelLists::bytes(scene.tree);
+    CHECK(bytes < 4400 + (before == 0 ? bytes : 45 * before / 10));
+    before = bytes;
+    const std::size_t few = wide::VoxelLists::bytes(scene.tree, wide::ListKind::kBoxes);
+    CHECK(few < 2000);
+    const HeapBytes memory(bytes - 4 * 128 - 1);
+    Arena arena(memory.span());
+    wide::VoxelLists lists;
+    Arena small(memory.span().subspan(0, few));
+    CHECK(wide::VoxelLists::make(scene.tree, &small, &lists) == Status::kOutOfMemory);
+    CHECK(small.used_bytes() == 0);
+    CHECK(wide::VoxelLists::make(scene.tree, &small, &lists, wide::ListKind::kBoxes) == Status::kOk);
+    CHECK_FALSE(lists.is_surface());
+  }
+  // Dust is listed as it is.
+  std::mt19937_64 random(8);
+  const WideScene dust = make_scene(9, [&](Octree* octree) {
+    for (int n = 0; n < 20000; ++n) {
+      REQUIRE(octree->insert(random_voxel(random, 0, 511), 1) == Status::kOk);
+    }
+  });
+  CHECK_FALSE(dust.lists.is_surface());
+  CHECK(dust.lists.entries().size == dust.tree.voxel_count());
+}
+
+}  // namespace thimble::tests

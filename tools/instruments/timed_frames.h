@@ -1,0 +1,54 @@
+/// @file timed_frames.h
+/// How frames of the paper's workload are seen and timed, for all tables that compare them: `thimble table`
+/// and the peers' (tests/benchmarks).
+///
+/// A frame is 800 x 600 pixels of 8-bit grey by depth; the whole world fills the picture. It includes the
+/// camera, its depth range, clearing and all that depends on the view, and carries nothing over from the last.
+/// One frame that does not count comes first; each of the others is seen from another place, and the median
+/// counts. Between two of them others work (they judge the picture, or draw their own), so caches are cold.
+#ifndef THIMBLE_TOOLS_INSTRUMENTS_TIMED_FRAMES_H
+#define THIMBLE_TOOLS_INSTRUMENTS_TIMED_FRAMES_H
+
+#include <cstdint>
+#include <ctime>
+
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
+
+namespace thimble::tools {
+
+inline constexpr std::int32_t kTimedWidthPx = 800;
+inline constexpr std::int32_t kTimedHeightPx = 600;
+/// That count.
+inline constexpr int kTimedFrames = 5;
+/// In a smaller world 800 pixels are finer than the 1/256 voxel that orthographic rays start on.
+inline constexpr int kLeastTimedLevel = 5;
+
+/// The view of frame `frame` (any) of a world of 2^level voxels a side: in perspective from outside above a
+/// corner, or along y. Frames repeat after kTimedFrames.
+Camera timed_camera(int level, bool orthographic, int frame);
+/// Depth shading between the planes that bound the scene.
+Shading timed_shading(const Camera& camera, const VoxelBox& bounds);
+
+/// Seconds since it was made: processor time of this thread, which other programs do not lengthen; where more
+/// threads than one draw, of the clock on the wall.
+class FrameWatch {
+ public:
+  explicit FrameWatch(int threads = 1)
+      : clock_(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC), start_(now()) {}
+  double seconds() const { return now() - start_; }
+
+ private:
+  double now() const {
+    timespec time{};
+    clock_gettime(clock_, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
+  clockid_t clock_;
+  double start_;
+};
+
+}  // namespace thimble::tools
+
+#endif

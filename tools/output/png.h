@@ -1,0 +1,19 @@
+/// @file png.h
+/// Pictures as PNG (ISO/IEC 15948), 8 bits a channel.
+#ifndef THIMBLE_TOOLS_OUTPUT_PNG_H
+#define THIMBLE_TOOLS_OUTPUT_PNG_H
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thimble::tools {
+
+/// A whole file. `pixels`: rows from the top without gaps, `channels` bytes a pixel: 3 (r, g, b) or 4 (and
+/// alpha). Sides are 1 or more. Throws std::bad_alloc.
+std::vector<unsigned char> png_file(std::int32_t width_px, std::int32_t height_px, int channels,
+                                    std::span<const std::uint8_t> pixels);
+
+}  // namespace thimble::tools
+
+#endif

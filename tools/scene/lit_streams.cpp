@@ -1,0 +1,66 @@
+#include "scene/lit_streams.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "wide/lit/lit_renderer.h"
+#include "wide/threads.h"
+
+namespace thimble::tools {
+namespace {
+
+class WideLitStreams final : public LitStreams {
+ public:
+  WideLitStreams(const wide::RayMap& map, Bytes workspace, int threads, double seconds)
+      : map_(map), workspace_(workspace), threads_(threads), seconds_(seconds) {}
+
+  int threads() const override { return threads_.count(); }
+  double seconds() const override { return seconds_; }
+  Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
+                const Band& band, LitCounts* counts) override {
+    return wide::render_lit(effects, map_, camera, shading, scene, band, workspace_, &threads_, counts);
+  }
+
+ private:
+  wide::RayMap map_;
+  Bytes workspace_;
+  wide::Threads threads_;
+  double seconds_;
+};
+
+}  // namespace
+
+std::size_t LitStreams::bytes(const CompactTree& tree, EffectSet effects, const LitScene& scene,
+                              int threads) {
+  return wide::RayMap::bytes(tree) +
+         wide::lit_workspace_bytes(effects, scene) * static_cast<std::size_t>(threads);
+}
+
+std::unique_ptr<LitStreams> LitStreams::make(const CompactTree& tree, Arena* arena, EffectSet effects,
+                                             const LitScene& scene, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t least = wide::least_lit_workspace_bytes(effects, scene);
+  // Asked before the map is made: what does not fit costs no time.
+  const std::size_t map_bytes = wide::RayMap::bytes(tree);
+  if (effects == Effect::kNone || map_bytes > arena->free_bytes() ||
+      arena->free_bytes() - map_bytes < least) {
+    return nullptr;
+  }
+  const std::size_t mark = arena->used_bytes();
+  wide::RayMap map;
+  if (wide::RayMap::make(tree, arena, &map) != Status::kOk) {
+    return nullptr;
+  }
+  const std::size_t wanted = wide::lit_workspace_bytes(effects, scene) * static_cast<std::size_t>(threads);
+  const Bytes workspace = arena->take(std::min(wanted, arena->free_bytes()), 1);
+  if (workspace.size < least) {
+    arena->rewind(mark);
+    return nullptr;
+  }
+  const auto most_threads =
+      static_cast<int>(std::min<std::size_t>(workspace.size / least, wide::kMaxThreads));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::make_unique<WideLitStreams>(map, workspace, std::min(threads, most_threads), seconds);
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,42 @@
+/// @file lit_streams.h
+/// Lit pictures by streams of rays (platform/wide/lit) made ready for one scene: the map of its tree and a workspace in
+/// an arena. A build without it (-DTHIMBLE_WIDE=OFF) has lit_streams_absent.cpp, which makes none.
+#ifndef THIMBLE_TOOLS_SCENE_LIT_STREAMS_H
+#define THIMBLE_TOOLS_SCENE_LIT_STREAMS_H
+
+#include <cstddef>
+#include <memory>
+
+#include "thimble/base/memory.h"
+#include "thimble/light/render.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::tools {
+
+/// Draws one band at a time.
+class LitStreams {
+ public:
+  virtual ~LitStreams() = default;
+
+  /// Makes the map of `tree`, which outlives the result as `arena` does, and takes a workspace for pictures with
+  /// these effects: for `threads`, or as many as there is room for. Null, and nothing taken, when there is room for
+  /// none, when the tree is damaged, and without effects.
+  static std::unique_ptr<LitStreams> make(const CompactTree& tree, Arena* arena, EffectSet effects,
+                                          const LitScene& scene, int threads);
+
+  /// What `make` takes at most.
+  static std::size_t bytes(const CompactTree& tree, EffectSet effects, const LitScene& scene, int threads);
+
+  /// Threads that draw.
+  virtual int threads() const = 0;
+  /// What making it took.
+  virtual double seconds() const = 0;
+  /// The pixels of `render_lit_band`, and its errors. The effects and lights are at most those of `make`. `counts` (may
+  /// be null) is added to.
+  virtual Status render(EffectSet effects, const Camera& camera, const Shading& shading,
+                        const LitScene& scene, const Band& band, LitCounts* counts) = 0;
+};
+
+}  // namespace thimble::tools
+
+#endif
