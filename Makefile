@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install deb \
   packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
-  bench-frames test-framebuffer web test-web bench-web format tidy clean
+  bench-frames test-framebuffer test-threads web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -86,6 +86,12 @@ test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzin
 	@echo "[5/5] the tests; those that take longest begin"
 	@ctest --test-dir build --output-on-failure -j 2 $(CTEST_ARGS)
 
+test-threads: deps-test ## Run what draws in several threads under ThreadSanitizer (std::thread in place of oneTBB)
+	@$(CONFIGURE) -B build/threads -DTHIMBLE_SANITIZE_THREADS=ON -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=OFF >/dev/null
+	@.ci/build "build for ThreadSanitizer" build/threads thimble_tests
+	@build/threads/thimble_tests --source-file='*/wide/test_*,*/tree/test_key_sort*,*/viewer/test_*'
+	@build/threads/thimble_tests --test-case='*threads*,*who draws*'
+
 coverage: deps-test deps-coverage ## Count the lines and branches of src that the tests take, by room
 	@$(CONFIGURE) -B build/release $(TESTED) -DTHIMBLE_COVERAGE=ON >/dev/null
 	@.ci/build "the core that counts" build/release thimble_tests_covered thimble_golden_tests_covered
@@ -130,7 +136,7 @@ test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says f
 
 web: deps-web ## Make the page: one file that works from the disk and offline (build/web/thimble.html)
 	@sh platform/web/build.sh
-test-web: web all ## Test the page: its modules under Node, and itself in headless Chromium
+test-web: web all ## Test the page in headless Chromium (`make test` tests its modules under Node)
 	@sh tests/web/run.sh
 bench-web: web ## Time frames in headless Chromium
 	@node tests/web/bench.js

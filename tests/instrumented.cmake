@@ -14,6 +14,14 @@ if(THIMBLE_SANITIZE)
   # Code that is long to compile and short to run: what parses command lines, and the test cases themselves.
   set(THIMBLE_FRONT_OPTIONS -O0)
 endif()
+if(THIMBLE_SANITIZE_THREADS)
+  add_compile_options(-fsanitize=thread -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=thread)
+  # oneTBB is not compiled with it, so every hand-over in there would look like a race. The tests choose their counts
+  # by AddressSanitizer's macro.
+  add_compile_definitions(THIMBLE_STD_THREADS __SANITIZE_ADDRESS__=1)
+  set(THIMBLE_FRONT_OPTIONS -O0)
+endif()
 if(THIMBLE_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
     -fno-omit-frame-pointer -O1)
