@@ -8,7 +8,7 @@ work=$THIMBLE_FIRMWARE/$board
 results=$THIMBLE_FIRMWARE/$board.results
 measured=$THIMBLE_FIRMWARE/$board.measured
 . platform/board_facts.sh
-limit_s=${THIMBLE_EMULATOR_LIMIT_S:-240}
+limit_s=${THIMBLE_EMULATOR_LIMIT_S:-600}
 failed=0
 mkdir -p "$work"
 : >"$results"
