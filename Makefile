@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install deb \
   packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
-  bench-frames test-framebuffer test-threads web test-web bench-web format tidy clean
+  bench-frames test-framebuffer test-threads ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -91,6 +91,18 @@ test-threads: deps-test ## Run what draws in several threads under ThreadSanitiz
 	@.ci/build "build for ThreadSanitizer" build/threads thimble_tests
 	@build/threads/thimble_tests --source-file='*/wide/test_*,*/tree/test_key_sort*,*/viewer/test_*'
 	@build/threads/thimble_tests --test-case='*threads*,*who draws*'
+
+# COUNT rays, the first random number SEED.
+ranges: deps-test ## Measure how large the core's numbers become, beside what is promised (COUNT=1000000)
+	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
+	@.ci/build "the core that measures" build/release thimble_ranges
+	@build/release/thimble_ranges $(or $(COUNT),1000000) $(SEED)
+
+soak: deps-test ## Draw by every renderer with hard cameras for MINUTES=, from SEED= on, and say what was wrong
+	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
+	@.ci/build "optimised build" build/release thimble_tests
+	@THIMBLE_SOAK_MINUTES=$(or $(MINUTES),1) THIMBLE_SOAK_SEED=$(or $(SEED),1) \
+	  build/release/thimble_tests --test-case='soak*'
 
 coverage: deps-test deps-coverage ## Count the lines and branches of src that the tests take, by room
 	@$(CONFIGURE) -B build/release $(TESTED) -DTHIMBLE_COVERAGE=ON >/dev/null

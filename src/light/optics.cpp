@@ -4,6 +4,7 @@
 
 #include "../base/bits.h"
 #include "../base/integers.h"
+#include "../base/ranges.h"
 #include "../base/wide_arithmetic.h"
 
 namespace thimble {
@@ -92,6 +93,7 @@ Scaled scaled(const Vec3i& direction) {
 
 // Dot product of two vectors whose lengths' product is below 2^31; no partial sum is looked at.
 int32_t dot(const Vec3i& a, const Vec3i& b) {
+  THIMBLE_NOTE(Range::kDot, Exact(a.x) * Exact(b.x) + Exact(a.y) * Exact(b.y) + Exact(a.z) * Exact(b.z));
   return static_cast<int32_t>(static_cast<uint32_t>(a.x) * static_cast<uint32_t>(b.x) +
                               static_cast<uint32_t>(a.y) * static_cast<uint32_t>(b.y) +
                               static_cast<uint32_t>(a.z) * static_cast<uint32_t>(b.z));
@@ -113,6 +115,8 @@ constexpr uint32_t clamped_eta(uint32_t eta) {
 uint32_t square_after_q30(uint64_t length_square, uint64_t tangent_square, uint32_t eta, int scale_bits) {
   const uint64_t tangent = uint64_t{eta * eta} * tangent_square;
   const uint64_t length = length_square << 24;
+  THIMBLE_NOTE(Range::kTangent, Exact(eta * eta) * Exact(tangent_square));
+  THIMBLE_NOTE(Range::kTangent, Exact(length_square) * Exact(1 << 24));
   if (tangent >= length) {
     return 0;
   }
@@ -139,6 +143,7 @@ uint32_t length_of(const Vec3i& vector) {
   const uint32_t x = magnitude_32(vector.x);
   const uint32_t y = magnitude_32(vector.y);
   const uint32_t z = magnitude_32(vector.z);
+  THIMBLE_NOTE(Range::kSquareSum, Exact(x) * Exact(x) + Exact(y) * Exact(y) + Exact(z) * Exact(z));
   return root_rounded(x * x + y * y + z * z);
 }
 
@@ -163,6 +168,7 @@ Vec3i reflect(const Vec3i& direction, const Vec3i& normal_q14) {
   // Twice the component along the normal, in units of it: 2 D / N, with D below 2^30.
   const int64_t d = dot(direction, normal_q14);
   const int64_t inverse = inverse_of_square_q56(dot(normal_q14, normal_q14));
+  THIMBLE_NOTE(Range::kReflected, Exact(d) * Exact(inverse));
   const int32_t twice_q14 = rounded(d * inverse, 41);
   Vec3i result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -229,10 +235,13 @@ bool refract(const Vec3i& unit, const Vec3i& normal_q14, uint32_t eta_q12, Vec3i
   const int64_t onward_q40 =
       (int64_t{root_q15} << 25) - static_cast<int64_t>(wide_product_u(magnitude_32(d), eta));
   const int64_t inverse_q47 = inverse_of_square_q56(static_cast<int32_t>(normal_square)) >> 9;
+  THIMBLE_NOTE(Range::kOnward, Exact(onward_q40) * Exact(inverse_q47));
   const int64_t h_q18 = (onward_q40 * inverse_q47) >> 41;  // below 2^43 * 2^19; 2^20 after the shift
   const int64_t h = d < 0 ? -h_q18 : h_q18;
   for (int axis = 0; axis < 3; ++axis) {
     // Q26 times 2^6 and Q32: below 2^36.
+    THIMBLE_NOTE(Range::kRefracted,
+                 Exact(unit[axis]) * Exact(eta) * Exact(64) + Exact(h) * Exact(normal_q14[axis]));
     (*out)[axis] =
         rounded(wide_product(unit[axis], static_cast<int32_t>(eta)) * 64 + h * normal_q14[axis], 18);
   }
@@ -301,6 +310,7 @@ int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denom
   // 2^24 * 2^32, and 2^24 * 2^12 >> 12.
   const uint64_t distance_q16 = wide_product_u(static_cast<uint32_t>(t_numerator), high) +
                                 (wide_product_u(static_cast<uint32_t>(t_numerator), low) >> 12);
+  THIMBLE_NOTE(Range::kLength, Exact(distance_q16));
   const uint64_t distance = shift_rounded(distance_q16, 16 - scale.exponent);  // the exponent is -14 .. 6
   return distance < INT32_MAX ? static_cast<int32_t>(distance) : INT32_MAX;
 }

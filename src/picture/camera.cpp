@@ -23,6 +23,7 @@
 // most z |e| / (F.D). z is largest in the corner of the world that lies furthest ahead.
 #include "thimble/picture/camera.h"
 
+#include "../base/ranges.h"
 #include "../base/wide_arithmetic.h"
 #include "cotangent.h"
 
@@ -56,6 +57,9 @@ bool has_view_components(const Vec3i& vector) {
 
 /// a x b, exactly: below 2^62 for view components.
 Wide cross(const Vec3i& a, const Vec3i& b) {
+  THIMBLE_NOTE(Range::kCross, Exact(a.y) * Exact(b.z) - Exact(a.z) * Exact(b.y));
+  THIMBLE_NOTE(Range::kCross, Exact(a.z) * Exact(b.x) - Exact(a.x) * Exact(b.z));
+  THIMBLE_NOTE(Range::kCross, Exact(a.x) * Exact(b.y) - Exact(a.y) * Exact(b.x));
   return {wide_product(a.y, b.z) - wide_product(a.z, b.y), wide_product(a.z, b.x) - wide_product(a.x, b.z),
           wide_product(a.x, b.y) - wide_product(a.y, b.x)};
 }
@@ -81,6 +85,8 @@ Vec3i unit_q30(const Wide& vector) {
     scaled[axis] = surplus > 0 ? shift_rounded(size, surplus) : size << -surplus;
     squares += scaled[axis] * scaled[axis];
   }
+  THIMBLE_NOTE(Range::kSquares, Exact(scaled.x) * Exact(scaled.x) + Exact(scaled.y) * Exact(scaled.y) +
+                                    Exact(scaled.z) * Exact(scaled.z));
   const uint32_t length = square_root_rounded(squares);
   Vec3i unit;
   for (int axis = 0; axis < 3; ++axis) {
@@ -145,6 +151,15 @@ void set_affine(Camera::Affine& affine, int axis, int64_t middle, int64_t half_r
   affine.base[axis] = middle - (width_px - 1) * half_right + (height_px - 1) * half_up;
   affine.step_x[axis] = 2 * half_right;
   affine.step_y[axis] = -2 * half_up;
+  // Its extremes are the corners' values.
+  THIMBLE_NOTE(Range::kAffine, Exact(middle) + Exact(width_px - 1) * Exact(half_right) +
+                                   Exact(height_px - 1) * Exact(half_up));
+  THIMBLE_NOTE(Range::kAffine, Exact(middle) + Exact(width_px - 1) * Exact(half_right) -
+                                   Exact(height_px - 1) * Exact(half_up));
+  THIMBLE_NOTE(Range::kAffine, Exact(middle) - Exact(width_px - 1) * Exact(half_right) +
+                                   Exact(height_px - 1) * Exact(half_up));
+  THIMBLE_NOTE(Range::kAffine, Exact(middle) - Exact(width_px - 1) * Exact(half_right) -
+                                   Exact(height_px - 1) * Exact(half_up));
 }
 
 }  // namespace
@@ -182,6 +197,7 @@ Status Camera::set(const PerspectiveView& view, int level) {
   // of them 31 bits: `fraction` bits after it, 9 .. 30.
   const uint64_t focal_q39 =
       half_angle_cotangent_q39(view.fov_degrees) * static_cast<uint32_t>(view.height_px);  // below 2^60
+  THIMBLE_NOTE(Range::kFocal, Exact(half_angle_cotangent_q39(view.fov_degrees)) * Exact(view.height_px));
   const int32_t side_px = view.width_px > view.height_px ? view.width_px : view.height_px;
   const uint64_t side_q39 = static_cast<uint64_t>(side_px) << 39;
   const int fraction = 70 - bit_width(focal_q39 > side_q39 ? focal_q39 : side_q39);
@@ -195,6 +211,9 @@ Status Camera::set(const PerspectiveView& view, int level) {
   for (int axis = 0; axis < 3; ++axis) {
     const uint64_t sum = magnitude(frame.forward[axis]) * focal + magnitude(frame.right[axis]) * right +
                          magnitude(frame.up[axis]) * above;
+    THIMBLE_NOTE(Range::kExtent, Exact(magnitude(frame.forward[axis])) * Exact(focal) +
+                                     Exact(magnitude(frame.right[axis])) * Exact(right) +
+                                     Exact(magnitude(frame.up[axis])) * Exact(above));
     extent = sum > extent ? sum : extent;
   }
   const int spare = 63 - bit_width(extent);
@@ -202,6 +221,8 @@ Status Camera::set(const PerspectiveView& view, int level) {
 
   // s f for M = 1, rounded down, and a corner's |d|, in half pixels with `fraction`.
   const uint64_t depth_q31 = divide((focal << 30), (extent >> 31) + 1);
+  THIMBLE_NOTE(Range::kSquares,
+               Exact(focal) * Exact(focal) + Exact(right) * Exact(right) + Exact(above) * Exact(above));
   const uint64_t corner = square_root_rounded(focal * focal + right * right + above * above);
   const auto depth_q8 = [depth_q31](int bits) {
     return (depth_q31 * static_cast<uint32_t>(largest_direction(bits))) >> 23;
@@ -232,6 +253,7 @@ Status Camera::set(const PerspectiveView& view, int level) {
   const int shift = 62 - bits - spare;
   for (int axis = 0; axis < 3; ++axis) {
     const auto term = [factor, shift](int32_t component, uint64_t size) {
+      THIMBLE_NOTE(Range::kTerm, Exact(magnitude(component)) * Exact(size));
       return with_sign_of(component, multiply_shifted(magnitude(component) * size, factor, shift));
     };
     const uint64_t half_pixel = uint64_t{1} << fraction;
@@ -355,6 +377,7 @@ Status Camera::set(const OrthographicView& view, int level) {
   // 2^44, e below 2^16, the depth below 2^21, the span below 2^31.
   const uint64_t factor = world_depth_q8(view.eye, frame.forward, level) * width << 6;
   const auto shear_px_q16 = [factor, span](const ParallelDirection& candidate) {
+    THIMBLE_NOTE(Range::kShear, Exact(factor) * Exact(candidate.error_q16));
     return divide(factor * candidate.error_q16, (candidate.depth_q30 >> 30) * span) + 1;
   };
   const uint64_t must_px_q16 = kMustPxQ16 - origin_px_q16;

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "../base/ranges.h"
 #include "../base/wide_arithmetic.h"
 #include "thimble/base/vec.h"
 #include "thimble/picture/camera.h"
@@ -85,6 +86,8 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
       if (fastest == 0) {
         return true;
       }
+      THIMBLE_NOTE(Range::kAllMiss, Exact(enter_num) * Exact(fastest));
+      THIMBLE_NOTE(Range::kAllMiss, Exact(before) * Exact(enter_den));
       if (is_product_less(enter_num, fastest, before, enter_den)) {
         enter_num = before;
         enter_den = fastest;
@@ -94,12 +97,16 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
       if (through <= 0) {
         return true;
       }
+      THIMBLE_NOTE(Range::kAllMiss, Exact(through) * Exact(leave_den));
+      THIMBLE_NOTE(Range::kAllMiss, Exact(leave_num) * Exact(slowest));
       if (is_product_less(through, leave_den, leave_num, slowest)) {
         leave_num = through;
         leave_den = slowest;
       }
     }
   }
+  THIMBLE_NOTE(Range::kAllMiss, Exact(enter_num) * Exact(leave_den));
+  THIMBLE_NOTE(Range::kAllMiss, Exact(leave_num) * Exact(enter_den));
   return !is_product_less(enter_num, leave_den, leave_num, enter_den);
 }
 

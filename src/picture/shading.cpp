@@ -1,6 +1,7 @@
 #include "thimble/picture/shading.h"
 
 #include "../base/bits.h"
+#include "../base/ranges.h"
 #include "../base/wide_arithmetic.h"
 
 namespace thimble {
@@ -46,6 +47,7 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t plane = ((corner >> axis) & 1U) != 0 ? bounds.high[axis] : bounds.low[axis];
       dot += int64_t{plane * Q8::kOne - camera.eye()[axis].raw} * forward[axis];
+      THIMBLE_NOTE(Range::kDepthDot, Exact(dot));
     }
     near_dot = dot < near_dot ? dot : near_dot;
     far_dot = dot > far_dot ? dot : far_dot;
@@ -98,6 +100,7 @@ int32_t planar_depth_q8(const Hit& hit, const Camera& camera) {
   }
   const int shift = 32 - bits::bit_length(depth_per_t);
   const uint32_t ratio = (depth_per_t << shift) / direction;
+  THIMBLE_NOTE(Range::kDepth, Exact(hit.t_numerator) * Exact(ratio));
   const uint64_t depth = wide_product_u(static_cast<uint32_t>(hit.t_numerator), ratio) >> (shift + 8);
   return depth < INT32_MAX ? static_cast<int32_t>(depth) : INT32_MAX;
 }

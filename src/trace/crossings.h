@@ -21,6 +21,7 @@
 #include <stdint.h>
 
 #include "../base/bits.h"
+#include "../base/ranges.h"
 #include "../base/wide_arithmetic.h"
 #include "thimble/trace/ray.h"
 
@@ -32,10 +33,12 @@ template <class Int>
 constexpr Int product(int32_t a, int32_t b);
 template <>
 constexpr int32_t product<int32_t>(int32_t a, int32_t b) {
+  THIMBLE_NOTE(Range::kProduct32, Exact(a) * Exact(b));
   return a * b;
 }
 template <>
 constexpr int64_t product<int64_t>(int32_t a, int32_t b) {
+  THIMBLE_NOTE(Range::kProduct64, Exact(a) * Exact(b));
   return wide_product(a, b);
 }
 
@@ -69,6 +72,8 @@ struct MirroredRay {
       if (negative) {
         flip |= 1U << axis;
       }
+      THIMBLE_NOTE(Range::kOrigin, Exact(origin_q8[axis]));
+      THIMBLE_NOTE(Range::kDirection, Exact(direction[axis]));
     }
   }
 
@@ -87,7 +92,10 @@ struct MirroredRay {
   }
 
   // From the origin to plane `number` of `axis`, in 1/256 voxel.
-  int32_t distance(int axis, int32_t number) const { return number * Q8::kOne - origin_q8[axis]; }
+  int32_t distance(int axis, int32_t number) const {
+    THIMBLE_NOTE(Range::kDistance, Exact(number) * Exact(Q8::kOne) - Exact(origin_q8[axis]));
+    return number * Q8::kOne - origin_q8[axis];
+  }
 };
 
 // Octants as bits of a byte, changed from the mirrored numbering to the tree's or back: octant o moves to
@@ -140,6 +148,10 @@ class NodePath {
   }
   // From a node to its child `octant` (mirrored), which the ray crosses.
   State child(const State& node, unsigned octant) const {
+    THIMBLE_NOTE(state_range<Unsigned>(), Exact(2) * (Exact(node.xy) - Exact(xy_.change[octant & 3U])));
+    THIMBLE_NOTE(state_range<Unsigned>(), Exact(2) * (Exact(node.yz) - Exact(yz_.change[octant >> 1])));
+    THIMBLE_NOTE(state_range<Unsigned>(),
+                 Exact(2) * (Exact(node.zx) - Exact(zx_.change[(octant >> 2 | octant << 1) & 3U])));
     return {2 * (node.xy - xy_.change[octant & 3U]), 2 * (node.yz - yz_.change[octant >> 1]),
             2 * (node.zx - zx_.change[(octant >> 2 | octant << 1) & 3U])};
   }
@@ -196,6 +208,8 @@ class NodePath {
       bound[3] = middle + 1 - none_b;
       bound[4] = middle + least + none_a;
       bound[5] = middle + most + none_a;
+      THIMBLE_NOTE(state_range<Unsigned>(),
+                   (Exact(d_a) + Exact(d_b)) * Exact(1 << (level + 7)) + Exact(most) + Exact(none_a));
 
       constexpr uint32_t kAbove[3] = {0xAAU, 0xCCU, 0xF0U};
       constexpr uint32_t kOnlyA = kAbove[kA] & ~kAbove[kB];
@@ -220,6 +234,7 @@ class NodePath {
       using Int = typename SignedOf<Unsigned>::Type;
       const Int upper = product<Int>(ray.distance(kA, int32_t{1} << level), ray.direction[kB]);
       const Int lower = product<Int>(ray.distance(kB, 0), ray.direction[kA]);
+      THIMBLE_NOTE(state_range<Unsigned>(), Exact(upper) - Exact(lower));
       return static_cast<Unsigned>(upper) - static_cast<Unsigned>(lower);
     }
     uint32_t octants(Unsigned state) const {
@@ -297,6 +312,9 @@ class Crossings {
   // the difference when the planes meet a node that the ray crosses.
   Orders orders(const Vec3i& at) const {
     const Vec3i s{ray_.distance(0, at.x), ray_.distance(1, at.y), ray_.distance(2, at.z)};
+    THIMBLE_NOTE(order_range<Int>(), Exact(s.x) * Exact(d_.y) - Exact(s.y) * Exact(d_.x));
+    THIMBLE_NOTE(order_range<Int>(), Exact(s.y) * Exact(d_.z) - Exact(s.z) * Exact(d_.y));
+    THIMBLE_NOTE(order_range<Int>(), Exact(s.z) * Exact(d_.x) - Exact(s.x) * Exact(d_.z));
     return {product<Int>(s.x, d_.y) - product<Int>(s.y, d_.x),
             product<Int>(s.y, d_.z) - product<Int>(s.z, d_.y),
             product<Int>(s.z, d_.x) - product<Int>(s.x, d_.z)};
@@ -320,6 +338,9 @@ class Crossings {
     const int32_t x = (crossed & 1U) != 0 ? Q8::kOne : 0;
     const int32_t y = (crossed & 2U) != 0 ? Q8::kOne : 0;
     const int32_t z = (crossed & 4U) != 0 ? Q8::kOne : 0;
+    THIMBLE_NOTE(order_range<Int>(), Exact(orders->xy) + Exact(x) * Exact(d_.y) - Exact(y) * Exact(d_.x));
+    THIMBLE_NOTE(order_range<Int>(), Exact(orders->yz) + Exact(y) * Exact(d_.z) - Exact(z) * Exact(d_.y));
+    THIMBLE_NOTE(order_range<Int>(), Exact(orders->zx) + Exact(z) * Exact(d_.x) - Exact(x) * Exact(d_.z));
     orders->xy += product<Int>(x, d_.y) - product<Int>(y, d_.x);
     orders->yz += product<Int>(y, d_.z) - product<Int>(z, d_.y);
     orders->zx += product<Int>(z, d_.x) - product<Int>(x, d_.z);

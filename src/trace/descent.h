@@ -63,6 +63,8 @@ static void report(const MirroredRay& ray, int32_t side, const Crossings<Int>& c
   if (axis >= 0) {
     hit->t_numerator = ray.distance(axis, corner[axis]);
     hit->t_denominator = ray.direction[axis] * Q8::kOne;
+    THIMBLE_NOTE(Range::kNumerator, Exact(hit->t_numerator));
+    THIMBLE_NOTE(Range::kDenominator, Exact(ray.direction[axis]) * Exact(Q8::kOne));
   }
 }
 

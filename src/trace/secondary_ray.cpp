@@ -117,6 +117,8 @@ void SearchWalk<Int, Unsigned>::report_cell(const Vec3i& corner, int level, Hit*
   if (axis >= 0) {
     hit->t_numerator = ray_.distance(axis, corner[axis]);
     hit->t_denominator = ray_.direction[axis] * Q8::kOne;
+    THIMBLE_NOTE(Range::kNumerator, Exact(hit->t_numerator));
+    THIMBLE_NOTE(Range::kDenominator, Exact(ray_.direction[axis]) * Exact(Q8::kOne));
   }
 }
 
@@ -327,6 +329,8 @@ MirroredRay in_all_of(int level, const Ray& ray) {
 
 // Whether the hit's t is below that of the point: 31 bits times 28 and 23 times 31.
 bool earlier(const Hit& hit, const RayPoint& point) {
+  THIMBLE_NOTE(Range::kPlaces, Exact(hit.t_numerator) * Exact(point.t_denominator));
+  THIMBLE_NOTE(Range::kPlaces, Exact(point.t_numerator) * Exact(hit.t_denominator));
   return is_product_less(hit.t_numerator, point.t_denominator, point.t_numerator, hit.t_denominator);
 }
 
@@ -377,6 +381,9 @@ Vec3Q8 start_on_plane(const Ray& ray, int axis, int32_t plane_q8, const Vec3i& l
     const int32_t low = low_q8[other];
     const int64_t offset = wide_product(ray.origin[other].raw - low, static_cast<int32_t>(divisor)) +
                            wide_product(way, ray.direction[other]);
+    THIMBLE_NOTE(Range::kStart, Exact(ray.origin[other].raw - low) * Exact(divisor));
+    THIMBLE_NOTE(Range::kStart, Exact(way) * Exact(ray.direction[other]));
+    THIMBLE_NOTE(Range::kStart, Exact(offset));
     const uint32_t range = static_cast<uint32_t>(high_q8[other] - low);
     uint32_t steps = 0;
     if (offset >= static_cast<int64_t>(wide_product_u(range, divisor))) {
@@ -384,6 +391,7 @@ Vec3Q8 start_on_plane(const Ray& ray, int axis, int32_t plane_q8, const Vec3i& l
     } else if (offset > UINT32_MAX) {
       steps = static_cast<uint32_t>(divide(static_cast<uint64_t>(offset), divisor));
     } else if (offset > 0) {
+      THIMBLE_NOTE(range > 8 * Q8::kOne ? Range::kStart : Range::kStartInside, Exact(offset));
       steps = static_cast<uint32_t>(offset) / divisor;  // always for up to 8 voxels: 11 bits and 20
     }
     start[other] = Q8::from_raw(low + static_cast<int32_t>(steps));

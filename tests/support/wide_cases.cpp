@@ -177,6 +177,16 @@ WideScene make_scene(int level, const std::function<void(Octree*)>& fill, std::s
   return scene;
 }
 
+WideScene scene_of(ConstBytes tree, const std::string& what) {
+  WideScene scene;
+  scene.what = what;
+  scene.bytes = std::make_unique<HeapBytes>(tree.size);
+  std::copy(tree.begin(), tree.end(), scene.bytes->span().data);
+  make_lists(&scene, wide::ListKind::kFastest);
+  scene.level = scene.tree.level();
+  return scene;
+}
+
 Vec3i random_voxel(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
   return {static_cast<std::int32_t>(pick(random, low, high)),
           static_cast<std::int32_t>(pick(random, low, high)),

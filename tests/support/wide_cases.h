@@ -43,6 +43,8 @@ WideScene make_scene(int level, const std::function<void(Octree*)>& fill,
                      std::size_t pool_bytes = std::size_t{4} << 20,
                      wide::ListKind kind = wide::ListKind::kFastest);
 WideScene random_scene(std::mt19937_64& random);
+// A tree's bytes, copied.
+WideScene scene_of(ConstBytes tree, const std::string& what);
 Vec3i random_voxel(std::mt19937_64& random, std::int64_t low, std::int64_t high);
 
 struct FrameCase {

@@ -3,6 +3,7 @@
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
 #define THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
 
+#include "../../base/ranges.h"
 #include "course.h"
 
 namespace thimble::bricks {
@@ -25,6 +26,8 @@ struct Fan {
     int32_t most = -1;
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t at = static_cast<int32_t>(value[axis] >> (32 - kFanBits));
+      THIMBLE_NOTE(Range::kBrickFan, Exact(value[axis] >> (32 - kFanBits)) + Exact(least[axis]));
+      THIMBLE_NOTE(Range::kBrickFan, Exact(value[axis] >> (32 - kFanBits)) + Exact(greatest[axis]));
       low[axis] = (at + least[axis]) >> kFanBits;
       high[axis] = (at + greatest[axis]) >> kFanBits;
       const int32_t sum = low[axis] + high[axis];
@@ -121,6 +124,8 @@ struct AlongC {
   const int32_t high_step = high_slope * Q8::kOne;
   const int32_t low_more = low_step < 0 ? low_step : 0;
   const int32_t high_more = high_step > 0 ? high_step : 0;
+  THIMBLE_NOTE(Range::kBrickSlope, Exact(low_slope < 0 ? c.ahead : c.plane) * Exact(low_slope));
+  THIMBLE_NOTE(Range::kBrickSlope, Exact(high_slope < 0 ? c.plane : c.ahead) * Exact(high_slope));
   return Shadow{from + (low_slope < 0 ? c.ahead : c.plane) * low_slope - 1 + low_more,
                 from + (high_slope < 0 ? c.plane : c.ahead) * high_slope + 1 + high_more,
                 low_step,

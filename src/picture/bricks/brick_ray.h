@@ -14,6 +14,7 @@
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
 #define THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
 
+#include "../../base/ranges.h"
 #include "inks.h"
 #include "thimble/picture/brick_render.h"
 #include "thimble/trace/trace.h"
@@ -116,10 +117,14 @@ class BrickRay {
   slab:  // from plane to plane of c
     rest_a_ += go_a;
     rest_b_ += go_b;
+    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_a_)));
+    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_b_)));
   between:
     if (!is_negative(rest_a_ & rest_b_)) {
       if (is_positive(rest_a_)) {
         if (is_positive(rest_b_)) {
+          THIMBLE_NOTE(Range::kBrickTime, Exact(rest_a_) * Exact(d_b_));
+          THIMBLE_NOTE(Range::kBrickTime, Exact(rest_b_) * Exact(d_a_));
           if (kHasWideProducts) {
             const int32_t order = order_of(course_, rest_a_, d_b_, rest_b_, d_a_);
             if (order < 0) {
@@ -200,6 +205,10 @@ class BrickRay {
     if (seldom(!kDivides && is_negative(at_a | at_b))) {
       return kAsk;
     }
+    THIMBLE_NOTE(Range::kBrickPlace,
+                 Exact(course_.origin[kA]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_a_));
+    THIMBLE_NOTE(Range::kBrickPlace,
+                 Exact(course_.origin[kB]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_b_));
     const uint32_t cell_a =
         kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), &course_.inks->near_cell[0]);
     const uint32_t cell_b =
@@ -209,6 +218,8 @@ class BrickRay {
     }
     rest_a_ = at_a - (cell_a + 1) * den_;
     rest_b_ = at_b - (cell_b + 1) * den_;
+    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_a_)));
+    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_b_)));
     left_ = course_.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
     cell_ = course_.start + static_cast<int32_t>(cell_a >> 2) * course_.stride[kA] +
             static_cast<int32_t>(cell_b >> 2) * course_.stride[kB];

@@ -8,6 +8,7 @@
 #define THIMBLE_SRC_PICTURE_BRICKS_HALF_PLANE_H
 
 #include "../../base/bits.h"
+#include "../../base/ranges.h"
 #include "layout.h"
 #include "thimble/picture/camera.h"
 
@@ -161,6 +162,7 @@ void set_all(HalfPlane* plane, uint32_t word) {
     return;
   }
   const int32_t exact = s_j * rays.base[i] - s_i * rays.base[j];
+  THIMBLE_NOTE(Range::kFaceOrder, Exact(s_j) * Exact(rays.base[i]) - Exact(s_i) * Exact(rays.base[j]));
   int cut = 0;
   for (int32_t most = s_i > s_j ? s_i : s_j; most >= 1 << kDistanceBits; most >>= 2) {
     cut += 2;
@@ -183,6 +185,16 @@ void set_all(HalfPlane* plane, uint32_t word) {
   const int32_t down = (kTileDownPx - 1) * fy;
   const int32_t least = f + (across < 0 ? across : 0) + (down < 0 ? down : 0);
   const int32_t greatest = f + (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+  THIMBLE_NOTE(Range::kFaceBound,
+               Exact(s_i + s_j + 1) * Exact(rays.unit) + Exact(cut == 0 ? 2 : rays.reach + 2));
+  THIMBLE_NOTE(Range::kFaceAffine,
+               (bits >= cut ? Exact(exact) * Exact(1 << (bits - cut)) : Exact(exact >> (cut - bits))) +
+                   Exact(s_j) * Exact(rays.rest[i]) - Exact(s_i) * Exact(rays.rest[j]) +
+                   Exact(across < 0 ? across : 0) + Exact(down < 0 ? down : 0));
+  THIMBLE_NOTE(Range::kFaceAffine,
+               (bits >= cut ? Exact(exact) * Exact(1 << (bits - cut)) : Exact(exact >> (cut - bits))) +
+                   Exact(s_j) * Exact(rays.rest[i]) - Exact(s_i) * Exact(rays.rest[j]) +
+                   Exact(across < 0 ? 0 : across) + Exact(down < 0 ? 0 : down));
   if (least > bound || greatest < -bound) {
     set_all(plane, least > bound ? UINT32_MAX : 0);
     return;

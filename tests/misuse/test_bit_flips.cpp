@@ -1,0 +1,372 @@
+// Every bit of a baked scene and of a shared tree, one at a time, with the checksums as they were and put right:
+// refused, or read, traced and drawn by every renderer inside the bytes and to an end.
+//
+// A run takes every flip through the core, and each fifth through the host's renderers and light; with
+// THIMBLE_FLIPS=all each takes every one.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "misuse/odd_values.h"
+#include "support/baked_damage.h"
+#include "support/run_command.h"
+#include "support/scene_under_test.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/anytime.h"
+#include "thimble/picture/brick_render.h"
+#include "thimble/picture/cutoff.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
+#include "wide/lit/lit_renderer.h"
+#include "wide/renderer.h"
+
+namespace thimble::tests {
+namespace {
+
+constexpr int kFlipLevel = 3;
+// Odd, so that neither half of the flips, repaired or not, is left out.
+constexpr std::size_t kFewLit = 5;
+constexpr std::size_t kFewCommands = 211;
+
+bool all_flips() {
+  const char* const given = std::getenv("THIMBLE_FLIPS");
+  return given != nullptr && std::string(given) == "all";
+}
+
+std::uint32_t word_at(ConstBytes bytes, std::size_t at) {
+  return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
+         static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
+}
+
+// A floor, a pane of glass, a mirror, a lamp, fog; merged blocks; a lamp and a sun; water in a corner.
+struct FlippedWorld {
+  ExactBytes tree_bytes;
+  ExactBytes map_bytes;
+  ExactBytes lighting;
+  ExactBytes scene;
+  ExactBytes shared;
+
+  FlippedWorld() {
+    ExactBytes pool(Octree::octree_bytes(2000));
+    Octree octree;
+    REQUIRE(Octree::make(kFlipLevel, pool.bytes(), &octree) == Status::kOk);
+    REQUIRE(octree.insert_box({{0, 0, 0}, {8, 8, 1}}, 0) == Status::kOk);
+    REQUIRE(octree.insert_box({{4, 4, 2}, {6, 6, 4}}, 1) == Status::kOk);
+    REQUIRE(octree.insert_box({{1, 5, 1}, {3, 7, 4}}, 2) == Status::kOk);
+    REQUIRE(octree.insert_box({{6, 1, 1}, {8, 3, 2}}, 4) == Status::kOk);
+    REQUIRE(octree.insert({1, 6, 5}, 3) == Status::kOk);
+    REQUIRE(octree.insert({5, 6, 6}, 2) == Status::kOk);
+    REQUIRE(octree.coarsen_to(octree.nodes_used() - 3) == Status::kOk);
+    const CompactShape shape = compact_shape(octree);
+    tree_bytes = ExactBytes(compact_bytes(shape));
+    CompactTree tree;
+    REQUIRE(CompactTree::make(octree, tree_bytes.bytes(), &tree) == Status::kOk);
+    REQUIRE(tree.merged());
+
+    ExactBytes map_room(most_brick_map_bytes(kFlipLevel));
+    std::size_t size = 0;
+    REQUIRE(BrickMap::make(tree, map_room.bytes(), nullptr, &size) == Status::kOk);
+    map_bytes = ExactBytes(ConstBytes(map_room.bytes()).subspan(0, size));
+
+    ExactBytes room(shared_tree_bytes(shape));
+    ExactBytes work(shared_work_bytes(shape.nodes));
+    SharedBuild build;
+    REQUIRE(SharedTree::make(tree, room.bytes(), work.bytes(), nullptr, &build) == Status::kOk);
+    shared = ExactBytes(ConstBytes(room.bytes()).subspan(0, build.bytes));
+    bake();
+  }
+
+ private:
+  void bake() {
+    Surface surfaces[5] = {};
+    surfaces[1].kind = SurfaceKind::kGlass;
+    surfaces[1].density_q8 = 20;
+    surfaces[2].kind = SurfaceKind::kMetal;
+    surfaces[2].mirror = 200;
+    surfaces[3].kind = SurfaceKind::kEmit;
+    surfaces[3].emission_q8 = 400;
+    surfaces[4].kind = SurfaceKind::kMedia;
+    surfaces[4].density_q8 = 60;
+    Light lights[2];
+    lights[0].place = Vec3i{-3, -5, 9};
+    lights[1].is_point = true;
+    lights[1].place = Vec3i{4 * 256, 2 * 256, 6 * 256};
+    lights[1].reach = 4;
+    BakedLighting lit;
+    lit.scene.surfaces = Span<const Surface>(surfaces);
+    lit.scene.lights = Span<const Light>(lights);
+    lit.scene.has_shadows = true;
+    lit.scene.has_sky = true;
+    lit.scene.has_water = true;
+    lit.scene.water = still_water({4, 0, 1}, 4, 4, 300);
+    lit.scene.fog.density_q16 = 300;
+    lit.scene.occlusion = {4, 128, 3};
+    lit.scene.bounces = 2;
+    lit.effects = effects_of(lit.scene) | Effect::kShadows | Effect::kMirror | Effect::kGlass |
+                  Effect::kMedia | Effect::kWater | Effect::kSmoothNormals;
+    lighting = ExactBytes(lighting_bytes(lit.scene));
+    REQUIRE(BakedLighting::make(lit, kFlipLevel, lighting.bytes()) == Status::kOk);
+
+    constexpr Rgb8 kPalette[] = {{180, 170, 160}, {200, 240, 230}, {230, 220, 200}, {255, 200, 90}};
+    SceneCamera camera;
+    camera.eye = {Q8::saturate(-3), Q8::saturate(-4), Q8::saturate(7)};
+    camera.target = {Q8::saturate(4), Q8::saturate(4), Q8::saturate(2)};
+    camera.fov_degrees = Q16::saturate(50);
+    constexpr std::uint8_t kName[] = {'f', 'l', 'i', 'p', 's'};
+    BakedParts parts;
+    parts.tree = tree_bytes.bytes();
+    parts.palette = Span<const Rgb8>(kPalette);
+    parts.camera = &camera;
+    parts.brick_map = map_bytes.bytes();
+    parts.lighting = lighting.bytes();
+    parts.name = {kName, sizeof kName};
+    scene = ExactBytes(baked_bytes(parts));
+    REQUIRE(BakedScene::make(parts, scene.bytes(), nullptr) == Status::kOk);
+    REQUIRE(BakedScene::validate(scene.bytes()) == nullptr);
+  }
+};
+
+// Scene, tree, brick map, and that the map belongs to the tree.
+void repair_all_checksums(Bytes bytes) {
+  repair_baked_checksums(bytes);
+  BakedScene scene;
+  if (BakedScene::open(bytes, &scene) != Status::kOk) {
+    return;
+  }
+  const ConstBytes map = scene.section(SectionKind::kBrickMap);
+  constexpr std::size_t kMapHeader = 32;
+  if (map.size >= kMapHeader) {
+    const Bytes own = bytes.subspan(static_cast<std::size_t>(map.data - bytes.data), map.size);
+    std::copy_n(scene.tree().bytes() + 12, 4, own.data + 16);
+    repair_checksum(own.subspan(0, word_at(own, 8)));
+  }
+  repair_baked_checksums(bytes);
+}
+
+// A picture of any renderer, in as many bytes as it has.
+struct SmallPicture {
+  Camera camera;
+  Shading shading;
+  ExactBytes pixels;
+  Band band;
+
+  SmallPicture(const Camera& from, Span<const Rgb8> palette)
+      : camera(from), pixels(band_bytes(PixelFormat::kRgb888, from.width_px(), from.height_px())) {
+    shading.mode = ShadeMode::kColor;
+    shading.palette = palette;
+    band.pixels = pixels.bytes();
+    band.rows = camera.height_px();
+  }
+};
+
+bool is_told(Status status) {
+  return status == Status::kOk || status == Status::kDamaged || status == Status::kBadArgument ||
+         status == Status::kOutOfRange || status == Status::kOutOfMemory || status == Status::kTooFine;
+}
+
+Camera camera_of(const BakedScene& scene, std::int32_t width_px, std::int32_t height_px) {
+  const int level = scene.tree().level();
+  Camera camera;
+  if (scene.has_camera() && set_camera(scene.camera(), width_px, height_px, level, &camera) == Status::kOk) {
+    return camera;
+  }
+  PerspectiveView view;
+  const std::int32_t side = std::int32_t{1} << level;
+  view.eye = {Q8::saturate(-side / 2), Q8::saturate(-side / 2), Q8::saturate(side)};
+  view.forward = {3, 3, -2};
+  view.width_px = width_px;
+  view.height_px = height_px;
+  REQUIRE(camera.set(view, level) == Status::kOk);
+  return camera;
+}
+
+void draw_by_core(const BakedScene& scene) {
+  SmallPicture picture(camera_of(scene, 9, 7), scene.palette());
+  const CompactTree& tree = scene.tree();
+  const auto drawn = [&](Status status) { REQUIRE(is_told(status)); };
+  for (const Width width : {Width::k32, Width::k64}) {
+    drawn(render_band(tree, picture.camera, picture.shading, picture.band, nullptr, {UINT32_MAX, width}));
+  }
+  picture.shading.mode = ShadeMode::kDepth;
+  drawn(render_band_32(tree, picture.camera, picture.shading, picture.band));
+  picture.shading.mode = ShadeMode::kColor;
+
+  ExactBytes aligned(scene.section(SectionKind::kBrickMap));
+  BrickMap map;
+  if (BrickMap::open(aligned.bytes(), &map) == Status::kOk) {
+    drawn(render_band(tree, map, picture.camera, picture.shading, picture.band));
+    drawn(render_band_32(tree, map, picture.camera, picture.shading, picture.band));
+  }
+  ExactBytes table(node_colors_bytes(tree));
+  NodeColors colors;
+  Cutoff cutoff;
+  drawn(NodeColors::make(tree, scene.palette(), {}, table.bytes(), &colors));
+  REQUIRE(cutoff.set(picture.camera, Q16::saturate(2)) == Status::kOk);
+  drawn(render_band_cut(tree, picture.camera, picture.shading, cutoff, colors, picture.band));
+
+  ExactBytes memory(
+      anytime_bytes(picture.camera.width_px(), picture.camera.height_px(), PixelFormat::kRgb888));
+  AnytimeFrame frame;
+  drawn(AnytimeFrame::make(tree, picture.camera, picture.shading, PixelFormat::kRgb888, memory.bytes(),
+                           &frame));
+  for (int turn = 0; turn < 3 && !frame.done(); ++turn) {
+    drawn(frame.refine(tree, 400));
+  }
+
+  if (tree.node_count() < 1000) {
+    ExactBytes work(shared_work_bytes(tree.node_count()));
+    ExactBytes room(std::size_t{1} << 13);
+    SharedTree shared;
+    if (SharedTree::make(tree, room.bytes(), work.bytes(), &shared) == Status::kOk) {
+      drawn(render_band(shared, picture.camera, picture.shading, picture.band));
+    }
+  }
+}
+
+void draw_wide_and_lit(const BakedScene& scene) {
+  constexpr std::size_t kMost = std::size_t{1} << 20;  // a damaged level asks for more
+  SmallPicture picture(camera_of(scene, 9, 7), scene.palette());
+  const CompactTree& tree = scene.tree();
+  const std::size_t list_size = wide::VoxelLists::bytes(tree);
+  if (list_size <= kMost) {
+    ExactBytes memory(list_size);
+    Arena arena(memory.bytes());
+    wide::VoxelLists lists;
+    if (wide::VoxelLists::make(tree, &arena, &lists) == Status::kOk) {
+      ExactBytes work(wide::workspace_bytes(picture.camera.width_px(), picture.camera.height_px()));
+      REQUIRE(
+          is_told(wide::render(lists, picture.camera, picture.shading, picture.band, work.bytes(), nullptr)));
+    }
+  }
+  BakedLighting lighting;
+  if (BakedLighting::open(scene.section(SectionKind::kLighting), tree.level(), &lighting) != Status::kOk) {
+    return;
+  }
+  const LitOptions options{3000, true};
+  REQUIRE(is_told(render_lit_band(lighting.effects, tree, picture.camera, picture.shading, lighting.scene,
+                                  picture.band, nullptr, options)));
+  wide::RayMap map(tree);
+  const std::size_t map_size = wide::RayMap::bytes(tree);
+  ExactBytes memory(std::min(map_size, kMost));
+  Arena arena(memory.bytes());
+  if (map_size <= kMost) {
+    (void)wide::RayMap::make(tree, &arena, &map);
+  }
+  ExactBytes work(wide::least_lit_workspace_bytes(lighting.effects, lighting.scene));
+  REQUIRE(is_told(wide::render_lit(lighting.effects, map, picture.camera, picture.shading, lighting.scene,
+                                   picture.band, work.bytes(), nullptr, nullptr, options)));
+}
+
+// Calls `use(bytes, is_repaired, number)` with each flip of `sound` that this run takes.
+template <class Use>
+void flip_each(ConstBytes sound, std::size_t step, void (*repair)(Bytes), const Use& use) {
+  for (std::size_t number = 0; number < 2 * 8 * sound.size; number += all_flips() ? 1 : step) {
+    const std::size_t bit = number / 2;
+    CAPTURE(bit);
+    ExactBytes flipped(sound);
+    std::uint8_t& byte = flipped.bytes()[bit / 8];
+    byte = static_cast<std::uint8_t>(byte ^ 1U << bit % 8);
+    const bool is_repaired = number % 2 == 1;
+    if (is_repaired) {
+      repair(flipped.bytes());
+    }
+    use(flipped.bytes(), is_repaired, number);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or read and drawn inside it") {
+  const FlippedWorld world;
+  const ConstBytes sound = world.scene.bytes();
+  int drawn = 0;
+  int told = 0;
+  flip_each(sound, 1, repair_all_checksums, [&](ConstBytes bytes, bool is_repaired, std::size_t number) {
+    std::uint32_t place = 0;
+    const char* const fault = BakedScene::validate(bytes, &place);
+    if (!is_repaired) {
+      REQUIRE(fault != nullptr);
+    }
+    told += fault != nullptr ? 1 : 0;
+    const char* const broken = use_damaged(bytes, {3, -5, 7});
+    REQUIRE(std::string(broken == nullptr ? "" : broken) == "");
+    BakedScene scene;
+    if (BakedScene::open(bytes, &scene) != Status::kOk) {
+      return;
+    }
+    (void)BakedLighting::validate(scene.section(SectionKind::kLighting), scene.tree().level());
+    ExactBytes aligned(scene.section(SectionKind::kBrickMap));
+    (void)BrickMap::validate(aligned.bytes());
+    draw_by_core(scene);
+    if (all_flips() || number % kFewLit == 0) {
+      draw_wide_and_lit(scene);
+    }
+    ++drawn;
+  });
+  CHECK(drawn > told / 2);
+}
+
+TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") {
+  const FlippedWorld world;
+  const ConstBytes sound = world.shared.bytes();
+  ExactBytes work(shared_check_bytes(sound.size));
+  const auto repair = [](Bytes bytes) { repair_checksum(bytes); };
+  int drawn = 0;
+  flip_each(sound, 1, repair, [&](ConstBytes bytes, bool is_repaired, std::size_t) {
+    const char* const fault = SharedTree::validate(bytes, work.bytes());
+    if (!is_repaired) {
+      REQUIRE(fault != nullptr);
+    }
+    SharedTree tree;
+    if (SharedTree::open(bytes, &tree) != Status::kOk) {
+      REQUIRE(fault != nullptr);
+      return;
+    }
+    PerspectiveView view;
+    const std::int32_t side = std::int32_t{1} << tree.level();
+    view.eye = {Q8::saturate(-side / 2), Q8::saturate(-side / 2), Q8::saturate(side)};
+    view.forward = {3, 3, -2};
+    view.width_px = 9;
+    view.height_px = 7;
+    Camera camera;
+    REQUIRE(camera.set(view, tree.level()) == Status::kOk);
+    SmallPicture picture(camera, {});
+    for (const Width width : {Width::k32, Width::k64}) {
+      RenderCounts counts;
+      REQUIRE(is_told(
+          render_band(tree, picture.camera, picture.shading, picture.band, &counts, {UINT32_MAX, width})));
+      REQUIRE(counts.node_visits <= counts.rays * most_visits(tree.level()));
+    }
+    (void)tree.bytes_with_materials();
+    ++drawn;
+  });
+  CHECK(drawn > 1000);
+}
+
+TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1") {
+  const FlippedWorld world;
+  const ConstBytes sound = world.scene.bytes();
+  const TemporaryFolder folder;
+  const std::string path = folder.path("flipped.oct");
+  int described = 0;
+  int refused = 0;
+  flip_each(sound, kFewCommands, repair_all_checksums, [&](ConstBytes bytes, bool, std::size_t) {
+    folder.write("flipped.oct", {reinterpret_cast<const char*>(bytes.data), bytes.size});
+    const CommandResult result = run_command({"info", path});
+    CAPTURE(result.describe());
+    REQUIRE((result.status == 0 || result.status == 1));
+    REQUIRE((result.status == 0 || is_one_sentence(result.err)));
+    described += result.status == 0 ? 1 : 0;
+    refused += result.status == 1 ? 1 : 0;
+  });
+  CHECK(described > 0);
+  CHECK(refused > 0);
+}
+
+}  // namespace thimble::tests
