@@ -6,6 +6,7 @@ const path = require('path');
 const zlib = require('zlib');
 const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
+const {crews} = require('./crew_cases.js');
 const {test, is, holds, end} = require('./check.js');
 
 const [, , folder, thimble] = process.argv;
@@ -122,9 +123,27 @@ async function main() {
       holds('a byte in front is noticed', !machine.x.guard_is_whole());
     }
   });
+  // An image gets its RAM and not a byte more, and its flash to read.
+  const misdeeds = [['a', undefined], ['f', 'it wrote to its flash'], ['l', 'it wrote to its flash'],
+    ['p', 'it touched a byte past its RAM'], ['b', 'it wrote in front of its RAM'],
+    ['s', 'its stack overflowed']];
+  for (const board of boards) {
+    for (const [key, fault] of misdeeds) {
+      await test(`misdeed ${key} on ${board.name}`, () => {
+        const machine = new Machine(modules.cases, {board, app: 'misdeeds', scene: new Uint8Array(1001).fill(7)});
+        machine.step();
+        machine.type(key);
+        machine.step();
+        is('fault', machine.fault, fault);
+        is('status', machine.status, fault === undefined ? undefined : 97);
+      });
+    }
+  }
 
   await bakes();
   await mistakes();
+  await crews(modules, (scene, files, index = boardOf('raspi0').index) => new Baker(modules.bake, files).bake(scene, {index}),
+    'room.scene', filesOf('tools/gallery/scenes/room.scene'));
   await end('modules under Node');
 }
 
