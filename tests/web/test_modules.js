@@ -7,6 +7,7 @@ const zlib = require('zlib');
 const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
 const {crews} = require('./crew_cases.js');
+const made = require('./files.js');
 const {test, is, holds, end} = require('./check.js');
 
 const [, , folder, thimble] = process.argv;
@@ -156,10 +157,13 @@ async function bakes() {
   write('tent.ply', 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n' +
     'element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0.25 0\n-0.5 1 3.0625e-1\n3 0 1 2\n');
   fs.writeFileSync(path.join(work, 'tent.obj.gz'), zlib.gzipSync(fs.readFileSync(path.join(work, 'tent.obj'))));
+  const inflating = ['npy', 'npz', 'mts', 'schematic'].map((kind) => `${work}/made.${kind}`);
+  for (const file of inflating) fs.writeFileSync(file, made[file.split('.').pop()](20));
   command('bake', 'spheres', '-o', path.join(work, 'spheres.oct'), '--quiet');
   const cases = [['demo'], ['spheres'], ['points:5000'], [`${scenes}/castle.vox`], [`${scenes}/fox.vox.gz`],
     [`${scenes}/room.scene`], [`${scenes}/house.scene`, `${scenes}/house.vox.gz`], [`${work}/ball.xyz`],
-    [`${work}/tent.obj`], [`${work}/tent.obj.gz`], [`${work}/tent.ply`], [`${work}/spheres.oct`]];
+    [`${work}/tent.obj`], [`${work}/tent.obj.gz`], [`${work}/tent.ply`], [`${work}/spheres.oct`],
+    ...inflating.map((file) => [file])];
   for (const files of cases) {
     for (const name of ['lm3s6965evb', 'raspi0']) {
       for (const more of [{}, {coarsen: true}]) {
@@ -216,6 +220,33 @@ async function mistakes() {
       holds(`the command's "${told.stderr.trim()}" ends with "${said}"`, said !== '' && told.stderr.trim().endsWith(said));
     });
   }
+  // What is deflated inside a file, and damaged there.
+  for (const [kind, wanted] of [['mts', /^the nodes: the deflated data is damaged or truncated$/],
+    ['npz', /^the member 'ball.npy'(: the deflated data is damaged or truncated| has \d+ bytes, not the 8128 of the directory)$/]]) {
+    await test(`a damaged .${kind} is refused in a sentence`, () => {
+      const bytes = made[kind](20);
+      const middle = kind === 'mts' ? bytes.length - 40 : 190;
+      for (const cut of [(b) => b.fill(0xee, middle, kind === 'mts' ? middle + 30 : 310), (b) => (kind === 'mts' ? b.subarray(0, -40) : b.fill(0xee, 180, 330))]) {
+        let said = '';
+        try {
+          new Baker(modules.bake, [{name: `cut.${kind}`, bytes: cut(Buffer.from(bytes))}]).bake(`cut.${kind}`, boardOf('raspi0'));
+        } catch (error) {
+          said = error.message;
+        }
+        holds(`"${said}" says that it is damaged`, wanted.test(said));
+      }
+    });
+  }
+  await test('what is not read is named, and what reads it', () => {
+    let said = '';
+    try {
+      new Baker(modules.bake, [{name: 'a.glb', bytes: Buffer.from('glTF\x02\0\0\0\x0c\0\0\0', 'latin1')}]).bake('a.glb', boardOf('raspi0'));
+    } catch (error) {
+      said = error.message;
+    }
+    holds(`"${said}" names what is read`, /^is a glTF scene, which takes the thimble command; this page reads \.vox, .*\.npy, .*\.kvx$/.test(said));
+    holds('and not what is not', !/gl(b|tf),/.test(said));
+  });
   await test('a model that was not dropped is asked for', () => {
     let said = '';
     try {
@@ -226,6 +257,23 @@ async function mistakes() {
     }
     is('sentence', said, 'is not here: drop it together with the file that names it');
   });
+  for (const board of boards) {
+    await test(`what does not fit the flash of ${board.name} is said as by the command, with the depth that would`, () => {
+      const points = new Baker(modules.bake, []);
+      let said = '';
+      try {
+        points.bake('points:60000', board);
+      } catch (error) {
+        said = error.message;
+      }
+      const told = command('bake', 'points:60000', '--board', board.name, '-o', path.join(work, 'never.oct'), '--quiet');
+      is('fits', said === '', told.status === 0);
+      if (said === '') return;
+      const smaller = points.smaller('points:60000', board, 10);
+      is('the command', told.stderr.trim(), `thimble: points:60000: ${said}; --depth ${smaller.level} fits with ` +
+        `${smaller.bytes.toLocaleString('en')} bytes, and --coarsen makes the finest tree that does`);
+    });
+  }
   await test('a depth that fits is found', () => {
     const board = boardOf('stm32vldiscovery');
     const baker = new Baker(modules.bake, filesOf('tools/gallery/scenes/house.scene', 'tools/gallery/scenes/house.vox.gz'));
