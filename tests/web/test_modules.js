@@ -6,6 +6,8 @@ const path = require('path');
 const zlib = require('zlib');
 const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
+const {Look} = require('../../platform/web/look.js');
+const {Orbit} = require('../../platform/web/orbit.js');
 const {crews} = require('./crew_cases.js');
 const made = require('./files.js');
 const {test, is, holds, end} = require('./check.js');
@@ -143,6 +145,7 @@ async function main() {
 
   await bakes();
   await mistakes();
+  await looks();
   await crews(modules, (scene, files, index = boardOf('raspi0').index) => new Baker(modules.bake, files).bake(scene, {index}),
     'room.scene', filesOf('tools/gallery/scenes/room.scene'));
   await end('modules under Node');
@@ -189,6 +192,37 @@ async function bakes() {
         });
       }
     }
+  }
+}
+
+// What is shown at rest is what the command renders, pixel by pixel where a ray hits; what stands behind is the board's.
+async function looks() {
+  for (const [scene, ...files] of [['castle.vox', 'castle.vox'], ['room.scene', 'room.scene']]) {
+    await test(`${scene} to look around in is lit as by the command`, () => {
+      const [width, height] = [160, 120];
+      const {baked} = new Baker(modules.bake, filesOf(...files.map((file) => `tools/gallery/scenes/${file}`)))
+        .bake(scene, boardOf('raspi0'));
+      const look = new Look(modules.scene, baked, width, height);
+      look.see(new Orbit(look.point(false), look.point(true), 1 << look.x.level()).camera());
+      look.band('lit', 0, height);
+      const mine = Buffer.from(look.rows(0, height));
+      const oct = path.join(work, 'look.oct');
+      const out = path.join(work, 'look.ppm');
+      fs.writeFileSync(oct, baked);
+      const told = command('render', oct, '--size', `${width}x${height}`, '--effects', 'auto', '-o', out, '--quiet');
+      is('status', told.status, 0);
+      const wanted = fs.readFileSync(out).subarray(-3 * width * height);
+      const behind = mine.subarray(0, 3);
+      let hits = 0;
+      let others = 0;
+      for (let i = 0; i < mine.length; i += 3) {
+        if (scene !== 'room.scene' && mine.subarray(i, i + 3).equals(behind)) continue;
+        ++hits;
+        others += mine.subarray(i, i + 3).equals(wanted.subarray(i, i + 3)) ? 0 : 1;
+      }
+      holds(`${hits} pixels show the scene`, hits > 4000);
+      is('pixels that are others', others, 0);
+    });
   }
 }
 

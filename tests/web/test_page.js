@@ -293,6 +293,18 @@ async function drops() {
     for (let i = 0; i < 60 && await canvasCrc() !== wanted; ++i) await pause(50);
     is('CRC of the canvas', await canvasCrc(), wanted);
   });
+  await test('a scene dropped with its model, and baked bytes', async () => {
+    await choose('raspi0');
+    await browser.drop(['house.vox.gz', 'house.scene'].map((name) => path.resolve('tools/gallery/scenes', name)));
+    await began();
+    holds('the scene', /^house\.scene: [\d,]+ voxels in/.test(await text('said')));
+    const oct = path.join(work, 'dropped.oct');
+    spawnSync(thimble, ['bake', 'tools/gallery/scenes/castle.vox', '--board', 'raspi0', '-o', oct, '--quiet']);
+    await browser.drop([oct]);
+    await began();
+    holds('the baked bytes', (await text('said')).startsWith('dropped.oct: 18,235 voxels in 64,588 bytes'));
+    await choose('lm3s6965evb');
+  });
   await test('what does not fit is said, with what would', async () => {
     const file = path.join(work, 'many.xyz');
     fs.writeFileSync(file, Array.from({length: 90000}, (_, i) =>
@@ -415,6 +427,35 @@ async function telephone() {
       });
     }
   }
+  await test('fingers steer a board: a swipe, its buttons, water', async () => {
+    await browser.turnTo(412, 915);
+    await browser.eval(`restart({scene: 'castle', board: 'mps2-an500', look: false})`);
+    await browser.until(`machine !== null && machine.frames > 2`);
+    const {x, y} = await browser.middle('#canvas');
+    await changes('a swipe', async () => {
+      await browser.touch('touchStart', [{x, y, id: 1}]);
+      await browser.touch('touchMove', [{x: x + 40, y, id: 1}]);
+      await pause(300);
+      await browser.touch('touchEnd', []);
+    });
+    await browser.until('heldButtons() === 0');
+    const button = await browser.middle('[data-hold="up"]');
+    await changes('a button', async () => {
+      await browser.touch('touchStart', [{...button, id: 1}]);
+      await pause(300);
+      await browser.touch('touchEnd', []);
+    });
+    await browser.until('heldButtons() === 0');
+    await browser.eval(`restart({scene: 'water'})`);
+    await browser.until(`machine?.app === 'water' && machine.frames > 2`);
+    const sea = await browser.middle('#canvas');
+    await changes('a finger in the water', async () => {
+      await browser.touch('touchStart', [{x: sea.x, y: sea.y + 20, id: 1}]);
+      await browser.touch('touchEnd', []);
+    });
+    await browser.eval(`restart({scene: 'castle', board: 'raspi0', look: true})`);
+    await finish();
+  });
   await test('turned over with a finger on it', async () => {
     await browser.turnTo(360, 640);
     const {x, y} = await browser.middle('#canvas');
