@@ -278,7 +278,7 @@ function takeRows(first, end) {
   picture.changed = [Math.min(picture.changed[0], first), Math.max(picture.changed[1], end)];
 }
 function showViewer() {
-  const {look, board, picture, phase, row, crew} = viewer;
+  const {look, board, picture, phase, row} = viewer;
   const [first, end] = picture.changed;
   if (end > first) {
     put(picture, first, end);
@@ -287,8 +287,7 @@ function showViewer() {
     share('flash-meter', 'flash', baked.bytes + baked.code, board.flash);
   }
   if (phase === 'lit' || phase === 'fine') {
-    const threads = crew === null ? '' : `, ${crew.workers.length} workers`;
-    $('frame').textContent = `${phase === 'lit' ? 'lit' : 'four samples'} ${Math.floor(100 * row / board.height)} %${threads}`;
+    $('frame').textContent = `${phase === 'lit' ? 'lit' : '4 samples'} ${Math.floor(100 * row / board.height)} %`;
   }
   if (phase === 'finished') $('frame').textContent = 'finished';
   document.documentElement.dataset.phase = phase;
