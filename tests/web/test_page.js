@@ -2,6 +2,7 @@
 'use strict';
 const {spawnSync} = require('child_process');
 const fs = require('fs');
+const http = require('http');
 const path = require('path');
 const zlib = require('zlib');
 const {Chromium} = require('./chromium.js');
@@ -318,6 +319,29 @@ async function drops() {
     await began();
     holds('the smaller one is shown', /many\.xyz: [\d,]+ voxels in/.test(await text('said')));
   });
+  await test('the page lives on while a large file is baked, and leaves it at once', async () => {
+    const file = path.join(work, 'large.xyz');
+    fs.writeFileSync(file, Array.from({length: 600000}, (_, i) =>
+      `${(i * 7919) % 1009} ${(i * 104729) % 1013} ${(i * 1299709) % 1019}`).join('\n'));
+    await browser.eval(`window.longest = 0; window.ticks = 0; { let last = performance.now(); const tick_ = (now) => {
+      longest = Math.max(longest, now - last); last = now; if (++ticks < 1e6 && window.longest !== null) requestAnimationFrame(tick_); };
+      requestAnimationFrame(tick_); }`);
+    await browser.drop([file]);
+    await browser.until(`farBaker !== null && state.dropped?.title === 'large.xyz'`);
+    await browser.eval('longest = 0; ticks = 0');
+    await browser.until('ticks > 20 || farBaker === null');
+    const {longest, baking} = await browser.eval('({longest, baking: farBaker !== null})');
+    holds('it still bakes', baking);
+    holds(`the longest frame took ${longest.toFixed(0)} ms`, longest < 1000);
+    await browser.click('#scene-castle');
+    await browser.until(`document.getElementById('said').textContent.startsWith('Castle: ')`, 10);
+    is('what bakes', await browser.eval('farBaker?.worker === undefined || state.dropped === null'), true);
+    await pause(500);
+    holds('the castle stays', (await text('said')).startsWith('Castle: '));
+    await browser.eval('window.longest = null');
+    shown = await browser.eval('generation');
+    fs.rmSync(file);
+  });
   await test('what cannot be read is said in a sentence, and the page goes on', async () => {
     const file = path.join(work, 'cut.vox');
     fs.writeFileSync(file, fs.readFileSync('tools/gallery/scenes/castle.vox').subarray(0, 3000));
@@ -489,6 +513,35 @@ async function turnsByFingers() {
   is('the page does not scroll or grow under it', await browser.eval('[scrollY, visualViewport.scale].join()'), `${page},1`);
 }
 
+// From a server, with the headers that shared memory needs and without: the page needs neither.
+async function served() {
+  const pictures = [];
+  for (const headers of [{}, {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'}]) {
+    const isolated = Object.keys(headers).length !== 0;
+    await test(`from a server, ${isolated ? 'isolated' : 'plainly'}: workers draw the same picture`, async () => {
+      const asked = [];
+      const server = http.createServer((request, response) => {
+        asked.push(request.url);
+        response.writeHead(200, {'Content-Type': 'text/html', ...headers});
+        response.end(fs.readFileSync(page));
+      });
+      await new Promise((done) => server.listen(0, '127.0.0.1', done));
+      browser = await Chromium.open(`http://127.0.0.1:${server.address().port}/#scene=castle&look=1`);
+      await browser.until(`document.documentElement.dataset.ready === '1'`, 60);
+      is('isolated', await browser.eval('crossOriginIsolated'), isolated);
+      await browser.eval('crewSize = 2; restart({})');
+      await finish();
+      is('workers', await browser.eval('viewer.crew?.workers.length'), 2);
+      pictures.push(await canvasCrc());
+      is('the picture', pictures.at(-1), pictures[0]);
+      is('what was asked of the server', asked.join(), '/');
+      await browser.close();
+      server.close();
+      server.closeAllConnections?.();
+    });
+  }
+}
+
 async function calm() {
   browser = await Chromium.open(url, {media: [{name: 'prefers-reduced-motion', value: 'reduce'}]});
   shown = 0;
@@ -512,7 +565,7 @@ async function calm() {
   await browser.close();
 }
 
-(only === undefined ? desktop().then(telephone).then(calm) : {telephone, calm}[only]()).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? desktop().then(telephone).then(served).then(calm) : {telephone, served, calm}[only]()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
   browser?.process.kill('SIGKILL');
   process.exit(1);
