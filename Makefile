@@ -46,10 +46,10 @@ install: all ## Install command, library, scenes, manual, completions (PREFIX=/u
 	@echo "installed in $(DESTDIR)$(PREFIX)"
 deb: all ## Make a Debian package of what `make install` installs (build/release/thimble_*.deb)
 	@sh tools/package.sh build/release
-packages: all ## Make the packages of every ecosystem: Arduino, PlatformIO, ESP-IDF, ... (build/packages)
+packages: all ## Make the packages of every ecosystem (build/packages); RELEASE=1 refuses to name no place
 	@.ci/deps packages
 	@mkdir -p build/packages && rm -f build/packages/*
-	@$(or $(wildcard /usr/bin/python3),python3) -B tools/packages/make.py
+	@$(or $(wildcard /usr/bin/python3),python3) -B tools/packages/make.py $(if $(RELEASE),--release)
 	@sh tools/package.sh build/release build/packages
 test-packages: ## Unpack every package in an empty folder and build it by its ecosystem's rules
 	@.ci/deps boards

@@ -20,6 +20,7 @@ struct Suspension {
   uint8_t bytes[8192];
 };
 Suspension suspension;
+uint64_t seal;  // of the scene's bytes
 
 constexpr size_t kPageBytes = 65536;
 constexpr size_t kGuardBytes = 64;
@@ -34,6 +35,22 @@ void paint(uint8_t* from, uint8_t* to) {
   for (volatile uint8_t* byte = from; byte < to; ++byte) {
     *byte = port::kStackPaint;
   }
+}
+
+// Of whole words, since a board's scene is looked at after each frame; a change of one byte always changes it.
+uint64_t sum_of(ConstBytes bytes) {
+  using Word [[gnu::may_alias]] = uint64_t;
+  constexpr uint64_t kOdd = 0x9E3779B97F4A7C15U;
+  uint64_t sum = bytes.size;
+  const uint8_t* at = bytes.data;
+  for (; bytes.end() - at >= static_cast<ptrdiff_t>(sizeof(Word)); at += sizeof(Word)) {
+    sum = (sum ^ *reinterpret_cast<const Word*>(at)) * kOdd;
+    sum ^= sum >> 32;
+  }
+  for (; at < bytes.end(); ++at) {
+    sum = (sum ^ *at) * kOdd;
+  }
+  return sum;
 }
 
 void field(const char* name, uint32_t value) {
@@ -160,6 +177,14 @@ extern "C" {
 }
 [[clang::export_name("stack_bytes")]] uint32_t thimble_stack_used() {
   return thimble::web::used_stack();
+}
+// To be called when the scene lies in its place: WebAssembly has no memory that is only read.
+[[clang::export_name("seal_flash")]] void thimble_seal_flash() {
+  thimble::web::seal = thimble::web::sum_of(layout.scene);
+}
+// Whether the scene is as it was when it was sealed.
+[[clang::export_name("flash_is_whole")]] bool thimble_flash_is_whole() {
+  return thimble::web::seal == thimble::web::sum_of(layout.scene);
 }
 // Whether nothing was written in front of the arena.
 [[clang::export_name("guard_is_whole")]] bool thimble_guard_is_whole() {

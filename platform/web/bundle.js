@@ -7,7 +7,7 @@ const zlib = require('zlib');
 const [, , modules, root, out] = process.argv;
 const own = (name) => fs.readFileSync(path.join(__dirname, name), 'utf8');
 // The page's sources are scripts one after the other; each is a module of its own under Node.
-const script = ['machine.js', 'baker.js', 'orbit.js', 'page.js'].map((name) => own(name)
+const script = ['machine.js', 'baker.js', 'look.js', 'crew.js', 'orbit.js', 'page.js'].map((name) => own(name)
   .replace(/^'use strict';\n/m, '')
   .replace(/\nif \(typeof module !== 'undefined'\) \{[^]*?\n\}\n/, '\n')
   .replace(/^\s*\/\/.*\n/gm, '')).join('\n');
@@ -28,9 +28,11 @@ const page = own('page.html')
   .replace('<!--MODULES-->', () => packed.join('\n'))
   .replace('/*SCRIPT*/', () => `'use strict';\n${script}`);
 fs.writeFileSync(out, page);
-const most = 600000;
-console.log(`${out}: ${page.length} of at most ${most} bytes`);
-if (page.length > most) {
-  console.error(`web: ${out} has ${page.length} bytes, ${page.length - most} too many`);
-  process.exit(1);
-}
+const over = (name, size, most) => {
+  console.log(`${name}: ${size} of at most ${most} bytes`);
+  if (size <= most) return;
+  console.error(`web: ${name} has ${size} bytes, ${size - most} too many`);
+  process.exitCode = 1;
+};
+for (const name of ['scene', 'plane']) over(`${name}.wasm`, fs.statSync(path.join(modules, `${name}.wasm`)).size, 256 * 1024);
+over(out, Buffer.byteLength(page), 600000);

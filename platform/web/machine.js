@@ -6,6 +6,7 @@
 // The order of PixelFormat (include/thimble/picture/pixel.h).
 const FORMATS = ['mono1', 'gray4', 'gray8', 'rgb565', 'rgb888'];
 const BITS_PER_PIXEL = [1, 4, 8, 16, 24];
+const STACK_PAINT = 0xA5;  // port.h
 const BUTTONS = {up: 1, down: 2, left: 4, right: 8, select: 16};
 
 function rowBytes(board) {
@@ -89,6 +90,7 @@ class Machine {
     const at = this.x.set_up(board.index, 64, scene.length, connected);
     if (at === 0) throw new Fault(`there is no memory for ${board.name} here`);
     new Uint8Array(this.x.memory.buffer).set(scene, at);
+    this.x.seal_flash();
   }
 
   imports() {
@@ -142,11 +144,12 @@ class Machine {
         this.status = status;
         if (status === 0) this.display.endFrame();
       }
+      if (!this.x.flash_is_whole()) throw new Fault('it wrote to its flash');
       if (!this.x.guard_is_whole()) throw new Fault('it wrote in front of its RAM');
     } catch (error) {
       this.state = 'ended';
       this.status = 97;
-      this.fault = error instanceof Fault ? error.message : faultOf(error);
+      this.fault = error instanceof Fault ? error.message : this.hasUsedAllStack() ? 'its stack overflowed' : faultOf(error);
     }
     this.busy += performance.now() - this.began;
     if (this.state !== 'band') {
@@ -154,6 +157,11 @@ class Machine {
       this.busy = 0;
     }
     return this.state;
+  }
+
+  // The stack grows down to address 0; its last bytes are paint until then.
+  hasUsedAllStack() {
+    return new Uint8Array(this.x.memory.buffer, 8, 256).some((byte) => byte !== STACK_PAINT);
   }
 
   type(text) {

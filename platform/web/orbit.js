@@ -1,5 +1,9 @@
-// A camera that turns around a point: yaw, pitch, distance, in voxels. z is up, as everywhere.
+// A camera that turns around a point: yaw, pitch, distance, in voxels. z is up, as everywhere. Its numbers have as many
+// digits as a link writes, so that a link gives the same picture.
 'use strict';
+
+const DIGITS = 5;
+const written = (x) => Number(x.toFixed(DIGITS));
 
 class Orbit {
   // From the scene's own camera: eye and target in 1/256 voxel.
@@ -21,11 +25,11 @@ class Orbit {
   turn(right, up) {
     this.yaw -= right;
     this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + up));
-    this.isOwn = false;
+    this.changed();
   }
   approach(factor) {
     this.distance = Math.max(0.5, Math.min(3 * this.side, this.distance * factor));
-    this.isOwn = false;
+    this.changed();
   }
   // Along the picture's axes, in parts of the distance.
   move(right, up) {
@@ -36,6 +40,11 @@ class Orbit {
       const moved = this.target[i] + this.distance * (right * across[i] + up * above[i]);
       this.target[i] = Math.max(-this.side, Math.min(2 * this.side, moved));
     }
+    this.changed();
+  }
+  changed() {
+    for (const name of ['yaw', 'pitch', 'distance']) this[name] = written(this[name]);
+    this.target = this.target.map(written);
     this.isOwn = false;
   }
   // Whole numbers of 1/256 voxel: eye, then target, and how wide a parallel view is, in 1/256 of its own.
@@ -47,15 +56,18 @@ class Orbit {
       zoom: Math.round(256 * this.distance / this.firstDistance), own: this.isOwn};
   }
   text() {
-    return [this.yaw, this.pitch, this.distance, ...this.target].map((x) => +x.toFixed(4)).join(',');
+    return [this.yaw, this.pitch, this.distance, ...this.target].join(',');
   }
+  // False, and the view as it was, for a text that is none of text()'s.
   take(text) {
-    const numbers = text.split(',').map(Number);
-    if (numbers.length !== 6 || !numbers.every(Number.isFinite)) return;
+    const words = text.split(',');
+    const numbers = words.map(Number);
+    if (words.length !== 6 || !words.every((word) => /^-?\d{1,7}(\.\d+)?$/.test(word))) return false;
     [this.yaw, this.pitch] = numbers;
     this.distance = Math.max(0.5, Math.min(3 * this.side, numbers[2]));
     this.target = numbers.slice(3).map((x) => Math.max(-this.side, Math.min(2 * this.side, x)));
     this.turn(0, 0);
+    return true;
   }
 }
 

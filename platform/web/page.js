@@ -20,11 +20,13 @@ const VIEW_BOARD = 'raspi0';  // its display and flash are those of "look around
 const FRAME_MS = 1000 / 30;
 const SLICE_MS = 12;
 const $ = (id) => document.getElementById(id);
+const LIES = matchMedia('(orientation: landscape) and (max-height: 34rem)');  // page.css
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 const state = {
   scene: 'valley', look: false, board: 'lm3s6965evb', paused: calm, depth: 0, coarsen: false,
   dropped: null,  // {title, scene, files: [{name, bytes}]}
+  wanted: null,  // what a link asks for whose file stayed elsewhere
 };
 let machine = null;  // of the application that runs
 let viewer = null;
@@ -33,14 +35,27 @@ let baked = null;
 let boards = [];
 let generation = 0;  // of what is shown: what belongs to an older one ends
 let nextFrame = 0;
+let farBaker = null;  // while it bakes
+let crewSize = Math.min(8, navigator.hardwareConcurrency || 1);  // workers, where more than one
 const modules = {};
 const cache = new Map();
 
 // ---- what lies in the page
 
-async function inflate(bytes) {
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+// Null where it would have more than `most` bytes.
+async function inflate(bytes, most = Infinity) {
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip')).getReader();
+  const parts = [];
+  let size = 0;
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    parts.push(part.value);
+    size += part.value.length;
+    if (size > most) {
+      reader.cancel();
+      return null;
+    }
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 function unpack(id) {
   const text = atob($(id).textContent);
@@ -83,6 +98,7 @@ const current = () => state.dropped ?? SCENES[state.scene];
 const shownBoard = () => boards.find((board) => board.name === (state.look ? VIEW_BOARD : state.board));
 
 async function bakeCurrent(board) {
+  const own = generation;
   const entry = current();
   if (entry.scene === null) return null;
   const key = [entry.scene, board.name, state.depth, state.coarsen].join('|');
@@ -90,20 +106,25 @@ async function bakeCurrent(board) {
   await busy(`Baking for ${board.name} ...`);
   const files = state.dropped?.files ??
     await Promise.all(entry.files.map(async (name) => ({name, bytes: await unpack(`file-${name}`)})));
-  const baker = new Baker(await moduleOf('bake'), files);
+  const code = await moduleOf('bake');
+  if (own !== generation) return null;
+  const worker = startWorker();
+  const baker = worker === null ? new Baker(code, files) : farBaker = new FarBaker(worker, code, files);
   try {
-    const made = baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen});
+    const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen});
     if (state.dropped === null) cache.set(key, made);
     return made;
   } catch (error) {
     if (/bytes too many$/.test(error.message) && !state.coarsen) await offerSmaller(baker, entry, board, error);
     throw error;
+  } finally {
+    baker.end?.();
   }
 }
 async function offerSmaller(baker, entry, board, error) {
   const depth = Number(/at depth (\d+)/.exec(error.message)?.[1] ?? 0);
   await busy('Trying smaller depths ...');
-  const smaller = baker.smaller(entry.scene, board, depth);
+  const smaller = await baker.smaller(entry.scene, board, depth);
   const offers = [['Merge blocks until it fits', () => restart({coarsen: true})]];
   if (smaller !== null) {
     error.message += `. Depth ${smaller.level} fits with ${number(smaller.bytes)} bytes.`;
@@ -119,7 +140,7 @@ function restart(changes) {
 
 async function start() {
   const own = ++generation;
-  machine = viewer = null;
+  closeAll();
   offer([]);
   const board = shownBoard();
   showChoices(board);
@@ -128,12 +149,13 @@ async function start() {
     if (own !== generation) return;
     baked = made;
     if (state.look) {
-      await openViewer(made, board);
+      await openViewer(own, made, board);
     } else {
-      await openMachine(made, board);
+      await openMachine(own, made, board);
     }
     if (own !== generation) return;
-    say(sentenceOf(made, board));
+    say(state.wanted === null ? sentenceOf(made, board) :
+      `This link shows ${state.wanted.file}, which stayed where it was made: drop that file here.`);
   } catch (error) {
     if (own !== generation) return;
     say(`${current().title}: ${error.message}`, true);
@@ -147,15 +169,19 @@ async function start() {
 
 function sentenceOf(made, board) {
   if (made === null) return `${board.title}.`;
+  const others = state.dropped === null || /\.scene(\.gz)?$/i.test(state.dropped.title) ? 0 :
+    state.dropped.files.filter((file) => !/\.(mtl|png|jpe?g|bin)$/i.test(file.name)).length - 1;
   let text = `${current().title}: ${number(made.voxels)} voxels in ${number(made.bytes)} bytes, depth ${made.level}`;
   if (made.added !== 0) text += `; ${number(made.added)} voxels of solid volume added by merging`;
-  return `${text}. ${board.title}.`;
+  return `${text}. ${board.title}.${others > 0 ? ` Of ${others + 1} files this one is shown; drop one at a time.` : ''}`;
 }
 
-async function openMachine(made, board) {
+async function openMachine(own, made, board) {
   const entry = current();
   const app = made?.water && made.kind !== 'generator water' ? 'water' : entry.app ?? 'demo';
-  machine = new Machine(await moduleOf(MODULE_OF[app]), {
+  const code = await moduleOf(MODULE_OF[app]);
+  if (own !== generation) return;
+  machine = new Machine(code, {
     board, app, scene: made?.baked, connected: true, slice_ms: SLICE_MS,
   });
   nextFrame = 0;
@@ -167,83 +193,110 @@ async function openMachine(made, board) {
   present(true);
 }
 
-async function openViewer(made, board) {
-  const x = new WebAssembly.Instance(await moduleOf('scene'), {env: {
-    flush() {}, running: () => 0, buttons: () => 0, read: () => -1, write() {}, microseconds: () => 0,
-  }}).exports;
-  const at = x.room(made.baked.length, board.width, board.height);
-  if (at === 0) throw new Error('there is no memory for it here');
-  new Uint8Array(x.memory.buffer).set(made.baked, at);
-  const wrong = x.open();
-  if (wrong !== 0) {
-    const memory = new Uint8Array(x.memory.buffer);
-    throw new Error(new TextDecoder().decode(memory.slice(wrong, memory.indexOf(0, wrong))));
-  }
-  const point = (ofTarget) => [0, 1, 2].map((axis) => x.own_camera(ofTarget, axis));
-  const view = orbit?.scene === current().scene ? orbit.text() : state.view;
-  orbit = new Orbit(point(false), point(true), 1 << x.level());
-  orbit.scene = current().scene;
+async function openViewer(own, made, board) {
+  const code = await moduleOf('scene');
+  if (own !== generation) return;
+  const look = new Look(code, made.baked, board.width, board.height);
+  const side = 1 << look.x.level();
+  const view = orbit?.of === current() && orbit.side === side ? !orbit.isOwn && orbit.text() : state.view;
+  orbit = new Orbit(look.point(false), look.point(true), side);
+  orbit.of = current();
   if (view) orbit.take(view);
   state.view = null;
   const picture = new Display(board);
-  viewer = {x, board, picture, step: x.has_map() ? 1 : 4, phase: 'moved', row: 0, times: []};
+  viewer = {look, board, picture, step: look.x.has_map() ? 1 : 4, phase: 'moved', row: 0, crew: null};
+  hireCrew(viewer, {module: code, scene: made.baked, width: board.width, height: board.height});
   prepareCanvas(board);
   showKeys('look');
   $('uart').textContent = '';
+}
+// Workers for what is drawn at rest; where there is one core, or no worker, the page draws it.
+function hireCrew(own, scene) {
+  const workers = Array.from({length: crewSize > 1 ? crewSize : 0}, startWorker);
+  if (workers.length === 0 || workers.includes(null)) return;
+  own.crew = new Crew(workers, scene, {
+    onBand: (first, bytes) => {
+      own.picture.bytes.set(bytes, first * own.picture.stride);
+      const [from, end] = own.picture.changed;
+      own.picture.changed = [Math.min(from, first), Math.max(end, first + bytes.length / own.picture.stride)];
+      own.row += bytes.length / own.picture.stride;
+    },
+    onEnd: () => nextPicture(own),
+    onFault: () => {
+      own.crew = null;
+      if (own.phase !== 'finished') own.phase = 'moved';
+    },
+  });
+}
+function closeAll() {
+  viewer?.crew?.end();
+  farBaker?.end();
+  machine = viewer = farBaker = null;
 }
 
 // ---- a scene to look around in: fast while it moves, then lit, then four samples a pixel
 
 function lookOn(now) {
-  const {x, board} = viewer;
+  const {look, board, crew} = viewer;
   const began = performance.now();
   if (viewer.phase === 'moved') {
-    const {eye, target, zoom, own} = orbit.camera();
-    if (!x.look(...eye, ...target, zoom, own)) return;
-    x.draw(0, board.height, viewer.step, false);
+    const camera = orbit.camera();
+    if (!look.see(camera)) return;
+    viewer.camera = camera;
+    look.fast(viewer.step);
     viewer.time = performance.now() - began;
     // Every few pixels where that is what a frame has time for.
     if (viewer.time > 40 && viewer.step < 8) viewer.step *= 2;
     if (viewer.time < 8 && viewer.step > 1) viewer.step /= 2;
     viewer.phase = 'waits';
     viewer.since = now;
-    showViewer(0, board.height);
+    takeRows(0, board.height);
     $('frame').textContent = `${viewer.time.toFixed(1)} ms${viewer.step > 1 ? `, 1:${viewer.step}` : ''}`;
   } else if (viewer.phase === 'waits' && now - viewer.since > 120) {
-    viewer.phase = 'lit';
-    viewer.row = 0;
-  } else if (viewer.phase === 'lit' || viewer.phase === 'fine') {
+    nextPicture(viewer);
+  } else if (crew === null && (viewer.phase === 'lit' || viewer.phase === 'fine')) {
     const first = viewer.row;
     while (viewer.row < board.height && performance.now() - began < SLICE_MS) {
-      if (viewer.phase === 'lit') {
-        const rows = Math.min(4, board.height - viewer.row);
-        x.draw(viewer.row, rows, 1, true);
-        viewer.row += rows;
-      } else {
-        x.draw_fine(viewer.row++);
-      }
+      const rows = Math.min(BAND_ROWS[viewer.phase], board.height - viewer.row);
+      look.band(viewer.phase, viewer.row, rows);
+      viewer.row += rows;
     }
-    showViewer(first, viewer.row);
-    const percent = Math.floor(100 * viewer.row / board.height);
-    $('frame').textContent = `${viewer.phase === 'lit' ? 'lit' : 'four samples'} ${percent} %`;
-    if (viewer.row === board.height) {
-      viewer.phase = viewer.phase === 'lit' ? 'fine' : 'finished';
-      viewer.row = 0;
-    }
+    takeRows(first, viewer.row);
+    if (viewer.row === board.height) nextPicture(viewer);
   }
-  if (viewer.phase === 'finished') $('frame').textContent = 'finished';
-  document.documentElement.dataset.phase = viewer.phase;
+  showViewer();
 }
-function showViewer(first, end) {
-  const {x, board, picture} = viewer;
-  picture.bytes.set(new Uint8Array(x.memory.buffer, x.picture(), picture.bytes.length));
-  put(picture, first, end);
-  $('ram').textContent = `${number(x.memory.buffer.byteLength)} bytes`;
-  share('flash-meter', 'flash', baked.bytes + baked.code, board.flash);
+function nextPicture(own) {
+  own.phase = {waits: 'lit', lit: 'fine', fine: 'finished'}[own.phase];
+  own.row = 0;
+  if (own.phase !== 'finished') own.crew?.draw(own.camera, own.phase);
+}
+// From the instance that draws here.
+function takeRows(first, end) {
+  const {look, picture} = viewer;
+  picture.bytes.set(look.rows(first, end), first * picture.stride);
+  picture.changed = [Math.min(picture.changed[0], first), Math.max(picture.changed[1], end)];
+}
+function showViewer() {
+  const {look, board, picture, phase, row} = viewer;
+  const [first, end] = picture.changed;
+  if (end > first) {
+    put(picture, first, end);
+    picture.changed = [board.height, 0];
+    $('ram').textContent = `${number(look.x.memory.buffer.byteLength)} bytes`;
+    share('flash-meter', 'flash', baked.bytes + baked.code, board.flash);
+  }
+  if (phase === 'lit' || phase === 'fine') {
+    $('frame').textContent = `${phase === 'lit' ? 'lit' : '4 samples'} ${Math.floor(100 * row / board.height)} %`;
+  }
+  if (phase === 'finished') $('frame').textContent = 'finished';
+  document.documentElement.dataset.phase = phase;
 }
 function moved(change) {
   change();
-  if (viewer !== null) viewer.phase = 'moved';
+  if (viewer === null) return;
+  viewer.phase = 'moved';
+  viewer.crew?.stop();  // what its workers are at is thrown away
 }
 
 // ---- the canvas
@@ -265,7 +318,8 @@ function fit() {
   const canvas = $('canvas');
   const style = getComputedStyle($('screen'));
   const room = $('screen').clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-  const high = Math.max(240, innerHeight * 0.72);
+  const high = LIES.matches ? Math.max(200, innerHeight - canvas.parentElement.getBoundingClientRect().top - scrollY -
+    parseFloat(style.paddingTop) - parseFloat(style.paddingBottom) - 10) : Math.max(240, innerHeight * 0.72);
   let scale = Math.min(room / canvas.width, high / canvas.height);
   if (scale >= 1) scale = Math.floor(scale * devicePixelRatio) / devicePixelRatio;
   canvas.style.width = `${canvas.width * scale}px`;
@@ -473,23 +527,46 @@ canvas.addEventListener('wheel', (event) => {
 
 // ---- files
 
+const MOST_BYTES = 256 * 2 ** 20;  // of a file, inflated
+let takes = 0;  // what was dropped since wins
+
+// The bytes of a file, inflated; an Error with a sentence where they cannot be had.
+async function bytesOf(file) {
+  if (file.size > MOST_BYTES) throw new Error(`has ${number(file.size)} bytes; this page takes ${number(MOST_BYTES)}`);
+  const bytes = await file.arrayBuffer().then((buffer) => new Uint8Array(buffer), () => {
+    throw new Error('cannot be read here: it is a folder, or it has changed or gone; drop files');
+  });
+  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes;
+  const inflated = await inflate(bytes, MOST_BYTES).catch(() => {
+    throw new Error('its gzip data is damaged or truncated');
+  });
+  if (inflated === null) throw new Error(`inflates to more than ${number(MOST_BYTES)} bytes, which this page does not take`);
+  return inflated;
+}
 async function take(list) {
+  const own = ++takes;
   const files = [];
-  for (const file of list) {
-    let bytes = new Uint8Array(await file.arrayBuffer());
-    if (bytes[0] === 0x1f && bytes[1] === 0x8b) {
-      try {
-        bytes = await inflate(bytes);
-      } catch {
-        say(`${file.name}: its gzip data is damaged or truncated`, true);
-        return;
-      }
-    }
-    files.push({name: file.name, bytes});
+  if (list.length === 0) {
+    say('No file was dropped: drop one from a folder of yours, or choose Open a file.', true);
+    return;
   }
-  if (files.length === 0) return;
-  const main = files.find((file) => /\.scene(\.gz)?$/i.test(file.name)) ?? files[0];
-  await restart({dropped: {title: main.name, scene: main.name, files}, depth: 0, coarsen: false});
+  for (const file of list) {
+    try {
+      files.push({name: file.name, bytes: await bytesOf(file)});
+    } catch (error) {
+      if (own === takes) say(`${file.name}: ${error.message}`, true);
+      return;
+    }
+    if (own !== takes) return;
+  }
+  // A scene comes with its models, a mesh with its materials.
+  const main = files.find((file) => /\.scene(\.gz)?$/i.test(file.name)) ??
+    files.find((file) => !/\.(mtl|png|jpe?g|bin)$/i.test(file.name)) ?? files[0];
+  // `./`: a file, whatever generator has that name.
+  Object.assign(state, {dropped: {title: main.name, scene: `./${main.name}`, files}, depth: 0, coarsen: false});
+  if (state.wanted?.file === main.name) grant(state.wanted);
+  state.wanted = null;
+  await start();
 }
 addEventListener('dragover', (event) => {
   event.preventDefault();
@@ -501,10 +578,14 @@ addEventListener('dragleave', (event) => {
 addEventListener('drop', (event) => {
   event.preventDefault();
   document.body.classList.remove('dropping');
-  take(event.dataTransfer.files);
+  take([...event.dataTransfer.files]);
 });
 $('open').onclick = () => $('file').click();
-$('file').onchange = () => take($('file').files).then(() => { $('file').value = ''; });
+$('file').onchange = () => {
+  const files = [...$('file').files];
+  $('file').value = '';
+  if (files.length !== 0) take(files);
+};
 
 // ---- the page's own buttons
 
@@ -519,13 +600,12 @@ $('save').onclick = () => canvas.toBlob((blob) => {
   saveAs(`thimble-${current().title.replace(/[^\w.-]+/g, '-').toLowerCase()}.png`, blob);
 });
 $('link').onclick = async () => {
-  const view = new URLSearchParams({scene: state.scene, board: state.board});
-  if (state.look) view.set('look', orbit === null || orbit.isOwn ? '1' : orbit.text());
-  location.hash = view;
+  // Not by location.hash: whoever presses the button sees this view already.
+  history.replaceState(null, '', `#${fragment()}`);
   try {
     await navigator.clipboard.writeText(location.href);
     say(state.dropped === null ? 'The link is on the clipboard.' :
-      'The link is on the clipboard; it names no dropped file, which stays here.');
+      `The link is on the clipboard. ${state.dropped.title} stays here: whoever opens the link drops it there.`);
   } catch {
     say('The link stands in the address bar.');
   }
@@ -564,7 +644,7 @@ function showChoices(board) {
   if (focused) $(focused)?.focus({preventScroll: true});
   $('board').value = state.board;
   $('board').disabled = state.look;
-  $('pause').disabled = state.look;
+  $('pause').disabled = document.querySelector('[data-hold="select"]').disabled = state.look;
   showPause();
   fit();
 }
@@ -580,13 +660,35 @@ function showKeys(app) {
 }
 addEventListener('resize', fit);
 
+// What a link holds: what is shown, and from where.
+function fragment() {
+  const view = new URLSearchParams(state.dropped === null ? {scene: state.scene} : {file: state.dropped.title});
+  view.set('board', state.board);
+  if (state.depth !== 0) view.set('depth', state.depth);
+  if (state.coarsen) view.set('merge', '1');
+  if (state.look) view.set('look', orbit === null || orbit.isOwn ? '1' : orbit.text());
+  return view;
+}
+// Whatever of it means something here.
 function readFragment() {
   const view = new URLSearchParams(location.hash.slice(1));
-  if (view.get('scene') in SCENES) state.scene = view.get('scene');
+  if (Object.hasOwn(SCENES, view.get('scene') ?? '')) state.scene = view.get('scene');
   if (boards.some((board) => board.name === view.get('board'))) state.board = view.get('board');
-  state.look = view.has('look') && current().scene !== null;
-  state.view = view.get('look')?.includes(',') ? view.get('look') : null;
+  const wishes = {look: null, depth: 0, coarsen: view.get('merge') === '1'};
+  if (/^([1-9]|1[0-2])$/.test(view.get('depth') ?? '')) wishes.depth = Number(view.get('depth'));
+  wishes.look = view.get('look');
+  state.wanted = view.has('file') ? {...wishes, file: view.get('file').slice(0, 100)} : null;
+  Object.assign(state, {dropped: null, depth: 0, coarsen: false, look: false, view: null});
+  if (state.wanted === null) grant(wishes);
 }
+function grant({look, depth, coarsen}) {
+  Object.assign(state, {depth, coarsen, look: look !== null && current().scene !== null, view: look});
+}
+addEventListener('hashchange', () => {
+  readFragment();
+  orbit = null;
+  start();
+});
 
 async function main() {
   boards = boardsOf(await moduleOf('scene'));

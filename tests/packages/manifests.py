@@ -1,7 +1,7 @@
 """The rules that each ecosystem sets for an archive and its manifest: manifests.py FOLDER, a sentence a fault.
 
-SCHEMAS=DIR in the environment: JSON schemas as their projects publish them; *library-properties*specification*.json
-(arduino-lint) is for library.properties, *platformio*.json for library.json, *idf*.json for idf_component.yml.
+SCHEMAS=DIR in the environment: a folder with JSON schemas as their projects publish them: etc/schemas of arduino-lint,
+platformio/assets/schema of platformio-core, and what `compote manifest schema` prints, as idf_component.json.
 """
 
 import json
@@ -232,22 +232,47 @@ def root_faults():
             yield f"{name} says version {version}; CMakeLists.txt says {VERSION}"
 
 
+def modern(schema):
+    """The schema with lists in `required`: PlatformIO's says true or false in what is required, as drafts of old did."""
+    if isinstance(schema, list):
+        return [modern(part) for part in schema]
+    if not isinstance(schema, dict):
+        return schema
+    parts = {key: modern(part) for key, part in schema.items()}
+    said = schema.get("properties")
+    if isinstance(said, dict):
+        wanted = [name for name, part in said.items() if isinstance(part, dict) and part.get("required") is True]
+        if wanted:
+            listed = parts.get("required") if isinstance(parts.get("required"), list) else []
+            parts["required"] = listed + wanted
+    if "required" in parts and not isinstance(parts["required"], (list, dict)):
+        del parts["required"]
+    return parts
+
+
+# What the name, the title or the address of a manifest's schema says, and what they do not.
+SCHEMA_OF = {"library.properties": (r"library[.-]properties", r"definitions"), "library.json": (r"library\.json", r"arduino"),
+             "idf_component.yml": (r"idf[_-]component", r"definitions")}
+
+
 def by_schemas(folder, loaded):
-    """Holds the manifests to published schemas; says which it found."""
+    """Holds the manifests to published schemas; says which it lacks."""
     import jsonschema
 
     paths = sorted(pathlib.Path(folder).rglob("*.json"))
-    schemas = {path.name: json.loads(path.read_text()) for path in paths}
-    store = {schema["$id"]: schema for schema in schemas.values() if "$id" in schema} | schemas
+    schemas = {path.relative_to(folder).as_posix(): modern(json.loads(path.read_text())) for path in paths}
+    # A schema names another by its file, as from its own address, whatever address that one gives itself.
+    bases = {""} | {schema["$id"].rpartition("/")[0] + "/" for schema in schemas.values() if "$id" in schema}
+    store = {base + name.split("/")[-1]: schema for base in bases for name, schema in schemas.items()}
     manifests = {
         "library.properties": properties(loaded[f"thimble-arduino-{VERSION}.zip"]["thimble/library.properties"]),
-        "library.json": json.loads((ROOT / "library.json").read_text()),
-        "idf_component.yml": yaml.safe_load((ROOT / "idf_component.yml").read_text()),
+        "library.json": json.loads(loaded[f"thimble-platformio-{VERSION}.tar.gz"]["library.json"]),
+        "idf_component.yml": yaml.safe_load(loaded[f"thimble-esp-idf-{VERSION}.tar.gz"]["thimble/idf_component.yml"]),
     }
     for name, said in manifests.items():
-        pattern = {"library.properties": r"library-properties.*specification", "library.json": r"platformio",
-                   "idf_component.yml": r"idf"}[name]
-        found = [key for key in schemas if re.search(pattern, key)]
+        wanted, other = SCHEMA_OF[name]
+        words = {key: f"{key} {schema.get('title', '')} {schema.get('$id', '')}" for key, schema in schemas.items()}
+        found = [key for key, text in words.items() if re.search(wanted, text) and not re.search(other, key)]
         if not found:
             print(f"manifests: skipped: {folder} has no schema of {name}")
         for key in found:

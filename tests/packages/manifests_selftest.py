@@ -1,7 +1,11 @@
 """Shows the rules of manifests.py archives with one fault each; every one must be named: manifests_selftest.py FOLDER"""
 
+import os
 import pathlib
+import re
+import subprocess
 import sys
+import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -73,9 +77,48 @@ CASES = [
 ]
 
 
+# Schemas of ours in the forms of those that are published (SCHEMAS=DIR): what one of them refuses, and the change.
+SCHEMAS = pathlib.Path(__file__).resolve().parent / "schemas"
+BY_SCHEMA = [
+    ("library.properties against", "'1.x' does not match", swap(ARDUINO, PROPERTIES, b"version=" + version, b"version=1.x")),
+    ("library.properties against", "'category' is a required", swap(ARDUINO, PROPERTIES, b"category=", b"#category=")),
+    ("library.json against", "'name' is a required", swap(PLATFORMIO, "library.json", b'"name": "thimble",', b"")),
+    ("library.json against", "is too long", swap(PLATFORMIO, "library.json", b'"thimble"', b'"' + b"x" * 51 + b'"')),
+    ("idf_component.yml against", "'sources' was unexpected", put(IDF, "thimble/idf_component.yml", b"sources: none\n")),
+]
+
+
+def by_schemas(sound):
+    """Sentences where the schemas take what they should not, or the other way round."""
+    faults = list(manifests.by_schemas(SCHEMAS, sound))
+    if faults:
+        yield f"sound manifests are refused: {faults}"
+    for name, wanted, change in BY_SCHEMA:
+        loaded = {archive: dict(files) for archive, files in sound.items()}
+        change(loaded)
+        faults = list(manifests.by_schemas(SCHEMAS, loaded))
+        if not any(fault.startswith(name) and wanted in fault for fault in faults):
+            yield f'no schema says "{name} ... {wanted}", but: {faults}'
+
+
+def release():
+    """A release with the places that are none is refused, in a sentence, and makes nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        make = manifests.ROOT / "tools/packages/make.py"
+        told = subprocess.run([sys.executable, "-B", make, "--release", "--out", f"{folder}/out"], capture_output=True, text=True)
+        tree = (manifests.ROOT / "tools/packages/tree.py").read_text()
+        names = [name for name in ("URL", "CONTACT") if re.search(rf'^{name} = .*\.invalid', tree, re.MULTILINE)]
+        if names and (told.returncode != 1 or os.path.exists(f"{folder}/out") or not told.stderr.startswith("packages: a release")
+                      or not all(name in told.stderr for name in names)):
+            yield f"a release that names no place ends with {told.returncode}: {told.stderr}"
+
+
 def main():
     sound = manifests.load(sys.argv[1])
     failed = 0
+    for fault in [*by_schemas(sound), *release()]:
+        print(f"manifests_selftest: {fault}", file=sys.stderr)
+        failed = 1
     for wanted, change in CASES:
         loaded = {name: dict(files) for name, files in sound.items()}
         change(loaded)

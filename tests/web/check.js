@@ -4,6 +4,8 @@
 let passed = 0;
 let failed = 0;
 const faults = [];
+const MOST_SECONDS = 300;
+process.exitCode = 1;  // until all of them have ended
 
 function require_(what, got, wanted) {
   if (got !== wanted) faults.push(`${what} is ${JSON.stringify(got)}, wanted ${JSON.stringify(wanted)}`);
@@ -13,11 +15,16 @@ function holds(what, value) {
 }
 async function test(name, run) {
   faults.length = 0;
+  let clock = null;
+  const late = new Promise((_, fail) => {
+    clock = setTimeout(() => fail(new Error(`it has not ended in ${MOST_SECONDS} s`)), 1000 * MOST_SECONDS);
+  });
   try {
-    await run();
+    await Promise.race([run(), late]);
   } catch (error) {
     faults.push(error.message);
   }
+  clearTimeout(clock);
   if (faults.length === 0) {
     ++passed;
   } else {

@@ -94,6 +94,16 @@ class Chromium {
     await new Promise((done) => setTimeout(done, 120));
     await this.send('Input.dispatchKeyEvent', {type: 'keyUp', key, code, windowsVirtualKeyCode});
   }
+  async tab() {
+    for (const type of ['keyDown', 'keyUp']) {
+      await this.send('Input.dispatchKeyEvent', {type, key: 'Tab', code: 'Tab', windowsVirtualKeyCode: 9});
+    }
+  }
+  async turnTo(width, height) {
+    await this.send('Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: 2, mobile: true,
+      screenOrientation: {type: width > height ? 'landscapePrimary' : 'portraitPrimary', angle: width > height ? 90 : 0}});
+    await this.eval('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))');
+  }
   async touch(type, points) {
     await this.send('Input.dispatchTouchEvent', {type, touchPoints: points});
   }

@@ -6,6 +6,10 @@ const path = require('path');
 const zlib = require('zlib');
 const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
+const {Look} = require('../../platform/web/look.js');
+const {Orbit} = require('../../platform/web/orbit.js');
+const {crews} = require('./crew_cases.js');
+const made = require('./files.js');
 const {test, is, holds, end} = require('./check.js');
 
 const [, , folder, thimble] = process.argv;
@@ -122,9 +126,28 @@ async function main() {
       holds('a byte in front is noticed', !machine.x.guard_is_whole());
     }
   });
+  // An image gets its RAM and not a byte more, and its flash to read.
+  const misdeeds = [['a', undefined], ['f', 'it wrote to its flash'], ['l', 'it wrote to its flash'],
+    ['p', 'it touched a byte past its RAM'], ['b', 'it wrote in front of its RAM'],
+    ['s', 'its stack overflowed']];
+  for (const board of boards) {
+    for (const [key, fault] of misdeeds) {
+      await test(`misdeed ${key} on ${board.name}`, () => {
+        const machine = new Machine(modules.cases, {board, app: 'misdeeds', scene: new Uint8Array(1001).fill(7)});
+        machine.step();
+        machine.type(key);
+        machine.step();
+        is('fault', machine.fault, fault);
+        is('status', machine.status, fault === undefined ? undefined : 97);
+      });
+    }
+  }
 
   await bakes();
   await mistakes();
+  await looks();
+  await crews(modules, (scene, files, index = boardOf('raspi0').index) => new Baker(modules.bake, files).bake(scene, {index}),
+    'room.scene', filesOf('tools/gallery/scenes/room.scene'));
   await end('modules under Node');
 }
 
@@ -137,10 +160,13 @@ async function bakes() {
   write('tent.ply', 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n' +
     'element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0.25 0\n-0.5 1 3.0625e-1\n3 0 1 2\n');
   fs.writeFileSync(path.join(work, 'tent.obj.gz'), zlib.gzipSync(fs.readFileSync(path.join(work, 'tent.obj'))));
+  const inflating = ['npy', 'npz', 'mts', 'schematic'].map((kind) => `${work}/made.${kind}`);
+  for (const file of inflating) fs.writeFileSync(file, made[file.split('.').pop()](20));
   command('bake', 'spheres', '-o', path.join(work, 'spheres.oct'), '--quiet');
   const cases = [['demo'], ['spheres'], ['points:5000'], [`${scenes}/castle.vox`], [`${scenes}/fox.vox.gz`],
     [`${scenes}/room.scene`], [`${scenes}/house.scene`, `${scenes}/house.vox.gz`], [`${work}/ball.xyz`],
-    [`${work}/tent.obj`], [`${work}/tent.obj.gz`], [`${work}/tent.ply`], [`${work}/spheres.oct`]];
+    [`${work}/tent.obj`], [`${work}/tent.obj.gz`], [`${work}/tent.ply`], [`${work}/spheres.oct`],
+    ...inflating.map((file) => [file])];
   for (const files of cases) {
     for (const name of ['lm3s6965evb', 'raspi0']) {
       for (const more of [{}, {coarsen: true}]) {
@@ -166,6 +192,37 @@ async function bakes() {
         });
       }
     }
+  }
+}
+
+// What is shown at rest is what the command renders, pixel by pixel where a ray hits; what stands behind is the board's.
+async function looks() {
+  for (const [scene, ...files] of [['castle.vox', 'castle.vox'], ['room.scene', 'room.scene']]) {
+    await test(`${scene} to look around in is lit as by the command`, () => {
+      const [width, height] = [160, 120];
+      const {baked} = new Baker(modules.bake, filesOf(...files.map((file) => `tools/gallery/scenes/${file}`)))
+        .bake(scene, boardOf('raspi0'));
+      const look = new Look(modules.scene, baked, width, height);
+      look.see(new Orbit(look.point(false), look.point(true), 1 << look.x.level()).camera());
+      look.band('lit', 0, height);
+      const mine = Buffer.from(look.rows(0, height));
+      const oct = path.join(work, 'look.oct');
+      const out = path.join(work, 'look.ppm');
+      fs.writeFileSync(oct, baked);
+      const told = command('render', oct, '--size', `${width}x${height}`, '--effects', 'auto', '-o', out, '--quiet');
+      is('status', told.status, 0);
+      const wanted = fs.readFileSync(out).subarray(-3 * width * height);
+      const behind = mine.subarray(0, 3);
+      let hits = 0;
+      let others = 0;
+      for (let i = 0; i < mine.length; i += 3) {
+        if (scene !== 'room.scene' && mine.subarray(i, i + 3).equals(behind)) continue;
+        ++hits;
+        others += mine.subarray(i, i + 3).equals(wanted.subarray(i, i + 3)) ? 0 : 1;
+      }
+      holds(`${hits} pixels show the scene`, hits > 4000);
+      is('pixels that are others', others, 0);
+    });
   }
 }
 
@@ -197,6 +254,33 @@ async function mistakes() {
       holds(`the command's "${told.stderr.trim()}" ends with "${said}"`, said !== '' && told.stderr.trim().endsWith(said));
     });
   }
+  // What is deflated inside a file, and damaged there.
+  for (const [kind, wanted] of [['mts', /^the nodes: the deflated data is damaged or truncated$/],
+    ['npz', /^the member 'ball.npy'(: the deflated data is damaged or truncated| has \d+ bytes, not the 8128 of the directory)$/]]) {
+    await test(`a damaged .${kind} is refused in a sentence`, () => {
+      const bytes = made[kind](20);
+      const middle = kind === 'mts' ? bytes.length - 40 : 190;
+      for (const cut of [(b) => b.fill(0xee, middle, kind === 'mts' ? middle + 30 : 310), (b) => (kind === 'mts' ? b.subarray(0, -40) : b.fill(0xee, 180, 330))]) {
+        let said = '';
+        try {
+          new Baker(modules.bake, [{name: `cut.${kind}`, bytes: cut(Buffer.from(bytes))}]).bake(`cut.${kind}`, boardOf('raspi0'));
+        } catch (error) {
+          said = error.message;
+        }
+        holds(`"${said}" says that it is damaged`, wanted.test(said));
+      }
+    });
+  }
+  await test('what is not read is named, and what reads it', () => {
+    let said = '';
+    try {
+      new Baker(modules.bake, [{name: 'a.glb', bytes: Buffer.from('glTF\x02\0\0\0\x0c\0\0\0', 'latin1')}]).bake('a.glb', boardOf('raspi0'));
+    } catch (error) {
+      said = error.message;
+    }
+    holds(`"${said}" names what is read`, /^is a glTF scene, which takes the thimble command; this page reads \.vox, .*\.npy, .*\.kvx$/.test(said));
+    holds('and not what is not', !/gl(b|tf),/.test(said));
+  });
   await test('a model that was not dropped is asked for', () => {
     let said = '';
     try {
@@ -207,6 +291,23 @@ async function mistakes() {
     }
     is('sentence', said, 'is not here: drop it together with the file that names it');
   });
+  for (const board of boards) {
+    await test(`what does not fit the flash of ${board.name} is said as by the command, with the depth that would`, () => {
+      const points = new Baker(modules.bake, []);
+      let said = '';
+      try {
+        points.bake('points:60000', board);
+      } catch (error) {
+        said = error.message;
+      }
+      const told = command('bake', 'points:60000', '--board', board.name, '-o', path.join(work, 'never.oct'), '--quiet');
+      is('fits', said === '', told.status === 0);
+      if (said === '') return;
+      const smaller = points.smaller('points:60000', board, 10);
+      is('the command', told.stderr.trim(), `thimble: points:60000: ${said}; --depth ${smaller.level} fits with ` +
+        `${smaller.bytes.toLocaleString('en')} bytes, and --coarsen makes the finest tree that does`);
+    });
+  }
   await test('a depth that fits is found', () => {
     const board = boardOf('stm32vldiscovery');
     const baker = new Baker(modules.bake, filesOf('tools/gallery/scenes/house.scene', 'tools/gallery/scenes/house.vox.gz'));

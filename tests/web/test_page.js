@@ -2,12 +2,14 @@
 'use strict';
 const {spawnSync} = require('child_process');
 const fs = require('fs');
+const http = require('http');
 const path = require('path');
 const zlib = require('zlib');
 const {Chromium} = require('./chromium.js');
 const {test, is, holds, end} = require('./check.js');
+const {judgeAccess} = require('./access.js');
 
-const [, , page, thimble] = process.argv;
+const [, , page, thimble, only] = process.argv;
 const url = `file://${path.resolve(page)}`;
 const work = path.resolve('build/web/tests');
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -116,13 +118,7 @@ async function desktop() {
   });
   await looks();
   await drops();
-  await test('save and link', async () => {
-    await browser.click('#link');
-    await browser.until(`location.hash.includes('board=lm3s6965evb')`);
-    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work}).catch(() => {});
-    is('a picture can be saved', await browser.eval(
-      `new Promise((done) => canvas.toBlob((blob) => done(blob.type)))`), 'image/png');
-  });
+  await links();
   await test('nothing was sent and nothing went wrong', () => {
     const asked = browser.events.filter((event) => event.method === 'Network.requestWillBeSent')
       .map((event) => event.params.request.url).filter((address) => !/^(file|data|blob):/.test(address));
@@ -131,7 +127,7 @@ async function desktop() {
       (event.method === 'Log.entryAdded' && event.params.entry.level === 'error'));
     is('errors', JSON.stringify(wrong.map((event) => event.params)), '[]');
   });
-  await names();
+  await judgeAccess(browser);
   await browser.close();
 }
 
@@ -143,6 +139,8 @@ async function looks() {
     await began();
     await browser.until(`document.documentElement.dataset.phase === 'finished'`, 60);
     const finished = await canvasCrc();
+    const cores = await browser.eval('crewSize');
+    is('workers', await browser.eval('viewer.crew?.workers.length ?? 0'), cores > 1 ? cores : 0);
     await changes('a drag', () => browser.drag('#canvas', 120, 40));
     await changes('the wheel', () => browser.wheel('#canvas', -120));
     await changes('an arrow', () => browser.key('ArrowLeft'));
@@ -155,6 +153,135 @@ async function looks() {
     await browser.click('#look');
     await began();
   });
+  await test('one thread and workers finish the same picture', async () => {
+    const pictures = [];
+    for (const size of [1, 2, 3]) {
+      await browser.eval(`crewSize = ${size}; restart({scene: 'castle', look: true})`);
+      await finish();
+      is('workers', await browser.eval('viewer.crew?.workers.length ?? 0'), size > 1 ? size : 0);
+      pictures.push(await canvasCrc());
+    }
+    is('two workers', pictures[1], pictures[0]);
+    is('three workers', pictures[2], pictures[0]);
+  });
+  await test('a hand on the picture interrupts the workers at once', async () => {
+    await browser.key('ArrowRight');
+    await browser.until(`document.documentElement.dataset.phase === 'fine'`, 60);
+    const {x, y} = await browser.middle('#canvas');
+    const at = (type, dx) => browser.send('Input.dispatchMouseEvent', {type, x: x + dx, y, button: 'left', buttons: 1, clickCount: 1});
+    await browser.eval(`window.seen = []; { const job = viewer.crew.job;
+      const onBand = viewer.crew.on.onBand;
+      viewer.crew.on.onBand = (...words) => { seen.push(viewer.crew.job - job); onBand(...words); };
+      canvas.addEventListener('pointermove', () => { seen.push(viewer.phase); }, {once: true}); }`);
+    await at('mousePressed', 0);
+    await at('mouseMoved', 40);
+    await at('mouseReleased', 40);
+    const seen = await browser.eval('seen');
+    holds(`the phase after a move is moved: ${seen}`, seen.includes('moved'));
+    is('bands of the old view after it', seen.slice(seen.indexOf('moved')).filter((what) => what === 0).length, 0);
+    holds('no worker did more than its band', await browser.eval('viewer.crew.thrownAway') <= 3 * 3);
+    await finish();
+    const byWorkers = await canvasCrc();
+    await browser.eval(`crewSize = 1; restart({})`);
+    await finish();
+    is('the same view by one thread', byWorkers, await canvasCrc());
+  });
+  await test('where workers do not start, or end, the page draws and bakes itself', async () => {
+    const wanted = await canvasCrc();
+    await browser.eval(`crewSize = 2; window.Worker_ = Worker; Worker = class { constructor() { throw new Error('none'); } };
+      restart({})`);
+    await finish();
+    is('workers', await browser.eval('viewer.crew'), null);
+    is('the picture', await canvasCrc(), wanted);
+    await browser.eval(`Worker = class extends Worker_ { constructor() { super('data:text/javascript,throw 1'); } };
+      cache.clear(); restart({})`);
+    await finish();
+    is('workers', await browser.eval('viewer.crew'), null);
+    is('the picture', await canvasCrc(), wanted);
+    await browser.eval(`Worker = Worker_; restart({look: false})`);
+    shown = await browser.eval('Number(document.documentElement.dataset.ready)');
+    browser.events = browser.events.filter((event) => !/Refused to create a worker|data:text/.test(JSON.stringify(event)));
+  });
+}
+// Until all samples are drawn.
+async function finish() {
+  await browser.until(`viewer !== null && viewer.phase === 'finished' && viewer.picture.changed[1] === 0`, 90);
+}
+
+// A link that holds the view, a picture that is saved.
+async function links() {
+  await test('a link opened again shows the same picture', async () => {
+    await browser.click('#scene-castle');
+    await began();
+    await choose('mps2-an500');
+    await browser.click('#look');
+    await began();
+    await browser.drag('#canvas', 90, -30);
+    await browser.drag('#canvas', -31, 57);
+    await browser.wheel('#canvas', -120);
+    await finish();
+    const wanted = await canvasCrc();
+    await browser.click('#link');
+    await browser.until(`location.hash.includes('board=mps2-an500')`);
+    is('the picture, once the link is made', await canvasCrc(), wanted);
+    const link = await browser.eval('location.href');
+    const other = browser;
+    browser = await Chromium.open(link);
+    await finish();
+    is('the board', await browser.eval('state.board'), 'mps2-an500');
+    is('the picture', await canvasCrc(), wanted);
+    await browser.close();
+    browser = other;
+  });
+  await test('the picture that is saved is the one that is shown', async () => {
+    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work});
+    const file = path.join(work, 'thimble-castle.png');
+    fs.rmSync(file, {force: true});
+    const wanted = await canvasCrc();
+    await browser.click('#save');
+    for (let i = 0; i < 100 && !fs.existsSync(file); ++i) await pause(50);
+    const png = fs.readFileSync(file).toString('base64');
+    is('its pixels', await browser.eval(`(async () => {
+      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob('${png}'), (c) => c.charCodeAt(0))], {type: 'image/png'}));
+      const copy = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      copy.drawImage(bitmap, 0, 0);
+      return crc32(copy.getImageData(0, 0, bitmap.width, bitmap.height).data.filter((_, i) => i % 4 !== 3)); })()`), wanted);
+  });
+  await test('a link whose file stayed elsewhere asks for it, and then shows its view', async () => {
+    const file = path.resolve('tools/gallery/scenes/fox.vox.gz');
+    await browser.drop([file]);
+    await began();
+    await browser.drag('#canvas', 60, 10);
+    await finish();
+    const wanted = await canvasCrc();
+    await browser.click('#link');
+    const link = await browser.eval('location.href');
+    holds('the link names it', link.includes('file=fox.vox.gz'));
+    const other = browser;
+    browser = await Chromium.open(link);
+    await browser.until(`document.documentElement.dataset.ready === '1'`, 30);
+    is('it is asked for', await text('said'),
+      'This link shows fox.vox.gz, which stayed where it was made: drop that file here.');
+    await browser.drop([file]);
+    await finish();
+    is('the picture', await canvasCrc(), wanted);
+    await browser.close();
+    browser = other;
+    await browser.click('#look');
+    await began();
+  });
+  await test('a broken link shows what of it means something', async () => {
+    for (const hash of ['#', '#scene=__proto__&board=toString&look=1', '#look=NaN,1e9,,x,-,0', '#scene=castle&look=1,2,3,4,5,1e400',
+      '#scene=particles&look=1', '#%E0%A4%A&board=&depth=99&merge=2', '#file=&look=', `#file=${'x'.repeat(9000)}`]) {
+      await browser.eval(`location.hash = ${JSON.stringify(hash)}`);
+      await pause(100);
+      await browser.until(`document.getElementById('busy').hidden && (machine !== null || viewer !== null)`, 30);
+      const said = await text('said');
+      holds(`${hash}: "${said.slice(0, 80)}" is no fault`, /^(Valley|Castle|LM3S|This link shows)|Stellaris|voxels|\.$/.test(said) &&
+        await browser.eval(`!document.getElementById('said').classList.contains('wrong')`));
+    }
+    shown = await browser.eval('Number(document.documentElement.dataset.ready)');
+  });
 }
 
 async function drops() {
@@ -166,6 +293,18 @@ async function drops() {
     const wanted = sim(file, 'lm3s6965evb', 'demo', 2);
     for (let i = 0; i < 60 && await canvasCrc() !== wanted; ++i) await pause(50);
     is('CRC of the canvas', await canvasCrc(), wanted);
+  });
+  await test('a scene dropped with its model, and baked bytes', async () => {
+    await choose('raspi0');
+    await browser.drop(['house.vox.gz', 'house.scene'].map((name) => path.resolve('tools/gallery/scenes', name)));
+    await began();
+    holds('the scene', /^house\.scene: [\d,]+ voxels in/.test(await text('said')));
+    const oct = path.join(work, 'dropped.oct');
+    spawnSync(thimble, ['bake', 'tools/gallery/scenes/castle.vox', '--board', 'raspi0', '-o', oct, '--quiet']);
+    await browser.drop([oct]);
+    await began();
+    holds('the baked bytes', (await text('said')).startsWith('dropped.oct: 18,235 voxels in 64,588 bytes'));
+    await choose('lm3s6965evb');
   });
   await test('what does not fit is said, with what would', async () => {
     const file = path.join(work, 'many.xyz');
@@ -180,6 +319,29 @@ async function drops() {
     await began();
     holds('the smaller one is shown', /many\.xyz: [\d,]+ voxels in/.test(await text('said')));
   });
+  await test('the page lives on while a large file is baked, and leaves it at once', async () => {
+    const file = path.join(work, 'large.xyz');
+    fs.writeFileSync(file, Array.from({length: 600000}, (_, i) =>
+      `${(i * 7919) % 1009} ${(i * 104729) % 1013} ${(i * 1299709) % 1019}`).join('\n'));
+    await browser.eval(`window.longest = 0; window.ticks = 0; { let last = performance.now(); const tick_ = (now) => {
+      longest = Math.max(longest, now - last); last = now; if (++ticks < 1e6 && window.longest !== null) requestAnimationFrame(tick_); };
+      requestAnimationFrame(tick_); }`);
+    await browser.drop([file]);
+    await browser.until(`farBaker !== null && state.dropped?.title === 'large.xyz'`);
+    await browser.eval('longest = 0; ticks = 0');
+    await browser.until('ticks > 20 || farBaker === null');
+    const {longest, baking} = await browser.eval('({longest, baking: farBaker !== null})');
+    holds('it still bakes', baking);
+    holds(`the longest frame took ${longest.toFixed(0)} ms`, longest < 1000);
+    await browser.click('#scene-castle');
+    await browser.until(`document.getElementById('said').textContent.startsWith('Castle: ')`, 10);
+    is('what bakes', await browser.eval('farBaker?.worker === undefined || state.dropped === null'), true);
+    await pause(500);
+    holds('the castle stays', (await text('said')).startsWith('Castle: '));
+    await browser.eval('window.longest = null');
+    shown = await browser.eval('generation');
+    fs.rmSync(file);
+  });
   await test('what cannot be read is said in a sentence, and the page goes on', async () => {
     const file = path.join(work, 'cut.vox');
     fs.writeFileSync(file, fs.readFileSync('tools/gallery/scenes/castle.vox').subarray(0, 3000));
@@ -189,67 +351,195 @@ async function drops() {
     is('the sentence', `thimble: ${work}/${await text('said')}`, told.stderr.trim());
     const broken = path.join(work, 'broken.vox.gz');
     fs.writeFileSync(broken, zlib.gzipSync('something').subarray(0, 15));
-    await browser.drop([broken]);
-    await browser.until(`document.getElementById('said').textContent.startsWith('broken.vox.gz')`);
+    const says = async (files, sentence) => {
+      await browser.eval(`document.getElementById('said').textContent = ''`);
+      await browser.drop(files);
+      await browser.until(`document.getElementById('said').textContent !== ''`);
+      is('the sentence', await text('said'), sentence);
+    };
+    await says([broken], 'broken.vox.gz: its gzip data is damaged or truncated');
+    const zeros = path.join(work, 'zeros.vox.gz');
+    fs.writeFileSync(zeros, zlib.gzipSync(Buffer.alloc(2 ** 28 + 1)));
+    await says([zeros], 'zeros.vox.gz: inflates to more than 268,435,456 bytes, which this page does not take');
+    const huge = path.join(work, 'huge.vox');
+    fs.writeFileSync(huge, '');
+    fs.truncateSync(huge, 2 ** 33);
+    await says([huge], 'huge.vox: has 8,589,934,592 bytes; this page takes 268,435,456');
+    fs.rmSync(huge);
+    const folder = path.join(work, 'folder.vox');
+    fs.mkdirSync(folder, {recursive: true});
+    await says([folder], 'folder.vox: cannot be read here: it is a folder, or it has changed or gone; drop files');
+    fs.writeFileSync(path.join(work, 'nan.xyz'), '0 0 0\nnan 1 2\n');
+    fs.writeFileSync(path.join(work, 'empty.vox'), '');
+    fs.writeFileSync(path.join(work, 'castle.ply'), fs.readFileSync('tools/gallery/scenes/castle.vox').subarray(4));
+    for (const name of ['nan.xyz', 'empty.vox', 'castle.ply']) {
+      const refused = spawnSync(thimble, ['bake', path.join(work, name), '-o', path.join(work, 'never.oct'), '--quiet'], {encoding: 'utf8'});
+      await says([path.join(work, name)], refused.stderr.trim().slice(`thimble: ${work}/`.length));
+    }
+    shown = await browser.eval('generation');
+  });
+  await test('files dropped together, in haste, and while a picture is refined', async () => {
+    const [castle, fox] = ['castle.vox', 'fox.vox.gz'].map((name) => path.resolve(`tools/gallery/scenes/${name}`));
+    await browser.drop([castle, fox]);
+    await began();
+    holds('the first is shown, and said', /^castle\.vox: .* Of 2 files this one is shown; drop one at a time\.$/.test(await text('said')));
+    fs.writeFileSync(path.join(work, 'tent.obj'), 'mtllib tent.mtl\nv 0 0 0\nv 1 0 0\nv 0.5 1 .5\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 2 4 3\n');
+    fs.writeFileSync(path.join(work, 'tent.mtl'), 'newmtl red\nKd 1 0 0\n');
+    await browser.drop([path.join(work, 'tent.mtl'), path.join(work, 'tent.obj')]);
+    await began();
+    const told = await text('said');
+    holds(`"${told}" is of the mesh, which has its materials`, /^tent\.obj: (takes|[\d,]+ voxels in)/.test(told) && !told.includes('one at a time'));
+    await browser.drop([castle]);
+    await browser.drop([fox]);
+    await browser.until(`document.getElementById('said').textContent.startsWith('fox.vox.gz: ')`, 30);
+    await pause(300);
+    holds('the last one wins', (await text('said')).startsWith('fox.vox.gz: '));
+    shown = await browser.eval('generation');
+    await browser.click('#look');
+    await began();
+    await browser.until(`viewer.phase === 'lit' || viewer.phase === 'fine'`);
+    await browser.drop([castle]);
+    await began();
+    await finish();
+    const wanted = await canvasCrc();
+    await browser.eval('restart({scene: "castle", dropped: null})');
+    await finish();
+    is('the picture is that of the demonstration', await canvasCrc(), wanted);
+    await browser.click('#look');
+    shown = await browser.eval('generation') - 1;
+    await began();
     await browser.click('#scene-valley');
     await began();
     await changes('time', () => pause(200));
   });
 }
 
-// What a screen reader says, and what a keyboard reaches.
-async function names() {
-  await test('everything that is pressed has a name, and enough contrast', async () => {
-    const nameless = await browser.eval(`[...document.querySelectorAll('button, select, canvas, meter, dialog')].filter(
-      (element) => !(element.textContent.trim() || element.getAttribute('aria-label') || element.labels?.length ||
-        element.getAttribute('aria-labelledby'))).map((element) => element.outerHTML).join()`);
-    is('without a name', nameless, '');
-    for (const scheme of ['light', 'dark']) {
-      await browser.send('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: scheme}]});
-      const least = await browser.eval(`(() => {
-        const light = (text) => { const [r, g, b] = text.match(/\\d+(\\.\\d+)?/g).map(Number).map((v) =>
-          v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4);
-          return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
-        const behind = (element) => { for (let e = element; e; e = e.parentElement) {
-          const color = getComputedStyle(e).backgroundColor; if (!/, 0\\)$|transparent/.test(color)) return color; }
-          return getComputedStyle(document.documentElement).backgroundColor; };
-        return Math.min(...[...document.querySelectorAll('button:not(:disabled), p, dt, dd, summary, h1')]
-          .filter((element) => element.offsetParent !== null && element.id !== 'busy').map((element) => {
-          const [a, b] = [light(getComputedStyle(element).color), light(behind(element))];
-          return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05); }));
-      })()`);
-      holds(`contrast of ${least} in ${scheme} is at least 4.5`, least >= 4.5);
-    }
-  });
-}
-
+// Every size is turned over while the scene is shown.
+const SCREENS = [[360, 640], [412, 915], [768, 1024]];
 async function telephone() {
-  browser = await Chromium.open(`${url}#scene=castle&board=raspi0&look=1`, {width: 390, height: 844, mobile: true});
+  browser = await Chromium.open(`${url}#scene=castle&board=raspi0&look=1`, {width: 360, height: 640, mobile: true});
   shown = 0;
   await began();
-  await test('on a telephone: nothing is wider than it, turned over too', async () => {
-    is('width', await browser.eval('document.documentElement.scrollWidth'), 390);
-    await browser.send('Emulation.setDeviceMetricsOverride', {width: 844, height: 390, deviceScaleFactor: 2, mobile: true});
-    is('width, turned over', await browser.eval('document.documentElement.scrollWidth'), 844);
-    await browser.send('Emulation.setDeviceMetricsOverride', {width: 390, height: 844, deviceScaleFactor: 2, mobile: true});
-  });
-  await test('a finger turns, two come nearer', async () => {
-    await browser.until(`document.documentElement.dataset.phase === 'finished'`, 60);
+  await finish();
+  const wanted = await canvasCrc();
+  for (const upright of SCREENS) {
+    for (const [width, height] of [upright, [...upright].reverse()]) {
+      await test(`on a screen of ${width} x ${height}`, async () => {
+        await browser.turnTo(width, height);
+        is('width of the page', await browser.eval('document.documentElement.scrollWidth'), width);
+        is('the picture is the same', await canvasCrc(), wanted);
+        const box = await browser.middle('#canvas');
+        holds(`the canvas has its proportions: ${box.width} x ${box.height}`, Math.abs(box.width / box.height - 640 / 480) < 0.01);
+        holds('the canvas fits on the screen', box.width <= width && box.height <= height && box.height >= height / 4);
+        await browser.eval('scrollTo(0, 0)');
+        holds('all of it is on the first screen', await browser.eval(
+          `(({top, bottom}) => top >= 0 && bottom <= innerHeight)(canvas.getBoundingClientRect())`));
+        if (width < height) holds('it uses the width', box.width >= 0.75 * Math.min(width, 640));
+        const hidden = await browser.eval(`[...document.querySelectorAll('button, select, summary')].filter((element) => {
+          if (element.closest('dialog') || element.hidden || element.disabled) return false;
+          element.scrollIntoView({block: 'center'});
+          const box = element.getBoundingClientRect();
+          const seen = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+          return box.width < 24 || box.height < 24 || (seen !== element && !element.contains(seen));
+        }).map((element) => element.id || element.textContent)`);
+        is('what a finger does not reach', hidden.join(), '');
+        await browser.eval('scrollTo(0, 0)');
+        await browser.shot(path.join(work, `screen_${width}x${height}.png`));
+        await turnsByFingers();
+        await browser.eval('orbit.reset(); moved(() => {})');
+        await finish();
+      });
+    }
+  }
+  await test('fingers steer a board: a swipe, its buttons, water', async () => {
+    await browser.turnTo(412, 915);
+    await browser.eval(`restart({scene: 'castle', board: 'mps2-an500', look: false})`);
+    await browser.until(`machine !== null && machine.frames > 2`);
     const {x, y} = await browser.middle('#canvas');
-    await changes('a finger', async () => {
+    await changes('a swipe', async () => {
       await browser.touch('touchStart', [{x, y, id: 1}]);
-      for (const step of [20, 40, 60]) await browser.touch('touchMove', [{x: x + step, y, id: 1}]);
+      await browser.touch('touchMove', [{x: x + 40, y, id: 1}]);
+      await pause(300);
       await browser.touch('touchEnd', []);
     });
-    const before = await browser.eval('orbit.distance');
-    await browser.touch('touchStart', [{x: x - 30, y, id: 1}, {x: x + 30, y, id: 2}]);
-    for (const step of [40, 60, 80]) {
-      await browser.touch('touchMove', [{x: x - step, y, id: 1}, {x: x + step, y, id: 2}]);
-    }
-    await browser.touch('touchEnd', []);
-    holds('a pinch comes nearer', await browser.eval('orbit.distance') < 0.6 * before);
+    await browser.until('heldButtons() === 0');
+    const button = await browser.middle('[data-hold="up"]');
+    await changes('a button', async () => {
+      await browser.touch('touchStart', [{...button, id: 1}]);
+      await pause(300);
+      await browser.touch('touchEnd', []);
+    });
+    await browser.until('heldButtons() === 0');
+    await browser.eval(`restart({scene: 'water'})`);
+    await browser.until(`machine?.app === 'water' && machine.frames > 2`);
+    const sea = await browser.middle('#canvas');
+    await changes('a finger in the water', async () => {
+      await browser.touch('touchStart', [{x: sea.x, y: sea.y + 20, id: 1}]);
+      await browser.touch('touchEnd', []);
+    });
+    await browser.eval(`restart({scene: 'castle', board: 'raspi0', look: true})`);
+    await finish();
+  });
+  await test('turned over with a finger on it', async () => {
+    await browser.turnTo(360, 640);
+    const {x, y} = await browser.middle('#canvas');
+    await browser.touch('touchStart', [{x, y, id: 1}]);
+    await browser.touch('touchMove', [{x: x + 30, y, id: 1}]);
+    await browser.turnTo(640, 360);
+    await browser.touch('touchCancel', []);
+    is('fingers that are left', await browser.eval('pointers.size'), 0);
+    const before = await browser.eval('orbit.text()');
+    await pause(200);
+    is('the view stands still', await browser.eval('orbit.text()'), before);
+    await turnsByFingers();
   });
   await browser.close();
+}
+async function turnsByFingers() {
+  const {x, y} = await browser.middle('#canvas');
+  const page = await browser.eval('scrollY');
+  await changes('a finger', async () => {
+    await browser.touch('touchStart', [{x, y, id: 1}]);
+    for (const step of [20, 40, 60]) await browser.touch('touchMove', [{x: x + step, y: y + step / 2, id: 1}]);
+    await browser.touch('touchEnd', []);
+  });
+  const before = await browser.eval('orbit.distance');
+  await browser.touch('touchStart', [{x: x - 30, y, id: 1}, {x: x + 30, y, id: 2}]);
+  for (const step of [40, 60, 80]) {
+    await browser.touch('touchMove', [{x: x - step, y, id: 1}, {x: x + step, y, id: 2}]);
+  }
+  await browser.touch('touchEnd', []);
+  holds('a pinch comes nearer', await browser.eval('orbit.distance') < 0.6 * before);
+  is('the page does not scroll or grow under it', await browser.eval('[scrollY, visualViewport.scale].join()'), `${page},1`);
+}
+
+// From a server, with the headers that shared memory needs and without: the page needs neither.
+async function served() {
+  const pictures = [];
+  for (const headers of [{}, {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'}]) {
+    const isolated = Object.keys(headers).length !== 0;
+    await test(`from a server, ${isolated ? 'isolated' : 'plainly'}: workers draw the same picture`, async () => {
+      const asked = [];
+      const server = http.createServer((request, response) => {
+        asked.push(request.url);
+        response.writeHead(200, {'Content-Type': 'text/html', ...headers});
+        response.end(fs.readFileSync(page));
+      });
+      await new Promise((done) => server.listen(0, '127.0.0.1', done));
+      browser = await Chromium.open(`http://127.0.0.1:${server.address().port}/#scene=castle&look=1`);
+      await browser.until(`document.documentElement.dataset.ready === '1'`, 60);
+      is('isolated', await browser.eval('crossOriginIsolated'), isolated);
+      await browser.eval('crewSize = 2; restart({})');
+      await finish();
+      is('workers', await browser.eval('viewer.crew?.workers.length'), 2);
+      pictures.push(await canvasCrc());
+      is('the picture', pictures.at(-1), pictures[0]);
+      is('what was asked of the server', asked.join(), '/');
+      await browser.close();
+      server.close();
+      server.closeAllConnections?.();
+    });
+  }
 }
 
 async function calm() {
@@ -261,11 +551,21 @@ async function calm() {
     const before = await canvasCrc();
     await pause(400);
     is('the canvas', await canvasCrc(), before);
+    for (const scene of ['water', 'particles']) {
+      await browser.click(`#scene-${scene}`);
+      await began();
+      await pause(300);
+      const still = await canvasCrc();
+      await pause(300);
+      is(scene, await canvasCrc(), still);
+    }
+    is('what moves by style', await browser.eval('document.getAnimations().length'), 0);
+    await changes('who asks', () => browser.click('#pause'));
   });
   await browser.close();
 }
 
-desktop().then(telephone).then(calm).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? desktop().then(telephone).then(served).then(calm) : {telephone, served, calm}[only]()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
   browser?.process.kill('SIGKILL');
   process.exit(1);

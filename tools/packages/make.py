@@ -1,4 +1,4 @@
-"""Makes the packages of every ecosystem from the tree: make.py [--out FOLDER] [--thimble COMMAND] [NAME...]
+"""Makes the packages of every ecosystem from the tree: make.py [--out FOLDER] [--thimble COMMAND] [--release] [NAME...]
 
 NAME is arduino, platformio, esp_idf, zephyr, source or pair (default: all). The .deb is tools/package.sh's.
 """
@@ -22,11 +22,15 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--out", type=pathlib.Path, default=tree.ROOT / "build/packages")
     parser.add_argument("--thimble", default=str(tree.ROOT / "build/release/thimble"), help="bakes the examples' scene")
+    parser.add_argument("--release", action="store_true", help="refuse to name a place that is none")
     parser.add_argument("names", nargs="*", metavar="NAME")
     options = parser.parse_args()
     unknown = [name for name in options.names if name not in ECOSYSTEMS]
     if unknown:
         parser.error(f"{unknown[0]} is none of {', '.join(ECOSYSTEMS)}")
+    if options.release and tree.stand_ins():
+        raise SystemExit(f"packages: a release names where the project is: set {' and '.join(tree.stand_ins())} of "
+                         "tools/packages/tree.py, which say thimble.invalid")
     options.out.mkdir(parents=True, exist_ok=True)
     seconds = archive.epoch(tree.ROOT)
     for name in options.names or ECOSYSTEMS:

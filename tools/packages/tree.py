@@ -8,9 +8,14 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 HERE = pathlib.Path(__file__).resolve().parent
 # Whom a manifest names, until the project has a place on the net.
 URL = "https://thimble.invalid"
-CONTACT = "Thimble <thimble@thimble.invalid>"
+CONTACT = "Thimble <thimble@thimble.invalid>"  # tools/install.cmake reads it, too
 
 _INCLUDE = re.compile(rb'^([ \t]*#[ \t]*include[ \t]*)"([^"]+)"', re.MULTILINE)
+
+
+def stand_ins():
+    """Which of these name no place; `.invalid` is nobody's."""
+    return [name for name in ("URL", "CONTACT") if ".invalid" in globals()[name]]
 
 
 def version():

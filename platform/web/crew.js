@@ -1,0 +1,138 @@
+// Workers. None shares a byte with the page: each has its own instance of a module and its own copy of the bytes, so
+// they need no headers of a server and work from the disk too.
+'use strict';
+
+// What a worker runs: it draws bands of a scene, or bakes one.
+function serve(self) {
+  let look = null;
+  let baker = null;
+  let job = -1;
+  self.onmessage = ({data}) => {
+    if (data.scene) {
+      look = new Look(data.module, data.scene, data.width, data.height);
+    } else if (data.files) {
+      baker = new Baker(data.module, data.files);
+    } else if (data.call) {
+      let answer;
+      try {
+        answer = {made: baker[data.call](...data.words)};
+      } catch (error) {
+        answer = {sentence: error.message};
+      }
+      self.postMessage(answer);
+    } else {
+      if (job !== data.job) look.see(data.camera);
+      job = data.job;
+      look.band(data.kind, data.first, data.rows);
+      const bytes = look.rows(data.first, data.first + data.rows).slice();
+      self.postMessage({job, first: data.first, bytes}, [bytes.buffer]);
+    }
+  };
+}
+function workerSource() {
+  return `'use strict';\n${Look}\n${BakeError}\n${Baker}\n(${serve})(self);`;
+}
+// Null where the browser gives none.
+function startWorker() {
+  const address = URL.createObjectURL(new Blob([workerSource()], {type: 'text/javascript'}));
+  try {
+    return new Worker(address);
+  } catch {
+    return null;
+  } finally {
+    setTimeout(() => URL.revokeObjectURL(address), 10000);
+  }
+}
+
+// Draws pictures by bands, each worker one band at a time: a picture that nobody wants any more costs what is under
+// way, and its bands are thrown away.
+class Crew {
+  // `onBand(first, bytes)` for each band, `onEnd()` after the last one, `onFault()` once where workers do not work.
+  constructor(workers, {module, scene, width, height}, {onBand, onEnd, onFault}) {
+    this.height = height;
+    this.on = {onBand, onEnd};
+    this.job = 0;
+    this.next = this.left = 0;
+    this.thrownAway = 0;
+    this.ended = false;
+    this.workers = workers;
+    this.idle = new Set(workers);
+    for (const worker of workers) {
+      worker.onmessage = ({data}) => this.take(worker, data);
+      worker.onerror = worker.onmessageerror = (event) => {
+        event.preventDefault?.();
+        if (this.ended) return;
+        this.end();
+        onFault();
+      };
+      worker.postMessage({module, scene, width, height});
+    }
+  }
+  draw(camera, kind) {
+    ++this.job;
+    Object.assign(this, {camera, kind, next: 0, left: this.height});
+    for (const worker of [...this.idle]) this.give(worker);
+  }
+  stop() {
+    ++this.job;
+    this.next = this.left = 0;
+  }
+  give(worker) {
+    if (this.left === 0 || this.next === this.height) return;
+    const rows = Math.min(BAND_ROWS[this.kind], this.height - this.next);
+    worker.postMessage({job: this.job, camera: this.camera, kind: this.kind, first: this.next, rows});
+    this.next += rows;
+    this.idle.delete(worker);
+  }
+  take(worker, {job, first, bytes}) {
+    this.idle.add(worker);
+    if (job === this.job) {
+      const rows = Math.min(BAND_ROWS[this.kind], this.height - first);
+      this.left -= rows;
+      this.on.onBand(first, bytes);
+      if (this.left === 0) this.on.onEnd();
+    } else {
+      ++this.thrownAway;
+    }
+    if (this.idle.has(worker)) this.give(worker);
+  }
+  end() {
+    this.stop();
+    this.ended = true;
+    for (const worker of this.workers) worker.terminate();
+    this.idle.clear();
+  }
+}
+
+// A Baker in a worker, so that the page lives on while a large file is read; end() stops it at once.
+class FarBaker {
+  constructor(worker, module, files) {
+    this.worker = worker;
+    this.here = () => new Baker(module, files);
+    worker.postMessage({module, files});
+  }
+  ask(call, ...words) {
+    return new Promise((done, fail) => {
+      const {worker} = this;
+      worker.onmessage = ({data}) => (data.sentence === undefined ? done(data.made) : fail(new BakeError(data.sentence)));
+      // Where workers do not work.
+      worker.onerror = worker.onmessageerror = () => new Promise(() => done(this.here()[call](...words))).catch(fail);
+      worker.postMessage({call, words});
+    });
+  }
+  bake(...words) {
+    return this.ask('bake', ...words);
+  }
+  smaller(...words) {
+    return this.ask('smaller', ...words);
+  }
+  end() {
+    this.worker.terminate();
+  }
+}
+
+if (typeof module !== 'undefined') {
+  var {Look, BAND_ROWS} = require('./look.js');
+  var {Baker, BakeError} = require('./baker.js');
+  module.exports = {Crew, FarBaker, workerSource};
+}

@@ -1,0 +1,49 @@
+// A scene to look around in (viewer.cpp): an instance of scene.wasm with bytes of its own, in the page and in each of
+// its workers.
+'use strict';
+
+// Rows of a band: what a worker draws before it hears that the view has moved.
+const BAND_ROWS = {lit: 4, fine: 1};
+
+class Look {
+  constructor(module, baked, width, height) {
+    this.x = new WebAssembly.Instance(module, {env: {
+      flush() {}, running: () => 0, buttons: () => 0, read: () => -1, write() {}, microseconds: () => 0,
+    }}).exports;
+    this.stride = 3 * width;
+    this.height = height;
+    const at = this.x.room(baked.length, width, height);
+    if (at === 0) throw new Error('there is no memory for it here');
+    new Uint8Array(this.x.memory.buffer).set(baked, at);
+    const wrong = this.x.open();
+    if (wrong !== 0) {
+      const memory = new Uint8Array(this.x.memory.buffer);
+      throw new Error(new TextDecoder().decode(memory.slice(wrong, memory.indexOf(0, wrong))));
+    }
+  }
+  // The scene's own eye or target, in 1/256 voxel.
+  point(ofTarget) {
+    return [0, 1, 2].map((axis) => this.x.own_camera(ofTarget, axis));
+  }
+  // False, and the view as it was, where there is no such camera (Orbit.camera()).
+  see({eye, target, zoom, own}) {
+    return this.x.look(...eye, ...target, zoom, own) !== 0;
+  }
+  // Every `step`-th pixel of the whole picture, without light.
+  fast(step) {
+    this.x.draw(0, this.height, step, false);
+  }
+  // A band with all of the light, 'fine' with four samples a pixel.
+  band(kind, first, rows) {
+    if (kind === 'lit') this.x.draw(first, rows, 1, true);
+    else for (let row = first; row < first + rows; ++row) this.x.draw_fine(row);
+  }
+  // Rows of the picture where they lie; the next call may move them.
+  rows(first, end) {
+    return new Uint8Array(this.x.memory.buffer, this.x.picture() + first * this.stride, (end - first) * this.stride);
+  }
+}
+
+if (typeof module !== 'undefined') {
+  module.exports = {Look, BAND_ROWS};
+}

@@ -1,0 +1,105 @@
+// A scene to look around in, drawn by workers: the pictures of one thread, and what a change of view leaves of them.
+'use strict';
+const {Worker} = require('worker_threads');
+const {Crew, FarBaker, workerSource} = require('../../platform/web/crew.js');
+const {Look, BAND_ROWS} = require('../../platform/web/look.js');
+const {Orbit} = require('../../platform/web/orbit.js');
+const {test, is, holds} = require('./check.js');
+
+// A worker of Node with the face of a browser's, running the page's own source.
+function hire() {
+  const worker = new Worker(`const {parentPort} = require('worker_threads');
+    const self = {postMessage: (...words) => parentPort.postMessage(...words)};
+    parentPort.on('message', (data) => self.onmessage({data}));\n${workerSource()}`, {eval: true});
+  const face = {
+    postMessage: (data) => worker.postMessage(data),
+    terminate: () => worker.terminate(),
+  };
+  worker.on('message', (data) => face.onmessage({data}));
+  worker.on('error', (error) => face.onerror(error));
+  return face;
+}
+const differ = (a, b) => Buffer.compare(Buffer.from(a), Buffer.from(b)) !== 0;
+
+async function crews(modules, bake, scene, files) {
+  const [width, height] = [61, 39];
+  const {baked} = bake(scene, files);
+  const facts = {module: modules.scene, scene: baked, width, height};
+  const here = new Look(modules.scene, baked, width, height);
+  const orbit = new Orbit(here.point(false), here.point(true), 1 << here.x.level());
+  const views = [orbit.camera(), (orbit.turn(0.7, 0.2), orbit.camera()), (orbit.approach(0.6), orbit.camera())];
+  const alone = (camera, kind) => {
+    here.see(camera);
+    for (let row = 0; row < height; row += BAND_ROWS[kind]) here.band(kind, row, Math.min(BAND_ROWS[kind], height - row));
+    return here.rows(0, height).slice();
+  };
+  for (const size of [1, 3]) {
+    await test(`${scene} drawn by ${size} workers is the picture of one thread`, async () => {
+      const picture = new Uint8Array(3 * width * height);
+      let ended = () => {};
+      const crew = new Crew(Array.from({length: size}, hire), facts, {
+        onBand: (first, bytes) => picture.set(bytes, 3 * width * first),
+        onEnd: () => ended(), onFault: () => ended(),
+      });
+      for (const camera of views) {
+        for (const kind of ['lit', 'fine']) {
+          picture.fill(1);
+          await new Promise((done) => { ended = done; crew.draw(camera, kind); });
+          is(`${kind}: bytes differ`, differ(picture, alone(camera, kind)), false);
+        }
+      }
+      crew.end();
+    });
+  }
+  await test(`${scene}: a view that is left costs the bands under way, and leaves none behind`, async () => {
+    const picture = new Uint8Array(3 * width * height);
+    let ended = () => {};
+    let bands = 0;
+    const crew = new Crew([hire(), hire()], facts, {
+      onBand: (first, bytes) => { ++bands; picture.set(bytes, 3 * width * first); }, onEnd: () => ended(), onFault: () => ended(),
+    });
+    await new Promise((done) => { ended = done; crew.draw(views[0], 'fine'); });
+    crew.draw(views[1], 'fine');
+    crew.draw(views[2], 'lit');
+    bands = 0;
+    picture.fill(1);
+    await new Promise((done) => { ended = done; });
+    is('rows that are left', crew.left, 0);
+    is('bytes differ', differ(picture, alone(views[2], 'lit')), false);
+    is('bands', bands, Math.ceil(height / BAND_ROWS.lit));
+    is('thrown away', crew.thrownAway, 2);
+    crew.draw(views[0], 'lit');
+    crew.stop();
+    bands = 0;
+    while (crew.idle.size < 2) await new Promise((done) => setTimeout(done, 5));
+    is('bands after stop', bands, 0);
+    crew.end();
+  });
+  await test('a worker that fails is told once, and the page draws on its own', async () => {
+    let faults = 0;
+    const workers = [hire(), hire()];
+    await new Promise((done) => {
+      const crew = new Crew(workers, {...facts, scene: Uint8Array.from([1, 2, 3])},
+        {onBand() {}, onEnd() {}, onFault: () => { ++faults; done(); }});
+      crew.draw(views[0], 'lit');
+    });
+    await new Promise((done) => setTimeout(done, 100));
+    is('faults', faults, 1);
+  });
+  await test('bakes in a worker are those of the page, sentences too', async () => {
+    const far = new FarBaker(hire(), modules.bake, []);
+    is('bytes differ', differ((await far.bake('spheres', {index: 0})).baked, bake('spheres', [], 0).baked), false);
+    const said = await far.bake('nothing.vox', {index: 0}).catch((error) => error.message);
+    let wanted = '';
+    try {
+      bake('nothing.vox', [], 0);
+    } catch (error) {
+      wanted = error.message;
+    }
+    is('the sentence', said, wanted);
+    holds('there is one', wanted.length > 10);
+    far.end();
+  });
+}
+
+module.exports = {crews};

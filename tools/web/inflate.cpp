@@ -1,0 +1,87 @@
+// What readers inflate inside a file (readers/file_bytes.h), by stb's decoder in place of zlib, which Debian has
+// compiled for the host alone. It does not compare check sums.
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "readers/file_bytes.h"
+
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Weverything"
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_NO_JPEG
+#define STBI_NO_PNG
+#define STBI_NO_BMP
+#define STBI_NO_PSD
+#define STBI_NO_TGA
+#define STBI_NO_GIF
+#define STBI_NO_HDR
+#define STBI_NO_PIC
+#define STBI_NO_PNM
+#define STBI_NO_LINEAR
+#define STBI_NO_STDIO
+#define STBI_NO_THREAD_LOCALS
+#define STBI_NO_SIMD
+#define STBI_SUPPORT_ZLIB
+#include <stb/stb_image.h>
+#pragma clang diagnostic pop
+
+namespace thimble::tools {
+namespace {
+
+struct Inflated {
+  std::unique_ptr<char, void (*)(void*)> bytes{nullptr, std::free};
+  std::size_t size = 0;
+  bool is_whole = false;
+};
+
+/// Into `room` bytes, and more where they may `grow`.
+Inflated inflate(std::span<const std::uint8_t> packed, Deflated frame, std::size_t room, bool grow) {
+  Inflated out;
+  out.bytes.reset(static_cast<char*>(std::malloc(room)));
+  if (out.bytes == nullptr || packed.size() > INT32_MAX) {
+    throw InputError("does not fit the memory that the browser gives");
+  }
+  // The decoder looks two bytes past the last code; zlib's frame has four there.
+  std::vector<stbi_uc> padded;
+  if (frame == Deflated::kBare) {
+    padded.reserve(packed.size() + sizeof(std::uint32_t));
+    padded.assign(packed.begin(), packed.end());
+    padded.resize(packed.size() + sizeof(std::uint32_t));
+    packed = padded;
+  }
+  stbi__zbuf buffer{};
+  buffer.zbuffer = const_cast<stbi_uc*>(packed.data());
+  buffer.zbuffer_end = buffer.zbuffer + packed.size();
+  out.is_whole = stbi__do_zlib(&buffer, out.bytes.release(), static_cast<int>(room), grow ? 1 : 0,
+                               frame == Deflated::kZlib ? 1 : 0) != 0;
+  out.bytes.reset(buffer.zout_start);
+  out.size = static_cast<std::size_t>(buffer.zout - buffer.zout_start);
+  return out;
+}
+
+FileBytes file_of(const Inflated& inflated) {
+  return FileBytes::copy_of({reinterpret_cast<const std::uint8_t*>(inflated.bytes.get()), inflated.size});
+}
+
+}  // namespace
+
+FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
+                        const std::string& place) {
+  const Inflated inflated = inflate(packed, frame, std::size_t{1} << 16, true);
+  if (!inflated.is_whole) {
+    throw InputError(place + ": the deflated data is damaged or truncated");
+  }
+  if (inflated.size > limit_bytes) {
+    throw InputError("holds more than the limit of " + std::to_string(limit_bytes) + " bytes");
+  }
+  return file_of(inflated);
+}
+
+FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
+  return file_of(inflate(packed, frame, static_cast<std::size_t>(count), false));
+}
+
+}  // namespace thimble::tools
