@@ -80,6 +80,7 @@ check() {
       ;;
     readme_program) sh "$here/readme_program.sh" "$tree" "$work/program" "$work/libempty.a" ;;
     readme_commands) sh "$here/readme_commands.sh" "$tree" "$work/bin" "$work/commands" ;;
+    panel_formats) sh "$here/panel_formats.sh" "$tree" "$work/formats" ;;
     *) sh "$here/$1.sh" "$tree" ;;
   esac >"$log" 2>&1
 }
@@ -256,6 +257,27 @@ for target in cortex-m0 cortex-m3 rv32; do
   add src/base/sum.cpp 'double scale(double a) { return a * 3; }'
   catches core.$target 'dmul\|muldf3'
 done
+
+# Formats of panels that are left out. formats WORD...: a source that stores nine of them, behind WORD each.
+formats() {
+  mkdir -p "$tree/src/picture"
+  {
+    echo 'constexpr bool has_format(int number) { return (THIMBLE_PANEL_FORMATS >> number & 1U) != 0; }'
+    echo 'void store(volatile int* to) {'
+    for number in 5 6 7 8 9 10 11 12 13; do
+      case " $* " in *" $number "*) echo "  *to = $number;" ;; *) echo "  if (has_format($number)) { *to = $number; }" ;; esac
+    done
+    echo '  static_cast<void>(to);'
+    echo '}'
+  } >"$tree/src/picture/panel_store.cpp"
+}
+catches panel_formats 'no source of src asks has_format'
+formats
+passes panel_formats
+formats 7
+catches panel_formats 'panel_store.cpp takes .* bytes in an image without formats of panels'
+formats 5 6 7 8 9 10 11 12 13
+catches panel_formats 'panel_store.cpp takes .* bytes without formats of panels'
 
 # What is written in C: its header, and programs with a budget.
 catches c_header 'there is no include/thimble/thimble_c.h'
