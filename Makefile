@@ -89,8 +89,7 @@ test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzin
 test-threads: deps-test ## Run what draws in several threads under ThreadSanitizer (std::thread in place of oneTBB)
 	@$(CONFIGURE) -B build/threads -DTHIMBLE_SANITIZE_THREADS=ON -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@.ci/build "build for ThreadSanitizer" build/threads thimble_tests
-	@build/threads/thimble_tests --source-file='*/wide/test_*,*/tree/test_key_sort*,*/viewer/test_*'
-	@build/threads/thimble_tests --test-case='*threads*,*who draws*'
+	@build/threads/thimble_tests
 
 # COUNT rays, the first random number SEED.
 ranges: deps-test ## Measure how large the core's numbers become, beside what is promised (COUNT=1000000)

@@ -103,11 +103,29 @@ class TextScene final : public SceneSource {
   LitDescription lighting() const override { return lit_; }
 
   void stream(const VoxelSink& sink, const Progress& progress) const override {
+    stream_blocks(
+        [&](const Vec3i& at, int level, std::uint8_t material) {
+          const std::int32_t size = std::int32_t{1} << level;
+          for (std::int32_t z = at.z; z < at.z + size; ++z) {
+            for (std::int32_t y = at.y; y < at.y + size; ++y) {
+              for (std::int32_t x = at.x; x < at.x + size; ++x) {
+                sink(x, y, z, material);
+              }
+            }
+          }
+        },
+        progress);
+  }
+
+  void stream_blocks(const VisitBlock& visit, const Progress& progress) const override {
     std::uint64_t done = 0;
-    const VoxelSink counted = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-      sink(x, y, z, material);
+    std::uint64_t told = 0;
+    const VisitBlock counted = [&](const Vec3i& at, int level, std::uint8_t material) {
+      visit(at, level, material);
       constexpr std::uint64_t kEvery = 1 << 16;
-      if (++done % kEvery == 0 && progress) {
+      done += std::uint64_t{1} << (3 * level);
+      if (done - told >= kEvery && progress) {
+        told = done;
         progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(voxels_)));
       }
     };
@@ -134,46 +152,71 @@ class TextScene final : public SceneSource {
     return within(voxel.x) && within(voxel.y) && within(voxel.z);
   }
 
-  void stream_model(const Placement& model, const VoxelSink& sink) const {
+  void stream_model(const Placement& model, const VisitBlock& visit) const {
     model.model->source->stream(
         [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
           const Vec3i at = placed(model, {x, y, z});
           if (inside(at)) {
-            sink(at.x, at.y, at.z, model.material[material]);
+            visit(at, 0, model.material[material]);
           }
         },
         {});
   }
 
-  void stream_box(const SceneText::Part& part, std::uint8_t material, const VoxelSink& sink) const {
-    const VoxelBox box = cut(box_of(part), side());
-    for (std::int32_t z = box.low.z; z < box.high.z; ++z) {
-      for (std::int32_t y = box.low.y; y < box.high.y; ++y) {
-        for (std::int32_t x = box.low.x; x < box.high.x; ++x) {
-          sink(x, y, z, material);
-        }
-      }
+  // How much of a block a part fills. A single voxel is never filled in part.
+  enum class Filled : std::uint8_t { kNothing, kSome, kAll };
+
+  // Visits the largest blocks that a part fills: those within the block at `corner` for which `filled(corner, level)`
+  // says so.
+  template <class HowFilled>
+  static void stream_filled(const Vec3i& corner, int level, const HowFilled& filled, std::uint8_t material,
+                            const VisitBlock& visit) {
+    const Filled how = filled(corner, level);
+    if (how == Filled::kAll) {
+      visit(corner, level, material);
+    }
+    for (int octant = 0; how == Filled::kSome && octant < 8; ++octant) {
+      const std::int32_t half = std::int32_t{1} << (level - 1);
+      stream_filled({corner.x + (octant & 1) * half, corner.y + (octant >> 1 & 1) * half,
+                     corner.z + (octant >> 2) * half},
+                    level - 1, filled, material, visit);
     }
   }
 
-  // The voxels whose centres lie in the ball.
-  void stream_ball(const SceneText::Part& part, std::uint8_t material, const VoxelSink& sink) const {
+  void stream_box(const SceneText::Part& part, std::uint8_t material, const VisitBlock& visit) const {
     const VoxelBox box = cut(box_of(part), side());
-    const auto squared = [&](std::int32_t voxel, int axis) {
-      const std::int64_t away = std::int64_t{voxel} * Q8::kOne + Q8::kOne / 2 - part.center[axis].raw;
-      return away * away;
-    };
-    const std::int64_t reach = std::int64_t{part.radius_q8} * part.radius_q8;
-    for (std::int32_t z = box.low.z; z < box.high.z; ++z) {
-      for (std::int32_t y = box.low.y; y < box.high.y; ++y) {
-        const std::int64_t left = reach - squared(y, 1) - squared(z, 2);
-        for (std::int32_t x = box.low.x; left >= 0 && x < box.high.x; ++x) {
-          if (squared(x, 0) <= left) {
-            sink(x, y, z, material);
-          }
+    const auto filled = [&](const Vec3i& corner, int level) {
+      bool within = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t low = corner[axis];
+        const std::int32_t high = low + (std::int32_t{1} << level);
+        if (low >= box.high[axis] || high <= box.low[axis]) {
+          return Filled::kNothing;
         }
+        within = within && low >= box.low[axis] && high <= box.high[axis];
       }
-    }
+      return within ? Filled::kAll : Filled::kSome;
+    };
+    stream_filled({}, level_, filled, material, visit);
+  }
+
+  // The voxels whose centres lie in the ball.
+  void stream_ball(const SceneText::Part& part, std::uint8_t material, const VisitBlock& visit) const {
+    const std::int64_t reach = std::int64_t{part.radius_q8} * part.radius_q8;
+    const auto filled = [&](const Vec3i& corner, int level) {
+      std::int64_t nearest = 0;
+      std::int64_t farthest = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        // From the ball's centre to the centres of the block's first and last voxel.
+        const std::int64_t first =
+            std::int64_t{corner[axis]} * Q8::kOne + Q8::kOne / 2 - part.center[axis].raw;
+        const std::int64_t last = first + ((std::int64_t{1} << level) - 1) * Q8::kOne;
+        nearest += first > 0 ? first * first : last < 0 ? last * last : 0;
+        farthest += std::max(first * first, last * last);
+      }
+      return farthest <= reach ? Filled::kAll : nearest > reach ? Filled::kNothing : Filled::kSome;
+    };
+    stream_filled({}, level_, filled, material, visit);
   }
 
   void add_model(const SceneText::Part& part, const std::string& own_path, SceneOpening* opening,

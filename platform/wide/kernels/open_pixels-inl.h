@@ -16,10 +16,12 @@ namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
 // Tells which of the pixels (x .. x + 31, y) are open, a bit each. Bits right of the picture and lanes
-// outside `mask` mean nothing.
-HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) {
+// outside `mask` mean nothing; these look at `own_row`, since other rows may be another thread's.
+HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y,
+                                int32_t own_row) {
   const U32 d;
-  const auto word = hn::IfThenElseZero(hn::RebindMask(d, mask), word_of(depths, x, y));
+  const auto own = hn::Set(d, static_cast<uint32_t>(own_row - depths.first_row));
+  const auto word = hn::IfThenElse(hn::RebindMask(d, mask), word_of(depths, x, y), own);
   const auto column = hn::And(x, hn::Set(d, 31U));
 #if HWY_TARGET == HWY_SCALAR
   const auto covered = hn::Set(d, depths.covered[hn::GetLane(word)]);
@@ -40,6 +42,7 @@ class OpenPixels {
  public:
   // `reach`: 0, 2, 4 or 8, for near().
   OpenPixels(const Depths& depths, const Rectangle& where, uint32_t reach = 0) : depths_(depths) {
+    first_row_ = where.y0;
     small_ = where.x1 - where.x0 <= 32 && where.y1 - where.y0 <= 32;
     if (!small_) {
       return;
@@ -85,7 +88,7 @@ class OpenPixels {
     if (small_) {
       return look_up(rows_, x, y);
     }
-    return open_at(depths_, mask, x, y);
+    return open_at(depths_, mask, x, y, first_row_);
   }
   // Tells in the lowest bit whether any of the `reach` by `reach` pixels from (x, y) on is open. Only for a
   // small rectangle.
@@ -112,6 +115,7 @@ class OpenPixels {
   Rectangle bounds_{0, 0, 0, 0};
   uint32_t x0_ = 0;
   uint32_t y0_ = 0;
+  int32_t first_row_ = 0;
   alignas(64) uint32_t rows_[32];
   alignas(64) uint32_t near_[32];
 };

@@ -35,7 +35,7 @@ HWY_INLINE void pair_vector(const WideFrame& frame, const Depths& depths, hn::Ma
     auto open = hn::Set(du, UINT32_MAX);
     const bool rejects = batch->all_behind && !*written;
     if (rejects) {
-      open = open_at(depths, in_row, x, hn::Add(y, hn::Set(du, down)));
+      open = open_at(depths, in_row, x, hn::Add(y, hn::Set(du, down)), frame.tile.y0);
     }
     for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
       auto chosen = in_column;
