@@ -218,6 +218,24 @@ TEST_CASE("render look: strewn points -> stars on black, brighter where there ar
   CHECK(bright > 20);
 }
 
+TEST_CASE("render look: strewn points as dark as the night -> stars that can be seen all the same") {
+  const TemporaryFolder folder;
+  std::string points =
+      "ply\nformat ascii 1.0\nelement vertex 64\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  for (int i = 0; i < 64; ++i) {
+    points +=
+        std::to_string(i % 4) + " " + std::to_string(i / 4 % 4) + " " + std::to_string(i / 16) + " 0 0 0\n";
+  }
+  const Drawn drawn = draw(folder.write("black.ply", points), {"--quiet"});
+  CHECK(drawn.stats["engine"] == "stars");
+  std::uint64_t seen = 0;
+  for (std::size_t i = 0; i < drawn.pixels.size(); i += 3) {
+    seen += byte_at(drawn.pixels, i) > 40 ? 1U : 0U;
+  }
+  CHECK(seen > 64);
+}
+
 TEST_CASE("render look: nothing in the scene -> the backdrop, and no crash") {
   CHECK(draw("points:0,depth=4", {"--quiet"}).stats["hits"] == 0);
   CHECK(draw("points:1,depth=12", {"--quiet"}).pixels.size() == 3 * 80 * 60);
