@@ -199,6 +199,9 @@ class TextScene final : public SceneSource {
         kept = survey(open_scene(arguments, opening, progress));
       }
       model.model = kept;
+      for (const std::string& file : kept->source->files()) {
+        add_file(file);
+      }
     } catch (const InputError& error) {
       fail_at(part.file_place, printable(part.file) + ": " + error.what());
     }
