@@ -279,6 +279,11 @@ class BakedFileScene final : public SceneSource {
   std::uint64_t points() const override { return tree().voxel_count(); }
   bool is_point_set() const override { return false; }
   bool single_material() const override { return !tree().many_materials() && tree().uniform_material() == 0; }
+  bool has_colors() const override {
+    const Rgb plain = default_material().color;
+    const Rgb first = palette_[0].color;
+    return !single_material() || first.r != plain.r || first.g != plain.g || first.b != plain.b;
+  }
   bool is_scalable() const override { return false; }
   const SceneCamera* camera() const override {
     return file_.scene.has_camera() ? &file_.scene.camera() : nullptr;

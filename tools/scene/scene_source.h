@@ -36,6 +36,8 @@ class SceneSource {
   /// One past the greatest index on each axis that can occur: what a dense grid must hold.
   virtual std::array<std::int32_t, 3> extent() const;
   virtual const Palette& palette() const = 0;
+  /// Whether what it is read from says its colours, be it only one.
+  virtual bool has_colors() const { return !single_material(); }
   /// Whether another --depth shows the same scene finer or coarser.
   virtual bool is_scalable() const { return true; }
   /// The camera that the scene brings along, or null: a baked one, or a generator's own.
