@@ -80,6 +80,7 @@ enum class EventKind : std::uint8_t {
   kMouseUp,    ///< `button`, `x_px`, `y_px`
   kWheel,      ///< `steps`, `x_px`, `y_px`
   kResize,     ///< the screen has another size; `Screen::width_px` and `height_px` say which
+  kDrop,       ///< `path`: a file that was dragged here from another program
   kClose,      ///< the user wants to end, or the screen is gone
 };
 
@@ -95,6 +96,7 @@ struct Event {
   std::uint8_t button = 0;   ///< 1 left, 2 middle, 3 right
   std::uint8_t buttons = 0;  ///< buttons held after this event: bit 0 left, bit 1 middle, bit 2 right
   std::int32_t steps = 0;    ///< away from the user is above 0
+  std::string path{};        ///< of a file; the program only reads it
   bool shift = false;        ///< of the mouse's events: whether shift is held
 };
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "host/canvas.h"
+#include "host/window_drops.h"
 
 namespace thimble::host {
 namespace {
@@ -135,6 +136,7 @@ class Window final : public Screen {
   Colormap colors_ = 0;
   GC context_ = nullptr;
   Atom close_atom_ = 0;
+  WindowDrops drops_;
   bool lost_ = false;    // the server is gone
   bool closed_ = false;  // somebody else destroyed the window
 
@@ -241,6 +243,7 @@ void Window::open(const ScreenOptions& options) {
 
   close_atom_ = XInternAtom(display_, "WM_DELETE_WINDOW", False);
   XSetWMProtocols(display_, window_, &close_atom_, 1);
+  drops_.announce(display_, window_);
   char name[] = "thimble";
   XClassHint hint{name, name};
   XSetClassHint(display_, window_, &hint);
@@ -426,6 +429,16 @@ void Window::take_button(const XButtonEvent& event, bool is_down) {
 }
 
 void Window::take(XEvent& event) {
+  std::optional<std::string> path;
+  if (drops_.take(event, &path)) {
+    if (path) {
+      Event dropped;
+      dropped.kind = EventKind::kDrop;
+      dropped.path = *path;
+      events_.push_back(dropped);
+    }
+    return;
+  }
   switch (event.type) {
     case KeyPress:
     case KeyRelease:

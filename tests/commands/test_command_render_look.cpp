@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -216,6 +217,48 @@ TEST_CASE("render look: strewn points -> stars on black, brighter where there ar
   }
   CHECK(dark > 80 * 60 / 4);
   CHECK(bright > 20);
+}
+
+TEST_CASE("render look: strewn points as dark as the night -> stars that can be seen all the same") {
+  const TemporaryFolder folder;
+  std::string points =
+      "ply\nformat ascii 1.0\nelement vertex 64\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  for (int i = 0; i < 64; ++i) {
+    points +=
+        std::to_string(i % 4) + " " + std::to_string(i / 4 % 4) + " " + std::to_string(i / 16) + " 0 0 0\n";
+  }
+  const Drawn drawn = draw(folder.write("black.ply", points), {"--quiet"});
+  CHECK(drawn.stats["engine"] == "stars");
+  std::uint64_t seen = 0;
+  for (std::size_t i = 0; i < drawn.pixels.size(); i += 3) {
+    seen += byte_at(drawn.pixels, i) > 40 ? 1U : 0U;
+  }
+  CHECK(seen > 64);
+}
+
+TEST_CASE("render look: one colour that a text says -> is drawn in it, baked too; none -> clay") {
+  const TemporaryFolder folder;
+  const auto middle = [](const std::string& scene) {
+    const Drawn drawn = draw(scene, {"--quiet"});
+    const std::size_t at = 3 * (80 * 30 + 40);
+    return std::array{byte_at(drawn.pixels, at), byte_at(drawn.pixels, at + 1),
+                      byte_at(drawn.pixels, at + 2)};
+  };
+  const std::string red =
+      folder.write("red.scene", "material a color 220 20 20\nbox a from 0 0 0 to 8 8 8\n");
+  const auto lit = middle(red);
+  CHECK(lit[0] > 3 * lit[1]);
+  REQUIRE(run_command({"bake", red, "-o", folder.path("red.oct"), "--quiet"}).status == 0);
+  const auto baked = middle(folder.path("red.oct"));
+  CHECK(baked[0] > 3 * baked[1]);
+  folder.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nf 1 2 3\nf 1 3 4\nf 1 2 4\nf 2 3 4\n");
+  const auto clay = middle(folder.write("clay.scene", "model cube.obj depth 4\n"));
+  CHECK(clay[0] < 2 * clay[1]);
+  CHECK(clay[0] > clay[2]);
+  const auto replaced = middle(
+      folder.write("replaced.scene", "material a color 220 20 20\nmodel cube.obj depth 4 replace all a\n"));
+  CHECK(replaced[0] > 3 * replaced[1]);
 }
 
 TEST_CASE("render look: nothing in the scene -> the backdrop, and no crash") {

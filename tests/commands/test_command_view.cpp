@@ -293,6 +293,111 @@ TEST_CASE(
   CHECK(viewing.wait() == 0);
 }
 
+TEST_CASE("view: a model that a scene names changes -> the scene is read again") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  folder.write("dots.xyz", "0 0 0\n9 9 9\n");
+  folder.write("whole.scene", "model dots.xyz as-voxels at 2 2 2\n");
+  Viewing viewing(folder, {"whole.scene", "--size", "200x150", "--samples", "1"});
+  REQUIRE(point_into(display));
+  const auto saved = [&](const std::string& name) {
+    REQUIRE(display.xdotool("key s"));
+    REQUIRE(viewing.prints("-o " + name));
+    return read_text(folder.path(name));
+  };
+  const std::string first = saved("whole.png");
+  folder.write("dots.xyz", "0 0 0\n9 9 9\n4 5 4\n3 3 3\n");
+  std::string last;
+  CHECK(wait_until(20, [&] {
+    static int number = 1;
+    last = saved("whole-" + std::to_string(++number) + ".png");
+    return last != first;
+  }));
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+  CHECK(viewing.err().empty());
+}
+
+TEST_CASE(
+    "view: a file is dropped on the window -> it is opened, and nothing is kept; other things are not") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  folder.write("first.xyz", "0 0 0\n9 9 9\n");
+  const std::string other = folder.write("an other.xyz", "0 0 0\n1 5 9\n4 4 4\n");
+  Viewing viewing(folder, {"first.xyz", "--size", "200x150", "--view", "front"});
+  REQUIRE(point_into(display));
+  const auto names = folder.names();
+  CHECK_FALSE(display.drop("words", false));
+  CHECK_FALSE(display.drop("http://nowhere.invalid/a.vox\r\n"));
+  CHECK(display.drop("file:///nowhere/at%20all.vox\r\n"));
+  CHECK(viewing.complains("/nowhere/at all.vox cannot be read"));
+  std::string path = other;
+  path.replace(path.find(' '), 1, "%20");
+  CHECK(display.drop("file://" + path + "\r\n"));
+  CHECK(display.xdotool("search --sync --name 'an other.xyz'"));
+  CHECK(folder.names() == names);
+  REQUIRE(display.xdotool("key s"));
+  REQUIRE(viewing.prints("-o an-other.png"));
+  const std::string line = line_with(viewing.out(), "-o an-other.png");
+  CHECK(line.find("--view front") != std::string::npos);
+  CHECK(std::system(("cd " + folder.path() + " && '" THIMBLE_COMMAND_PATH "'" +
+                     line.substr(line.find(' '), line.find(" -o") - line.find(' ')) +
+                     " -o again.png --quiet && cmp -s again.png an-other.png")
+                        .c_str()) == 0);
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+}
+
+TEST_CASE(
+    "view: an animation -> its frames play, space stops them; what is saved is the frame that was shown") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  // Models without a scene graph are frames: a voxel that walks along x.
+  const auto u32 = [](std::size_t value) {
+    return std::string{static_cast<char>(value), static_cast<char>(value >> 8), 0, 0};
+  };
+  const auto chunk = [&](const std::string& name, const std::string& content) {
+    return name + u32(content.size()) + u32(0) + content;
+  };
+  std::string models;
+  for (char frame = 0; frame < 8; ++frame) {
+    models += chunk("SIZE", u32(8) + u32(8) + u32(8)) + chunk("XYZI", u32(1) + std::string{frame, 0, 0, 1});
+  }
+  folder.write("walk.vox", "VOX " + u32(150) + "MAIN" + u32(0) + u32(models.size()) + models);
+  Viewing viewing(folder, {"walk.vox", "--size", "200x150"});
+  REQUIRE(point_into(display));
+  const auto frame_saved = [&](const std::string& name) {
+    REQUIRE(display.xdotool("key s"));
+    REQUIRE(viewing.prints("-o " + name));
+    const std::string line = line_with(viewing.out(), "-o " + name);
+    check_same_picture(folder, line);
+    return first_number_after(words_of(line), "--frame");
+  };
+  double first = 0;
+  CHECK(wait_until(20, [&] {  // it plays by itself
+    static int number = 0;
+    first = frame_saved(++number == 1 ? "walk.png" : "walk-" + std::to_string(number) + ".png");
+    return first >= 1 && first <= 7;
+  }));
+  REQUIRE(display.xdotool("key space sleep 0.5"));
+  const std::size_t taken = folder.names().size();
+  const double stopped = frame_saved("walk-" + std::to_string(taken - 3) + ".png");
+  CHECK(display.xdotool("sleep 0.5"));
+  CHECK(frame_saved("walk-" + std::to_string(taken - 2) + ".png") == stopped);
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+  CHECK(viewing.err().empty());
+}
+
 TEST_CASE("view: without a display, in a terminal -> drawn there; keys, saving, Escape") {
   const TemporaryFolder folder;
   Pty pty(80, 24, [&] {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 #include "scene/default_look.h"
@@ -65,6 +66,34 @@ TEST_CASE("look: from every side -> the sun shines on what faces the viewer") {
     CHECK(facing > 0);
     CHECK(look.toward_sun == sun);
   }
+}
+
+TEST_CASE(
+    "look: a wide side -> the sun is over the shoulder on whose side it is seen; else over the left one") {
+  // How far to the picture's right, seen from the front.
+  const auto to_right = [](const VoxelBox& box, const Vec3i& forward) {
+    SceneFacts facts = colored();
+    facts.bounds = box;
+    const Vec3i sun = default_look(facts, {}, looking(forward), 800, 600).toward_sun;
+    return std::int64_t{sun.x} * forward.y - std::int64_t{sun.y} * forward.x;
+  };
+  const VoxelBox wide{{0, 0, 0}, {64, 8, 16}};
+  const VoxelBox long_one{{0, 0, 0}, {8, 64, 16}};
+  const VoxelBox cube{{0, 0, 0}, {16, 16, 16}};
+  const Vec3i from_left{500000, 800000, -400000};
+  const Vec3i from_right{-500000, 800000, -400000};
+  CHECK(to_right(wide, from_left) > 0);
+  CHECK(to_right(wide, from_right) < 0);
+  CHECK(to_right(long_one, from_left) < 0);
+  CHECK(to_right(long_one, from_right) > 0);
+  CHECK(to_right(wide, {-500000, -800000, -400000}) > 0);  // the same from behind
+  CHECK(to_right(cube, from_left) < 0);
+  CHECK(to_right(cube, from_right) < 0);
+  CHECK(to_right({}, from_left) < 0);
+  SceneFacts facts = colored();
+  facts.bounds = wide;
+  const Vec3i sun = default_look(facts, {}, looking(from_left), 800, 600).toward_sun;
+  CHECK(-sun.y > std::abs(sun.x));  // it shines on the front
 }
 
 TEST_CASE("look: a mesh or a surface of points without colours -> clay; strewn points -> stars") {

@@ -30,6 +30,9 @@ class VirtualDisplay {
   Rgb8 pixel(int x, int y) const;
   /// Sends the window on top what a window manager sends when its close button is pressed.
   void press_close_button() const;
+  /// Drags onto the window on top, as a file manager does (XDND), what this text/uri-list names, and lets go;
+  /// with `is_file` false it is plain text. Whether the window took it.
+  bool drop(const std::string& uri_list, bool is_file = true) const;
   /// Runs xdotool with these words of a shell; whether it succeeded.
   bool xdotool(const std::string& words) const;
 

@@ -149,6 +149,7 @@ TEST_CASE("viewer: Escape, q and the close button end; each key of the table doe
   CHECK(controls.take(typed(U'q'), 0, kHeight) == Action::kEnd);
   CHECK(controls.take({.kind = EventKind::kClose}, 0, kHeight) == Action::kEnd);
   CHECK(controls.take(typed(U'?'), 0, kHeight) == Action::kHelp);
+  CHECK(controls.take(typed(U' '), 0, kHeight) == Action::kPlay);
   CHECK(controls.take(typed(U'0'), 0, kHeight) == Action::kFirstView);
   CHECK(controls.take(typed(U'5'), 0, kHeight) == Action::kTop);
   CHECK(controls.take(typed(U'x'), 0, kHeight) == Action::kNone);

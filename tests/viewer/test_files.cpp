@@ -72,6 +72,9 @@ TEST_CASE("saving: the command -> only what is not the default, quoted where a s
   view.side = NamedView::kBest;
   CHECK(render_command(scene, view, {}, "a.png") ==
         "thimble render 'it'\\''s a castle.vox' --depth 7 --size 640x480 -o a.png");
+  scene.frame = 3;
+  CHECK(render_command(scene, view, {}, "a.png") ==
+        "thimble render 'it'\\''s a castle.vox' --depth 7 --frame 3 --size 640x480 -o a.png");
   view.placed = true;
   view.eye = {-1.5, 2, 1.0 / 8};
   view.target = {0, 0, 0};
@@ -103,6 +106,27 @@ TEST_CASE("file watch: changed and then still -> once; while it is written, gone
   CHECK_FALSE(changed());
   CHECK(changed());
   CHECK_FALSE(watch.has_changed(time + 0.01));  // too soon to look
+  // Several: any of them counts, once all rest and none is gone.
+  const std::string other = folder.path("b.vox");
+  watch.watch({path, other});  // not there yet
+  CHECK_FALSE(changed());
+  folder.write("b.vox", "new");
+  CHECK_FALSE(changed());
+  CHECK(changed());
+  folder.write("b.vox", "newer");
+  std::filesystem::remove(path);
+  CHECK_FALSE(changed());
+  CHECK_FALSE(changed());
+  folder.write("a.vox", "back");
+  CHECK_FALSE(changed());
+  CHECK(changed());
+  folder.write("b.vox", "changed between");
+  watch.watch({other});  // what was known of it stays known
+  CHECK_FALSE(changed());
+  CHECK(changed());
+  folder.write("a.vox", "no longer watched");
+  CHECK_FALSE(changed());
+  CHECK_FALSE(changed());
   FileWatch none("points:1000");
   CHECK_FALSE(none.has_changed(1));
   CHECK_FALSE(none.has_changed(2));

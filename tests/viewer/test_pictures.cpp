@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <thread>
 #include <vector>
@@ -128,6 +130,32 @@ TEST_CASE("refinement: coarse to fine -> ends at the rows of the finished pictur
   }
   CHECK(cancelled.has_ended());
   CHECK_FALSE(cancelled.is_finished());
+}
+
+TEST_CASE("fast frames: after a finished picture -> as bright as it, in the mean") {
+  const auto scene = scene_of("castle");
+  const auto look = std::make_shared<const FinishedLook>(scene, viewer::LookWishes{});
+  std::vector<std::uint8_t> finished;
+  wide::Threads threads(2);
+  const auto first = std::make_shared<const FinishedPicture>(look, view_of(160, 120));
+  REQUIRE(first->draw(0, &threads, &finished, [](std::int32_t) { return true; }));
+  const FinishedPicture picture(look, view_of(160, 120));
+  FastFrames frames(scene, picture.is_plain(), 2);
+  std::vector<std::uint8_t> quick;
+  frames.draw(picture, &quick);
+  REQUIRE(quick.size() == finished.size());
+  const auto mean = [](const std::vector<std::uint8_t>& rgb) {
+    return std::accumulate(rgb.begin(), rgb.end(), 0.0) / static_cast<double>(rgb.size());
+  };
+  CHECK(mean(quick) > 0.93 * mean(finished));  // shadows and corners are darker there, so it may be brighter
+  CHECK(mean(quick) < 1.15 * mean(finished));
+  std::vector<std::uint8_t> row(3 * 160);
+  picture.draw_quick_row(1, 60, row.data());
+  int differ = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    differ += std::abs(row[i] - quick[3 * 160 * 60 + i]) > 24 ? 1 : 0;
+  }
+  CHECK(differ < 48);  // the same by either engine, but for what lies behind
 }
 
 TEST_CASE("fast frames: same view -> wide and rays show the same things; water is drawn, too") {

@@ -70,9 +70,7 @@ void add_view_command(CLI::App& app) {
       },
       "where; auto: an X11 window where DISPLAY works, else the terminal")
       .default_str("auto");
-  add_shade(*sub, &command->shade,
-            "as for render; without it and --effects, what has no light of its own gets a sun, shadows, "
-            "occlusion and a sky, and strewn points are shaded by depth",
+  add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
   command->effects.add_to(*sub);
   add_samples(*sub, &command->across, "in the picture at rest", 2);

@@ -170,6 +170,7 @@ std::optional<InputEvent> input_event(const host::Event& event, std::uint64_t ti
       return input;  // the end
     case host::EventKind::kKeyUp:
     case host::EventKind::kResize:
+    case host::EventKind::kDrop:
       break;
   }
   return std::nullopt;

@@ -15,8 +15,9 @@ namespace thimble::tools {
 
 const char* const kDefaultLookText =
     "Without --shade and --effects the scene decides. Colours, from a palette or of points and corners, are "
-    "drawn as they are; meshes and surfaces without are clay. A sun stands over the viewer's left shoulder, "
-    "with exact shadows, occlusion, a soft gradient behind the scene, and under it a ground that only shows "
+    "drawn as they are; meshes and surfaces without are clay. A sun stands over the viewer's left shoulder "
+    "(the right one where the side on the right is more than twice as large), with exact shadows, occlusion, "
+    "a soft gradient behind the scene, and under it a ground that only shows "
     "the shadow. What a scene states itself (camera, lights, occlusion, sky, effects off) is kept. Points of "
     "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
     "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, counted from the "
@@ -86,13 +87,27 @@ ViewAxes axes_of(const SceneCamera& camera) {
   return {short_vector(right), short_vector(cross(right, real(forward))), short_vector(real(forward))};
 }
 
-// Towards a sun behind the viewer, to the left and above: what is seen is lit, and no two sides of a corner
-// alike.
-Vec3i sun_over_shoulder(const SceneCamera& camera) {
+// Whether of the two upright sides of the box that are seen the one on the right takes more than twice the
+// picture of the other.
+bool is_seen_from_right(const ViewAxes& axes, const VoxelBox& box) {
+  std::int64_t seen[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    seen[axis] = std::abs(std::int64_t{axes.forward[axis]}) * (box.high[1 - axis] - box.low[1 - axis]);
+  }
+  const int larger = seen[1] > seen[0] ? 1 : 0;
+  // Its normal points against the view; the picture's right is level.
+  const std::int32_t normal = axes.forward[larger] > 0 ? -1 : 1;
+  return !box.empty() && seen[larger] > 2 * seen[1 - larger] && normal * axes.right[larger] > 0;
+}
+
+// Towards a sun behind the viewer, to a side and above: what is seen is lit, and no two sides of a corner
+// alike. To the left, but where that would leave most of what is seen in the dim.
+Vec3i sun_over_shoulder(const SceneCamera& camera, const VoxelBox& box) {
   const ViewAxes axes = axes_of(camera);
+  const std::int32_t right = is_seen_from_right(axes, box) ? 1 : -1;
   Vec3i sun;
   for (int axis = 0; axis < 3; ++axis) {
-    sun[axis] = -7 * axes.forward[axis] / 8 - axes.right[axis] / 2 + axes.up[axis] / 2;
+    sun[axis] = -7 * axes.forward[axis] / 8 + right * (axes.right[axis] / 2) + axes.up[axis] / 2;
   }
   return sun;
 }
@@ -119,7 +134,7 @@ std::uint16_t occlusion_reach(const VoxelBox& bounds) {
 
 SceneFacts facts_without_shape(const SceneSource& source, const LitDescription& lighting) {
   SceneFacts facts;
-  facts.has_colors = !source.single_material();
+  facts.has_colors = source.has_colors();
   facts.is_points = source.is_point_set();
   facts.is_mesh = source.is_mesh();
   facts.lighting = lighting;
@@ -132,7 +147,7 @@ SceneFacts facts_without_shape(const SceneSource& source, const LitDescription& 
 // The rule's light, where the scene states none.
 void add_sun(const SceneFacts& facts, const Framing& framing, LitDescription* lighting) {
   Light sun;
-  sun.place = sun_over_shoulder(framing.kept);
+  sun.place = sun_over_shoulder(framing.kept, facts.bounds);
   std::copy(std::begin(kSunlight), std::end(kSunlight), std::begin(sun.color_q8));
   lighting->lights = {sun};
   std::copy(std::begin(kAmbient), std::end(kAmbient), std::begin(lighting->rest.ambient_q8));

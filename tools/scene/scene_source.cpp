@@ -118,6 +118,7 @@ class VoxelModelScene final : public SceneSource {
   bool is_scalable() const override { return false; }
   std::array<std::int32_t, 3> extent() const override { return model_->size(); }
   const Palette& palette() const override { return model_->palette(); }
+  std::uint32_t frames() const override { return model_->frames(); }
   void stream(const VoxelSink& sink, const Progress& progress) const override {
     Meter meter(progress, voxels_);
     model_->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
@@ -278,6 +279,11 @@ class BakedFileScene final : public SceneSource {
   std::uint64_t points() const override { return tree().voxel_count(); }
   bool is_point_set() const override { return false; }
   bool single_material() const override { return !tree().many_materials() && tree().uniform_material() == 0; }
+  bool has_colors() const override {
+    const Rgb plain = default_material().color;
+    const Rgb first = palette_[0].color;
+    return !single_material() || first.r != plain.r || first.g != plain.g || first.b != plain.b;
+  }
   bool is_scalable() const override { return false; }
   const SceneCamera* camera() const override {
     return file_.scene.has_camera() ? &file_.scene.camera() : nullptr;
@@ -312,7 +318,38 @@ class BakedFileScene final : public SceneSource {
   std::optional<LitDescription> lit_;
 };
 
+// What is no generator.
+std::unique_ptr<SceneSource> open_file(const SceneArguments& arguments, SceneOpening* opening,
+                                       const Progress& progress) {
+  Source source = read_scene_file({arguments.scene, arguments.frame}, progress);
+  if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
+    return std::make_unique<PointScene>(std::move(*cloud), arguments);
+  }
+  if (arguments.as_voxels) {
+    throw InputError("--as-voxels is for point files");
+  }
+  if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
+    return open_text_scene(**text, arguments, opening, progress);
+  }
+  if (auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
+    return std::make_unique<VoxelGridScene>(std::move(*grid), arguments.depth);
+  }
+  if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
+    return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);
+  }
+  if (auto* baked = std::get_if<BakedFile>(&source)) {
+    return std::make_unique<BakedFileScene>(std::move(*baked), arguments.depth);
+  }
+  return std::make_unique<MeshScene>(std::move(std::get<TriangleMesh>(source)), arguments);
+}
+
 }  // namespace
+
+void SceneSource::add_file(const std::string& path) {
+  if (std::find(files_.begin(), files_.end(), path) == files_.end()) {
+    files_.push_back(path);
+  }
+}
 
 std::array<std::int32_t, 3> SceneSource::extent() const {
   const std::int32_t side = std::int32_t{1} << level_;
@@ -357,26 +394,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
     }
     return std::make_unique<GeneratedScene>(*spec);
   }
-  Source source = read_scene_file({arguments.scene, arguments.frame}, progress);
-  if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
-    return std::make_unique<PointScene>(std::move(*cloud), arguments);
-  }
-  if (arguments.as_voxels) {
-    throw InputError("--as-voxels is for point files");
-  }
-  if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
-    return open_text_scene(**text, arguments, opening, progress);
-  }
-  if (auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
-    return std::make_unique<VoxelGridScene>(std::move(*grid), arguments.depth);
-  }
-  if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
-    return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);
-  }
-  if (auto* baked = std::get_if<BakedFile>(&source)) {
-    return std::make_unique<BakedFileScene>(std::move(*baked), arguments.depth);
-  }
-  return std::make_unique<MeshScene>(std::move(std::get<TriangleMesh>(source)), arguments);
+  auto scene = open_file(arguments, opening, progress);
+  scene->add_file(arguments.scene);
+  return scene;
 }
 
 }  // namespace thimble::tools

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "readers/oct.h"
 #include "readers/source.h"
@@ -35,6 +36,8 @@ class SceneSource {
   /// One past the greatest index on each axis that can occur: what a dense grid must hold.
   virtual std::array<std::int32_t, 3> extent() const;
   virtual const Palette& palette() const = 0;
+  /// Whether what it is read from says its colours, be it only one.
+  virtual bool has_colors() const { return !single_material(); }
   /// Whether another --depth shows the same scene finer or coarser.
   virtual bool is_scalable() const { return true; }
   /// The camera that the scene brings along, or null: a baked one, or a generator's own.
@@ -44,6 +47,12 @@ class SceneSource {
   virtual LitDescription lighting() const { return describe_palette(palette()); }
   /// The baked scene that it is, or null. Its bytes live as long as the source.
   virtual const BakedScene* baked() const { return nullptr; }
+  /// How many frames its file has; `SceneArguments::frame` takes one.
+  virtual std::uint32_t frames() const { return 1; }
+  /// The files that it was read from: its own, and those that a .scene names, each once. None for a
+  /// generator.
+  const std::vector<std::string>& files() const { return files_; }
+  void add_file(const std::string& path);
   /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
   virtual void stream(const VoxelSink& sink, const Progress& progress) const = 0;
   /// The same in blocks where the source has larger ones than voxels.
@@ -51,6 +60,9 @@ class SceneSource {
 
  protected:
   int level_ = 1;
+
+ private:
+  std::vector<std::string> files_;
 };
 
 /// Opens SCENE: parses a generator or reads a file. Throws InputError.

@@ -16,6 +16,7 @@ constexpr int kAxisBits = 20;
 constexpr Rgb8 kNear{255, 216, 172};  // of points without colours
 constexpr Rgb8 kFar{100, 136, 255};
 constexpr Rgb8 kNight{3, 4, 9};
+constexpr std::int32_t kDimmest = 72;  // of a star's brightest channel, before its depth
 
 struct Axis {
   std::int64_t x, y, z;
@@ -111,7 +112,9 @@ class Sky {
     const std::int64_t place = std::clamp<std::int64_t>((far_ - depth) * 256 / (far_ - near_), 0, 256);
     const std::int64_t bright = ratio_q8 * ratio_q8 / 256 * (96 + place * 160 / 256) / 256;
     const Rgb8 color = canvas_.look->palette.empty() ? kNear : canvas_.look->palette[material];
-    const std::int64_t channels[3] = {color.r, color.g, color.b};
+    // What has the night's colour would be a hole in it.
+    const std::int64_t lift = std::max<std::int64_t>(0, kDimmest - std::max({color.r, color.g, color.b}));
+    const std::int64_t channels[3] = {color.r + lift, color.g + lift, color.b + lift};
     const std::int64_t near_colors[3] = {kNear.r, kNear.g, kNear.b};
     const std::int64_t far_colors[3] = {kFar.r, kFar.g, kFar.b};
     for (int c = 0; c < 3; ++c) {

@@ -96,6 +96,15 @@ class TextScene final : public SceneSource {
   std::uint64_t points() const override { return voxels_; }
   bool is_point_set() const override { return false; }
   bool single_material() const override { return materials_ <= 1; }
+  bool has_colors() const override {
+    // A box's or a ball's material has one, and so has what replaces a model's.
+    const bool stated = std::any_of(text_.parts.begin(), text_.parts.end(), [](const SceneText::Part& part) {
+      return part.kind != SceneText::PartKind::kModel || part.replaces;
+    });
+    return !single_material() || stated ||
+           std::any_of(models_.begin(), models_.end(),
+                       [](const Placement& each) { return each.model->source->has_colors(); });
+  }
   bool is_scalable() const override { return false; }
   std::array<std::int32_t, 3> extent() const override { return {extent_.x, extent_.y, extent_.z}; }
   const Palette& palette() const override { return palette_; }
@@ -242,6 +251,9 @@ class TextScene final : public SceneSource {
         kept = survey(open_scene(arguments, opening, progress));
       }
       model.model = kept;
+      for (const std::string& file : kept->source->files()) {
+        add_file(file);
+      }
     } catch (const InputError& error) {
       fail_at(part.file_place, printable(part.file) + ": " + error.what());
     }

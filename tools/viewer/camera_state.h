@@ -25,6 +25,8 @@ class CameraState {
   void look_at(const Real3& point, const Framing& now, const OpenScene& scene);
   /// One of the named views, the scene framed in it. `now` gives the field of view.
   void choose(Action view, const Framing& now, const OpenScene& scene);
+  /// The camera of `now` stays, whatever would be framed.
+  void hold(const Framing& now, const OpenScene& scene) { place(now, scene); }
   /// Another scene in place of the one that was: the camera stays, as far as that scene allows.
   void change_scene(const OpenScene& scene);
 

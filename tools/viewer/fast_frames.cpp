@@ -28,6 +28,12 @@ FastFrames::FastFrames(std::shared_ptr<const OpenScene> scene, bool is_plain, in
   pace_ = Pace(kFrameSeconds, has_lists_);
 }
 
+void FastFrames::keep_pace(const FastFrames& before) {
+  if (before.has_lists_ == has_lists_) {
+    pace_ = before.pace_;
+  }
+}
+
 void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb) {
   const auto start = std::chrono::steady_clock::now();
   const int step = pace_.step();

@@ -23,6 +23,8 @@ class FastFrames {
   /// Makes the wide renderer's lists; where they would take more than 2 GiB, frames are drawn ray by ray.
   FastFrames(std::shared_ptr<const OpenScene> scene, bool is_plain, int threads);
 
+  /// Goes on at the pace that another scene's frames had found.
+  void keep_pace(const FastFrames& before);
   /// Draws the view of `picture` into `rgb` (its size) and learns from the time it takes.
   void draw(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb);
 

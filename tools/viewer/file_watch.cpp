@@ -2,18 +2,32 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace thimble::tools::viewer {
 
-FileWatch::FileWatch(std::string path) : path_(std::move(path)), known_(look()), last_(known_) {}
+FileWatch::FileWatch(std::string path) {
+  watch({std::move(path)});
+}
 
-FileWatch::Mark FileWatch::look() const {
+FileWatch::Mark FileWatch::look(const std::string& path) {
   struct stat status {};
-  if (::stat(path_.c_str(), &status) != 0) {
+  if (::stat(path.c_str(), &status) != 0) {
     return {};
   }
   return {true, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
+
+void FileWatch::watch(const std::vector<std::string>& paths) {
+  std::vector<Watched> files;
+  for (const std::string& path : paths) {
+    const auto known =
+        std::find_if(files_.begin(), files_.end(), [&](const Watched& each) { return each.path == path; });
+    const Mark now = known == files_.end() ? look(path) : Mark{};
+    files.push_back(known == files_.end() ? Watched{path, now, now} : *known);
+  }
+  files_ = std::move(files);
 }
 
 bool FileWatch::has_changed(double seconds) {
@@ -21,13 +35,21 @@ bool FileWatch::has_changed(double seconds) {
     return false;
   }
   looked_at_ = seconds;
-  const Mark now = look();
-  const bool rests = now == last_;
-  last_ = now;
-  if (!now.exists || !rests || now == known_) {
-    return false;  // one that is gone may come back: editors write a new file beside the old one
+  bool rest = true;
+  bool changed = false;
+  for (Watched& file : files_) {
+    const Mark now = look(file.path);
+    // One that is gone may come back: editors write a new file beside the old one.
+    rest = rest && now == file.last && (now.exists || !file.known.exists);
+    changed = changed || now != file.known;
+    file.last = now;
   }
-  known_ = now;
+  if (!rest || !changed) {
+    return false;
+  }
+  for (Watched& file : files_) {
+    file.known = file.last;
+  }
   return true;
 }
 

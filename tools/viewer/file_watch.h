@@ -1,10 +1,11 @@
 /// @file file_watch.h
-/// Notices that a file has changed, by looking at it now and then.
+/// Notices that one of a few files has changed, by looking at them now and then.
 #ifndef THIMBLE_TOOLS_VIEWER_FILE_WATCH_H
 #define THIMBLE_TOOLS_VIEWER_FILE_WATCH_H
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace thimble::tools::viewer {
 
@@ -16,8 +17,10 @@ class FileWatch {
   /// What is there now counts as known. A path that names no file, such as a generator, never changes.
   explicit FileWatch(std::string path);
 
-  /// Whether the file is another than the one known, and was the same at the last two looks, so that whoever
-  /// writes it has paused; it is then known. `seconds`: of any steady clock.
+  /// Watches these from now on. What is there now counts as known, but for those that were watched before.
+  void watch(const std::vector<std::string>& paths);
+  /// Whether a file is another than the one known, and all were the same at the last two looks, so that whoever
+  /// writes them has paused; they are then known. `seconds`: of any steady clock.
   bool has_changed(double seconds);
 
  private:
@@ -29,11 +32,14 @@ class FileWatch {
     std::int64_t nanoseconds = 0;
     friend bool operator==(const Mark&, const Mark&) = default;
   };
-  Mark look() const;
+  struct Watched {
+    std::string path;
+    Mark known;
+    Mark last;
+  };
+  static Mark look(const std::string& path);
 
-  std::string path_;
-  Mark known_;
-  Mark last_;
+  std::vector<Watched> files_;
   double looked_at_ = -1;
 };
 

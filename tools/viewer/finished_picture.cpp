@@ -150,18 +150,25 @@ void FinishedPicture::take_own_look() {
   }
   own_coarse_ = *own_;
   own_coarse_.across = 1;
-  quick_tone_ = tone_table(256);
+  quick_tone_ = tone_table(look_->exposure_.load());
   quick_shading_ = shading_;
   if (own_->kind == LookKind::kStars) {
     quick_shading_.mode = own_->has_own_colors ? ShadeMode::kColor : ShadeMode::kDepth;
     return;
   }
   quick_shading_.mode = ShadeMode::kColor;
-  quick_shading_.palette = Span<const Rgb8>(own_->palette.data(), own_->palette.size());
   quick_light(own_->lit_scene(), quick_shading_.face_light);
+  // A colour times a face's light, toned, without a pass over the picture: exact for the brightest face.
+  const unsigned most = std::max<unsigned>(
+      1, *std::max_element(std::begin(quick_shading_.face_light), std::end(quick_shading_.face_light)));
   for (std::uint16_t& light : quick_shading_.face_light) {
-    light = std::min<std::uint16_t>(256, quick_tone_[std::min<std::uint16_t>(255, light)]);
+    light = static_cast<std::uint16_t>(256U * light / most);
   }
+  const auto toned = [&](std::uint8_t channel) { return quick_tone_[channel * most / 256]; };
+  for (const Rgb8 color : own_->palette) {
+    quick_palette_.push_back({toned(color.r), toned(color.g), toned(color.b)});
+  }
+  quick_shading_.palette = Span<const Rgb8>(quick_palette_.data(), quick_palette_.size());
 }
 
 Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView side) {
@@ -243,7 +250,10 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
     canvas.look = &own_coarse_;
     canvas.fine = drawn;
   }
-  std::call_once(exposed_, [&] { exposure_ = measured_exposure(finished); });
+  std::call_once(exposed_, [&] {
+    exposure_ = measured_exposure(finished);
+    look_->exposure_.store(exposure_);
+  });
   const std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::try_to_lock);
   if (lock.owns_lock()) {
     canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
@@ -307,6 +317,13 @@ bool FinishedPicture::is_plain() const {
   return (effects() & Effect::kWater) == 0;
 }
 
+const WaterSurface* FinishedPicture::water() const {
+  if (is_plain()) {
+    return nullptr;
+  }
+  return own_ ? &own_->lighting.rest.water : &look_->lighting_.rest.water;
+}
+
 bool FinishedPicture::has_behind() const {
   return own_ ? own_->kind == LookKind::kLit : (effects() & Effect::kSky) != 0;
 }
@@ -321,11 +338,17 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
   }
   constexpr Rgb8 kBehind{1, 0, 2};  // no surface's colour by chance
   Shading shading = quick_shading_;
+  if (own_) {
+    shading.palette = Span<const Rgb8>(own_->palette.data(), own_->palette.size());  // toned below
+  }
   if (own_ && own_->has_backdrop) {
     shading.background = kBehind;
   }
-  check(render_lit_band(quick, tree, thin, shading, own_ ? own_->lit_scene() : look_->quick_,
-                        row_of(thin, row, rgb)));
+  LitScene scene = own_ ? own_->lit_scene() : look_->quick_;
+  if (moving_water_) {
+    scene.water = *moving_water_;
+  }
+  check(render_lit_band(quick, tree, thin, shading, scene, row_of(thin, row, rgb)));
   for (std::int32_t x = 0; own_ && x < thin.width_px(); ++x, rgb += 3) {
     const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kBehind;
     const Rgb8 color = is_behind ? backdrop_color(own_->background, x, row, thin.width_px(), thin.height_px())

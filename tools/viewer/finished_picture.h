@@ -7,6 +7,7 @@
 #ifndef THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 #define THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -71,6 +72,8 @@ class FinishedLook {
   std::vector<std::uint8_t> empty_bytes_;
   CompactTree empty_;  // a world with nothing in it
   std::vector<std::string> words_;
+  /// Of the last finished picture; frames while the camera moves have it, too, so that nothing flickers.
+  mutable std::atomic<std::uint32_t> exposure_{320};
 
   // Lit pictures by streams of rays: made when the first is drawn, for one that draws at a time.
   LitStreams* streams_for(EffectSet effects, const LitScene& scene, int threads) const;
@@ -106,6 +109,10 @@ class FinishedPicture {
 
   /// The same for a camera that moves: without shadows, occlusion, mirrors and glass.
   void draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const;
+  /// From now on what draw_quick_row draws has this water in place of the scene's; its columns must live as long.
+  void show_water(const WaterSurface& water) { moving_water_ = water; }
+  /// The water of the picture, or null.
+  const WaterSurface* water() const;
   /// Whether frames while the camera moves may be drawn by what knows only voxels (the wide renderer, with
   /// `quick_shading`); not so with water, which is none.
   bool is_plain() const;
@@ -129,7 +136,9 @@ class FinishedPicture {
   Shading quick_shading_;
   std::optional<Look> own_;  // the scene's own look from here
   Look own_coarse_;          // with one sample a pixel
+  std::optional<WaterSurface> moving_water_;
   ToneTable quick_tone_{};
+  std::vector<Rgb8> quick_palette_;  // toned, as bright as the brightest face
   mutable std::once_flag exposed_;
   mutable std::uint32_t exposure_ = 256;
 };

@@ -21,6 +21,7 @@ constexpr std::array kViews{Typed{'1', Action::kFront}, Typed{'2', Action::kBack
 constexpr std::array kFirst{Typed{'0', Action::kFirstView}};
 constexpr std::array kSave{Typed{'s', Action::kSave}};
 constexpr std::array kPick{Typed{'p', Action::kPick}};
+constexpr std::array kPlay{Typed{' ', Action::kPlay}};
 constexpr std::array kHelp{Typed{'?', Action::kHelp}};
 constexpr std::array kEnd{Typed{'q', Action::kEnd}, Typed{'\x1b', Action::kEnd}};
 
@@ -35,6 +36,7 @@ const std::array kRows{
     KeyRow{"0", "the view at first", kFirst, {}},
     KeyRow{"s (tapped)", "saves the picture, prints its render command", kSave, {}},
     KeyRow{"p", "names what is under the pointer", kPick, {}},
+    KeyRow{"space", "plays frames or water, or stops", kPlay, {}},
     KeyRow{"?", "shows these keys, or hides them", kHelp, {}},
     KeyRow{"Esc, q", "end", kEnd, {}},
 };

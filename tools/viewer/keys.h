@@ -15,6 +15,7 @@ enum class Action : std::uint8_t {
   kNone,
   kEnd,
   kHelp,
+  kPlay,  ///< or no longer
   kSave,
   kPick,
   kLookThere,

@@ -80,6 +80,9 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
   if (scene.as_voxels) {
     words.emplace_back("--as-voxels");
   }
+  if (scene.frame) {
+    add("--frame", std::to_string(*scene.frame));
+  }
   if (scene.z_up) {
     words.emplace_back("--z-up");
   }

@@ -15,6 +15,7 @@
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
 #include "viewer/file_watch.h"
+#include "viewer/moving_pool.h"
 #include "viewer/picking.h"
 #include "viewer/refinement.h"
 #include "viewer/saving.h"
@@ -30,6 +31,8 @@ constexpr double kBlurSeconds = 0.2;    // coarse pictures that are replaced soo
 constexpr double kMessageSeconds = 8;
 constexpr double kFastestFrameSeconds = 1.0 / 62;
 constexpr double kGoodbyeSeconds = 0.04;  // that threads get to notice that it is over
+constexpr double kFilmSeconds = 0.1;      // a frame of an animation
+constexpr double kWaterSeconds = 1.0 / 30;
 constexpr int kIdleMs = 50;
 constexpr int kBusyMs = 8;
 
@@ -44,9 +47,20 @@ void sleep_ms(int time) {
 // A picture that is to be saved once it is finished.
 struct Saving {
   std::unique_ptr<Refinement> refinement;
+  SceneArguments scene;
   ViewWishes wishes;
   std::shared_ptr<const FinishedLook> look;
 };
+
+// The view for another scene: no place of the one before.
+ViewWishes from_its_side(ViewWishes view) {
+  view.placed = false;
+  view.eye.reset();
+  view.target.reset();
+  view.up.reset();
+  view.span.reset();
+  return view;
+}
 
 class Viewer {
  public:
@@ -56,8 +70,12 @@ class Viewer {
 
  private:
   void open();
-  void adopt(std::shared_ptr<const OpenScene> scene);
+  void adopt(std::shared_ptr<const OpenScene> scene, const ViewWishes& view);
   void look_for_scene();
+  void open_other(const std::string& path);
+  void read(const SceneArguments& scene);
+  void play_or_stop();
+  void play();
   void take_events();
   void act(Action action);
   void look_around();
@@ -65,8 +83,8 @@ class Viewer {
   void draw_frame();
   void show();
   void save();
-  void write(const Refinement& finished, const ViewWishes& wishes, const FinishedLook& look,
-             const std::vector<std::uint8_t>& rgb);
+  void write(const Refinement& finished, const SceneArguments& scene, const ViewWishes& wishes,
+             const FinishedLook& look, const std::vector<std::uint8_t>& rgb);
   void finish_savings();
   void stop_refining();
   void tell(const std::string& text);
@@ -79,7 +97,9 @@ class Viewer {
   ViewerOptions options_;
   CameraState camera_;
   FileWatch watch_;
+  SceneArguments wanted_;  // that `reading_` reads
   std::unique_ptr<SceneReading> reading_;
+  std::vector<std::unique_ptr<SceneReading>> unwanted_;  // cancelled, their threads still at it
   std::unique_ptr<host::Screen> screen_;
   std::optional<Controls> controls_;
   bool is_terminal_ = false;
@@ -93,6 +113,11 @@ class Viewer {
   std::vector<std::unique_ptr<Refinement>> leaving_;  // cancelled, their threads still in a row
   std::vector<Saving> savings_;
   std::vector<std::uint8_t> rgb_;
+
+  bool plays_ = false;
+  double next_frame_at_ = 0;
+  std::unique_ptr<SceneReading> next_frame_;  // of an animation, the one after `options_.scene.frame`
+  std::unique_ptr<MovingPool> pool_;
 
   bool ended_ = false;
   bool changed_ = true;  // the view
@@ -111,7 +136,7 @@ class Viewer {
 
 void Viewer::open() {
   const double start = now();
-  reading_ = std::make_unique<SceneReading>(options_.scene, options_.threads);
+  read(options_.scene);
   while (!reading_->is_done() && now() < start + kWindowSeconds) {
     sleep_ms(2);
   }
@@ -149,21 +174,53 @@ void Viewer::print(const std::string& line) {
   std::fflush(stdout);
 }
 
+// Whatever was being read is no longer wanted.
+void Viewer::read(const SceneArguments& scene) {
+  if (reading_ != nullptr) {
+    reading_->cancel();
+    unwanted_.push_back(std::move(reading_));
+  }
+  wanted_ = scene;
+  reading_ = std::make_unique<SceneReading>(scene, options_.threads);
+}
+
+// A file that was dropped here: seen from its best side, its frames from the first.
+void Viewer::open_other(const std::string& path) {
+  SceneArguments scene;
+  scene.scene = path;
+  read(scene);
+  tell("reading " + printable(path));
+}
+
 // The scene that was read, if one was. Before there is a screen, what is wrong with it is the command's error.
 void Viewer::look_for_scene() {
   if (reading_ != nullptr && reading_->is_done()) {
     const bool is_first = scene_ == nullptr;
+    const bool is_other = wanted_.scene != options_.scene.scene;
+    const std::string name = printable(wanted_.scene);
     try {
-      adopt(reading_->take());
+      std::shared_ptr<const OpenScene> scene = reading_->take();
+      const ViewWishes view = is_other ? from_its_side(options_.view) : options_.view;
+      adopt(std::move(scene), view);
+      options_.view = view;
+      options_.scene = wanted_;
+      if (is_other) {
+        camera_ = CameraState(view);
+        screen_->set_title("thimble: " + name);
+      }
+      watch_.watch(scene_->source->files());
+      if (is_first || is_other) {
+        plays_ = scene_->source->frames() > 1 && !options_.scene.frame;
+      }
       if (!is_first) {
-        tell(name() + " has changed and was read again");
+        tell(name + (is_other ? "" : " has changed and was read again"));
       }
     } catch (const std::exception& error) {
       if (is_first) {
         throw;
       }
-      const std::string sentence =
-          name() + " has changed and cannot be read: " + error.what() + "; the old picture stays";
+      const std::string sentence = name + (is_other ? "" : " has changed and") +
+                                   " cannot be read: " + error.what() + "; the old picture stays";
       tell(sentence);
       if (!is_terminal_) {
         std::fprintf(stderr, "thimble: %s\n", printable(sentence).c_str());
@@ -172,16 +229,25 @@ void Viewer::look_for_scene() {
     reading_.reset();
   }
   if (screen_ != nullptr && reading_ == nullptr && watch_.has_changed(now())) {
-    reading_ = std::make_unique<SceneReading>(options_.scene, options_.threads);
+    read(options_.scene);
   }
+  std::erase_if(unwanted_, [](const auto& each) { return each->is_done(); });
 }
 
-void Viewer::adopt(std::shared_ptr<const OpenScene> scene) {
+void Viewer::adopt(std::shared_ptr<const OpenScene> scene, const ViewWishes& view) {
   // All that may throw comes first.
   auto look = std::make_shared<const FinishedLook>(scene, options_.look);
-  const FinishedPicture trial(look, options_.view);
+  const FinishedPicture trial(look, view);
   auto frames = std::make_unique<FastFrames>(scene, trial.is_plain(), options_.threads);
   stop_refining();
+  if (frames_ != nullptr) {
+    frames->keep_pace(*frames_);
+  }
+  pool_.reset();
+  if (next_frame_ != nullptr) {
+    next_frame_->cancel();
+    unwanted_.push_back(std::move(next_frame_));
+  }
   scene_ = std::move(scene);
   look_ = std::move(look);
   frames_ = std::move(frames);
@@ -196,7 +262,7 @@ void Viewer::stop_refining() {
     return;
   }
   if (saves_this_) {
-    savings_.push_back({std::move(refinement_), wishes_, look_});
+    savings_.push_back({std::move(refinement_), options_.scene, wishes_, look_});
     saves_this_ = false;
     return;
   }
@@ -228,6 +294,9 @@ void Viewer::act(Action action) {
     case Action::kSave:
       save();
       return;
+    case Action::kPlay:
+      play_or_stop();
+      return;
     case Action::kPick:
     case Action::kLookThere: {
       const auto [x, y] = pointer();
@@ -255,6 +324,10 @@ int Viewer::wait_ms() const {
     return kIdleMs;
   }
   const double time = now();
+  if (plays_ && !changed_ && !controls_->is_flying(time)) {
+    const double left = next_frame_at_ - time;
+    return left > 0 ? std::min(static_cast<int>(1000 * left), kBusyMs) : 1;
+  }
   if (changed_ || controls_->is_flying(time)) {
     const double left = frame_began_ + kFastestFrameSeconds - time;
     return left > 0 ? static_cast<int>(1000 * left) : 0;
@@ -270,10 +343,67 @@ void Viewer::take_events() {
       return;
     }
     timeout = 0;
+    if (event->kind == host::EventKind::kDrop) {
+      open_other(event->path);
+      continue;
+    }
     if (event->kind == host::EventKind::kResize) {
       changed_ = true;
     }
     act(controls_->take(*event, now(), screen_->height_px()));
+  }
+}
+
+void Viewer::play_or_stop() {
+  const bool has_frames = scene_->source->frames() > 1;
+  const WaterSurface* const water = picture_->water();
+  if (!has_frames && water == nullptr) {
+    tell("nothing here plays: it has neither frames nor water");
+    return;
+  }
+  plays_ = !plays_;
+  next_frame_at_ = now();
+  if (!has_frames) {
+    // What is drawn to the end, and saved, is the scene's own water.
+    pool_ = plays_ ? std::make_unique<MovingPool>(scene_->tree(), *water) : nullptr;
+  }
+  changed_ = true;
+}
+
+// The next frame of an animation is read while the one before is shown.
+void Viewer::play() {
+  if (!plays_ || picture_ == nullptr || reading_ != nullptr) {
+    return;
+  }
+  const double time = now();
+  if (pool_ != nullptr) {
+    if (time >= next_frame_at_) {
+      next_frame_at_ = std::max(next_frame_at_ + kWaterSeconds, time);
+      pool_->step();
+      changed_ = true;
+    }
+    return;
+  }
+  if (next_frame_ == nullptr) {
+    SceneArguments next = options_.scene;
+    next.frame = (next.frame.value_or(0) + 1) % scene_->source->frames();
+    next_frame_ = std::make_unique<SceneReading>(next, options_.threads);
+    return;
+  }
+  if (!next_frame_->is_done() || time < next_frame_at_) {
+    return;
+  }
+  next_frame_at_ = std::max(next_frame_at_ + kFilmSeconds, time);
+  try {
+    std::shared_ptr<const OpenScene> scene = next_frame_->take();
+    next_frame_.reset();
+    camera_.hold(picture_->framing(), *scene_);
+    adopt(std::move(scene), options_.view);
+    options_.scene.frame = (options_.scene.frame.value_or(0) + 1) % scene_->source->frames();
+  } catch (const std::exception& error) {
+    next_frame_.reset();
+    plays_ = false;
+    tell(name() + " stops: " + error.what());
   }
 }
 
@@ -294,15 +424,18 @@ void Viewer::draw_frame() {
   const std::int32_t width = std::clamp(screen_->width_px(), 1, most);
   const std::int32_t height = std::clamp(screen_->height_px(), 1, most);
   const double began = now();
-  std::shared_ptr<const FinishedPicture> picture;
+  std::shared_ptr<FinishedPicture> picture;
   const ViewWishes wishes = camera_.wishes(width, height);
   try {
-    picture = std::make_shared<const FinishedPicture>(look_, wishes);
+    picture = std::make_shared<FinishedPicture>(look_, wishes);
   } catch (const InputError& error) {
     tell(error.what());  // a camera that cannot be: the picture before it stays
     return;
   }
   stop_refining();
+  if (pool_ != nullptr) {
+    picture->show_water(pool_->surface());
+  }
   picture_ = std::move(picture);
   wishes_ = wishes;
   frames_->draw(*picture_, &rgb_);
@@ -318,7 +451,7 @@ void Viewer::refine() {
     return;
   }
   if (refinement_ == nullptr) {
-    if (now() >= changed_at_ + kRestSeconds) {
+    if (!plays_ && now() >= changed_at_ + kRestSeconds) {
       refinement_ = std::make_unique<Refinement>(picture_, options_.threads);
       refining_since_ = now();
     }
@@ -339,7 +472,7 @@ void Viewer::refine() {
     is_refined_ = true;
     needs_showing_ = true;
     if (saves_this_) {
-      write(*refinement_, wishes_, *look_, rgb_);
+      write(*refinement_, options_.scene, wishes_, *look_, rgb_);
       saves_this_ = false;
     }
   } else if (const std::string fault = refinement_->fault(); !fault.empty()) {
@@ -351,7 +484,7 @@ void Viewer::refine() {
 
 void Viewer::save() {
   if (is_refined_ && refinement_ != nullptr && refinement_->is_finished()) {
-    write(*refinement_, wishes_, *look_, rgb_);
+    write(*refinement_, options_.scene, wishes_, *look_, rgb_);
     return;
   }
   if (is_refined_) {
@@ -366,12 +499,12 @@ void Viewer::save() {
   tell("the picture is saved as soon as it is finished");
 }
 
-void Viewer::write(const Refinement& finished, const ViewWishes& wishes, const FinishedLook& look,
-                   const std::vector<std::uint8_t>& rgb) {
+void Viewer::write(const Refinement& finished, const SceneArguments& scene, const ViewWishes& wishes,
+                   const FinishedLook& look, const std::vector<std::uint8_t>& rgb) {
   const FinishedPicture& picture = finished.picture();
   try {
-    const std::string file = save_picture(options_.scene.scene, picture.width_px(), picture.height_px(), rgb);
-    const std::string command = render_command(options_.scene, wishes, look.words(), file);
+    const std::string file = save_picture(scene.scene, picture.width_px(), picture.height_px(), rgb);
+    const std::string command = render_command(scene, wishes, look.words(), file);
     print(command);
     tell("saved " + file + "; the same picture by\n" + command);
   } catch (const OutputError& error) {
@@ -389,7 +522,7 @@ void Viewer::finish_savings() {
     std::vector<std::uint8_t> rgb;
     saving.refinement->take(&rgb);
     if (saving.refinement->is_finished() && !rgb.empty()) {
-      write(*saving.refinement, saving.wishes, *saving.look, rgb);
+      write(*saving.refinement, saving.scene, saving.wishes, *saving.look, rgb);
     }
     savings_.erase(savings_.begin() + static_cast<std::ptrdiff_t>(i));
   }
@@ -468,6 +601,7 @@ void Viewer::run() {
       show();
       continue;
     }
+    play();
     look_around();
     refine();
     finish_savings();
@@ -492,19 +626,22 @@ void Viewer::end() {
   for (const Saving& saving : savings_) {
     saving.refinement->cancel();
     std::fprintf(stderr, "thimble: the picture was not finished and is not saved; this makes it:\n");
-    print(render_command(options_.scene, saving.wishes, saving.look->words(),
-                         free_picture_name(options_.scene.scene)));
+    print(render_command(saving.scene, saving.wishes, saving.look->words(),
+                         free_picture_name(saving.scene.scene)));
   }
   std::fflush(stdout);
-  if (reading_ != nullptr) {
-    reading_->cancel();
+  for (std::unique_ptr<SceneReading>* const each : {&reading_, &next_frame_}) {
+    if (*each != nullptr) {
+      (*each)->cancel();
+      unwanted_.push_back(std::move(*each));
+    }
   }
   const auto all_ended = [this] {
     return std::all_of(leaving_.begin(), leaving_.end(),
                        [](const auto& each) { return each->has_ended(); }) &&
            std::all_of(savings_.begin(), savings_.end(),
                        [](const Saving& each) { return each.refinement->has_ended(); }) &&
-           (reading_ == nullptr || reading_->is_done());
+           std::all_of(unwanted_.begin(), unwanted_.end(), [](const auto& each) { return each->is_done(); });
   };
   const double until = now() + kGoodbyeSeconds;
   while (!all_ended()) {
