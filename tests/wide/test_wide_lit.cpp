@@ -165,21 +165,32 @@ Drawn draw_lit_streams(const WideScene& scene, const wide::RayMap& map, const Fr
   return drawn;
 }
 
-}  // namespace
+// Nothing that a ray goes on from: what most pictures are.
+LitCase random_opaque_light(std::mt19937_64& random, int level) {
+  LitCase lit = random_light(random, level);
+  lit.effects = static_cast<EffectSet>(pick(random, 0, Effect::kAll)) &
+                (Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kEmission |
+                 Effect::kSky | Effect::kEmitterLight);
+  lit.effects |= pick(random, 0, 1) == 0 ? Effect::kDirectLight | Effect::kShadows : Effect::kSky;
+  const auto is_lamp = [](const Light& light) { return light.is_point; };
+  lit.lights.erase(std::remove_if(lit.lights.begin(), lit.lights.end(), is_lamp), lit.lights.end());
+  return lit;
+}
 
-TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
+// Draws so many random frames, and compares every byte and count with the core's.
+void check_lit_frames(std::uint64_t seed, int frames,
+                      LitCase (*make_light)(std::mt19937_64& random, int level)) {
   const BestInstructionSet after;
-  constexpr int kFrames = many_or_few(1000, 60);
-  std::mt19937_64 random(20261123);
+  std::mt19937_64 random(seed);
   int drawn = 0;
   int lit_up = 0;
-  while (drawn < kFrames) {
+  while (drawn < frames) {
     const WideScene scene = pick(random, 0, 2) == 0 ? random_scene(random) : cabinet(random);
     FrameCase frame;
     if (!random_frame(random, scene, &frame)) {
       continue;
     }
-    LitCase lit = random_light(random, scene.level);
+    LitCase lit = make_light(random, scene.level);
     lit.scene.surfaces = {lit.surfaces.data(), lit.surfaces.size()};
     lit.scene.lights = {lit.lights.data(), lit.lights.size()};
     if (kHasPanelFormats && pick(random, 0, 2) == 0) {
@@ -221,7 +232,16 @@ TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
     lit_up += expected.counts.hits[0] != 0 ? 1 : 0;
     ++drawn;
   }
-  CHECK(lit_up > kFrames / 3);
+  CHECK(lit_up > frames / 3);
+}
+
+}  // namespace
+
+TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
+  check_lit_frames(20261123, many_or_few(1000, 60), random_light);
+}
+TEST_CASE("wide: lit scenes in which rays end where they hit -> every byte is the core's") {
+  check_lit_frames(20261124, many_or_few(1000, 60), random_opaque_light);
 }
 
 TEST_CASE("wide: a lit picture's errors are the core's, with nothing drawn") {
