@@ -177,6 +177,36 @@ LitCase random_opaque_light(std::mt19937_64& random, int level) {
   return lit;
 }
 
+// Pixels here and there: three bytes each, as the core draws them alone.
+void check_places(std::mt19937_64& random, const WideScene& scene, const wide::RayMap& map,
+                  const FrameCase& frame, const LitCase& lit, const Bytes& workspace, int threads) {
+  std::vector<wide::PixelPlace> places;
+  std::vector<std::uint8_t> expected;
+  for (std::int64_t i = pick(random, 0, 200); i > 0; --i) {
+    const auto x = static_cast<std::int32_t>(pick(random, 0, frame.camera.width_px() - 1));
+    const auto y = static_cast<std::int32_t>(pick(random, 0, frame.camera.height_px() - 1));
+    std::uint8_t pixel[3];
+    CHECK(render_lit_band(lit.effects, scene.tree, frame.camera.window(x, y, 1, 1), frame.shading, lit.scene,
+                          {Bytes(pixel, 3), PixelFormat::kRgb888, 0, 0, 1}, nullptr,
+                          lit.options) == Status::kOk);
+    expected.insert(expected.end(), pixel, pixel + 3);
+    places.push_back({x, y});
+  }
+  std::vector<std::uint8_t> drawn(expected.size(), 0xA5);
+  const Bytes rgb(drawn.data(), drawn.size());
+  const auto draw = [&](const Bytes& into) {
+    return wide::render_lit_pixels(lit.effects, map, frame.camera, frame.shading, lit.scene,
+                                   {places.data(), places.size()}, into, workspace, threads_of(threads),
+                                   nullptr, lit.options);
+  };
+  if (!places.empty()) {
+    CHECK(draw(rgb.subspan(1)) == Status::kOutOfMemory);
+    CHECK(drawn[0] == 0xA5);
+  }
+  REQUIRE(draw(rgb) == Status::kOk);
+  REQUIRE(drawn == expected);
+}
+
 // Draws so many random frames, and compares every byte and count with the core's.
 void check_lit_frames(std::uint64_t seed, int frames,
                       LitCase (*make_light)(std::mt19937_64& random, int level)) {
@@ -229,6 +259,8 @@ void check_lit_frames(std::uint64_t seed, int frames,
       REQUIRE((ends || ours.counts.hits[kind] == expected.counts.hits[kind]));
     }
     REQUIRE(ours.counts.pending_high_water == expected.counts.pending_high_water);
+    const HeapBytes of_places(workspace);
+    check_places(random, scene, map, frame, lit, of_places.span(), threads);
     lit_up += expected.counts.hits[0] != 0 ? 1 : 0;
     ++drawn;
   }

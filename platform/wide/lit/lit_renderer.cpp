@@ -24,9 +24,11 @@ size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
   return std::max(StreamShape(effects, scene, slots).bytes(), OpaqueShape(effects, scene, slots).bytes());
 }
 
-template <class Stream, class Shape>
-Status draw_by(const lit::Frame& frame, const RayMap& map, const Band& band, size_t stride, Bytes workspace,
-               Threads* threads, LitCounts* counts) {
+// Draws things 0 .. `things` - 1, so many a task that all slots are filled: draw(stream, first, end) does some.
+// `step(slots)` is how many.
+template <class Stream, class Shape, class Step, class Draw>
+Status draw_by(const lit::Frame& frame, const RayMap& map, size_t things, Bytes workspace, Threads* threads,
+               LitCounts* counts, const Step& step, const Draw& draw) {
   // As many threads as there is room for; then as many pixels at once.
   size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
   workers = std::min(workers, workspace.size / least_lit_workspace_bytes(frame.effects, frame.scene));
@@ -38,14 +40,14 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, const Band& band, siz
     slots /= 2;
   }
   const Shape shape(frame.effects, frame.scene, slots);
-  const int32_t rows = rows_of_task(band, frame.camera.width_px(), slots);
-  std::atomic<int32_t> next{0};
+  const size_t together = step(slots);
+  std::atomic<size_t> next{0};
   std::atomic_flag adding;
   const auto work = [&](int worker) {
     Stream stream(frame, map, shape,
                   workspace.subspan(static_cast<size_t>(worker) * shape.bytes(), shape.bytes()));
-    for (int32_t first = next.fetch_add(rows); first < band.rows; first = next.fetch_add(rows)) {
-      stream.draw(band, stride, first, std::min(first + rows, band.rows));
+    for (size_t first = next.fetch_add(together); first < things; first = next.fetch_add(together)) {
+      draw(&stream, first, std::min(first + together, things));
     }
     while (adding.test_and_set()) {
     }
@@ -60,6 +62,12 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, const Band& band, siz
     threads->each(static_cast<int>(workers), work);
   }
   return Status::kOk;
+}
+
+template <class... Arguments>
+Status draw_by_either(const lit::Frame& frame, const Arguments&... arguments) {
+  return is_opaque(frame.effects, frame.scene) ? draw_by<OpaqueStream, OpaqueShape>(frame, arguments...)
+                                               : draw_by<Stream, StreamShape>(frame, arguments...);
 }
 
 }  // namespace
@@ -85,9 +93,44 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  return is_opaque(effects, scene)
-             ? draw_by<OpaqueStream, OpaqueShape>(frame, map, band, stride, workspace, threads, counts)
-             : draw_by<Stream, StreamShape>(frame, map, band, stride, workspace, threads, counts);
+  return draw_by_either(
+      frame, map, static_cast<size_t>(band.rows), workspace, threads, counts,
+      [&](uint32_t slots) { return static_cast<size_t>(rows_of_task(band, camera.width_px(), slots)); },
+      [&](auto* stream, size_t first, size_t end) {
+        stream->draw(band, stride, static_cast<int32_t>(first), static_cast<int32_t>(end));
+      });
+}
+
+Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
+                         const LitScene& scene, Span<const PixelPlace> places, Bytes rgb, Bytes workspace,
+                         Threads* threads, LitCounts* counts, const LitOptions& options) {
+  effects &= Effect::kAll;
+  if (rgb.size / 3 < places.size) {
+    return Status::kOutOfMemory;
+  }
+  if (effects == Effect::kNone || options.max_visits != UINT32_MAX) {
+    for (size_t i = 0; i < places.size; ++i) {
+      const Status status = render_lit_band(
+          effects, map.tree(), camera.window(places.data[i].x, places.data[i].y, 1, 1), shading, scene,
+          {rgb.subspan(3 * i, 3), PixelFormat::kRgb888, 0, 0, 1}, counts, options);
+      if (status != Status::kOk) {
+        return status;
+      }
+    }
+    return Status::kOk;
+  }
+  const lit::Frame frame{map.tree(), camera, shading, scene, options, effects};
+  size_t stride = 0;
+  const Status status = lit::check_frame(frame, {{}, PixelFormat::kRgb888, 0, 0, 0}, &stride);
+  if (status != Status::kOk) {
+    return status;
+  }
+  return draw_by_either(
+      frame, map, places.size, workspace, threads, counts,
+      [](uint32_t slots) { return static_cast<size_t>(slots); },
+      [&](auto* stream, size_t first, size_t end) {
+        stream->draw_places({places.data + first, end - first}, rgb.subspan(3 * first));
+      });
 }
 
 }  // namespace thimble::wide

@@ -317,6 +317,15 @@ void OpaqueStream::store(const Band& band, size_t stride, int32_t row, int32_t x
   }
 }
 
+// Finds the colours of so many rays.
+void OpaqueStream::light_up(uint32_t count) {
+  (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
+  find_faces(count);
+  occlude();
+  add_suns();
+  paint();
+}
+
 void OpaqueStream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
   const int32_t width = frame_.camera.width_px();
   int32_t row = first;
@@ -337,12 +346,23 @@ void OpaqueStream::draw(const Band& band, size_t stride, int32_t first, int32_t 
         ++row;
       }
     }
-    (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
-    find_faces(count);
-    occlude();
-    add_suns();
-    paint();
+    light_up(count);
     store(band, stride, from_row, from_x, count);
+  }
+}
+
+void OpaqueStream::draw_places(Span<const PixelPlace> places, Bytes rgb) {
+  Band band;
+  band.format = PixelFormat::kRgb888;
+  for (size_t first = 0; first < places.size; first += shape_.slots) {
+    const auto count = static_cast<uint32_t>(std::min<size_t>(shape_.slots, places.size - first));
+    for (uint32_t i = 0; i < count; ++i) {
+      parts_.rays[i] = frame_.camera.ray(places.data[first + i].x, places.data[first + i].y);
+    }
+    light_up(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      lit::store(frame_, band, rgb.data + 3 * (first + i), 0, 0, parts_.colors[i]);
+    }
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/asked.h"
+#include "wide/lit/lit_renderer.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -61,6 +62,8 @@ class OpaqueStream {
 
   /// As Stream::draw.
   void draw(const Band& band, size_t stride, int32_t first, int32_t end);
+  /// Draws pixels of the camera, three bytes each.
+  void draw_places(Span<const PixelPlace> places, Bytes rgb);
   const LitCounts& counts() const { return frame_.counts; }
 
  private:
@@ -76,6 +79,7 @@ class OpaqueStream {
     uint32_t emission[3];
   };
 
+  void light_up(uint32_t count);
   void find_faces(uint32_t count);
   LitFace face_of_hit(uint32_t pixel);
   void show_sky(uint32_t count);

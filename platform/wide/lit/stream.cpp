@@ -263,4 +263,19 @@ void Stream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
   }
 }
 
+void Stream::draw_places(Span<const PixelPlace> places, Bytes rgb) {
+  Band band;
+  band.format = PixelFormat::kRgb888;
+  for (size_t first = 0; first < places.size; first += shape_.slots) {
+    const auto count = static_cast<uint32_t>(std::min<size_t>(shape_.slots, places.size - first));
+    for (uint32_t i = 0; i < count; ++i) {
+      begin(i, frame_.camera.ray(places.data[first + i].x, places.data[first + i].y));
+    }
+    finish(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      lit::store(frame_, band, rgb.data + 3 * (first + i), 0, 0, parts_.slots[i].sum);
+    }
+  }
+}
+
 }  // namespace thimble::wide
