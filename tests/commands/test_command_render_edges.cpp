@@ -124,6 +124,8 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
       {{"castle"}, {{"--threads", "1"}, {"--threads", "3"}, {"--memory", "300K"}, {"--memory", "2M"}}},
       {{"castle", "--background", "123456", "--ground", "off"}, {{"--threads", "2"}, {"--memory", "400K"}}},
       {{"room", "--effects", "auto"}, {{"--threads", "1"}, {"--threads", "5"}, {"--memory", "200K"}}},
+      {{"castle", "--effects", "direct-light,shadows,ambient-occlusion,sky"},
+       {{"--engine", "ray64"}, {"--engine", "ray64", "--threads", "1"}, {"--threads", "3"}}},
       {{"castle", "--shade", "normal"},
        {{"--engine", "ray64"}, {"--memory", "220K"}, {"--structure", "pool"}}},
       {{"castle", "--shade", "color", "--cutoff", "3"}, {{"--memory", "400K"}, {"--threads", "2"}}},

@@ -3,25 +3,73 @@
 
 #include <algorithm>
 #include <cstring>
+#include <random>
+#include <vector>
 
 #include "support/lit_cases.h"
 #include "support/wide_cases.h"
 #include "wide/lit/lit_renderer.h"
 
 namespace thimble::tests {
-TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
+namespace {
+
+// Nothing that a ray goes on from: what most pictures are.
+LitCase random_opaque_light(std::mt19937_64& random, int level) {
+  LitCase lit = random_light(random, level);
+  lit.effects = static_cast<EffectSet>(pick(random, 0, Effect::kAll)) &
+                (Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kEmission |
+                 Effect::kSky | Effect::kEmitterLight);
+  lit.effects |= pick(random, 0, 1) == 0 ? Effect::kDirectLight | Effect::kShadows : Effect::kSky;
+  const auto is_lamp = [](const Light& light) { return light.is_point; };
+  lit.lights.erase(std::remove_if(lit.lights.begin(), lit.lights.end(), is_lamp), lit.lights.end());
+  lit.scene.lights = {lit.lights.data(), lit.lights.size()};
+  return lit;
+}
+
+// Pixels here and there: three bytes each, as the core draws them alone.
+void check_places(std::mt19937_64& random, const WideScene& scene, const wide::RayMap& map,
+                  const FrameCase& frame, const LitCase& lit, const Bytes& workspace, int threads) {
+  std::vector<wide::PixelPlace> places;
+  std::vector<std::uint8_t> expected;
+  for (std::int64_t i = pick(random, 0, 200); i > 0; --i) {
+    const auto x = static_cast<std::int32_t>(pick(random, 0, frame.camera.width_px() - 1));
+    const auto y = static_cast<std::int32_t>(pick(random, 0, frame.camera.height_px() - 1));
+    std::uint8_t pixel[3];
+    CHECK(render_lit_band(lit.effects, scene.tree, frame.camera.window(x, y, 1, 1), frame.shading, lit.scene,
+                          {Bytes(pixel, 3), PixelFormat::kRgb888, 0, 0, 1}, nullptr,
+                          lit.options) == Status::kOk);
+    expected.insert(expected.end(), pixel, pixel + 3);
+    places.push_back({x, y});
+  }
+  std::vector<std::uint8_t> drawn(expected.size(), 0xA5);
+  const Bytes rgb(drawn.data(), drawn.size());
+  const auto draw = [&](const Bytes& into) {
+    return wide::render_lit_pixels(lit.effects, map, frame.camera, frame.shading, lit.scene,
+                                   {places.data(), places.size()}, into, workspace, threads_of(threads),
+                                   nullptr, lit.options);
+  };
+  if (!places.empty()) {
+    CHECK(draw(rgb.subspan(1)) == Status::kOutOfMemory);
+    CHECK(drawn[0] == 0xA5);
+  }
+  REQUIRE(draw(rgb) == Status::kOk);
+  REQUIRE(drawn == expected);
+}
+
+// Draws so many random frames, and compares every byte and count with the core's.
+void check_lit_frames(std::uint64_t seed, int frames,
+                      LitCase (*make_light)(std::mt19937_64& random, int level)) {
   const BestInstructionSet after;
-  constexpr int kFrames = many_or_few(1000, 60);
-  std::mt19937_64 random(20261123);
+  std::mt19937_64 random(seed);
   int drawn = 0;
   int lit_up = 0;
-  while (drawn < kFrames) {
+  while (drawn < frames) {
     const WideScene scene = pick(random, 0, 2) == 0 ? random_scene(random) : cabinet(random);
     FrameCase frame;
     if (!random_frame(random, scene, &frame)) {
       continue;
     }
-    const LitCase lit = random_light(random, scene.level);
+    const LitCase lit = make_light(random, scene.level);
     if (kHasPanelFormats && pick(random, 0, 2) == 0) {
       frame.band.format = static_cast<PixelFormat>(pick(random, 0, 13));
       frame.band.stride_bytes = 0;
@@ -58,10 +106,21 @@ TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
       REQUIRE((ends || ours.counts.hits[kind] == expected.counts.hits[kind]));
     }
     REQUIRE(ours.counts.pending_high_water == expected.counts.pending_high_water);
+    const HeapBytes of_places(workspace);
+    check_places(random, scene, map, frame, lit, of_places.span(), threads);
     lit_up += expected.counts.hits[0] != 0 ? 1 : 0;
     ++drawn;
   }
-  CHECK(lit_up > kFrames / 3);
+  CHECK(lit_up > frames / 3);
+}
+
+}  // namespace
+
+TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
+  check_lit_frames(20261123, many_or_few(1000, 60), random_light);
+}
+TEST_CASE("wide: lit scenes in which rays end where they hit -> every byte is the core's") {
+  check_lit_frames(20261124, many_or_few(1000, 60), random_opaque_light);
 }
 
 TEST_CASE("wide: a lit picture's errors are the core's, with nothing drawn") {

@@ -163,6 +163,26 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   check_each("any_hit_before", batch, [&](std::size_t i) { return any[i] == hit_before(i); });
   CHECK(wide::first_hit(map, rays, to_hits) == Status::kOk);
   check_each("first_hit", batch, [&](std::size_t i) { return same(hits[i], batch.first[i]); });
+  CHECK(wide::first_unnamed_hit(map, rays, to_hits) == Status::kOk);
+  wide::MaterialFinder materials(map);
+  check_each("first_unnamed_hit", batch, [&](std::size_t i) {
+    if (hits[i].kind == HitKind::kHit) {
+      hits[i].material = materials.of(hits[i]);
+    }
+    return same(hits[i], batch.first[i]);
+  });
+  // One bound for all rays; of a merged block the t counts, not how it is written.
+  const RayPoint reach = batch.before.front();
+  std::vector<RayPoint> entries(count, RayPoint{7, 7});
+  CHECK(wide::first_entry_before(map, rays, reach, {entries.data(), count}) == Status::kOk);
+  check_each("first_entry_before", batch, [&](std::size_t i) {
+    const Hit& hit = batch.first[i];
+    if (hit.kind != HitKind::kHit || !is_before(hit, reach)) {
+      return entries[i].t_denominator == 0;
+    }
+    return entries[i].t_denominator > 0 && std::int64_t{entries[i].t_numerator} * hit.t_denominator ==
+                                               std::int64_t{hit.t_numerator} * entries[i].t_denominator;
+  });
   CHECK(wide::first_hit_before(map, rays, before, to_hits) == Status::kOk);
   check_each("first_hit_before", batch,
              [&](std::size_t i) { return same(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });

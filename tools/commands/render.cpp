@@ -236,8 +236,8 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   picture.across = subject.command.quality.across;
   const EngineOptions& engine = subject.command.engine;
   const bool at_edges = subject.command.quality.at_edges;
-  // With --board nothing of the host's stands in the board's RAM. Samples at edges are runs of a few pixels.
-  const auto streams = subject.command.scene.board == nullptr && !at_edges
+  // With --board nothing of the host's stands in the board's RAM.
+  const auto streams = subject.command.scene.board == nullptr
                            ? engine.lit_streams(&subject.built, picture.effects, picture.scene)
                            : nullptr;
   picture.streams = streams.get();

@@ -45,7 +45,7 @@ class LookStudio {
     framing_ = framing;
     look_ = default_look(facts_, wishes_, framing_, command_.view.width_px, command_.view.height_px);
     const bool is_lit = look_.kind == LookKind::kLit;
-    if (is_lit && !look_.at_edges && streams_ == nullptr) {
+    if (is_lit && streams_ == nullptr) {
       streams_ = command_.engine.lit_streams(&built_, look_.effects, look_.lit_scene());
     }
     canvas_ = {&built_.compact(),

@@ -29,7 +29,8 @@ class EdgePainter final : public BandPainter {
                 },
                 [this](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
                   store(px, py, sums, count);
-                }}) {}
+                },
+                places_hook()}) {}
 
   const char* engine() const override { return engine_.name; }
   int threads() const override { return engine_.threads; }
@@ -57,6 +58,14 @@ class EdgePainter final : public BandPainter {
   }
 
  private:
+  DrawPlaces places_hook() {
+    if (!engine_.draw_places) {
+      return nullptr;
+    }
+    return [this](const Camera& camera, Span<const SamplePlace> places, Bytes samples) {
+      return engine_.draw_places(camera, places, samples, &counts_[0]);
+    };
+  }
   void store(std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) const {
     std::uint8_t* const row = pixels_.data + row_bytes_ * static_cast<std::size_t>(py - first_row_);
     store_pixel(

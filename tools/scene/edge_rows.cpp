@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t kSegmentPx = kEdgeSegmentPx;
 
+// Pixels whose samples are drawn together, about: enough for all threads, few enough to lie in a cache.
+constexpr std::int32_t kTogetherPx = 16384;
+
 // Calls run(task, worker) for each task; the worst status.
 template <class Run>
 Status for_tasks(std::int32_t tasks, int threads, const Run& run) {
@@ -56,6 +59,9 @@ Status EdgeRows::draw(std::int32_t first_row, std::int32_t rows, Bytes work) {
   if (status != Status::kOk) {
     return status;
   }
+  if (hooks_.draw_places) {
+    return draw_together(first_row, rows, centres);
+  }
   return for_tasks(rows, threads_, [&](std::int32_t row, std::size_t worker) {
     return draw_row(first_row + row, centres, samples.subspan(width * worker, width), worker);
   });
@@ -72,29 +78,119 @@ Status EdgeRows::draw_centres(std::int32_t first, std::int32_t end, Bytes centre
   }
   kept_first_ = first;
   kept_end_ = first;
-  const Status status = for_tasks(end - missing, threads_, [&](std::int32_t i, std::size_t worker) {
+  const auto draw_one = [&](std::int32_t i, std::size_t worker) {
     const std::int32_t y = missing + i;
     return hooks_.draw({camera_, y, 0, y, camera_.width_px(), false}, centres.subspan(at(y), line_), worker);
-  });
+  };
+  const Status status = hooks_.draw_places ? draw_all_centres(missing, end, centres.subspan(at(missing)))
+                                           : for_tasks(end - missing, threads_, draw_one);
   if (status == Status::kOk) {
     kept_end_ = end;
   }
   return status;
 }
 
-Status EdgeRows::draw_row(std::int32_t y, ConstBytes centres, Bytes samples, std::size_t worker) const {
-  const auto row = [&](std::int32_t at) {
-    return at < kept_first_ || at >= kept_end_
-               ? ConstBytes()
-               : centres.subspan(line_ * static_cast<std::size_t>(at - kept_first_), line_);
-  };
+Status EdgeRows::draw_all_centres(std::int32_t first, std::int32_t end, Bytes centres) {
   const std::int32_t width = camera_.width_px();
-  Status status = edge_strengths(row(y - 1), row(y), row(y + 1), static_cast<int>(channels_), width, samples);
-  if (status == Status::kOk) {
-    status = place_edge_samples(samples, width, samples);
+  const std::int32_t at_once = std::max(1, kTogetherPx / width);
+  Status status = Status::kOk;
+  for (std::int32_t row = first; row < end && status == Status::kOk; row += at_once) {
+    places_.clear();
+    for (std::int32_t y = row; y < std::min(end, row + at_once); ++y) {
+      for (std::int32_t x = 0; x < width; ++x) {
+        places_.push_back({x, y, x, y});
+      }
+    }
+    status = hooks_.draw_places(camera_, {places_.data(), places_.size()},
+                                centres.subspan(line_ * static_cast<std::size_t>(row - first)));
   }
+  return status;
+}
+
+// The samples of the rows in `wanted_`, in the order in which they are added up.
+void EdgeRows::list_places(std::int32_t first_row, std::int32_t rows) {
+  const std::int32_t width = camera_.width_px();
+  const std::uint8_t* wanted = wanted_.data();
+  places_.clear();
+  row_places_.clear();
+  for (std::int32_t y = first_row; y < first_row + rows; ++y) {
+    row_places_.push_back(places_.size());
+    for (std::int32_t x = 0; x < width; ++x, ++wanted) {
+      for (int index = 0; index < *wanted; ++index) {
+        const EdgeSamplePlace place = edge_sample_place(index);
+        places_.push_back({x * kEdgeGrid + place.x, y * kEdgeGrid + place.y, x, y});
+      }
+    }
+  }
+}
+
+void EdgeRows::finish_row(std::int32_t y, const std::uint8_t* wanted, ConstBytes row,
+                          const std::uint8_t* drawn) const {
+  std::array<std::uint32_t, kMostChannels> sums{};
+  const std::uint8_t* centre = row.data;
+  for (std::int32_t x = 0; x < camera_.width_px(); ++x, centre += channels_) {
+    std::copy_n(centre, channels_, sums.begin());
+    for (int index = 0; index < wanted[x]; ++index, drawn += channels_) {
+      for (std::size_t channel = 0; channel < channels_; ++channel) {
+        sums[channel] += drawn[channel];
+      }
+    }
+    hooks_.finish(x, y, sums.data(), 1U + wanted[x]);
+  }
+}
+
+Status EdgeRows::draw_together(std::int32_t first_row, std::int32_t rows, ConstBytes centres) {
+  const auto width = static_cast<std::size_t>(camera_.width_px());
+  const std::int32_t most = std::max(1, kTogetherPx / camera_.width_px());
+  Status status = Status::kOk;
+  for (std::int32_t done = 0; done < rows && status == Status::kOk; done += most) {
+    const std::int32_t first = first_row + done;
+    const std::int32_t count = std::min(most, rows - done);
+    wanted_.resize(width * static_cast<std::size_t>(count));
+    const auto row_of = [&](std::int32_t row) {
+      return wanted_.data() + width * static_cast<std::size_t>(row);
+    };
+    status = for_tasks(count, threads_, [&](std::int32_t row, std::size_t /*worker*/) {
+      return find_wanted(first + row, centres, Bytes(row_of(row), width));
+    });
+    if (status != Status::kOk) {
+      return status;
+    }
+    list_places(first, count);
+    drawn_.resize(channels_ * places_.size());
+    status = hooks_.draw_places(fine_, {places_.data(), places_.size()}, Bytes(drawn_.data(), drawn_.size()));
+    if (status != Status::kOk) {
+      return status;
+    }
+    status = for_tasks(count, threads_, [&](std::int32_t row, std::size_t /*worker*/) {
+      finish_row(first + row, row_of(row), centre_row(first + row, centres),
+                 drawn_.data() + channels_ * row_places_[static_cast<std::size_t>(row)]);
+      return Status::kOk;
+    });
+  }
+  return status;
+}
+
+ConstBytes EdgeRows::centre_row(std::int32_t y, ConstBytes centres) const {
+  return y < kept_first_ || y >= kept_end_
+             ? ConstBytes()
+             : centres.subspan(line_ * static_cast<std::size_t>(y - kept_first_), line_);
+}
+
+// How many samples each pixel of a row gets beside its one.
+Status EdgeRows::find_wanted(std::int32_t y, ConstBytes centres, Bytes samples) const {
+  const std::int32_t width = camera_.width_px();
+  const Status status =
+      edge_strengths(centre_row(y - 1, centres), centre_row(y, centres), centre_row(y + 1, centres),
+                     static_cast<int>(channels_), width, samples);
+  return status != Status::kOk ? status : place_edge_samples(samples, width, samples);
+}
+
+Status EdgeRows::draw_row(std::int32_t y, ConstBytes centres, Bytes samples, std::size_t worker) const {
+  const std::int32_t width = camera_.width_px();
+  Status status = find_wanted(y, centres, samples);
   for (std::int32_t x = 0; x < width && status == Status::kOk; x += kEdgeSegmentPx) {
-    status = draw_segment(y, x, std::min(kEdgeSegmentPx, width - x), row(y), samples, worker);
+    status = draw_segment(y, x, std::min(kEdgeSegmentPx, width - x), centre_row(y, centres), samples, worker);
   }
   return status;
 }

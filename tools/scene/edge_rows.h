@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
+#include "scene/sample_place.h"
 #include "thimble/base/memory.h"
 #include "thimble/base/status.h"
 #include "thimble/picture/camera.h"
@@ -23,6 +25,9 @@ struct SampleRun {
   bool is_fine;  ///< whether the camera's pixels are the places of edge samples, else those of the picture
 };
 
+/// Draws single pixels of a camera, `channels` bytes each, by threads of its own.
+using DrawPlaces = std::function<Status(const Camera& camera, Span<const SamplePlace> places, Bytes samples)>;
+
 /// What draws, and where finished pixels go. Both are called by several threads at a time, `worker` telling
 /// them apart; a row is one worker's.
 struct EdgeRowsHooks {
@@ -31,6 +36,8 @@ struct EdgeRowsHooks {
   /// Takes a pixel: the sum of each channel over `count` samples. Left to right in a row.
   std::function<void(std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count)>
       finish;
+  /// In place of `draw`, where it is set: many samples at a time.
+  DrawPlaces draw_places = nullptr;
 };
 
 class EdgeRows {
@@ -57,6 +64,13 @@ class EdgeRows {
 
  private:
   Status draw_centres(std::int32_t first, std::int32_t end, Bytes centres);
+  Status draw_all_centres(std::int32_t first, std::int32_t end, Bytes centres);
+  Status draw_together(std::int32_t first_row, std::int32_t rows, ConstBytes centres);
+  void list_places(std::int32_t first_row, std::int32_t rows);
+  void finish_row(std::int32_t y, const std::uint8_t* wanted, ConstBytes row,
+                  const std::uint8_t* drawn) const;
+  ConstBytes centre_row(std::int32_t y, ConstBytes centres) const;
+  Status find_wanted(std::int32_t y, ConstBytes centres, Bytes samples) const;
   Status draw_row(std::int32_t y, ConstBytes centres, Bytes samples, std::size_t worker) const;
   Status draw_segment(std::int32_t y, std::int32_t first, std::int32_t count, ConstBytes row,
                       ConstBytes samples, std::size_t worker) const;
@@ -69,6 +83,11 @@ class EdgeRows {
   std::size_t line_;
   std::int32_t kept_first_ = 0;  // rows of centres at the front of the work
   std::int32_t kept_end_ = 0;
+  // For samples that are drawn together: of some rows.
+  std::vector<std::uint8_t> wanted_;
+  std::vector<SamplePlace> places_;
+  std::vector<std::size_t> row_places_;  // where each row's begin
+  std::vector<std::uint8_t> drawn_;
 };
 
 }  // namespace thimble::tools

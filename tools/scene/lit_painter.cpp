@@ -105,7 +105,16 @@ std::unique_ptr<BandPainter> make_lit_edge_painter(const BuiltScene& built, cons
     return render_lit_band(picture.effects, built.compact(), run.camera, shading, picture.scene,
                            {samples, PixelFormat::kRgb888, 0, run.row, 1}, &counts->lit);
   };
-  return make_edge_painter(built, camera, fine, format, {"lit", picture.threads, true, draw});
+  EdgeEngine engine{"lit", picture.threads, true, draw};
+  if (picture.streams != nullptr) {
+    engine.threads = picture.streams->threads();
+    engine.draw_places = [shading, picture](const Camera& view, Span<const SamplePlace> places, Bytes samples,
+                                            PaintCounts* counts) {
+      return picture.streams->render_pixels(picture.effects, view, shading, picture.scene, places, samples,
+                                            &counts->lit);
+    };
+  }
+  return make_edge_painter(built, camera, fine, format, std::move(engine));
 }
 
 }  // namespace thimble::tools

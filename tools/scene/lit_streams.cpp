@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <vector>
 
 #include "wide/lit/lit_renderer.h"
 #include "wide/threads.h"
@@ -20,12 +21,22 @@ class WideLitStreams final : public LitStreams {
                 const Band& band, LitCounts* counts) override {
     return wide::render_lit(effects, map_, camera, shading, scene, band, workspace_, &threads_, counts);
   }
+  Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
+                       Span<const SamplePlace> places, Bytes rgb, LitCounts* counts) override {
+    places_.resize(places.size);
+    std::transform(places.data, places.data + places.size, places_.begin(), [](const SamplePlace& place) {
+      return wide::PixelPlace{place.x, place.y};
+    });
+    return wide::render_lit_pixels(effects, map_, camera, shading, scene, {places_.data(), places_.size()},
+                                   rgb, workspace_, &threads_, counts);
+  }
 
  private:
   wide::RayMap map_;
   Bytes workspace_;
   wide::Threads threads_;
   double seconds_;
+  std::vector<wide::PixelPlace> places_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "scene/sample_place.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/compact_tree.h"
@@ -35,6 +36,10 @@ class LitStreams {
   /// be null) is added to.
   virtual Status render(EffectSet effects, const Camera& camera, const Shading& shading,
                         const LitScene& scene, const Band& band, LitCounts* counts) = 0;
+  /// The same of single pixels, three bytes each.
+  virtual Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
+                               const LitScene& scene, Span<const SamplePlace> places, Bytes rgb,
+                               LitCounts* counts) = 0;
 };
 
 }  // namespace thimble::tools

@@ -144,6 +144,35 @@ Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts
   return Status::kOk;
 }
 
+Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
+                             Bytes samples, LitCounts* counts) const {
+  const Status status =
+      canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places, colors, counts);
+  if (status != Status::kOk) {
+    return status;
+  }
+  const Look& look = *canvas_.look;
+  const Camera& whole = canvas_.framing->camera;
+  constexpr std::size_t kAtOnce = 256;
+  const auto tasks = static_cast<std::int32_t>((places.size + kAtOnce - 1) / kAtOnce);
+  return for_rows(tasks, canvas_.streams->threads(), [&](std::int32_t task, std::size_t /*thread*/) {
+    const std::size_t first = kAtOnce * static_cast<std::size_t>(task);
+    for (std::size_t i = first; i < std::min(first + kAtOnce, places.size); ++i) {
+      const SamplePlace& place = places.data[i];
+      std::uint8_t share = kNothingBehind;
+      if (look.has_backdrop && !light_behind(*canvas_.tree, look, camera.ray(place.x, place.y), &share)) {
+        share = kNothingBehind;
+      }
+      const std::uint8_t* color = colors.data + 3 * i;
+      const Rgb8 behind =
+          backdrop_color(look.background, place.px, place.py, whole.width_px(), whole.height_px());
+      const Sample sample = sample_of({color[0], color[1], color[2]}, share, behind);
+      std::copy(sample.begin(), sample.end(), samples.data + 4 * i);
+    }
+    return Status::kOk;
+  });
+}
+
 void LookRows::finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* sums, std::uint32_t count,
                            Image* image) {
   const auto pixel =
@@ -227,13 +256,19 @@ Status paint_at_edges(const LookCanvas& canvas, std::uint32_t exposure, const Pr
   Image& image = painting->image;
   const LookRows look(canvas, canvas.framing->camera, exposure);
   std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
+  std::vector<std::uint8_t> colors;  // of the samples that are drawn together
+  const DrawPlaces draw_places = [&](const Camera& camera, Span<const SamplePlace> places, Bytes samples) {
+    colors.resize(3 * places.size);
+    return look.draw_places(camera, places, Bytes(colors.data(), colors.size()), samples, &counts[0]);
+  };
   EdgeRows rows(canvas.framing->camera, canvas.fine, 4, canvas.threads,
                 {[&](const SampleRun& run, Bytes samples, std::size_t worker) {
                    return look.draw_run(run, samples, &counts[worker]);
                  },
                  [&](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
                    LookRows::finish_sums(px, py, sums, count, &image);
-                 }});
+                 },
+                 canvas.streams != nullptr ? draw_places : DrawPlaces()});
   const std::int32_t at_once = std::min(
       EdgeRows::rows_within(canvas.work.size, 4, image.width_px, canvas.threads, 0), image.height_px);
   Status status = Status::kOk;

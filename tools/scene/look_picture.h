@@ -60,6 +60,9 @@ class LookRows {
   /// What an edge painter draws: samples with their tone and what is behind them, red, green, blue and cover,
   /// a byte each.
   Status draw_run(const SampleRun& run, Bytes samples, LitCounts* counts) const;
+  /// The same of single pixels of a camera, by `canvas.streams`, which there is. `colors` has three bytes for each.
+  Status draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors, Bytes samples,
+                     LitCounts* counts) const;
   /// The pixel of such samples' sums.
   static void finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* sums, std::uint32_t count,
                           Image* image);

@@ -87,6 +87,10 @@ struct EdgeEngine {
   bool is_lit;  ///< whether it counts by kind of ray
   /// A row of a camera in kRgb888; called by so many threads at a time, each with counts of its own.
   std::function<Status(const SampleRun& run, Bytes samples, PaintCounts* counts)> draw;
+  /// In place of `draw`, where it is set: single pixels, by threads of its own.
+  std::function<Status(const Camera& camera, Span<const SamplePlace> places, Bytes samples,
+                       PaintCounts* counts)>
+      draw_places = nullptr;
 };
 /// Of such pictures, for `fine` with kEdgeGrid times the pixels of `camera` each way.
 std::unique_ptr<BandPainter> make_edge_painter(const BuiltScene& built, const Camera& camera,

@@ -27,6 +27,27 @@ std::vector<std::string> WideRenderer::instruction_sets() {
   return names;
 }
 
+namespace {
+
+// As many of the threads as have room beside the smaller one of the lists; at least one.
+int threads_within(const CompactTree& tree, const Arena& arena, std::size_t box_bytes, std::int32_t width_px,
+                   std::int32_t rows, int threads) {
+  const auto fits = [&](std::size_t lists) {
+    return wide::workspace_bytes(width_px, rows, threads) + WideRenderer::kWorkspaceAlignment + lists <=
+           arena.free_bytes();
+  };
+  if (threads == 1 || fits(box_bytes)) {
+    return threads;
+  }
+  const std::size_t least = std::min(box_bytes, wide::VoxelLists::bytes(tree));
+  while (threads > 1 && !fits(least)) {
+    --threads;
+  }
+  return threads;
+}
+
+}  // namespace
+
 std::size_t WideRenderer::bytes(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px,
                                 int threads) {
   return wide::VoxelLists::bytes(tree) + kWorkspaceAlignment +
@@ -38,6 +59,9 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena*
   const auto start = std::chrono::steady_clock::now();
   const std::size_t mark = arena->used_bytes();
   const std::int32_t least_rows = std::min(height_px, kLeastRows);
+  // About as much will be written, whichever lists are made.
+  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
+  threads = threads_within(tree, *arena, box_bytes, width_px, least_rows, threads);
   const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
   // What the least workspace leaves is the lists', and where the fastest do not fit, those of boxes alone may.
   // Lists are counted before they are made: what does not fit costs little time.
@@ -46,13 +70,12 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena*
     return nullptr;
   }
   Arena part(arena->rest().subspan(0, arena->free_bytes() - kept));
-  // About as much will be written, whichever lists are made.
-  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
   use_large_pages(part.rest().subspan(0, std::min(box_bytes, part.free_bytes())));
   wide::VoxelLists lists;
   if (wide::VoxelLists::make(tree, &part, &lists) != Status::kOk &&
       wide::VoxelLists::make(tree, &part, &lists, wide::ListKind::kBoxes) != Status::kOk) {
-    return nullptr;
+    // What lists take may be some bytes more, for where they begin.
+    return threads > 1 ? make(tree, arena, width_px, height_px, threads - 1) : nullptr;
   }
   arena->take(part.used_bytes(), 1);
   std::int32_t rows = height_px;

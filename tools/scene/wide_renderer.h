@@ -41,8 +41,8 @@ class WideRenderer {
                            int threads);
 
   /// Makes the lists of `tree`, which outlives the result as `arena` does, and takes a workspace: for all
-  /// rows of pictures of this size, or for as many as there is room for. Null, and nothing taken, when there
-  /// is room for fewer than kLeastRows.
+  /// rows of pictures of this size, or for as many as there is room for, and for fewer threads where that is too little
+  /// for kLeastRows. Null, and nothing taken, when there is room for fewer than these with one.
   static std::unique_ptr<WideRenderer> make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
                                             std::int32_t height_px, int threads);
   /// The same within a scene's budget; null also when the scene is no compact tree.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "wide/lit/opaque_stream.h"
 #include "wide/lit/stream.h"
 
 namespace thimble::wide {
@@ -18,13 +19,64 @@ int32_t rows_of_task(const Band& band, int32_t width_px, uint32_t slots) {
   return has_pages(band.format) ? (rows + 7) / 8 * 8 : rows;
 }
 
+// Either kind of stream fits in what was asked for, so that a workspace serves all sets of effects within one.
+size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
+  return std::max(StreamShape(effects, scene, slots).bytes(), OpaqueShape(effects, scene, slots).bytes());
+}
+
+// Draws things 0 .. `things` - 1, so many a task that all slots are filled: draw(stream, first, end) does some.
+// `step(slots)` is how many.
+template <class Stream, class Shape, class Step, class Draw>
+Status draw_by(const lit::Frame& frame, const RayMap& map, size_t things, Bytes workspace, Threads* threads,
+               LitCounts* counts, const Step& step, const Draw& draw) {
+  // As many threads as there is room for; then as many pixels at once.
+  size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
+  workers = std::min(workers, workspace.size / least_lit_workspace_bytes(frame.effects, frame.scene));
+  if (workers == 0) {
+    return Status::kOutOfMemory;
+  }
+  uint32_t slots = kSlots;
+  while (slots > kLeastSlots && Shape(frame.effects, frame.scene, slots).bytes() * workers > workspace.size) {
+    slots /= 2;
+  }
+  const Shape shape(frame.effects, frame.scene, slots);
+  const size_t together = step(slots);
+  std::atomic<size_t> next{0};
+  std::atomic_flag adding;
+  const auto work = [&](int worker) {
+    Stream stream(frame, map, shape,
+                  workspace.subspan(static_cast<size_t>(worker) * shape.bytes(), shape.bytes()));
+    for (size_t first = next.fetch_add(together); first < things; first = next.fetch_add(together)) {
+      draw(&stream, first, std::min(first + together, things));
+    }
+    while (adding.test_and_set()) {
+    }
+    if (counts != nullptr) {
+      lit::add_counts(stream.counts(), counts);
+    }
+    adding.clear();
+  };
+  if (workers == 1) {
+    work(0);
+  } else {
+    threads->each(static_cast<int>(workers), work);
+  }
+  return Status::kOk;
+}
+
+template <class... Arguments>
+Status draw_by_either(const lit::Frame& frame, const Arguments&... arguments) {
+  return is_opaque(frame.effects, frame.scene) ? draw_by<OpaqueStream, OpaqueShape>(frame, arguments...)
+                                               : draw_by<Stream, StreamShape>(frame, arguments...);
+}
+
 }  // namespace
 
 size_t lit_workspace_bytes(EffectSet effects, const LitScene& scene) {
-  return StreamShape(effects, scene, kSlots).bytes();
+  return most_bytes(effects, scene, kSlots);
 }
 size_t least_lit_workspace_bytes(EffectSet effects, const LitScene& scene) {
-  return StreamShape(effects, scene, kLeastSlots).bytes();
+  return most_bytes(effects, scene, kLeastSlots);
 }
 
 Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
@@ -41,39 +93,44 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  // As many threads as there is room for; then as many pixels at once.
-  size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
-  workers = std::min(workers, workspace.size / least_lit_workspace_bytes(effects, scene));
-  if (workers == 0) {
+  return draw_by_either(
+      frame, map, static_cast<size_t>(band.rows), workspace, threads, counts,
+      [&](uint32_t slots) { return static_cast<size_t>(rows_of_task(band, camera.width_px(), slots)); },
+      [&](auto* stream, size_t first, size_t end) {
+        stream->draw(band, stride, static_cast<int32_t>(first), static_cast<int32_t>(end));
+      });
+}
+
+Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
+                         const LitScene& scene, Span<const PixelPlace> places, Bytes rgb, Bytes workspace,
+                         Threads* threads, LitCounts* counts, const LitOptions& options) {
+  effects &= Effect::kAll;
+  if (rgb.size / 3 < places.size) {
     return Status::kOutOfMemory;
   }
-  uint32_t slots = kSlots;
-  while (slots > kLeastSlots && StreamShape(effects, scene, slots).bytes() * workers > workspace.size) {
-    slots /= 2;
+  if (effects == Effect::kNone || options.max_visits != UINT32_MAX) {
+    for (size_t i = 0; i < places.size; ++i) {
+      const Status status = render_lit_band(
+          effects, map.tree(), camera.window(places.data[i].x, places.data[i].y, 1, 1), shading, scene,
+          {rgb.subspan(3 * i, 3), PixelFormat::kRgb888, 0, 0, 1}, counts, options);
+      if (status != Status::kOk) {
+        return status;
+      }
+    }
+    return Status::kOk;
   }
-  const StreamShape shape(effects, scene, slots);
-  const int32_t rows = rows_of_task(band, camera.width_px(), slots);
-  std::atomic<int32_t> next{0};
-  std::atomic_flag adding;
-  const auto work = [&](int worker) {
-    Stream stream(frame, map, shape,
-                  workspace.subspan(static_cast<size_t>(worker) * shape.bytes(), shape.bytes()));
-    for (int32_t first = next.fetch_add(rows); first < band.rows; first = next.fetch_add(rows)) {
-      stream.draw(band, stride, first, std::min(first + rows, band.rows));
-    }
-    while (adding.test_and_set()) {
-    }
-    if (counts != nullptr) {
-      lit::add_counts(stream.counts(), counts);
-    }
-    adding.clear();
-  };
-  if (workers == 1) {
-    work(0);
-  } else {
-    threads->each(static_cast<int>(workers), work);
+  const lit::Frame frame{map.tree(), camera, shading, scene, options, effects};
+  size_t stride = 0;
+  const Status status = lit::check_frame(frame, {{}, PixelFormat::kRgb888, 0, 0, 0}, &stride);
+  if (status != Status::kOk) {
+    return status;
   }
-  return Status::kOk;
+  return draw_by_either(
+      frame, map, places.size, workspace, threads, counts,
+      [](uint32_t slots) { return static_cast<size_t>(slots); },
+      [&](auto* stream, size_t first, size_t end) {
+        stream->draw_places({places.data + first, end - first}, rgb.subspan(3 * first));
+      });
 }
 
 }  // namespace thimble::wide

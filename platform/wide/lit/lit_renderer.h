@@ -30,6 +30,20 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
                   const LitScene& scene, const Band& band, Bytes workspace, Threads* threads = nullptr,
                   LitCounts* counts = nullptr, const LitOptions& options = {});
 
+/// A pixel of a camera.
+struct PixelPlace {
+  int32_t x;
+  int32_t y;
+};
+
+/// The same pixels one by one, wherever they are: `rgb` gets three bytes each, what `render_lit` stores in kRgb888.
+/// Places lie on the camera's picture. For samples where edges are.
+/// Errors, with nothing drawn: those of render_lit; kOutOfMemory for a `rgb` that is too small.
+Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
+                         const LitScene& scene, Span<const PixelPlace> places, Bytes rgb, Bytes workspace,
+                         Threads* threads = nullptr, LitCounts* counts = nullptr,
+                         const LitOptions& options = {});
+
 }  // namespace thimble::wide
 
 #endif

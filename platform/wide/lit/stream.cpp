@@ -1,35 +1,10 @@
 #include "wide/lit/stream.h"
 
 #include <algorithm>
-#include <new>
+
+#include "wide/lit/taker.h"
 
 namespace thimble::wide {
-namespace {
-
-constexpr size_t kAlignment = 64;
-
-// Takes arrays from bytes, or only counts them.
-class Taker {
- public:
-  explicit Taker(uint8_t* at) : at_(at) {}
-  template <typename T>
-  T* take(size_t count) {
-    used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
-    T* array = at_ == nullptr ? nullptr : reinterpret_cast<T*>(at_ + used_);
-    used_ += count * sizeof(T);
-    for (size_t i = 0; array != nullptr && i < count; ++i) {
-      new (array + i) T;
-    }
-    return array;
-  }
-  size_t used() const { return used_; }
-
- private:
-  uint8_t* at_;
-  size_t used_ = 0;
-};
-
-}  // namespace
 
 void StreamParts::lay_out(const StreamShape& shape, uint8_t* at) {
   Taker taker(at);
@@ -75,7 +50,7 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
 size_t StreamShape::bytes() const {
   StreamParts parts;
   parts.lay_out(*this, nullptr);
-  return parts.bytes + kAlignment;
+  return parts.bytes + Taker::kAlignment;
 }
 
 Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes)
@@ -86,8 +61,7 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
       steps_(lit::steps_of(frame.effects)),
       is_clear_((frame.effects & (Effect::kGlass | Effect::kMedia)) != 0),
       is_wet_((frame.effects & Effect::kWater) != 0) {
-  const size_t skew = reinterpret_cast<uintptr_t>(bytes.data) % kAlignment;
-  parts_.lay_out(shape, bytes.data + (skew == 0 ? 0 : kAlignment - skew));
+  parts_.lay_out(shape, Taker::aligned(bytes.data));
   frame_.questions = parts_.questions;
   asking_.questions = parts_.questions;
   frame_.suns = parts_.suns;
@@ -285,6 +259,21 @@ void Stream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
         to_x = 0;
         ++to_row;
       }
+    }
+  }
+}
+
+void Stream::draw_places(Span<const PixelPlace> places, Bytes rgb) {
+  Band band;
+  band.format = PixelFormat::kRgb888;
+  for (size_t first = 0; first < places.size; first += shape_.slots) {
+    const auto count = static_cast<uint32_t>(std::min<size_t>(shape_.slots, places.size - first));
+    for (uint32_t i = 0; i < count; ++i) {
+      begin(i, frame_.camera.ray(places.data[first + i].x, places.data[first + i].y));
+    }
+    finish(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      lit::store(frame_, band, rgb.data + 3 * (first + i), 0, 0, parts_.slots[i].sum);
     }
   }
 }

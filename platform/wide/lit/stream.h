@@ -8,6 +8,7 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/asked.h"
+#include "wide/lit/lit_renderer.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -57,6 +58,8 @@ class Stream {
   /// Draws rows first .. end - 1 of the band, counted from its own first. For formats whose rows share bytes,
   /// both are multiples of 8 or the band's end.
   void draw(const Band& band, size_t stride, int32_t first, int32_t end);
+  /// Draws pixels of the camera, three bytes each.
+  void draw_places(Span<const PixelPlace> places, Bytes rgb);
   const LitCounts& counts() const { return frame_.counts; }
 
  private:

@@ -19,8 +19,12 @@ struct Job {
   size_t count;
   const RayPoint* points;  ///< with a bound
   Bound bound;
-  uint8_t* any;  ///< null: `hits` is wanted. One of the two; all say "a miss" before the call
+  // One of the three is wanted; all say "a miss" before the call.
+  uint8_t* any;
   Hit* hits;
+  RayPoint* entries = nullptr;
+  bool names = true;            ///< whether hits want materials
+  size_t point_step = 1;        ///< from a ray's point to the next one's; 0: one for all
   Status status = Status::kOk;  ///< the first error
 };
 

@@ -9,9 +9,24 @@
 namespace thimble::wide {
 namespace {
 
+constexpr int kCubeLevel = 4;  // of MapCells
+
+unsigned octant_of(const Vec3i& voxel, int level) {
+  return (static_cast<unsigned>(voxel.x) >> level & 1U) |
+         (static_cast<unsigned>(voxel.y) >> level & 1U) << 1 |
+         (static_cast<unsigned>(voxel.z) >> level & 1U) << 2;
+}
+// The child of `level` that a voxel of the node is in. The tree's masks add up, or there were no map.
+uint32_t child_of(const CompactTree& tree, uint32_t node, const Vec3i& voxel, int level) {
+  const unsigned before = tree.mask(node) & ((1U << octant_of(voxel, level)) - 1);
+  return tree.first_child(node) + static_cast<uint32_t>(__builtin_popcount(before));
+}
+
 Status run(Job* job) {
   if (job->any != nullptr) {
     std::fill_n(job->any, job->count, uint8_t{0});
+  } else if (job->entries != nullptr) {
+    std::fill_n(job->entries, job->count, RayPoint{0, 0});
   } else {
     std::fill_n(job->hits, job->count, Hit{});
   }
@@ -25,6 +40,27 @@ Status run(Job* job) {
   return job->status;
 }
 
+// The node of 2^3 voxels that a voxel is in, or the larger one that is solid through; without the part of the way
+// that the map knows.
+struct Parent {
+  uint32_t node;
+  int level;
+};
+Parent parent_of(const RayMap& map, const Vec3i& voxel) {
+  const CompactTree& tree = map.tree();
+  const MapCells& cells = *map.cells();
+  const auto cube = [&](int axis) { return static_cast<uint64_t>(voxel[axis]) >> kCubeLevel; };
+  const int bits = cells.level - kCubeLevel;
+  const uint64_t known = cells.bricks[(cells.top[(cube(2) << bits | cube(1)) << bits | cube(0)] >> 4) + 1];
+  const bool is_known = known != UINT64_MAX && tree.level() > kCubeLevel;
+  Parent parent{is_known ? static_cast<uint32_t>(known) : 0, is_known ? kCubeLevel : tree.level()};
+  while (parent.level > 1 && tree.mask(parent.node) != 0) {
+    --parent.level;
+    parent.node = child_of(tree, parent.node, voxel, parent.level);
+  }
+  return parent;
+}
+
 // The solid block that holds a voxel: itself, or one that coarsening made.
 struct Block {
   Vec3i corner;
@@ -32,29 +68,23 @@ struct Block {
   uint8_t material;
 };
 
-Block block_at(const CompactTree& tree, const Vec3i& voxel) {
+Block block_at(const RayMap& map, const Vec3i& voxel) {
+  const CompactTree& tree = map.tree();
   Block block{voxel, 0, tree.uniform_material()};
-  if (!tree.many_materials() && !tree.merged()) {
+  if (!map.cells()->has_nodes) {
     return block;
   }
-  uint32_t node = 0;
-  for (int level = tree.level(); level >= 1 && node < tree.node_count(); --level) {
-    const unsigned mask = tree.mask(node);
-    if (mask == 0) {
-      block.material = tree.block_material(node);
-      if (tree.is_merged(node)) {
-        const int32_t within = (int32_t{1} << level) - 1;
-        block.corner = {voxel.x & ~within, voxel.y & ~within, voxel.z & ~within};
-        block.level = level;
-      }
-      return block;
-    }
-    const unsigned octant = (static_cast<unsigned>(voxel.x) >> (level - 1) & 1U) |
-                            (static_cast<unsigned>(voxel.y) >> (level - 1) & 1U) << 1 |
-                            (static_cast<unsigned>(voxel.z) >> (level - 1) & 1U) << 2;
-    node = tree.first_child(node) + static_cast<uint32_t>(__builtin_popcount(mask & ((1U << octant) - 1)));
+  const Parent parent = parent_of(map, voxel);
+  if (tree.mask(parent.node) != 0) {
+    block.material = tree.voxel_material(child_of(tree, parent.node, voxel, 0));
+    return block;
   }
-  block.material = tree.voxel_material(node);
+  block.material = tree.block_material(parent.node);
+  if (tree.is_merged(parent.node)) {
+    const int32_t within = (int32_t{1} << parent.level) - 1;
+    block.corner = {voxel.x & ~within, voxel.y & ~within, voxel.z & ~within};
+    block.level = parent.level;
+  }
   return block;
 }
 
@@ -81,6 +111,10 @@ void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   hit->t_denominator = axis < 0 ? 1 : static_cast<int32_t>(speed * Q8::kOne);
 }
 
+RayPoint entry_of(const Hit& hit) {
+  return hit.kind == HitKind::kHit ? RayPoint{hit.t_numerator, hit.t_denominator} : RayPoint{0, 0};
+}
+
 }  // namespace
 
 void trace_by_core(Job* job, size_t ray) {
@@ -93,13 +127,15 @@ void trace_by_core(Job* job, size_t ray) {
     job->status = status;
   }
   if (hit.kind == HitKind::kHit && job->bound == Bound::kBefore &&
-      !is_before(hit.t_numerator, hit.t_denominator, job->points[ray])) {
+      !is_before(hit.t_numerator, hit.t_denominator, job->points[ray * job->point_step])) {
     const uint32_t visits = hit.visits;
     hit = Hit{};
     hit.visits = visits;
   }
   if (job->any != nullptr) {
     job->any[ray] = hit.kind == HitKind::kHit ? 1 : 0;
+  } else if (job->entries != nullptr) {
+    job->entries[ray] = entry_of(hit);
   } else {
     job->hits[ray] = hit;
   }
@@ -116,22 +152,29 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   }
   Hit hit;
   hit.visits = visits;
-  if (job->any != nullptr) {
+  if (job->hits == nullptr) {
     find_face(ray, voxel, 1, &hit);  // of a merged block it is entered at the same t
+  } else if (!job->names && !job->map->tree().merged()) {
+    hit.voxel = voxel;
+    hit.material = job->map->tree().uniform_material();
+    find_face(ray, voxel, 1, &hit);
   } else {
-    const Block block = block_at(job->map->tree(), voxel);
+    const Block block = block_at(*job->map, voxel);
     hit.voxel = block.corner;
     hit.block_level = static_cast<uint8_t>(block.level);
     hit.material = block.material;
     find_face(ray, block.corner, int32_t{1} << block.level, &hit);
   }
   hit.kind = HitKind::kHit;
-  if (job->bound == Bound::kBefore && !is_before(hit.t_numerator, hit.t_denominator, job->points[number])) {
+  if (job->bound == Bound::kBefore &&
+      !is_before(hit.t_numerator, hit.t_denominator, job->points[number * job->point_step])) {
     hit = Hit{};
     hit.visits = visits;
   }
   if (job->any != nullptr) {
     job->any[number] = hit.kind == HitKind::kHit ? 1 : 0;
+  } else if (job->entries != nullptr) {
+    job->entries[number] = entry_of(hit);
   } else {
     job->hits[number] = hit;
   }
@@ -153,9 +196,39 @@ Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
   return run(&job);
 }
 
+Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
+  Job job{&map, rays.data, rays.size, nullptr, Bound::kNone, nullptr, hits.data};
+  job.names = false;
+  return run(&job);
+}
+
+uint8_t MaterialFinder::of(const Hit& hit) {
+  if (map_->cells() == nullptr || !map_->cells()->has_nodes || map_->tree().merged()) {
+    return hit.material;
+  }
+  const Vec3i at{hit.voxel.x >> 1, hit.voxel.y >> 1, hit.voxel.z >> 1};
+  const CompactTree& tree = map_->tree();
+  if (at != at_) {
+    at_ = at;
+    node_ = parent_of(*map_, hit.voxel).node;
+    mask_ = tree.mask(node_);
+    first_ = mask_ == 0 ? tree.block_material(node_) : tree.first_child(node_);
+  }
+  if (mask_ == 0) {
+    return static_cast<uint8_t>(first_);
+  }
+  const unsigned before = mask_ & ((1U << octant_of(hit.voxel, 0)) - 1);
+  return tree.voxel_material(first_ + static_cast<uint32_t>(__builtin_popcount(before)));
+}
+
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
                         Span<Hit> hits) {
   Job job{&map, rays.data, rays.size, before.data, Bound::kBefore, nullptr, hits.data};
+  return run(&job);
+}
+
+Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) {
+  Job job{&map, rays.data, rays.size, &before, Bound::kBefore, nullptr, nullptr, entries.data, false, 0};
   return run(&job);
 }
 

@@ -79,8 +79,32 @@ Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoi
 /// level.
 Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
 
-/// The same, where what is entered at a t of `before[i]` or later is a miss.
+/// The same without materials (0), where `MaterialFinder` knows them. Looking one up takes as long as a short ray, and
+/// the rays of a picture's neighbours meet the same voxels.
+Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
+
+/// Finds the materials of `first_unnamed_hit`. Remembers where it was, so ask in an order that goes from neighbour to
+/// neighbour. For one thread.
+class MaterialFinder {
+ public:
+  explicit MaterialFinder(const RayMap& map) : map_(&map) {}
+  /// Of a kHit.
+  uint8_t of(const Hit& hit);
+
+ private:
+  const RayMap* map_;
+  Vec3i at_{-1, -1, -1};  // the cube of 2^3 voxels, in such cubes
+  uint32_t node_ = 0;     // what it lies in
+  unsigned mask_ = 0;
+  uint32_t first_ = 0;  // its first voxel; or the material of all
+};
+
+/// The hits of `first_hit`, where what is entered at a t of `before[i]` or later is a miss.
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before, Span<Hit> hits);
+
+/// Where each ray enters the first solid voxel, if before the point `before`: t as in `Hit`, without the voxel, its
+/// face and material; denominator 0 for a miss. For occlusion, which asks how far away what is near is.
+Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries);
 
 /// The first solid voxel in which each ray spends a positive length after `from[i]`: as `closest_hit_from`. So
 /// a ray goes on behind glass that it passed.

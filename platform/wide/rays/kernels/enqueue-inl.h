@@ -61,6 +61,85 @@ HWY_INLINE VF load_column(const Rows& rows, size_t column) {
 #endif
 }
 
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+// Where the numbers of a column are in a row of records of `kStep` numbers each: in two vectors, and in what that
+// gave and a third.
+template <uint32_t kStep>
+struct ColumnTable {
+  alignas(64) uint32_t first[kStep][16];
+  alignas(64) uint32_t second[kStep][16];
+  constexpr ColumnTable() : first{}, second{} {
+    for (uint32_t column = 0; column < kStep; ++column) {
+      for (uint32_t lane = 0; lane < 8; ++lane) {
+        const uint32_t at = kStep * lane + column;
+        first[column][lane] = at % 32;
+        second[column][lane] = at < 32 ? lane : at - 16;
+      }
+    }
+  }
+};
+alignas(64) constexpr ColumnTable<6> kRayColumns;
+alignas(64) constexpr ColumnTable<2> kPointColumns;
+#endif
+
+// The six numbers of up to kLanes rays, a ray a lane.
+struct RayColumns {
+  VF of[6];
+  RayColumns(const Ray* rays, size_t count) {
+    const auto* const numbers = reinterpret_cast<const int32_t*>(rays);
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    if (count == kLanes) {
+      const __m512i low = _mm512_loadu_si512(numbers);
+      const __m512i middle = _mm512_loadu_si512(numbers + 16);
+      const __m512i high = _mm512_loadu_si512(numbers + 32);
+      for (size_t column = 0; column < 6; ++column) {
+        const __m512i some =
+            _mm512_permutex2var_epi32(low, _mm512_load_si512(kRayColumns.first[column]), middle);
+        const __m512i all =
+            _mm512_permutex2var_epi32(some, _mm512_load_si512(kRayColumns.second[column]), high);
+        of[column] = VF{_mm512_cvtepi32_pd(_mm512_castsi512_si256(all))};
+      }
+      return;
+    }
+#endif
+    const Rows rows(numbers, 6, count);
+    for (size_t column = 0; column < 6; ++column) {
+      of[column] = load_column(rows, column);
+    }
+  }
+};
+
+// The numerators and denominators of the rays' points.
+struct PointColumns {
+  VF numerator;
+  VF denominator;
+  PointColumns(const Job& job, size_t first, size_t count) {
+    const F64 d;
+    const RayPoint* const points = job.points + first * job.point_step;
+    if (job.point_step == 0) {
+      numerator = hn::Set(d, static_cast<double>(points->t_numerator));
+      denominator = hn::Set(d, static_cast<double>(points->t_denominator));
+      return;
+    }
+    const auto* const numbers = reinterpret_cast<const int32_t*>(points);
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    if (count == kLanes) {
+      const __m512i all = _mm512_loadu_si512(numbers);
+      const auto column = [&](size_t number) {
+        const __m512i found = _mm512_permutexvar_epi32(_mm512_load_si512(kPointColumns.first[number]), all);
+        return VF{_mm512_cvtepi32_pd(_mm512_castsi512_si256(found))};
+      };
+      numerator = column(0);
+      denominator = column(1);
+      return;
+    }
+#endif
+    const Rows rows(numbers, 2, count);
+    numerator = load_column(rows, 0);
+    denominator = load_column(rows, 1);
+  }
+};
+
 // One axis: the mirrored origin and direction, and the planes of the occupied box.
 HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewRays* rays, VF* low,
                          VF* high) {
@@ -99,9 +178,9 @@ HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewR
 HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* rays) {
   static_assert(sizeof(RayPoint) == 8 && offsetof(RayPoint, t_denominator) == 4);
   const F64 d;
-  const Rows points(reinterpret_cast<const int32_t*>(job.points + first), 2, count);
-  const VF numerator = load_column(points, 0);
-  const VF denominator = load_column(points, 1);
+  const PointColumns points(job, first, count);
+  const VF numerator = points.numerator;
+  const VF denominator = points.denominator;
   if (job.bound == Bound::kBefore) {
     const VF t = hn::Div(numerator, denominator);
     rays->end = hn::Min(rays->end, hn::Mul(t, hn::Set(d, kJustAfter)));
@@ -124,7 +203,7 @@ HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* r
 HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&place)[3]) {
   static_assert(sizeof(Ray) == 24 && offsetof(Ray, direction) == 12);
   const F64 d;
-  const Rows numbers(reinterpret_cast<const int32_t*>(job.rays + first), 6, count);
+  const RayColumns numbers(job.rays + first, count);
   NewRays rays;
   rays.begin = hn::Zero(d);
   rays.end = hn::Set(d, 1e300);
@@ -134,8 +213,7 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&pl
   VF high[3];
   for (int axis = 0; axis < 3; ++axis) {
     const size_t column = static_cast<size_t>(axis);
-    add_axis(job, axis, load_column(numbers, column), load_column(numbers, 3 + column), &rays, &low[axis],
-             &high[axis]);
+    add_axis(job, axis, numbers.of[column], numbers.of[3 + column], &rays, &low[axis], &high[axis]);
   }
   const VF sum = hn::Add(hn::Add(rays.direction[0], rays.direction[1]), rays.direction[2]);
   rays.taken = hn::And(rays.taken, hn::Gt(sum, hn::Zero(d)));

@@ -1,0 +1,369 @@
+#include "wide/lit/opaque_stream.h"
+
+#include <algorithm>
+
+#include "thimble/light/optics.h"
+#include "wide/lit/kernels.h"
+#include "wide/lit/taker.h"
+
+namespace thimble::wide {
+namespace {
+
+constexpr EffectSet kOpaque = Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion |
+                              Effect::kEmission | Effect::kSky | Effect::kEmitterLight;
+constexpr uint32_t kOpen = 1U << 12;  // of occlusion: nothing is in the way
+
+uint32_t rays_around(EffectSet effects, const LitScene& scene) {
+  const Occlusion& occlusion = scene.occlusion;
+  const bool any = (effects & Effect::kAmbientOcclusion) != 0 && occlusion.reach != 0;
+  return any ? std::min<uint32_t>(occlusion.rays, kOcclusionDirections) : 0;
+}
+
+uint32_t channel_of(const Rgb8& color, int channel) {
+  return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
+}
+
+lit::Color color_of(const Rgb8& color) {
+  return {{color.r * lit::kLevel, color.g * lit::kLevel, color.b * lit::kLevel}};
+}
+
+// Whole part of a quotient of integers, of which the dividend is below 2^52 and the divisor below 2^21: a double is
+// off by less than what tells it from the next whole number.
+int64_t whole_quotient(int64_t dividend, int64_t divisor) {
+  return static_cast<int64_t>(static_cast<double>(dividend) / static_cast<double>(divisor));
+}
+
+}  // namespace
+
+bool is_opaque(EffectSet effects, const LitScene& scene) {
+  if ((effects & ~kOpaque) != 0) {
+    return false;
+  }
+  const bool lights = (effects & Effect::kDirectLight) != 0;
+  return !lights || std::none_of(scene.lights.data, scene.lights.data + scene.lights.size,
+                                 [](const Light& light) { return light.is_point; });
+}
+
+OpaqueShape::OpaqueShape(EffectSet effects, const LitScene& scene, uint32_t slot_count)
+    : slots(slot_count), around(rays_around(effects, scene)) {}
+
+size_t OpaqueShape::bytes() const {
+  OpaqueParts parts;
+  parts.lay_out(*this, nullptr);
+  return parts.bytes + Taker::kAlignment;
+}
+
+void OpaqueParts::lay_out(const OpaqueShape& shape, uint8_t* at) {
+  Taker taker(at);
+  const size_t slots = shape.slots;
+  rays = taker.take<Ray>(slots * std::max(1U, shape.around));
+  hits = taker.take<Hit>(slots);
+  faces = taker.take<LitFace>(slots);
+  asking = taker.take<uint32_t>(slots);
+  any = taker.take<uint8_t>(slots);
+  for (int32_t*& column : sky) {
+    column = taker.take<int32_t>(slots + kMostSkyLanes);
+  }
+  met = taker.take<RayPoint>(slots * shape.around);
+  light = taker.take<lit::Color>(slots);
+  colors = taker.take<lit::Color>(slots);
+  bytes = taker.used();
+}
+
+OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes)
+    : frame_(frame), map_(map), materials_(map), shape_(shape), background_(lit::background(frame)) {
+  parts_.lay_out(shape, Taker::aligned(bytes.data));
+  const bool has_lights = (frame.effects & Effect::kDirectLight) != 0;
+  for (uint32_t face = 0; face < kSides; ++face) {
+    Side& side = sides_[face];
+    side.spot.face = {static_cast<int>(face % kInside / 2), face % 2 == 0};
+    if (has_lights) {
+      lit::ambient_light(frame, side.spot, &side.ambient);
+    } else {
+      lit::plain_light(frame, side.spot, &side.ambient);
+    }
+  }
+  for (uint32_t material = 0; material < 256; ++material) {
+    const Surface surface = lit::surface_of(frame, static_cast<uint8_t>(material));
+    const bool shines = (frame.effects & Effect::kEmission) != 0 && surface.kind == SurfaceKind::kEmit;
+    for (int i = 0; i < 3; ++i) {
+      paints_[material].albedo[i] = channel_of(surface.albedo, i);
+      paints_[material].emission[i] =
+          shines ? channel_of(surface.albedo, i) * uint32_t{surface.emission_q8} / (256 / lit::kLevel) : 0;
+    }
+  }
+}
+
+// lit::spot_of, for what is met through one face alone.
+LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
+  const Ray& ray = parts_.rays[pixel];
+  const Hit& hit = parts_.hits[pixel];
+  LitFace face;
+  face.pixel = pixel;
+  face.material = materials_.of(hit);
+  bool is_plain = hit.axis >= 0;
+  if (is_plain) {
+    const int axis = hit.axis;
+    const int64_t speed = ray.direction[axis] < 0 ? -ray.direction[axis] : ray.direction[axis];
+    const int64_t way = hit.t_numerator;
+    const int32_t side = Q8::kOne << hit.block_level;
+    face.at[axis] = Q8::from_raw(hit.voxel[axis] * Q8::kOne + (ray.direction[axis] > 0 ? 0 : side));
+    face.face = static_cast<uint8_t>(2 * axis + (ray.direction[axis] > 0 ? 0 : 1));
+    for (int turn = 1; turn < 3; ++turn) {
+      const int other = axis + turn < 3 ? axis + turn : axis + turn - 3;
+      const int64_t direction = ray.direction[other];
+      const int32_t low = hit.voxel[other] * Q8::kOne;
+      // From the lower plane, times the speed.
+      const int64_t offset = (ray.origin[other].raw - low) * speed + way * direction;
+      const int64_t steps = whole_quotient(offset, speed);
+      face.at[other] = Q8::from_raw(
+          low + static_cast<int32_t>(std::clamp(steps, int64_t{0}, static_cast<int64_t>(side) - 1)));
+      // It enters through a second face where it comes to that plane at the same t: at an offset of 0, or of the side.
+      is_plain = is_plain && (direction == 0 || offset != (direction > 0 ? 0 : side * speed));
+    }
+  }
+  if (!is_plain) {
+    lit::PendingRay now;
+    now.ray = ray;
+    lit::Meeting meeting;
+    meeting.found = meeting.opaque = true;
+    meeting.hit = hit;
+    const lit::Spot spot = lit::spot_of(frame_, now, meeting);
+    face.at = spot.at;
+    face.face = static_cast<uint8_t>(2 * spot.face.axis + (spot.face.negative ? 0 : 1));
+    face.face = static_cast<uint8_t>(face.face + (spot.inside ? kInside : 0U));
+  }
+  return face;
+}
+
+// lit::sky_color, or the background, of the rays that met nothing.
+void OpaqueStream::show_sky(uint32_t count) {
+  if ((frame_.effects & Effect::kSky) == 0) {
+    for (uint32_t i = 0; i < count; ++i) {
+      parts_.colors[parts_.asking[i]] = background_;
+    }
+    return;
+  }
+  // Behind the last one too; any direction but zero.
+  for (uint32_t i = 0; i < count + kMostSkyLanes; ++i) {
+    const Vec3i direction = i < count ? parts_.rays[parts_.asking[i]].direction : Vec3i{1, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      parts_.sky[axis][i] = direction[axis];
+    }
+  }
+  int32_t* const shares = parts_.sky[3];
+  find_sky_shares(parts_.sky[0], parts_.sky[1], parts_.sky[2], count, shares);
+  const Sky& sky = frame_.scene.sky;
+  const lit::Color horizon = color_of(sky.horizon);
+  const lit::Color beyond[2] = {color_of(sky.zenith), color_of(sky.ground)};
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto share = static_cast<uint32_t>(shares[i]);
+    const lit::Color& to = beyond[parts_.sky[2][i] < 0 ? 1 : 0];
+    for (int c = 0; c < 3; ++c) {
+      parts_.colors[parts_.asking[i]].c[c] = (horizon.c[c] * (4096 - share) + to.c[c] * share) >> 12;
+    }
+  }
+}
+
+void OpaqueStream::find_faces(uint32_t count) {
+  constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
+  face_count_ = 0;
+  uint32_t beyond = 0;
+  uint64_t visits = 0;
+  for (uint32_t pixel = 0; pixel < count; ++pixel) {
+    visits += parts_.hits[pixel].visits;
+    if (parts_.hits[pixel].kind == HitKind::kHit) {
+      parts_.faces[face_count_++] = face_of_hit(pixel);
+    } else {
+      parts_.asking[beyond++] = pixel;
+    }
+  }
+  show_sky(beyond);
+  frame_.counts.rays[kPrimary] += count;
+  frame_.counts.hits[kPrimary] += face_count_;
+  frame_.counts.node_visits[kPrimary] += visits;
+  for (uint32_t i = 0; i < face_count_; ++i) {
+    parts_.light[i] = sides_[parts_.faces[i].face].ambient;
+  }
+}
+
+// lit::occlude.
+void OpaqueStream::occlude() {
+  const uint32_t around = shape_.around;
+  if (around == 0) {
+    return;
+  }
+  uint32_t asking = 0;
+  Ray* ray = parts_.rays;
+  for (uint32_t i = 0; i < face_count_; ++i) {
+    const LitFace& face = parts_.faces[i];
+    if (face.face >= kInside) {
+      continue;
+    }
+    parts_.asking[asking++] = i;
+    for (uint32_t n = 0; n < around; ++n) {
+      *ray++ = {face.at, occlusion_direction(static_cast<int>(n), face.face / 2, face.face % 2 == 0)};
+    }
+  }
+  const size_t rays = size_t{asking} * around;
+  const Occlusion& occlusion = frame_.scene.occlusion;
+  (void)first_entry_before(map_, {parts_.rays, rays}, RayPoint{occlusion.reach, kOcclusionLength},
+                           {parts_.met, rays});
+  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
+  const RayPoint* met = parts_.met;
+  uint64_t hits = 0;
+  for (uint32_t i = 0; i < asking; ++i) {
+    uint32_t open = 0;
+    for (uint32_t n = 0; n < around; ++n, ++met) {
+      uint32_t share = kOpen;
+      if (met->t_denominator != 0) {
+        ++hits;
+        const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
+        const uint32_t distance_q8 = static_cast<uint32_t>(met->t_numerator) * kOcclusionLength / along;
+        share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;
+      }
+      open += share;
+    }
+    const uint32_t closed = kOpen - open / around;
+    const uint32_t factor = kOpen - closed * occlusion.strength / 255;
+    for (uint32_t& channel : parts_.light[parts_.asking[i]].c) {
+      channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
+    }
+  }
+  constexpr int kKind = static_cast<int>(LitRayKind::kOcclusion);
+  frame_.counts.rays[kKind] += rays;
+  frame_.counts.hits[kKind] += hits;
+}
+
+void OpaqueStream::add_sun(size_t number) {
+  lit::LightRay to[kInside];
+  bool shines[kInside];
+  for (uint32_t face = 0; face < kInside; ++face) {
+    shines[face] = lit::light_ray(frame_.scene.lights[number], sides_[face].spot, &to[face]);
+  }
+  uint32_t asking = 0;
+  for (uint32_t i = 0; i < face_count_; ++i) {
+    const LitFace& face = parts_.faces[i];
+    parts_.asking[asking] = i;
+    asking += face.face < kInside && shines[face.face] ? 1U : 0U;
+  }
+  const bool has_shadows = (frame_.effects & Effect::kShadows) != 0;
+  std::fill_n(parts_.any, asking, uint8_t{0});
+  if (has_shadows) {
+    for (uint32_t i = 0; i < asking; ++i) {
+      const LitFace& face = parts_.faces[parts_.asking[i]];
+      parts_.rays[i] = {face.at, to[face.face].ray.direction};
+    }
+    (void)any_hit(map_, {parts_.rays, asking}, {parts_.any, asking});
+    constexpr int kKind = static_cast<int>(LitRayKind::kShadow);
+    frame_.counts.rays[kKind] += asking;
+    for (uint32_t i = 0; i < asking; ++i) {
+      frame_.counts.hits[kKind] += parts_.any[i];
+    }
+  }
+  for (uint32_t i = 0; i < asking; ++i) {
+    const uint32_t open = parts_.any[i] - 1U;
+    const uint32_t n = parts_.asking[i];
+    const lit::LightRay& sun = to[parts_.faces[n].face];
+    for (int c = 0; c < 3; ++c) {
+      parts_.light[n].c[c] += sun.brightness[c] & open;
+    }
+  }
+}
+
+void OpaqueStream::add_suns() {
+  const bool has_lights = (frame_.effects & Effect::kDirectLight) != 0;
+  for (size_t i = 0; has_lights && i < frame_.scene.lights.size; ++i) {
+    add_sun(i);
+  }
+}
+
+// lit::lit_color and lit::add_emission.
+void OpaqueStream::paint() {
+  for (uint32_t i = 0; i < face_count_; ++i) {
+    const Paint& paint = paints_[parts_.faces[i].material];
+    lit::Color& color = parts_.colors[parts_.faces[i].pixel];
+    for (int c = 0; c < 3; ++c) {
+      constexpr uint32_t kPart = lit::kFullLight / lit::kLevel;
+      const uint32_t strength = std::min<uint32_t>(parts_.light[i].c[c], UINT16_MAX);
+      const uint32_t lit = std::min((paint.albedo[c] * strength + kPart / 2) / kPart, lit::kMaxChannel);
+      color.c[c] = std::min(lit + paint.emission[c], lit::kMaxChannel);
+    }
+  }
+}
+
+void OpaqueStream::store(const Band& band, size_t stride, int32_t row, int32_t x, uint32_t count) {
+  const int32_t width = frame_.camera.width_px();
+  const bool is_whole = bits_per_pixel(band.format) % 8 == 0;  // so all bytes are stored
+  for (uint32_t i = 0; i < count; ++i) {
+    uint8_t* const line = band.pixels.data + stride * row_place(band.format, row);
+    if (x == 0 && !is_whole && begins_bytes(band.format, row)) {
+      lit::clear_row(frame_, band, line);
+    }
+    const lit::Color& color = parts_.colors[i];
+    if (band.format == PixelFormat::kRgb888 &&
+        std::max({color.c[0], color.c[1], color.c[2]}) <= lit::kWhite) {
+      uint8_t* const to = line + 3 * x;
+      for (int c = 0; c < 3; ++c) {
+        to[c] = static_cast<uint8_t>((color.c[c] + lit::kLevel / 2) / lit::kLevel);
+      }
+    } else {
+      lit::store(frame_, band, line, x, band.first_row + row, color);
+    }
+    if (++x == width) {
+      x = 0;
+      ++row;
+    }
+  }
+}
+
+// Finds the colours of so many rays.
+void OpaqueStream::light_up(uint32_t count) {
+  (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
+  find_faces(count);
+  occlude();
+  add_suns();
+  paint();
+}
+
+void OpaqueStream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
+  const int32_t width = frame_.camera.width_px();
+  int32_t row = first;
+  int32_t x = 0;
+  while (row < end) {
+    const int32_t from_row = row;
+    const int32_t from_x = x;
+    uint32_t count = 0;
+    while (row < end && count < shape_.slots) {
+      const int32_t to =
+          static_cast<int32_t>(std::min(int64_t{width}, x + static_cast<int64_t>(shape_.slots - count)));
+      RowRays rays(frame_.camera, x, band.first_row + row);
+      for (; x < to; ++x, rays.next()) {
+        parts_.rays[count++] = rays.ray();
+      }
+      if (x == width) {
+        x = 0;
+        ++row;
+      }
+    }
+    light_up(count);
+    store(band, stride, from_row, from_x, count);
+  }
+}
+
+void OpaqueStream::draw_places(Span<const PixelPlace> places, Bytes rgb) {
+  Band band;
+  band.format = PixelFormat::kRgb888;
+  for (size_t first = 0; first < places.size; first += shape_.slots) {
+    const auto count = static_cast<uint32_t>(std::min<size_t>(shape_.slots, places.size - first));
+    for (uint32_t i = 0; i < count; ++i) {
+      parts_.rays[i] = frame_.camera.ray(places.data[first + i].x, places.data[first + i].y);
+    }
+    light_up(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      lit::store(frame_, band, rgb.data + 3 * (first + i), 0, 0, parts_.colors[i]);
+    }
+  }
+}
+
+}  // namespace thimble::wide

@@ -1,0 +1,45 @@
+/// @file taker.h
+/// Arrays from bytes that the caller gave.
+#ifndef THIMBLE_PLATFORM_WIDE_LIT_TAKER_H
+#define THIMBLE_PLATFORM_WIDE_LIT_TAKER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <new>
+
+namespace thimble::wide {
+
+/// Takes arrays from bytes that begin at a multiple of kAlignment; of null, only counts them.
+class Taker {
+ public:
+  static constexpr size_t kAlignment = 64;
+
+  explicit Taker(uint8_t* at) : at_(at) {}
+
+  /// Where the first multiple of kAlignment is in bytes at any address.
+  static uint8_t* aligned(uint8_t* at) {
+    const size_t skew = reinterpret_cast<uintptr_t>(at) % kAlignment;
+    return at + (skew == 0 ? 0 : kAlignment - skew);
+  }
+
+  template <typename T>
+  T* take(size_t count) {
+    used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
+    T* array = at_ == nullptr ? nullptr : reinterpret_cast<T*>(at_ + used_);
+    used_ += count * sizeof(T);
+    for (size_t i = 0; array != nullptr && i < count; ++i) {
+      new (array + i) T;
+    }
+    return array;
+  }
+  size_t used() const { return used_; }
+
+ private:
+  uint8_t* at_;
+  size_t used_ = 0;
+};
+
+}  // namespace thimble::wide
+
+#endif
