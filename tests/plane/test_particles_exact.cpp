@@ -280,5 +280,77 @@ TEST_CASE(
   }
 }
 
+// A world of balls among steps, slopes and thin walls, on which everything acts.
+struct Turmoil {
+  std::int32_t width, height;
+  std::int32_t most_diameter;
+  std::uint32_t balls;
+  std::uint32_t restitution_q16;
+  Vec2i gravity_q16;
+  std::int32_t substeps_log2;
+  std::int32_t subpixel_bits;
+  PointerMode mode;
+  std::uint32_t crc32;      // of the state after every fortieth step, one after the other
+  std::uint32_t wall_hits;  // in all steps
+  std::uint32_t ball_hits;
+  std::uint32_t woken;
+};
+
+void throw_about(const Turmoil& one, Turmoil* seen) {
+  ParticleConfig config;
+  config.width = one.width;
+  config.height = one.height;
+  config.capacity = one.balls;
+  config.most_diameter = one.most_diameter;
+  config.least_diameter = 1;
+  config.restitution_q16 = one.restitution_q16;
+  config.gravity_q16 = one.gravity_q16;
+  config.substeps_log2 = one.substeps_log2;
+  config.subpixel_bits = one.subpixel_bits;
+  ExactWorld exact(config);
+  ParticleWorld& world = exact.world;
+  for (std::int32_t x = 20; x + 20 < one.width; x += 40) {
+    world.draw_wall({x, one.height / 2}, {x + 12, one.height / 2 + x % 17 - 8}, 1 + x % 3);
+    world.draw_box({{x + 16, one.height - 9}, {x + 18, one.height}});
+  }
+  for (std::uint32_t i = 0; i < one.balls; ++i) {
+    static_cast<void>(world.spawn_random(static_cast<std::int32_t>(65536 + i % 5 * 300000)));
+  }
+  *seen = one;
+  seen->crc32 = seen->wall_hits = seen->ball_hits = seen->woken = 0;
+  for (std::int32_t step = 0; step < 320; ++step) {
+    // The pointer goes round; half of the time it is up.
+    const Vec2i at{one.width / 2 + (step * 7) % one.width / 2 - one.width / 4, one.height - 5 - step % 60};
+    world.set_pointer(step % 80 < 40 ? PointerMode::kNone : one.mode, at, 6 + step % 30, 20000 + 500 * step);
+    world.step();
+    seen->wall_hits += world.counters().wall_hits;
+    seen->ball_hits += world.counters().ball_hits;
+    seen->woken += world.counters().woken;
+    if (step % 40 == 39) {
+      seen->crc32 = seen->crc32 * 31 + world.state_crc32();
+    }
+  }
+}
+
+TEST_CASE("particles exact: turmoil -> the states and counts that were written down") {
+  const Turmoil worlds[] = {
+      {128, 64, 12, 60, 52429, {0, 6554}, 0, 15, PointerMode::kAttract, 3952014969, 4512, 11681, 177},
+      {97, 120, 5, 150, 65536, {0, 0}, 0, 15, PointerMode::kRepel, 3077860083, 10776, 36585, 0},
+      {200, 60, 8, 120, 30000, {-9000, 2000}, 1, 15, PointerMode::kDrag, 2981052932, 5602, 24244, 83},
+      {300, 200, 12, 200, 0, {3000, -12000}, 0, 6, PointerMode::kErase, 1199609838, 4981, 18251, 66},
+      {160, 160, 3, 400, 60000, {4000, 4000}, 2, 10, PointerMode::kDraw, 2803822624, 31831, 48571, 175},
+      {64, 640, 12, 90, 52429, {0, 400000}, 0, 15, PointerMode::kSpawn, 2185489316, 1670, 8274, 0},
+  };
+  for (const Turmoil& one : worlds) {
+    Turmoil seen;
+    throw_about(one, &seen);
+    CAPTURE(seen.balls);
+    CHECK(seen.crc32 == one.crc32);
+    CHECK(seen.wall_hits == one.wall_hits);
+    CHECK(seen.ball_hits == one.ball_hits);
+    CHECK(seen.woken == one.woken);
+  }
+}
+
 }  // namespace
 }  // namespace thimble::tools
