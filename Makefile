@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install deb \
   packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
-  bench-frames test-framebuffer test-threads ranges soak web test-web bench-web format tidy clean
+  bench-frames test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -107,6 +107,15 @@ coverage: deps-test deps-coverage ## Count the lines and branches of src that th
 	@$(CONFIGURE) -B build/release $(TESTED) -DTHIMBLE_COVERAGE=ON >/dev/null
 	@.ci/build "the core that counts" build/release thimble_tests_covered thimble_golden_tests_covered
 	@sh tests/coverage.sh build/release
+
+# A sample of every file and kind; results in build/release/mutants/thimble_all_mutants/results.csv.
+COUNT ?= 2000
+SEED ?= 1
+mutants: deps-test ## Change one place of src at a time: which COUNT=2000 of them (SEED=1) does no test notice?
+	@$(CONFIGURE) -B build/release $(TESTED) "-DTHIMBLE_MUTANTS=$(COUNT);$(SEED)" >/dev/null
+	@.ci/build "the core with mutants" build/release thimble_all_mutants
+	@python3 -B tests/mutants/run.py build/release/thimble_all_mutants \
+	  build/release/mutants/thimble_all_mutants --check
 
 bench: deps-bench ## Build and run the benchmarks
 	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON $(LEAN) >/dev/null

@@ -442,6 +442,33 @@ TEST_CASE("baked scene: a wrong header or list -> the phrase that says so") {
   CHECK(place == 8);
 }
 
+TEST_CASE("baked scene: less than a header, a bare header, other bytes -> the phrase and place 0") {
+  std::uint8_t bare[kBakedHeaderBytes] = {};
+  const auto at_of = [&](std::size_t size, const char* phrase) {
+    std::uint32_t place = 77;
+    CHECK(std::string(BakedScene::validate({bare, size}, &place)) == phrase);
+    return place;
+  };
+  CHECK(at_of(0, "shorter than a header") == 0);
+  CHECK(at_of(kBakedHeaderBytes - 1, "shorter than a header") == 0);
+  CHECK(at_of(kBakedHeaderBytes, "not a baked scene") == 0);
+}
+
+TEST_CASE("baked scene: a palette that fills the last section -> no byte behind the scene is written") {
+  const HeapBytes tree = small_tree();
+  const Rgb8 colors[] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}, {13, 14, 15}};
+  BakedParts parts;
+  parts.tree = tree.view();
+  parts.palette = {colors, 4};
+  const std::size_t size = baked_bytes(parts);
+  std::vector<std::uint8_t> bytes(size + 8, 0xA5);
+  REQUIRE(BakedScene::make(parts, {bytes.data(), bytes.size()}, nullptr) == Status::kOk);
+  CHECK(bytes[size - 1] == 12);
+  for (std::size_t i = size; i < bytes.size(); ++i) {
+    CHECK(bytes[i] == 0xA5);
+  }
+}
+
 TEST_CASE("baked scene: an empty world -> bakes, opens and shows nothing") {
   std::vector<std::uint8_t> pool(64);
   Octree octree;

@@ -1,0 +1,134 @@
+"""Writes a copy of src in which some places can be changed by number, as files that compile as one part each.
+
+    mutate.py ROOT OUT --count 2000 --seed 1     a sample of every file and kind
+    mutate.py ROOT OUT --thirty                  thirty of that sample's rooms JUDGED, by a hash of the bytes of src
+
+OUT/mutants.json says what was chosen; OUT/part_0.cpp and so on are the core that has it.
+"""
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+
+import sites
+
+PARTS = 4
+SEED = 1
+ONE_IN = 10  # the sample of which --thirty takes thirty
+JUDGED = ("base", "bake", "c", "trace")  # rooms of which every survivor was looked at
+
+
+def code_only(text):
+    """In one line and without comments, since it stands beside other code."""
+    return " ".join(re.sub(r"//[^\n]*", "", text).split())
+
+
+def rendered(source, chosen):
+    """The file's bytes with every chosen mutant in it, line for line."""
+    groups = {}
+    for mutant in chosen:
+        groups.setdefault((mutant.begin, -mutant.end), []).append(mutant)
+    order = sorted(groups)
+
+    def between(begin, end, inner):
+        text, at = "", begin
+        while inner:
+            first, last = inner[0][0], -inner[0][1]
+            nested = [g for g in inner if g[0] < last]
+            text += source[at:first].decode() + changed(nested)
+            inner, at = inner[len(nested):], last
+        return text + source[at:end].decode()
+
+    def changed(nested):
+        begin, end = nested[0][0], -nested[0][1]
+        text = between(begin, end, nested[1:])
+        for mutant in sorted(groups[nested[0]], key=lambda m: m.form == "statement"):
+            on = f"THIMBLE_MUTANT({mutant.number})"
+            if mutant.form == "value":
+                text = f"({on} ? ({code_only(mutant.alternative)}) : {text})"
+            elif mutant.form == "statement":
+                text = f"({on} ? static_cast<void>(0) : static_cast<void>({text}))"
+            else:
+                text = f"if (!{on}) {text}"
+        return text
+
+    return between(0, len(source), order)
+
+
+def write(path, text):
+    """Only what differs, so that only that is compiled."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.is_file() or path.read_text() != text:
+        path.write_text(text)
+
+
+def write_tree(out, sources, chosen):
+    by_file = {}
+    for mutant in chosen:
+        by_file.setdefault(mutant.file, []).append(mutant)
+    for file, source in sources.items():
+        write(out / file, rendered(source, by_file[file]) if file in by_file else source.decode())
+
+
+def refused(root, out, files, chosen):
+    """Mutants on lines at which the compiler refuses the copy: constants that it needs, say."""
+    drop = set()
+    for file in files:
+        done = subprocess.run(["clang++", "-std=c++17", "-ffreestanding", "-w", "-Wno-c++11-narrowing", "-ferror-limit=0",
+                               "-I" + str(root / "include"), "-include", str(root / "tests/mutants/mutant.h"),
+                               "-fsyntax-only", str(out / file)], capture_output=True, text=True)
+        for path, line in re.findall(r"^(\S+?):(\d+):\d+: (?:error|note)", done.stderr, re.M):
+            name = str(pathlib.Path(path).resolve())
+            drop |= {m for m in chosen if name == str(out / m.file) and m.line <= int(line) <= m.last_line}
+        if done.returncode != 0 and not drop:
+            raise SystemExit(f"mutate: {file}: {done.stderr}")
+    return drop
+
+
+def main():
+    options = argparse.ArgumentParser()
+    options.add_argument("root")
+    options.add_argument("out")
+    options.add_argument("--count", type=int, default=2000)
+    options.add_argument("--seed", type=int, default=SEED)
+    options.add_argument("--thirty", action="store_true")
+    options.add_argument("--cache", default="")
+    given = options.parse_args()
+    root, out = pathlib.Path(given.root).resolve(), pathlib.Path(given.out).resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    sources = sites.sources_of(root)
+    if given.thirty:
+        state = sites.digest(*(s.decode() for s in sources.values()))
+        files = [f for f in sources if f.endswith(".cpp") and f.split("/")[1] in JUDGED]
+        mutants, fixed = sites.find(root, sources, files)
+        mutants = [m for m in mutants if m.room in JUDGED]
+        total = len(mutants)
+        chosen = sites.sample(mutants, ONE_IN, SEED)
+        chosen = sorted(chosen, key=lambda m: sites.digest(state, *m.key))[:40]
+    else:
+        files = [f for f in sources if f.endswith(".cpp")]
+        mutants, fixed = sites.find(root, sources, files)
+        total = len(mutants)
+        chosen = sites.sample(mutants, max(1, total // given.count), given.seed)
+    for number, mutant in enumerate(chosen, 1):
+        mutant.number = number
+    dropped = 0
+    while True:
+        write_tree(out, sources, chosen)
+        drop = refused(root, out, files, chosen)
+        if not drop:
+            break
+        dropped += len(drop)
+        chosen = [m for m in chosen if m not in drop]
+    if given.thirty:
+        chosen = chosen[:30]
+        write_tree(out, sources, chosen)
+    for part in range(PARTS):
+        write(out / f"part_{part}.cpp", "".join(f'#include "{out / f}"\n' for f in files[part::PARTS]))
+    (out / "mutants.json").write_text(json.dumps({
+        "places": total, "compiled_away": fixed, "refused": dropped, "seed": given.seed,
+        "mutants": [{"number": m.number, "room": m.room, "kind": m.kind, "line": m.line, "key": m.key} for m in chosen]}))
+
+
+main()

@@ -1,0 +1,248 @@
+"""Tries every mutant that mutate.py chose: runs the tests that come by its place, the fastest first, until one fails.
+
+    run.py PROGRAM WORK [--check] [--only TEXT]
+
+WORK holds mutants.json; WORK/results.csv is written. What survives and is not in equivalent.csv is printed. With
+--check the exit status is 1 when less than 97 per cent are killed, equivalent ones left out.
+"""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import queue
+import subprocess
+import sys
+import threading
+import time
+import xml.etree.ElementTree as xml
+
+HERE = pathlib.Path(__file__).parent
+ROOMS = ("base", "tree", "trace", "picture", "light", "plane", "bake", "c", "misuse")
+WANTED = 97  # per cent
+AT_MOST_MS = 5000  # of tests a mutant
+SLOW_CPU_MS = 4000  # a test that takes longer is left out
+
+
+class Runner:
+    """A program that runs one test at a time in a child of its own."""
+
+    def __init__(self, program):
+        self.process = subprocess.Popen([program, "--serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.groups = [int(count) for count in self.process.stdout.readline().split()]
+
+    def ask(self, *words):
+        self.process.stdin.write("\t".join(words) + "\n")
+        self.process.stdin.flush()
+        return self.process.stdout.readline().split()
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def in_two(runners, work, do, title):
+    """do(runner, item) for every item, each runner in a thread of its own; says how far it is."""
+    waiting, done, started = queue.Queue(), [0], time.time()
+    for item in work:
+        waiting.put(item)
+
+    def loop(runner):
+        while True:
+            try:
+                item = waiting.get_nowait()
+            except queue.Empty:
+                return
+            do(runner, item)
+            done[0] += 1
+
+    threads = [threading.Thread(target=loop, args=(runner,)) for runner in runners]
+    for thread in threads:
+        thread.start()
+    said = 0.0
+    while any(thread.is_alive() for thread in threads):
+        time.sleep(0.1)
+        if time.time() - said > (1 if sys.stderr.isatty() else 10):
+            said = time.time()
+            print(f"{title}: {done[0]} of {len(work)}, {said - started:.0f} s", file=sys.stderr,
+                  end="\r" if sys.stderr.isatty() else "\n")
+    for thread in threads:
+        thread.join()
+
+
+def slow_names():
+    lines = (HERE.parent / "slow_cases.txt").read_text().splitlines()
+    return tuple(line for line in lines if line and not line.startswith("#"))
+
+
+def all_tests(program, groups, quick):
+    tests = [f"p:{group}:{index}" for group, count in enumerate(groups) for index in range(count)]
+    for room in ROOMS:
+        said = subprocess.run([program, f"--source-file=*/{room}/test_*", "--list-test-cases", "-r=xml"],
+                              capture_output=True, text=True, check=True).stdout
+        for case in xml.fromstring(said).iter("TestCase"):
+            if quick and (case.get("name").startswith(slow_names()) or room == "misuse"):
+                continue
+            file = pathlib.PurePath(case.get("filename"))
+            # A comma or a colon would end the name.
+            name = case.get("name").replace(",", "?").replace(":", "?").replace("\\", "?")
+            tests.append(f"d:{file.parent.name}/{file.name}:{name}")
+    return tests
+
+
+class Cover:
+    """Which tests come by which mutant, and what each takes."""
+
+    def __init__(self, kept):
+        self.ms, self.crc, self.of, self.kills = {}, {}, {}, {}
+        self.kept = kept
+        self.load(kept)
+
+    def add(self, runners, tests):
+        tests = [t for t in tests if t not in self.ms]
+        if tests:
+            in_two(runners, tests, self.note, "tests without a mutant")
+            self.kept.write_text(json.dumps([self.ms, self.crc, sorted(self.of.items())]))
+
+    def load(self, kept):
+        """What the same program has noted before."""
+        if kept.is_file():
+            self.ms, self.crc, of = json.loads(kept.read_text())
+            self.of = dict(of)
+
+    def note(self, runner, test):
+        result, ms, crc, *numbers = runner.ask("cover", str(SLOW_CPU_MS), test)
+        self.ms[test] = int(ms)
+        if result == "failed" or result == "crashed":
+            print(f"mutants: left out, since it fails without a mutant: {test}", file=sys.stderr)
+        if result != "ok":
+            return  # or too slow to be tried again and again
+        self.crc[test] = crc
+        for number in numbers:
+            self.of.setdefault(int(number), []).append(test)
+
+    def tests(self, mutant):
+        """The fastest first; but for three that killed neighbours."""
+        done = mutant.setdefault("done", set())
+        order = sorted((t for t in self.of.get(mutant["number"], []) if t not in done), key=lambda t: self.ms[t])
+        near = self.kills.get(mutant["key"][0], {})
+        first = sorted((t for t in near if t in order), key=lambda t: -near[t] / (self.ms[t] + 5))[:3]
+        chosen, total = [], 0
+        for test in first + [t for t in order if t not in first]:
+            total += self.ms[test]
+            if chosen and total > AT_MOST_MS:
+                break
+            chosen.append(test)
+        done.update(chosen)
+        return chosen
+
+
+def try_one(runner, mutant, cover):
+    tests = cover.tests(mutant)
+    words = []
+    for test in tests:
+        words += [str(4 * cover.ms[test] + 1000), test + (f":{cover.crc[test]}" if test[0] == "p" else "")]
+    mutant["tests"] += len(tests)
+    if not tests:
+        mutant.update(result="survived", by="", ms=0)
+        return
+    answer = runner.ask("try", str(mutant["number"]), *words)
+    if answer[0] == "survived":
+        mutant.update(result="survived", by="", ms=int(answer[1]))
+        return
+    test = tests[int(answer[1])]
+    near = cover.kills.setdefault(mutant["key"][0], {})
+    near[test] = near.get(test, 0) + 1
+    mutant.update(result=answer[2], by=test, ms=int(answer[3]))
+
+
+def equivalents():
+    path = HERE / "equivalent.csv"
+    with open(path, newline="") as file:
+        return {tuple(row[:5]): row[5] for row in list(csv.reader(file))[1:]}
+
+
+def table(mutants):
+    rows = {}
+    for mutant in mutants:
+        for name in (mutant["room"], "all"):
+            row = rows.setdefault(name, {"killed": 0, "survived": 0, "equivalent": 0})
+            row[mutant["result"] if mutant["result"] in row else "killed"] += 1
+    print(f"{'room':10}{'mutants':>9}{'killed':>9}{'survived':>10}{'equivalent':>12}{'per cent':>10}")
+    for name in sorted(rows, key=lambda n: (n == "all", n)):
+        row = rows[name]
+        judged = row["killed"] + row["survived"]
+        print(f"{name:10}{judged + row['equivalent']:9}{row['killed']:9}{row['survived']:10}{row['equivalent']:12}"
+              f"{100 * row['killed'] / max(judged, 1):10.1f}")
+    return rows["all"]
+
+
+def main():
+    options = argparse.ArgumentParser()
+    options.add_argument("program")
+    options.add_argument("work", type=pathlib.Path)
+    options.add_argument("--check", action="store_true")
+    options.add_argument("--quick", action="store_true")
+    options.add_argument("--only", default="")
+    given = options.parse_args()
+    chosen = json.loads((given.work / "mutants.json").read_text())
+    known = equivalents()
+    mutants = [m for m in chosen["mutants"] if given.only in m["key"][0]]
+    runners = [Runner(given.program) for _ in range(2)]
+    stat = os.stat(given.program)
+    cover = Cover(given.work / f"cover-{stat.st_mtime_ns}.json")
+    # What an interrupted run of the same program has tried is not tried again.
+    kept = given.work / f"tried-{stat.st_mtime_ns}.jsonl"
+    tried = {}
+    if kept.is_file():
+        tried = {one["number"]: one for one in map(json.loads, kept.read_text().splitlines())}
+    tests = all_tests(given.program, runners[0].groups, given.quick)
+    rooms = {m["room"] for m in mutants}
+    near = [t for t in tests if t[0] == "p" or t[2:].split("/")[0] in rooms]
+    for mutant in mutants:
+        mutant.update(tried.get(mutant["number"], {"result": "", "tests": 0}))
+        if tuple(mutant["key"]) in known:
+            mutant.update(result="equivalent", by=known[tuple(mutant["key"])], ms=0, tests=0)
+    with open(kept, "a") as keep:
+
+        def note(mutant):
+            keep.write(json.dumps({name: mutant[name] for name in ("number", "result", "by", "ms", "tests")}) + "\n")
+            keep.flush()
+
+        def attempt(runner, mutant):
+            try_one(runner, mutant, cover)
+            if mutant["result"] != "survived":
+                note(mutant)
+
+        # The tests of the mutants' own rooms, then the others.
+        for some in (near, tests):
+            waiting = [m for m in mutants if m["result"] in ("", "survived") and m["number"] not in tried]
+            if waiting:
+                cover.add(runners, some)
+                in_two(runners, waiting, attempt, "mutants")
+        for mutant in mutants:
+            if mutant["result"] == "survived" and mutant["number"] not in tried:
+                note(mutant)
+    for runner in runners:
+        runner.close()
+    with open(given.work / "results.csv", "w", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(("number", "file", "line", "function", "text", "change", "of_these", "kind", "result", "ms", "tests", "by"))
+        for m in mutants:
+            file_name, function, text, change, ordinal = m["key"]
+            rows.writerow((m["number"], file_name, m["line"], function, text, change, ordinal, m["kind"], m["result"],
+                           m["ms"], m["tests"], m["by"]))
+    for m in mutants:
+        if m["result"] == "survived":
+            print(f"{m['key'][0]}:{m['line']}: {m['key'][1]}: {m['key'][3]} (number {m['key'][4]} in the line) survives "
+                  f"{m['tests']} tests: {m['key'][2]}")
+    row = table(mutants)
+    print(f"{chosen['places']} changes could be made, {chosen['compiled_away']} more are computed by compilers, "
+          f"{chosen['refused']} were refused by one; seed {chosen['seed']}")
+    judged = row["killed"] + row["survived"]
+    if given.check and 100 * row["killed"] < WANTED * judged and row["survived"] > 1:
+        raise SystemExit(f"mutants: fewer than {WANTED} per cent are killed: test what survives, or put it into "
+                         "tests/mutants/equivalent.csv with the reason")
+
+
+main()

@@ -1,0 +1,126 @@
+// The brick map of worlds of every kind: each voxel and what is seen of its material, and the bytes that were written
+// down.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/scene_under_test.h"
+#include "thimble/base/crc32.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/octree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+constexpr int kNothing = -1;
+constexpr std::int32_t kMapSide = 32;
+
+int ball(Vec3i v) {
+  const std::int32_t x = v.x - 15, y = v.y - 17, z = v.z - 14;
+  return x * x + y * y + z * z < 121 ? 6 : kNothing;
+}
+int halves(Vec3i v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (v[axis] < 3 || v[axis] >= 29) {
+      return kNothing;
+    }
+  }
+  return v.x < 16 ? 1 : 2;
+}
+// What is seen is of one material, what is not of another.
+int kernel(Vec3i v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (v[axis] < 1 || v[axis] >= 31) {
+      return 9;
+    }
+  }
+  return 3 + (v.x + v.y) % 2;
+}
+int dust(Vec3i v) {
+  const std::uint32_t hash = static_cast<std::uint32_t>(v.x * 73856093 ^ v.y * 19349663 ^ v.z * 83492791);
+  return hash % 19 == 0 ? static_cast<int>(hash / 19 % 3) : kNothing;
+}
+int stripes(Vec3i v) {
+  return v.z < 5 || (v.x + 2 * v.y < 20 && v.z < 25) ? v.y / 3 % 4 : kNothing;
+}
+int full(Vec3i) {
+  return 0;
+}
+int corner(Vec3i v) {
+  return v == Vec3i{31, 0, 31} || v == Vec3i{0, 31, 30} ? 255 : kNothing;
+}
+
+struct MapWorld {
+  int (*material)(Vec3i voxel);
+  std::size_t size_bytes;
+  std::uint32_t bricks;
+  std::uint32_t mixed;
+  std::uint32_t crc32;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "brick map: worlds of every kind -> each voxel, its material where it is seen, the bytes written down") {
+  const MapWorld worlds[] = {
+      {ball, 1408, 105, 0, 3312454369},      {halves, 3748, 299, 0, 652889730},
+      {kernel, 1084, 3, 0, 3209844912},      {dust, 9748, 499, 382, 3272763194},
+      {stripes, 4196, 170, 158, 1383516124}, {full, 1076, 2, 0, 727346649},
+      {corner, 188, 3, 0, 1604114209},
+  };
+  for (const MapWorld& world : worlds) {
+    std::vector<std::uint8_t> pool(Octree::octree_bytes(40000));
+    Octree octree;
+    REQUIRE(Octree::make(5, {pool.data(), pool.size()}, &octree) == Status::kOk);
+    for (std::int32_t i = 0; i < kMapSide * kMapSide * kMapSide; ++i) {
+      const Vec3i at{i % kMapSide, i / kMapSide % kMapSide, i / kMapSide / kMapSide};
+      if (world.material(at) != kNothing) {
+        REQUIRE(octree.insert(at, static_cast<std::uint8_t>(world.material(at))) == Status::kOk);
+      }
+    }
+    const HeapBytes tree_bytes = compact_of(octree);
+    const CompactTree tree = open_or_throw(tree_bytes);
+    const HeapBytes room(most_brick_map_bytes(5));
+    BrickMap map;
+    std::size_t size = 0;
+    REQUIRE(BrickMap::make(tree, room.span(), &map, &size) == Status::kOk);
+    CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+    const Vec3i sides{map.box().high.x - map.box().low.x, map.box().high.y - map.box().low.y,
+                      map.box().high.z - map.box().low.z};
+    std::int64_t wrong = 0;
+    for (std::int32_t i = 0; i < kMapSide * kMapSide * kMapSide; ++i) {
+      const Vec3i at{i % kMapSide, i / kMapSide % kMapSide, i / kMapSide / kMapSide};
+      const Vec3i cell{at.x / 4 - map.box().low.x, at.y / 4 - map.box().low.y, at.z / 4 - map.box().low.z};
+      const bool inside = cell.x >= 0 && cell.y >= 0 && cell.z >= 0 && cell.x < sides.x && cell.y < sides.y &&
+                          cell.z < sides.z;
+      const std::size_t entry =
+          static_cast<std::size_t>(inside ? cell.x + sides.x * (cell.y + sides.y * cell.z) : 0);
+      const std::uint32_t number =
+          inside ? map.directory()[2 * entry] + 256U * map.directory()[2 * entry + 1] : 0U;
+      const unsigned bit = static_cast<unsigned>(at.x % 4 + 4 * (at.y % 4) + 16 * (at.z % 4));
+      const bool solid = number != 0 && (map.bricks()[8 * number + bit / 8] >> (bit % 8) & 1) != 0;
+      const int material = world.material(at);
+      wrong += solid != (material != kNothing) ? 1 : 0;
+      if (solid && material != kNothing) {
+        bool seen = false;
+        for (int face = 0; face < 6; ++face) {
+          Vec3i next = at;
+          next[face / 2] += face % 2 != 0 ? 1 : -1;
+          seen = seen || next[face / 2] < 0 || next[face / 2] >= kMapSide || world.material(next) == kNothing;
+        }
+        wrong += seen && map.material(tree, number, bit) != material ? 1 : 0;
+      }
+    }
+    CHECK(wrong == 0);
+    const std::uint32_t crc = crc32({room.view().data, size});
+    CAPTURE(&world - worlds);
+    CHECK(size == world.size_bytes);
+    CHECK(map.brick_count() == world.bricks);
+    CHECK(map.mixed_count() == world.mixed);
+    CHECK(crc == world.crc32);
+  }
+}
