@@ -177,8 +177,8 @@ TEST_CASE("render quality: bad values -> status 2; what cannot be done -> status
   for (const char* value : {"0", "13", "x"}) {
     refused({"--max-depth", value}, 2, "1 to 12");
   }
-  refused({"--cutoff", "1", "--structure", "pool"}, 1, "--structure compact");
-  refused({"--max-depth", "4", "--structure", "dense"}, 1, "--structure compact");
+  refused({"--cutoff", "1", "--structure", "pool"}, 2, "--structure compact");
+  refused({"--max-depth", "4", "--structure", "dense"}, 2, "--structure compact");
   refused({"--samples", "64", "--size", "2049x10"}, 1, "2048");
   for (const char* value : {"autos", "aut", "auto,4", "auto4"}) {
     refused({"--samples", value}, 2, "neither auto nor");

@@ -72,6 +72,9 @@ void check_usage(const RenderCommand& command) {
     refuse_usage(
         "--engine wide draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
   }
+  if (command.quality.cuts() && command.scene.structure != StructureKind::kCompact) {
+    refuse_usage("--cutoff and --max-depth want --structure compact");
+  }
   if (wide && (command.effects.named() || command.effects.bounces)) {
     refuse_usage("--engine wide draws without --effects and --bounces");
   }
