@@ -59,7 +59,7 @@ std::optional<std::string> file_of(std::string_view uri) {
 std::optional<std::string> first_file_of(std::string_view uri_list) {
   while (!uri_list.empty()) {
     const std::size_t end = uri_list.find_first_of("\r\n");
-    if (const auto file = file_of(uri_list.substr(0, end))) {
+    if (auto file = file_of(uri_list.substr(0, end))) {
       return file;
     }
     uri_list.remove_prefix(end == std::string_view::npos ? uri_list.size() : end + 1);

@@ -150,7 +150,8 @@ void FinishedPicture::take_own_look() {
   }
   own_coarse_ = *own_;
   own_coarse_.across = 1;
-  quick_tone_ = tone_table(look_->exposure_.load());
+  // Shadows and corners, which are not in it, take an eighth of a model's light away, and nothing of a sky's.
+  quick_tone_ = tone_table(look_->exposure_.load() * (own_->has_backdrop ? 7U : 8U) / 8);
   quick_shading_ = shading_;
   if (own_->kind == LookKind::kStars) {
     quick_shading_.mode = own_->has_own_colors ? ShadeMode::kColor : ShadeMode::kDepth;
