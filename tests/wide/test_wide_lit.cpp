@@ -8,6 +8,7 @@
 
 #include "support/lit_cases.h"
 #include "support/wide_cases.h"
+#include "wide/lit/kernels.h"
 #include "wide/lit/lit_renderer.h"
 
 namespace thimble::tests {
@@ -121,6 +122,37 @@ TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
 }
 TEST_CASE("wide: lit scenes in which rays end where they hit -> every byte is the core's") {
   check_lit_frames(20261124, many_or_few(1000, 60), random_opaque_light);
+}
+
+TEST_CASE("wide: the sky in lanes -> the core's, also where a length is rounded up") {
+  const BestInstructionSet after;
+  std::mt19937_64 random(77);
+  constexpr std::size_t kCount = 4000;
+  std::vector<std::int32_t> axes[3];
+  for (std::size_t i = 0; i < kCount + wide::kMostSkyLanes; ++i) {
+    for (auto& axis : axes) {
+      const std::int64_t most = std::int64_t{1} << pick(random, 0, 20);
+      const std::int64_t size = pick(random, 0, 1) == 0 ? pick(random, 0, most - 1) : most - 1;
+      axis.push_back(static_cast<std::int32_t>(pick(random, 0, 1) == 0 ? size : -size));
+    }
+    axes[0].back() = axes[0].back() == 0 ? 1 : axes[0].back();
+  }
+  // So bright that each share is another colour.
+  LitScene scene;
+  scene.sky = {{255, 255, 255}, {0, 0, 0}, {255, 255, 255}};
+  const CompactTree tree;
+  const lit::Frame frame{tree, Camera(), Shading(), scene, LitOptions(), Effect::kSky};
+  std::vector<std::int32_t> shares(kCount + wide::kMostSkyLanes);
+  for (int set = 0; set < wide::instruction_set_count(); ++set) {
+    wide::use_instruction_set(set);
+    wide::find_sky_shares(axes[0].data(), axes[1].data(), axes[2].data(), kCount, shares.data());
+    int wrong = 0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const std::uint32_t expected = lit::sky_color(frame, {axes[0][i], axes[1][i], axes[2][i]}).c[0];
+      wrong += (255 * lit::kLevel * static_cast<std::uint32_t>(shares[i])) >> 12 == expected ? 0 : 1;
+    }
+    CHECK(wrong == 0);
+  }
 }
 
 TEST_CASE("wide: a lit picture's errors are the core's, with nothing drawn") {

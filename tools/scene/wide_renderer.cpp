@@ -56,12 +56,24 @@ std::size_t WideRenderer::bytes(const CompactTree& tree, std::int32_t width_px, 
 
 std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
                                                  std::int32_t height_px, int threads) {
+  // About as much will be written, whichever lists are made.
+  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
+  const int crew =
+      threads_within(tree, *arena, box_bytes, width_px, std::min(height_px, kLeastRows), threads);
+  auto renderer = make_with(tree, arena, width_px, height_px, crew, box_bytes);
+  if (renderer == nullptr && crew > 1) {
+    // Lists may take some bytes more, for where they begin.
+    renderer = make_with(tree, arena, width_px, height_px, crew - 1, box_bytes);
+  }
+  return renderer;
+}
+
+std::unique_ptr<WideRenderer> WideRenderer::make_with(const CompactTree& tree, Arena* arena,
+                                                      std::int32_t width_px, std::int32_t height_px,
+                                                      int threads, std::size_t box_bytes) {
   const auto start = std::chrono::steady_clock::now();
   const std::size_t mark = arena->used_bytes();
   const std::int32_t least_rows = std::min(height_px, kLeastRows);
-  // About as much will be written, whichever lists are made.
-  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
-  threads = threads_within(tree, *arena, box_bytes, width_px, least_rows, threads);
   const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
   // What the least workspace leaves is the lists', and where the fastest do not fit, those of boxes alone may.
   // Lists are counted before they are made: what does not fit costs little time.
@@ -74,8 +86,7 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena*
   wide::VoxelLists lists;
   if (wide::VoxelLists::make(tree, &part, &lists) != Status::kOk &&
       wide::VoxelLists::make(tree, &part, &lists, wide::ListKind::kBoxes) != Status::kOk) {
-    // What lists take may be some bytes more, for where they begin.
-    return threads > 1 ? make(tree, arena, width_px, height_px, threads - 1) : nullptr;
+    return nullptr;
   }
   arena->take(part.used_bytes(), 1);
   std::int32_t rows = height_px;

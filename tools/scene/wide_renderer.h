@@ -61,6 +61,8 @@ class WideRenderer {
 
  private:
   explicit WideRenderer(int threads);
+  static std::unique_ptr<WideRenderer> make_with(const CompactTree& tree, Arena* arena, std::int32_t width_px,
+                                                 std::int32_t height_px, int threads, std::size_t box_bytes);
 
   std::unique_ptr<wide::Threads> threads_;
   wide::VoxelLists lists_;

@@ -103,7 +103,7 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
   face.material = materials_.of(hit);
   bool is_plain = hit.axis >= 0;
   if (is_plain) {
-    const int axis = hit.axis;
+    const int axis = int{hit.axis};
     const int64_t speed = ray.direction[axis] < 0 ? -ray.direction[axis] : ray.direction[axis];
     const int64_t way = hit.t_numerator;
     const int32_t side = Q8::kOne << hit.block_level;

@@ -132,12 +132,12 @@ void trace_by_core(Job* job, size_t ray) {
     hit = Hit{};
     hit.visits = visits;
   }
-  if (job->any != nullptr) {
-    job->any[ray] = hit.kind == HitKind::kHit ? 1 : 0;
-  } else if (job->entries != nullptr) {
-    job->entries[ray] = entry_of(hit);
-  } else {
+  if (job->hits != nullptr) {
     job->hits[ray] = hit;
+  } else if (job->any != nullptr) {
+    job->any[ray] = hit.kind == HitKind::kHit ? 1 : 0;
+  } else {
+    job->entries[ray] = entry_of(hit);
   }
 }
 
@@ -171,12 +171,12 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
     hit = Hit{};
     hit.visits = visits;
   }
-  if (job->any != nullptr) {
-    job->any[number] = hit.kind == HitKind::kHit ? 1 : 0;
-  } else if (job->entries != nullptr) {
-    job->entries[number] = entry_of(hit);
-  } else {
+  if (job->hits != nullptr) {
     job->hits[number] = hit;
+  } else if (job->any != nullptr) {
+    job->any[number] = hit.kind == HitKind::kHit ? 1 : 0;
+  } else {
+    job->entries[number] = entry_of(hit);
   }
 }
 
