@@ -225,6 +225,8 @@ def main():
                 note(mutant)
     for runner in runners:
         runner.close()
+    if any(not m["result"] for m in mutants):
+        raise SystemExit("mutants: the program that runs the tests ended before its time")
     with open(given.work / "results.csv", "w", newline="") as file:
         rows = csv.writer(file)
         rows.writerow(("number", "file", "line", "function", "text", "change", "of_these", "kind", "result", "ms", "tests", "by"))

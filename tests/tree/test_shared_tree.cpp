@@ -408,3 +408,42 @@ TEST_CASE("shared tree: a damaged compact tree -> refused or shared, never outsi
   }
   CHECK(refused > 0);
 }
+
+TEST_CASE("shared tree: what several materials would take -> the bytes of that world in two materials") {
+  for (int level = 2; level <= 7; ++level) {
+    for (const std::uint32_t spread : {3U, 40U, 5000U}) {
+      std::vector<std::uint8_t> pool(Octree::octree_bytes(400000));
+      std::vector<std::uint8_t> other(Octree::octree_bytes(400000));
+      Octree one;
+      Octree two;
+      REQUIRE(Octree::make(level, {pool.data(), pool.size()}, &one) == Status::kOk);
+      REQUIRE(Octree::make(level, {other.data(), other.size()}, &two) == Status::kOk);
+      const std::int32_t side = std::int32_t{1} << level;
+      for (std::int32_t z = 0; z < side; ++z) {
+        for (std::int32_t y = 0; y < side; ++y) {
+          for (std::int32_t x = 0; x < side; ++x) {
+            const std::uint32_t hash = static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ z * 83492791);
+            // No block of eight is full, so that none becomes one leaf.
+            if ((x & y & z & 1) == 0 && (hash % spread == 0 || x + y + z == 0)) {
+              REQUIRE(one.insert({x, y, z}, 7) == Status::kOk);
+              REQUIRE(two.insert({x, y, z}, static_cast<std::uint8_t>(x + y + z == 0 ? 1 : 2)) ==
+                      Status::kOk);
+            }
+          }
+        }
+      }
+      // A world of one voxel has one material.
+      REQUIRE(two.insert({side - 2, 0, 0}, 2) == Status::kOk);
+      REQUIRE(one.insert({side - 2, 0, 0}, 7) == Status::kOk);
+      const HeapBytes first = compact_of(one);
+      const HeapBytes second = compact_of(two);
+      const OwnedShared plain(open_or_throw(first));
+      const OwnedShared colored(open_or_throw(second));
+      CAPTURE(level);
+      REQUIRE_FALSE(plain.tree.many_materials());
+      REQUIRE(colored.tree.many_materials());
+      CHECK(plain.tree.bytes_with_materials() == colored.tree.size_bytes());
+      CHECK(colored.tree.bytes_with_materials() == colored.tree.size_bytes());
+    }
+  }
+}
