@@ -53,8 +53,8 @@ if [ -n "$(fact EMULATOR)" ]; then
     export CASE_STEP=16 MEASURED=ON
   fi
 fi
-# Of those that hold the demonstration's scene in RAM, one will do.
-case $board in pico) default="$default dig" ;; esac
+# Of those that hold the demonstration's scene in RAM, two will do.
+case $board in lm3s6965evb | pico) default="$default dig" ;; esac
 # The applications that there are; faults is judged by itself below.
 apps=
 for app in ${THIMBLE_TEST_APPS:-$default}; do
