@@ -4,7 +4,7 @@
 /// An application (platform/apps) is one source for every board and for the host simulator. It calls the
 /// functions below and the core, and nothing else. A port (platform/boards/NAME with platform/arch/ARCH; on a
 /// desktop platform/host; on Linux without a window system platform/linux) defines every one of them but
-/// `draw`.
+/// `draw`, `begin_flush` and `await_flush`.
 ///
 /// What the port has done before it calls the application: clocks and UART run, the display is on and black,
 /// .data and .bss are set up, the stack is painted (`kStackPaint`) and fenced as well as the chip can, and a
@@ -64,6 +64,33 @@ ConstBytes scene();
 /// A band without bytes (`pixels` empty, format, first row and rows as ever) says that these rows are as in
 /// the frame before: nothing is sent, and a display shows what it has. Not before a whole frame was flushed.
 void flush(const Band& band);
+
+/// The two halves of `flush`: begins to send, and waits until all is sent. From `begin_flush` on the band's
+/// bytes are the display's, to be read and not to be written, until `await_flush`, or another `flush` or
+/// `begin_flush`, returns: at most one band is on its way. So an application with `band_buffers()` bands of
+/// memory, used by turns, never waits by itself. A port that sends while the next band is drawn (DMA) has
+/// both, and two bands; any other needs neither: there begin_flush is flush, one band is enough, and the
+/// compiler removes the rest. The host simulates boards of either kind, and stops an application that writes
+/// too early.
+#if defined(THIMBLE_PORT_DRAWS)
+void begin_flush(const Band& band);
+void await_flush();
+int32_t band_buffers();
+#elif defined(THIMBLE_BAND_BUFFERS)
+void begin_flush(const Band& band);
+void await_flush();
+constexpr int32_t band_buffers() {
+  return THIMBLE_BAND_BUFFERS;
+}
+#else
+inline void begin_flush(const Band& band) {
+  flush(band);
+}
+constexpr void await_flush() {}
+constexpr int32_t band_buffers() {
+  return 1;
+}
+#endif
 
 /// Draws a band of a frame without light in the core's place, with the pixels of `render_band`; false, and
 /// the band untouched, where the core is to draw it. Asked for the scene in flash, before the core; the band

@@ -7,13 +7,18 @@ namespace {
 
 // One line each.
 constexpr Application kApplications[] = {
-    {"demo", demo, true, true, false, true}, {"selftest", selftest, false, false},
-    {"golden", golden, false, false},        {"lit", lit, false, false},
-    {"formats", formats, false, false},      {"bench", bench, true, false},
+    {"demo", demo, true, true, false, true},
+    {"selftest", selftest, false, false},
+    {"golden", golden, false, false},
+    {"lit", lit, false, false},
+    {"formats", formats, false, false},
+    {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},
 #endif
-    {"water", water, true, true, true},      {"faults", faults, false, false},
+    {"dig", dig, true, true},
+    {"water", water, true, true, true},
+    {"faults", faults, false, false},
     {nullptr, nullptr, false, false},  // so that the array is never empty
 };
 

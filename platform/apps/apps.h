@@ -26,6 +26,8 @@ int bench();
 int particles();
 /// A lit scene whose water moves: touched, and by what falls in. Draws only what can have changed.
 int water();
+/// The scene in RAM, where voxels are dug away and put: picking, and a world that changes.
+int dig();
 /// Overflows the stack, writes past the RAM and the like when a key asks for it; only on a board.
 int faults();
 

@@ -15,6 +15,7 @@
 //
 // Where the port does not count instructions, microseconds stand in their place (`unit`).
 #include "apps/apps.h"
+#include "apps/band_turns.h"
 #include "apps/dda_baseline.h"
 #include "apps/demo_view.h"
 #include "apps/place.h"
@@ -49,11 +50,12 @@ struct Bench : Placed {
   Orbit orbit;
   Shading shading;
   Camera camera;
-  Bytes band;
+  Bytes bands;
   int32_t band_rows = 0;
   BitWorld grid;  ///< of the baseline; without bits where there is no room
   uint8_t face_grays[6] = {};
   bool counts_instructions = false;
+  bool second_band = false;  ///< of `bands` is next
   uint32_t costs[kGoldenFrames] = {};
   uint32_t crcs[kGoldenFrames] = {};  ///< of the first engine
   RenderCounts counts;
@@ -114,16 +116,18 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
                           screen.height_px, &bench->camera);
   for (int32_t y = 0; y < screen.height_px && status == Status::kOk; y += bench->band_rows) {
     const int32_t left = screen.height_px - y;
-    Band band{bench->band, screen.format, 0, y, left < bench->band_rows ? left : bench->band_rows};
-    band.pixels = bench->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+    Band band{bench->bands, screen.format, 0, y, left < bench->band_rows ? left : bench->band_rows};
+    band.pixels =
+        next_band(bench->bands, bench->second_band, band_bytes(screen.format, screen.width_px, band.rows));
     status = draw(*bench, engine, band, counts);
     if (status == Status::kOk) {
-      port::flush(band);
+      send_band(band, &bench->second_band);
       if (crc != nullptr) {
         *crc = crc32(band.pixels, *crc);
       }
     }
   }
+  port::await_flush();
   return status;
 }
 
@@ -300,12 +304,12 @@ int bench() {
   const size_t row = row_bytes(screen.format, screen.width_px);
   bench->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
   while (bench->band_rows > band_row_multiple(screen.format) &&
-         row * row_place(screen.format, bench->band_rows) > bench->arena.free_bytes()) {
+         all_bands(row * row_place(screen.format, bench->band_rows)) > bench->arena.free_bytes()) {
     --bench->band_rows;
   }
-  bench->band =
-      bench->arena.take(row * row_place(screen.format, whole_rows(screen.format, bench->band_rows)));
-  if (bench->band.empty()) {
+  bench->bands = bench->arena.take(
+      all_bands(row * row_place(screen.format, whole_rows(screen.format, bench->band_rows))));
+  if (bench->bands.empty()) {
     return refuse("the arena does not hold a row of the picture");
   }
   if (const char* wrong = open_light(bench->shown.scene, &bench->light)) {

@@ -15,6 +15,7 @@
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
 // is held, and nothing but the arena is used.
 #include "apps/apps.h"
+#include "apps/band_turns.h"
 #include "apps/demo_view.h"
 #include "apps/held_frame.h"
 #include "apps/place.h"
@@ -51,12 +52,13 @@ struct Demo : Placed {
   Steering steering;
   Camera camera;
   Shading shading;
-  Bytes band;
+  Bytes bands;
   int32_t band_rows = 0;
   uint32_t frame = 0;   ///< of the scene that is shown
   uint32_t turned = 0;  ///< frames in which the camera has turned
   bool turns = true;
   bool tells_crc = false;
+  bool second_band = false;  ///< of `bands` is next
 
   // Holding a rate of frames.
   HeldFrame* held = nullptr;  ///< once it was asked for
@@ -81,6 +83,13 @@ struct Demo : Placed {
 
 const port::Display& display() {
   return port::facts().display;
+}
+
+/// Where bands are sent while others are drawn, one holds what a tile of the coarsest thinned picture becomes,
+/// so that the next tile is drawn meanwhile.
+int32_t most_band_rows() {
+  const int32_t rows = port::band_buffers() > 1 ? kBrickTilePx * kMostThinned : kBandRows;
+  return display().height_px < rows ? display().height_px : rows;
 }
 
 /// A cross from corner to corner: what a display shows that cannot show a message. Without an arena to draw
@@ -131,12 +140,13 @@ Status draw(const Demo& demo, const Band& band) {
 [[gnu::noinline]] Band band_at(const Demo& demo, int32_t y, int32_t end) {
   const port::Display& screen = display();
   const int32_t rows = end - y < demo.band_rows ? end - y : demo.band_rows;
-  return {demo.band.subspan(0, band_bytes(screen.format, screen.width_px, rows)), screen.format, 0, y, rows};
+  const size_t bytes = band_bytes(screen.format, screen.width_px, rows);
+  return {next_band(demo.bands, demo.second_band, bytes), screen.format, 0, y, rows};
 }
 
-void flush(const Demo& demo, const Band& band, uint32_t* crc) {
-  port::flush(band);
-  if (demo.tells_crc) {
+void flush(Demo* demo, const Band& band, uint32_t* crc) {
+  send_band(band, &demo->second_band);
+  if (demo->tells_crc) {
     *crc = crc32(band.pixels, *crc);
   }
 }
@@ -157,7 +167,7 @@ void flush(const Demo& demo, const Band& band, uint32_t* crc) {
     if (status != Status::kOk) {
       return status;
     }
-    flush(*demo, band, crc);
+    flush(demo, band, crc);
   }
   if (kCanLight && demo->is_lit) {
     demo->lit_instructions = port::instructions() - start;
@@ -193,7 +203,7 @@ void flush(const Demo& demo, const Band& band, uint32_t* crc) {
         widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i,
                   band.pixels.data + row_place(screen.format, i) * row);
       }
-      flush(*demo, band, crc);
+      flush(demo, band, crc);
     }
   }
   return Status::kOk;
@@ -258,6 +268,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format)
 [[gnu::noinline]] void send_picture(const Demo& demo) {
   const port::Display& screen = display();
   const PixelFormat format = is_gray(screen.format) ? screen.format : PixelFormat::kGray8;
+  port::await_flush();  // the bands' memory is used here
   put("P5\n");
   put_number(static_cast<uint32_t>(screen.width_px));
   put(" ");
@@ -267,7 +278,7 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format)
     // A row of greys is shorter than a row in colour.
     const int32_t together = band_row_multiple(format);
     const int32_t left = screen.height_px - y;
-    const Band band{demo.band.subspan(0, row_bytes(format, screen.width_px)), format, 0, y,
+    const Band band{demo.bands.subspan(0, row_bytes(format, screen.width_px)), format, 0, y,
                     left < together ? left : together};
     if (begins_bytes(format, y) && draw(demo, band) != Status::kOk) {
       return;
@@ -479,13 +490,15 @@ int demo() {
   demo->tells_crc = !screen.connected;
   // At most half of what is left: the other half is for the pool.
   const size_t row = row_bytes(screen.format, screen.width_px);
-  demo->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
+  demo->band_rows = most_band_rows();
   while (demo->band_rows > band_row_multiple(screen.format) &&
-         band_bytes(screen.format, screen.width_px, demo->band_rows) > demo->arena.free_bytes() / 2) {
+         all_bands(band_bytes(screen.format, screen.width_px, demo->band_rows)) >
+             demo->arena.free_bytes() / 2) {
     --demo->band_rows;
   }
-  demo->band = demo->arena.take(row * row_place(screen.format, whole_rows(screen.format, demo->band_rows)));
-  if (demo->band.empty()) {
+  demo->bands =
+      demo->arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, demo->band_rows))));
+  if (demo->bands.empty()) {
     return refuse_with_cross(&demo->arena, "the arena does not hold a row of the picture");
   }
   show_baked(demo);

@@ -13,6 +13,7 @@
 
 #include "apps/apps.h"
 #include "apps/ball_color.h"
+#include "apps/band_turns.h"
 #include "apps/place.h"
 #include "apps/text.h"
 #include "port.h"
@@ -30,9 +31,10 @@ struct Game : Placed {
   ParticleWorld world;
   ParticleConfig config;
   Bytes bytes;  ///< the world's
-  Bytes band;
+  Bytes bands;
   int32_t band_rows = 0;
-  uint32_t held = 0;  ///< buttons
+  uint32_t held = 0;         ///< buttons
+  bool second_band = false;  ///< of `bands` is next
 };
 
 const port::Display& display() {
@@ -79,14 +81,15 @@ const port::Display& display() {
   }
 }
 
-[[gnu::noinline]] void draw_frame(const Game& game) {
+[[gnu::noinline]] void draw_frame(Game* game) {
   const port::Display& screen = display();
-  for (int32_t y = 0; y < screen.height_px; y += game.band_rows) {
+  for (int32_t y = 0; y < screen.height_px; y += game->band_rows) {
     const int32_t left = screen.height_px - y;
-    Band band{game.band, screen.format, 0, y, left < game.band_rows ? left : game.band_rows};
-    band.pixels = game.band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
-    draw_band(game.world, band, screen.width_px);
-    port::flush(band);
+    Band band{game->bands, screen.format, 0, y, left < game->band_rows ? left : game->band_rows};
+    band.pixels =
+        next_band(game->bands, game->second_band, band_bytes(screen.format, screen.width_px, band.rows));
+    draw_band(game->world, band, screen.width_px);
+    send_band(band, &game->second_band);
   }
 }
 
@@ -161,10 +164,11 @@ int particles() {
   // Rows of the picture first, then as many balls as what is left holds.
   const size_t row = row_bytes(screen.format, screen.width_px);
   game->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  game->band = arena.take(row * row_place(screen.format, whole_rows(screen.format, game->band_rows)));
+  game->bands =
+      arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, game->band_rows))));
   game->bytes = arena.rest();
   game->config = particles_config(screen.width_px, screen.height_px, game->bytes.size);
-  if (game->band.empty() || game->config.capacity == 0 || !begin(game)) {
+  if (game->bands.empty() || game->config.capacity == 0 || !begin(game)) {
     return refuse("the arena holds no world of the display's size");
   }
   put("particles ");
@@ -186,7 +190,7 @@ int particles() {
   }
   for (uint32_t drawn = 0; port::running(drawn) && obey(game); ++drawn) {
     game->world.step();
-    draw_frame(*game);
+    draw_frame(game);
     if (game->world.steps() % kToldSteps == 0) {
       tell_state(game->world);
     }

@@ -19,6 +19,7 @@
 #include "thimble/light/water.h"
 
 #include "apps/apps.h"
+#include "apps/band_turns.h"
 #include "apps/demo_view.h"
 #include "apps/dirty_bands.h"
 #include "apps/falling_ball.h"
@@ -60,7 +61,7 @@ struct Pool : Placed {
   Steering steering;
   Camera camera;
   Shading shading;
-  Bytes band;
+  Bytes bands;
   int32_t band_rows = 0;
   DirtyBands dirty;
   Pointing pointing;
@@ -72,9 +73,10 @@ struct Pool : Placed {
   uint32_t touches = 0;
   uint32_t splashes = 0;
   bool turns = false;
-  bool redraws = false;  ///< every band of every frame
-  bool moved = true;     ///< the camera
-  bool rippled = false;  ///< the water
+  bool redraws = false;      ///< every band of every frame
+  bool moved = true;         ///< the camera
+  bool rippled = false;      ///< the water
+  bool second_band = false;  ///< of `bands` is next
 };
 
 const port::Display& display() {
@@ -325,8 +327,9 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
       dirty.skip(i, screen.format);
       continue;
     }
-    Band band{pool->band, screen.format, 0, dirty.first_row(i), dirty.rows(i)};
-    band.pixels = pool->band.subspan(0, band_bytes(screen.format, screen.width_px, band.rows));
+    Band band{pool->bands, screen.format, 0, dirty.first_row(i), dirty.rows(i)};
+    band.pixels =
+        next_band(pool->bands, pool->second_band, band_bytes(screen.format, screen.width_px, band.rows));
     LitCounts counts;
     const Status status = draw_band(*pool, band, &counts);
     if (status != Status::kOk) {
@@ -336,7 +339,7 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
       dirty.note_sees(i, counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0);
     }
     draw_balls(*pool, band);
-    port::flush(band);
+    send_band(band, &pool->second_band);
     dirty.drawn(i);
   }
   return Status::kOk;
@@ -466,9 +469,10 @@ void zoom(Pool* pool, int32_t by) {
   const port::Display& screen = display();
   pool->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
   const size_t row = row_bytes(screen.format, screen.width_px);
-  pool->band = pool->arena.take(row * row_place(screen.format, whole_rows(screen.format, pool->band_rows)));
+  pool->bands =
+      pool->arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, pool->band_rows))));
   const Bytes flags = pool->arena.take(DirtyBands::bytes_for(screen.height_px, pool->band_rows), 1);
-  if (pool->band.empty() || flags.empty()) {
+  if (pool->bands.empty() || flags.empty()) {
     return "the arena does not hold a band of the picture";
   }
   pool->dirty.begin(flags, screen.height_px, pool->band_rows);

@@ -35,6 +35,7 @@ struct BoardFacts {
   uint32_t visits_a_second;  ///< port::Facts::visits_a_second
   uint32_t core_mhz;
   uint32_t frame_instructions;  ///< of the demonstration, the median of its golden frames (bench)
+  int32_t band_buffers;         ///< port::band_buffers()
   AppStack app_stacks[5];       ///< those that there are, then empty ones
 };
 

@@ -2,6 +2,7 @@
 // and on its stack, so it does little and leaves the rest to the other thread.
 #include "port.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "host/simulation_state.h"
@@ -28,6 +29,7 @@ ConstBytes scene() {
 }
 
 void flush(const Band& band) {
+  await_flush();
   if (const auto fault = here().display.flush(band)) {
     here().stop(*fault);
   }
@@ -35,6 +37,29 @@ void flush(const Band& band) {
     here().stop("what drew in the core's place gave another picture than the core: row " +
                 std::to_string(band.first_row));
   }
+}
+
+// The display has the bytes already; what is left to do is to see that nobody touches them.
+void begin_flush(const Band& band) {
+  flush(band);
+  if (band_buffers() > 1) {
+    here().sending = band.pixels;
+    here().sent.assign(band.pixels.begin(), band.pixels.end());
+  }
+}
+
+void await_flush() {
+  host::Simulation::State& state = here();
+  const ConstBytes sending = state.sending;
+  state.sending = {};
+  if (!std::equal(sending.begin(), sending.end(), state.sent.begin())) {
+    state.stop(
+        "a band was written while it was being sent: another one's memory, or port::await_flush, first");
+  }
+}
+
+int32_t band_buffers() {
+  return here().band_buffers;
 }
 
 bool draw(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band) {

@@ -206,6 +206,7 @@ Simulation::State::State(const SimulationOptions& options)
             {options.board->width_px, options.board->height_px, options.board->format, options.connected},
             options.board->visits_a_second,
             options.hold_fps},
+      band_buffers(options.board->band_buffers),
       arena(options.board->ram_bytes - options.board->stack_bytes, kRamPaint),
       flash((options.scene.size + kFlashAlignment - 1) / kFlashAlignment * kFlashAlignment, 0),
       scene(flash.bytes().subspan(0, options.scene.size)),

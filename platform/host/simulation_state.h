@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "host/byte_queue.h"
 #include "host/drawn_frame.h"
@@ -44,6 +45,7 @@ struct Simulation::State {
 
   int (*application)();
   port::Facts facts;
+  std::int32_t band_buffers;
   GuardedBytes arena;
   GuardedBytes flash;
   ConstBytes scene;  ///< in it; aligned as on the board, so up to 7 bytes lie behind it
@@ -51,6 +53,8 @@ struct Simulation::State {
   GuardedBytes stack;
   GuardedBytes signal_stack;
   StrictDisplay display;
+  ConstBytes sending;              ///< what begin_flush was given, until it is sent
+  std::vector<std::uint8_t> sent;  ///< as it was then
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
   pthread_t thread{};
   /// Where the application's frames begin; the stack grows down from here.

@@ -2,10 +2,58 @@
 #include "thimble/tree/brick_map.h"
 
 #include "../base/bits.h"
+#include "brick_parts.h"
 #include "compact_header.h"
 #include "thimble/base/crc32.h"
 
 namespace thimble {
+
+namespace brick_parts {
+namespace {
+
+// Bits of a brick whose octants (as bits) `octant` and voxels of it `mask` are solid.
+uint64_t spread(unsigned octant, unsigned mask) {
+  uint64_t brick = 0;
+  const unsigned corner = (octant & 1U) * 2 + (octant >> 1 & 1U) * 8 + (octant >> 2) * 32;
+  for (unsigned bit = 0; bit < 8; ++bit) {
+    if ((mask >> bit & 1U) != 0) {
+      brick |= uint64_t{1} << (corner + (bit & 1U) + (bit >> 1 & 1U) * 4 + (bit >> 2) * 16);
+    }
+  }
+  return brick;
+}
+
+}  // namespace
+
+uint64_t bits_of_node(const CompactTree& tree, uint32_t node) {
+  const unsigned mask = tree.mask(node);
+  if (mask == 0) {
+    return ~uint64_t{0};
+  }
+  uint64_t brick = 0;
+  uint32_t child = tree.first_child(node);
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    if ((mask >> octant & 1U) != 0) {
+      if (child < tree.node_count()) {
+        const unsigned voxels = tree.mask(child);
+        brick |= spread(octant, voxels == 0 ? 0xFFU : voxels);
+      }
+      ++child;
+    }
+  }
+  return brick;
+}
+
+void store_origin(const CompactTree& tree, uint32_t node, uint8_t* origin) {
+  const uint32_t child = tree.first_child(node);
+  bits::store32(origin, child | uint32_t{tree.mask(node)} << kChildBits);
+  const bool known = child < tree.node_count();
+  bits::store32(origin + 4, known ? tree.first_child(child) - tree.node_count() : 0);
+  bits::store32(origin + 8, known ? tree.blocks_before(child) : 0);
+}
+
+}  // namespace brick_parts
+
 namespace {
 
 constexpr uint32_t kMapMagic = 0x014D4254;      // "TBM", then the version, 1
@@ -24,10 +72,8 @@ constexpr uint32_t kMixedOffset = 28;
 // level; from it on the low byte is the material of all that is seen of the brick.
 constexpr uint32_t kUniform = 0xFF00;
 
-// A mixed brick's origin: number of its first node of level 1 and, in the highest byte, its child mask; then
-// the materials of voxels and of solid blocks before those of the brick.
-constexpr uint32_t kOriginBytes = 12;
-constexpr uint32_t kChildBits = 24;
+using brick_parts::kChildBits;
+using brick_parts::kOriginBytes;
 
 struct MapHeader {
   int level;
@@ -83,36 +129,7 @@ bool aligned(const uint8_t* data) {
   return (reinterpret_cast<size_t>(data) & 7U) == 0;
 }
 
-// Bits of a brick whose octants (as bits) `octant` and voxels of it `mask` are solid.
-uint64_t spread(unsigned octant, unsigned mask) {
-  uint64_t brick = 0;
-  const unsigned corner = (octant & 1U) * 2 + (octant >> 1 & 1U) * 8 + (octant >> 2) * 32;
-  for (unsigned bit = 0; bit < 8; ++bit) {
-    if ((mask >> bit & 1U) != 0) {
-      brick |= uint64_t{1} << (corner + (bit & 1U) + (bit >> 1 & 1U) * 4 + (bit >> 2) * 16);
-    }
-  }
-  return brick;
-}
-
-uint64_t bits_of_node(const CompactTree& tree, uint32_t node) {
-  const unsigned mask = tree.mask(node);
-  if (mask == 0) {
-    return ~uint64_t{0};
-  }
-  uint64_t brick = 0;
-  uint32_t child = tree.first_child(node);
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    if ((mask >> octant & 1U) != 0) {
-      if (child < tree.node_count()) {
-        const unsigned voxels = tree.mask(child);
-        brick |= spread(octant, voxels == 0 ? 0xFFU : voxels);
-      }
-      ++child;
-    }
-  }
-  return brick;
-}
+using brick_parts::bits_of_node;
 
 uint8_t material_in_node(const CompactTree& tree, uint32_t node, unsigned bit) {
   const unsigned octant = (bit >> 1 & 1U) | (bit >> 3 & 1U) << 1 | (bit >> 5 & 1U) << 2;
@@ -412,15 +429,10 @@ class MapBuilder {
     for (uint32_t number = 1; number <= mixed_; ++number) {
       uint8_t* origin = out_.data + origins_at(cells_, bricks_) + kOriginBytes * (size_t{number} - 1);
       const uint32_t node = first_node_ + bits::load16(source(number));
-      const unsigned mask = tree_.mask(node);
-      const uint32_t child = tree_.first_child(node);
-      if (child >= uint32_t{1} << kChildBits) {
+      if (tree_.first_child(node) >= uint32_t{1} << kChildBits) {
         return Status::kOutOfRange;
       }
-      bits::store32(origin, child | static_cast<uint32_t>(mask) << kChildBits);
-      const bool known = child < tree_.node_count();
-      bits::store32(origin + 4, known ? tree_.first_child(child) - tree_.node_count() : 0);
-      bits::store32(origin + 8, known ? tree_.blocks_before(child) : 0);
+      brick_parts::store_origin(tree_, node, origin);
     }
     uint8_t* material = out_.data + materials_at(cells_, bricks_, mixed_);
     for (uint32_t number = mixed_ + 1; number < bricks_; ++number) {

@@ -58,6 +58,9 @@ constexpr CompactSections sections_of(const CompactShape& shape) {
   return at;
 }
 
+// The solid voxels of a tree whose masks are sound, depth first; `bounds` gets the least box that holds them.
+uint64_t solid_volume(const CompactTree& tree, VoxelBox* bounds);
+
 // Grows `box` (all zero at first) by what is solid in the node of `level` at `corner`: all of it for mask 0,
 // else the voxels of a level-1 mask.
 constexpr void grow_box(VoxelBox* box, const Vec3i& corner, int level, unsigned mask) {

@@ -56,6 +56,8 @@ const char* read_compact_header(ConstBytes bytes, CompactShape* shape, uint32_t*
   return nullptr;
 }
 
+}  // namespace
+
 // The solid voxels of a tree whose masks are sound, depth first; `bounds` gets the least box that holds them.
 uint64_t solid_volume(const CompactTree& tree, VoxelBox* bounds) {
   if (tree.empty()) {
@@ -103,8 +105,6 @@ uint64_t solid_volume(const CompactTree& tree, VoxelBox* bounds) {
   }
   return volume;
 }
-
-}  // namespace
 
 Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
   using namespace compact_header;

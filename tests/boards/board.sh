@@ -53,6 +53,8 @@ if [ -n "$(fact EMULATOR)" ]; then
     export CASE_STEP=16 MEASURED=ON
   fi
 fi
+# Of those that hold the demonstration's scene in RAM, two will do.
+case $board in lm3s6965evb | pico) default="$default dig" ;; esac
 # The applications that there are; faults is judged by itself below.
 apps=
 for app in ${THIMBLE_TEST_APPS:-$default}; do
@@ -128,6 +130,17 @@ for app in $apps; do
       fail particles "its state after 400 steps, ${crc:-none}, is not among the golden ones"
     fi
     said="state $crc after 400 steps; "
+  elif [ "$app" = dig ]; then
+    # What it does by itself: the simulator's picture, and an edit within a quarter of a frame.
+    crc=$(sed -n 's/^last crc \([0-9a-f]*\).*/\1/p' "$log")
+    edit=$(sed -n 's/^most instructions of an edit: \([0-9]*\).*/\1/p' "$log")
+    build/release/thimble sim demo --effects none --app dig --board "$board" --display none --frames 4 --quiet >"$work/dig.sim" 2>&1 || true
+    if [ -z "$crc" ] || ! grep -q "^last crc $crc" "$work/dig.sim"; then
+      fail dig "its last picture, ${crc:-none}, is not the simulator's, $(grep '^last crc' "$work/dig.sim" || echo none)"
+    fi
+    most=$(($(fact FRAME_INSTRUCTIONS) / 4))
+    [ "${edit:-99999999}" -le "$most" ] || fail dig "an edit takes ${edit:-unknown} instructions, at most $most"
+    said="pictures are the simulator's; an edit takes at most $edit instructions; "
   fi
   sh "$here/budget.sh" "$board" "$app" "$log" >"$work/$app.budget" 2>&1 || failed=1
   grep FAILED "$work/$app.budget" | sed "s/^/$(printf '%-18s %-10s ' "$board" "$app")/" >>"$results" || true

@@ -43,8 +43,9 @@ struct SimRan {
 };
 
 SimRan run(int (*application)(), std::uint32_t frames = 1, ConstBytes scene = {},
-           const std::string& typed = "", std::uint32_t buttons = 0) {
-  Simulation simulation({&flagship(), true, scene, application});
+           const std::string& typed = "", std::uint32_t buttons = 0,
+           const platform::BoardFacts& board = flagship()) {
+  Simulation simulation({&board, true, scene, application});
   for (const char byte : typed) {
     REQUIRE(simulation.type(static_cast<std::uint8_t>(byte)));
   }
@@ -98,7 +99,38 @@ int draws_bands_backwards() {
   return 0;
 }
 
+// A frame in bands of eight rows that are sent while others are drawn, in memory for `bands` of them.
+template <int bands>
+int sends_bands() {
+  for (std::uint32_t frame = 0; port::running(frame); ++frame) {
+    for (std::int32_t row = 0; row < kHeightPx; row += 8) {
+      const std::size_t size = 8 * kRowBytes;
+      const Bytes bytes = port::arena().subspan(size * static_cast<std::size_t>(row / 8 % bands), size);
+      std::fill(bytes.begin(), bytes.end(), static_cast<std::uint8_t>(row));
+      port::begin_flush({bytes, PixelFormat::kGray4, 0, row, 8});
+    }
+    port::await_flush();
+  }
+  return port::band_buffers();
+}
+
 }  // namespace
+
+TEST_CASE(
+    "simulation: a board with two bands stops who writes into the one that is sent; with one it waits") {
+  platform::BoardFacts board = flagship();
+  CHECK(run(sends_bands<1>, 2).status == 1);
+  board.band_buffers = 2;
+  const SimRan turns = run(sends_bands<2>, 2, {}, "", 0, board);
+  CHECK(turns.status == 2);
+  CHECK(turns.fault.empty());
+  CHECK(turns.pictures == 2);
+  REQUIRE(turns.picture.bytes.size() == kRowBytes * kHeightPx);
+  CHECK(turns.picture.bytes.back() == kHeightPx - 8);
+  const SimRan early = run(sends_bands<1>, 2, {}, "", 0, board);
+  CHECK(early.status == port::kFaultStatus);
+  CHECK(early.fault.find("written while it was being sent") != std::string::npos);
+}
 
 TEST_CASE("simulation: bands in any order -> the whole picture, asked once a frame, status 0") {
   const SimRan ran = run(draws_bands_backwards, 3);

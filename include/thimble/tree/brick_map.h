@@ -94,6 +94,8 @@ class BrickMap {
   }
 
  private:
+  friend class EditedWorld;
+
   uint8_t mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const;
 
   const uint8_t* directory_ = nullptr;

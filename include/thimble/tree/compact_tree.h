@@ -146,6 +146,8 @@ class CompactTree {
   uint8_t voxel_material(uint32_t number) const;
 
  private:
+  friend class EditedWorld;
+
   const uint8_t* base_ = nullptr;
   const uint8_t* masks_ = nullptr;
   const uint8_t* ranks_ = nullptr;

@@ -21,11 +21,30 @@ Bytes arena() {
   return {thimble_arena_start, static_cast<size_t>(thimble_arena_end - thimble_arena_start)};
 }
 
+#ifdef THIMBLE_BAND_BUFFERS
+void begin_flush(const Band& band) {
+  if (!band.pixels.empty()) {
+    board::begin_flush(band);  // a display holds what it was sent
+  }
+}
+
+void await_flush() {
+  board::await_flush();
+}
+
+void flush(const Band& band) {
+  if (!band.pixels.empty()) {
+    board::begin_flush(band);
+    board::await_flush();
+  }
+}
+#else
 void flush(const Band& band) {
   if (!band.pixels.empty()) {
     board::flush(band);  // a display holds what it was sent
   }
 }
+#endif
 
 uint32_t buttons() {
   return board::buttons();

@@ -19,6 +19,7 @@ set(BOARD_CLOCK_MHZ 133)
 set(BOARD_ICOUNT_SHIFT 3)
 set(BOARD_VISITS_A_SECOND 150000)
 set(BOARD_FRAME_INSTRUCTIONS 16800000)
+set(BOARD_BAND_BUFFERS 2)
 # A write to flash is a write to the cache's line and goes nowhere. When the stack overflows, the core cannot push the exception,
 # and Armv6-M locks up.
 set(BOARD_CATCHES ram nonsense scene)

@@ -1,6 +1,6 @@
-// The display: 240 x 240 pixels behind an ST7789 (Sitronix data sheet V1.0), on SPI1. DMA sends a copy of a
-// band's bytes while the next band is drawn: a frame of SPI is a pixel of 16 bits, so that a halfword of the RAM arrives as the display wants it,
-// high byte first, and nobody swaps.
+// The display: 240 x 240 pixels behind an ST7789 (Sitronix data sheet V1.0), on SPI1. DMA sends a band from
+// where it was drawn while the next one is drawn: a frame of SPI is a pixel of 16 bits, so that a halfword of
+// the RAM arrives as the display wants it, high byte first, and nobody copies or swaps.
 #include <stddef.h>
 #include <stdint.h>
 
@@ -101,11 +101,6 @@ void open_window(int32_t first_row, int32_t rows) {
   frames_of(rp2040::kSpi16Bits);
 }
 
-// What DMA sends: bands of eight rows, in larger ones a piece at a time.
-constexpr size_t kPieceRows = 8;
-constexpr size_t kRowBytes = row_bytes(board::kFacts.display.format, board::kFacts.display.width_px);
-alignas(4) uint8_t piece[kPieceRows * kRowBytes];
-
 // DMA sends `pixels` halfwords from `from` on, or always the same one.
 void begin_pixels(const uint8_t* from, size_t pixels, uint32_t reads_on) {
   register32(rp2040::kDmaRead) = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(from));
@@ -113,11 +108,6 @@ void begin_pixels(const uint8_t* from, size_t pixels, uint32_t reads_on) {
   register32(rp2040::kDmaCount) = static_cast<uint32_t>(pixels);
   register32(rp2040::kDmaControl) = rp2040::kDmaEnable | rp2040::kDmaHalfwords | reads_on |
                                     rp2040::kDmaForSpi1 | rp2040::kDmaQuiet | kByteOrder;
-}
-
-// A piece takes 1 ms, the whole picture 28.
-void await_pixels() {
-  wait_for_clear(rp2040::kDmaControl, rp2040::kDmaBusy);
 }
 
 }  // namespace
@@ -148,25 +138,21 @@ void rp2040::start_display() {
   alignas(2) static constexpr uint8_t kBlack[2] = {};
   open_window(0, display.height_px);
   begin_pixels(kBlack, static_cast<size_t>(display.width_px) * static_cast<size_t>(display.height_px), 0);
-  await_pixels();
+  board::await_flush();
   frames_of(kSpi8Bits);
   command(kDisplayOn);
   register32(kSioOutSet) = kLightPin;
 }
 
-void board::flush(const Band& band) {
-  const size_t stride = band.stride_bytes == 0 ? kRowBytes : band.stride_bytes;
-  const auto rows = static_cast<size_t>(band.rows);
-  await_pixels();
+// Eight rows of 240 pixels take 1 ms, the whole picture 28.
+void board::await_flush() {
+  wait_for_clear(rp2040::kDmaControl, rp2040::kDmaBusy);
+}
+
+void board::begin_flush(const Band& band) {
+  await_flush();
   open_window(band.first_row, band.rows);
-  for (size_t row = 0; row < rows; row += kPieceRows) {
-    const size_t count = rows - row < kPieceRows ? rows - row : kPieceRows;
-    await_pixels();
-    for (size_t i = 0; i < count; ++i) {
-      __builtin_memcpy(piece + i * kRowBytes, band.pixels.data + (row + i) * stride, kRowBytes);
-    }
-    begin_pixels(piece, count * kRowBytes / 2, rp2040::kDmaReadsOn);
-  }
+  begin_pixels(band.pixels.data, band.pixels.size / 2, rp2040::kDmaReadsOn);
 }
 
 }  // namespace thimble

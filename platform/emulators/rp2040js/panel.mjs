@@ -26,6 +26,7 @@ export class Panel {
     });
     const spi = chip.spi[1];
     // A frame takes its bits' time; the pins count at its end.
+    this.watchBands();
     let frame = 0;
     const sent = chip.clock.createAlarm(() => {
       this.take(frame, spi);
@@ -49,6 +50,22 @@ export class Panel {
     this.columns = [0, kColumns - 1];
     this.rows = [0, kRows - 1];
     this.readyAt = this.chip.clock.nanos + kAfterResetNs;
+  }
+
+  // What DMA has yet to read for the display is the display's: who writes there shows parts of two pictures.
+  watchBands() {
+    const { chip } = this;
+    const channel = chip.dma.channels[0];
+    for (const [name, bytes] of [['writeUint8', 1], ['writeUint16', 2], ['writeUint32', 4]]) {
+      const write = chip[name].bind(chip);
+      chip[name] = (address, value) => {
+        if (address + bytes > channel.readAddr && channel.active &&
+            address < channel.readAddr + channel.transCount * channel.dataSize) {
+          this.complaint = `0x${address.toString(16)} written while the band there was being sent`;
+        }
+        write(address, value);
+      };
+    }
   }
 
   press(key, isDown) {

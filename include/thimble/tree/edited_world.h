@@ -1,0 +1,127 @@
+/// @file edited_world.h
+/// A compact tree and its brick map that change: voxels are set and cleared while the world is drawn, on a
+/// chip, in the caller's bytes.
+///
+/// `make` copies a compact tree (from flash, say) into bytes with room to grow. From then on `tree()` and
+/// `map()` are views for everything that draws or traces, and after each edit they are what a tree and a map
+/// built anew would be: same nodes, same materials, same pictures and hits. A view that was copied before an
+/// edit must be fetched again after it. `pack` writes the tree as bytes for flash.
+///
+/// Work of an edit: no loop but over the nodes, materials and bricks that there are. It moves at most all of
+/// them by some places, once for each level that gains or loses nodes (seldom more than one, at most
+/// `level()`), and counts nodes anew from the first that changed. Nodes that it may add: 8 a level, where
+/// a large solid block is opened. In the demonstration's world (64 voxels a side, 5,700 nodes, 17,000 leaves)
+/// an edit takes at most 540,000 instructions on a Cortex-M3, a fifth of a frame. Stack below 500 bytes.
+#ifndef THIMBLE_TREE_EDITED_WORLD_H
+#define THIMBLE_TREE_EDITED_WORLD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../base/memory.h"
+#include "../base/status.h"
+#include "../base/vec.h"
+#include "brick_map.h"
+#include "compact_tree.h"
+
+namespace thimble {
+
+/// How much a world can hold.
+struct EditRoom {
+  uint32_t nodes = 0;   ///< of the tree
+  uint32_t leaves = 0;  ///< solid blocks and voxels of level 1: a material each
+  uint32_t bricks = 0;  ///< cells of 4 x 4 x 4 voxels that are neither empty nor solid of one material
+};
+
+/// Materials of which whole bricks can be solid.
+inline constexpr uint32_t kSolidBrickKinds = 32;
+
+/// Bytes of a world of 2^level voxels a side (kMinBrickMapLevel to kMaxBrickMapLevel) with that room.
+constexpr size_t edited_world_bytes(int level, const EditRoom& room) {
+  const auto up = [](size_t bytes) { return (bytes + 7) & ~size_t{7}; };
+  const size_t blocks = (size_t{room.nodes} >> kDefaultRankShift) + 1;
+  const size_t cells = size_t{1} << (3 * (level - 2));
+  return up(kCompactHeaderBytes) + up(size_t{room.nodes} + 8) + 2 * up(4 * blocks) + up(room.leaves) +
+         up(2 * cells) + 8 * (1 + size_t{room.bricks} + kSolidBrickKinds) + up(12 * size_t{room.bricks}) +
+         kSolidBrickKinds;
+}
+
+/// A world that changes. It is the one owner of its bytes: a copy of it would change them behind its back.
+class EditedWorld {
+ public:
+  EditedWorld() = default;
+
+  /// What `tree` takes: the least room with which `make` succeeds. One pass over the bricks of the world.
+  static EditRoom room_of(const CompactTree& tree);
+  /// The most room that `bytes` bytes hold for `tree`, shared out in the proportions that digging wants; none
+  /// (all 0) where they do not hold the tree.
+  static EditRoom room_in(const CompactTree& tree, size_t bytes);
+
+  /// Copies `tree` into `bytes` (at a multiple of 8, at least edited_world_bytes of the room). Some 1,000
+  /// instructions a brick of the world. Errors, with nothing written: `kOutOfRange` (levels that no brick map
+  /// has, room for more than 65,000 bricks or 2^24 nodes), `kBadArgument` (a coarsened tree, whose blocks are
+  /// no voxels; an odd address), `kOutOfMemory` (bytes or room too small, or more than kSolidBrickKinds
+  /// materials of solid bricks).
+  static Status make(const CompactTree& tree, const EditRoom& room, Bytes bytes, EditedWorld* world);
+
+  /// Makes `voxel` solid with `material`, whatever it was. Errors, with nothing changed: `kOutOfRange`
+  /// (outside the world), `kOutOfMemory` (no room: `free_room()` says for what).
+  Status set(const Vec3i& voxel, uint8_t material);
+  /// Makes `voxel` empty, whatever it was. Errors as `set`: opening a solid block takes room, too.
+  Status clear(const Vec3i& voxel);
+
+  const CompactTree& tree() const { return tree_; }
+  const BrickMap& map() const { return map_; }
+  int level() const { return tree_.level(); }
+  EditRoom room() const { return room_; }
+  EditRoom free_room() const;
+  bool empty() const { return tree_.empty(); }
+  /// A box that holds all that is solid: it grows with what is set, and stays when voxels are cleared.
+  const VoxelBox& bounds() const { return tree_.bounds(); }
+
+  /// Writes the tree as CompactTree::make would for these voxels, byte for byte, to the front of `out`;
+  /// `size` (may be null) gets its bytes, also when `out` is too small (`kOutOfMemory`, nothing written).
+  Status pack(Bytes out, size_t* size = nullptr) const;
+
+ private:
+  struct Place;
+
+  uint32_t child_of(uint32_t node, unsigned octant) const;
+  bool find(const Vec3i& voxel, int to_level, Place* place) const;
+  Status check_room(const Vec3i& voxel, int material, bool* changes) const;
+  void insert_nodes(uint32_t at, uint32_t count);
+  void remove_nodes(uint32_t at, uint32_t count);
+  void move_leaves(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material);
+  void change_blocks(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material);
+  void change_voxels(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material);
+  void count_from(uint32_t node);
+  void open_block(uint32_t node, int level, unsigned mask);
+  void close_node(uint32_t node, int level);
+  void add_child(uint32_t node, int level, unsigned octant, uint8_t material);
+  void remove_child(uint32_t node, int level, unsigned octant);
+  bool is_uniform(uint32_t node, int level, uint8_t material) const;
+  uint8_t* cell_of(const Vec3i& voxel) const;
+  uint32_t kind_of(uint8_t material) const;
+  Status update_cell(const Vec3i& voxel);
+  void note_change(int64_t voxels);
+
+  CompactTree tree_;
+  BrickMap map_;
+  EditRoom room_;
+  uint8_t* header_ = nullptr;
+  uint8_t* masks_ = nullptr;
+  uint8_t* ranks_ = nullptr;
+  uint8_t* block_ranks_ = nullptr;
+  uint8_t* leaves_ = nullptr;
+  uint8_t* cells_ = nullptr;
+  uint8_t* bricks_ = nullptr;
+  uint8_t* origins_ = nullptr;
+  uint8_t* kinds_ = nullptr;
+  uint32_t kind_count_ = 0;
+  uint32_t free_brick_ = 0;  ///< the first of a chain; 0: none
+  uint32_t free_bricks_ = 0;
+};
+
+}  // namespace thimble
+
+#endif

@@ -1,0 +1,321 @@
+// A world that is edited is the world built anew: the same bytes when packed, the same bricks and materials in
+// its map, the same pictures; and without room it stays as it was.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/compact_damage.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/edited_world.h"
+#include "thimble/tree/octree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+constexpr int kWorlds = 40;
+#else
+constexpr int kWorlds = 200;
+#endif
+
+/// The voxels of a world, one by one: a material, or -1.
+class VoxelModel {
+ public:
+  explicit VoxelModel(int level)
+      : level_(level), side_(1 << level), voxels_(static_cast<std::size_t>(side_ * side_ * side_), -1) {}
+
+  int level() const { return level_; }
+  int side() const { return side_; }
+  std::int16_t& at(const Vec3i& voxel) {
+    return voxels_[static_cast<std::size_t>((voxel.z * side_ + voxel.y) * side_ + voxel.x)];
+  }
+  template <class Visit>
+  void for_each(const Visit& visit) {
+    for (std::int32_t z = 0; z < side_; ++z) {
+      for (std::int32_t y = 0; y < side_; ++y) {
+        for (std::int32_t x = 0; x < side_; ++x) {
+          visit(Vec3i{x, y, z}, at({x, y, z}));
+        }
+      }
+    }
+  }
+
+  /// The compact tree of these voxels, by way of a pool.
+  HeapBytes built() {
+    std::vector<std::uint8_t> bytes(Octree::octree_bytes(60000));
+    Octree pool;
+    REQUIRE(Octree::make(level_, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
+    for_each([&pool](const Vec3i& voxel, int material) {
+      if (material >= 0) {
+        REQUIRE(pool.insert(voxel, static_cast<std::uint8_t>(material)) == Status::kOk);
+      }
+    });
+    std::size_t size = 0;
+    REQUIRE(CompactTree::make(pool, Bytes{}, nullptr, &size) == Status::kOutOfMemory);
+    HeapBytes out(size);
+    REQUIRE(CompactTree::make(pool, out.span(), nullptr, &size) == Status::kOk);
+    return out;
+  }
+
+ private:
+  int level_;
+  int side_;
+  std::vector<std::int16_t> voxels_;
+};
+
+HeapBytes packed(const EditedWorld& world) {
+  std::size_t size = 0;
+  REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
+  HeapBytes bytes(size);
+  REQUIRE(world.pack(bytes.span()) == Status::kOk);
+  return bytes;
+}
+
+bool same_bytes(const HeapBytes& a, const HeapBytes& b) {
+  return std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end());
+}
+
+/// Every voxel by the map: solid or not, and of which material.
+bool map_is_right(const EditedWorld& world, VoxelModel& model) {
+  const BrickMap& map = world.map();
+  const int cells = model.side() / 4;
+  bool right = map.belongs_to(world.tree());
+  model.for_each([&](const Vec3i& voxel, int material) {
+    const int cell = ((voxel.z >> 2) * cells + (voxel.y >> 2)) * cells + (voxel.x >> 2);
+    const std::uint8_t* entry = map.directory() + 2 * static_cast<std::size_t>(cell);
+    const auto number = static_cast<std::uint32_t>(entry[0] | entry[1] << 8);
+    const auto bit = static_cast<unsigned>((voxel.x & 3) | (voxel.y & 3) << 2 | (voxel.z & 3) << 4);
+    const bool is_solid = (map.bricks()[8 * number + bit / 8] >> bit % 8 & 1) != 0;
+    right = right && is_solid == (material >= 0) &&
+            (material < 0 || map.material(world.tree(), number, bit) == material);
+  });
+  return right;
+}
+
+/// Whether the pictures of `camera` are the same: by the edited world and its map, and by a tree built anew.
+bool same_picture(const EditedWorld& world, const CompactTree& fresh, const PerspectiveView& view) {
+  Camera camera;
+  if (camera.set(view, fresh.level()) != Status::kOk) {
+    return true;
+  }
+  Rgb8 palette[256];
+  for (unsigned i = 0; i < 256; ++i) {
+    palette[i] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(37 * i),
+                  static_cast<std::uint8_t>(255 - i)};
+  }
+  Shading shading;
+  shading.mode = ShadeMode::kColor;
+  shading.palette = Span<const Rgb8>(palette);
+  const std::size_t row = row_bytes(PixelFormat::kRgb565, view.width_px);
+  std::vector<std::uint8_t> shown(row * static_cast<std::size_t>(view.height_px));
+  std::vector<std::uint8_t> right(shown.size());
+  const auto band = [&view](std::vector<std::uint8_t>& bytes) {
+    return Band{{bytes.data(), bytes.size()}, PixelFormat::kRgb565, 0, 0, view.height_px};
+  };
+  REQUIRE(render_band(world.tree(), world.map(), camera, shading, band(shown)) == Status::kOk);
+  REQUIRE(render_band(fresh, camera, shading, band(right)) == Status::kOk);
+  return shown == right;
+}
+
+PerspectiveView random_view(std::mt19937_64& random, int side) {
+  PerspectiveView view;
+  for (int axis = 0; axis < 3; ++axis) {
+    view.eye[axis] = Q8::from_raw(pick_int(random, -side * 256, 2 * side * 256));
+    view.forward[axis] = side * 128 - view.eye[axis].raw + pick_int(random, -200, 200);
+  }
+  view.fov_degrees = Q16::saturate(pick_int(random, 20, 70));
+  view.width_px = 40;
+  view.height_px = 33;
+  return view;
+}
+
+/// A world of boxes and strewn voxels; with few materials, solid blocks of every level.
+void fill(std::mt19937_64& random, int materials, VoxelModel* model) {
+  const int last = model->side() - 1;
+  for (int boxes = pick_int(random, 0, 6); boxes > 0; --boxes) {
+    Vec3i low;
+    Vec3i high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int grid = pick_int(random, 0, 1) == 0 ? 1 : 4;
+      low[axis] = pick_int(random, 0, last) / grid * grid;
+      high[axis] = std::min(last, low[axis] + pick_int(random, 0, 3) * grid * 2 - 1);
+    }
+    const auto material = static_cast<std::int16_t>(pick_int(random, 0, materials - 1));
+    model->for_each([&](const Vec3i& at, std::int16_t& voxel) {
+      if (at.x >= low.x && at.y >= low.y && at.z >= low.z && at.x <= high.x && at.y <= high.y &&
+          at.z <= high.z) {
+        voxel = material;
+      }
+    });
+  }
+  // Voxels, and cubes of 2 x 2 x 2, which are blocks within bricks.
+  for (int strewn = pick_int(random, 0, 1) * 60; strewn > 0; --strewn) {
+    const Vec3i at{pick_int(random, 0, last), pick_int(random, 0, last), pick_int(random, 0, last)};
+    const auto material = static_cast<std::int16_t>(pick_int(random, 0, materials - 1));
+    for (int corner = 0; corner < (strewn % 2 == 0 ? 8 : 1); ++corner) {
+      model->at({at.x ^ (corner & 1), at.y ^ (corner >> 1 & 1), at.z ^ (corner >> 2)}) = material;
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("edited world: random edits of random worlds -> bytes, map and pictures of the world built anew") {
+  std::mt19937_64 random(20261);
+  int refused = 0;
+  int edits = 0;
+  for (int trial = 0; trial < kWorlds; ++trial) {
+    CAPTURE(trial);
+    const int level = pick_int(random, 2, 5);
+    const int materials = trial % 3 == 0 ? 1 : trial % 3 == 1 ? 3 : 60;
+    VoxelModel model(level);
+    fill(random, materials, &model);
+    const HeapBytes first = model.built();
+    EditRoom room = EditedWorld::room_of(open_or_throw(first));
+    const bool is_tight = pick_int(random, 0, 1) == 0;
+    room.nodes += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 40)) : 3000;
+    room.leaves += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 60)) : 5000;
+    room.bricks += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 4)) : 300;
+    HeapBytes bytes(edited_world_bytes(level, room));
+    EditedWorld world;
+    const Status made = EditedWorld::make(open_or_throw(first), room, bytes.span(), &world);
+    if (materials == 60 && made == Status::kOutOfMemory) {
+      continue;  // more kinds of solid bricks than there may be
+    }
+    REQUIRE(made == Status::kOk);
+    REQUIRE(same_bytes(packed(world), first));
+    REQUIRE(map_is_right(world, model));
+    const int last = model.side() - 1;
+    Vec3i at{};
+    for (int edit = 0; edit < 120; ++edit, ++edits) {
+      CAPTURE(edit);
+      // Near the last one more often than not, so that bricks fill up and empty.
+      const bool far = pick_int(random, 0, 9) == 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = far ? pick_int(random, 0, last) : std::clamp(at[axis] + pick_int(random, -1, 1), 0, last);
+      }
+      const int wish = pick_int(random, 0, 2) == 0 ? -1
+                       : edit / 40 % 2 == 0        ? 0
+                                                   : pick_int(random, 0, materials - 1);
+      const HeapBytes before = packed(world);
+      const Status status = wish < 0 ? world.clear(at) : world.set(at, static_cast<std::uint8_t>(wish));
+      if (status == Status::kOk) {
+        model.at(at) = static_cast<std::int16_t>(wish);
+      } else {
+        REQUIRE(status == Status::kOutOfMemory);
+        REQUIRE(same_bytes(packed(world), before));
+        ++refused;
+      }
+      const EditRoom left = world.free_room();
+      REQUIRE(left.nodes <= room.nodes);
+      REQUIRE(left.leaves <= room.leaves);
+      REQUIRE(left.bricks <= room.bricks);
+      if (edit % 8 == 0 || status != Status::kOk) {
+        REQUIRE(same_bytes(packed(world), model.built()));
+        REQUIRE(map_is_right(world, model));
+      }
+    }
+    const HeapBytes fresh = model.built();
+    REQUIRE(same_bytes(packed(world), fresh));
+    REQUIRE(CompactTree::validate(packed(world).view()) == nullptr);
+    for (int view = 0; view < 4; ++view) {
+      REQUIRE(same_picture(world, open_or_throw(fresh), random_view(random, model.side())));
+    }
+  }
+  CHECK(edits > 3000);
+  CHECK(refused > 100);
+}
+
+TEST_CASE("edited world: emptied and filled voxel by voxel -> no node, then one solid block, and back") {
+  VoxelModel model(3);
+  const HeapBytes none = model.built();
+  const EditRoom room{100, 600, 8};
+  HeapBytes bytes(edited_world_bytes(3, room));
+  EditedWorld world;
+  REQUIRE(EditedWorld::make(open_or_throw(none), room, bytes.span(), &world) == Status::kOk);
+  CHECK(world.empty());
+  CHECK(world.clear({1, 2, 3}) == Status::kOk);
+  model.for_each([&world](const Vec3i& voxel, int) { REQUIRE(world.set(voxel, 9) == Status::kOk); });
+  CHECK(world.tree().node_count() == 1);
+  CHECK(world.tree().voxel_count() == 512);
+  CHECK(world.free_room().bricks == room.bricks);
+  CHECK(world.bounds() == VoxelBox{{0, 0, 0}, {8, 8, 8}});
+  model.for_each([&world](const Vec3i& voxel, int) { REQUIRE(world.clear(voxel) == Status::kOk); });
+  CHECK(world.empty());
+  CHECK(world.free_room().nodes == room.nodes);
+  CHECK(world.free_room().leaves == room.leaves);
+  CHECK(world.free_room().bricks == room.bricks);
+  CHECK(same_bytes(packed(world), none));
+}
+
+TEST_CASE("edited world: what cannot be -> a status, and nothing done") {
+  VoxelModel model(3);
+  model.at({1, 1, 1}) = 2;
+  const HeapBytes tree = model.built();
+  const CompactTree opened = open_or_throw(tree);
+  const EditRoom room = EditedWorld::room_of(opened);
+  CHECK(room.nodes == 3);
+  CHECK(room.leaves == 1);
+  CHECK(room.bricks == 1);
+  HeapBytes bytes(edited_world_bytes(3, room));
+  EditedWorld world;
+  CHECK(world.set({0, 0, 0}, 1) == Status::kOutOfRange);
+  CHECK(world.pack(bytes.span()) == Status::kBadArgument);
+  CHECK(EditedWorld::make(opened, room, bytes.span().subspan(0, bytes.view().size - 1), &world) ==
+        Status::kOutOfMemory);
+  CHECK(EditedWorld::make(opened, {2, 1, 1}, bytes.span(), &world) == Status::kOutOfMemory);
+  CHECK(EditedWorld::make(opened, {3, 0, 1}, bytes.span(), &world) == Status::kOutOfMemory);
+  CHECK(EditedWorld::make(opened, {3, 1, 0}, bytes.span(), &world) == Status::kOutOfMemory);
+  CHECK(EditedWorld::make(opened, {3, 1, 65001}, bytes.span(), &world) == Status::kOutOfRange);
+  CHECK(EditedWorld::make(CompactTree(), room, bytes.span(), &world) == Status::kOutOfRange);
+  REQUIRE(EditedWorld::make(opened, room, bytes.span(), &world) == Status::kOk);
+  CHECK(world.set({8, 0, 0}, 1) == Status::kOutOfRange);
+  CHECK(world.clear({0, -1, 0}) == Status::kOutOfRange);
+  CHECK(world.set({1, 1, 1}, 2) == Status::kOk);
+  CHECK(world.set({1, 1, 0}, 2) == Status::kOutOfMemory);
+  CHECK(world.set({1, 1, 1}, 3) == Status::kOk);
+  CHECK(world.tree().voxel_count() == 1);
+  // Room is what is left over, in the proportions that digging wants.
+  CHECK(EditedWorld::room_in(opened, bytes.view().size - 1).nodes == 0);
+  for (std::size_t size = bytes.view().size; size < 4000; size += 97) {
+    const EditRoom most = EditedWorld::room_in(opened, size);
+    CHECK(edited_world_bytes(3, most) <= size);
+    CHECK(edited_world_bytes(3, most) + 256 > size);
+  }
+}
+
+TEST_CASE("edited world: trees whose counts lie -> kDamaged, before anything is copied") {
+  VoxelModel model(4);
+  std::mt19937_64 random(5);
+  fill(random, 3, &model);
+  model.at({3, 3, 3}) = 1;
+  const HeapBytes tree = model.built();
+  const EditRoom room{4000, 8000, 64};
+  HeapBytes bytes(edited_world_bytes(4, room));
+  EditedWorld world;
+  int refused = 0;
+  for (std::size_t at = kCompactHeaderBytes; at < kCompactHeaderBytes + open_or_throw(tree).node_count();
+       ++at) {
+    HeapBytes damaged(tree.view().size);
+    std::copy(tree.view().begin(), tree.view().end(), damaged.span().begin());
+    damaged.span()[at] ^= 0x11;
+    CompactTree opened;
+    REQUIRE(CompactTree::open(damaged.view(), &opened) == Status::kOk);
+    if (EditedWorld::make(opened, room, bytes.span(), &world) == Status::kDamaged) {
+      ++refused;
+    } else {
+      // Another sound tree, which can be edited like any.
+      REQUIRE(world.clear({3, 3, 3}) == Status::kOk);
+      REQUIRE(world.set({15, 0, 15}, 1) == Status::kOk);
+    }
+  }
+  CHECK(refused > 10);
+}
