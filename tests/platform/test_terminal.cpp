@@ -50,6 +50,8 @@ std::string words_of(const Event& event) {
       return "wheel " + std::to_string(event.steps) + " " + at;
     case EventKind::kResize:
       return "resize";
+    case EventKind::kDrop:
+      return "drop " + event.path;
     case EventKind::kClose:
       return "close";
   }
