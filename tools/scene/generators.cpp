@@ -25,11 +25,11 @@ struct Name {
   const char* text;
   GeneratorKind kind;
 };
-constexpr std::array<Name, 5> kNames{{{"points", GeneratorKind::kPoints},
-                                      {"cluster", GeneratorKind::kCluster},
-                                      {"spheres", GeneratorKind::kSpheres},
-                                      {"water", GeneratorKind::kWater},
-                                      {"demo", GeneratorKind::kDemo}}};
+constexpr std::array<Name, 5> kGenerators{{{"points", GeneratorKind::kPoints},
+                                           {"cluster", GeneratorKind::kCluster},
+                                           {"spheres", GeneratorKind::kSpheres},
+                                           {"water", GeneratorKind::kWater},
+                                           {"demo", GeneratorKind::kDemo}}};
 
 /// A whole number: decimal digits, or as in 1e6 and 2.5e6. Nothing for anything else, or too much for 64
 /// bits.
@@ -442,9 +442,9 @@ int default_depth(GeneratorKind kind) {
 std::optional<GeneratorSpec> parse_generator(const std::string& text) {
   const std::size_t name_end = std::min(text.find_first_of(":,"), text.size());
   const std::string name = text.substr(0, name_end);
-  const auto found =
-      std::find_if(kNames.begin(), kNames.end(), [&name](const Name& entry) { return name == entry.text; });
-  if (found == kNames.end()) {
+  const auto found = std::find_if(kGenerators.begin(), kGenerators.end(),
+                                  [&name](const Name& entry) { return name == entry.text; });
+  if (found == kGenerators.end()) {
     return std::nullopt;
   }
   GeneratorSpec spec{.kind = found->kind, .depth = default_depth(found->kind)};
@@ -468,7 +468,7 @@ std::optional<GeneratorSpec> parse_generator(const std::string& text) {
 
 std::vector<std::string> generator_examples() {
   std::vector<std::string> examples;
-  for (const Name& name : kNames) {
+  for (const Name& name : kGenerators) {
     examples.emplace_back(name.text);
     examples.back() +=
         name.kind == GeneratorKind::kPoints || name.kind == GeneratorKind::kCluster ? ":1000000" : "";
