@@ -469,26 +469,15 @@ void tell_frame(const Demo& demo, uint32_t crc) {
   put("\n");
 }
 
-}  // namespace
+/// Where the scene has a camera that this display cannot have: round what is solid.
+[[gnu::noinline]] Status place_camera_round_solid(Demo* demo) {
+  demo->orbit = orbit_of(demo->shown.scene.tree().bounds());
+  return place_camera(demo);
+}
 
-int demo() {
-  Arena whole(port::arena());
-  Demo* const demo = place<Demo>(&whole);
-  if (demo == nullptr) {
-    return refuse_with_cross(&whole, "the arena is too small");
-  }
-  demo->arena = whole;
-  if (const char* wrong = open_scene(&demo->shown)) {
-    return refuse_with_cross(&demo->arena, wrong);
-  }
-  if (const char* wrong = open_light(demo->shown.scene, &demo->light)) {
-    return refuse_with_cross(&demo->arena, wrong);
-  }
-  open_map(&demo->shown, &demo->arena);
-  tell_board_and_scene("demo", demo->shown);
+/// Takes memory for bands, at most half of what is left: the other half is for the pool. False: not a row fits.
+bool take_bands(Demo* demo) {
   const port::Display& screen = display();
-  demo->tells_crc = !screen.connected;
-  // At most half of what is left: the other half is for the pool.
   const size_t row = row_bytes(screen.format, screen.width_px);
   demo->band_rows = most_band_rows();
   while (demo->band_rows > band_row_multiple(screen.format) &&
@@ -498,8 +487,22 @@ int demo() {
   }
   demo->bands =
       demo->arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, demo->band_rows))));
-  if (demo->bands.empty()) {
-    return refuse_with_cross(&demo->arena, "the arena does not hold a row of the picture");
+  return !demo->bands.empty();
+}
+
+/// Opens the scene, its light and map, and takes memory for bands. Null, or why not.
+[[gnu::noinline]] const char* begin(Demo* demo) {
+  if (const char* wrong = open_scene(&demo->shown)) {
+    return wrong;
+  }
+  if (const char* wrong = open_light(demo->shown.scene, &demo->light)) {
+    return wrong;
+  }
+  open_map(&demo->shown, &demo->arena);
+  tell_board_and_scene("demo", demo->shown);
+  demo->tells_crc = !display().connected;
+  if (!take_bands(demo)) {
+    return "the arena does not hold a row of the picture";
   }
   show_baked(demo);
   demo->lights = demo->light.effects() != Effect::kNone;
@@ -507,6 +510,21 @@ int demo() {
   if (port::facts().hold_fps != 0) {
     demo->fps = port::facts().hold_fps;
     switch_hold(demo);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+int demo() {
+  Arena whole(port::arena());
+  Demo* const demo = place<Demo>(&whole);
+  if (demo == nullptr) {
+    return refuse_with_cross(&whole, "the arena is too small");
+  }
+  demo->arena = whole;
+  if (const char* wrong = begin(demo)) {
+    return refuse_with_cross(&demo->arena, wrong);
   }
   for (uint32_t drawn = 0; port::running(drawn) && obey(demo); ++drawn) {
     if (demo->builds && !demo->spheres.is_done()) {
@@ -520,9 +538,7 @@ int demo() {
     const uint32_t start = port::instructions();
     Status status = place_camera(demo);
     if (status != Status::kOk && !demo->builds) {
-      // A camera that this display cannot have: round what is solid then.
-      demo->orbit = orbit_of(demo->shown.scene.tree().bounds());
-      status = place_camera(demo);
+      status = place_camera_round_solid(demo);
     }
     uint32_t crc = 0;
     if (status == Status::kOk) {

@@ -8,52 +8,6 @@
 
 namespace thimble {
 
-namespace brick_parts {
-namespace {
-
-// Bits of a brick whose octants (as bits) `octant` and voxels of it `mask` are solid.
-uint64_t spread(unsigned octant, unsigned mask) {
-  uint64_t brick = 0;
-  const unsigned corner = (octant & 1U) * 2 + (octant >> 1 & 1U) * 8 + (octant >> 2) * 32;
-  for (unsigned bit = 0; bit < 8; ++bit) {
-    if ((mask >> bit & 1U) != 0) {
-      brick |= uint64_t{1} << (corner + (bit & 1U) + (bit >> 1 & 1U) * 4 + (bit >> 2) * 16);
-    }
-  }
-  return brick;
-}
-
-}  // namespace
-
-uint64_t bits_of_node(const CompactTree& tree, uint32_t node) {
-  const unsigned mask = tree.mask(node);
-  if (mask == 0) {
-    return ~uint64_t{0};
-  }
-  uint64_t brick = 0;
-  uint32_t child = tree.first_child(node);
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    if ((mask >> octant & 1U) != 0) {
-      if (child < tree.node_count()) {
-        const unsigned voxels = tree.mask(child);
-        brick |= spread(octant, voxels == 0 ? 0xFFU : voxels);
-      }
-      ++child;
-    }
-  }
-  return brick;
-}
-
-void store_origin(const CompactTree& tree, uint32_t node, uint8_t* origin) {
-  const uint32_t child = tree.first_child(node);
-  bits::store32(origin, child | uint32_t{tree.mask(node)} << kChildBits);
-  const bool known = child < tree.node_count();
-  bits::store32(origin + 4, known ? tree.first_child(child) - tree.node_count() : 0);
-  bits::store32(origin + 8, known ? tree.blocks_before(child) : 0);
-}
-
-}  // namespace brick_parts
-
 namespace {
 
 constexpr uint32_t kMapMagic = 0x014D4254;      // "TBM", then the version, 1

@@ -214,7 +214,7 @@ bool EditedWorld::find(const Vec3i& voxel, int to_level, Place* place) const {
   }
   while (place->level > to_level && masks_[place->node] != 0) {
     const unsigned octant = child_octant(voxel, place->level - 1);
-    if ((masks_[place->node] >> octant & 1U) == 0) {
+    if ((unsigned{masks_[place->node]} >> octant & 1U) == 0) {
       return false;
     }
     place->node = child_of(place->node, octant);
@@ -250,7 +250,7 @@ Status EditedWorld::check_room(const Vec3i& voxel, int material, bool* changes) 
     leaves = 7 * level;
   } else {
     const unsigned octant = child_octant(voxel, 0);
-    const bool is_solid = (masks_[place.node] >> octant & 1U) != 0;
+    const bool is_solid = (unsigned{masks_[place.node]} >> octant & 1U) != 0;
     if (is_solid ? material == tree_.voxel_material(child_of(place.node, octant)) : material < 0) {
       return Status::kOk;
     }
@@ -518,7 +518,7 @@ Status EditedWorld::set(const Vec3i& voxel, uint8_t material) {
     const unsigned octant = child_octant(voxel, level - 1);
     if (masks_[node] == 0) {
       open_block(node, level, is_new ? 1U << octant : kAllChildren);
-    } else if ((masks_[node] >> octant & 1U) == 0) {
+    } else if ((unsigned{masks_[node]} >> octant & 1U) == 0) {
       add_child(node, level, octant, material);
       is_new = true;
     }
