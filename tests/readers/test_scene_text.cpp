@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <random>
@@ -393,7 +392,7 @@ TEST_CASE("scene: a ball -> the voxels whose centres it holds") {
   CHECK(voxels.size() == expected);
 }
 
-TEST_CASE("scene: boxes and balls in blocks -> aligned, the voxels one by one; 1024 a side at once") {
+TEST_CASE("scene: boxes and balls in blocks -> aligned, the voxels one by one; 1024 a side in few") {
   const TemporaryFolder folder;
   const auto mixed =
       open_file(folder.write("a.scene",
@@ -420,11 +419,15 @@ TEST_CASE("scene: boxes and balls in blocks -> aligned, the voxels one by one; 1
     const auto large =
         open_file(folder.write("b.scene", std::string("material m\nbox m from ") + box + "\n"));
     std::uint64_t volume = 0;
-    const std::clock_t start = std::clock();
+    std::uint64_t blocks = 0;
     large->stream_blocks(
-        [&](const Vec3i&, int level, std::uint8_t) { volume += std::uint64_t{1} << (3 * level); }, {});
+        [&](const Vec3i&, int level, std::uint8_t) {
+          volume += std::uint64_t{1} << (3 * level);
+          ++blocks;
+        },
+        {});
     CHECK(volume == std::uint64_t{1} << 30);
-    CHECK(std::clock() - start < CLOCKS_PER_SEC);
+    CHECK(blocks < volume / 100);
   }
 }
 

@@ -41,7 +41,9 @@ int kernel(Vec3i v) {
   return 3 + (v.x + v.y) % 2;
 }
 int dust(Vec3i v) {
-  const std::uint32_t hash = static_cast<std::uint32_t>(v.x * 73856093 ^ v.y * 19349663 ^ v.z * 83492791);
+  const std::uint32_t hash = static_cast<std::uint32_t>(v.x) * 73856093U ^
+                             static_cast<std::uint32_t>(v.y) * 19349663U ^
+                             static_cast<std::uint32_t>(v.z) * 83492791U;
   return hash % 19 == 0 ? static_cast<int>(hash / 19 % 3) : kNothing;
 }
 int stripes(Vec3i v) {

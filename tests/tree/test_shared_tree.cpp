@@ -422,7 +422,9 @@ TEST_CASE("shared tree: what several materials would take -> the bytes of that w
       for (std::int32_t z = 0; z < side; ++z) {
         for (std::int32_t y = 0; y < side; ++y) {
           for (std::int32_t x = 0; x < side; ++x) {
-            const std::uint32_t hash = static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ z * 83492791);
+            const std::uint32_t hash = static_cast<std::uint32_t>(x) * 73856093U ^
+                                       static_cast<std::uint32_t>(y) * 19349663U ^
+                                       static_cast<std::uint32_t>(z) * 83492791U;
             // No block of eight is full, so that none becomes one leaf.
             if ((x & y & z & 1) == 0 && (hash % spread == 0 || x + y + z == 0)) {
               REQUIRE(one.insert({x, y, z}, 7) == Status::kOk);
