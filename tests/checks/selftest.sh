@@ -225,6 +225,8 @@ add src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame
 catches one_unit 'one translation unit'
 add src/base/sum.cpp 'int* nothing() { return 0; }'
 catches tidy 'nullptr'
+add src/base/sum.cpp 'namespace { int look(int k) { int* p = nullptr; return k > 3 ? *p : k; } } int seen(int k) { return look(k); }'
+catches tidy 'Dereference of null pointer'
 
 for target in host cortex-m0 cortex-m3 rv32; do
   add src/base/sum.cpp 'extern "C" void* malloc(__SIZE_TYPE__); void* get(unsigned n) { return malloc(n); }'
