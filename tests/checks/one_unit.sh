@@ -12,7 +12,7 @@ for compiler in g++ clang++; do
     echo "skipped for $compiler: it is not installed"
     continue
   fi
-  if ! find src -name '*.cpp' | sort | sed 's/.*/#include "&"/' | $compiler $flags -c -O1 -o /dev/null -; then
+  if ! find src -name '*.cpp' | sort | sed 's/.*/#include "&"/' | $compiler $flags -fsyntax-only -; then
     echo "one_unit: src does not compile as one translation unit with $compiler" >&2
     failed=1
   fi

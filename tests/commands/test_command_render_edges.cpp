@@ -145,12 +145,17 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
 }
 
 TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by half, with few rays") {
+#ifdef __SANITIZE_ADDRESS__
+  const std::string size = "80x60";
+#else
+  const std::string size = "240x180";
+#endif
   for (const Words& words : {Words{"castle", "--shade", "color"}, Words{"ship", "--shade", "color"},
                              Words{"castle", "--effects", "direct-light,shadows"}, Words{"castle"}}) {
     CAPTURE(words);
-    const Picture best = render(words + Words{"--samples", "64"}, "240x180");
-    const Picture one = render(words + Words{"--samples", "1"}, "240x180");
-    const Picture edges = render(words + Words{"--samples", "auto"}, "240x180");
+    const Picture best = render(words + Words{"--samples", "64"}, size);
+    const Picture one = render(words + Words{"--samples", "1"}, size);
+    const Picture edges = render(words + Words{"--samples", "auto"}, size);
     CHECK(rms(edges, best) < 0.6 * rms(one, best));
     CHECK(edges.stats["rays"].get<double>() < 3 * one.stats["rays"].get<double>());
   }

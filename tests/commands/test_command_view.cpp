@@ -108,7 +108,7 @@ bool can_test(const VirtualDisplay& display) {
 // Until the window is there and the pointer in it.
 bool point_into(const VirtualDisplay& display) {
   return display.xdotool("search --sync --onlyvisible --name '^thimble: '") &&
-         display.xdotool("mousemove 100 100");
+         display.xdotool("mousemove 60 60");
 }
 
 // A shell's words of a printed command; none of those here is quoted.
@@ -160,22 +160,22 @@ TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is
     return;
   }
   const TemporaryFolder folder;
-  Viewing viewing(folder, {"spheres,depth=5", "--size", "200x150"});
+  Viewing viewing(folder, {"spheres,depth=5", "--size", "120x90"});
   REQUIRE(point_into(display));
   REQUIRE(display.xdotool("key s"));
   REQUIRE(viewing.prints("-o spheres-depth-5.png"));
   const std::string first = line_with(viewing.out(), "-o spheres-depth-5.png");
   CHECK(first.find("--eye") == std::string::npos);  // nobody moved: the view of the command
-  CHECK(first.find("--size 200x150") != std::string::npos);
+  CHECK(first.find("--size 120x90") != std::string::npos);
   check_same_picture(folder, first);
 
-  REQUIRE(display.xdotool("mousedown 1 mousemove 130 110 mousemove 150 110 mouseup 1 key s"));
+  REQUIRE(display.xdotool("mousedown 1 mousemove 78 66 mousemove 90 66 mouseup 1 key s"));
   REQUIRE(viewing.prints("-o spheres-depth-5-2.png"));
   const std::string turned = line_with(viewing.out(), "-o spheres-depth-5-2.png");
   CHECK(turned.find("--eye") != std::string::npos);
   check_same_picture(folder, turned);
 
-  REQUIRE(display.xdotool("click 4 click 4 click 4 mousedown 3 mousemove 120 60 mouseup 3 key s"));
+  REQUIRE(display.xdotool("click 4 click 4 click 4 mousedown 3 mousemove 72 36 mouseup 3 key s"));
   REQUIRE(viewing.prints("-o spheres-depth-5-3.png"));
   check_same_picture(folder, line_with(viewing.out(), "-o spheres-depth-5-3.png"));
 
@@ -185,10 +185,10 @@ TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is
   CHECK(above.find("--up") != std::string::npos);
   check_same_picture(folder, above);
 
-  REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 300 220 sleep 0.3 key 1 key s"));
+  REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 150 110 sleep 0.3 key 1 key s"));
   REQUIRE(viewing.prints("-o spheres-depth-5-5.png"));
   const std::string front = line_with(viewing.out(), "-o spheres-depth-5-5.png");
-  CHECK(front.find("--size 300x220") != std::string::npos);
+  CHECK(front.find("--size 150x110") != std::string::npos);
   check_same_picture(folder, front);
 
   REQUIRE(display.xdotool("key q"));
@@ -207,7 +207,7 @@ TEST_CASE("view: shift drag, flight and a double click -> the eye goes where the
     cube += std::to_string(i % 8) + " " + std::to_string(i / 8 % 8) + " " + std::to_string(i / 64) + "\n";
   }
   folder.write("cube.xyz", cube);
-  Viewing viewing(folder, {"view", "cube.xyz", "--as-voxels", "--size", "600x400", "--samples", "1"});
+  Viewing viewing(folder, {"view", "cube.xyz", "--as-voxels", "--size", "300x200", "--samples", "1"});
   REQUIRE(point_into(display));
   int saved = 0;
   // What s prints after these words of xdotool, as words.
@@ -221,15 +221,15 @@ TEST_CASE("view: shift drag, flight and a double click -> the eye goes where the
   const double front = first_number_after(after("key 1"), "--eye");
   // Shift and the left button: the scene goes right, so the eye goes left (towards smaller x).
   const double moved = first_number_after(
-      after("mousemove 200 200 keydown shift mousedown 1 mousemove 300 200 mouseup 1 keyup shift"), "--eye");
+      after("mousemove 100 100 keydown shift mousedown 1 mousemove 150 100 mouseup 1 keyup shift"), "--eye");
   CHECK(moved < front - 1);
   const double flown = first_number_after(after("keydown d sleep 0.5 keyup d"), "--eye");
   CHECK(flown > moved + 1);
   const Words before = after("key 1");
-  const Words looked = after("mousemove 260 200 sleep 0.5 click 1 click 1");
+  const Words looked = after("mousemove 130 100 sleep 0.5 click 1 click 1");
   CHECK(first_number_after(looked, "--eye") == doctest::Approx(front).epsilon(0.001));
   CHECK(first_number_after(looked, "--target") < first_number_after(before, "--target") - 0.2);
-  REQUIRE(display.xdotool("mousemove 300 200"));  // what was looked at is in the middle now
+  REQUIRE(display.xdotool("mousemove 150 100"));  // what was looked at is in the middle now
   REQUIRE(display.xdotool("key p"));
   REQUIRE(viewing.prints("voxel "));
   const std::string picked = line_with(viewing.out(), "voxel ");
