@@ -166,6 +166,11 @@ TEST_CASE("xyz: what is no finite number -> an error that names the line") {
   CHECK(contains(error_of(read_xyz, "nan 2 3\n"), "line 1: x"));
   CHECK(contains(error_of(read_xyz, "1 2 -inf\n"), "not finite"));
   CHECK(contains(error_of(read_xyz, "1 2 1e999\n"), "not finite"));
+  CHECK(contains(
+      error_of(read_xyz, "Name;RA;Dec\nIC0001;0;27\n"),
+      "line 2: x is 'IC0001', which is not a number (the first three columns are read, since line 1 names no "
+      "columns x, y and z)"));
+  CHECK(!contains(error_of(read_xyz, "Name;x;y;z\na;0;27;k\n"), "names no"));
   CHECK(contains(error_of(read_xyz, "1 2 3\n\n4 5x 6\n"), "line 3: y is '5x', which is not a number"));
   CHECK(contains(error_of(read_xyz, "1 2 3\n4 5\n"), "line 2: z is missing"));
   CHECK(contains(error_of(read_xyz, "1,,3\n"), "y is missing"));

@@ -130,6 +130,8 @@ struct Layout {
   bool model_ends_open = false;
   std::size_t first_point_offset = 0;
   std::uint64_t first_point_line = 1;
+  /// A line of words before the points that names no x, y and z; 0 when there is none.
+  std::uint64_t title_line = 0;
 };
 
 constexpr std::array<const char*, kFields> kFieldNames{"x", "y", "z", "red", "green", "blue"};
@@ -161,11 +163,13 @@ struct ColorSurvey {
 };
 
 /// A coordinate as a number. Where it is none because of another separator, the error says what was expected.
-double coordinate(std::string_view word, std::uint64_t line, const char* name, Separator separator) {
+double coordinate(std::string_view word, std::uint64_t line, const char* name, const Layout& layout) {
   double value = 0;
-  if (parse_number(word, value) == NumberKind::kFinite) {
+  const NumberKind kind = parse_number(word, value);
+  if (kind == NumberKind::kFinite) {
     return value;
   }
+  const Separator separator = layout.separator;
   const std::string_view marks =
       separator == Separator::kBlanks ? ",;" : (separator == Separator::kComma ? " \t;" : " \t,");
   if (word.find_first_of(marks) != std::string_view::npos) {
@@ -173,6 +177,11 @@ double coordinate(std::string_view word, std::uint64_t line, const char* name, S
                            ", which is not a number with a decimal point (the columns of this file are "
                            "separated by " +
                            name_of(separator) + ")");
+  }
+  if (kind == NumberKind::kGarbage && layout.title_line != 0 && !word.empty()) {
+    fail_at_line(line, std::string(name) + " is " + quoted(word) +
+                           ", which is not a number (the first three columns are read, since line " +
+                           std::to_string(layout.title_line) + " names no columns x, y and z)");
   }
   return finite_number(word, line, name);
 }
@@ -205,9 +214,9 @@ void read_points(std::string_view text, const Layout& layout, ProgressMeter& met
       continue;
     }
     point.line = layout.first_point_line + lines.line_number() - 1;
-    point.x = coordinate(words[0], point.line, kFieldNames[0], layout.separator);
-    point.y = coordinate(words[1], point.line, kFieldNames[1], layout.separator);
-    point.z = coordinate(words[2], point.line, kFieldNames[2], layout.separator);
+    point.x = coordinate(words[0], point.line, kFieldNames[0], layout);
+    point.y = coordinate(words[1], point.line, kFieldNames[1], layout);
+    point.z = coordinate(words[2], point.line, kFieldNames[2], layout);
     visit(point, words, line);
   }
 }
@@ -333,6 +342,7 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
           layout.model_line = lines.line_number();
           break;
         }
+        layout.title_line = lines.line_number();
         continue;  // a title; the first point settles the separator
       }
     }
