@@ -237,7 +237,8 @@ void edges(Check& check, int channels) {
       int32_t most = 0;
       for (int32_t c = 0; c < channels; ++c) {
         const auto at = [&](ConstBytes of, int32_t px) {
-          return int32_t{of[static_cast<size_t>(px * channels + c)]};
+          return int32_t{
+              of[static_cast<size_t>(px) * static_cast<size_t>(channels) + static_cast<size_t>(c)]};
         };
         const auto differ = [&](int32_t other) {
           const int32_t by = other < at(row, x) ? at(row, x) - other : other - at(row, x);

@@ -211,11 +211,7 @@ void brick_map(Check& check, int /*index*/) {
   }
 }
 
-constexpr uint32_t kSharedNodes = 90;
 constexpr uint32_t kSharedBytes = 1100;
-constexpr uint32_t kSharedWork = (static_cast<uint32_t>(shared_work_bytes(kSharedNodes)) + 7) & ~7U;
-constexpr uint32_t kSharedArena = kPoolBytes + kTreeBytes + kSharedBytes + sizeof(SharedTree) + 64;
-static_assert(kSharedWork <= kPoolBytes + kTreeBytes + 2048);
 
 void shared_tree(Check& check, int /*index*/) {
   THIMBLE_REQUIRE(make_world(check));
