@@ -1,8 +1,10 @@
 #!/bin/sh
 # The lines and branches of src that the tests take, by gcov: a table by room, and a sentence for each room that
-# has fewer than tests/budgets/coverage.csv says.      coverage.sh BUILD_DIR [--update]
+# has fewer than tests/budgets/coverage.csv says, or a branch that none takes and tests/budgets/untaken.csv does not
+# hold.      coverage.sh BUILD_DIR [--update]
 #
-# The portable cases and frames (which boards run too) count first, alone; then all cases of the core's rooms.
+# The portable cases and frames (which boards run too) count first, alone; then all cases of the core's rooms,
+# and the lit pictures of the wide renderer, which tells the core's frames what their rays meet.
 set -eu
 cd "$(dirname "$0")/.."
 build=$1
@@ -13,7 +15,8 @@ find "$build" -name '*.gcda' -delete
 
 # count NAME: what the objects have counted so far -> room,lines,lines taken,branches,branches taken
 count() {
-  gcovr --root . --object-directory "$build" --filter src/ --csv "$out/$1.files.csv" >"$out/$1.log" 2>&1
+  gcovr --root . --object-directory "$build" --filter src/ --csv "$out/$1.files.csv" \
+    --json "$out/$1.json" >"$out/$1.log" 2>&1
   awk -F, -v OFS=, '
     NR == 1 { for (i = 1; i <= NF; ++i) { column[$i] = i } next }
     {
@@ -32,6 +35,8 @@ for room in base tree trace picture light plane bake c; do
   "$build/thimble_tests_covered" --source-file="*/tests/$room/*" >"$out/$room.out" 2>&1 ||
     { cat "$out/$room.out"; exit 1; }
 done
+"$build/thimble_tests_covered" --test-case='wide: lit scenes in which rays end*,wide: a lit picture*' >"$out/wide.out" 2>&1 ||
+  { cat "$out/wide.out"; exit 1; }
 count all
 
 {
@@ -47,12 +52,15 @@ count all
 column -s, -t "$out/coverage.csv"
 if [ "${2:-}" = --update ]; then
   cp "$out/coverage.csv" "$budget"
+  python3 -B tests/untaken.py "$out/all.json" tests/budgets/untaken.csv --update
   exit
 fi
 if [ ! -f "$budget" ]; then
   echo "coverage: nothing to compare with; coverage.sh $build --update writes $budget" >&2
   exit
 fi
+bad=0
+python3 -B tests/untaken.py "$out/all.json" tests/budgets/untaken.csv || bad=1
 awk -F, '
   NR == FNR { lines[$1 "," $2] = $3; branches[$1 "," $2] = $4; next }
   FNR > 1 && ($3 < lines[$1 "," $2] || $4 < branches[$1 "," $2]) {
@@ -60,4 +68,5 @@ awk -F, '
       lines[$1 "," $2], branches[$1 "," $2]
     bad = 1
   }
-  END { exit bad }' "$budget" "$out/coverage.csv"
+  END { exit bad }' "$budget" "$out/coverage.csv" || bad=1
+exit $bad

@@ -204,6 +204,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     sentence = usage_sentence(app, error, argv[1]);
     status = kUsageStatus;
+  } catch (const thimble::tools::UsageError& error) {
+    sentence = subject() + error.what();
+    status = kUsageStatus;
   } catch (const thimble::tools::InputError& error) {
     sentence = subject() + error.what();
   } catch (const thimble::tools::OutputError& error) {

@@ -12,6 +12,8 @@ constexpr Application kApplications[] = {
     {"golden", golden, false, false},
     {"lit", lit, false, false},
     {"formats", formats, false, false},
+    {"worlds", worlds, false, false},
+    {"bricks", bricks, false, false},
     {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},

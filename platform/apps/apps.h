@@ -18,6 +18,10 @@ int selftest();
 int golden();
 /// Lit pictures on the target, likewise.
 int lit();
+/// Worlds of other shapes (edited, as bricks, shared) and the plane on the target, likewise.
+int worlds();
+/// Frames by bricks on the target, likewise.
+int bricks();
 /// The pixel formats of panels on the target, in an image that has them all; likewise.
 int formats();
 /// Instructions a frame and a ray, nodes visited, RAM and stack used.

@@ -60,8 +60,7 @@ static void begin_way(const Frame& frame, const Ray& ray, Leg* leg) {
 bool meet_on_way(AskedFrame& frame, const LightRay& light, int legs, Leg* leg, Meeting* meeting);
 
 template <class AnyFrame>
-[[gnu::always_inline]] static inline bool arrives_through(AnyFrame& frame, LightRay* light) {
-  count_ray(frame, LitRayKind::kShadow);
+[[gnu::always_inline]] static inline bool comes_through(AnyFrame& frame, LightRay* light) {
   Leg leg;
   if constexpr (!AnyFrame::kIsAsked) {
     begin_way(frame, light->ray, &leg);
@@ -103,6 +102,17 @@ template <class AnyFrame>
     leg.from = point_of(meeting.hit);
   }
   return false;
+}
+
+template <class AnyFrame>
+[[gnu::always_inline]] static inline bool arrives_through(AnyFrame& frame, LightRay* light) {
+  count_ray(frame, LitRayKind::kShadow);
+  uint64_t* hits = &frame.counts.hits[static_cast<int>(LitRayKind::kShadow)];
+  const uint64_t before = *hits;
+  const bool arrives = comes_through(frame, light);
+  // Its stretches are one ray, however many clear solids they meet.
+  *hits = *hits == before ? before : before + 1;
+  return arrives;
 }
 
 }  // namespace thimble::lit

@@ -38,7 +38,7 @@ emulate() {
 }
 
 # An emulator of the board's own is slow: a choice of the cases, unless LONG=1.
-default='selftest golden lit demo bench particles'
+default='selftest golden lit worlds bricks demo bench particles'
 if [ -n "$(fact EMULATOR)" ]; then
   if ! why=$(sh "platform/emulators/$(fact EMULATOR)/fetch.sh"); then
     # Where everything is installed it must be there.
@@ -79,7 +79,7 @@ for app in $apps; do
   if [ "$status" != 0 ]; then
     tail -n 5 "$log" >&2
     fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
-  elif [ "$app" = selftest ] || [ "$app" = golden ] || [ "$app" = lit ]; then
+  elif [ "$app" = selftest ] || [ "$app" = golden ] || [ "$app" = lit ] || [ "$app" = worlds ] || [ "$app" = bricks ]; then
     said=$(grep -E '^[1-9][0-9]* passed, 0 failed' "$log" | head -n 1)
     [ -n "$said" ] || fail "$app" "did not say how many passed"
     said="$said, $(sed -n 's/^\([0-9]* skipped\).*/\1/p' "$log" | head -n 1); "

@@ -144,6 +144,29 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
   }
 }
 
+TEST_CASE(
+    "render --samples auto: more pixels than are drawn together -> as in small bands; behind them, as of one "
+    "sample") {
+  for (const char* const scene : {"castle", "room"}) {
+    CAPTURE(scene);
+    constexpr const char* kLarge = "260x200";
+    const Picture whole = render({scene, "--samples", "auto"}, kLarge);
+    CHECK(render({scene, "--samples", "auto", "--memory", "600K"}, kLarge).rgb == whole.rgb);
+    // What is far from edges: the first and last column's upper half.
+    const Picture single = render({scene, "--samples", "1"}, kLarge);
+    REQUIRE(single.rgb.size() == whole.rgb.size());
+    const std::size_t line = whole.rgb.size() / 200;
+    int differ = 0;
+    for (std::size_t y = 0; y < 100; ++y) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        differ += whole.rgb[y * line + c] != single.rgb[y * line + c] ? 1 : 0;
+        differ += whole.rgb[(y + 1) * line - 3 + c] != single.rgb[(y + 1) * line - 3 + c] ? 1 : 0;
+      }
+    }
+    CHECK(differ <= 30);
+  }
+}
+
 TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by half, with few rays") {
 #ifdef __SANITIZE_ADDRESS__
   const std::string size = "80x60";

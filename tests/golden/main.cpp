@@ -79,12 +79,15 @@ int run_all() {
   // Each of them says what is wrong.
   const bool sound = lists_agree() && names_differ(portable::kCoreGroups) &&
                      names_differ(portable::kGoldenGroups) && names_differ(portable::kLitGroups) &&
-                     names_differ(portable::kPanelGroups);
+                     names_differ(portable::kPanelGroups) && names_differ(portable::kWorldGroups) &&
+                     names_differ(portable::kBrickGroups);
   const int core = apps::selftest();
   const int frames = apps::golden();
   const int formats = apps::formats();
   const int lit = apps::lit();
-  return sound && core == 0 && frames == 0 && formats == 0 && lit == 0 ? 0 : 1;
+  const int worlds = apps::worlds();
+  const int bricks = apps::bricks();
+  return sound && core == 0 && frames == 0 && formats == 0 && lit == 0 && worlds == 0 && bricks == 0 ? 0 : 1;
 }
 
 bool print_crcs(const char* all, const char* common, Span<const portable::Group* const> groups) {
@@ -131,6 +134,14 @@ int print_crc() {
   }
   printf("/// Of lit pictures, all of which every board draws.\n");
   if (!print_crcs("kLitCrc32", nullptr, portable::kLitGroups)) {
+    return 1;
+  }
+  printf("/// Of worlds of other shapes and of the plane, all of which every board runs.\n");
+  if (!print_crcs("kWorldCrc32", nullptr, portable::kWorldGroups)) {
+    return 1;
+  }
+  printf("/// Of frames by bricks, all of which every board draws.\n");
+  if (!print_crcs("kBrickCrc32", nullptr, portable::kBrickGroups)) {
     return 1;
   }
   printf("\n}  // namespace thimble::portable\n\n#endif\n");

@@ -65,6 +65,8 @@ std::vector<portable::Case> portable_cases(int group) {
   append(portable::kGoldenGroups);
   append(portable::kPanelGroups);
   append(portable::kLitGroups);
+  append(portable::kWorldGroups);
+  append(portable::kBrickGroups);
   std::vector<portable::Case> cases;
   if (static_cast<size_t>(group) < groups.size()) {
     for (int i = 0; i < groups[static_cast<size_t>(group)]->count; ++i) {

@@ -22,6 +22,7 @@ ROOMS = ("base", "tree", "trace", "picture", "light", "plane", "bake", "c", "mis
 WANTED = 97  # per cent
 AT_MOST_MS = 5000  # of tests a mutant
 SLOW_CPU_MS = 4000  # a test that takes longer is left out
+AT_ONCE = 100  # tests after which what is known is kept
 
 
 class Runner:
@@ -100,9 +101,13 @@ class Cover:
 
     def add(self, runners, tests):
         tests = [t for t in tests if t not in self.ms]
-        if tests:
-            in_two(runners, tests, self.note, "tests without a mutant")
-            self.kept.write_text(json.dumps([self.ms, self.crc, sorted(self.of.items())]))
+        for first in range(0, len(tests), AT_ONCE):
+            some = tests[first:first + AT_ONCE]
+            in_two(runners, some, self.note, f"tests without a mutant, {first} done of {len(tests)}")
+            # Beside it and then in its place, so that who interrupts this loses no more than these.
+            beside = self.kept.with_suffix(".new")
+            beside.write_text(json.dumps([self.ms, self.crc, sorted(self.of.items())]))
+            beside.replace(self.kept)
 
     def load(self, kept):
         """What the same program has noted before."""

@@ -34,6 +34,9 @@ extern const Group kAnytimeGroup;      ///< golden frames, from coarse to fine
 extern const Group kWaterGroup;        ///< moving water and its rays
 extern const Group kPanelGroup;        ///< pixels of panels, and a frame in each of their formats
 extern const Group kLitGroup;          ///< light, mirrors, glass, water in pictures
+extern const Group kPlaneGroup;        ///< bits in the plane, and the balls among them
+extern const Group kWorldGroup;  ///< worlds that are edited, maps, shared trees, what light does as bytes
+extern const Group kBrickGroup;  ///< frames by bricks, frames that stop at small blocks, samples at edges
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
 inline constexpr const Group* kCoreGroups[] = {
@@ -48,6 +51,10 @@ inline constexpr const Group* kGoldenGroups[] = {&kBakedSceneGroup, &kGoldenGrou
 inline constexpr const Group* kPanelGroups[] = {&kPanelGroup};
 /// Lit pictures (the application `lit`).
 inline constexpr const Group* kLitGroups[] = {&kLitGroup};
+/// Other shapes of a world, and the plane (the application `worlds`).
+inline constexpr const Group* kWorldGroups[] = {&kWorldGroup, &kPlaneGroup};
+/// Frames by bricks (the application `bricks`), which want as much stack as light does.
+inline constexpr const Group* kBrickGroups[] = {&kBrickGroup};
 
 }  // namespace thimble::portable
 

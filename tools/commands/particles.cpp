@@ -34,6 +34,7 @@ struct ParticlesCommand {
   std::string field_path;
   std::string frame_path;
   std::string recording_path;
+  std::string paced_by;  // the option that asks for a rate, if any
   std::string stats_path;
 };
 
@@ -94,17 +95,26 @@ void run(const ParticlesCommand& given) {
     refuse_usage("--min-size", std::to_string(world_options.least_diameter) + " is more than --max-size, " +
                                    std::to_string(world_options.most_diameter));
   }
-  OutputSet outputs({command.input_recording_path, command.state_path, command.field_path, command.frame_path,
-                     command.recording_path, command.stats_path},
-                    {command.bodies_path, command.input_path});
-  command.play.input_recording = outputs[kInputRecording];
-  command.play.recording = outputs[kRecording];
   if (!command.view_given) {
     const bool for_files = command.play.steps || !command.state_path.empty() || !command.field_path.empty() ||
                            !command.frame_path.empty() || !command.recording_path.empty() ||
                            !command.stats_path.empty();
     command.play.view = for_files ? host::ScreenKind::kNone : host::ScreenKind::kAuto;
   }
+  const bool watched = command.play.view != host::ScreenKind::kNone || !command.recording_path.empty();
+  if (command.play.figures_in_files && command.frame_path.empty() && command.recording_path.empty()) {
+    refuse_usage("--figures", "needs --output or --record, whose pictures they are written on");
+  }
+  // The figures tell the rate of steps.
+  if (!command.paced_by.empty() && !watched &&
+      !(command.paced_by == "--eps" && command.play.figures_in_files)) {
+    refuse_usage(command.paced_by, "needs --display or --record, since nothing else keeps to a rate");
+  }
+  OutputSet outputs({command.input_recording_path, command.state_path, command.field_path, command.frame_path,
+                     command.recording_path, command.stats_path},
+                    {command.bodies_path, command.input_path});
+  command.play.input_recording = outputs[kInputRecording];
+  command.play.recording = outputs[kRecording];
 
   std::optional<Bodies> bodies;
   if (!command.bodies_path.empty()) {
@@ -263,12 +273,18 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       .default_str("auto");
   add_whole_option(
       sub, "--eps", "N", 1, 1'000'000,
-      [command](std::int64_t rate) { command->play.rate = static_cast<std::int32_t>(rate); },
+      [command](std::int64_t rate) {
+        command->play.rate = static_cast<std::int32_t>(rate);
+        command->paced_by = "--eps";
+      },
       "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so")
       .default_str("60");
   add_whole_option(
       sub, "--fps", "N", 1, 1000,
-      [command](std::int64_t rate) { command->play.frames_a_second = static_cast<int>(rate); },
+      [command](std::int64_t rate) {
+        command->play.frames_a_second = static_cast<int>(rate);
+        command->paced_by = "--fps";
+      },
       "pictures a second on the screen and in a recording (default: 60 in a window, else 30)");
   add_path_option(sub, "--input", "SCRIPT", &command->input_path,
                   "play mouse and keys from a file: lines \"TICK: EVENT\", EVENT one of \"key K\" (a "

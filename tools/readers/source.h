@@ -30,6 +30,12 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An option that this input can never take, as the command line alone tells: exit status 2.
+class UsageError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 struct Rgb {
   std::uint8_t r = 255, g = 255, b = 255;
   friend bool operator==(const Rgb&, const Rgb&) = default;

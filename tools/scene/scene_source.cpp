@@ -384,10 +384,10 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   }
   if (auto spec = parse_generator(arguments.scene)) {
     if (arguments.as_voxels) {
-      throw InputError("--as-voxels is for point files");
+      throw UsageError("--as-voxels is for point files, and this is a generator");
     }
     if (arguments.frame) {
-      throw InputError("--frame is for .vox files with frames");
+      throw UsageError("--frame is for .vox files with frames, and this is a generator");
     }
     if (arguments.depth) {
       spec->depth = *arguments.depth;

@@ -224,7 +224,9 @@ inline constexpr int kLitRayKinds = 7;
 /// What a renderer did. An effect that is not in the set counts 0.
 struct LitCounts {
   uint64_t rays[kLitRayKinds] = {};
-  uint64_t hits[kLitRayKinds] = {};  ///< of these, met something solid
+  /// Of all these, met something solid. What goes straight on through clear solids, which counts as a ray of glass,
+  /// media or water, is counted here as the kind that it began as, so that only the sum is never more than the rays.
+  uint64_t hits[kLitRayKinds] = {};
   /// Nodes whose mask was read (`Hit::visits`), cells walked through inside clear solids, columns of water.
   uint64_t node_visits[kLitRayKinds] = {};
   uint64_t step_limited = 0;        ///< rays stopped by `LitOptions::max_visits`; they count as misses

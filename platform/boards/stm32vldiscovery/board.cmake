@@ -9,6 +9,7 @@ set(BOARD_STACK_BYTES 3840)
 # The test cases want 5 KiB for themselves, and draw without a brick map.
 set(BOARD_STACK_BYTES_selftest 2304)
 set(BOARD_STACK_BYTES_golden 2304)
+set(BOARD_STACK_BYTES_worlds 2304)
 # Balls are worth more than stack that they do not need.
 set(BOARD_STACK_BYTES_particles 2304)
 set(BOARD_DISPLAY none)
