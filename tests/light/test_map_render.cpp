@@ -257,6 +257,41 @@ TEST_CASE(
   CHECK(counts.node_visits[static_cast<int>(LitRayKind::kShadow)] == 0);
 }
 
+TEST_CASE("a wall of every brightness -> each step of the dither is the tree's") {
+  std::mt19937_64 random(9);
+  const ChipScene scene = make_chip_scene(random, ChipWorld::kRoom, 4);
+  const Vec3Q8 eye{Q8::from_raw(8 * 256), Q8::from_raw(8 * 256), Q8::from_raw(8 * 256)};
+  Camera camera;
+  REQUIRE(camera.set(PerspectiveView{eye, {0, 1, -9}, {}, Q16::saturate(20), 8, 8, 0}, 4) == Status::kOk);
+  Light light;
+  light.place = Vec3i{0, 0, 1};
+  std::vector<Surface> surfaces(10);
+  LitScene lit;
+  lit.lights = {&light, 1};
+  lit.surfaces = {surfaces.data(), surfaces.size()};
+  const Shading shading;
+  const LitOptions options;
+  const LitView view{scene, camera, shading, lit, options};
+  for (int i = 0; i < 600; ++i) {
+    CAPTURE(i);
+    light.color_q8[0] = light.color_q8[1] = light.color_q8[2] = static_cast<std::uint16_t>(i);
+    for (Surface& surface : surfaces) {
+      surface.albedo = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
+                        static_cast<std::uint8_t>(random())};
+    }
+    for (const PixelFormat format : {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kRgb565}) {
+      const auto by_tree = [&](const Band& band) {
+        return lit_by_tree<Effect::kDirectLight>(view, band, nullptr);
+      };
+      const auto by_map = [&](const Band& band) {
+        return lit_by_map<Effect::kDirectLight>(view, {}, band, nullptr);
+      };
+      const std::size_t row = row_bytes(format, 8);
+      REQUIRE(lit_bytes(camera, format, row, 8, by_map) == lit_bytes(camera, format, row, 8, by_tree));
+    }
+  }
+}
+
 TEST_CASE("bricks free towards a sun: bad arguments, and bits that another light does not get") {
   std::mt19937_64 random(7);
   const ChipScene scene = make_chip_scene(random, ChipWorld::kTower, 5);
