@@ -93,7 +93,7 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
   }
   if constexpr (kCanLight) {
     if (engine == Engine::kLit) {
-      return draw_lit(bench.shown.scene, bench.camera, bench.shading, bench.light, band);
+      return draw_lit_scene(bench.shown, bench.camera, bench.shading, bench.light, band);
     }
   }
   if (engine == Engine::kDda) {
@@ -317,6 +317,7 @@ int bench() {
   }
   const size_t without_map = bench->arena.used_bytes();
   open_map(&bench->shown, &bench->arena);
+  prove_light(bench->shown, &bench->arena, &bench->light);
   tell_board_and_scene("bench", bench->shown);
   bench->orbit = orbit_of(bench->shown.scene);
   bench->shading = demo_shading(bench->shown.scene.palette());

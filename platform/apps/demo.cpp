@@ -130,7 +130,7 @@ Status draw(const Demo& demo, const Band& band) {
   }
   if constexpr (kCanLight) {
     if (demo.is_lit) {
-      return draw_lit(demo.shown.scene, demo.camera, demo.shading, demo.light, band);
+      return draw_lit_scene(demo.shown, demo.camera, demo.shading, demo.light, band);
     }
   }
   return draw_scene(demo.shown, demo.camera, demo.shading, band);
@@ -162,7 +162,7 @@ void flush(Demo* demo, const Band& band, uint32_t* crc) {
     demo->is_lit = kCanLight && demo->is_lit && port::buttons() == 0;
     // Light is drawn from here: the less stands on the stack the better.
     const Status status = kCanLight && demo->is_lit
-                              ? draw_lit(demo->shown.scene, demo->camera, demo->shading, demo->light, band)
+                              ? draw_lit_scene(demo->shown, demo->camera, demo->shading, demo->light, band)
                               : draw(*demo, band);
     if (status != Status::kOk) {
       return status;
@@ -499,6 +499,7 @@ bool take_bands(Demo* demo) {
     return wrong;
   }
   open_map(&demo->shown, &demo->arena);
+  prove_light(demo->shown, &demo->arena, &demo->light);
   tell_board_and_scene("demo", demo->shown);
   demo->tells_crc = !display().connected;
   if (!take_bands(demo)) {

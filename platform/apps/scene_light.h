@@ -4,12 +4,16 @@
 /// In a firmware image the set is a constant (`THIMBLE_IMAGE_EFFECTS`, which platform/firmware.cmake reads
 /// off the header that `thimble bake` made): the linker leaves out the rest, and with an empty set all of it.
 /// On a desktop the scene comes with the command line, so the set is looked up there, and the library's own
-/// renderers draw it. Both draw the same picture.
+/// renderers draw it. Both draw the same picture. Where the image's effects allow it and there is a brick map, frames
+/// are fast enough to move in (map_render.h).
 #ifndef THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
 #define THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
 
+#include "apps/shown_scene.h"
 #include "thimble/bake/baked_scene.h"
+#include "thimble/base/memory.h"
 #include "thimble/light/baked_lighting.h"
+#include "thimble/light/map_render.h"
 #include "thimble/light/render.h"
 
 namespace thimble::apps {
@@ -21,11 +25,19 @@ inline constexpr EffectSet kImageEffects = Effect::kAll;
 #endif
 /// Whether there is anything of light in this program.
 inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
+/// Whether its lit frames may go through the brick map.
+#ifdef THIMBLE_IMAGE_EFFECTS
+inline constexpr bool kLightsFast = is_flat(kImageEffects);
+#else
+inline constexpr bool kLightsFast = false;
+#endif
 
 #if !defined(THIMBLE_IMAGE_EFFECTS) || THIMBLE_IMAGE_EFFECTS != 0
 
 struct SceneLight {
   BakedLighting baked;
+  SunBricks suns[kLightsFast ? kMaxFlatSuns : 1];
+  bool is_fast = false;  ///< `draw_lit_scene` draws by the map
   /// The effects that are drawn; Effect::kNone: the scene was baked for none.
   EffectSet effects() const { return baked.effects; }
 };
@@ -57,9 +69,39 @@ struct SceneLight {
 #endif
 }
 
+/// Looks whether frames go through the map, and proves in bytes of the arena which bricks its lights reach freely, as
+/// far as these hold that: without it frames are slower, and the same.
+[[gnu::noinline]] inline void prove_light(const ShownScene& shown, Arena* arena, SceneLight* light) {
+  if constexpr (kLightsFast) {
+    const Span<const Light>& lights = light->baked.scene.lights;
+    light->is_fast = shown.has_map && light->effects() != Effect::kNone && lights.size <= kMaxFlatSuns;
+    for (size_t i = 0; i < lights.size && light->is_fast; ++i) {
+      light->is_fast = !lights[i].is_point;
+    }
+    for (size_t i = 0; i < lights.size && light->is_fast && (kImageEffects & Effect::kShadows) != 0; ++i) {
+      const Bytes room = arena->take(SunBricks::bytes(shown.map));
+      (void)SunBricks::make(shown.map, lights[i].place, room, &light->suns[i]);
+    }
+  }
+}
+
+/// As `draw_lit`, by the map where that is faster.
+[[gnu::noinline]] inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera,
+                                               const Shading& shading, const SceneLight& light,
+                                               const Band& band, LitCounts* counts = nullptr) {
+  if constexpr (kLightsFast) {
+    if (light.is_fast) {
+      return render_lit_band<kImageEffects>(shown.scene.tree(), shown.map, camera, shading, light.baked.scene,
+                                            {light.suns, kMaxFlatSuns}, band, counts);
+    }
+  }
+  return draw_lit(shown.scene, camera, shading, light, band, counts);
+}
+
 #else
 
 struct SceneLight {
+  static constexpr bool is_fast = false;
   static constexpr EffectSet effects() { return Effect::kNone; }
 };
 inline const char* open_light(const BakedScene& /*scene*/, SceneLight* /*light*/) {
@@ -69,6 +111,11 @@ inline const char* open_light(const BakedScene& /*scene*/, SceneLight* /*light*/
                                          const Shading& shading, const SceneLight& /*light*/,
                                          const Band& band, LitCounts* /*counts*/ = nullptr) {
   return render_band(scene.tree(), camera, shading, band);
+}
+inline void prove_light(const ShownScene& /*shown*/, Arena* /*arena*/, SceneLight* /*light*/) {}
+inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera, const Shading& shading,
+                             const SceneLight& light, const Band& band, LitCounts* /*counts*/ = nullptr) {
+  return draw_lit(shown.scene, camera, shading, light, band);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "../picture/band.h"
 #include "../picture/panels.h"
 #include "arithmetic.h"
+#include "exposure.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {
@@ -12,21 +13,6 @@ namespace {
 uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, int32_t x, int32_t y) {
   const uint32_t place = options.dither ? 2 * bayer_rank(x, y) + 1 : 64;  // of 128
   return (channel * levels + (128 - place) * kWhite / 128) / kWhite;
-}
-
-// What is brighter than white: half way between cutting channels off, which turns orange into yellow, and
-// keeping their ratio, which makes a lamp look like paint.
-void expose(const Color& color, uint32_t (*channel)[3]) {
-  uint32_t most = kWhite;
-  for (const uint32_t one : color.c) {
-    most = one > most ? one : most;
-  }
-  most = most < kMaxChannel ? most : kMaxChannel;
-  for (int i = 0; i < 3; ++i) {
-    const uint32_t one = color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel;
-    const uint32_t cut = one < kWhite ? one : kWhite;
-    (*channel)[i] = most == kWhite ? cut : (cut + one * kWhite / most) / 2;  // 16 bits by 14
-  }
 }
 
 // The channels in 8 bits, rounded to the nearest.

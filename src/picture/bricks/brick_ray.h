@@ -27,6 +27,8 @@ constexpr int32_t kMissed = -1;
 constexpr int32_t kAsk = -2;  // only closest_hit knows
 // No answer yet.
 constexpr int32_t kGoOn = 0;
+// A hit, where no ink was asked for.
+constexpr int32_t kShadowed = 1;
 
 // Divides for a core without a divider: dividend / divisor, both below 2^31. It starts from the last
 // quotient, from which that of a neighbouring ray is a step or two away. `most` times the divisor is below
@@ -61,7 +63,8 @@ constexpr bool kHasWideProducts = kMaxBrickDirectionBits > 12;
 // 2^15. Where products may have more than 31 bits, both rests are divided by 256 first: that is wrong by less
 // than 2^15, and where it leaves the sign open, the difference is below 2^24, so that its lower 32 bits are
 // all of it. (64-bit products take 1 per cent more on a Cortex-M3, and a call each on a Cortex-M0.)
-[[gnu::always_inline]] inline int32_t order_of(const Course& course, uint32_t rest_a, uint32_t d_b,
+template <class OneCourse>
+[[gnu::always_inline]] inline int32_t order_of(const OneCourse& course, uint32_t rest_a, uint32_t d_b,
                                                uint32_t rest_b, uint32_t d_a) {
   if (seldom(course.wide)) {
     const int32_t rough = static_cast<int32_t>((rest_a >> 8) * d_b - (rest_b >> 8) * d_a);
@@ -79,34 +82,56 @@ constexpr bool is_positive(uint32_t value) {
   return static_cast<int32_t>(value) > 0;
 }
 
+// Signs that are not known when this is compiled: those of the course.
+constexpr unsigned kAnySigns = 8;
+
 // A ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored. Everything is inlined into
-// `trace_one`, where the members become registers.
-template <int kC, unsigned kMirrored>
+// `trace_one`, where the members become registers. What is asked of a ray is the course's (sight.h has two more).
+template <int kC, unsigned kMirrored, class OneCourse = Course>
 class BrickRay {
  public:
-  [[gnu::always_inline]] BrickRay(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c)
+  [[gnu::always_inline]] BrickRay(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c)
       : course_(course), d_a_(d_a), d_b_(d_b), d_c_(d_c), den_(d_c << 8) {}
 
-  // Returns the ink of what the ray hits, kMissed or kAsk.
+  // Lets a ray begin in a voxel of brick `number` in the box, the first one in which it spends a length: `left`, `cell`
+  // and `place` are its own, the rests those of the plane of c before it.
+  [[gnu::always_inline]] void begin(uint32_t number, uint32_t left, int32_t cell, uint32_t place,
+                                    uint32_t rest_a, uint32_t rest_b) {
+    left_ = left;
+    cell_ = cell;
+    shift_ = place & 15U;
+    at_ = course_.bricks + 8 * number + (place >> 4 << 1);
+    rest_a_ = rest_a;
+    rest_b_ = rest_b;
+    axis_ = kC;
+  }
+
+  // Returns the ink of what the ray hits, kMissed or kAsk; without inks kShadowed in place of one. A ray of shadow is to
+  // be begun first.
   [[gnu::always_inline]] int32_t trace() {
-    const int32_t answer = start();
-    if (answer != kGoOn) {
-      return answer;
+    const int32_t started = start();
+    if (started != kGoOn) {
+      return started;
     }
     const uint32_t go_a = d_a_ << 8;
     const uint32_t go_b = d_b_ << 8;
 
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
+      goto entered;
+    }
   enter:  // a brick, by a plane of axis_
     if (seldom((left_ & kSpecial) != 0)) {
       if ((left_ & kLeft) != 0) {
         return kMissed;
       }
       if (!begin_brick()) {
-        return kAsk;
+        return OneCourse::kAim == Aim::kShadow ? kMissed : kAsk;
       }
       goto entered;
     }
-    at_ = brick_at(half_at(course_.directory, cell_));
+    if (!find_brick()) {
+      return kMissed;
+    }
   entered:
     if (solid()) {
       goto hit;
@@ -123,25 +148,12 @@ class BrickRay {
     if (!is_negative(rest_a_ & rest_b_)) {
       if (is_positive(rest_a_)) {
         if (is_positive(rest_b_)) {
-          THIMBLE_NOTE(Range::kBrickTime, Exact(rest_a_) * Exact(d_b_));
-          THIMBLE_NOTE(Range::kBrickTime, Exact(rest_b_) * Exact(d_a_));
-          if (kHasWideProducts) {
-            const int32_t order = order_of(course_, rest_a_, d_b_, rest_b_, d_a_);
-            if (order < 0) {
-              goto cross_b;
-            }
-            if (order == 0) {
-              goto tie;
-            }
-          } else {
-            const uint32_t time_a = rest_a_ * d_b_;
-            const uint32_t time_b = rest_b_ * d_a_;
-            if (time_a < time_b) {
-              goto cross_b;
-            }
-            if (time_a == time_b) {
-              goto tie;
-            }
+          const auto time = times();
+          if (time.a < time.b) {
+            goto cross_b;
+          }
+          if (time.a == time.b) {
+            goto tie;
           }
         }
         goto cross_a;
@@ -186,49 +198,100 @@ class BrickRay {
     }
     goto enter;
   hit:
-    return name_axis() ? ink() : kAsk;
+    if constexpr (OneCourse::kAim == Aim::kInk) {
+      return name_axis() ? ink() : kAsk;
+    } else {
+      return answer();
+    }
   }
 
  private:
+  template <class Time>
+  struct Times {
+    Time a;
+    Time b;
+  };
+
   static constexpr int kA = kOtherA<kC>;
   static constexpr int kB = kOtherB<kC>;
   static constexpr bool mirrored(int axis) { return (kMirrored >> axis & 1U) != 0; }
   static constexpr uint32_t flip(int axis) { return mirrored(axis) ? 3U : 0U; }
+  // The voxel of a brick, in place, behind which the next brick comes; and what a step adds.
+  template <int kAxis>
+  [[gnu::always_inline]] uint32_t last() const {
+    if constexpr (kMirrored == kAnySigns) {
+      return course_.last[kAxis];
+    } else {
+      return mirrored(kAxis) ? 0U : kField<kAxis>;
+    }
+  }
+  template <int kAxis>
+  [[gnu::always_inline]] int32_t one_step() const {
+    if constexpr (kMirrored == kAnySigns) {
+      return course_.one_step[kAxis];
+    } else {
+      constexpr int32_t kStep = (mirrored(kAxis) ? -1 : 1) * (1 << kPlaceShift[kAxis]);
+      return kStep;
+    }
+  }
+
+  // Where the last ray started, on a and b.
+  [[gnu::always_inline]] uint32_t* near_cell() const {
+    if constexpr (OneCourse::kAim == Aim::kInk) {
+      return course_.inks->near_cell;
+    } else {
+      return course_.near_cell;
+    }
+  }
+
+  // When the ray meets the next planes of a and b: to be compared, and nothing else.
+  [[gnu::always_inline]] auto times() const {
+    THIMBLE_NOTE(Range::kBrickTime, Exact(rest_a_) * Exact(d_b_));
+    THIMBLE_NOTE(Range::kBrickTime, Exact(rest_b_) * Exact(d_a_));
+    if constexpr (kHasWideProducts || OneCourse::kAim == Aim::kShadow) {
+      return Times<int32_t>{order_of(course_, rest_a_, d_b_, rest_b_, d_a_), 0};
+    } else {
+      return Times<uint32_t>{rest_a_ * d_b_, rest_b_ * d_a_};
+    }
+  }
 
   // What `quotient` may start from.
   [[gnu::always_inline]] uint32_t most_cells() const { return kHasWideProducts ? course_.most_cells : 1023; }
 
   // Finds the cell that the ray starts in.
   [[gnu::always_inline]] int32_t start() {
-    const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
-    const uint32_t at_b = static_cast<uint32_t>(course_.origin[kB]) * d_c_ + course_.plane * d_b_;
-    if (seldom(!kDivides && is_negative(at_a | at_b))) {
-      return kAsk;
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
+      return kGoOn;  // begin() did
+    } else {
+      const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
+      const uint32_t at_b = static_cast<uint32_t>(course_.origin[kB]) * d_c_ + course_.plane * d_b_;
+      if (seldom(!kDivides && is_negative(at_a | at_b))) {
+        return kAsk;
+      }
+      THIMBLE_NOTE(Range::kBrickPlace,
+                   Exact(course_.origin[kA]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_a_));
+      THIMBLE_NOTE(Range::kBrickPlace,
+                   Exact(course_.origin[kB]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_b_));
+      const uint32_t cell_a = kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), near_cell() + 0);
+      const uint32_t cell_b = kDivides ? at_b / den_ : quotient(at_b, den_, most_cells(), near_cell() + 1);
+      if (seldom((cell_a | cell_b) >= 1024)) {
+        return is_negative(at_a | at_b) ? kAsk : kMissed;
+      }
+      rest_a_ = at_a - (cell_a + 1) * den_;
+      rest_b_ = at_b - (cell_b + 1) * den_;
+      THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_a_)));
+      THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_b_)));
+      left_ = course_.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
+      cell_ = course_.start + static_cast<int32_t>(cell_a >> 2) * course_.stride[kA] +
+              static_cast<int32_t>(cell_b >> 2) * course_.stride[kB];
+      constexpr bool kAny = kMirrored == kAnySigns;
+      const uint32_t in_a = ((cell_a & 3U) ^ (kAny ? course_.flip[kA] : flip(kA))) << kPlaceShift[kA];
+      const uint32_t in_b = ((cell_b & 3U) ^ (kAny ? course_.flip[kB] : flip(kB))) << kPlaceShift[kB];
+      shift_ = in_a | (kB == 2 ? course_.first : in_b);
+      at_ = course_.bricks + (kB == 2 ? in_b : course_.first);
+      axis_ = kC;
+      return kGoOn;
     }
-    THIMBLE_NOTE(Range::kBrickPlace,
-                 Exact(course_.origin[kA]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_a_));
-    THIMBLE_NOTE(Range::kBrickPlace,
-                 Exact(course_.origin[kB]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_b_));
-    const uint32_t cell_a =
-        kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), &course_.inks->near_cell[0]);
-    const uint32_t cell_b =
-        kDivides ? at_b / den_ : quotient(at_b, den_, most_cells(), &course_.inks->near_cell[1]);
-    if (seldom((cell_a | cell_b) >= 1024)) {
-      return is_negative(at_a | at_b) ? kAsk : kMissed;
-    }
-    rest_a_ = at_a - (cell_a + 1) * den_;
-    rest_b_ = at_b - (cell_b + 1) * den_;
-    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_a_)));
-    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_b_)));
-    left_ = course_.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
-    cell_ = course_.start + static_cast<int32_t>(cell_a >> 2) * course_.stride[kA] +
-            static_cast<int32_t>(cell_b >> 2) * course_.stride[kB];
-    const uint32_t in_a = ((cell_a & 3U) ^ flip(kA)) << kPlaceShift[kA];
-    const uint32_t in_b = ((cell_b & 3U) ^ flip(kB)) << kPlaceShift[kB];
-    shift_ = in_a | (kB == 2 ? course_.first : in_b);
-    at_ = course_.bricks + (kB == 2 ? in_b : course_.first);
-    axis_ = kC;
-    return kGoOn;
   }
 
   // The halfword of brick `number` that lies where at_ lies in its brick.
@@ -237,35 +300,69 @@ class BrickRay {
   }
   [[gnu::always_inline]] bool solid() const { return (half_at(at_, 0) >> shift_ & 1U) != 0; }
 
+  // Finds the brick that the ray has come into. False when nothing solid is in it or behind, which is known for rays of
+  // shadow; where nothing is behind it, the next one is not entered (kInside).
+  [[gnu::always_inline]] bool find_brick() {
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
+      const uint32_t number = half_at(course_.directory, cell_);
+      if (course_.is_free(cell_)) {
+        if (number == 0) {
+          return false;
+        }
+        left_ |= kInside;
+      }
+      at_ = brick_at(number);
+    } else {
+      at_ = brick_at(half_at(course_.directory, cell_));
+    }
+    return true;
+  }
+
+  // Says of the voxel that is hit what was asked, where that is no ink.
+  [[gnu::always_inline]] int32_t answer() {
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
+      return kShadowed;
+    } else {
+      if (!name_axis()) {
+        return kAsk;
+      }
+      course_.landing = {static_cast<uint32_t>(at_ - course_.bricks) * 8 + shift_, left_, cell_, axis_};
+      return kShadowed;
+    }
+  }
+
   // Enters a brick where it is not as usual: the ray has left the box, or waits outside of it, or starts
   // here.
   [[gnu::always_inline]] bool begin_brick() {
-    if ((left_ & kInside) != 0) {
-      rest_a_ -= course_.behind * d_a_;
-      rest_b_ -= course_.behind * d_b_;
-    }
-    // 512 - bricks is the near side: below it the ray waits.
-    const Vec3i& side = course_.frame->side;
-    uint32_t number = 0;
-    if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
-                                    count_of(left_, kB) >= 512U - static_cast<uint32_t>(side[kB]))) {
-      left_ &= ~kWaiting;
-      number = half_at(course_.directory, cell_);
-    }
-    at_ = brick_at(number);
-    if ((left_ & kInside) != 0 && solid()) {
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
       return false;
+    } else {
+      if ((left_ & kInside) != 0) {
+        rest_a_ -= course_.behind * d_a_;
+        rest_b_ -= course_.behind * d_b_;
+      }
+      // 512 - bricks is the near side: below it the ray waits.
+      const Vec3i& side = course_.frame->side;
+      uint32_t number = 0;
+      if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
+                                      count_of(left_, kB) >= 512U - static_cast<uint32_t>(side[kB]))) {
+        left_ &= ~kWaiting;
+        number = half_at(course_.directory, cell_);
+      }
+      at_ = brick_at(number);
+      if ((left_ & kInside) != 0 && solid()) {
+        return false;
+      }
+      left_ &= ~kInside;
+      return true;
     }
-    left_ &= ~kInside;
-    return true;
   }
 
   // Goes to the next voxel on an axis; returns whether that is in the next brick.
   template <int kAxis>
   [[gnu::always_inline]] bool step() {
-    constexpr int32_t kStep = (mirrored(kAxis) ? -1 : 1) * (1 << kPlaceShift[kAxis]);
     const uint32_t own = kAxis == 2 ? row_of(at_) : shift_ & kField<kAxis>;
-    if (own == (mirrored(kAxis) ? 0U : kField<kAxis>)) {
+    if (own == last<kAxis>()) {
       if (kAxis == 2) {
         at_ += 6 - 2 * static_cast<int32_t>(own);
       } else {
@@ -276,9 +373,9 @@ class BrickRay {
       return true;
     }
     if (kAxis == 2) {
-      at_ += kStep;
+      at_ += one_step<kAxis>();
     } else {
-      shift_ += static_cast<uint32_t>(kStep);
+      shift_ += static_cast<uint32_t>(one_step<kAxis>());
     }
     return false;
   }
@@ -286,6 +383,9 @@ class BrickRay {
   // Crosses planes that the ray reaches at the same time: it spends none between them. False when closest_hit
   // must say what it hits.
   [[gnu::always_inline]] bool cross_together() {
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
+      left_ &= ~kInside;  // it may stay in its brick, and that is looked at anew
+    }
     if (rest_a_ == 0 || rest_b_ == 0) {  // with the plane of c
       if (rest_a_ == 0) {
         rest_a_ -= den_;
@@ -304,7 +404,11 @@ class BrickRay {
     step<kA>();
     step<kB>();
     axis_ = kA;
-    return course_.exact_ties;
+    if constexpr (OneCourse::kAim == Aim::kShadow) {
+      return true;  // a hit is one, whatever it hits
+    } else {
+      return course_.exact_ties;
+    }
   }
 
   // Names the face of the hit: a voxel entered by a plane of c may be entered by others at the same t, and
@@ -339,7 +443,7 @@ class BrickRay {
     return depth_ink(course_, axis_, left_, voxel, axis_ == kA ? d_a_ : axis_ == kB ? d_b_ : d_c_);
   }
 
-  const Course& course_;
+  const OneCourse& course_;
   const uint32_t d_a_;
   const uint32_t d_b_;
   const uint32_t d_c_;
@@ -359,7 +463,7 @@ template <int kC, unsigned kMirrored>
 }
 
 // Traces one ray through the tree: what the bricks leave open.
-int32_t ask(const BrickFrame& frame, int32_t x, int32_t y, RenderCounts* counts) {
+[[maybe_unused]] int32_t ask(const BrickFrame& frame, int32_t x, int32_t y, RenderCounts* counts) {
   const Ray ray = frame.camera.ray(x, y);
   Hit hit;
   if (closest_hit_32(frame.tree, ray, &hit) != Status::kOk) {

@@ -15,6 +15,9 @@ namespace {
 
 struct Inks;
 
+// What a ray is asked: the ink of what it hits, the hit, or whether there is one.
+enum class Aim : uint8_t { kInk, kSight, kShadow };
+
 // What all pixels of a band share.
 struct BrickFrame {
   const CompactTree& tree;
@@ -37,6 +40,7 @@ struct BrickFrame {
 // What all rays share whose directions have the same signs and the same fastest axis. Where they start
 // changes from tile to tile.
 struct Course {
+  static constexpr Aim kAim = Aim::kInk;
   const BrickFrame* frame;
   Inks* inks;
   int32_t origin[3];  // mirrored; on a and b kOutsideQ8 beyond

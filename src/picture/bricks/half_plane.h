@@ -11,13 +11,12 @@
 #include "../../base/ranges.h"
 #include "layout.h"
 #include "thimble/picture/camera.h"
+#include "tile.h"
 
 namespace thimble::bricks {
 namespace {
 
-// Tiles are so large; bit x + 16 y of 128 is a pixel.
-constexpr int32_t kTileAcrossPx = 16;
-constexpr int32_t kTileDownPx = 8;
+// Bit x + 16 y of 128 is a pixel.
 constexpr int kTileWords = kTileAcrossPx * kTileDownPx / 32;
 
 // The pixels of a tile.

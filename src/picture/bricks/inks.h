@@ -73,7 +73,7 @@ uint32_t ink_of(PixelFormat format, Rgb8 color) {
 }
 
 // Stores an ink as `store_pixel` stores its colour.
-void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t ink) {
+[[maybe_unused]] void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t ink) {
   const uint8_t low = static_cast<uint8_t>(ink);
   switch (format) {
     case PixelFormat::kGray4:
@@ -130,8 +130,8 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
 
 // Shades by distance: `voxel` of the brick that `left` counts, entered on `axis`, along which the ray's
 // direction has this component.
-[[gnu::noinline]] int32_t depth_ink(const Course& course, int axis, uint32_t left, uint32_t voxel,
-                                    uint32_t direction) {
+[[gnu::noinline, maybe_unused]] int32_t depth_ink(const Course& course, int axis, uint32_t left,
+                                                  uint32_t voxel, uint32_t direction) {
   const int32_t bricks = static_cast<int32_t>(count_of(left, axis)) - (512 - course.frame->side[axis]);
   const uint32_t place = voxel >> 2 * axis & 3U;
   const int32_t origin = course.origin[axis] - (axis == course.c ? 0 : kOutsideQ8);
@@ -155,7 +155,7 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
 
 // Finds the ink of a face that is not among those seen lately, and keeps it: of `voxel` (64 times the brick's
 // number and the voxel's bit), entered on `axis`.
-[[gnu::noinline]] int32_t look_up(const Course& course, uint32_t voxel, int axis) {
+[[gnu::noinline, maybe_unused]] int32_t look_up(const Course& course, uint32_t voxel, int axis) {
   const BrickFrame& frame = *course.frame;
   const uint8_t material = frame.map.material(frame.tree, voxel >> 6, voxel & 63U);
   const uint32_t face = course.face[axis];

@@ -7,26 +7,12 @@
 #include "brick_ray.h"
 #include "sweep.h"
 #include "thimble/picture/brick_render.h"
+#include "tile.h"
 
 namespace thimble::bricks {
 namespace {
 
-// A rectangle of the picture that lies in one tile.
-struct Tile {
-  int32_t x0;
-  int32_t x1;
-  int32_t y0;
-  int32_t y1;
-};
-
-// Up to these bits the product of a rest and a direction has at most 31: 8 + 11 + 11 is below.
-constexpr int kNarrowDirectionBits = 11;
-
 static_assert(kTileDownPx == kBrickTilePx);
-// Quads are the smallest tiles.
-constexpr int32_t kQuadAcrossPx = 4;
-constexpr int32_t kQuadDownPx = 4;
-constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;
 
 int32_t trace_along(const Course& course, const Vec3i& d) {
   const auto size = [](int32_t value) { return static_cast<uint32_t>(value < 0 ? -value : value); };
@@ -36,10 +22,6 @@ int32_t trace_along(const Course& course, const Vec3i& d) {
   return course.c == 0   ? trace_by_signs<0>(course, y, z, x)
          : course.c == 1 ? trace_by_signs<1>(course, x, z, y)
                          : trace_by_signs<2>(course, x, y, z);
-}
-
-unsigned signs_of(const Vec3i& d) {
-  return (d.x < 0 ? 1U : 0U) | (d.y < 0 ? 2U : 0U) | (d.z < 0 ? 4U : 0U);
 }
 
 // Traces a quad with rays of one course. The mirrored affine function `from` (and a half) is positive all

@@ -1,0 +1,26 @@
+// From a colour of any brightness to one that a display has. Internal to src/.
+#ifndef THIMBLE_SRC_LIGHT_EXPOSURE_H
+#define THIMBLE_SRC_LIGHT_EXPOSURE_H
+
+#include "thimble/light/detail/pixel.h"
+
+namespace thimble::lit {
+
+// What is brighter than white: half way between cutting channels off, which turns orange into yellow, and
+// keeping their ratio, which makes a lamp look like paint.
+inline void expose(const Color& color, uint32_t (*channel)[3]) {
+  uint32_t most = kWhite;
+  for (const uint32_t one : color.c) {
+    most = one > most ? one : most;
+  }
+  most = most < kMaxChannel ? most : kMaxChannel;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t one = color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel;
+    const uint32_t cut = one < kWhite ? one : kWhite;
+    (*channel)[i] = most == kWhite ? cut : (cut + one * kWhite / most) / 2;  // 16 bits by 14
+  }
+}
+
+}  // namespace thimble::lit
+
+#endif

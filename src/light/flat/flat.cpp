@@ -1,0 +1,402 @@
+// Lit frames by bricks, where the light of a pixel is that of the face and of the distant lights that reach it: rays
+// of the camera and to the lights through the map, colours looked up. ../README.md derives what is used.
+#include "../../picture/panels.h"
+#include "../arithmetic.h"
+#include "../exposure.h"
+#include "thimble/light/map_render.h"
+
+// As in brick_render.cpp.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O2", "rename-registers")
+#endif
+
+#include "../../picture/bricks/sight.h"
+
+namespace thimble::lit {
+namespace {
+
+using namespace bricks;
+
+// How a format's pixels are made of a colour.
+enum class Storing : uint8_t { kGrays, kHalfwords, kAny };
+
+Storing storing_of(PixelFormat format) {
+  if (format == PixelFormat::kMono1 || format == PixelFormat::kGray4) {
+    return Storing::kGrays;
+  }
+  return format == PixelFormat::kRgb565 ||
+                 (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
+                 (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)
+             ? Storing::kHalfwords
+             : Storing::kAny;
+}
+
+// What is added to a channel's rest, before it is held against kWhite, by a pixel's place in the dither.
+struct Thresholds {
+  uint16_t at[64];
+};
+constexpr Thresholds thresholds() {
+  Thresholds result{};
+  for (int32_t i = 0; i < 64; ++i) {
+    result.at[i] = static_cast<uint16_t>((128 - (2 * bayer_rank(i & 7, i >> 3) + 1)) * kWhite / 128);
+  }
+  return result;
+}
+constexpr Thresholds kDither = thresholds();
+constexpr uint32_t kNoDither = 64 * kWhite / 128;
+
+// A colour as it is stored: the step below, and what is left of each channel, of kWhite. For formats without steps
+// the colour itself.
+struct FlatInk {
+  uint32_t low;
+  uint16_t rest[3];
+  uint16_t key;
+};
+
+constexpr uint32_t kInks = 32;
+constexpr uint32_t kFaces = 64;
+constexpr uint16_t kNoKey = UINT16_MAX;
+constexpr uint32_t kNoFace = UINT32_MAX;
+
+constexpr int kAskedWords = kTileAcrossPx * kTileDownPx / 32;
+static_assert(kAskedWords == 4);
+
+uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
+  return band.pixels.data + stride * row_place(band.format, y - band.first_row);
+}
+
+// How far a band is drawn: the tile that is next, and the pixels of the one before it that only the tree knows.
+struct FlatProgress {
+  int32_t x;
+  int32_t y;
+  uint32_t asked[kAskedWords];
+};
+
+// What is drawn with; a Sink of SightPainter.
+template <EffectSet kSet>
+class FlatSink {
+ public:
+  FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride)
+      : frame_(frame), map_(map), band_(band), stride_(stride), storing_(storing_of(band.format)) {
+    for (FlatInk& ink : inks_) {
+      ink.key = kNoKey;
+    }
+    for (uint32_t& seen : seen_) {
+      seen = kNoFace;
+    }
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      make_ink(background(frame), &sky_);
+    }
+  }
+
+  void set_lights(Span<const SunBricks> suns) {
+    Spot spot;
+    for (unsigned face = 0; face < 6; ++face) {
+      lights_of_[face] = 0;
+      spot.face = {static_cast<int>(face >> 1), (face & 1U) == 0};
+      for (size_t i = 0; i < frame_.scene.lights.size; ++i) {
+        const Light& light = frame_.scene.lights[i];
+        LightRay ray;
+        if (light_ray(light, spot, &ray)) {
+          lights_of_[face] = static_cast<uint8_t>(lights_of_[face] | 1U << i);
+          if constexpr (kHasShadows) {
+            const bool known = i < suns.size && suns[i].belongs_to(map_, light.place);
+            suns_[i].set(map_, ray.ray.direction, known ? suns[i].bits() : nullptr);
+          }
+        }
+      }
+    }
+  }
+
+  void hit(int32_t x, int32_t y, const SightCourse& course, const Vec3<uint32_t>& d) {
+    const unsigned face = course.face[course.landing.axis];
+    unsigned lights = lights_of_[face];
+    if constexpr (kHasShadows) {
+      if (lights != 0) {
+        FacePoint point;
+        find_point(course, d, &point);
+        for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+          if ((lights >> i & 1U) != 0) {
+            ++shadow_rays_;
+            if (is_shadowed(suns_[i], point)) {
+              lights &= ~(1U << i);
+              ++shadows_;
+            }
+          }
+        }
+      }
+    }
+    ++hits_;
+    store(x, y, ink_of_face(material_of(course.landing.voxel, face), face, lights));
+  }
+
+  void miss(int32_t x, int32_t y) {
+    ++misses_;
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      store(x, y, sky_);
+    } else {
+      lit::store(frame_, band_, line_of(y), x, y, sky_color(frame_, frame_.camera.ray(x, y).direction));
+    }
+  }
+
+  void ask(int32_t x, int32_t y) {
+    const auto pixel = static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
+    asked_[pixel >> 5] |= 1U << (pixel & 31U);
+  }
+
+  // Hands over the pixels of a tile that only the tree knows; whether there are any.
+  bool take_asked(uint32_t (*asked)[kAskedWords]) {
+    uint32_t any = 0;
+    for (int i = 0; i < kAskedWords; ++i) {
+      (*asked)[i] = asked_[i];
+      any |= asked_[i];
+      asked_[i] = 0;
+    }
+    return any != 0;
+  }
+
+  void count(LitCounts* counts) const {
+    constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
+    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+    counts->rays[kPrimary] += hits_ + misses_;
+    counts->hits[kPrimary] += hits_;
+    counts->rays[kShadow] += shadow_rays_;
+    counts->hits[kShadow] += shadows_;
+  }
+  uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
+
+ private:
+  static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
+
+  // 25 bits of a face's key: its place in the table and the upper 19 of them, beside the material.
+  [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
+    const uint32_t key = voxel << 3 | face;
+    uint32_t& seen = seen_[(key ^ key >> 6) % kFaces];
+    if (seen >> 8 != key >> 6) {
+      seen = key >> 6 << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
+    }
+    return static_cast<uint8_t>(seen);
+  }
+
+  [[gnu::always_inline]] const FlatInk& ink_of_face(uint8_t material, unsigned face, unsigned lights) {
+    const uint32_t key = uint32_t{material} << 5 | face << 2 | lights;
+    FlatInk& ink = inks_[(key ^ key >> 5) % kInks];
+    if (seldom(ink.key != key)) {
+      look_up(material, face, lights, &ink);
+      ink.key = static_cast<uint16_t>(key);
+    }
+    return ink;
+  }
+  [[gnu::noinline]] void look_up(uint8_t material, unsigned face, unsigned lights, FlatInk* ink) {
+    make_ink(face_color(material, face, lights), ink);
+  }
+
+  // What a face of a material shows in these of the lights.
+  Color face_color(uint8_t material, unsigned face, unsigned lights) const {
+    Spot spot;
+    spot.face = {static_cast<int>(face >> 1), (face & 1U) == 0};
+    spot.surface = surface_of(frame_, material);
+    Color light;
+    ambient_light(frame_, spot, &light);
+    for (size_t i = 0; i < frame_.scene.lights.size; ++i) {
+      LightRay ray;
+      if ((lights >> i & 1U) != 0 && light_ray(frame_.scene.lights[i], spot, &ray)) {
+        add_light(ray, &light);
+      }
+    }
+    Color color = lit_color(spot, light);
+    if constexpr ((kSet & Effect::kEmission) != 0) {
+      add_emission(spot, &color);
+    }
+    return color;
+  }
+
+  [[gnu::noinline]] void make_ink(const Color& color, FlatInk* ink) const {
+    if (storing_ == Storing::kAny) {
+      for (int i = 0; i < 3; ++i) {
+        ink->rest[i] = static_cast<uint16_t>(color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel);
+      }
+      return;
+    }
+    uint32_t channel[3];
+    expose(color, &channel);
+    if (storing_ == Storing::kGrays) {
+      channel[0] = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
+    }
+    ink->low = 0;
+    for (int i = 0; i < (storing_ == Storing::kGrays ? 1 : 3); ++i) {
+      const uint32_t levels = storing_ == Storing::kHalfwords       ? (i == 1 ? 63 : 31)
+                              : band_.format == PixelFormat::kGray4 ? 15
+                                                                    : 1;
+      const uint32_t value = channel[i] * levels;
+      ink->low |= value / kWhite << 8 * i;
+      ink->rest[i] = static_cast<uint16_t>(value % kWhite);
+    }
+  }
+
+  [[gnu::always_inline]] void store(int32_t x, int32_t y, const FlatInk& ink) {
+    uint8_t* line = line_of(y);
+    if (storing_ == Storing::kAny) {
+      store_color(line, x, y, ink);
+      return;
+    }
+    const uint32_t limit = kWhite - (frame_.options.dither ? kDither.at[(y & 7) << 3 | (x & 7)] : kNoDither);
+    if (storing_ == Storing::kGrays) {
+      const uint32_t step = ink.low + (ink.rest[0] >= limit ? 1U : 0U);
+      if (band_.format == PixelFormat::kGray4) {
+        line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | step << ((x & 1) != 0 ? 0 : 4));
+      } else {
+        line[x >> 3] = static_cast<uint8_t>(line[x >> 3] | step << (7 - (x & 7)));
+      }
+      return;
+    }
+    const uint32_t red = (ink.low & 31U) + (ink.rest[0] >= limit ? 1U : 0U);
+    const uint32_t green = (ink.low >> 8 & 63U) + (ink.rest[1] >= limit ? 1U : 0U);
+    const uint32_t blue = (ink.low >> 16) + (ink.rest[2] >= limit ? 1U : 0U);
+    store_pixel(
+        line, x, y, band_.format,
+        {static_cast<uint8_t>(red << 3), static_cast<uint8_t>(green << 2), static_cast<uint8_t>(blue << 3)});
+  }
+  [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, const FlatInk& ink) const {
+    lit::store(frame_, band_, line, x, y, Color{{ink.rest[0], ink.rest[1], ink.rest[2]}});
+  }
+
+  const Frame& frame_;
+  const BrickMap& map_;
+  const Band& band_;
+  size_t stride_;
+  Storing storing_;
+  uint8_t lights_of_[6];
+  uint32_t hits_ = 0;
+  uint32_t misses_ = 0;
+  uint32_t shadow_rays_ = 0;
+  uint32_t shadows_ = 0;
+  uint32_t asked_[kAskedWords] = {};
+  FlatInk sky_;
+  FlatInk inks_[kInks];
+  uint32_t seen_[kFaces];  // material, from bit 8 on the face; kFaces is 2^6
+  ShadowCourse suns_[kHasShadows ? kMaxFlatSuns : 1];
+};
+
+bool shares_bytes(PixelFormat format) {
+  return format == PixelFormat::kMono1 || format == PixelFormat::kGray4 || format > PixelFormat::kRgb888;
+}
+
+// Draws tiles up to one with pixels that only the tree knows. Not inlined: what it keeps is gone from the stack when
+// the tree is asked.
+template <EffectSet kSet>
+[[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                                  const Band& band, size_t stride, FlatProgress* progress,
+                                  LitCounts* counts) {
+  FlatSink<kSet> sink(frame, map, band, stride);
+  sink.set_lights(suns);
+  const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
+  SightPainter<FlatSink<kSet>> painter(sights, sink);
+  const int32_t width = frame.camera.width_px();
+  const int32_t end = band.first_row + band.rows;
+  for (bool open = false; progress->y < end && !open;) {
+    const int32_t x = progress->x;
+    const int32_t y = progress->y;
+    const int32_t tile_end = (y / kTileDownPx + 1) * kTileDownPx;
+    const bool last = x + kTileAcrossPx >= width;
+    painter.draw_tile({x, last ? width : x + kTileAcrossPx, y, tile_end < end ? tile_end : end});
+    progress->x = last ? 0 : x + kTileAcrossPx;
+    progress->y = last ? tile_end : y;
+    open = sink.take_asked(&progress->asked);
+  }
+  if (counts != nullptr) {
+    sink.count(counts);
+  }
+}
+
+// Draws what was asked, of the tile at (x, y).
+template <EffectSet kSet>
+[[gnu::noinline]] void draw_asked(const Frame& of, const Band& band, size_t stride, int32_t x, int32_t y,
+                                  const FlatProgress& progress, LitCounts* counts) {
+  Frame frame = of;
+  for (int32_t pixel = 0; pixel < kTileAcrossPx * kTileDownPx; ++pixel) {
+    if ((progress.asked[pixel >> 5] >> (pixel & 31) & 1U) != 0) {
+      const int32_t px = x + pixel % kTileAcrossPx;
+      const int32_t py = y - y % kTileDownPx + pixel / kTileAcrossPx;
+      store(frame, band, line_of(band, stride, py), px, py,
+            lit::pixel<kSet>(frame, frame.camera.ray(px, py)));
+    }
+  }
+  if (counts != nullptr) {
+    add_counts(frame.counts, counts);
+  }
+}
+
+template <EffectSet kSet>
+Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                  LitCounts* counts) {
+  size_t stride = 0;
+  const Status status = check_frame(frame, band, &stride);
+  if (status != Status::kOk) {
+    return status;
+  }
+  const int32_t end = band.first_row + band.rows;
+  for (int32_t y = band.first_row; y < end && shares_bytes(band.format); ++y) {
+    if (begins_bytes(band.format, y - band.first_row)) {
+      clear_row(frame, band, line_of(band, stride, y));
+    }
+  }
+  FlatProgress progress{0, band.first_row, {}};
+  while (progress.y < end) {
+    draw_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+    if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
+      continue;
+    }
+    const int32_t width = frame.camera.width_px();
+    const bool first = progress.x == 0;
+    draw_asked<kSet>(frame, band, stride,
+                     first ? (width - 1) / kTileAcrossPx * kTileAcrossPx : progress.x - kTileAcrossPx,
+                     first ? progress.y - 1 : progress.y, progress, counts);
+  }
+  return Status::kOk;
+}
+
+}  // namespace
+
+bool draws_flat(const Frame& frame, const BrickMap& map) {
+  if (frame.options.max_visits != UINT32_MAX || !draws_fast(map, frame.camera)) {
+    return false;
+  }
+  if (frame.scene.lights.size > kMaxFlatSuns) {
+    return false;
+  }
+  for (const Light& light : frame.scene.lights) {
+    if (light.is_point) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <>
+Status draw_flat<0x001>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts) {
+  return draw_faces<0x001>(frame, map, suns, band, counts);
+}
+template <>
+Status draw_flat<0x003>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts) {
+  return draw_faces<0x003>(frame, map, suns, band, counts);
+}
+template <>
+Status draw_flat<0x00B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts) {
+  return draw_faces<0x00B>(frame, map, suns, band, counts);
+}
+template <>
+Status draw_flat<0x203>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts) {
+  return draw_faces<0x203>(frame, map, suns, band, counts);
+}
+template <>
+Status draw_flat<0x20B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts) {
+  return draw_faces<0x20B>(frame, map, suns, band, counts);
+}
+
+}  // namespace thimble::lit

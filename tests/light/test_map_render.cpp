@@ -1,0 +1,321 @@
+// Lit frames by the brick map are those of the tree, byte for byte, and count the same rays. THIMBLE_LONG draws 30
+// million pixels; THIMBLE_SEED begins elsewhere.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <iterator>
+#include <random>
+#include <vector>
+
+#include "support/chip_worlds.h"
+#include "support/ray_cases.h"
+#include "thimble/light/map_render.h"
+#include "thimble/tree/octree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+std::uint64_t lit_pixels_to_draw() {
+  if (std::getenv("THIMBLE_LONG") != nullptr) {
+    return 30'000'000;
+  }
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+  return 60'000;
+#else
+  return 1'000'000;
+#endif
+}
+
+struct LitView {
+  const ChipScene& scene;
+  const Camera& camera;
+  const Shading& shading;
+  const LitScene& light;
+  const LitOptions& options;
+};
+
+struct LitWay {
+  EffectSet effects;
+  Status (*by_tree)(const LitView& view, const Band& band, LitCounts* counts);
+  Status (*by_map)(const LitView& view, Span<const SunBricks> suns, const Band& band, LitCounts* counts);
+};
+
+template <EffectSet kSet>
+Status lit_by_tree(const LitView& view, const Band& band, LitCounts* counts) {
+  return render_lit_band<kSet>(view.scene.tree, view.camera, view.shading, view.light, band, counts,
+                               view.options);
+}
+template <EffectSet kSet>
+Status lit_by_map(const LitView& view, Span<const SunBricks> suns, const Band& band, LitCounts* counts) {
+  return render_lit_band<kSet>(view.scene.tree, view.scene.map, view.camera, view.shading, view.light, suns,
+                               band, counts, view.options);
+}
+template <EffectSet kSet>
+constexpr LitWay lit_way() {
+  return {kSet, lit_by_tree<kSet>, lit_by_map<kSet>};
+}
+
+constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+constexpr LitWay kLitWays[] = {
+    lit_way<kSun>(),
+    lit_way<kSun | Effect::kEmission | Effect::kSky>(),
+    lit_way<kSun>(),
+    lit_way<kSun | Effect::kEmitterLight>(),
+    lit_way<Effect::kDirectLight>(),
+    lit_way<Effect::kEmission>(),
+    lit_way<Effect::kNone>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kMirror | Effect::kFog>(),
+};
+
+/// Along axes and diagonals, flat, from below, of few bits and of many.
+Light hard_sun(std::mt19937_64& random) {
+  Light light;
+  light.is_point = pick_int(random, 0, 15) == 0;
+  const int size = light.is_point                ? 64 * 256
+                   : pick_int(random, 0, 2) == 0 ? 1
+                   : pick_int(random, 0, 1) == 0 ? 20
+                                                 : 16384;
+  Vec3i place{};
+  while (place == Vec3i{}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = pick_int(random, -size, size);
+    }
+  }
+  light.place = place;
+  for (PackedU16& channel : light.color_q8) {
+    channel = static_cast<std::uint16_t>(pick_int(random, 0, 3) == 0 ? 0 : pick_int(random, 1, 700));
+  }
+  return light;
+}
+
+struct LitLights {
+  std::vector<Light> lights;
+  std::vector<std::uint8_t> bytes;
+  std::vector<SunBricks> free;
+};
+
+/// Lights with what is proven of them: all, a part, that of another light, nothing.
+LitLights hard_lights(std::mt19937_64& random, const BrickMap& map) {
+  LitLights made;
+  const int count = pick_int(random, 0, 3) == 0 ? pick_int(random, 0, 3) : 1;
+  const std::size_t size = SunBricks::bytes(map);
+  made.bytes.resize(size * static_cast<std::size_t>(count));
+  const int proven = pick_int(random, 0, 4);
+  for (int i = 0; i < count; ++i) {
+    made.lights.push_back(hard_sun(random));
+    const Vec3i towards = made.lights.back().place;
+    const Bytes room(made.bytes.data() + size * static_cast<std::size_t>(i), size);
+    SunBricks sun;
+    if (proven == 1) {
+      REQUIRE(SunBricks::begin(map, towards, room, &sun) == Status::kOk);
+      sun.prove(static_cast<std::uint32_t>(pick_int(random, 0, 400)));
+    } else if (proven == 2) {
+      REQUIRE(SunBricks::make(map, {towards.x, towards.y, towards.z + 1000}, room, &sun) == Status::kOk);
+    } else if (proven != 0) {
+      REQUIRE(SunBricks::make(map, towards, room, &sun) == Status::kOk);
+    }
+    made.free.push_back(sun);
+  }
+  return made;
+}
+
+std::vector<Surface> hard_surfaces(std::mt19937_64& random) {
+  std::vector<Surface> surfaces(static_cast<std::size_t>(pick_int(random, 0, 10)));
+  for (Surface& surface : surfaces) {
+    surface.albedo = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
+                      static_cast<std::uint8_t>(random())};
+    surface.kind = static_cast<SurfaceKind>(pick_int(random, 0, 4));
+    surface.emission_q8 = static_cast<std::uint16_t>(pick_int(random, 0, 2000));
+  }
+  return surfaces;
+}
+
+template <class Draw>
+std::vector<std::uint8_t> lit_bytes(const Camera& camera, PixelFormat format, std::size_t stride, int rows,
+                                    const Draw& draw) {
+  const int height = camera.height_px();
+  std::vector<std::uint8_t> bytes(stride * static_cast<std::size_t>(height), 0x5A);
+  for (int y = 0; y < height; y += rows) {
+    const int count = std::min(rows, height - y);
+    const Band band{
+        {bytes.data() + stride * static_cast<std::size_t>(y), stride * static_cast<std::size_t>(count)},
+        format,
+        stride,
+        y,
+        count};
+    REQUIRE(draw(band) == Status::kOk);
+  }
+  return bytes;
+}
+
+TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and rays of the tree's") {
+  const char* text = std::getenv("THIMBLE_SEED");
+  std::mt19937_64 random(text != nullptr ? std::strtoull(text, nullptr, 10) : 20260501);
+  const std::uint64_t wanted_pixels = lit_pixels_to_draw();
+  std::uint64_t pixels = 0;
+  std::uint64_t fast = 0;
+  std::uint64_t shadows = 0;
+  std::uint64_t sunny = 0;
+  for (unsigned turn = 0; pixels < wanted_pixels; ++turn) {
+    const std::uint64_t seed = random();
+    CAPTURE(seed);
+    std::mt19937_64 own(seed);
+    const int level = pick_int(own, 3, 6);
+    const ChipScene scene = make_chip_scene(own, kChipWorlds[turn % 6], level);
+    const std::vector<Surface> surfaces = hard_surfaces(own);
+    for (int view = 0; view < 6; ++view) {
+      CAPTURE(view);
+      const LitLights lights = hard_lights(own, scene.map);
+      const Camera camera = hard_chip_camera(own, level);
+      const LitWay& way = kLitWays[static_cast<std::size_t>(pick_int(own, 0, std::size(kLitWays) - 1))];
+      Shading shading;
+      shading.background = {9, 200, 77};
+      LitScene light;
+      light.surfaces = {surfaces.data(), surfaces.size()};
+      light.lights = {lights.lights.data(), lights.lights.size()};
+      light.occlusion.rays = 4;
+      light.fog.density_q16 = 300;
+      LitOptions options;
+      options.dither = pick_int(own, 0, 3) != 0;
+      options.max_visits = pick_int(own, 0, 9) == 0 ? 20 : UINT32_MAX;
+      const LitView lit{scene, camera, shading, light, options};
+      const PixelFormat format = static_cast<PixelFormat>(pick_int(own, 0, 4));
+      const std::size_t stride =
+          row_bytes(format, camera.width_px()) + static_cast<std::size_t>(pick_int(own, 0, 3));
+      LitCounts counts;
+      LitCounts counts_wanted;
+      const auto wanted = lit_bytes(camera, format, stride, camera.height_px(),
+                                    [&](const Band& band) { return way.by_tree(lit, band, &counts_wanted); });
+      const int rows = pick_int(own, 0, 1) == 0 ? camera.height_px() : pick_int(own, 1, 20);
+      const auto got = lit_bytes(camera, format, stride, rows, [&](const Band& band) {
+        return way.by_map(lit, {lights.free.data(), lights.free.size()}, band, &counts);
+      });
+      CAPTURE(way.effects);
+      REQUIRE(got == wanted);  // the gaps between rows too
+      for (int kind = 0; kind < kLitRayKinds; ++kind) {
+        CAPTURE(kind);
+        REQUIRE(counts.rays[kind] == counts_wanted.rays[kind]);
+        REQUIRE(counts.hits[kind] == counts_wanted.hits[kind]);
+      }
+      constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+      const auto area =
+          static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
+      pixels += area;
+      // What went by the map read no node for most rays.
+      fast += counts.node_visits[kShadow] < counts_wanted.node_visits[kShadow] / 4 ? area : 0;
+      shadows += counts.hits[kShadow];
+      sunny += counts.rays[kShadow] - counts.hits[kShadow];
+    }
+  }
+  CHECK(fast > wanted_pixels / 12);
+  CHECK(shadows > wanted_pixels / 20);
+  CHECK(sunny > wanted_pixels / 40);
+}
+
+TEST_CASE(
+    "a ray to the sun through lattice points, in a brick with nothing behind it -> still meets what is in "
+    "it") {
+  // The middle row's rays run at z = 8 exactly and end on a face of the first voxel; from there the sun's go through
+  // edges only, to the second one in the same brick.
+  std::vector<std::uint8_t> pool_bytes(Octree::octree_bytes(1000));
+  Octree pool;
+  REQUIRE(Octree::make(4, {pool_bytes.data(), pool_bytes.size()}, &pool) == Status::kOk);
+  REQUIRE(pool.insert({8, 9, 8}, 1) == Status::kOk);
+  REQUIRE(pool.insert({11, 9, 10}, 2) == Status::kOk);
+  ChipScene scene{compact_of(pool), {}, {}, {}};
+  scene.tree = open_or_throw(scene.tree_bytes);
+  scene.map_words.resize(most_brick_map_bytes(4) / 8 + 1);
+  REQUIRE(BrickMap::make(scene.tree,
+                         {static_cast<std::uint8_t*>(static_cast<void*>(scene.map_words.data())),
+                          8 * scene.map_words.size()},
+                         &scene.map) == Status::kOk);
+  Light light;
+  light.place = Vec3i{1, 0, 1};
+  std::vector<std::uint8_t> room(SunBricks::bytes(scene.map));
+  SunBricks sun;
+  REQUIRE(SunBricks::make(scene.map, light.place, {room.data(), room.size()}, &sun) == Status::kOk);
+  Camera camera;
+  const Vec3Q8 eye{Q8::from_raw(15 * 256), Q8::from_raw(9 * 256 + 100), Q8::from_raw(8 * 256)};
+  REQUIRE(camera.set(PerspectiveView{eye, {-1, 0, 0}, {}, Q16::saturate(20), 33, 17, 0}, 4) == Status::kOk);
+  LitScene lit;
+  lit.lights = {&light, 1};
+  const Shading shading;
+  const LitOptions options;
+  const LitView view{scene, camera, shading, lit, options};
+  LitCounts counts;
+  const auto wanted = lit_bytes(camera, PixelFormat::kRgb888, 3 * 33, 17,
+                                [&](const Band& band) { return lit_by_tree<kSun>(view, band, nullptr); });
+  const auto got = lit_bytes(camera, PixelFormat::kRgb888, 3 * 33, 17, [&](const Band& band) {
+    return lit_by_map<kSun>(view, {&sun, 1}, band, &counts);
+  });
+  CHECK(got == wanted);
+  CHECK(counts.hits[static_cast<int>(LitRayKind::kShadow)] > 0);
+  CHECK(counts.node_visits[static_cast<int>(LitRayKind::kShadow)] == 0);
+}
+
+TEST_CASE("a wall of every brightness -> each step of the dither is the tree's") {
+  std::mt19937_64 random(9);
+  const ChipScene scene = make_chip_scene(random, ChipWorld::kRoom, 4);
+  const Vec3Q8 eye{Q8::from_raw(8 * 256), Q8::from_raw(8 * 256), Q8::from_raw(8 * 256)};
+  Camera camera;
+  REQUIRE(camera.set(PerspectiveView{eye, {0, 1, -9}, {}, Q16::saturate(20), 8, 8, 0}, 4) == Status::kOk);
+  Light light;
+  light.place = Vec3i{0, 0, 1};
+  std::vector<Surface> surfaces(10);
+  LitScene lit;
+  lit.lights = {&light, 1};
+  lit.surfaces = {surfaces.data(), surfaces.size()};
+  const Shading shading;
+  const LitOptions options;
+  const LitView view{scene, camera, shading, lit, options};
+  for (int i = 0; i < 600; ++i) {
+    CAPTURE(i);
+    light.color_q8[0] = light.color_q8[1] = light.color_q8[2] = static_cast<std::uint16_t>(i);
+    for (Surface& surface : surfaces) {
+      surface.albedo = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
+                        static_cast<std::uint8_t>(random())};
+    }
+    for (const PixelFormat format : {PixelFormat::kMono1, PixelFormat::kGray4, PixelFormat::kRgb565}) {
+      const auto by_tree = [&](const Band& band) {
+        return lit_by_tree<Effect::kDirectLight>(view, band, nullptr);
+      };
+      const auto by_map = [&](const Band& band) {
+        return lit_by_map<Effect::kDirectLight>(view, {}, band, nullptr);
+      };
+      const std::size_t row = row_bytes(format, 8);
+      REQUIRE(lit_bytes(camera, format, row, 8, by_map) == lit_bytes(camera, format, row, 8, by_tree));
+    }
+  }
+}
+
+TEST_CASE("bricks free towards a sun: bad arguments, and bits that another light does not get") {
+  std::mt19937_64 random(7);
+  const ChipScene scene = make_chip_scene(random, ChipWorld::kTower, 5);
+  std::vector<std::uint8_t> room(SunBricks::bytes(scene.map));
+  SunBricks sun;
+  CHECK(SunBricks::make(scene.map, {0, 0, 0}, {room.data(), room.size()}, &sun) == Status::kBadArgument);
+  CHECK(SunBricks::make(BrickMap{}, {0, 0, 1}, {room.data(), room.size()}, &sun) == Status::kBadArgument);
+  CHECK(SunBricks::make(scene.map, {0, 0, 1}, {room.data(), room.size() - 1}, &sun) == Status::kOutOfMemory);
+  CHECK_FALSE(sun.belongs_to(scene.map, {0, 0, 1}));
+  REQUIRE(SunBricks::make(scene.map, {3, -1, 9}, {room.data(), room.size()}, &sun) == Status::kOk);
+  CHECK(sun.belongs_to(scene.map, {3, -1, 9}));
+  CHECK_FALSE(sun.belongs_to(scene.map, {3, -1, 8}));
+  CHECK_FALSE(sun.belongs_to(BrickMap{}, {3, -1, 9}));
+  const std::vector<std::uint8_t> whole = room;
+  CHECK(std::count(whole.begin(), whole.end(), 0) < static_cast<std::ptrdiff_t>(whole.size()));
+  // Slices of any size come to the same.
+  REQUIRE(SunBricks::begin(scene.map, {3, -1, 9}, {room.data(), room.size()}, &sun) == Status::kOk);
+  CHECK(std::count(room.begin(), room.end(), 0) == static_cast<std::ptrdiff_t>(room.size()));
+  int slices = 1;
+  while (sun.prove(7)) {
+    ++slices;
+  }
+  CHECK(slices == (8 * 8 * 8 + 6) / 7);
+  CHECK(room == whole);
+}
+
+}  // namespace

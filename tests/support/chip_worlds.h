@@ -1,0 +1,37 @@
+/// @file chip_worlds.h
+/// Small worlds of every kind with their brick maps, and cameras that make ties: what frames on a chip are held to
+/// those of the tree with.
+#ifndef THIMBLE_TESTS_SUPPORT_CHIP_WORLDS_H
+#define THIMBLE_TESTS_SUPPORT_CHIP_WORLDS_H
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/scene_under_test.h"
+#include "thimble/picture/camera.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::tests {
+
+enum class ChipWorld { kHills, kBlocks, kDust, kRoom, kMerged, kTower };
+inline constexpr ChipWorld kChipWorlds[] = {ChipWorld::kHills, ChipWorld::kBlocks, ChipWorld::kDust,
+                                            ChipWorld::kRoom,  ChipWorld::kMerged, ChipWorld::kTower};
+
+struct ChipScene {
+  HeapBytes tree_bytes;
+  std::vector<std::uint64_t> map_words;
+  CompactTree tree;
+  BrickMap map;
+};
+
+/// Materials 0 .. 9.
+ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level);
+
+/// On lattice points and beside them, on diagonals, inside solids, outside; 1 to 120 degrees.
+Camera hard_chip_camera(std::mt19937_64& random, int level);
+
+}  // namespace thimble::tests
+
+#endif
