@@ -17,6 +17,7 @@ fi
 emulator=$(fact EMULATOR)
 ending=elf
 [ -z "$(fact UF2)" ] || ending=uf2
+[ -z "$(fact IMAGE)" ] || ending=$(fact IMAGE)
 in=
 [ "${PLACE:-}" != ram ] || in=_ram
 image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app$in.$ending

@@ -1,9 +1,45 @@
 # How an image is linked, for firmware.cmake.
 include(${THIMBLE_PLATFORM_DIR}/uf2.cmake)
 
+# Sources with functions that run from the core's own RAM (BOARD_FAST_RAM_BYTES): ARM code, since that RAM is 32
+# bits wide.
+foreach(source IN LISTS BOARD_FAST_SOURCES)
+  foreach(part thimble thimble_port thimble_board)
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/${source} TARGET_DIRECTORY ${part} PROPERTY COMPILE_OPTIONS -marm)
+  endforeach()
+endforeach()
+
 # The linker scripts: flash.ld, and where a loader puts images into RAM, too, ram.ld (firmware.ld.in).
 function(thimble_write_linker_script place)
   set(IMAGE_PLACE ${place})
+  set(IMAGE_STACK RAM)
+  set(IMAGE_FAST_MEMORY "")
+  set(IMAGE_FAST_SECTIONS "")
+  if(BOARD_FAST_RAM_BYTES)
+    set(IMAGE_STACK FAST)
+    set(IMAGE_FAST_MEMORY "  FAST (rwx) : ORIGIN = ${BOARD_FAST_RAM_ORIGIN}, LENGTH = ${BOARD_FAST_RAM_BYTES}\n")
+    set(functions)
+    foreach(function IN LISTS BOARD_FAST_FUNCTIONS)
+      if(function MATCHES "\\.o$")
+        string(APPEND functions "    *${function}(.text .text.*)\n")
+      else()
+        string(APPEND functions "    *(.text.*${function}*)\n")
+      endif()
+    endforeach()
+    set(IMAGE_FAST_SECTIONS "  .boot :
+  {
+    KEEP(*(.boot_${place}))
+    KEEP(*(.vectors))
+  } > FLASH
+  .fast : ALIGN(4)
+  {
+    thimble_fast_start = .;
+${functions}    . = ALIGN(4);
+    thimble_fast_end = .;
+  } > FAST AT > FLASH
+  thimble_fast_image = LOADADDR(.fast);
+")
+  endif()
   if(place STREQUAL "flash")
     set(IMAGE_ORIGIN ${BOARD_FLASH_ORIGIN})
     set(IMAGE_BYTES ${BOARD_FLASH_BYTES})
@@ -49,6 +85,10 @@ function(thimble_add_image_in place app)
       -DFLASH_BYTES=${BOARD_FLASH_BYTES} -DRAM_BYTES=${BOARD_RAM_BYTES} -DPLACE=${place}
       -P ${THIMBLE_PLATFORM_DIR}/memory_table.cmake
     BYPRODUCTS ${app}.bin ${app}.hex VERBATIM)
+  if(BOARD_IMAGE)
+    add_custom_command(TARGET ${app} POST_BUILD BYPRODUCTS ${app}.${BOARD_IMAGE} VERBATIM
+      COMMAND ${CMAKE_COMMAND} -E copy ${app}.bin ${app}.${BOARD_IMAGE})
+  endif()
 endfunction()
 
 function(thimble_add_image app)

@@ -45,10 +45,23 @@ shows() {
   shift 2
   for i in $(seq 20); do
     "$tool" "$socket" shot "$shot" $scale
-    "$thimble" sim "$scene" "$@" --board "$board" --display none --check "$shot" --quiet >"$log" 2>&1 && return 0
+    is_right "$shot" "$log" "$@" && return 0
     sleep 0.2
   done
   return 1
+}
+# is_right FILE LOG OPTIONS...: whether it is the simulator's picture, in the bits that the display shows.
+shown_bits=$(fact SHOWN_BITS)
+is_right() {
+  shot=$1
+  log=$2
+  shift 2
+  if [ -z "$shown_bits" ]; then
+    "$thimble" sim "$scene" "$@" --board "$board" --display none --check "$shot" --quiet >"$log" 2>&1
+  else
+    "$thimble" sim "$scene" "$@" --board "$board" --display none --shot "$work/right.ppm" --quiet >"$log" 2>&1 &&
+      "$tool" "$shot" same "$work/right.ppm" "$shown_bits"
+  fi
 }
 stop() {
   "$tool" "$socket" quit || kill $machine 2>/dev/null || true

@@ -4,6 +4,7 @@
 //   qemu_screen SOCKET press|release KEY     KEY as QEMU names it: up, down, left, right, ctrl
 //   qemu_screen SOCKET shot FILE.ppm N       the display; N x N equal pixels of QEMU's window are one of the
 //   display's qemu_screen SOCKET quit
+//   qemu_screen ONE.ppm same OTHER.ppm N     whether two pictures agree in the highest N bits of each channel
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -80,21 +81,51 @@ class Machine {
   int socket_;
 };
 
-// Every `scale`-th pixel of a P6 picture, in place; the others must be copies of it.
-void shrink(const std::string& path, std::size_t scale) {
-  std::ifstream file(path, std::ios::binary);
-  std::string magic;
+struct Picture {
   std::size_t width = 0;
   std::size_t height = 0;
+  std::vector<char> pixels;
+};
+
+// A P6 picture.
+Picture read_picture(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string magic;
+  Picture picture;
   int most = 0;
-  file >> magic >> width >> height >> most;
+  file >> magic >> picture.width >> picture.height >> most;
   file.get();
-  const std::vector<char> pixels((std::istreambuf_iterator<char>(file)), {});
-  if (magic != "P6" || most != 255 || pixels.size() != width * height * 3 || width % scale != 0 ||
-      height % scale != 0) {
+  picture.pixels.assign(std::istreambuf_iterator<char>(file), {});
+  if (magic != "P6" || most != 255 || picture.pixels.size() != picture.width * picture.height * 3) {
     fail(path + " is no picture of whole pixels");
   }
-  const auto at = [&](std::size_t x, std::size_t y) { return &pixels[(y * width + x) * 3]; };
+  return picture;
+}
+
+// For displays that drop the lowest bits: whether what is left is the same.
+bool agree(const Picture& one, const Picture& other, int bits) {
+  if (bits < 1 || bits > 8 || one.width != other.width || one.height != other.height) {
+    return false;
+  }
+  for (std::size_t i = 0; i < one.pixels.size(); ++i) {
+    const int different =
+        static_cast<unsigned char>(one.pixels[i]) ^ static_cast<unsigned char>(other.pixels[i]);
+    if (different >> (8 - bits) != 0) {
+      return false;
+    }
+  }
+  return !one.pixels.empty();
+}
+
+// Every `scale`-th pixel of a P6 picture, in place; the others must be copies of it.
+void shrink(const std::string& path, std::size_t scale) {
+  const auto [width, height, pixels] = read_picture(path);
+  if (width % scale != 0 || height % scale != 0) {
+    fail(path + " is no picture of whole pixels");
+  }
+  const char* const first = pixels.data();
+  const std::size_t row = width * 3;
+  const auto at = [&](std::size_t x, std::size_t y) { return first + y * row + x * 3; };
   std::ofstream out(path, std::ios::binary);
   out << "P6\n" << width / scale << ' ' << height / scale << "\n255\n";
   for (std::size_t y = 0; y < height; ++y) {
@@ -122,10 +153,14 @@ int main(int argc, char** argv) {
     Machine(argv[1]).ask(R"({"execute":"screendump","arguments":{"filename":")" + std::string(argv[3]) +
                          R"("}})");
     shrink(argv[3], static_cast<std::size_t>(std::atoi(argv[4])));
+  } else if (argc == 5 && what == "same") {
+    return agree(read_picture(argv[1]), read_picture(argv[3]), std::atoi(argv[4])) ? 0 : 1;
   } else if (argc == 3 && what == "quit") {
     Machine(argv[1]).ask(R"({"execute":"quit"})");
   } else {
-    std::fprintf(stderr, "usage: qemu_screen SOCKET press KEY|release KEY|shot FILE.ppm N|quit\n");
+    std::fprintf(
+        stderr,
+        "usage: qemu_screen SOCKET press KEY|release KEY|shot FILE.ppm N|quit; ONE.ppm same OTHER.ppm N\n");
     return 2;
   }
   return 0;

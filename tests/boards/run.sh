@@ -22,6 +22,7 @@ if [ "${1:-}" = --job ]; then
         sh "$here/own_scene.sh" || status=1
         ;;
       pico) sh "$here/uf2.sh" pico || status=1 ;;
+      gba) sh "$here/cartridge.sh" gba || status=1 ;;
     esac
   } >"$log" 2>&1
   cat "$log"

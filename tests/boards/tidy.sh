@@ -21,6 +21,7 @@ lint() {
     cortex-m-*) target=thumbv7em-none-eabi ;;
     riscv-*) target=riscv32-none-elf ;;
     arm11-*) target=armv6k-none-eabi ;;
+    arm7-*) target=armv4t-none-eabi ;;
   esac
   cmake -DROOT="$PWD" -DBOARD="$board" -DOUT="$work/$board" -P tests/boards/facts.cmake
   for file; do
@@ -31,6 +32,7 @@ lint() {
 lint lm3s6965evb platform/arch/common/*.cpp platform/arch/cortex-m/*.cpp platform/drivers/*.cpp
 lint sifive_e platform/arch/riscv/*.cpp
 lint raspi0 platform/arch/arm11/*.cpp
+lint gba platform/arch/arm7/*.cpp
 for folder in platform/boards/*/; do
   for file in "$folder"*.cpp; do
     [ ! -f "$file" ] || lint "$(basename "$folder")" "$file"

@@ -23,6 +23,7 @@ inline constexpr ParticlesState kParticlesStates[] = {
     {320, 240, 110, 0x3B3C440B},  // mps2-an500
     {640, 480, 443, 0x535207F7},  // raspi0
     {240, 240, 83, 0xEB5ABF04},   // pico
+    {240, 160, 55, 0x0FE3DA14},   // gba
 };
 
 }  // namespace thimble::golden

@@ -1,0 +1,39 @@
+set(BOARD_TITLE "Game Boy Advance (ARM7TDMI)")
+set(BOARD_ARCH arm7)
+set(BOARD_CPU arm7tdmi)
+set(BOARD_FLASH_ORIGIN 0x08000000)
+set(BOARD_FLASH_BYTES 33554432)
+set(BOARD_RAM_ORIGIN 0x02000000)
+set(BOARD_RAM_BYTES 262144)
+# The core's own RAM: 32 KiB but for the 256 bytes at its end that the boot ROM uses. The stack lies there, and ARM code
+# that draws.
+set(BOARD_FAST_RAM_ORIGIN 0x03000000)
+set(BOARD_FAST_RAM_BYTES 32512)
+set(BOARD_FAST_SOURCES src/picture/brick_render.cpp)
+# By parts of their mangled names; with .o, an object of a library. What is called most often in pictures of the valley, and as
+# many of the 24 kinds of trace_one as there is room for: those of views that look down (mirrored along z, 4 and more).
+set(BOARD_FAST_FUNCTIONS sweep_tile find_half_plane draw_face 6decide store_whole find_direction look_up
+  find_exposed set_course mixed_material store_ink material_ink trace_mixed set_start board5flush memset memcpy
+  trace_oneILi0ELj4E trace_oneILi0ELj5E trace_oneILi0ELj6E trace_oneILi0ELj7E trace_oneILi1ELj4E trace_oneILi1ELj5E
+  trace_oneILi1ELj6E
+  libgcc.a:_divsi3.o libgcc.a:_udivsi3.o libgcc.a:_ctzsi2.o)
+set(BOARD_STACK_BYTES 8192)
+set(BOARD_DISPLAY plain)
+set(BOARD_WIDTH_PX 240)
+set(BOARD_HEIGHT_PX 160)
+set(BOARD_FORMAT bgr565)
+# The display has 15 bits a pixel: the lowest bit of green is not shown.
+set(BOARD_SHOWN_BITS 5)
+set(BOARD_BUTTONS 5)
+set(BOARD_QEMU "")
+set(BOARD_EMULATOR mgba)
+set(BOARD_IMAGE gba)
+set(BOARD_PROBE copy GBA thimble.gba)
+set(BOARD_CLOCK_MHZ 17)
+set(BOARD_ICOUNT_SHIFT 6)
+set(BOARD_VISITS_A_SECOND 7500)
+set(BOARD_FRAME_INSTRUCTIONS 26657384)
+# No memory protection, and the boot ROM's handlers say nothing: a write past the RAM meets its mirror, and after a stack that
+# overflows or a jump into nonsense the core runs on, somewhere.
+set(BOARD_CATCHES scene)
+set(BOARD_GOES_ASTRAY stack nonsense)
