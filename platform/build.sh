@@ -25,7 +25,7 @@ mkdir -p "$work"
 if [ "$scene" = auto ]; then
   scene=demo
   if [ "$apps" = demo ] && [ "$(fact DISPLAY)" = oled ]; then
-    scene=castle
+    scene=oled
   fi
 fi
 case $scene in

@@ -41,7 +41,7 @@ constexpr const char* kDefaultBoard = "lm3s6965evb";
 constexpr const char* kDefaultScene = "demo";
 constexpr const char* kDefaultWaterScene = "water";
 // What the demonstration shows in a few greys on a small display: the valley's trees and rocks are one there.
-constexpr const char* kOledScene = "castle";
+constexpr const char* kOledScene = "oled";
 
 struct SimCommand {
   SceneOptions scene;
