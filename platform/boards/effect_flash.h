@@ -45,13 +45,13 @@ inline constexpr EffectFlash kEffectFlash[] = {
     {Effect::kDepthCue, 656},
     {Effect::kSmoothNormals, 5520},
     {Effect::kEmitterLight, 4},
-    {Effect::kEdges, 0},
-    {Effect::kRipples, 0},
+    {Effect::kEdges, 1644},
+    {Effect::kRipples, 1588},
 };
 // clang-format on
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
-inline constexpr uint32_t kAllEffectsFlashBytes = 36964;
+inline constexpr uint32_t kAllEffectsFlashBytes = 39872;
 
 }  // namespace thimble
 
