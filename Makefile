@@ -36,7 +36,7 @@ all: deps-build ## Build the library and the thimble command (build/release)
 run: all ## Render four scenes within fixed budgets into out/ and print what they took
 	@sh tools/run_demo.sh build/release/thimble out
 sim: all ## Run the demo as on BOARD=NAME, in a window or the terminal (SCENE=..., SIM_ARGS=...)
-	@build/release/thimble sim $(SCENE) --board $(BOARD) $(SIM_ARGS)
+	@build/release/thimble sim $(filter-out auto,$(SCENE)) --board $(BOARD) $(SIM_ARGS)
 
 # DESTDIR is another root, for packages.
 PREFIX ?= /usr/local
@@ -126,7 +126,7 @@ bench: deps-bench ## Build and run the benchmarks
 # --effects.
 BOARD ?= lm3s6965evb
 APP ?= demo
-SCENE ?= demo
+SCENE ?= auto
 export FRAMES EFFECTS SHOT CRC PLACE
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds firmware for a board into build/firmware/BOARD and says what each image takes of it.
 #   build.sh BOARD|all APP[;APP...] [SCENE]     SCENE: what `thimble bake` takes, or a header (.h) that it made;
-#                                               without it there is no scene in the image
+#                                               "auto" is the demonstration's for the board; without it there is none
 # In the environment: EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
 # SCENE=demo for the board's BOARD_DEMO_EFFECTS); FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then;
 # PANEL_FORMATS=MASK has other formats of panels than the board's (picture/pixel.h); HOLD_FPS=N holds a rate of frames;
@@ -21,6 +21,13 @@ scene=${3:-}
 . platform/board_facts.sh
 work=${THIMBLE_FIRMWARE:-build/firmware}/$board
 mkdir -p "$work"
+# "auto": the demonstration shows what reads on the board's display, all others the valley.
+if [ "$scene" = auto ]; then
+  scene=demo
+  if [ "$apps" = demo ] && [ "$(fact DISPLAY)" = oled ]; then
+    scene=oled
+  fi
+fi
 case $scene in
   "") header= ;;
   /*.h) header=$scene ;;
@@ -28,8 +35,8 @@ case $scene in
   *)
     header=$PWD/$work/scene.h
     effects=${EFFECTS:-}
-    if [ -z "$effects" ] && [ "$scene" = demo ]; then
-      effects=$(fact DEMO_EFFECTS)
+    if [ -z "$effects" ]; then
+      case $scene in demo | valley) effects=$(fact DEMO_EFFECTS) ;; esac
     fi
     build/release/thimble bake "$scene" --board "$board" ${effects:+--effects "$effects"} -o "$header" --quiet
     ;;

@@ -342,7 +342,9 @@ enum thimble_effects {
   THIMBLE_EFFECT_SKY = 0x0200,
   THIMBLE_EFFECT_DEPTH_CUE = 0x0400,
   THIMBLE_EFFECT_SMOOTH_NORMALS = 0x0800,
-  THIMBLE_EFFECT_EMITTER_LIGHT = 0x1000
+  THIMBLE_EFFECT_EMITTER_LIGHT = 0x1000,
+  THIMBLE_EFFECT_EDGES = 0x2000,
+  THIMBLE_EFFECT_RIPPLES = 0x4000
 };
 /// "shadows", "ambient-occlusion", ...; "" for anything but one effect. Never null.
 const char* thimble_effect_name(uint32_t effect);

@@ -302,6 +302,9 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format)
   demo->turned = 0;
   demo->orbit = orbit_of(demo->shown.scene);
   demo->shading = demo_shading(demo->shown.scene.palette());
+  if ((kImageEffects & Effect::kEdges) != 0 && is_dark_behind(demo->light.effects(), display().format)) {
+    demo->shading.background = {0, 0, 0};
+  }
   demo->is_lit = false;
 }
 

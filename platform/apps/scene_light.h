@@ -32,6 +32,12 @@ inline constexpr bool kLightsFast = is_flat(kImageEffects);
 inline constexpr bool kLightsFast = false;
 #endif
 
+/// Whether a scene stands before black: it was baked for a display of few greys, this is one, and it has no sky.
+constexpr bool is_dark_behind(EffectSet effects, PixelFormat format) {
+  return (effects & Effect::kEdges) != 0 && (effects & Effect::kSky) == 0 && is_gray(format) &&
+         format != PixelFormat::kGray8;
+}
+
 #if !defined(THIMBLE_IMAGE_EFFECTS) || THIMBLE_IMAGE_EFFECTS != 0
 
 struct SceneLight {

@@ -25,6 +25,7 @@
 #include "apps/falling_ball.h"
 #include "apps/moving_water.h"
 #include "apps/place.h"
+#include "apps/scene_light.h"
 #include "apps/shown_scene.h"
 #include "apps/text.h"
 #include "port.h"
@@ -322,6 +323,10 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
   pool->moved = false;
   pool->rippled = false;
   pool->lighting.scene.water = surface_of(pool->water, looks);
+  if constexpr ((kImageEffects & Effect::kRipples) != 0) {
+    // They run while the water does: what is at rest is not drawn again.
+    pool->lighting.scene.ripple_phase = static_cast<uint8_t>(pool->water.columns.steps_done());
+  }
   for (int32_t i = 0; i < dirty.count(); ++i) {
     if (!dirty.is_dirty(i)) {
       dirty.skip(i, screen.format);

@@ -27,7 +27,7 @@ struct EffectFlash {
   EffectSet effect;  ///< one
   /// The image with this effect alone less the one with the base alone. Effect::kShadows, which need
   /// Effect::kDirectLight: with both, less the one with Effect::kDirectLight. Effect::kEmitterLight: with
-  /// these two, less the one with them.
+  /// these two, less the one with them; Effect::kRipples: with Effect::kWater, less the one with it.
   uint32_t bytes;
 };
 // clang-format off
@@ -45,11 +45,13 @@ inline constexpr EffectFlash kEffectFlash[] = {
     {Effect::kDepthCue, 656},
     {Effect::kSmoothNormals, 5520},
     {Effect::kEmitterLight, 4},
+    {Effect::kEdges, 1644},
+    {Effect::kRipples, 1588},
 };
 // clang-format on
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
-inline constexpr uint32_t kAllEffectsFlashBytes = 36964;
+inline constexpr uint32_t kAllEffectsFlashBytes = 39872;
 
 }  // namespace thimble
 

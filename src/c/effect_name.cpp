@@ -11,8 +11,9 @@ static_assert(THIMBLE_EFFECT_DIRECT_LIGHT == Effect::kDirectLight &&
               THIMBLE_EFFECT_WATER == Effect::kWater && THIMBLE_EFFECT_FOG == Effect::kFog &&
               THIMBLE_EFFECT_SKY == Effect::kSky && THIMBLE_EFFECT_DEPTH_CUE == Effect::kDepthCue &&
               THIMBLE_EFFECT_SMOOTH_NORMALS == Effect::kSmoothNormals &&
-              THIMBLE_EFFECT_EMITTER_LIGHT == Effect::kEmitterLight);
-static_assert(Effect::kCount == 13, "enum thimble_effects lacks an effect");
+              THIMBLE_EFFECT_EMITTER_LIGHT == Effect::kEmitterLight &&
+              THIMBLE_EFFECT_EDGES == Effect::kEdges && THIMBLE_EFFECT_RIPPLES == Effect::kRipples);
+static_assert(Effect::kCount == 15, "enum thimble_effects lacks an effect");
 
 extern "C" const char* thimble_effect_name(uint32_t effect) {
   return effect_name(effect);

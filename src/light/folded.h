@@ -8,7 +8,8 @@
 namespace thimble::lit {
 
 inline constexpr EffectSet kFolded = Effect::kDirectLight | Effect::kEmission | Effect::kFog | Effect::kSky |
-                                     Effect::kDepthCue | Effect::kSmoothNormals;
+                                     Effect::kDepthCue | Effect::kSmoothNormals | Effect::kEdges |
+                                     Effect::kRipples;
 
 }  // namespace thimble::lit
 

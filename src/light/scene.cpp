@@ -10,7 +10,7 @@ constexpr const char* kNames[Effect::kCount] = {
     "emission",      "mirror",    "glass",
     "media",         "water",     "fog",
     "sky",           "depth-cue", "smooth-normals",
-    "emitter-light",
+    "emitter-light", "edges",     "ripples",
 };
 
 }  // namespace

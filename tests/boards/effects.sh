@@ -42,7 +42,9 @@ names='0x001 kDirectLight
 0x200 kSky
 0x400 kDepthCue
 0x800 kSmoothNormals
-0x1000 kEmitterLight'
+0x1000 kEmitterLight
+0x2000 kEdges
+0x4000 kRipples'
 {
   cat <<'TEXT'
 /// @file effect_flash.h
@@ -77,7 +79,7 @@ struct EffectFlash {
   EffectSet effect;  ///< one
   /// The image with this effect alone less the one with the base alone. Effect::kShadows, which need
   /// Effect::kDirectLight: with both, less the one with Effect::kDirectLight. Effect::kEmitterLight: with
-  /// these two, less the one with them.
+  /// these two, less the one with them; Effect::kRipples: with Effect::kWater, less the one with it.
   uint32_t bytes;
 };
 // clang-format off
@@ -86,6 +88,7 @@ TEXT
   echo "$names" | while read -r set name; do
     case $name in
       kShadows) echo "    {Effect::$name, $(($(size_of 0x003) - $(size_of 0x001)))}," ;;
+      kRipples) echo "    {Effect::$name, $(($(size_of 0x4080) - $(size_of 0x080)))}," ;;
       kEmitterLight) echo "    {Effect::$name, $(($(size_of 0x1003) - $(size_of 0x003)))}," ;;
       *) echo "    {Effect::$name, $(($(size_of "$set") - base))}," ;;
     esac
@@ -96,7 +99,7 @@ TEXT
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
 TEXT
-  echo "inline constexpr uint32_t kAllEffectsFlashBytes = $(($(size_of 0x1fff) - $(size_of plain)));"
+  echo "inline constexpr uint32_t kAllEffectsFlashBytes = $(($(size_of 0x7fff) - $(size_of plain)));"
   printf '\n}  // namespace thimble\n\n#endif\n'
 } >"$work/effect_flash.h"
 if [ "${1:-}" = --write ]; then
@@ -124,8 +127,10 @@ parts='0x001 ambient_light light_ray add_light
 0x100 fade_in_fog
 0x200 sky_color
 0x400 cue_depth
+0x4000 cross_ripples sun_glint
+0x2000 meets_edge is_same_gray darken_edge
 0x800 slope_at light_on_slope surface_normal cross_slope'
-for set in plain 0x000 base 0x001 0x002 0x004 0x008 0x010 0x020 0x040 0x080 0x100 0x200 0x400 0x003 0x0b3 0x7ff 0x800 0x1003 0x1fff; do
+for set in plain 0x000 base 0x001 0x002 0x004 0x008 0x010 0x020 0x040 0x080 0x100 0x200 0x400 0x003 0x0b3 0x7ff 0x800 0x1003 0x2000 0x4080 0x7fff; do
   arm-none-eabi-nm -C "$work/effects_$set.elf" >"$work/effects_$set.symbols"
   bits=$set
   case $set in plain | base) bits=0 ;; esac
@@ -142,7 +147,7 @@ for set in plain 0x000; do
 done
 ! grep 'Water\|refract\|fresnel\|mirror\|lit::.*water\|lit::cross' "$work/effects_0x003.symbols" || fail "glass or water in the image for direct light and shadows"
 # The names above are those of the source: each is somewhere.
-cat "$work/effects_0x003.symbols" "$work/effects_0x040.symbols" "$work/effects_0x7ff.symbols" "$work/effects_0x1fff.symbols" >"$work/effects.all"
+cat "$work/effects_0x003.symbols" "$work/effects_0x040.symbols" "$work/effects_0x7ff.symbols" "$work/effects_0x7fff.symbols" >"$work/effects.all"
 echo "$parts" | while read -r mask functions; do
   for function in $functions; do
     grep -q "thimble::lit::$function(" "$work/effects.all" || echo "$function"

@@ -121,6 +121,27 @@ TEST_CASE("bake: with any camera -> the baked scene renders to the same pixels a
   }
 }
 
+TEST_CASE(
+    "bake: a mesh -> slopes by itself; one picture of the mesh, its baked scene and one baked from that") {
+  const TemporaryFolder folder;
+  const std::string mesh =
+      folder.write("octahedron.off",
+                   "OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n3 0 2 4\n3 2 1 4\n"
+                   "3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n");
+  const std::string oct = folder.path("m.oct");
+  const Words effects{"--effects", "direct-light,shadows,smooth-normals"};
+  const Words picture{"--size", "80x60", "--shade", "color"};
+  check_ok(joined({"bake", mesh, "--depth", "5", "--size", "80x60", "-o", oct, "--quiet"}, effects));
+  const std::string expected = render(folder, mesh, joined(joined({"--depth", "5"}, picture), effects));
+  CHECK(render(folder, oct, joined(picture, {"--effects", "auto"})) == expected);
+  CHECK(render(folder, mesh,
+               joined(joined({"--depth", "5"}, picture), {"--effects", "direct-light,shadows"})) != expected);
+  // Nobody said a word.
+  check_ok({"bake", mesh, "--depth", "5", "-o", oct, "--quiet"});
+  const CommandResult said = run_command({"info", oct});
+  CHECK(said.out.find("smooth-normals") != std::string::npos);
+}
+
 TEST_CASE("bake: traced, hits and statistics -> those of the scene itself, node visits included") {
   const TemporaryFolder folder;
   const std::string oct = folder.path("s.oct");

@@ -122,7 +122,7 @@ TEST_CASE("effects: what is not called for -> exactly 0 rays, nodes, time, RAM a
       CHECK(row["why"] != "");
     }
   }
-  CHECK(none == 7);
+  CHECK(none == 9);
 }
 
 TEST_CASE("effects: rays of each kind and nodes -> those of two counting runs by the core") {
@@ -202,7 +202,7 @@ TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
         "1 distant light, 1 lamp\nits lights cast shadows\n4 rays a face, 6 voxels far\nmaterial glow is "
         "emissive\n"
         "material mirror is metal\n\nmaterial mist is cloud\n\nair that halves light in 64 voxels\n\n\n\n"
-        "material glow is emissive\n");
+        "material glow is emissive\n\n\n");
   const json asked = rows_of("spheres", {"--effects", "sky,shadows"});
   CHECK(asked[0]["why"] == "asked for");
   CHECK(asked[1]["why"] == "asked for");
@@ -223,7 +223,7 @@ TEST_CASE("effects: table, CSV, JSON and SVG -> all of them, in lines that fit a
     CHECK(line.size() <= 100);
   }
   const std::vector<std::string> lines = lines_of(read_text(csv_path));
-  REQUIRE(lines.size() == 14);
+  REQUIRE(lines.size() == 16);
   CHECK(lines[0] ==
         "effect,called_for,why,primary_rays,shadow_rays,occlusion_rays,mirror_rays,glass_rays,media_rays,"
         "water_rays,rays,node_visits,ms,q25_ms,q75_ms,with_ms,without_ms,ram_bytes,flash_bytes");

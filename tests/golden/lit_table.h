@@ -17,7 +17,7 @@ struct LitEntry {
 inline constexpr LitEntry kLitTable[] = {
     {PixelFormat::kGray4, 0x38736972},  {PixelFormat::kMono1, 0x64719B2F},
     {PixelFormat::kRgb565, 0xC5BCED4C}, {PixelFormat::kRgb888, 0x40498B68},
-    {PixelFormat::kRgb888, 0x0D538346},
+    {PixelFormat::kRgb888, 0x0D538346}, {PixelFormat::kGray4, 0xC032489E},
 };
 
 }  // namespace thimble::golden

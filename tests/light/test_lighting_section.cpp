@@ -104,7 +104,7 @@ TEST_CASE("lighting section: its bytes -> as FORMAT.md has them") {
   const std::vector<std::uint8_t> head{
       1,    15,   7,    16,   22,                        // version, flags, bounces, occlusion
       0,    0x24, 0x23,                                  // 0, reach
-      0xFF, 0x1E, 0,    0,                               // effects: all but fog
+      0xFF, 0x7E, 0,    0,                               // effects: all but fog
       0x02, 0x01, 80,   0,    96,   0,                   // ambient
       10,   11,   12,   13,   14,   15,   16,   17, 18,  // sky
       19,   20,   21,   0xEF, 0xBE, 0xAD, 0xDE,          // fog
@@ -152,7 +152,7 @@ TEST_CASE(
            Change{3, {33}, 1},
            Change{3, {32}, 1, false},
            Change{5, {1}, 1},
-           Change{9, {32}, 1},
+           Change{9, {128}, 1},
            Change{11, {128}, 1},
            Change{34, {12, 0}, 34, false},
            Change{34, {13, 0}, 34},

@@ -96,7 +96,8 @@ TEST_CASE("no effects: the picture of render_band, in every format and shade mod
 TEST_CASE("bands of any height in any order: the same picture") {
   const EveryEffect world;
   // Nobody gets smooth normals who does not ask for them, and what glows as lamps is for the scene's maker.
-  constexpr EffectSet kAskedFor = Effect::kSmoothNormals | Effect::kEmitterLight;
+  constexpr EffectSet kAskedFor =
+      Effect::kSmoothNormals | Effect::kEmitterLight | Effect::kEdges | Effect::kRipples;
   REQUIRE(effects_of(world.scene) == (Effect::kAll & ~kAskedFor));
   const EffectSet effects = Effect::kAll;
   for (const PixelFormat format : kFormats) {
@@ -131,6 +132,9 @@ TEST_CASE("a set known when compiling: the picture and the rays of the same set 
   expect_same_as_fixed<Effect::kSmoothNormals>(world);
   expect_same_as_fixed<Effect::kSmoothNormals | Effect::kDirectLight | Effect::kMirror>(world);
   expect_same_as_fixed<Effect::kAll & ~Effect::kSmoothNormals>(world);
+  expect_same_as_fixed<Effect::kEdges>(world);
+  expect_same_as_fixed<Effect::kEdges | Effect::kDirectLight | Effect::kShadows>(world);
+  expect_same_as_fixed<Effect::kRipples | Effect::kWater | Effect::kSky>(world);
   expect_same_as_fixed<Effect::kAll>(world);
 }
 
@@ -140,14 +144,16 @@ TEST_CASE("an effect that is not in the set: no ray of it, and it makes no diffe
       {Effect::kShadows, LitRayKind::kShadow},   {Effect::kAmbientOcclusion, LitRayKind::kOcclusion},
       {Effect::kMirror, LitRayKind::kMirrorRay}, {Effect::kGlass, LitRayKind::kGlassRay},
       {Effect::kMedia, LitRayKind::kMediaRay},   {Effect::kWater, LitRayKind::kWaterRay}};
+  // Edges look at what is opaque, and so at more where less is clear.
+  constexpr EffectSet kAllButEdges = Effect::kAll & ~Effect::kEdges;
   LitCounts all;
-  world.draw(Effect::kAll, &all);
+  world.draw(kAllButEdges, &all);
   for (const auto& [effect, kind] : kKinds) {
     CAPTURE(effect);
     const int index = static_cast<int>(kind);
     CHECK(all.rays[index] > 0);
     LitCounts without;
-    world.draw(Effect::kAll & ~effect, &without);
+    world.draw(kAllButEdges & ~effect, &without);
     CHECK(without.rays[index] == 0);
     CHECK(without.hits[index] == 0);
     CHECK(without.node_visits[index] == 0);

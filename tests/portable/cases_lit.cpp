@@ -169,6 +169,8 @@ constexpr Case kCases[] = {
     {"every effect of the scene's own, in 24 bits -> the golden picture", kArenaBytes, run<kOfScene>, 3},
     {"smooth normals with shadows, occlusion, a lamp, a mirror, glass, sky -> the golden picture",
      kArenaBytes, run<kDry | Effect::kSmoothNormals>, 4},
+    {"direct light and shadows with dark edges, 16 greys -> the golden picture", kArenaBytes,
+     run<kSunlit | Effect::kEdges>, 5},
 };
 
 }  // namespace

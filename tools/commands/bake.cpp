@@ -43,6 +43,9 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   options.brick_map = command.brick_map || command.scene.board != nullptr;
   options.effects = command.effects;
   options.default_look = source.baked() == nullptr && !parse_generator(command.scene.arguments.scene);
+  if (const platform::BoardFacts* const board = command.scene.board) {
+    options.display = DisplayFacts{board->format, board->width_px, board->height_px};
+  }
   options.camera = [&command, &source, note](const CompactTree& tree) {
     Framing framing = frame_scene(command.view, source, shape_of(tree));
     if (note != nullptr && !framing.note.empty()) {
@@ -204,7 +207,8 @@ void add_bake(CLI::App& app) {
       *sub, &command->effects,
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
       "commas between them; a header states the set as a macro, so that firmware holds no others (default: "
-      "auto, and for a file that states no light a sun over the viewer's shoulder with shadows)",
+      "auto, for a file that states no light a sun over the viewer's shoulder with shadows, for a mesh "
+      "smooth-normals, and for a board's display of few greys edges)",
       false);
   add_text_option(
       *sub, "--name", "IDENT",

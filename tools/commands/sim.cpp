@@ -1,5 +1,6 @@
 // thimble sim: the firmware's own application in the host simulator.
 #include <zlib.h>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -28,6 +29,7 @@
 #include "scene/board_fit.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
+#include "scene/named_scenes.h"
 #include "scene/wide_frames.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/baked_lighting.h"
@@ -38,6 +40,8 @@ namespace {
 constexpr const char* kDefaultBoard = "lm3s6965evb";
 constexpr const char* kDefaultScene = "demo";
 constexpr const char* kDefaultWaterScene = "water";
+// What the demonstration shows in a few greys on a small display: the valley's trees and rocks are one there.
+constexpr const char* kOledScene = "oled";
 
 struct SimCommand {
   SceneOptions scene;
@@ -60,6 +64,17 @@ const apps::Application* application(const char* name) {
     }
   }
   return nullptr;
+}
+
+const char* default_scene(const SessionOptions& session) {
+  if (std::strcmp(session.application->name, "water") == 0) {
+    return kDefaultWaterScene;
+  }
+  const std::vector<std::string> installed = scene_names();
+  const bool for_oled = session.board->screen == platform::Screen::kOled &&
+                        std::strcmp(session.application->name, "demo") == 0 &&
+                        std::find(installed.begin(), installed.end(), kOledScene) != installed.end();
+  return for_oled ? kOledScene : kDefaultScene;
 }
 
 // Whether a baked scene was baked with water that can move.
@@ -91,6 +106,7 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.name = scene_name(command.scene.arguments.scene);
     // Framed as `thimble render` does, and a person's scene is lit so; a generator's figures stay what they are.
     options.default_look = !parse_generator(command.scene.arguments.scene);  // a baked one was let out above
+    options.display = DisplayFacts{board.format, board.width_px, board.height_px};
     view.side = NamedView::kBest;
     view.fov_degrees = kPictureFov;
     options.camera = [&](const CompactTree& tree) { return frame_scene(view, *source, shape_of(tree)).kept; };
@@ -312,8 +328,7 @@ void run(const SimCommand& given) {
                                  session.application->name);
   }
   if (command.scene.arguments.scene.empty()) {
-    const bool is_water = std::strcmp(session.application->name, "water") == 0;
-    command.scene.arguments.scene = is_water ? kDefaultWaterScene : kDefaultScene;
+    command.scene.arguments.scene = default_scene(session);
   }
   std::string sentence;
   int status = 0;
@@ -434,7 +449,9 @@ void add_sim(CLI::App& app) {
   add_effect_list(
       *sub, &command->effects,
       "what the scene is baked for: auto (what it calls for), none, or effects with commas between them "
-      "(default: auto, and for a file that states no light a sun over the viewer's shoulder with shadows)",
+      "(default: auto, for a file that states no light a sun over the viewer's shoulder with shadows, and "
+      "for a "
+      "display of few greys dark edges)",
       false);
   add_display_options(*sub, command);
   add_file_options(*sub, command);

@@ -33,19 +33,16 @@ $thimble particles --steps 2000 --figures --quiet -o "$out/particles-heap.png"
 $thimble sim demo --board raspi0 --display none --frames 1 --quiet --shot "$out/demo-raspi0.png" >/dev/null
 $thimble sim demo --board pico --display none --frames 1 --quiet --shot "$out/demo-pico.png" >/dev/null
 # What the OLED shows with light, magnified (ImageMagick).
-$thimble bake "$scenes/castle.vox" --board lm3s6965evb --eye 2,-98,50 --target 40,38,27 --fov 28 \
-  --effects direct-light,shadows,sky --quiet -o "$out/castle.oct" 2>/dev/null
 for picture in castle demo room; do
   effects=auto
   case $picture in
-    castle) scene=$out/castle.oct ;;
+    castle) scene=$scenes/oled.scene effects= ;;
     demo) scene=demo effects=direct-light,shadows ;;
     room) scene=$scenes/room.scene ;;
   esac
-  $thimble sim "$scene" --effects $effects --board lm3s6965evb --display none --frames 2 --quiet --shot "$out/oled-$picture.png" >/dev/null
+  $thimble sim "$scene" ${effects:+--effects $effects} --board lm3s6965evb --display none --frames 2 --quiet --shot "$out/oled-$picture.png" >/dev/null
   convert "$out/oled-$picture.png" -filter point -resize 300% "$out/oled-$picture.png"
 done
-rm "$out/castle.oct"
 $thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 100 --fps 25 --keys "$out/waves.keys" --quiet \
   --record "$out/waves.y4m" >/dev/null
 ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\

@@ -208,6 +208,8 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
     case Effect::kDepthCue:
       return rest.has_depth_cue ? "far is darker" : named;
     case Effect::kSmoothNormals:
+    case Effect::kEdges:
+    case Effect::kRipples:
       return named;
     case Effect::kEmitterLight:
       return materials(lit, used, SurfaceKind::kEmit, "emissive", named);

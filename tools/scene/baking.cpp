@@ -85,7 +85,8 @@ class Assembly {
     }
     LitDescription lit = source.lighting();
     const UsedMaterials used = used_materials(tree);
-    if (options.default_look && !options.effects.is_given && options.camera) {
+    const bool by_rule = options.default_look && !options.effects.is_given && options.camera;
+    if (by_rule) {
       Framing framing;
       framing.kept = camera_;
       const SceneFacts facts = facts_of(source, lit, shape_of(tree));
@@ -97,6 +98,9 @@ class Assembly {
     }
     lit.find_glow(tree);
     effects_ = chosen_effects(lit, used, options.effects);
+    if (by_rule && options.display && effects_ != Effect::kNone) {
+      suit(*options.display, tree, used, &lit);
+    }
     lighting_ = lighting_section(lit, used, effects_, tree.level());
     parts_.lighting = {lighting_.data(), lighting_.size()};
   }
@@ -135,6 +139,14 @@ class Assembly {
   }
 
  private:
+  void suit(const DisplayFacts& display, const CompactTree& tree, const UsedMaterials& used,
+            LitDescription* lit) {
+    if (has_few_grays(display.format) && (lit->off & Effect::kEdges) == 0) {
+      effects_ |= Effect::kEdges;
+    }
+    suit_display(display, tree, camera_, parts_.palette, used, effects_, lit);
+  }
+
   std::vector<Rgb8> palette_;
   std::string name_;
   SceneCamera camera_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/display_look.h"
 #include "scene/scene_source.h"
 #include "thimble/bake/baked_scene.h"
 
@@ -28,6 +29,8 @@ struct BakingOptions {
   /// Bake the light of the default look (default_look.h) where `effects` were not given and the scene states
   /// none. For scenes of people; generators are baked as they are.
   bool default_look = false;
+  /// With `default_look`: the display that the light is to suit (display_look.h).
+  std::optional<DisplayFacts> display;
 };
 
 /// A baked scene and what its making took.

@@ -18,7 +18,8 @@ const char* const kDefaultLookText =
     "drawn as they are; meshes and surfaces without are clay. A sun stands over the viewer's left shoulder "
     "(the right one where the side on the right is more than twice as large), with exact shadows, occlusion, "
     "a soft gradient behind the scene, and under it a ground that only shows "
-    "the shadow. What a scene states itself (camera, lights, occlusion, sky, effects off) is kept. Points of "
+    "the shadow. Water has ripples. What a scene states itself (camera, lights, occlusion, sky, effects off) "
+    "is kept. Points of "
     "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
     "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, counted from the "
     "effects and the picture's size. The exposure follows the scene. --structure dense|pool, --engine, "
@@ -260,6 +261,9 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
   if (!smooth && wishes.smooth) {
     look.effects &= ~Effect::kSmoothNormals;
   }
+  if ((look.effects & Effect::kWater) != 0 && (off & Effect::kRipples) == 0) {
+    look.effects |= Effect::kRipples;
+  }
   const bool has_sun = !lighting.lights.empty() && !lighting.lights[0].is_point;
   look.toward_sun = has_sun ? Vec3i(lighting.lights[0].place) : Vec3i{0, 0, 1};
   look.ground_z = facts.bounds.low.z;
@@ -279,6 +283,9 @@ LitDescription baked_look(const SceneFacts& facts, const Framing& framing) {
   LitDescription lighting = facts.lighting;
   if (!states_light(lighting) && facts.forms_surface()) {
     add_sun(facts, framing, &lighting);
+  }
+  if ((facts.is_mesh || facts.is_points) && facts.forms_surface()) {
+    lighting.on |= Effect::kSmoothNormals & ~lighting.off;
   }
   return lighting;
 }

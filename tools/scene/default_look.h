@@ -119,8 +119,8 @@ inline bool is_clay(const SceneFacts& facts) {
   return !facts.has_colors && facts.forms_surface();
 }
 
-/// What is baked of the rule for a scene without lights of its own: its colours, the sun and exact shadows; no
-/// more than a small chip draws. Stars stay as they are.
+/// What is baked of the rule for a scene without lights of its own: its colours, the sun and exact shadows, slopes of
+/// meshes and of surfaces of points; no more than a small chip draws. Stars stay as they are.
 LitDescription baked_look(const SceneFacts& facts, const Framing& framing);
 
 }  // namespace thimble::tools

@@ -25,11 +25,12 @@ struct Name {
   const char* text;
   GeneratorKind kind;
 };
-constexpr std::array<Name, 5> kGenerators{{{"points", GeneratorKind::kPoints},
+constexpr std::array<Name, 6> kGenerators{{{"points", GeneratorKind::kPoints},
                                            {"cluster", GeneratorKind::kCluster},
                                            {"spheres", GeneratorKind::kSpheres},
                                            {"water", GeneratorKind::kWater},
-                                           {"demo", GeneratorKind::kDemo}}};
+                                           {"demo", GeneratorKind::kDemo},
+                                           {"valley", GeneratorKind::kDemo}}};
 
 /// A whole number: decimal digits, or as in 1e6 and 2.5e6. Nothing for anything else, or too much for 64
 /// bits.

@@ -17,6 +17,9 @@ namespace thimble::tools {
 /// All that shines, at two thirds: lights, ambient, what glows, sky, fog and clouds.
 void dim(LitDescription* lighting, const UsedMaterials* used);
 
+/// All that shines, so many 256ths as bright: what `dim` dims.
+void expose_light(std::uint32_t exposure_q8, const UsedMaterials& used, LitDescription* lighting);
+
 using ToneTable = std::array<std::uint8_t, 256>;
 
 /// The brightest tenth of a picture is brought to this grey, within the limits of an exposure.

@@ -103,7 +103,11 @@ struct Effect {
   /// What glows lights what is around it: lamps in `LitScene::lights` that whoever makes the scene puts where
   /// it glows. Drawn by kDirectLight and kShadows, which it needs; no code of its own.
   static constexpr EffectSet kEmitterLight = 1U << 12;
-  static constexpr int kCount = 13;
+  /// Edges between faces of about the same grey are dark, for displays of few greys. Only who asks for it gets it.
+  static constexpr EffectSet kEdges = 1U << 13;
+  /// Small waves on the surface of water, which show the sun. Drawn with kWater. Only who asks for it gets it.
+  static constexpr EffectSet kRipples = 1U << 14;
+  static constexpr int kCount = 15;
   static constexpr EffectSet kAll = (1U << kCount) - 1;
   /// Those that send a ray on from a hit, with a state for each ray still to be followed.
   static constexpr EffectSet kBranching = kMirror | kGlass | kMedia | kWater;
@@ -201,6 +205,8 @@ struct LitScene {
   Surface water_material{{70, 170, 190}, SurfaceKind::kGlass, 0, 255, kWaterIndexQ12, 16, 0};
   /// Rays that follow one another from a pixel, the first one not counted: 0 .. kMaxBounces.
   uint8_t bounces = kDefaultBounces;
+  /// Where the ripples are on their way (Effect::kRipples): they come round after 256.
+  uint8_t ripple_phase = 0;
 };
 
 /// The effects that the scene calls for: those that at least one material or light needs. `used` (may be

@@ -199,11 +199,21 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope&
                    size_t* count);
 bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
                  size_t* count);
+/// At the surface of water as its ripples bend it: as `cross`.
+bool cross_ripples(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                   size_t* count);
+/// The suns that a ray which leaves the world looks into.
+Color sun_glint(const Frame& frame, const Vec3i& direction);
 Color sky_color(const Frame& frame, const Vec3i& direction);
 void fade_in_fog(const Frame& frame, const Ray& ray, const Leg& leg, const Meeting& meeting, Weight* weight,
                  Color* sum);
 /// Brightness by depth of what the camera sees first.
 void cue_depth(const Frame& frame, const Meeting& meeting, Weight* weight);
+/// Whether the next pixel, to the right or below, shows another face than `spot`, which the camera's ray met: its
+/// spot is then `*beyond`. Traces a ray, counted as the camera's.
+bool meets_edge(Frame& frame, const Ray& ray, const Hit& hit, const Spot& spot, bool down, Spot* beyond);
+bool is_same_gray(const Color& one, const Color& other);
+void darken_edge(Weight* weight);
 
 [[gnu::always_inline]] inline bool light_ray_of(const Frame& frame, size_t number, const Spot& spot,
                                                 LightRay* ray) {
@@ -225,6 +235,8 @@ template <EffectSet kSet>
 inline constexpr bool kHasClear = (kSet & (Effect::kGlass | Effect::kMedia)) != 0;
 template <EffectSet kSet>
 inline constexpr bool kHasWater = (kSet & Effect::kWater) != 0;
+template <EffectSet kSet>
+inline constexpr bool kHasRipples = kHasWater<kSet> && (kSet & Effect::kRipples) != 0;
 template <EffectSet kSet>
 inline constexpr bool kBends = (kSet & (Effect::kGlass | Effect::kWater)) != 0;
 
@@ -313,6 +325,36 @@ Color slope_color(AnyFrame& frame, const Spot& spot, const Slope& slope) {
   return color;
 }
 
+/// Darkens the camera's ray where two faces of the same grey meet. Their greys are those of light that nothing
+/// hides.
+template <EffectSet kSet>
+void draw_edges(Frame& frame, const Ray& ray, const Hit& hit, const Spot& spot, Weight* weight) {
+  constexpr EffectSet kOfFaces = kSet & (Effect::kDirectLight | Effect::kEmission);
+  for (int side = 0; side < 2; ++side) {
+    Spot beyond;
+    if (meets_edge(frame, ray, hit, spot, side != 0, &beyond) &&
+        is_same_gray(face_color<kOfFaces>(frame, spot), face_color<kOfFaces>(frame, beyond))) {
+      darken_edge(weight);
+      return;
+    }
+  }
+}
+
+/// A boundary of glass or water, where there are ripples.
+template <EffectSet kSet>
+bool cross_water(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count) {
+  if (has<kSet, Effect::kRipples>(frame) && meeting.at_surface) {
+    return cross_ripples(frame, now, leg, meeting, pending, count);
+  }
+  if constexpr ((kSet & Effect::kSmoothNormals) != 0) {
+    if (has<kSet, Effect::kSmoothNormals>(frame)) {
+      return cross_slope(frame, now, leg, meeting, pending, count);
+    }
+  }
+  return cross(frame, now, leg, meeting, pending, count);
+}
+
 /// Follows one ray to its end: adds what it shows, and puts what comes out of it with the pending ones.
 template <EffectSet kSet, class AnyFrame>
 void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count, Color* sum) {
@@ -356,6 +398,11 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
       scatter(frame, now, leg, meeting, &now.weight, sum);
     }
     if (!meeting.found) {
+      if constexpr (kHasRipples<kSet>) {
+        if (has<kSet, Effect::kRipples>(frame) && now.kind == LitRayKind::kWaterRay) {
+          add(sun_glint(frame, now.ray.direction), now.weight, sum);
+        }
+      }
       if constexpr ((kSet & Effect::kSky) != 0) {
         if (has<kSet, Effect::kSky>(frame)) {
           add(sky_color(frame, now.ray.direction), now.weight, sum);
@@ -367,6 +414,12 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
     }
     if (meeting.opaque) {
       const Spot spot = spot_of(frame, now, meeting);
+      if constexpr ((kSet & Effect::kEdges) != 0) {
+        if (has<kSet, Effect::kEdges>(frame) && now.kind == LitRayKind::kPrimary && legs == 0 &&
+            !spot.inside) {
+          draw_edges<kSet>(frame, now.ray, meeting.hit, spot, &now.weight);
+        }
+      }
       if constexpr ((kSet & Effect::kSmoothNormals) != 0) {
         if (has<kSet, Effect::kSmoothNormals>(frame) && !spot.inside) {
           const Slope slope = slope_at(frame, now.kind, spot);
@@ -393,7 +446,11 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
       }
       return;
     }
-    if constexpr (kBends<kSet> && (kSet & Effect::kSmoothNormals) != 0) {
+    if constexpr (kHasRipples<kSet>) {
+      if (!cross_water<kSet>(frame, &now, &leg, meeting, pending, count)) {
+        return;
+      }
+    } else if constexpr (kBends<kSet> && (kSet & Effect::kSmoothNormals) != 0) {
       if (!(has<kSet, Effect::kSmoothNormals>(frame) ? cross_slope(frame, &now, &leg, meeting, pending, count)
                                                      : cross(frame, &now, &leg, meeting, pending, count))) {
         return;
