@@ -15,7 +15,18 @@ void meet_clear(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* me
 }
 
 bool light_arrives_through(Frame& frame, LightRay* light) {
-  return arrives_through(frame, light);
+  count_ray(frame, LitRayKind::kShadow);
+  Leg leg;
+  begin_way(frame, light->ray, &leg);
+  for (int legs = 0; legs < kMaxLegs; ++legs) {
+    Meeting meeting;
+    meet(frame, LitRayKind::kShadow, light->ray, leg, &meeting);
+    const Passage passage = pass(frame, light, &leg, &meeting);
+    if (passage != Passage::kOn) {
+      return passage == Passage::kArrives;
+    }
+  }
+  return false;
 }
 
 void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting) {
