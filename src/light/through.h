@@ -66,7 +66,7 @@ static void begin_way(const Frame& frame, const Ray& ray, Leg* leg) {
 }
 
 /// Whether light goes on past what a stretch of its way comes to.
-enum class Passage : uint8_t { kOn, kArrives, kBlocked };
+enum class Passage : uint8_t { kBlocked, kArrives, kOn };
 
 /// Takes from the light what the stretch absorbs, and goes to its end.
 [[gnu::always_inline]] inline Passage pass(const Frame& frame, LightRay* light, Leg* leg, Meeting* meeting) {
