@@ -48,41 +48,72 @@ void meet_clear(AskedFrame& frame, const PendingRay& now, const Leg& leg, Meetin
   meet(frame, now.kind, now.ray, leg, meeting);
 }
 
-// The first stretch is asked about, unless it begins in something clear, which is kept with the answer. Later ones
-// are asked of the tree at once, when that answer is there.
-bool meet_on_way(AskedFrame& frame, const LightRay& light, int legs, Leg* leg, Meeting* meeting) {
-  const Answer* answer = legs == 0 ? frame.look() : nullptr;
-  if (legs == 0 && answer == nullptr) {
-    begin_way(frame, light.ray, leg);
-    if (leg->medium.kind != Medium::kSolid) {
-      // What is met at the light itself counts, what is behind it does not.
-      frame.note(light.is_point ? Question::kBefore : Question::kClosest, light.ray,
-                 {light.place.t_numerator + 1, light.place.t_denominator});
-      return false;
-    }
-    Answer& kept = frame.answers[frame.asked - 1];
-    kept = Answer{};
-    kept.into_solid = true;
-    kept.hit.material = leg->medium.material;
-    return false;
+namespace {
+
+// Asks for the next stretch, in the place of the last one.
+void ask_on(AskedFrame& frame, const LightRay& light, const Leg& leg) {
+  if (leg.medium.kind == Medium::kSolid) {
+    frame.note(Question::kOn, light.ray, leg.from, leg.medium.material);
+  } else if (leg.from.t_numerator != 0) {
+    frame.note(Question::kOn, light.ray, leg.from);
+  } else {
+    // What is met at the light itself counts, what is behind it does not.
+    frame.note(light.is_point ? Question::kBefore : Question::kClosest, light.ray,
+               {light.place.t_numerator + 1, light.place.t_denominator});
   }
-  if (legs == 0 && answer->into_solid) {
-    leg->medium = {Medium::kSolid, answer->hit.material};
-  }
-  if (legs != 0 || answer->into_solid) {
-    meet(static_cast<Frame&>(frame), LitRayKind::kShadow, light.ray, *leg, meeting);
-    return true;
-  }
-  meeting->hit = answer->hit;
-  count_result(frame, LitRayKind::kShadow, meeting->hit.kind, meeting->hit.visits);
-  if (meeting->hit.kind == HitKind::kHit) {
-    enter(frame, meeting);
-  }
-  return true;
 }
 
+// The stretch whose answer is there.
+void take_stretch(AskedFrame& frame, const Answer& answer, LightRay* light) {
+  LightWay& way = *frame.way;
+  Meeting meeting;
+  uint64_t* hits = &frame.once->counts.hits[static_cast<int>(LitRayKind::kShadow)];
+  const uint64_t before = *hits;
+  if (way.leg.medium.kind == Medium::kSolid) {
+    take_exit(*frame.once, LitRayKind::kShadow, answer, &meeting);
+  } else {
+    meeting.hit = answer.hit;
+    take_hit(*frame.once, LitRayKind::kShadow, &meeting);
+  }
+  // The stretches are one ray, however many clear solids they meet.
+  if (*hits != before) {
+    *hits = way.has_met ? before : before + 1;
+    way.has_met = true;
+  }
+  const Passage passage = pass(frame, light, &way.leg, &meeting);
+  const bool is_last = ++way.legs == kMaxLegs;
+  way.state = passage == Passage::kArrives              ? LightWay::kArrived
+              : passage == Passage::kBlocked || is_last ? LightWay::kBlocked
+                                                        : LightWay::kUnderWay;
+}
+
+}  // namespace
+
+// Each call takes one stretch of the way, whose answer takes the place of the last one's.
 bool light_arrives_through(AskedFrame& frame, LightRay* light) {
-  return arrives_through(frame, light);
+  count_ray(frame, LitRayKind::kShadow);
+  const Answer* answer = frame.look();
+  LightWay& way = *frame.way;
+  const bool is_new = way.state == LightWay::kNew;
+  if (is_new) {
+    begin_way(frame, light->ray, &way.leg);
+    way.state = LightWay::kUnderWay;
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      light->brightness[i] = way.brightness[i];
+    }
+    if (way.state == LightWay::kUnderWay) {
+      take_stretch(frame, *answer, light);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    way.brightness[i] = light->brightness[i];
+  }
+  if (way.state == LightWay::kUnderWay) {
+    frame.waits = true;
+    ask_on(frame, *light, way.leg);
+  }
+  return way.state == LightWay::kArrived;
 }
 
 void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg) {
@@ -95,7 +126,23 @@ void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg) {
   leg->medium = ray.begins_in;
 }
 
+namespace {
+
+// Whether a face is turned away from a lamp: its ray's component along the axis, rounded, has this sign or is 0.
+bool is_turned_away(const Light& lamp, const Spot& spot) {
+  const int axis = spot.face.axis;
+  const int32_t way = lamp.place[axis] - spot.at[axis].raw;
+  return spot.face.negative ? way >= 0 : way <= 0;
+}
+
+}  // namespace
+
 bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, LightRay* ray) {
+  KnownLight& known = frame.lights[number];
+  frame.way = &known.way;
+  if (!frame.ray->has_lights) {
+    known.way = {};
+  }
   if (!frame.scene.lights[number].is_point) {
     const int face = 2 * spot.face.axis + (spot.face.negative ? 0 : 1);
     KnownLight& sun = frame.suns[6 * number + static_cast<size_t>(face)];
@@ -107,16 +154,20 @@ bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, LightRay* 
     ray->ray.origin = spot.at;
     return sun.shines;
   }
-  KnownLight& known = frame.lights[number];
   if (!frame.ray->has_lights) {
-    known.shines = light_ray(frame.scene.lights[number], spot, &known.ray);
+    const Light& lamp = frame.scene.lights[number];
+    known.shines = !is_turned_away(lamp, spot) && light_ray(lamp, spot, &known.ray);
   }
-  *ray = known.ray;
+  if (known.shines) {
+    *ray = known.ray;
+  }
   return known.shines;
 }
 bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, const Slope& slope, LightRay* ray) {
   KnownLight& known = frame.lights[number];
+  frame.way = &known.way;
   if (!frame.ray->has_lights) {
+    known.way = {};
     known.shines = light_ray(frame.scene.lights[number], spot, slope, &known.ray);
   }
   *ray = known.ray;

@@ -20,7 +20,7 @@ template <class Place>
 inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, const Place& place, Hit* hit) {
   const Answer* answer = frame.look();
   if (answer == nullptr) {
-    frame.note(Question::kBefore, ray, place());
+    frame.note(kind == LitRayKind::kOcclusion ? Question::kNear : Question::kBefore, ray, place());
     *hit = Hit{};
     return;
   }
@@ -71,21 +71,26 @@ inline Status find_closest(AskedFrame& frame, const Ray& ray, Hit* hit, const Tr
   *hit = answer->hit;
   return Status::kOk;
 }
-/// What the tree answers at once is remembered with the answers; a ray that it refuses has missed.
 inline Status find_from(AskedFrame& frame, const Ray& ray, const RayPoint& from, Hit* hit,
-                        const TraceOptions& options) {
-  if (frame.look() == nullptr) {
-    (void)find_from(static_cast<Frame&>(frame), ray, from, &frame.remember()->hit, options);
+                        const TraceOptions& /*options*/) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.note(Question::kOn, ray, from);
+    frame.is_open = true;
+    return kUnknown;
   }
-  *hit = frame.latest().hit;
+  *hit = answer->hit;
   return Status::kOk;
 }
 inline Status find_exit(AskedFrame& frame, const Ray& ray, uint8_t material, const RayPoint& from,
-                        MediumExit* exit, const TraceOptions& options) {
-  if (frame.look() == nullptr) {
-    (void)find_exit(static_cast<Frame&>(frame), ray, material, from, frame.remember(), options);
+                        MediumExit* exit, const TraceOptions& /*options*/) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.note(Question::kOn, ray, from, material);
+    frame.is_open = true;
+    return kUnknown;
   }
-  *exit = frame.latest();
+  *exit = *answer;
   return Status::kOk;
 }
 

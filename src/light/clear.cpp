@@ -15,7 +15,20 @@ void meet_clear(Frame& frame, const PendingRay& now, const Leg& leg, Meeting* me
 }
 
 bool light_arrives_through(Frame& frame, LightRay* light) {
-  return arrives_through(frame, light);
+  count_ray(frame, LitRayKind::kShadow);
+  uint64_t* hits = &frame.counts.hits[static_cast<int>(LitRayKind::kShadow)];
+  const uint64_t most = *hits + 1;
+  Leg leg;
+  begin_way(frame, light->ray, &leg);
+  Passage passage = Passage::kOn;
+  for (int legs = 0; legs < kMaxLegs && passage == Passage::kOn; ++legs) {
+    Meeting meeting;
+    meet(frame, LitRayKind::kShadow, light->ray, leg, &meeting);
+    passage = pass(frame, light, &leg, &meeting);
+  }
+  // Its stretches are one ray, however many clear solids they meet.
+  *hits = *hits < most ? *hits : most;
+  return passage == Passage::kArrives;
 }
 
 void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting) {

@@ -17,11 +17,20 @@ struct MapUnderTest {
   wide::RayMap map;
 };
 
-MapUnderTest make_map(const CompactTree& tree) {
+// With layers for some of the materials.
+MapUnderTest make_map(std::mt19937_64& random, const CompactTree& tree) {
+  std::vector<std::uint8_t> media;
+  const std::int64_t one_of = pick(random, 1, 4);
+  for (int material = 0; material < 256 && pick(random, 0, 40) != 0; ++material) {
+    if (pick(random, 1, one_of) == 1) {
+      media.push_back(static_cast<std::uint8_t>(material));
+    }
+  }
+  const Span<const std::uint8_t> of_media{media.data(), media.size()};
   MapUnderTest made;
-  made.bytes = std::make_unique<HeapBytes>(wide::RayMap::bytes(tree));
+  made.bytes = std::make_unique<HeapBytes>(wide::RayMap::bytes(tree, of_media));
   Arena arena(made.bytes->span());
-  REQUIRE(wide::RayMap::make(tree, &arena, &made.map) == Status::kOk);
+  REQUIRE(wide::RayMap::make(tree, &arena, &made.map, of_media) == Status::kOk);
   return made;
 }
 
@@ -32,6 +41,8 @@ struct RayBatch {
   std::vector<RayPoint> from;
   std::vector<Hit> first;
   std::vector<Hit> first_from;
+  std::vector<std::uint16_t> in;
+  std::vector<MediumExit> change;
 };
 
 bool is_before(const Hit& hit, const RayPoint& point) {
@@ -87,6 +98,20 @@ void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, R
   batch->from.push_back(from);
   REQUIRE(closest_hit_from(tree, ray, from, &hit) == Status::kOk);
   batch->first_from.push_back(hit);
+  // Mostly in what it is in.
+  MediumExit change;
+  std::uint16_t in = wide::kInAir;
+  if (pick(random, 0, 3) != 0) {
+    in = hit.kind == HitKind::kHit && pick(random, 0, 7) != 0
+             ? hit.material
+             : static_cast<std::uint16_t>(pick(random, 0, 12));
+    REQUIRE(leave_medium(tree, ray, static_cast<std::uint8_t>(in), &change, from) == Status::kOk);
+  } else {
+    change.hit = hit;
+    change.into_solid = hit.kind == HitKind::kHit;
+  }
+  batch->in.push_back(in);
+  batch->change.push_back(change);
 }
 
 // Hard rays, and those that go on from what they hit.
@@ -127,6 +152,13 @@ bool same(const Hit& a, const Hit& b) {
          (a.kind != HitKind::kHit ||
           (a.voxel == b.voxel && a.axis == b.axis && a.t_numerator == b.t_numerator &&
            a.t_denominator == b.t_denominator && a.material == b.material && a.block_level == b.block_level));
+}
+
+bool same(const MediumExit& a, const MediumExit& b) {
+  if (a.left_world && b.left_world && b.hit.axis < 0) {
+    return a.hit.axis == b.hit.axis;
+  }
+  return a.into_solid == b.into_solid && a.left_world == b.left_world && same(a.hit, b.hit);
 }
 
 template <class Same>
@@ -188,6 +220,9 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
              [&](std::size_t i) { return same(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
   CHECK(wide::first_hit_from(map, rays, from, to_hits) == Status::kOk);
   check_each("first_hit_from", batch, [&](std::size_t i) { return same(hits[i], batch.first_from[i]); });
+  std::vector<MediumExit> exits(count);
+  CHECK(wide::first_change(map, rays, from, {batch.in.data(), count}, {exits.data(), count}) == Status::kOk);
+  check_each("first_change", batch, [&](std::size_t i) { return same(exits[i], batch.change[i]); });
 }
 
 // Scenes of random_scene, and so many rays through each by each of the instruction sets: counts the rays.
@@ -202,7 +237,7 @@ std::uint64_t check_random_scenes(std::uint64_t first_seed, int scenes, std::siz
     CAPTURE(seed);
     CAPTURE(scene.what);
     CAPTURE(scene.level);
-    const MapUnderTest made = make_map(scene.tree);
+    const MapUnderTest made = make_map(random, scene.tree);
     const RayBatch batch = make_batch(random, scene.tree, rays);
     for (int set = 0; set < sets; ++set) {
       wide::use_instruction_set(set);

@@ -43,7 +43,7 @@ class WideLitStreams final : public LitStreams {
 
 std::size_t LitStreams::bytes(const CompactTree& tree, EffectSet effects, const LitScene& scene,
                               int threads) {
-  return wide::RayMap::bytes(tree) +
+  return wide::RayMap::bytes(tree, wide::lit_media(effects, scene).span()) +
          wide::lit_workspace_bytes(effects, scene) * static_cast<std::size_t>(threads);
 }
 
@@ -52,14 +52,20 @@ std::unique_ptr<LitStreams> LitStreams::make(const CompactTree& tree, Arena* are
   const auto start = std::chrono::steady_clock::now();
   const std::size_t least = wide::least_lit_workspace_bytes(effects, scene);
   // Asked before the map is made: what does not fit costs no time.
-  const std::size_t map_bytes = wide::RayMap::bytes(tree);
+  // Layers for what is clear only where there is room for them.
+  wide::LitMedia media = wide::lit_media(effects, scene);
+  std::size_t map_bytes = wide::RayMap::bytes(tree, media.span());
+  if (media.count != 0 && (map_bytes > arena->free_bytes() || arena->free_bytes() - map_bytes < least)) {
+    media.count = 0;
+    map_bytes = wide::RayMap::bytes(tree);
+  }
   if (effects == Effect::kNone || map_bytes > arena->free_bytes() ||
       arena->free_bytes() - map_bytes < least) {
     return nullptr;
   }
   const std::size_t mark = arena->used_bytes();
   wide::RayMap map;
-  if (wide::RayMap::make(tree, arena, &map) != Status::kOk) {
+  if (wide::RayMap::make(tree, arena, &map, media.span()) != Status::kOk) {
     return nullptr;
   }
   const std::size_t wanted = wide::lit_workspace_bytes(effects, scene) * static_cast<std::size_t>(threads);

@@ -22,7 +22,8 @@
 ///       if frame.shows(): begin and shine, until frame.is_answered()
 ///     store(frame, band, line, x, y, sum)
 ///
-/// What is rare is asked of the tree at once all the same: ways through clear solids, slopes, single voxels, water.
+/// Light through clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for
+/// each light. What is rare is asked of the tree at once all the same: slopes, single voxels, water.
 #ifndef THIMBLE_LIGHT_ASKED_H
 #define THIMBLE_LIGHT_ASKED_H
 
@@ -42,13 +43,18 @@ enum class Question : uint8_t {
   kClosest,  ///< `closest_hit`
   kAny,      ///< `any_hit`: of the answer `hit.kind` alone counts
   kBefore,   ///< `closest_hit`, where a hit at or after `before` may be given or left out
+  kNear,     ///< the same for occlusion: one `before` for all; the material only where things may be clear
+  kOn,       ///< from the point `before` on: `closest_hit_from`, or of a ray in a material its `leave_medium`
 };
-inline constexpr int kQuestions = 3;
+inline constexpr int kQuestions = 5;
+/// What a ray of kOn is in that is in no material.
+inline constexpr uint16_t kInNothing = 256;
 
 /// Questions of one kind, in the order in which they were asked. All rays pass `check_ray`.
 struct Asked {
   Ray* rays = nullptr;
-  RayPoint* before = nullptr;  ///< kBefore alone; else null
+  RayPoint* before = nullptr;  ///< kBefore, kNear and kOn alone; else null
+  uint16_t* in = nullptr;      ///< kOn alone: a material, or kInNothing
   uint32_t* answer = nullptr;  ///< the number of the answer that is wanted
   uint32_t count = 0;
 };
@@ -65,9 +71,20 @@ constexpr size_t most_answers(EffectSet effects, const LitScene& scene) {
   return on_way > light ? on_way : light;
 }
 
+/// How far light has come through clear solids.
+struct LightWay {
+  enum State : uint8_t { kNew, kUnderWay, kArrived, kBlocked };
+  State state = kNew;
+  uint8_t legs = 0;      ///< behind it
+  bool has_met = false;  ///< on one of them, something
+  Leg leg;
+  uint32_t brightness[3] = {};
+};
+
 /// The ray to a light, from when it was asked about.
 struct KnownLight {
   LightRay ray;
+  LightWay way;
   bool shines = false;    ///< else the face is turned away from it
   bool is_known = false;  ///< of `AskedFrame::suns`
 };
@@ -100,12 +117,13 @@ struct AskedFrame : Frame {
     known = count;
     asked = 0;
     is_open = false;
+    waits = false;
     ray = of_ray;
     lights = of_lights;
   }
   /// After it: whether all was answered, so that what it gave counts. Else it is to be taken again when the
   /// questions have their answers: then `asked` are known.
-  bool is_answered() const { return asked <= known; }
+  bool is_answered() const { return asked <= known && !waits; }
   /// After `follow`: whether the ray ended on a surface, of which `shine` is to work out the light.
   bool shows() const { return ray->has_spot; }
 
@@ -117,25 +135,21 @@ struct AskedFrame : Frame {
     return index < known ? answers + index : nullptr;
   }
   /// Asks for what `look` did not find. A ray that `check_ray` refuses has missed.
-  void note(Question question, const Ray& from, const RayPoint& before) {
+  void note(Question question, const Ray& from, const RayPoint& before, uint16_t in = kInNothing) {
     if (check_ray(from, tree.level()) != Status::kOk) {
       answers[asked - 1] = Answer{};
       return;
     }
     Asked& to = questions[static_cast<int>(question)];
     to.rays[to.count] = from;
-    if (question == Question::kBefore) {
+    if (to.before != nullptr) {
       to.before[to.count] = before;
+    }
+    if (to.in != nullptr) {
+      to.in[to.count] = in;
     }
     to.answer[to.count++] = number + asked - 1;
   }
-  /// Where to put what `look` did not find, found at once: all before it is known.
-  Answer* remember() {
-    known = asked;
-    answers[asked - 1] = Answer{};
-    return answers + (asked - 1);
-  }
-  const Answer& latest() const { return answers[asked - 1]; }
   /// Leaves a surface's light to `shine`.
   void show(const Spot& spot, const Slope* slope, const Weight& weight) {
     ray->spot = spot;
@@ -148,16 +162,20 @@ struct AskedFrame : Frame {
   }
 
   Asked* questions = nullptr;  ///< of each kind; may be shared
+  Frame* once =
+      nullptr;  ///< counts what is taken once, though the step that it is part of may be taken again
   /// Six for each light of the scene: rays to distant lights differ only by the face that they start on. As they are
   /// made at first; may be shared.
   KnownLight* suns = nullptr;
   Answer* answers = nullptr;
   KnownRay* ray = nullptr;
   KnownLight* lights = nullptr;
+  LightWay* way = nullptr;  ///< of the light that is asked about
   uint32_t number = 0;
   uint32_t known = 0;
   uint32_t asked = 0;
   bool is_open = false;  ///< the ray's own way is asked: nothing that follows it counts
+  bool waits = false;    ///< an answer that was there has led to another question in its place
 };
 
 /// The steps with the effects of a set compiled in, and those that `AskedFrame::effects` has not left out.

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "wide/lit/opaque_stream.h"
+#include "wide/lit/pixel_flow.h"
 #include "wide/lit/stream.h"
 
 namespace thimble::wide {
@@ -13,22 +14,14 @@ namespace {
 constexpr uint32_t kSlots = 1024;
 constexpr uint32_t kLeastSlots = 64;
 
-// The rows of a task: enough for all slots, and whole bytes.
-int32_t rows_of_task(const Band& band, int32_t width_px, uint32_t slots) {
-  const int32_t rows = static_cast<int32_t>(slots) / std::max(width_px, 1) + 1;
-  return has_pages(band.format) ? (rows + 7) / 8 * 8 : rows;
-}
-
 // Either kind of stream fits in what was asked for, so that a workspace serves all sets of effects within one.
 size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
   return std::max(StreamShape(effects, scene, slots).bytes(), OpaqueShape(effects, scene, slots).bytes());
 }
 
-// Draws things 0 .. `things` - 1, so many a task that all slots are filled: draw(stream, first, end) does some.
-// `step(slots)` is how many.
-template <class Stream, class Shape, class Step, class Draw>
-Status draw_by(const lit::Frame& frame, const RayMap& map, size_t things, Bytes workspace, Threads* threads,
-               LitCounts* counts, const Step& step, const Draw& draw) {
+template <class Stream, class Shape>
+Status draw_by(const lit::Frame& frame, const RayMap& map, PixelFlow* flow, Bytes workspace, Threads* threads,
+               LitCounts* counts) {
   // As many threads as there is room for; then as many pixels at once.
   size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
   workers = std::min(workers, workspace.size / least_lit_workspace_bytes(frame.effects, frame.scene));
@@ -40,15 +33,11 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, size_t things, Bytes 
     slots /= 2;
   }
   const Shape shape(frame.effects, frame.scene, slots);
-  const size_t together = step(slots);
-  std::atomic<size_t> next{0};
   std::atomic_flag adding;
   const auto work = [&](int worker) {
     Stream stream(frame, map, shape,
                   workspace.subspan(static_cast<size_t>(worker) * shape.bytes(), shape.bytes()));
-    for (size_t first = next.fetch_add(together); first < things; first = next.fetch_add(together)) {
-      draw(&stream, first, std::min(first + together, things));
-    }
+    stream.draw(flow);
     while (adding.test_and_set()) {
     }
     if (counts != nullptr) {
@@ -64,13 +53,26 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, size_t things, Bytes 
   return Status::kOk;
 }
 
-template <class... Arguments>
-Status draw_by_either(const lit::Frame& frame, const Arguments&... arguments) {
-  return is_opaque(frame.effects, frame.scene) ? draw_by<OpaqueStream, OpaqueShape>(frame, arguments...)
-                                               : draw_by<Stream, StreamShape>(frame, arguments...);
+Status draw_by_either(const lit::Frame& frame, const RayMap& map, PixelFlow flow, Bytes workspace,
+                      Threads* threads, LitCounts* counts) {
+  return is_opaque(frame.effects, frame.scene)
+             ? draw_by<OpaqueStream, OpaqueShape>(frame, map, &flow, workspace, threads, counts)
+             : draw_by<Stream, StreamShape>(frame, map, &flow, workspace, threads, counts);
 }
 
 }  // namespace
+
+LitMedia lit_media(EffectSet effects, const LitScene& scene) {
+  LitMedia media;
+  for (size_t material = 0; material < std::min<size_t>(scene.surfaces.size, 256); ++material) {
+    const SurfaceKind kind = scene.surfaces[material].kind;
+    if ((kind == SurfaceKind::kGlass && (effects & Effect::kGlass) != 0) ||
+        (kind == SurfaceKind::kMedia && (effects & Effect::kMedia) != 0)) {
+      media.materials[media.count++] = static_cast<uint8_t>(material);
+    }
+  }
+  return media;
+}
 
 size_t lit_workspace_bytes(EffectSet effects, const LitScene& scene) {
   return most_bytes(effects, scene, kSlots);
@@ -93,12 +95,7 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(
-      frame, map, static_cast<size_t>(band.rows), workspace, threads, counts,
-      [&](uint32_t slots) { return static_cast<size_t>(rows_of_task(band, camera.width_px(), slots)); },
-      [&](auto* stream, size_t first, size_t end) {
-        stream->draw(band, stride, static_cast<int32_t>(first), static_cast<int32_t>(end));
-      });
+  return draw_by_either(frame, map, PixelFlow(frame, band, stride), workspace, threads, counts);
 }
 
 Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
@@ -125,12 +122,7 @@ Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& cam
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(
-      frame, map, places.size, workspace, threads, counts,
-      [](uint32_t slots) { return static_cast<size_t>(slots); },
-      [&](auto* stream, size_t first, size_t end) {
-        stream->draw_places({places.data + first, end - first}, rgb.subspan(3 * first));
-      });
+  return draw_by_either(frame, map, PixelFlow(frame, places, rgb), workspace, threads, counts);
 }
 
 }  // namespace thimble::wide

@@ -16,6 +16,15 @@
 
 namespace thimble::wide {
 
+/// The materials that rays go through with these effects of the scene: what `RayMap::make` wants to know, so that ways
+/// out of them are found in vectors.
+struct LitMedia {
+  uint8_t materials[256];
+  size_t count = 0;
+  Span<const uint8_t> span() const { return {materials, count}; }
+};
+LitMedia lit_media(EffectSet effects, const LitScene& scene);
+
 /// The bytes of workspace that each thread of `render_lit` needs to be fast, and the least that it does with.
 /// A picture's size does not matter, the effects, rays of occlusion and lights do: some 0.6 MB, with glass 1.5.
 size_t lit_workspace_bytes(EffectSet effects, const LitScene& scene);

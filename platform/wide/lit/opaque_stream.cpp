@@ -67,6 +67,7 @@ void OpaqueParts::lay_out(const OpaqueShape& shape, uint8_t* at) {
   met = taker.take<RayPoint>(slots * shape.around);
   light = taker.take<lit::Color>(slots);
   colors = taker.take<lit::Color>(slots);
+  places = taker.take<PixelSlot>(slots);
   bytes = taker.used();
 }
 
@@ -292,31 +293,6 @@ void OpaqueStream::paint() {
   }
 }
 
-void OpaqueStream::store(const Band& band, size_t stride, int32_t row, int32_t x, uint32_t count) {
-  const int32_t width = frame_.camera.width_px();
-  const bool is_whole = bits_per_pixel(band.format) % 8 == 0;  // so all bytes are stored
-  for (uint32_t i = 0; i < count; ++i) {
-    uint8_t* const line = band.pixels.data + stride * row_place(band.format, row);
-    if (x == 0 && !is_whole && begins_bytes(band.format, row)) {
-      lit::clear_row(frame_, band, line);
-    }
-    const lit::Color& color = parts_.colors[i];
-    if (band.format == PixelFormat::kRgb888 &&
-        std::max({color.c[0], color.c[1], color.c[2]}) <= lit::kWhite) {
-      uint8_t* const to = line + 3 * x;
-      for (int c = 0; c < 3; ++c) {
-        to[c] = static_cast<uint8_t>((color.c[c] + lit::kLevel / 2) / lit::kLevel);
-      }
-    } else {
-      lit::store(frame_, band, line, x, band.first_row + row, color);
-    }
-    if (++x == width) {
-      x = 0;
-      ++row;
-    }
-  }
-}
-
 // Finds the colours of so many rays.
 void OpaqueStream::light_up(uint32_t count) {
   (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
@@ -326,42 +302,19 @@ void OpaqueStream::light_up(uint32_t count) {
   paint();
 }
 
-void OpaqueStream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
-  const int32_t width = frame_.camera.width_px();
-  int32_t row = first;
-  int32_t x = 0;
-  while (row < end) {
-    const int32_t from_row = row;
-    const int32_t from_x = x;
+void OpaqueStream::draw(PixelFlow* flow) {
+  PixelReader pixels(flow);
+  for (;;) {
     uint32_t count = 0;
-    while (row < end && count < shape_.slots) {
-      const int32_t to =
-          static_cast<int32_t>(std::min(int64_t{width}, x + static_cast<int64_t>(shape_.slots - count)));
-      RowRays rays(frame_.camera, x, band.first_row + row);
-      for (; x < to; ++x, rays.next()) {
-        parts_.rays[count++] = rays.ray();
-      }
-      if (x == width) {
-        x = 0;
-        ++row;
-      }
+    while (count < shape_.slots && pixels.next(&parts_.rays[count], &parts_.places[count])) {
+      ++count;
     }
-    light_up(count);
-    store(band, stride, from_row, from_x, count);
-  }
-}
-
-void OpaqueStream::draw_places(Span<const PixelPlace> places, Bytes rgb) {
-  Band band;
-  band.format = PixelFormat::kRgb888;
-  for (size_t first = 0; first < places.size; first += shape_.slots) {
-    const auto count = static_cast<uint32_t>(std::min<size_t>(shape_.slots, places.size - first));
-    for (uint32_t i = 0; i < count; ++i) {
-      parts_.rays[i] = frame_.camera.ray(places.data[first + i].x, places.data[first + i].y);
+    if (count == 0) {
+      return;
     }
     light_up(count);
     for (uint32_t i = 0; i < count; ++i) {
-      lit::store(frame_, band, rgb.data + 3 * (first + i), 0, 0, parts_.colors[i]);
+      pixels.store(parts_.places[i], parts_.colors[i]);
     }
   }
 }

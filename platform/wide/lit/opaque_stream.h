@@ -13,6 +13,7 @@
 #include "thimble/base/memory.h"
 #include "thimble/light/asked.h"
 #include "wide/lit/lit_renderer.h"
+#include "wide/lit/pixel_flow.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -50,6 +51,7 @@ struct OpaqueParts {
   int32_t* sky[4];  ///< directions by component; shares of the sky
   uint8_t* any;
   RayPoint* met;
+  PixelSlot* places;   ///< by pixel
   lit::Color* light;   ///< by face that was met
   lit::Color* colors;  ///< by pixel
   size_t bytes;
@@ -60,10 +62,8 @@ class OpaqueStream {
   /// `bytes` has shape.bytes(), at any address.
   OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes);
 
-  /// As Stream::draw.
-  void draw(const Band& band, size_t stride, int32_t first, int32_t end);
-  /// Draws pixels of the camera, three bytes each.
-  void draw_places(Span<const PixelPlace> places, Bytes rgb);
+  /// Draws what it takes from the flow, until that ends.
+  void draw(PixelFlow* flow);
   const LitCounts& counts() const { return frame_.counts; }
 
  private:
@@ -87,7 +87,6 @@ class OpaqueStream {
   void add_suns();
   void add_sun(size_t number);
   void paint();
-  void store(const Band& band, size_t stride, int32_t row, int32_t x, uint32_t count);
 
   lit::Frame frame_;
   const RayMap& map_;

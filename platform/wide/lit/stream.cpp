@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "thimble/light/optics.h"
 #include "wide/lit/taker.h"
 
 namespace thimble::wide {
@@ -16,13 +17,17 @@ void StreamParts::lay_out(const StreamShape& shape, uint8_t* at) {
   waiting = taker.take<uint32_t>(shape.slots);
   uint32_t most_hits = 0;
   for (int i = 0; i < lit::kQuestions; ++i) {
-    const bool names = i != static_cast<int>(lit::Question::kAny);
+    const bool names =
+        i != static_cast<int>(lit::Question::kAny) && i != static_cast<int>(lit::Question::kOn);
     most_hits = names ? std::max(most_hits, shape.most[i]) : most_hits;
     questions[i].rays = taker.take<Ray>(shape.most[i]);
     questions[i].answer = taker.take<uint32_t>(shape.most[i]);
-    questions[i].before =
-        i == static_cast<int>(lit::Question::kBefore) ? taker.take<RayPoint>(shape.most[i]) : nullptr;
+    const bool is_on = i == static_cast<int>(lit::Question::kOn);
+    const bool has_point = is_on || i == static_cast<int>(lit::Question::kBefore);
+    questions[i].before = has_point ? taker.take<RayPoint>(shape.most[i]) : nullptr;
+    questions[i].in = is_on ? taker.take<uint16_t>(shape.most[i]) : nullptr;
   }
+  exits = taker.take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
   any = taker.take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
   hits = taker.take<Hit>(most_hits);
   bytes = taker.used();
@@ -44,7 +49,10 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
   const uint32_t around = (effects & Effect::kAmbientOcclusion) != 0 ? scene.occlusion.rays : 0U;
   most[static_cast<int>(lit::Question::kClosest)] = slots * (1 + (clear ? suns : 0));
   most[static_cast<int>(lit::Question::kAny)] = slots * (clear ? 0 : suns);
-  most[static_cast<int>(lit::Question::kBefore)] = slots * (around + lamps);
+  most[static_cast<int>(lit::Question::kBefore)] = slots * lamps;
+  most[static_cast<int>(lit::Question::kNear)] = slots * around;
+  // A step of its own way, or one of each light's.
+  most[static_cast<int>(lit::Question::kOn)] = clear ? slots * std::max(1U, suns + lamps) : 0;
 }
 
 size_t StreamShape::bytes() const {
@@ -56,6 +64,7 @@ size_t StreamShape::bytes() const {
 Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes)
     : frame_(frame),
       asking_(frame),
+      once_(frame),
       map_(map),
       shape_(shape),
       steps_(lit::steps_of(frame.effects)),
@@ -64,19 +73,24 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
   parts_.lay_out(shape, Taker::aligned(bytes.data));
   frame_.questions = parts_.questions;
   asking_.questions = parts_.questions;
+  frame_.once = &once_;
+  asking_.once = &once_;
   frame_.suns = parts_.suns;
   asking_.suns = parts_.suns;
 }
 
-void Stream::begin(uint32_t number, const Ray& ray) {
+bool Stream::begin(uint32_t number, PixelReader* pixels) {
   StreamSlot& slot = parts_.slots[number];
+  lit::PendingRay first;
+  if (!pixels->next(&first.ray, &slot.at)) {
+    return false;
+  }
   slot.sum = {};
   slot.pending = 1;
-  lit::PendingRay first;
-  first.ray = ray;
   parts_.pending[size_t{number} * shape_.pending] = first;
   frame_.counts.rays[static_cast<int>(LitRayKind::kPrimary)] += 1;
   begin_ray(number);
+  return true;
 }
 
 void Stream::begin_step(uint32_t number, lit::AskedFrame* frame) {
@@ -133,10 +147,15 @@ bool Stream::shine(uint32_t number) {
   StreamSlot& slot = parts_.slots[number];
   // What is counted while it asks is counted again with the answers.
   lit::AskedFrame& frame = slot.known == 0 ? asking_ : frame_;
+  const bool may_wait = is_clear_ && slot.known != 0;
+  const LitCounts counts = may_wait ? frame_.counts : LitCounts();
   lit::Color sum;
   begin_step(number, &frame);
   steps_.shine(frame, &sum);
   if (!frame.is_answered()) {
+    if (may_wait) {
+      frame_.counts = counts;
+    }
     slot.known = frame.asked;
     return false;
   }
@@ -193,6 +212,21 @@ void Stream::answer() {
   for (uint32_t i = 0; i < before.count; ++i) {
     put(before.answer[i], parts_.hits[i]);
   }
+  // What is clear hides nothing; where nothing is, the material does not matter.
+  lit::Asked& near = asked(lit::Question::kNear);
+  const Occlusion& occlusion = frame_.scene.occlusion;
+  (void)first_hit_within(map_, {near.rays, near.count}, {occlusion.reach, kOcclusionLength},
+                         {parts_.hits, near.count}, is_clear_);
+  for (uint32_t i = 0; i < near.count; ++i) {
+    put(near.answer[i], parts_.hits[i]);
+  }
+  static_assert(lit::kInNothing == kInAir);
+  lit::Asked& on = asked(lit::Question::kOn);
+  (void)first_change(map_, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count},
+                     {parts_.exits, on.count});
+  for (uint32_t i = 0; i < on.count; ++i) {
+    parts_.answers[on.answer[i]] = parts_.exits[i];
+  }
   lit::Asked& any = asked(lit::Question::kAny);
   (void)any_hit(map_, {any.rays, any.count}, {parts_.any, any.count});
   for (uint32_t i = 0; i < any.count; ++i) {
@@ -200,81 +234,45 @@ void Stream::answer() {
     answer.hit.kind = parts_.any[i] != 0 ? HitKind::kHit : HitKind::kMiss;
     answer.hit.visits = 0;  // which it does not tell
   }
-  closest.count = 0;
-  before.count = 0;
-  any.count = 0;
+  for (lit::Asked& one : parts_.questions) {
+    one.count = 0;
+  }
 }
 
-void Stream::finish(uint32_t slots) {
-  uint32_t waiting = slots;
-  for (uint32_t i = 0; i < slots; ++i) {
-    parts_.waiting[i] = i;
+LitCounts Stream::counts() const {
+  LitCounts all = frame_.counts;
+  lit::add_counts(once_.counts, &all);
+  return all;
+}
+
+void Stream::draw(PixelFlow* flow) {
+  PixelReader pixels(flow);
+  uint32_t waiting = 0;
+  while (waiting < shape_.slots && begin(waiting, &pixels)) {
+    parts_.waiting[waiting] = waiting;
+    ++waiting;
   }
   answer();
   // It ends: each turn gives every ray that waits an answer more, and a pixel has a bounded number of rays.
   while (waiting != 0) {
     uint32_t left = 0;
     for (uint32_t i = 0; i < waiting; ++i) {
-      const uint32_t slot = parts_.waiting[i];
-      if (!go_on(slot)) {
-        parts_.waiting[left++] = slot;
+      const uint32_t number = parts_.waiting[i];
+      const StreamSlot& slot = parts_.slots[number];
+      bool is_begun = true;
+      while (is_begun && go_on(number)) {
+        pixels.store(slot.at, slot.sum);
+        is_begun = begin(number, &pixels);
+        if (slot.known != 0) {
+          break;
+        }
+      }
+      if (is_begun) {
+        parts_.waiting[left++] = number;
       }
     }
     answer();
     waiting = left;
-  }
-}
-
-void Stream::draw(const Band& band, size_t stride, int32_t first, int32_t end) {
-  const int32_t width = frame_.camera.width_px();
-  // Pixels in reading order, cut into as many as are under way at once.
-  int32_t row = first;
-  int32_t x = 0;
-  while (row < end) {
-    const int32_t from_row = row;
-    const int32_t from_x = x;
-    uint32_t count = 0;
-    while (row < end && count < shape_.slots) {
-      const int32_t to =
-          static_cast<int32_t>(std::min(int64_t{width}, x + static_cast<int64_t>(shape_.slots - count)));
-      RowRays rays(frame_.camera, x, band.first_row + row);
-      for (; x < to; ++x, rays.next()) {
-        begin(count++, rays.ray());
-      }
-      if (x == width) {
-        x = 0;
-        ++row;
-      }
-    }
-    finish(count);
-    int32_t to_row = from_row;
-    int32_t to_x = from_x;
-    for (uint32_t i = 0; i < count; ++i) {
-      uint8_t* const line = band.pixels.data + stride * row_place(band.format, to_row);
-      if (to_x == 0 && begins_bytes(band.format, to_row)) {
-        lit::clear_row(frame_, band, line);
-      }
-      lit::store(frame_, band, line, to_x, band.first_row + to_row, parts_.slots[i].sum);
-      if (++to_x == width) {
-        to_x = 0;
-        ++to_row;
-      }
-    }
-  }
-}
-
-void Stream::draw_places(Span<const PixelPlace> places, Bytes rgb) {
-  Band band;
-  band.format = PixelFormat::kRgb888;
-  for (size_t first = 0; first < places.size; first += shape_.slots) {
-    const auto count = static_cast<uint32_t>(std::min<size_t>(shape_.slots, places.size - first));
-    for (uint32_t i = 0; i < count; ++i) {
-      begin(i, frame_.camera.ray(places.data[first + i].x, places.data[first + i].y));
-    }
-    finish(count);
-    for (uint32_t i = 0; i < count; ++i) {
-      lit::store(frame_, band, rgb.data + 3 * (first + i), 0, 0, parts_.slots[i].sum);
-    }
   }
 }
 

@@ -9,6 +9,7 @@
 #include "thimble/base/memory.h"
 #include "thimble/light/asked.h"
 #include "wide/lit/lit_renderer.h"
+#include "wide/lit/pixel_flow.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -28,6 +29,7 @@ struct StreamShape {
 
 /// A pixel under way.
 struct StreamSlot {
+  PixelSlot at;
   lit::Color sum;
   lit::KnownRay ray;   ///< the last one of `pending`; or, when it shines, one that is not among them any more
   size_t pending = 0;  ///< rays that wait to be followed
@@ -47,6 +49,7 @@ struct StreamParts {
   lit::Asked questions[lit::kQuestions];
   uint8_t* any;
   Hit* hits;
+  MediumExit* exits;
   size_t bytes;
 };
 
@@ -55,18 +58,14 @@ class Stream {
   /// `bytes` has shape.bytes(), at any address.
   Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes);
 
-  /// Draws rows first .. end - 1 of the band, counted from its own first. For formats whose rows share bytes,
-  /// both are multiples of 8 or the band's end.
-  void draw(const Band& band, size_t stride, int32_t first, int32_t end);
-  /// Draws pixels of the camera, three bytes each.
-  void draw_places(Span<const PixelPlace> places, Bytes rgb);
-  const LitCounts& counts() const { return frame_.counts; }
+  /// Draws what it takes from the flow, until that ends. Pixels that are done make room for others, so that as many
+  /// as there are slots are under way.
+  void draw(PixelFlow* flow);
+  LitCounts counts() const;
 
  private:
-  // Begins a pixel.
-  void begin(uint32_t slot, const Ray& ray);
-  // Follows the rays of the first `slots` pixels to their ends.
-  void finish(uint32_t slots);
+  // Begins the next pixel in a slot; false: there is none.
+  bool begin(uint32_t slot, PixelReader* pixels);
   // Begins the last of a pixel's pending rays.
   void begin_ray(uint32_t number);
   void begin_step(uint32_t number, lit::AskedFrame* frame);
@@ -78,6 +77,7 @@ class Stream {
 
   lit::AskedFrame frame_;
   lit::AskedFrame asking_;  // its counts are nobody's
+  lit::Frame once_;         // counts what the other two take once
   const RayMap& map_;
   StreamShape shape_;
   lit::Steps steps_;

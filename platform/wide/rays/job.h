@@ -19,13 +19,15 @@ struct Job {
   size_t count;
   const RayPoint* points;  ///< with a bound
   Bound bound;
-  // One of the three is wanted; all say "a miss" before the call.
+  // One of the four is wanted; all say "a miss" before the call.
   uint8_t* any;
   Hit* hits;
   RayPoint* entries = nullptr;
   bool names = true;            ///< whether hits want materials
   size_t point_step = 1;        ///< from a ray's point to the next one's; 0: one for all
   Status status = Status::kOk;  ///< the first error
+  MediumExit* exits = nullptr;
+  const uint16_t* in = nullptr;  ///< with `exits`
 };
 
 /// Traces all rays of a job that has a map. kernels/trace.cpp.
@@ -37,6 +39,9 @@ void trace_by_core(Job* job, size_t ray);
 /// What ray number `ray` met in voxel `cell` of the map's world, mirrored along its negative components, after
 /// `visits` steps.
 void put_hit(Job* job, size_t ray, const Vec3i& cell, uint32_t visits);
+
+/// Takes note that a ray of `exits` met nothing.
+void put_no_exit(Job* job, size_t ray, uint32_t visits);
 
 /// Whether t = numerator / denominator lies before the point.
 inline bool is_before(int64_t numerator, int64_t denominator, const RayPoint& before) {

@@ -1,41 +1,25 @@
 // The map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes reach.
 #include <algorithm>
 
+#include "wide/rays/map_parts.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
 namespace {
 
-constexpr int kBrickLevel = 4;
-constexpr int kLeafLevel = 2;
-constexpr unsigned kLeaves = 64;  // of a brick
 constexpr uint32_t kMaxReach = 15;
-constexpr uint64_t kMostWords = uint64_t{1} << 28;  // of bricks, so that a cube says where its own begins
-
-// How much the map takes, and where each level of the tree begins.
-struct MapShape {
-  uint32_t level_begin[kMaxLevel + 1];
-  uint64_t top = 0;
-  uint64_t words = 0;  // of bricks
-};
-
-bool has_nodes(const CompactTree& tree) {
-  return tree.many_materials() || tree.merged();
-}
-
-int map_level(const CompactTree& tree) {
-  return std::max(tree.level(), kBrickLevel);
-}
 
 // False for a tree whose masks do not add up.
 bool measure(const CompactTree& tree, MapShape* shape) {
   uint64_t begin = 0;
   uint64_t end = tree.empty() ? 0 : 1;
-  shape->top = (uint64_t{1} << (3 * (map_level(tree) - kBrickLevel))) + 1;
+  shape->top = uint64_t{1} << (3 * (map_level(tree) - kBrickLevel));
   uint64_t bricks = 1;  // one that is solid through, which all such cubes share
   uint64_t leaves = kLeaves;
+  uint64_t blocks = 0;
   for (int level = tree.level(); level >= 1; --level) {
     shape->level_begin[level] = static_cast<uint32_t>(begin);
+    shape->block_begin[level] = static_cast<uint32_t>(blocks);
     uint64_t children = 0;
     uint64_t solid = 0;
     for (uint64_t node = begin; node < end; ++node) {
@@ -43,6 +27,7 @@ bool measure(const CompactTree& tree, MapShape* shape) {
       children += static_cast<unsigned>(__builtin_popcount(mask));
       solid += mask == 0 ? 1 : 0;
     }
+    blocks += solid;
     const bool is_root = level == tree.level();
     if (level == kBrickLevel || (is_root && level < kBrickLevel)) {
       bricks += end - begin;
@@ -63,45 +48,25 @@ bool measure(const CompactTree& tree, MapShape* shape) {
   return begin == tree.node_count();
 }
 
-size_t map_bytes(const MapShape& shape) {
+// All numberings, and a word more.
+uint64_t top_words(const MapShape& shape, const MediaShape& media) {
+  return shape.top * (1 + media.layers) + 1;
+}
+size_t map_bytes(const MapShape& shape, const MediaShape& media) {
   constexpr uint64_t kPadding = 2 * 64;
-  return static_cast<size_t>(shape.top * sizeof(uint32_t) + shape.words * sizeof(uint64_t) + kPadding);
+  return static_cast<size_t>(top_words(shape, media) * sizeof(uint32_t) +
+                             (shape.words + media.words) * sizeof(uint64_t) + kPadding);
 }
 
-struct Corner {
-  uint32_t x;
-  uint32_t y;
-  uint32_t z;
-};
-
-Corner child_corner(const Corner& corner, unsigned octant, int level) {
-  const uint32_t half = uint32_t{1} << (level - 1);
-  return {corner.x + ((octant & 1U) != 0 ? half : 0), corner.y + ((octant & 2U) != 0 ? half : 0),
-          corner.z + ((octant & 4U) != 0 ? half : 0)};
-}
-
-// A cell within a cube of 4^3 of them.
-unsigned bit_of(const Corner& corner, int level) {
-  return ((corner.x >> level) & 3U) | ((corner.y >> level) & 3U) << 2 | ((corner.z >> level) & 3U) << 4;
-}
-
-// The eight voxels of a node of level 1 as the bits of a leaf whose first voxel is theirs.
-uint64_t spread(unsigned mask) {
-  return uint64_t{mask & 3U} | uint64_t{(mask >> 2) & 3U} << 4 | uint64_t{(mask >> 4) & 3U} << 16 |
-         uint64_t{(mask >> 6) & 3U} << 20;
-}
-
-// Walks down the tree in depth: in each level it meets the nodes in the order in which they stand.
-class MapWriter {
+class MapWriter : TreeWalk {
  public:
   MapWriter(const CompactTree& tree, const MapShape& shape, uint32_t* top, uint64_t* bricks)
-      : tree_(tree),
+      : TreeWalk(tree, shape),
         top_(top),
         bricks_(bricks),
         bits_(map_level(tree) - kBrickLevel),
         has_nodes_(has_nodes(tree)) {
-    std::copy(shape.level_begin, shape.level_begin + kMaxLevel + 1, next_node_);
-    std::fill(top, top + shape.top, kEmpty);
+    std::fill(top, top + shape.top, kEmptyCube);
     std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
     put_brick(UINT64_MAX);
   }
@@ -113,20 +78,9 @@ class MapWriter {
       enter(tree_.level(), {0, 0, 0});
     }
   }
+  uint64_t words() const { return next_word_; }
 
  private:
-  // Calls enter_child(octant) for each child of the next node of `level`, or enter_block() where it is solid.
-  template <class EnterChild, class EnterBlock>
-  void visit(int level, const EnterChild& enter_child, const EnterBlock& enter_block) {
-    unsigned mask = tree_.mask(next_node_[level]++);
-    if (mask == 0) {
-      enter_block();
-    }
-    for (; mask != 0; mask &= mask - 1) {
-      enter_child(static_cast<unsigned>(__builtin_ctz(mask)));
-    }
-  }
-
   // A node of the brick's level or above.
   void enter(int level, const Corner& corner) {
     if (level == kBrickLevel && tree_.mask(next_node_[level]) != 0) {
@@ -191,14 +145,10 @@ class MapWriter {
         });
   }
 
-  static constexpr uint32_t kEmpty = 0x11111111U;
-
-  const CompactTree& tree_;
   uint32_t* top_;
   uint64_t* bricks_;
   int bits_;
   bool has_nodes_;
-  uint32_t next_node_[kMaxLevel + 1];
   uint32_t next_word_ = 0;
   uint64_t brick_[kLeaves];
 };
@@ -277,19 +227,21 @@ T* array(Arena* arena, uint64_t count) {
 
 }  // namespace
 
-size_t RayMap::bytes(const CompactTree& tree) {
+size_t RayMap::bytes(const CompactTree& tree, Span<const uint8_t> media) {
   MapShape shape;
-  return measure(tree, &shape) ? map_bytes(shape) : 0;
+  return measure(tree, &shape) ? map_bytes(shape, measure_media(tree, shape, media)) : 0;
 }
 
-Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map) {
+Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map, Span<const uint8_t> media) {
   MapShape shape;
   if (!measure(tree, &shape)) {
     return Status::kDamaged;
   }
   const Arena before = *arena;
-  uint32_t* top = array<uint32_t>(arena, shape.top);
-  uint64_t* bricks = shape.words < kMostWords ? array<uint64_t>(arena, shape.words) : nullptr;
+  const MediaShape layers = measure_media(tree, shape, media);
+  const uint64_t words = shape.words + layers.words;
+  uint32_t* top = array<uint32_t>(arena, top_words(shape, layers));
+  uint64_t* bricks = words < kMostWords ? array<uint64_t>(arena, words) : nullptr;
   if (top == nullptr || bricks == nullptr) {
     *arena = before;
     return Status::kOutOfMemory;
@@ -298,10 +250,17 @@ Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map) {
   if (!tree.empty()) {
     writer.write();
   }
+  write_media(tree, shape, layers, top + shape.top, bricks, writer.words());
   const int level = map_level(tree);
-  Reaches(top, level - kBrickLevel).write();
+  for (uint64_t layer = 0; layer <= layers.layers; ++layer) {
+    Reaches(top + layer * shape.top, level - kBrickLevel).write();
+  }
+  top[top_words(shape, layers) - 1] = kEmptyCube;
   *map = RayMap(tree);
   map->cells_ = {top, bricks, level, has_nodes(tree)};
+  for (uint8_t layer = 0; layer < layers.layers; ++layer) {
+    map->layers_[layers.materials[layer]] = static_cast<uint8_t>(layer + 1);
+  }
   return Status::kOk;
 }
 

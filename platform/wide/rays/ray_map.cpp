@@ -27,6 +27,8 @@ Status run(Job* job) {
     std::fill_n(job->any, job->count, uint8_t{0});
   } else if (job->entries != nullptr) {
     std::fill_n(job->entries, job->count, RayPoint{0, 0});
+  } else if (job->exits != nullptr) {
+    std::fill_n(job->exits, job->count, MediumExit{});
   } else {
     std::fill_n(job->hits, job->count, Hit{});
   }
@@ -111,6 +113,28 @@ void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   hit->t_denominator = axis < 0 ? 1 : static_cast<int32_t>(speed * Q8::kOne);
 }
 
+// Whether the map holds a voxel.
+bool is_solid(const MapCells& cells, const Vec3i& voxel) {
+  const auto part = [&](int axis, int level, uint64_t mask) {
+    return static_cast<uint64_t>(voxel[axis]) >> level & mask;
+  };
+  const auto bit = [&](int level) {
+    return part(0, level, 3) | part(1, level, 3) << 2 | part(2, level, 3) << 4;
+  };
+  const int bits = cells.level - kCubeLevel;
+  const uint64_t all = UINT64_MAX;
+  const uint32_t cube = cells.top[(part(2, kCubeLevel, all) << bits | part(1, kCubeLevel, all)) << bits |
+                                  part(0, kCubeLevel, all)];
+  if ((cube & 15U) != 0) {
+    return false;
+  }
+  const uint64_t* const brick = cells.bricks + (cube >> 4);
+  const uint64_t leaf = uint64_t{1} << bit(2);
+  return (*brick & leaf) != 0 &&
+         (brick[cells.header() + static_cast<unsigned>(__builtin_popcountll(*brick & (leaf - 1)))] >> bit(0) &
+          1U) != 0;
+}
+
 RayPoint entry_of(const Hit& hit) {
   return hit.kind == HitKind::kHit ? RayPoint{hit.t_numerator, hit.t_denominator} : RayPoint{0, 0};
 }
@@ -119,6 +143,12 @@ RayPoint entry_of(const Hit& hit) {
 
 void trace_by_core(Job* job, size_t ray) {
   const CompactTree& tree = job->map->tree();
+  if (job->exits != nullptr && job->in[ray] != kInAir) {
+    const Status left = leave_medium(tree, job->rays[ray], static_cast<uint8_t>(job->in[ray]),
+                                     &job->exits[ray], job->points[ray]);
+    job->status = job->status == Status::kOk ? left : job->status;
+    return;
+  }
   Hit hit;
   const Status status = job->bound == Bound::kFrom
                             ? closest_hit_from(tree, job->rays[ray], job->points[ray], &hit)
@@ -134,6 +164,9 @@ void trace_by_core(Job* job, size_t ray) {
   }
   if (job->hits != nullptr) {
     job->hits[ray] = hit;
+  } else if (job->exits != nullptr) {
+    job->exits[ray].hit = hit;
+    job->exits[ray].into_solid = hit.kind == HitKind::kHit;
   } else if (job->any != nullptr) {
     job->any[ray] = hit.kind == HitKind::kHit ? 1 : 0;
   } else {
@@ -152,6 +185,18 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   }
   Hit hit;
   hit.visits = visits;
+  if (job->exits != nullptr) {
+    MediumExit& exit = job->exits[number];
+    exit.into_solid = job->in[number] == kInAir || is_solid(*job->map->cells(), voxel);
+    const Block block = exit.into_solid ? block_at(*job->map, voxel) : Block{voxel, 0, 0};
+    hit.kind = HitKind::kHit;
+    hit.voxel = block.corner;
+    hit.block_level = static_cast<uint8_t>(block.level);
+    hit.material = block.material;
+    find_face(ray, block.corner, int32_t{1} << block.level, &hit);
+    exit.hit = hit;
+    return;
+  }
   if (job->hits == nullptr) {
     find_face(ray, voxel, 1, &hit);  // of a merged block it is entered at the same t
   } else if (!job->names && !job->map->tree().merged()) {
@@ -177,6 +222,14 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
     job->any[number] = hit.kind == HitKind::kHit ? 1 : 0;
   } else {
     job->entries[number] = entry_of(hit);
+  }
+}
+
+void put_no_exit(Job* job, size_t ray, uint32_t visits) {
+  if (job->in[ray] == kInAir) {
+    job->exits[ray].hit.visits = visits;
+  } else {
+    trace_by_core(job, ray);  // it leaves the world out of the medium
   }
 }
 
@@ -227,6 +280,14 @@ Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayP
   return run(&job);
 }
 
+Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint& before, Span<Hit> hits,
+                        bool with_materials) {
+  Job job{&map, rays.data, rays.size, &before, Bound::kBefore, nullptr, hits.data};
+  job.names = with_materials;
+  job.point_step = 0;
+  return run(&job);
+}
+
 Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) {
   Job job{&map, rays.data, rays.size, &before, Bound::kBefore, nullptr, nullptr, entries.data, false, 0};
   return run(&job);
@@ -234,6 +295,14 @@ Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint befo
 
 Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits) {
   Job job{&map, rays.data, rays.size, from.data, Bound::kFrom, nullptr, hits.data};
+  return run(&job);
+}
+
+Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from,
+                    Span<const uint16_t> in, Span<MediumExit> exits) {
+  Job job{&map, rays.data, rays.size, from.data, Bound::kFrom, nullptr, nullptr};
+  job.exits = exits.data;
+  job.in = in.data;
   return run(&job);
 }
 

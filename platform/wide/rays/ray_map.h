@@ -26,7 +26,7 @@ namespace thimble::wide {
 /// The world is cut into cubes of 16^3 voxels, a cube that holds something (a brick) into 4^3 leaves of 4^3
 /// voxels. In all three numberings x comes first and z last.
 struct MapCells {
-  /// A word a cube, and one more. Of an empty one, the four bits from 4 * o on are the side, in cubes, of the
+  /// A word a cube, in one numbering after the other, and one more. Of an empty one, the four bits from 4 * o on are the side, in cubes, of the
   /// largest empty cube that begins there and extends along octant o (bit a: to smaller coordinates on axis
   /// a), 1 .. 15; what lies outside the world is empty. Else 16 times where its brick begins.
   const uint32_t* top = nullptr;
@@ -41,6 +41,10 @@ struct MapCells {
   uint64_t header() const { return has_nodes ? 2 : 1; }
 };
 
+/// So many materials of a map, at most, have a layer, and in worlds of so many levels.
+inline constexpr size_t kMostMedia = 15;
+inline constexpr int kMostMediaLevel = 11;
+
 /// The map of one tree, in bytes that the caller gave; both outlive it. Copy it freely.
 class RayMap {
  public:
@@ -50,17 +54,23 @@ class RayMap {
 
   /// Makes the map; takes at most `bytes(tree)` from the arena. kOutOfMemory when that does not fit, kDamaged
   /// for a tree whose masks do not add up; nothing is taken then, and `map` is as it was.
-  static Status make(const CompactTree& tree, Arena* arena, RayMap* map);
-  /// What `make` takes at most. Reads all masks.
-  static size_t bytes(const CompactTree& tree);
+  /// `media` are materials that rays go through: those that the tree holds, kMostMedia of them and in worlds to
+  /// kMostMediaLevel, get a layer each, 4 bytes for each 16^3 voxels of the world and bricks where they end: so
+  /// `first_change` finds in vectors where rays leave them.
+  static Status make(const CompactTree& tree, Arena* arena, RayMap* map, Span<const uint8_t> media = {});
+  /// What `make` takes at most. Reads all masks; with `media` the tree twice more.
+  static size_t bytes(const CompactTree& tree, Span<const uint8_t> media = {});
 
   const CompactTree& tree() const { return tree_; }
   /// Null without a map.
   const MapCells* cells() const { return cells_.top == nullptr ? nullptr : &cells_; }
+  /// The numbering of cubes in which all but the material is solid; 0: there is none.
+  uint8_t layer_of(uint8_t material) const { return layers_[material]; }
 
  private:
   CompactTree tree_;
   MapCells cells_;
+  uint8_t layers_[256] = {};
 };
 
 // In all that follow, `rays` are those of ray.h and the spans of a call are equally long. A ray that
@@ -102,6 +112,10 @@ class MaterialFinder {
 /// The hits of `first_hit`, where what is entered at a t of `before[i]` or later is a miss.
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before, Span<Hit> hits);
 
+/// The same within one bound, and without materials unless they are wanted.
+Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint& before, Span<Hit> hits,
+                        bool with_materials);
+
 /// Where each ray enters the first solid voxel, if before the point `before`: t as in `Hit`, without the voxel, its
 /// face and material; denominator 0 for a miss. For occlusion, which asks how far away what is near is.
 Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries);
@@ -109,6 +123,14 @@ Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint befo
 /// The first solid voxel in which each ray spends a positive length after `from[i]`: as `closest_hit_from`. So
 /// a ray goes on behind glass that it passed.
 Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits);
+
+/// What rays are in that go on, for `first_change`: a material, or nothing solid.
+inline constexpr uint16_t kInAir = 256;
+
+/// Where each ray comes to something else, from `from[i]` on: in a material `in[i]` the `leave_medium` of it, in
+/// kInAir the `closest_hit_from`, which leaves `into_solid` true with a hit.
+Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from,
+                    Span<const uint16_t> in, Span<MediumExit> exits);
 
 }  // namespace thimble::wide
 

@@ -31,6 +31,7 @@ struct NewRays {
   VU cell_flip;
   VU octant;
   MF taken;   // by the vectors
+  MF in_air;  // of rays that leave something
   MF inside;  // they come to the box of what is occupied
 };
 
@@ -140,14 +141,37 @@ struct PointColumns {
   }
 };
 
+// Rays that leave something look through the layer of what they are in, all over the world. What has none, and those
+// that are not in the world where they begin, are the core's.
+HWY_INLINE void add_layers(const Job& job, size_t first, size_t count, NewRays* rays) {
+  const U64 du;
+  const F64 d;
+  alignas(64) uint64_t layers[kLanes] = {};
+  alignas(64) double known[kLanes] = {};
+  alignas(64) double in_air[kLanes] = {};
+  const int bits = job.map->cells()->level - 4;
+  for (size_t lane = 0; lane < count; ++lane) {
+    const uint16_t in = job.in[first + lane];
+    const uint64_t layer = in < kInAir ? job.map->layer_of(static_cast<uint8_t>(in)) : 0;
+    layers[lane] = layer << (3 * bits);
+    in_air[lane] = in < kInAir ? 0 : 1;
+    known[lane] = in < kInAir && layer == 0 ? 0 : 1;
+  }
+  const VF half = hn::Set(d, 0.5);
+  rays->in_air = hn::Gt(hn::Load(d, in_air), half);
+  rays->taken = hn::And(rays->taken, hn::Gt(hn::Load(d, known), half));
+  rays->top_flip = hn::Xor(rays->top_flip, hn::Load(du, layers));
+}
+
 // One axis: the mirrored origin and direction, and the planes of the occupied box.
 HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewRays* rays, VF* low,
                          VF* high) {
   const F64 d;
   const U64 du;
   const MapCells& cells = *job.map->cells();
-  const VoxelBox& box = job.map->tree().bounds();
   const int level = job.map->tree().level();
+  const VoxelBox box = job.exits == nullptr ? job.map->tree().bounds()
+                                            : VoxelBox{{0, 0, 0}, {1 << level, 1 << level, 1 << level}};
   const auto number = [&](int32_t whole) { return hn::Set(d, static_cast<double>(whole)); };
   rays->taken = hn::And(rays->taken, hn::And(hn::Ge(origin, number(kMinOriginWorlds * (Q8::kOne << level))),
                                              hn::Le(origin, number(kMaxOriginWorlds * (Q8::kOne << level)))));
@@ -191,7 +215,11 @@ HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* r
   const VF zero = hn::Zero(d);
   const MF at_start = hn::Or(hn::Le(numerator, zero), hn::Le(divisor, zero));
   const VF t = hn::Div(numerator, hn::Mul(divisor, hn::Set(d, 256.0)));
-  rays->begin = hn::Max(rays->begin, hn::IfThenElse(at_start, zero, t));
+  const VF from = hn::IfThenElse(at_start, zero, t);
+  if (job.exits != nullptr) {
+    rays->taken = hn::And(rays->taken, hn::Or(rays->in_air, hn::Ge(from, rays->begin)));
+  }
+  rays->begin = hn::Max(rays->begin, from);
   // The point of a plane of one of the three axes: of others the proof does not tell.
   const MF of_plane =
       hn::Or(hn::Eq(divisor, rays->direction[0]),
@@ -218,6 +246,9 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&pl
   const VF sum = hn::Add(hn::Add(rays.direction[0], rays.direction[1]), rays.direction[2]);
   rays.taken = hn::And(rays.taken, hn::Gt(sum, hn::Zero(d)));
   rays.end = hn::Mul(rays.end, hn::Set(d, kJustBefore));
+  if (job.exits != nullptr) {
+    add_layers(job, first, count, &rays);
+  }
   if (job.bound != Bound::kNone) {
     add_bound(job, first, count, &rays);
   }
@@ -226,6 +257,9 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&pl
     place[axis] = hn::MulAdd(rays.begin, rays.direction[axis], rays.origin[axis]);
     rays.inside =
         hn::And(rays.inside, hn::And(hn::Ge(place[axis], low[axis]), hn::Lt(place[axis], high[axis])));
+  }
+  if (job.exits != nullptr) {
+    rays.taken = hn::And(rays.taken, hn::Or(rays.in_air, rays.inside));
   }
   return rays;
 }

@@ -222,10 +222,16 @@ HWY_INLINE void put_hits(Job* job, const Lanes& lanes, uint32_t hits) {
 }
 
 HWY_INLINE void put_misses(Job* job, const Lanes& lanes, uint32_t misses) {
+  const uint64_t* flips = lanes.words[kCellFlip - kDoubles];
+  if (job->exits != nullptr) {
+    for (; misses != 0; misses &= misses - 1) {
+      const unsigned lane = static_cast<unsigned>(__builtin_ctz(misses));
+      put_no_exit(job, flips[lane] >> 32, static_cast<uint32_t>(lanes.visits[lane]));
+    }
+  }
   if (job->hits == nullptr) {
     return;
   }
-  const uint64_t* flips = lanes.words[kCellFlip - kDoubles];
   for (; misses != 0; misses &= misses - 1) {
     const unsigned lane = static_cast<unsigned>(__builtin_ctz(misses));
     job->hits[flips[lane] >> 32].visits = static_cast<uint32_t>(lanes.visits[lane]);

@@ -1,0 +1,138 @@
+/// @file pixel_flow.h
+/// The pixels that threads draw together, from which each takes the next as long as there are any.
+#ifndef THIMBLE_PLATFORM_WIDE_LIT_PIXEL_FLOW_H
+#define THIMBLE_PLATFORM_WIDE_LIT_PIXEL_FLOW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "thimble/light/asked.h"
+#include "wide/lit/lit_renderer.h"
+
+namespace thimble::wide {
+
+/// The rows of a band, or places of a camera. For any number of threads.
+class PixelFlow {
+ public:
+  PixelFlow(const lit::Frame& frame, const Band& band, size_t stride)
+      : frame_(frame),
+        band_(band),
+        stride_(stride),
+        width_(frame.camera.width_px()),
+        count_(static_cast<size_t>(band.rows)) {
+    // Some pixels a time, and whole bytes.
+    const auto rows = static_cast<size_t>(kTogether / std::max(width_, 1));
+    const auto multiple = static_cast<size_t>(band_row_multiple(band.format));
+    together_ = std::max<size_t>(rows / multiple, 1) * multiple;
+    is_whole_ = bits_per_pixel(band.format) % 8 == 0;
+  }
+  /// Three bytes each.
+  PixelFlow(const lit::Frame& frame, Span<const PixelPlace> places, Bytes rgb)
+      : frame_(frame),
+        places_(places.data),
+        width_(1),
+        count_(places.size),
+        together_(kTogether),
+        is_whole_(true) {
+    band_.format = PixelFormat::kRgb888;
+    band_.pixels = rgb;
+  }
+
+ private:
+  friend class PixelReader;
+  static constexpr int32_t kTogether = 256;
+
+  const lit::Frame& frame_;
+  const PixelPlace* places_ = nullptr;
+  Band band_;
+  size_t stride_ = 3;  // from a row to the next one; from a place to the next one
+  int32_t width_;
+  size_t count_;     // rows, or places
+  size_t together_;  // of them at a time
+  bool is_whole_;    // each pixel has bytes of its own
+  std::atomic<size_t> next_{0};
+};
+
+/// Where a pixel is stored: of the band, or the number of a place as its row.
+struct PixelSlot {
+  int32_t x;
+  int32_t row;
+};
+
+/// One thread's hold on a flow.
+class PixelReader {
+ public:
+  explicit PixelReader(PixelFlow* flow) : flow_(*flow), rays_(flow->frame_.camera, 0, 0) {}
+
+  /// Takes the next pixel; false: there is none left. Rows are taken from their beginning, and what shares bytes by
+  /// one thread.
+  bool next(Ray* ray, PixelSlot* at) {
+    if (x_ == flow_.width_ || at_ == end_) {
+      if (!begin_row()) {
+        return false;
+      }
+    }
+    *at = {x_++, static_cast<int32_t>(at_)};
+    if (flow_.places_ != nullptr) {
+      const PixelPlace& place = flow_.places_[at_];
+      *ray = flow_.frame_.camera.ray(place.x, place.y);
+    } else {
+      *ray = rays_.ray();
+      rays_.next();
+    }
+    return true;
+  }
+
+  /// Stores a pixel that was taken.
+  void store(const PixelSlot& at, const lit::Color& color) const {
+    uint8_t* const line = line_of(at.row);
+    if (flow_.band_.format == PixelFormat::kRgb888 &&
+        std::max({color.c[0], color.c[1], color.c[2]}) <= lit::kWhite) {
+      for (int c = 0; c < 3; ++c) {
+        line[3 * at.x + c] = static_cast<uint8_t>((color.c[c] + lit::kLevel / 2) / lit::kLevel);
+      }
+    } else {
+      lit::store(flow_.frame_, flow_.band_, line, at.x, flow_.band_.first_row + at.row, color);
+    }
+  }
+
+ private:
+  uint8_t* line_of(int32_t row) const {
+    return flow_.band_.pixels.data + flow_.stride_ * row_place(flow_.band_.format, row);
+  }
+  bool begin_row() {
+    if (at_ != end_) {
+      ++at_;
+    }
+    if (at_ == end_) {
+      at_ = flow_.next_.fetch_add(flow_.together_);
+      if (at_ >= flow_.count_) {
+        end_ = at_;
+        return false;
+      }
+      end_ = std::min(at_ + flow_.together_, flow_.count_);
+    }
+    x_ = 0;
+    if (flow_.places_ == nullptr) {
+      const auto row = static_cast<int32_t>(at_);
+      rays_ = RowRays(flow_.frame_.camera, 0, flow_.band_.first_row + row);
+      if (!flow_.is_whole_ && begins_bytes(flow_.band_.format, row)) {
+        lit::clear_row(flow_.frame_, flow_.band_, line_of(row));
+      }
+    }
+    return true;
+  }
+
+  PixelFlow& flow_;
+  RowRays rays_;
+  size_t at_ = 0;  // the row, or place
+  size_t end_ = 0;
+  int32_t x_ = 0;
+};
+
+}  // namespace thimble::wide
+
+#endif

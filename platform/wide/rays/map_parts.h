@@ -1,0 +1,97 @@
+/// @file map_parts.h
+/// What the two halves of making a map share: the cubes and leaves of its numbering, and the walk down the tree.
+#ifndef THIMBLE_PLATFORM_WIDE_RAYS_MAP_PARTS_H
+#define THIMBLE_PLATFORM_WIDE_RAYS_MAP_PARTS_H
+
+#include <algorithm>
+
+#include "wide/rays/ray_map.h"
+
+namespace thimble::wide {
+
+inline constexpr int kBrickLevel = 4;
+inline constexpr int kLeafLevel = 2;
+inline constexpr unsigned kLeaves = 64;              // of a brick
+inline constexpr uint32_t kEmptyCube = 0x11111111U;  // before it is known how far it reaches
+inline constexpr uint64_t kMostWords = uint64_t{1}
+                                       << 28;  // of bricks, so that a cube says where its own begins
+
+/// How much the map takes, and where each level of the tree begins.
+struct MapShape {
+  uint32_t level_begin[kMaxLevel + 1];
+  uint32_t block_begin[kMaxLevel + 1];  // the number of the first solid block of each level
+  uint64_t top = 0;                     // cubes
+  uint64_t words = 0;                   // of bricks
+};
+
+struct Corner {
+  uint32_t x;
+  uint32_t y;
+  uint32_t z;
+};
+
+inline Corner child_corner(const Corner& corner, unsigned octant, int level) {
+  const uint32_t half = uint32_t{1} << (level - 1);
+  return {corner.x + ((octant & 1U) != 0 ? half : 0), corner.y + ((octant & 2U) != 0 ? half : 0),
+          corner.z + ((octant & 4U) != 0 ? half : 0)};
+}
+
+// A cell within a cube of 4^3 of them.
+inline unsigned bit_of(const Corner& corner, int level) {
+  return ((corner.x >> level) & 3U) | ((corner.y >> level) & 3U) << 2 | ((corner.z >> level) & 3U) << 4;
+}
+
+// The eight voxels of a node of level 1 as the bits of a leaf whose first voxel is theirs.
+inline uint64_t spread(unsigned mask) {
+  return uint64_t{mask & 3U} | uint64_t{(mask >> 2) & 3U} << 4 | uint64_t{(mask >> 4) & 3U} << 16 |
+         uint64_t{(mask >> 6) & 3U} << 20;
+}
+
+/// A walk down the tree in depth: in each level it meets the nodes in the order in which they stand.
+class TreeWalk {
+ public:
+  TreeWalk(const CompactTree& tree, const MapShape& shape) : tree_(tree) {
+    std::copy(shape.level_begin, shape.level_begin + kMaxLevel + 1, next_node_);
+  }
+
+ protected:
+  // Calls enter_child(octant) for each child of the next node of `level`, or enter_block() where it is solid.
+  template <class EnterChild, class EnterBlock>
+  void visit(int level, const EnterChild& enter_child, const EnterBlock& enter_block) {
+    unsigned mask = tree_.mask(next_node_[level]++);
+    if (mask == 0) {
+      enter_block();
+    }
+    for (; mask != 0; mask &= mask - 1) {
+      enter_child(static_cast<unsigned>(__builtin_ctz(mask)));
+    }
+  }
+
+  const CompactTree& tree_;
+  uint32_t next_node_[kMaxLevel + 1];
+};
+
+/// The media of a map: for each a numbering of cubes of its own, in which everything but the medium is solid.
+struct MediaShape {
+  uint8_t layers = 0;
+  uint8_t materials[kMostMedia];  // of the layers from the first on
+  uint64_t words = 0;             // of their bricks
+};
+
+/// Those of `materials` that the tree holds, as many as there may be layers.
+MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials);
+
+/// Writes the cubes of all layers, one layer after the other, at `top`, and their bricks from word `next_word` on.
+void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
+                 uint64_t* bricks, uint64_t next_word);
+
+inline bool has_nodes(const CompactTree& tree) {
+  return tree.many_materials() || tree.merged();
+}
+inline int map_level(const CompactTree& tree) {
+  return std::max(tree.level(), kBrickLevel);
+}
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,214 @@
+// The layers of a map: for a material that rays go through, where it is not. A cube that it fills is empty there, one
+// that holds nothing of it is solid.
+#include <algorithm>
+
+#include "wide/rays/map_parts.h"
+
+namespace thimble::wide {
+namespace {
+
+// Meets the solid voxels of media: `taker` gets what it wants to know.
+template <class Taker>
+class MediaWalk : TreeWalk {
+ public:
+  MediaWalk(const CompactTree& tree, const MapShape& shape, Taker* taker)
+      : TreeWalk(tree, shape), taker_(*taker) {
+    std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
+    next_voxel_ = next_node_[1] < tree.node_count() ? tree.first_child(next_node_[1]) : 0;
+  }
+
+  void run() {
+    if (tree_.level() < kBrickLevel) {
+      collect(tree_.level(), {0, 0, 0});
+      taker_.take_cube({0, 0, 0});
+    } else {
+      enter(tree_.level(), {0, 0, 0});
+    }
+  }
+
+ private:
+  uint8_t block_material(int level) { return tree_.material_of_block(next_block_[level]++); }
+  uint8_t next_voxel_material() {
+    return tree_.many_materials() ? tree_.voxel_material(next_voxel_++) : tree_.uniform_material();
+  }
+
+  void enter(int level, const Corner& corner) {
+    if (level == kBrickLevel && tree_.mask(next_node_[level]) != 0) {
+      collect(level, corner);
+      taker_.take_cube(corner);
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
+        [&] { taker_.take_block(corner, level, block_material(level)); });
+  }
+
+  void collect(int level, const Corner& corner) {
+    visit(
+        level,
+        [&](unsigned octant) {
+          if (level > 1) {
+            collect(level - 1, child_corner(corner, octant, level));
+          } else {
+            taker_.take_leaf(corner, spread(1U << octant) << bit_of(corner, 0), next_voxel_material());
+          }
+        },
+        [&] {
+          const uint8_t material = block_material(level);
+          if (level < kLeafLevel) {
+            taker_.take_leaf(corner, spread(0xFF) << bit_of(corner, 0), material);
+            return;
+          }
+          const uint32_t side = uint32_t{1} << (level - kLeafLevel);
+          for (uint32_t i = 0; i < side * side * side; ++i) {
+            taker_.take_leaf(
+                {corner.x + i % side * 4, corner.y + i / side % side * 4, corner.z + i / side / side * 4},
+                ~uint64_t{0}, material);
+          }
+        });
+  }
+
+  Taker& taker_;
+  uint32_t next_block_[kMaxLevel + 1];
+  uint32_t next_voxel_;
+};
+
+// Which materials there are.
+struct UsedMaterials {
+  bool of[256] = {};
+  void take_leaf(const Corner& /*corner*/, uint64_t /*voxels*/, uint8_t material) { of[material] = true; }
+  void take_block(const Corner& /*corner*/, int /*level*/, uint8_t material) { of[material] = true; }
+  void take_cube(const Corner& /*corner*/) {}
+};
+
+// Writes cubes and bricks; without a place to write only counts words.
+class LayerWriter {
+ public:
+  LayerWriter(const MediaShape& media, int bits, bool has_nodes, uint32_t* top, uint64_t* bricks,
+              uint64_t next_word)
+      : media_(media), bits_(bits), has_nodes_(has_nodes), top_(top), bricks_(bricks), next_word_(next_word) {
+    for (uint8_t layer = 0; layer < media.layers; ++layer) {
+      layer_of_[media.materials[layer]] = layer;
+    }
+  }
+
+  void take_leaf(const Corner& corner, uint64_t voxels, uint8_t material) {
+    const uint8_t layer = layer_of_[material];
+    if (layer != kNone) {
+      inside_[layer][bit_of(corner, kLeafLevel)] |= voxels;
+      holds_[layer] = true;
+    }
+  }
+  void take_block(const Corner& corner, int level, uint8_t material) {
+    const uint8_t layer = layer_of_[material];
+    const uint32_t side = uint32_t{1} << (level - kBrickLevel);
+    for (uint32_t i = 0; layer != kNone && top_ != nullptr && i < side * side; ++i) {
+      std::fill_n(cube(layer, {corner.x, corner.y + i % side * 16, corner.z + i / side * 16}), side,
+                  kEmptyCube);
+    }
+  }
+  void take_cube(const Corner& corner) {
+    for (uint8_t layer = 0; layer < media_.layers; ++layer) {
+      if (holds_[layer]) {
+        put(layer, corner);
+        std::fill(inside_[layer], inside_[layer] + kLeaves, 0);
+        holds_[layer] = false;
+      }
+    }
+  }
+  uint64_t words() const { return next_word_; }
+
+ private:
+  static constexpr uint8_t kNone = UINT8_MAX;
+  struct Layers {
+    uint8_t of[256];
+    Layers() { std::fill(of, of + 256, kNone); }
+    uint8_t& operator[](uint8_t material) { return of[material]; }
+  };
+
+  uint32_t* cube(uint8_t layer, const Corner& corner) const {
+    const uint64_t x = corner.x >> kBrickLevel;
+    const uint64_t y = corner.y >> kBrickLevel;
+    const uint64_t z = corner.z >> kBrickLevel;
+    return top_ + ((((uint64_t{layer} << bits_ | z) << bits_ | y) << bits_) | x);
+  }
+  void put(uint8_t layer, const Corner& corner) {
+    const uint64_t begin = next_word_++;
+    next_word_ += has_nodes_ ? 1 : 0;
+    uint64_t mask = 0;
+    for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
+      const uint64_t outside = ~inside_[layer][leaf];
+      if (outside != 0) {
+        mask |= uint64_t{1} << leaf;
+        if (bricks_ != nullptr) {
+          bricks_[next_word_] = outside;
+        }
+        ++next_word_;
+      }
+    }
+    if (mask == 0) {
+      next_word_ = begin;
+    }
+    if (bricks_ == nullptr) {
+      return;
+    }
+    *cube(layer, corner) = mask == 0 ? kEmptyCube : static_cast<uint32_t>(begin) << 4;
+    if (mask != 0) {
+      bricks_[begin] = mask;
+      if (has_nodes_) {
+        bricks_[begin + 1] = UINT64_MAX;
+      }
+    }
+  }
+
+  const MediaShape& media_;
+  int bits_;
+  bool has_nodes_;
+  uint32_t* top_;
+  uint64_t* bricks_;
+  uint64_t next_word_;
+  Layers layer_of_;
+  uint64_t inside_[kMostMedia][kLeaves] = {};
+  bool holds_[kMostMedia] = {};
+};
+
+template <class Taker>
+void walk_media(const CompactTree& tree, const MapShape& shape, Taker* taker) {
+  MediaWalk<Taker>(tree, shape, taker).run();
+}
+
+}  // namespace
+
+MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials) {
+  MediaShape media;
+  if (materials.size == 0 || tree.empty() || tree.level() > kMostMediaLevel) {
+    return media;
+  }
+  UsedMaterials used;
+  walk_media(tree, shape, &used);
+  for (size_t i = 0; i < materials.size && media.layers < kMostMedia; ++i) {
+    if (used.of[materials.data[i]]) {
+      used.of[materials.data[i]] = false;  // once
+      media.materials[media.layers++] = materials.data[i];
+    }
+  }
+  LayerWriter counter(media, 0, has_nodes(tree), nullptr, nullptr, 0);
+  if (media.layers != 0) {
+    walk_media(tree, shape, &counter);
+  }
+  // What a brick begins with is written before it is known to be empty.
+  media.words = counter.words() + 2;
+  return media;
+}
+
+void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
+                 uint64_t* bricks, uint64_t next_word) {
+  if (media.layers == 0) {
+    return;
+  }
+  std::fill(top, top + shape.top * media.layers, 0U);  // the first brick: solid
+  LayerWriter writer(media, map_level(tree) - kBrickLevel, has_nodes(tree), top, bricks, next_word);
+  walk_media(tree, shape, &writer);
+}
+
+}  // namespace thimble::wide
