@@ -214,7 +214,7 @@ TEST_CASE("command: scenes that cannot be read -> status 1, the file and the fau
   check_refused({"info", "points:many"}, 1, {"points:many", "\"many\""});
   check_refused({"info", "points:5,depth=13"}, 1, {"12"});
   check_refused({"info", "points:5,color=3"}, 1, {"points:5,color=3"});
-  check_refused({"info", "spheres", "--as-voxels"}, 1, {"--as-voxels"});
+  check_refused({"info", "spheres", "--as-voxels"}, 2, {"--as-voxels"});
 }
 
 TEST_CASE("command: names with blanks, UTF-8 and line feeds -> read, and told without breaking the line") {

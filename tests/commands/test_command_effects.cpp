@@ -246,13 +246,13 @@ TEST_CASE("effects: table, CSV, JSON and SVG -> all of them, in lines that fit a
     return number;
   };
   CHECK(count("<text") == count("</text>"));
-  CHECK(count("<rect") == 14);
+  CHECK(count("<rect") == 16);
   CHECK(count("nan") + count("inf") == 0);
 
   // Data on standard output stand alone.
   const CommandResult data =
       run_command({"effects", "spheres", "--size", "16x16", "--frames", "1", "--json", "-"});
-  CHECK(json::parse(data.out).size() == 13);
+  CHECK(json::parse(data.out).size() == 15);
 }
 
 TEST_CASE("effects: wrong usage -> status 2 and a sentence") {

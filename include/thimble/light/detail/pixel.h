@@ -355,6 +355,23 @@ bool cross_water(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
   return cross(frame, now, leg, meeting, pending, count);
 }
 
+/// Adds what a ray shows that leaves the world.
+template <EffectSet kSet>
+[[gnu::always_inline]] inline void add_beyond(const Frame& frame, const PendingRay& now, Color* sum) {
+  if constexpr (kHasRipples<kSet>) {
+    if (has<kSet, Effect::kRipples>(frame) && now.kind == LitRayKind::kWaterRay) {
+      add(sun_glint(frame, now.ray.direction), now.weight, sum);
+    }
+  }
+  if constexpr ((kSet & Effect::kSky) != 0) {
+    if (has<kSet, Effect::kSky>(frame)) {
+      add(sky_color(frame, now.ray.direction), now.weight, sum);
+      return;
+    }
+  }
+  add(background(frame), now.weight, sum);
+}
+
 /// Follows one ray to its end: adds what it shows, and puts what comes out of it with the pending ones.
 template <EffectSet kSet, class AnyFrame>
 void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count, Color* sum) {
@@ -398,18 +415,7 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
       scatter(frame, now, leg, meeting, &now.weight, sum);
     }
     if (!meeting.found) {
-      if constexpr (kHasRipples<kSet>) {
-        if (has<kSet, Effect::kRipples>(frame) && now.kind == LitRayKind::kWaterRay) {
-          add(sun_glint(frame, now.ray.direction), now.weight, sum);
-        }
-      }
-      if constexpr ((kSet & Effect::kSky) != 0) {
-        if (has<kSet, Effect::kSky>(frame)) {
-          add(sky_color(frame, now.ray.direction), now.weight, sum);
-          return;
-        }
-      }
-      add(background(frame), now.weight, sum);
+      add_beyond<kSet>(frame, now, sum);
       return;
     }
     if (meeting.opaque) {
