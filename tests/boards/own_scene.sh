@@ -1,7 +1,8 @@
 #!/bin/sh
 # A scene of one's own as firmware: own_scene.sh. A scene text with glass, a mirror and a sun is baked into a header;
-# the image made from it has the effects that this calls for and no others, keeps its stack, and draws the simulator's
-# pictures. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built lm3s6965evb.
+# the image made from it has the effects that this calls for, dark edges for its few greys, and no others, keeps its
+# stack, and draws the simulator's pictures. Prints a line a question; exit status 1 when an answer is wrong. After
+# board.sh has built lm3s6965evb.
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
@@ -37,9 +38,9 @@ build() {
   }
   arm-none-eabi-nm -C "$work/demo.elf" >"$work/own.symbols"
 }
-grep -q 'define THIMBLE_SCENE_EFFECTS 0x033u' "$work/own.h" || fail "the header does not name direct light, shadows, mirror and glass"
+grep -q 'define THIMBLE_SCENE_EFFECTS 0x2033u' "$work/own.h" || fail "the header does not name direct light, shadows, mirror, glass, and edges for 16 greys"
 build 'demo;bench' "$work/own.h"
-for function in light_ray light_arrives_through send_mirrored meet_clear cross; do
+for function in light_ray light_arrives_through send_mirrored meet_clear cross meets_edge; do
   grep -q "thimble::lit::$function(" "$work/own.symbols" || fail "the image has no $function"
 done
 for function in meet_water begin_in_water scatter sky_color fade_in_fog occlude add_emission cue_depth light_arrives; do
@@ -54,7 +55,7 @@ mv "$measured.kept" "$measured"
 sh platform/emulate.sh "$board" bench </dev/null 2>/dev/null | tr -d '\r' | grep 'lit_crc' >"$work/own.crcs" || fail "it tells no CRC"
 "$thimble" sim "$work/own.scene" --board "$board" --app bench --display none --quiet | grep 'lit_crc' >"$work/own.golden" || true
 cmp -s "$work/own.crcs" "$work/own.golden" || fail "its lit pictures are not the simulator's"
-[ $failed = 1 ] || echo "own scene: glass, mirror and sun, and nothing else; a lit frame takes $lit instructions; $said"
+[ $failed = 1 ] || echo "own scene: glass, mirror, sun and dark edges, and nothing else; a lit frame takes $lit instructions; $said"
 
 # The same scene without them.
 "$thimble" bake "$work/own.scene" --board "$board" --effects none -o "$work/own.h" --quiet
