@@ -98,7 +98,8 @@ void call(ARMCore* cpu, int number) {
   }
 }
 
-void be_quiet(mLogger* /*logger*/, int /*category*/, mLogLevel level, const char* format, va_list values) {
+[[gnu::format(printf, 4, 0)]] void be_quiet(mLogger* /*logger*/, int /*category*/, mLogLevel level,
+                                            const char* format, va_list values) {
   if (level == mLOG_FATAL) {
     std::vfprintf(stderr, format, values);
     std::fputc('\n', stderr);
