@@ -450,8 +450,7 @@ void add_sim(CLI::App& app) {
       *sub, &command->effects,
       "what the scene is baked for: auto (what it calls for), none, or effects with commas between them "
       "(default: auto, for a file that states no light a sun over the viewer's shoulder with shadows, and "
-      "for a "
-      "display of few greys dark edges)",
+      "for a display of few greys dark edges)",
       false);
   add_display_options(*sub, command);
   add_file_options(*sub, command);

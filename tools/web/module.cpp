@@ -76,6 +76,7 @@ extern "C" {
   options.brick_map = true;
   options.coarsen = coarsen;
   options.default_look = source->baked() == nullptr && !parse_generator(scene);
+  options.display = DisplayFacts{board.format, board.width_px, board.height_px};
   options.camera = [&](const CompactTree& tree) { return frame_scene(view, *source, shape_of(tree)).kept; };
   baked = bake_within(limit, *source, &options);
   if (!baked.fits) {
