@@ -56,7 +56,7 @@ struct ShadowCourse {
   bool wide;
 
   [[gnu::always_inline]] bool is_free(int32_t at) const {
-    return behind_bits != nullptr && (behind_bits[at >> 4] >> (at >> 1 & 7) & 1U) != 0;
+    return behind_bits != nullptr && (static_cast<uint32_t>(behind_bits[at >> 4]) >> (at >> 1 & 7) & 1U) != 0;
   }
   [[gnu::always_inline]] bool goes_down(int axis) const { return (mirrored >> axis & 1U) != 0; }
 
