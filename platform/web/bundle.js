@@ -13,9 +13,18 @@ const script = ['machine.js', 'baker.js', 'look.js', 'crew.js', 'orbit.js', 'pag
   .replace(/^\s*\/\/.*\n/gm, '')).join('\n');
 
 const packed = [];
+// Base 85 (page.js, unpack): a fifteenth less of the page than base 64.
 function pack(id, bytes) {
   const gzip = zlib.gzipSync(bytes, {level: 9, memLevel: 9});
-  packed.push(`<script type="application/octet-stream" id="${id}">${gzip.toString('base64')}</script>`);
+  const words = Buffer.concat([gzip, Buffer.alloc(-gzip.length & 3)]);
+  let text = '';
+  for (let at = 0; at < words.length; at += 4) {
+    for (let word = words.readUInt32BE(at), unit = 85 ** 4; unit >= 1; word %= unit, unit /= 85) {
+      const code = 40 + Math.floor(word / unit);
+      text += String.fromCharCode(code === 60 ? 125 : code);
+    }
+  }
+  packed.push(`<script type="application/octet-stream" id="${id}" data-bytes="${gzip.length}">${text}</script>`);
 }
 for (const name of ['scene', 'plane', 'bake']) {
   pack(`module-${name}`, fs.readFileSync(path.join(modules, `${name}.wasm`)));
