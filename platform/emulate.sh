@@ -29,7 +29,7 @@ qemu="$(fact QEMU) -icount shift=$(fact ICOUNT_SHIFT) -display none -monitor non
 semihosting=enable=on,target=native
 run() {
   if [ -n "$emulator" ]; then
-    exec sh "platform/emulators/$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$image" "$@"
+    exec sh "platform/emulators/$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$image" $(fact EMULATOR_OPTIONS) "$@"
   fi
   exec $qemu -semihosting-config $semihosting -kernel "$image" "$@"
 }

@@ -76,6 +76,10 @@ file(GLOB sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/arch/common/*.cpp
 list(FILTER sources EXCLUDE REGEX "/common/main\\.cpp$")
 add_library(thimble_port STATIC ${sources} ${generated}/scene.cpp)
 file(GLOB board_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME}/*.cpp)
+if(BOARD_CHIP)
+  file(GLOB chip_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP}/*.cpp)
+  list(APPEND board_sources ${chip_sources})
+endif()
 add_library(thimble_board OBJECT ${board_sources})
 # Applications and what they share; the frames and cases that the tests share with them.
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/apps/*.cpp
@@ -102,7 +106,7 @@ foreach(part thimble_port thimble_board thimble_apps)
 endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
 target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch
-  ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
+  ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME} ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 # Those that draw a scene with light (apps/scene_light.h).
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp

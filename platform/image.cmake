@@ -5,7 +5,8 @@ include(${THIMBLE_PLATFORM_DIR}/uf2.cmake)
 # bits wide.
 foreach(source IN LISTS BOARD_FAST_SOURCES)
   foreach(part thimble thimble_port thimble_board)
-    set_property(SOURCE ${PROJECT_SOURCE_DIR}/${source} TARGET_DIRECTORY ${part} PROPERTY COMPILE_OPTIONS -marm)
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/${source} TARGET_DIRECTORY ${part} PROPERTY COMPILE_OPTIONS
+      ${THIMBLE_FAST_FLAGS})
   endforeach()
 endforeach()
 

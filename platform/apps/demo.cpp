@@ -199,9 +199,13 @@ void flush(Demo* demo, const Band& band, uint32_t* crc) {
       const Band band = band_at(*demo, y, end);
       const size_t row = row_bytes(screen.format, screen.width_px);
       for (int32_t i = 0; i < band.rows; ++i) {
+        uint8_t* const to = band.pixels.data + row_place(screen.format, i) * row;
+        if (widens_halfwords(format) && i > 0 && (y + i) % step != 0) {
+          __builtin_memcpy(to, to - row, row);  // the same squares
+          continue;
+        }
         const auto from = static_cast<size_t>((y + i) / step - thin_y);
-        widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i,
-                  band.pixels.data + row_place(screen.format, i) * row);
+        widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i, to);
       }
       flush(demo, band, crc);
     }

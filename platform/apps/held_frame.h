@@ -73,10 +73,19 @@ inline int32_t thinning_for(uint32_t visits) {
   return kMostThinned;
 }
 
+/// Whether halfwords are widened as they are, row by row: a fiftieth of the time, where pictures are large.
+inline bool widens_halfwords(PixelFormat format) {
+  return kMaxBrickDirectionBits > 12 && (format == PixelFormat::kRgb565 || format == PixelFormat::kRgb565Be ||
+                                         format == PixelFormat::kBgr565);
+}
+
 /// The format of a thinned picture, from which the display's pixels follow exactly.
 inline PixelFormat thin_format(PixelFormat format) {
   if (is_gray(format)) {
     return PixelFormat::kGray8;
+  }
+  if (widens_halfwords(format)) {
+    return format;
   }
   if (!kHasPanelFormats || format <= PixelFormat::kRgb888) {
     return format;
@@ -117,14 +126,11 @@ inline Rgb8 thin_color(const uint8_t* row, int32_t x, PixelFormat format) {
   return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
 }
 
-/// Whether rows of RGB565 are widened as they are: a tenth of the instructions, where pictures are large.
-inline constexpr bool kWidensHalfwords = kMaxBrickDirectionBits > 12;
-
 /// Row `y` of the display from row y / step of the thinned picture; rows that share bytes from the first down.
 [[gnu::noinline]] inline void widen_row(const uint8_t* thin, PixelFormat from, int32_t step, int32_t y,
                                         uint8_t* row) {
   const port::Display& screen = port::facts().display;
-  if (kWidensHalfwords && from == PixelFormat::kRgb565 && screen.format == PixelFormat::kRgb565) {
+  if (widens_halfwords(from)) {
     for (int32_t x = 0; x < screen.width_px; thin += 2) {
       for (const int32_t end = x + step < screen.width_px ? x + step : screen.width_px; x < end; ++x) {
         *row++ = thin[0];
@@ -133,7 +139,8 @@ inline constexpr bool kWidensHalfwords = kMaxBrickDirectionBits > 12;
     }
     return;
   }
-  for (size_t i = 0; i < row_bytes(screen.format, screen.width_px) && begins_bytes(screen.format, y); ++i) {
+  const size_t bytes = begins_bytes(screen.format, y) ? row_bytes(screen.format, screen.width_px) : 0;
+  for (size_t i = 0; i < bytes; ++i) {
     row[i] = 0;
   }
   for (int32_t x = 0; x < screen.width_px;) {

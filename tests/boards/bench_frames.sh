@@ -1,6 +1,6 @@
 #!/bin/sh
 # What frames of every size take, in instructions: APP=bench for QEMU's MPS2 boards with other sizes, cores and scenes than
-# a board has, and Cortex-M0 code on the Cortex-M3. Measuring targets: nothing here is a board of platform/boards.
+# a board has, Cortex-M0 code on the Cortex-M3, and RV32 on the SiFive's core, up to the pictures that its 16 KiB hold. Measuring targets: nothing here is a board of platform/boards.
 #   bench_frames.sh [--write]     --write: the table tests/budgets/frame_sizes.csv is written anew; else what grew beyond it fails
 # In the environment: TARGETS, SIZES, SCENES choose some of those below; THIMBLE is another build/release/thimble.
 # A picture is compared with that of the tree's rays on the first target that draws it, then by its CRCs.
@@ -11,7 +11,7 @@ work=build/bench-frames
 thimble=${THIMBLE:-build/release/thimble}
 mkdir -p "$work"
 # core:machine
-targets=${TARGETS:-cortex-m3:mps2-an385 cortex-m0:mps2-an385 cortex-m4:mps2-an386 cortex-m7:mps2-an500}
+targets=${TARGETS:-cortex-m3:mps2-an385 cortex-m0:mps2-an385 cortex-m4:mps2-an386 cortex-m7:mps2-an500 rv32imac:sifive_e}
 # width:height:format
 sizes=${SIZES:-128:64:gray4 160:128:rgb565 240:240:rgb565 320:240:rgb565 640:480:rgb565}
 # name=what `thimble bake` takes: the demonstration's valley, many small faces, open sky
@@ -27,20 +27,33 @@ for target in $targets; do
   # The rays of the tree are drawn once for each picture.
   alone=ON
   [ "$target" = "${targets%% *}" ] && alone=OFF
+  board=mps2-an500
+  arch=cortex-m
+  qemu="qemu-system-arm -M ${target#*:} -icount shift=6"
+  facts=
+  case $core in
+    rv32*)
+      board=sifive_e
+      arch=riscv
+      qemu="qemu-system-riscv32 -M ${target#*:} -icount shift=0"
+      facts=';FRAMES=large;STACK_BYTES=8192'
+      ;;
+  esac
   for size in $sizes; do
     width=${size%%:*}
     format=${size##*:}
     height=${size#*:}
     height=${height%:*}
+    [ "$core:$width" != rv32imac:640 ] || continue
     for scene in $scenes; do
       name=${scene%%=*}
-      cmake -S . -B "$work/$core" -G Ninja -DCMAKE_TOOLCHAIN_FILE=platform/arch/cortex-m/toolchain.cmake \
-        -DTHIMBLE_BOARD=mps2-an500 -DTHIMBLE_APP=bench -DTHIMBLE_SCENE_HEADER="$PWD/$work/$name.h" -DTHIMBLE_MEASURED=$alone \
-        "-DTHIMBLE_FACTS=CPU=$core;WIDTH_PX=$width;HEIGHT_PX=$height;FORMAT=$format" \
+      cmake -S . -B "$work/$core" -G Ninja -DCMAKE_TOOLCHAIN_FILE=platform/arch/$arch/toolchain.cmake \
+        -DTHIMBLE_BOARD=$board -DTHIMBLE_APP=bench -DTHIMBLE_SCENE_HEADER="$PWD/$work/$name.h" -DTHIMBLE_MEASURED=$alone \
+        "-DTHIMBLE_FACTS=CPU=$core;WIDTH_PX=$width;HEIGHT_PX=$height;FORMAT=$format$facts" \
         --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
       cmake --build "$work/$core" -- --quiet >/dev/null
       log=$work/$core-$width-$name.log
-      if ! qemu-system-arm -M "${target#*:}" -icount shift=6 -display none -monitor none -serial stdio \
+      if ! $qemu -display none -monitor none -serial stdio \
         -semihosting-config enable=on,target=native -kernel "$work/$core/bench.elf" >"$log" </dev/null; then
         echo "bench-frames: $core $width x $height $name failed; see $log" >&2
         failed=1

@@ -53,6 +53,10 @@ if [ -n "$(fact EMULATOR)" ]; then
     export CASE_STEP=16 MEASURED=ON
   fi
 fi
+# A board may leave to another one what the two have in common.
+if [ -n "$(fact TESTS)" ] && [ -z "${LONG:-}" ]; then
+  default=$(fact TESTS)
+fi
 # Of those that hold the demonstration's scene in RAM, two will do.
 case $board in lm3s6965evb | pico) default="$default dig" ;; esac
 # The applications that there are; faults is judged by itself below.
@@ -96,6 +100,15 @@ for app in $apps; do
         fail bench "${times:-not} times faster than the textbook's tracer, at least $least"
       fi
     done <tests/budgets/frames.csv
+    # Every picture, whichever way it was drawn, is the golden one of this size and format.
+    size=$(fact WIDTH_PX),$(fact HEIGHT_PX),$(fact FORMAT)
+    sed -n "s/^[a-z_]*\.crc\.\([0-9]*\),\([0-9a-f]*\).*/$size,\1,\2/p" "$log" | sort -u >"$work/frames"
+    grep "^$size," tests/golden/demo_frames.csv | sort >"$work/frames.golden" || true
+    if [ -s "$work/frames" ] && cmp -s "$work/frames" "$work/frames.golden"; then
+      said="${said}frames are the golden ones; "
+    else
+      fail bench "its frames are not those of tests/golden/demo_frames.csv (made by tests/boards/golden_frames.sh)"
+    fi
     # BOARD_FRAME_INSTRUCTIONS, to a twentieth.
     cost=$(sed -n 's/^brick_map\.instructions_median,\([0-9]*\).*/\1/p' "$log")
     told=$(fact FRAME_INSTRUCTIONS)

@@ -13,6 +13,7 @@ if [ "${1:-}" = --job ]; then
     case $2 in
       examples) sh "$here/examples.sh" "$THIMBLE_FIRMWARE/examples" || status=1 ;;
       emulate) sh "$here/emulate.sh" || status=1 ;;
+      frames) sh "$here/golden_frames.sh" || status=1 ;;
       formats) sh "$here/formats.sh" microbit || status=1 ;;
       *) sh "$here/board.sh" "$2" || status=1 ;;
     esac
@@ -55,7 +56,7 @@ failed=0
       *) echo "$(($(fact WIDTH_PX) * $(fact HEIGHT_PX))) $board" ;;
     esac
   done
-  echo "0 examples"
+  printf '0 examples\n0 frames\n'
   case " $boards " in *microbit*) printf '2 emulate\n1 formats\n' ;; esac
 } | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/run.sh" --job || failed=1
 # What must be one number everywhere.

@@ -3,12 +3,15 @@
 import assert from 'node:assert/strict';
 import { pathToFileURL } from 'node:url';
 
-const { Panel } = await import(pathToFileURL(process.argv[2]).href);
+const { Panel, kCarriers } = await import(pathToFileURL(process.argv[2]).href);
 
 class Pin {
   outputEnable = true;
   outputValue = true;
-  setInputValue() {}
+  isHigh = false;
+  setInputValue(isHigh) {
+    this.isHigh = isHigh;
+  }
   addListener() {}
 }
 
@@ -30,9 +33,9 @@ class Chip {
   }
 }
 
-function panel() {
+function panel(carrier = kCarriers['pico-lcd-1.3']) {
   const chip = new Chip();
-  const made = new Panel(chip);
+  const made = new Panel(chip, carrier);
   made.readyAt = 0;
   return { chip, made };
 }
@@ -77,5 +80,30 @@ for (const [name, bytes] of [['writeUint8', 1], ['writeUint16', 2], ['writeUint3
   chip.spi[1].onTransmit(0x29);
   assert.match(made.complaint, /command 0x29 1 ms too early/);
   assert.equal(made.on, false);
+}
+// Each carrier: keys are pulled up, one that is held is low; a picture as wide and high as the glass, in which the pixel
+// that is sent first is at the top left and the last of a row at its right.
+for (const [name, width, height, up] of [['pico-lcd-1.3', 240, 240, 2], ['pico-lcd-2', 320, 240, 15]]) {
+  const { chip, made } = panel(kCarriers[name]);
+  assert.equal(chip.gpio[up].isHigh, true, name);
+  made.press('up', true);
+  assert.equal(chip.gpio[up].isHigh, false, name);
+  made.press('up', false);
+  assert.equal(chip.gpio[up].isHigh, true, name);
+  Object.assign(made, { asleep: false, on: true, inverted: true, order: 0x70, pixels: 0x55, x: 0, y: 0 });
+  Object.assign(made, { command: 0x2c, columns: [0, width - 1], rows: [0, height - 1] });
+  for (let x = 0; x <= width; ++x) {
+    const pixel = x === 0 ? 0xf800 : x === width - 1 ? 0x07e0 : x === width ? 0x001f : 0;
+    made.pixelByte(pixel >> 8);
+    made.pixelByte(pixel & 0xff);
+  }
+  const picture = made.picture();
+  const head = `P6\n${width} ${height}\n255\n`;
+  assert.equal(picture.subarray(0, head.length).toString(), head);
+  const at = (x, y) => [...picture.subarray(head.length + 3 * (y * width + x)).subarray(0, 3)];
+  assert.deepEqual(at(0, 0), [255, 0, 0], name);
+  assert.deepEqual(at(width - 1, 0), [0, 255, 0], name);
+  assert.deepEqual(at(0, 1), [0, 0, 255], name);
+  assert.equal(picture.length, head.length + 3 * width * height);
 }
 console.log('panel: refuses what a display could not take');

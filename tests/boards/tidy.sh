@@ -26,13 +26,14 @@ lint() {
   cmake -DROOT="$PWD" -DBOARD="$board" -DOUT="$work/$board" -P tests/boards/facts.cmake
   for file; do
     echo "$file -- --target=$target -std=c++20 -Wreserved-identifier -Werror -ffreestanding -fno-exceptions -fno-rtti -Iinclude -Iplatform -Iplatform/arch" \
-      "-Iplatform/boards/$board -I$work/$board -DTHIMBLE_APPLICATION=demo" >>"$jobs"
+      "-Iplatform/boards/$board -Iplatform/chips/$(fact CHIP) -I$work/$board -DTHIMBLE_APPLICATION=demo" >>"$jobs"
   done
 }
 lint lm3s6965evb platform/arch/common/*.cpp platform/arch/cortex-m/*.cpp platform/drivers/*.cpp
 lint sifive_e platform/arch/riscv/*.cpp
 lint raspi0 platform/arch/arm11/*.cpp
 lint gba platform/arch/arm7/*.cpp
+lint pico platform/chips/rp2040/*.cpp
 for folder in platform/boards/*/; do
   for file in "$folder"*.cpp; do
     [ ! -f "$file" ] || lint "$(basename "$folder")" "$file"

@@ -22,7 +22,7 @@ if ! why=$(sh "$emulator/fetch.sh"); then
 fi
 run() {
   status=0
-  timeout 120 sh "$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$@" </dev/null >"$work/uf2.log" 2>"$work/uf2.said" || status=$?
+  timeout 120 sh "$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$@" $(fact EMULATOR_OPTIONS) </dev/null >"$work/uf2.log" 2>"$work/uf2.said" || status=$?
 }
 # refused WHAT FILE SENTENCE
 refused() {

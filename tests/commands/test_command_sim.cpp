@@ -124,8 +124,8 @@ TEST_CASE("sim: --record -> a YUV4MPEG2 file of so many frames, the last one as 
 }
 
 TEST_CASE("sim: every board -> its own arena, a whole frame, and use within the limits") {
-  for (const char* const board : {"lm3s6965evb", "microbit", "mps2-an500", "netduinoplus2", "pico", "raspi0",
-                                  "sifive_e", "stm32vldiscovery"}) {
+  for (const char* const board : {"lm3s6965evb", "microbit", "mps2-an500", "netduinoplus2", "pico",
+                                  "pico-lcd-2", "raspi0", "sifive_e", "stm32vldiscovery"}) {
     const CommandResult result = sim({kSimScene, "--board", board});
     CAPTURE(board);
     CAPTURE(result.describe());

@@ -1,6 +1,7 @@
 set(BOARD_TITLE "Raspberry Pi Pico (RP2040, Cortex-M0+) with a Pico-LCD-1.3")
 set(BOARD_ARCH cortex-m)
 set(BOARD_CPU cortex-m0plus)
+set(BOARD_CHIP rp2040)
 set(BOARD_FLASH_ORIGIN 0x10000000)
 set(BOARD_FLASH_BYTES 2097152)
 set(BOARD_RAM_ORIGIN 0x20000000)
@@ -19,6 +20,7 @@ set(BOARD_CLOCK_MHZ 133)
 set(BOARD_ICOUNT_SHIFT 3)
 set(BOARD_VISITS_A_SECOND 150000)
 set(BOARD_FRAME_INSTRUCTIONS 16800000)
+set(BOARD_HOLDS_FPS 30)
 set(BOARD_BAND_BUFFERS 2)
 # A write to flash is a write to the cache's line and goes nowhere. When the stack overflows, the core cannot push the exception,
 # and Armv6-M locks up.

@@ -1,16 +1,17 @@
 // Runs an image as a Raspberry Pi Pico would: the UART on stdin and stdout, the exit status the application's.
 //
-//   node emulate.mjs MODULES SHIFT IMAGE.uf2 [-qmp unix:SOCKET,...] [-shot PICTURE.ppm]
+//   node emulate.mjs MODULES SHIFT IMAGE.uf2 [-carrier NAME] [-qmp unix:SOCKET,...] [-shot PICTURE.ppm]
 //
-// MODULES is where npm put rp2040js; an instruction takes 2^SHIFT ns. -qmp answers as QEMU's machine protocol does
-// to tests/boards/qemu_screen.cpp: screendump, input-send-event, quit. -shot writes what the display shows at the end.
+// MODULES is where npm put rp2040js; an instruction takes 2^SHIFT ns. -carrier: one of panel.mjs. -qmp answers as QEMU's
+// machine protocol does to tests/boards/qemu_screen.cpp: screendump, input-send-event, quit. -shot writes what the
+// display shows at the end.
 import { rmSync, writeFileSync, writeSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { Refusal, boot } from './bootrom.mjs';
 import { LockUp, Machine } from './machine.mjs';
-import { Panel, kKeys } from './panel.mjs';
+import { Panel, kCarriers } from './panel.mjs';
 
 const kRefused = 96;
 const kLockedUp = 98;
@@ -24,7 +25,12 @@ const option = (name) => (options.includes(name) ? options[options.indexOf(name)
 const library = pathToFileURL(resolve(modules, 'rp2040js/dist/esm/index.js')).href;
 const machine = new Machine(await import(library), Number(shift));
 const { chip } = machine;
-const panel = new Panel(chip);
+const carrier = kCarriers[option('-carrier') ?? 'pico-lcd-1.3'];
+if (carrier === undefined) {
+  tell(`there is no carrier ${option('-carrier')}; those there are: ${Object.keys(kCarriers).join(', ')}`);
+  process.exit(2);
+}
+const panel = new Panel(chip, carrier);
 const uart = chip.uart[0];
 let status = -1; // once it has ended
 
@@ -82,7 +88,7 @@ function answer(line) {
     writeFileSync(wanted.filename, panel.picture());
   } else if (execute === 'input-send-event') {
     for (const { data } of wanted.events) {
-      if (!(data.key.data in kKeys)) {
+      if (!(data.key.data in carrier.keys)) {
         return { error: { desc: `the carrier has no key ${data.key.data}` } };
       }
       panel.press(data.key.data, data.down);

@@ -1,10 +1,16 @@
-// A Pico-LCD-1.3 as the chip sees it: an ST7789 (Sitronix data sheet V1.0) on SPI1 with its glass of 240 x 240,
-// and keys. The display is modelled from the bits on the wires; what the controller would not take, it does
-// not take here.
+// A carrier as the chip sees it: an ST7789 (Sitronix data sheet V1.0) on SPI1 with its glass, and keys. The display
+// is modelled from the bits on the wires; what the controller would not take, it does not take here.
 const kPins = { data: 8, select: 9, reset: 12, light: 13 };
-export const kKeys = { up: 2, ctrl: 3, a: 15, left: 16, b: 17, down: 18, x: 19, right: 20, y: 21 };
+// As it is held: how wide and high the glass is, and the pin of each key.
+export const kCarriers = {
+  'pico-lcd-1.3': {
+    width: 240,
+    height: 240,
+    keys: { up: 2, ctrl: 3, a: 15, left: 16, b: 17, down: 18, x: 19, right: 20, y: 21 },
+  },
+  'pico-lcd-2': { width: 320, height: 240, keys: { up: 15, down: 17, left: 2, right: 3 } },
+};
 
-const kSide = 240;
 const kColumns = 240; // of the controller's memory
 const kRows = 320;
 const kMostHz = 1e9 / 16; // 7.4.2: a bit takes 16 ns at least
@@ -12,13 +18,14 @@ const kAfterResetNs = 120e6; // 7.4.5, before it may wake
 const kAfterWakeNs = 5e6; // 9.1.12, before the next command
 
 export class Panel {
-  constructor(chip) {
+  constructor(chip, carrier) {
     this.chip = chip;
+    this.carrier = carrier;
     this.memory = new Uint16Array(kColumns * kRows);
     this.complaint = '';
     this.frames = 0;
     this.restart();
-    for (const pin of Object.values(kKeys)) {
+    for (const pin of Object.values(carrier.keys)) {
       chip.gpio[pin].setInputValue(true); // pulled up, released
     }
     chip.gpio[kPins.reset].addListener(() => {
@@ -69,7 +76,7 @@ export class Panel {
   }
 
   press(key, isDown) {
-    this.chip.gpio[kKeys[key]].setInputValue(!isDown);
+    this.chip.gpio[this.carrier.keys[key]].setInputValue(!isDown);
   }
 
   isHigh(pin) {
@@ -167,21 +174,22 @@ export class Panel {
     }
   }
 
-  // What somebody sees who holds the joystick to the left, as PPM: the first 240 rows of the memory, from right to
-  // left. This glass shows colours as they are when the controller inverts them.
+  // What somebody sees who holds the long side of the controller's memory across, its joystick to the left, as PPM:
+  // rows of the memory from left to right. This glass shows colours as they are when the controller inverts them.
   picture() {
-    const picture = Buffer.alloc(3 * kSide * kSide);
+    const { width, height } = this.carrier;
+    const picture = Buffer.alloc(3 * width * height);
     if (!this.asleep && this.on && this.isHigh(kPins.light)) {
-      for (let y = 0; y < kSide; ++y) {
-        for (let x = 0; x < kSide; ++x) {
+      for (let y = 0; y < height; ++y) {
+        for (let x = 0; x < width; ++x) {
           const stored = this.memory[x * kColumns + kColumns - 1 - y];
           const pixel = this.inverted ? stored : ~stored & 0xffff;
           const [r, g, b] = [pixel >> 11, pixel >> 5 & 63, pixel & 31];
           const bytes = [r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2];
-          picture.set((this.order & 8) !== 0 ? bytes.reverse() : bytes, 3 * (y * kSide + x));
+          picture.set((this.order & 8) !== 0 ? bytes.reverse() : bytes, 3 * (y * width + x));
         }
       }
     }
-    return Buffer.concat([Buffer.from(`P6\n${kSide} ${kSide}\n255\n`), picture]);
+    return Buffer.concat([Buffer.from(`P6\n${width} ${height}\n255\n`), picture]);
   }
 }

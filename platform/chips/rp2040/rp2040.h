@@ -1,11 +1,13 @@
 /// @file rp2040.h
-/// Registers of the RP2040 that this board uses (RP2040 Datasheet; the sections are named beside them), and
-/// the pins of the Pico-LCD-1.3, the carrier with a display of 240 x 240 pixels, a joystick and four keys
-/// (Waveshare's wiki, Pico-LCD-1.3).
-#ifndef THIMBLE_PLATFORM_BOARDS_RP2040_H
-#define THIMBLE_PLATFORM_BOARDS_RP2040_H
+/// Registers of the RP2040 that its boards use (RP2040 Datasheet; the sections are named beside them), and
+/// the pins that the carriers with a display share (Waveshare's wiki, Pico-LCD-1.3 and Pico-LCD-2).
+#ifndef THIMBLE_PLATFORM_CHIPS_RP2040_H
+#define THIMBLE_PLATFORM_CHIPS_RP2040_H
 
 #include <stdint.h>
+
+#include "port.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::rp2040 {
 
@@ -98,7 +100,7 @@ inline constexpr uint32_t kDmaQuiet = 1U << 21;     ///< no interrupt
 inline constexpr uint32_t kDmaSwapsBytes = 1U << 22;
 inline constexpr uint32_t kDmaBusy = 1U << 24;
 
-// The carrier's pins.
+// The carriers' pins.
 inline constexpr uint32_t kPinUartSends = 0;
 inline constexpr uint32_t kPinUartReceives = 1;
 inline constexpr uint32_t kPinLcdData = 8;  ///< high: data, low: a command
@@ -107,12 +109,14 @@ inline constexpr uint32_t kPinLcdClock = 10;
 inline constexpr uint32_t kPinLcdDin = 11;
 inline constexpr uint32_t kPinLcdReset = 12;
 inline constexpr uint32_t kPinLcdLight = 13;
-inline constexpr uint32_t kPinUp = 2;
-inline constexpr uint32_t kPinPress = 3;
-inline constexpr uint32_t kPinKeyA = 15;
-inline constexpr uint32_t kPinLeft = 16;
-inline constexpr uint32_t kPinDown = 18;
-inline constexpr uint32_t kPinRight = 20;
+
+/// A key of a carrier: low while it is down.
+struct Key {
+  uint32_t pin;
+  port::Button button;
+};
+/// Supplied by each board (its keys.cpp), some for the same button.
+Span<const Key> keys();
 
 /// lcd.cpp: after the clocks run and the blocks are out of reset.
 void start_display();

@@ -1,4 +1,4 @@
-// The display: 240 x 240 pixels behind an ST7789 (Sitronix data sheet V1.0), on SPI1. DMA sends a band from
+// The display: 240 x 240 or 320 x 240 pixels behind an ST7789 (Sitronix data sheet V1.0), on SPI1. DMA sends a band from
 // where it was drawn while the next one is drawn: a frame of SPI is a pixel of 16 bits, so that a halfword of
 // the RAM arrives as the display wants it, high byte first, and nobody copies or swaps.
 #include <stddef.h>
@@ -36,7 +36,7 @@ constexpr uint8_t kColumns = 0x2A;
 constexpr uint8_t kRows = 0x2B;
 constexpr uint8_t kWrite = 0x2C;
 constexpr uint8_t kOrder = 0x36;
-constexpr uint8_t kJoystickLeft = 0x70;  // columns mirrored, rows and columns exchanged
+constexpr uint8_t kAcross = 0x70;  // columns mirrored, rows and columns exchanged
 constexpr uint8_t kPixels = 0x3A;
 constexpr uint8_t k16Bits = 0x55;
 
@@ -132,7 +132,7 @@ void rp2040::start_display() {
   command(kSleepOut);
   wait_ms(kWakeMs);
   command(kPixels, k16Bits);
-  command(kOrder, kJoystickLeft);
+  command(kOrder, kAcross);
   command(kInvert);
   const port::Display& display = board::kFacts.display;
   alignas(2) static constexpr uint8_t kBlack[2] = {};
@@ -144,7 +144,7 @@ void rp2040::start_display() {
   register32(kSioOutSet) = kLightPin;
 }
 
-// Eight rows of 240 pixels take 1 ms, the whole picture 28.
+// Eight rows of 240 pixels take 1 ms; the whole picture 28, one of 320 x 240 pixels 37.
 void board::await_flush() {
   wait_for_clear(rp2040::kDmaControl, rp2040::kDmaBusy);
 }

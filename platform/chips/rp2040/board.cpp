@@ -1,4 +1,4 @@
-// Clocks, UART and keys of the Raspberry Pi Pico on a Pico-LCD-1.3.
+// Clocks, UART and keys of a Raspberry Pi Pico on a carrier with a display.
 #include "board.h"
 
 #include <stdint.h>
@@ -14,14 +14,6 @@ namespace {
 constexpr uint32_t kBaud = 115200;
 constexpr uint32_t kBlocks =
     rp2040::kBlockDma | rp2040::kBlockPins | rp2040::kBlockPads | rp2040::kBlockSpi1 | rp2040::kBlockUart0;
-
-struct Key {
-  uint32_t pin;
-  port::Button button;
-};
-constexpr Key kKeys[] = {{rp2040::kPinUp, port::kUp},        {rp2040::kPinDown, port::kDown},
-                         {rp2040::kPinLeft, port::kLeft},    {rp2040::kPinRight, port::kRight},
-                         {rp2040::kPinPress, port::kSelect}, {rp2040::kPinKeyA, port::kSelect}};
 
 // Through a reset, so that a block is as the data sheet says, whatever ran before us.
 void restart(uint32_t blocks) {
@@ -62,7 +54,7 @@ void start() {
   register32(rp2040::pin_control(rp2040::kPinUartSends)) = rp2040::kPinUart;
   register32(rp2040::pin_control(rp2040::kPinUartReceives)) = rp2040::kPinUart;
   pl011::start(rp2040::kUart0, kClockMhz * 1000000, kBaud);
-  for (const Key& key : kKeys) {
+  for (const rp2040::Key& key : rp2040::keys()) {
     register32(rp2040::pad(key.pin)) = rp2040::kPadInputPulledUp;
     register32(rp2040::pin_control(key.pin)) = rp2040::kPinSio;
   }
@@ -80,7 +72,7 @@ int get() {
 uint32_t buttons() {
   const uint32_t high = register32(rp2040::kSioIn);
   uint32_t down = 0;
-  for (const Key& key : kKeys) {
+  for (const rp2040::Key& key : rp2040::keys()) {
     if ((high >> key.pin & 1U) == 0) {
       down |= key.button;
     }
