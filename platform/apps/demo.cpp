@@ -9,8 +9,9 @@
 //   c   CRC-32 of every frame on or off; on from the start where there is no display
 //   q   ends, with status 0
 //
-// A scene that was baked for effects (scene_light.h) stands still at first. While it moves, frames are fast
-// and without them; as soon as it does not, one is drawn with them, and then nothing until it moves again.
+// A scene that was baked for effects (scene_light.h) turns in their light where frames by the brick map allow it.
+// Else it stands still at first: while it moves, or while a rate is held, frames are fast and without effects; as
+// soon as it does not, one is drawn with them, and then nothing until it moves again.
 //
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
 // is held, and nothing but the arena is used.
@@ -70,7 +71,7 @@ struct Demo : Placed {
 
   // Light.
   SceneLight light;
-  bool lights = false;            ///< when it stands still
+  bool lights = false;            ///< as soon as it can (`lights_next`)
   bool is_lit = false;            ///< the picture that is shown
   uint32_t lit_instructions = 0;  ///< of the last frame that was lit to its end, where they are counted
 
@@ -151,15 +152,15 @@ void flush(Demo* demo, const Band& band, uint32_t* crc) {
   }
 }
 
-/// Draws and flushes a frame; `crc` gets that of its bytes. A hand on the buttons need not wait for one with
-/// light: the rest of it is then a fast one.
+/// Draws and flushes a frame; `crc` gets that of its bytes. A hand on the buttons need not wait for one whose light is
+/// slow: the rest of it is then a fast one.
 [[gnu::noinline]] Status draw_frame(Demo* demo, uint32_t* crc) {
   const int32_t height = display().height_px;
   const uint32_t start = kCanLight ? port::instructions() : 0;
   *crc = 0;
   for (int32_t y = 0; y < height; y += demo->band_rows) {
     const Band band = band_at(*demo, y, height);
-    demo->is_lit = kCanLight && demo->is_lit && port::buttons() == 0;
+    demo->is_lit = kCanLight && demo->is_lit && (demo->light.is_fast || port::buttons() == 0);
     // Light is drawn from here: the less stands on the stack the better.
     const Status status = kCanLight && demo->is_lit
                               ? draw_lit_scene(demo->shown, demo->camera, demo->shading, demo->light, band)
@@ -388,8 +389,13 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format)
     return;
   }
   demo->lights = !demo->lights;
-  demo->turns = !demo->lights;
+  demo->turns = demo->light.is_fast ? demo->turns : !demo->lights;
   demo->changed = true;
+}
+
+/// Whether the next frame is drawn with light: any, where that is fast and no rate is held; else once nothing moves.
+bool lights_next(const Demo& demo) {
+  return kCanLight && demo.lights && !demo.builds && (!demo.changed || (demo.light.is_fast && !demo.holds));
 }
 
 /// Whether to go on.
@@ -514,7 +520,7 @@ bool take_bands(Demo* demo) {
   }
   show_baked(demo);
   demo->lights = demo->light.effects() != Effect::kNone;
-  demo->turns = !demo->lights;
+  demo->turns = !demo->lights || demo->light.is_fast;
   if (port::facts().hold_fps != 0) {
     demo->fps = port::facts().hold_fps;
     switch_hold(demo);
@@ -539,8 +545,8 @@ int demo() {
       build_more(demo);
       demo->changed = true;
     }
-    const bool lights = kCanLight && demo->lights && !demo->builds && !demo->changed;
-    if (lights && demo->is_lit) {
+    const bool lights = lights_next(*demo);
+    if (lights && demo->is_lit && !demo->changed) {
       continue;  // it is there already
     }
     const uint32_t start = port::instructions();

@@ -4,8 +4,8 @@
 /// In a firmware image the set is a constant (`THIMBLE_IMAGE_EFFECTS`, which platform/firmware.cmake reads
 /// off the header that `thimble bake` made): the linker leaves out the rest, and with an empty set all of it.
 /// On a desktop the scene comes with the command line, so the set is looked up there, and the library's own
-/// renderers draw it. Both draw the same picture. Where the image's effects allow it and there is a brick map, frames
-/// are fast enough to move in (map_render.h).
+/// renderers draw it. Both draw the same picture. Where the effects allow it and there is a brick map, frames are fast
+/// enough to move in (map_render.h).
 #ifndef THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
 #define THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
 
@@ -29,7 +29,7 @@ inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
 #ifdef THIMBLE_IMAGE_EFFECTS
 inline constexpr bool kLightsFast = is_flat(kImageEffects);
 #else
-inline constexpr bool kLightsFast = false;
+inline constexpr bool kLightsFast = true;
 #endif
 
 /// Whether a scene stands before black: it was baked for a display of few greys, this is one, and it has no sky.
@@ -39,6 +39,12 @@ constexpr bool is_dark_behind(EffectSet effects, PixelFormat format) {
 }
 
 #if !defined(THIMBLE_IMAGE_EFFECTS) || THIMBLE_IMAGE_EFFECTS != 0
+
+/// A set as a type.
+template <EffectSet kSet>
+struct FixedSet {
+  constexpr EffectSet operator()() const { return kSet; }
+};
 
 struct SceneLight {
   BakedLighting baked;
@@ -75,16 +81,43 @@ struct SceneLight {
 #endif
 }
 
+#ifndef THIMBLE_IMAGE_EFFECTS
+/// Draws a band of a set that `is_flat` by the map; else kBadArgument.
+[[gnu::noinline]] inline Status draw_lit_by_map(const ShownScene& shown, const Camera& camera,
+                                                const Shading& shading, const SceneLight& light,
+                                                const Band& band, LitCounts* counts) {
+  const auto draw = [&](auto set) {
+    return render_lit_band<set()>(shown.scene.tree(), shown.map, camera, shading, light.baked.scene,
+                                  {light.suns, kMaxFlatSuns}, band, counts);
+  };
+  constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+  switch (light.effects() & ~Effect::kEmitterLight) {
+    case Effect::kDirectLight:
+      return draw(FixedSet<Effect::kDirectLight>());
+    case kSun:
+      return draw(FixedSet<kSun>());
+    case kSun | Effect::kEmission:
+      return draw(FixedSet<kSun | Effect::kEmission>());
+    case kSun | Effect::kSky:
+      return draw(FixedSet<kSun | Effect::kSky>());
+    case kSun | Effect::kEmission | Effect::kSky:
+      return draw(FixedSet<kSun | Effect::kEmission | Effect::kSky>());
+    default:
+      return Status::kBadArgument;
+  }
+}
+#endif
+
 /// Looks whether frames go through the map, and proves in bytes of the arena which bricks its lights reach freely, as
 /// far as these hold that: without it frames are slower, and the same.
 [[gnu::noinline]] inline void prove_light(const ShownScene& shown, Arena* arena, SceneLight* light) {
   if constexpr (kLightsFast) {
     const Span<const Light>& lights = light->baked.scene.lights;
-    light->is_fast = shown.has_map && light->effects() != Effect::kNone && lights.size <= kMaxFlatSuns;
+    light->is_fast = shown.has_map && is_flat(light->effects()) && lights.size <= kMaxFlatSuns;
     for (size_t i = 0; i < lights.size && light->is_fast; ++i) {
       light->is_fast = !lights[i].is_point;
     }
-    for (size_t i = 0; i < lights.size && light->is_fast && (kImageEffects & Effect::kShadows) != 0; ++i) {
+    for (size_t i = 0; i < lights.size && light->is_fast && (light->effects() & Effect::kShadows) != 0; ++i) {
       const Bytes room = arena->take(SunBricks::bytes(shown.map));
       (void)SunBricks::make(shown.map, lights[i].place, room, &light->suns[i]);
     }
@@ -97,8 +130,12 @@ struct SceneLight {
                                                const Band& band, LitCounts* counts = nullptr) {
   if constexpr (kLightsFast) {
     if (light.is_fast) {
+#ifdef THIMBLE_IMAGE_EFFECTS
       return render_lit_band<kImageEffects>(shown.scene.tree(), shown.map, camera, shading, light.baked.scene,
                                             {light.suns, kMaxFlatSuns}, band, counts);
+#else
+      return draw_lit_by_map(shown, camera, shading, light, band, counts);
+#endif
     }
   }
   return draw_lit(shown.scene, camera, shading, light, band, counts);

@@ -15,13 +15,6 @@ uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, i
   return (channel * levels + (128 - place) * kWhite / 128) / kWhite;
 }
 
-// The channels in 8 bits, rounded to the nearest.
-Rgb8 in_8_bits(const uint32_t (&channel)[3]) {
-  return {static_cast<uint8_t>((channel[0] + kLevel / 2) / kLevel),
-          static_cast<uint8_t>((channel[1] + kLevel / 2) / kLevel),
-          static_cast<uint8_t>((channel[2] + kLevel / 2) / kLevel)};
-}
-
 // The formats behind kRgb888: those with levels are dithered as the others, from all bits that there are. Paper has
 // its own dither, in store_pixel, of 8 bits; without one a colour is taken as in the middle of the cell.
 Rgb8 panel_color(const uint32_t (&channel)[3], uint32_t gray, PixelFormat format, const LitOptions& options,
@@ -128,9 +121,7 @@ void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32
       break;
     case PixelFormat::kGray8:
     case PixelFormat::kRgb888:
-      stored = {static_cast<uint8_t>((channel[0] + kLevel / 2) / kLevel),
-                static_cast<uint8_t>((channel[1] + kLevel / 2) / kLevel),
-                static_cast<uint8_t>((channel[2] + kLevel / 2) / kLevel)};
+      stored = in_8_bits(channel);
       break;
   }
   store_pixel(line, x, y, band.format, stored);

@@ -21,6 +21,13 @@ inline void expose(const Color& color, uint32_t (*channel)[3]) {
   }
 }
 
+// The channels in 8 bits, rounded to the nearest.
+inline Rgb8 in_8_bits(const uint32_t (&channel)[3]) {
+  return {static_cast<uint8_t>((channel[0] + kLevel / 2) / kLevel),
+          static_cast<uint8_t>((channel[1] + kLevel / 2) / kLevel),
+          static_cast<uint8_t>((channel[2] + kLevel / 2) / kLevel)};
+}
+
 }  // namespace thimble::lit
 
 #endif

@@ -126,7 +126,7 @@ fi
 fps=$(fact HOLDS_FPS)
 fps=${fps:-30}
 if [ "$(fact VISITS_A_SECOND)" != 0 ]; then
-  # One that turns: a scene with light stands still.
+  # Without light, which leaves no time for a rate.
   EFFECTS=none HOLD_FPS=$fps HOLD=true FRAMES=20 sh platform/build.sh "$board" demo "$scene" >"$work/display.build.log" 2>&1 || {
     tail -n 5 "$work/display.build.log" >&2
     exit 1

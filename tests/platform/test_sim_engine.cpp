@@ -154,10 +154,15 @@ TEST_CASE("sim --engine: the demonstration at 640 x 480, by one thread and by tw
 
 TEST_CASE("sim --engine: frames with light, and a rate that is held -> the same, whoever draws the others") {
   const TemporaryFolder folder;
-  const Words lit{
-      kScene,         "--board", "lm3s6965evb",
-      "--frames",     "5",       "--effects",
-      "direct-light", "--keys",  folder.write("keys.txt", "0: type c\n2: down right\n3: up right\n")};
+  const Words lit{kScene,
+                  "--board",
+                  "lm3s6965evb",
+                  "--frames",
+                  "5",
+                  "--effects",
+                  "direct-light,ambient-occlusion",
+                  "--keys",
+                  folder.write("keys.txt", "0: type c\n2: down right\n3: up right\n")};
   const Ran core_lit = run_sim(folder, lit + Words{"--engine", "ray64"});
   CHECK(core_lit.result.out.find(" lit\n") != std::string::npos);
   check_same(core_lit, run_sim(folder, lit + Words{"--engine", "wide"}));

@@ -26,3 +26,4 @@ set(BOARD_BAND_BUFFERS 2)
 # and Armv6-M locks up.
 set(BOARD_CATCHES ram nonsense scene)
 set(BOARD_LOCKS_UP stack)
+set(BOARD_DEMO_EFFECTS direct-light,shadows)

@@ -10,6 +10,7 @@
 #pragma GCC optimize("O2", "rename-registers")
 #endif
 
+#include "../../picture/bricks/face_light.h"
 #include "../../picture/bricks/sight.h"
 
 namespace thimble::lit {
@@ -18,7 +19,7 @@ namespace {
 using namespace bricks;
 
 // How a format's pixels are made of a colour.
-enum class Storing : uint8_t { kGrays, kHalfwords, kAny };
+enum class Storing : uint8_t { kGrays, kHalfwords, kBytes, kAny };
 
 Storing storing_of(PixelFormat format) {
   if (format == PixelFormat::kMono1 || format == PixelFormat::kGray4) {
@@ -28,25 +29,26 @@ Storing storing_of(PixelFormat format) {
                  (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
                  (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)
              ? Storing::kHalfwords
-             : Storing::kAny;
+         : format == PixelFormat::kGray8 || format == PixelFormat::kRgb888 ? Storing::kBytes
+                                                                           : Storing::kAny;
 }
 
-// What is added to a channel's rest, before it is held against kWhite, by a pixel's place in the dither.
+// From what rest of a channel on, of kWhite, the next step is stored, by a pixel's place in the dither.
 struct Thresholds {
   uint16_t at[64];
 };
 constexpr Thresholds thresholds() {
   Thresholds result{};
   for (int32_t i = 0; i < 64; ++i) {
-    result.at[i] = static_cast<uint16_t>((128 - (2 * bayer_rank(i & 7, i >> 3) + 1)) * kWhite / 128);
+    result.at[i] = static_cast<uint16_t>(kWhite - (128 - (2 * bayer_rank(i & 7, i >> 3) + 1)) * kWhite / 128);
   }
   return result;
 }
 constexpr Thresholds kDither = thresholds();
-constexpr uint32_t kNoDither = 64 * kWhite / 128;
+constexpr uint32_t kNoDither = kWhite - 64 * kWhite / 128;
 
-// A colour as it is stored: the step below, and what is left of each channel, of kWhite. For formats without steps
-// the colour itself.
+// A colour as it is stored. kGrays: the step below, and what is left, of kWhite. kHalfwords: the pixel of the steps
+// below, and what is left of each channel. kBytes: the pixel. kAny: the colour itself.
 struct FlatInk {
   uint32_t low;
   uint16_t rest[3];
@@ -76,8 +78,19 @@ struct FlatProgress {
 template <EffectSet kSet>
 class FlatSink {
  public:
-  FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride)
-      : frame_(frame), map_(map), band_(band), stride_(stride), storing_(storing_of(band.format)) {
+  FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
+      : frame_(frame),
+        map_(map),
+        band_(band),
+        stride_(stride),
+        storing_(storing_of(band.format)),
+        counts_(counts) {
+    const bool blue_first = has_format(PixelFormat::kBgr565) && band.format == PixelFormat::kBgr565;
+    shift_[0] = blue_first ? 0 : 11;
+    shift_[1] = 5;
+    shift_[2] = blue_first ? 11 : 0;
+    is_whole_ = storing_ == Storing::kHalfwords && frame.options.dither &&
+                ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
     for (FlatInk& ink : inks_) {
       ink.key = kNoKey;
     }
@@ -139,6 +152,48 @@ class FlatSink {
     }
   }
 
+  // All pixels of a face.
+  void face(const SeenPixels& seen, SeenFace& face) {
+    const unsigned side = seen.course.face[face.point.axis];
+    unsigned lights = lights_of_[side];
+    unsigned open = 0;  // lights that may reach a part of it
+    if constexpr (kHasShadows) {
+      for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+        if ((lights >> i & 1U) != 0) {
+          const FaceLight light = light_of_face(suns_[i], face.point, &blockers_[kSlots != 0 ? i : 0]);
+          lights &= ~(light == FaceLight::kDark ? 1U << i : 0U);
+          open |= light == FaceLight::kMixed ? 1U << i : 0U;
+          if (counts_ && light != FaceLight::kMixed) {
+            const uint32_t rays = count_of(seen.pixels);
+            shadow_rays_ += rays;
+            shadows_ += light == FaceLight::kDark ? rays : 0;
+          }
+        }
+      }
+    }
+    if (counts_) {
+      hits_ += count_of(seen.pixels);
+    }
+    const uint8_t material = material_of(face.voxel, side);
+    if (open == 0) {
+      store(seen.place, seen.pixels, ink_of_face(material, side, lights));
+    } else {
+      store_points(seen, face, material, lights, open);
+    }
+  }
+
+  void miss(const TilePlace& place, const Pixels& pixels) {
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      misses_ += counts_ ? count_of(pixels) : 0;
+      store(place, pixels, sky_);
+    } else {
+      for_each(pixels, [&](uint32_t pixel) {
+        miss(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+             place.y + static_cast<int32_t>(pixel / kTileAcrossPx));
+      });
+    }
+  }
+
   void ask(int32_t x, int32_t y) {
     const auto pixel = static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
     asked_[pixel >> 5] |= 1U << (pixel & 31U);
@@ -167,6 +222,45 @@ class FlatSink {
 
  private:
   static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
+
+  static uint32_t count_of(const Pixels& pixels) {
+    uint32_t count = 0;
+    for (uint32_t word : pixels.word) {
+      count += static_cast<uint32_t>(bits::popcount32(word));
+    }
+    return count;
+  }
+  template <class Call>
+  static void for_each(const Pixels& pixels, const Call& call) {
+    for (uint32_t i = 0; i < kTileWords; ++i) {
+      for (uint32_t word = pixels.word[i]; word != 0; word &= word - 1) {
+        call(32 * i + bits::lowest_bit(word));
+      }
+    }
+  }
+
+  // Asks the points of a face one by one which of the lights that are `open` reach them.
+  [[gnu::noinline]] void store_points(const SeenPixels& seen, SeenFace& face, uint8_t material,
+                                      unsigned lights, unsigned open) {
+    const unsigned side = seen.course.face[face.point.axis];
+    for_each(seen.pixels, [&](uint32_t pixel) {
+      find_point(seen.course, seen.direction(pixel), &face);
+      unsigned reach = lights;
+      for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+        if ((open >> i & 1U) != 0) {
+          ++shadow_rays_;
+          const size_t sun = kHasShadows && kSlots != 0 ? i : 0;
+          if (blockers_[sun].count <= Blockers::kMost ? is_blocked(suns_[sun], blockers_[sun], face.point)
+                                                      : is_shadowed(suns_[sun], face.point)) {
+            reach &= ~(1U << i);
+            ++shadows_;
+          }
+        }
+      }
+      store(seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+            seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx), ink_of_face(material, side, reach));
+    });
+  }
 
   // 25 bits of a face's key: its place in the table and the upper 19 of them, beside the material.
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
@@ -220,27 +314,36 @@ class FlatSink {
     }
     uint32_t channel[3];
     expose(color, &channel);
+    ink->low = 0;
+    if (storing_ == Storing::kBytes) {
+      const Rgb8 stored = in_8_bits(channel);
+      ink->low = band_.format == PixelFormat::kGray8
+                     ? uint32_t{gray_of(stored)}
+                     : uint32_t{stored.r} | uint32_t{stored.g} << 8 | uint32_t{stored.b} << 16;
+      return;
+    }
     if (storing_ == Storing::kGrays) {
       channel[0] = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
     }
-    ink->low = 0;
     for (int i = 0; i < (storing_ == Storing::kGrays ? 1 : 3); ++i) {
       const uint32_t levels = storing_ == Storing::kHalfwords       ? (i == 1 ? 63 : 31)
                               : band_.format == PixelFormat::kGray4 ? 15
                                                                     : 1;
       const uint32_t value = channel[i] * levels;
-      ink->low |= value / kWhite << 8 * i;
+      ink->low |= value / kWhite << (storing_ == Storing::kGrays ? 0 : shift_[i]);
       ink->rest[i] = static_cast<uint16_t>(value % kWhite);
     }
   }
 
+  // The pixel of a halfword where the next step is stored from `limit` on.
+  [[gnu::always_inline]] uint32_t halfword(const FlatInk& ink, uint32_t limit) const {
+    return ink.low + (ink.rest[0] >= limit ? 1U << shift_[0] : 0U) + (ink.rest[1] >= limit ? 1U << 5 : 0U) +
+           (ink.rest[2] >= limit ? 1U << shift_[2] : 0U);
+  }
+
   [[gnu::always_inline]] void store(int32_t x, int32_t y, const FlatInk& ink) {
     uint8_t* line = line_of(y);
-    if (storing_ == Storing::kAny) {
-      store_color(line, x, y, ink);
-      return;
-    }
-    const uint32_t limit = kWhite - (frame_.options.dither ? kDither.at[(y & 7) << 3 | (x & 7)] : kNoDither);
+    const uint32_t limit = frame_.options.dither ? kDither.at[(y & 7) << 3 | (x & 7)] : kNoDither;
     if (storing_ == Storing::kGrays) {
       const uint32_t step = ink.low + (ink.rest[0] >= limit ? 1U : 0U);
       if (band_.format == PixelFormat::kGray4) {
@@ -250,22 +353,82 @@ class FlatSink {
       }
       return;
     }
-    const uint32_t red = (ink.low & 31U) + (ink.rest[0] >= limit ? 1U : 0U);
-    const uint32_t green = (ink.low >> 8 & 63U) + (ink.rest[1] >= limit ? 1U : 0U);
-    const uint32_t blue = (ink.low >> 16) + (ink.rest[2] >= limit ? 1U : 0U);
-    store_pixel(
-        line, x, y, band_.format,
-        {static_cast<uint8_t>(red << 3), static_cast<uint8_t>(green << 2), static_cast<uint8_t>(blue << 3)});
-  }
-  [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, const FlatInk& ink) const {
-    lit::store(frame_, band_, line, x, y, Color{{ink.rest[0], ink.rest[1], ink.rest[2]}});
+    store_color(line, x, y, limit, ink);
   }
 
+  // The same for a mask of a tile's pixels.
+  [[gnu::noinline]] void store(const TilePlace& place, const Pixels& pixels, const FlatInk& ink) {
+    if (storing_ == Storing::kBytes) {
+      const TilePlace bytes{line_of(place.y), stride_, place.x, place.y, place.across, place.down};
+      if (band_.format == PixelFormat::kRgb888) {
+        store_triples(bytes, pixels, ink.low);
+      } else {
+        store_whole<uint8_t>(bytes, pixels, ink.low);
+      }
+      return;
+    }
+    if (!is_whole_) {
+      for_each(pixels, [&](uint32_t pixel) {
+        store(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+              place.y + static_cast<int32_t>(pixel / kTileAcrossPx), ink);
+      });
+      return;
+    }
+    const uint32_t low = ink.low;
+    const uint32_t red = ink.rest[0];
+    const uint32_t green = ink.rest[1];
+    const uint32_t blue = ink.rest[2];
+    const uint32_t one_red = 1U << shift_[0];
+    const uint32_t one_blue = 1U << shift_[2];
+    const bool swaps = is_big_endian();
+    for (int32_t row = 0; row < place.down; ++row) {
+      uint32_t word = pixels.word[row >> 1] >> 16 * (row & 1) & 0xFFFFU;
+      if (word == 0) {
+        continue;
+      }
+      Half* to = static_cast<Half*>(static_cast<void*>(line_of(place.y + row))) + place.x;
+      const uint16_t* const limits = kDither.at + ((place.y + row) & 7) * 8;
+      for (uint32_t column = 0; word != 0;) {
+        const uint32_t none = bits::lowest_bit(word);
+        column += none;
+        word >>= none;
+        for (; (word & 1U) != 0; word >>= 1, ++column) {
+          const uint32_t limit = limits[column & 7U];
+          uint32_t value = low;
+          value += red >= limit ? one_red : 0;
+          value += green >= limit ? 1U << 5 : 0;
+          value += blue >= limit ? one_blue : 0;
+          to[column] = static_cast<Half>(swaps ? value >> 8 | value << 8 : value);
+        }
+      }
+    }
+  }
+
+  bool is_big_endian() const {
+    return has_format(PixelFormat::kRgb565Be) && band_.format == PixelFormat::kRgb565Be;
+  }
+
+  // Not inlined: formats whose pixels are seldom drawn one by one.
+  [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, uint32_t limit,
+                                     const FlatInk& ink) const {
+    if (storing_ == Storing::kHalfwords) {
+      const uint32_t value = halfword(ink, limit);
+      line[2 * x] = static_cast<uint8_t>(is_big_endian() ? value >> 8 : value);
+      line[2 * x + 1] = static_cast<uint8_t>(is_big_endian() ? value : value >> 8);
+    } else if (storing_ == Storing::kBytes) {
+      store_ink(line, x, y, band_.format, ink.low);
+    } else {
+      lit::store(frame_, band_, line, x, y, Color{{ink.rest[0], ink.rest[1], ink.rest[2]}});
+    }
+  }
   const Frame& frame_;
   const BrickMap& map_;
   const Band& band_;
   size_t stride_;
   Storing storing_;
+  bool counts_;       // rays of faces that are drawn as a whole are counted
+  bool is_whole_;     // halfwords may be stored as such
+  uint8_t shift_[3];  // of a halfword's channels
   uint8_t lights_of_[6];
   uint32_t hits_ = 0;
   uint32_t misses_ = 0;
@@ -276,6 +439,7 @@ class FlatSink {
   FlatInk inks_[kInks];
   uint32_t seen_[kFaces];  // material, from bit 8 on the face; kFaces is 2^6
   ShadowCourse suns_[kHasShadows ? kMaxFlatSuns : 1];
+  Blockers blockers_[kHasShadows && kSlots != 0 ? kMaxFlatSuns : 1];  // of the face that is being drawn
 };
 
 bool shares_bytes(PixelFormat format) {
@@ -288,10 +452,13 @@ template <EffectSet kSet>
 [[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, FlatProgress* progress,
                                   LitCounts* counts) {
-  FlatSink<kSet> sink(frame, map, band, stride);
+  FlatSink<kSet> sink(frame, map, band, stride, counts != nullptr);
   sink.set_lights(suns);
   const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
-  SightPainter<FlatSink<kSet>> painter(sights, sink);
+  Sweep sweep;
+  sweep.course = kNoKey;
+  const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
+  SightPainter<FlatSink<kSet>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();
   const int32_t end = band.first_row + band.rows;
   for (bool open = false; progress->y < end && !open;) {

@@ -151,7 +151,7 @@ class BrickPainter {
     set_sweep_course(course_, &sweep);
     const TilePlace place{line_of(tile.y0), row_stride(),      tile.x0,
                           tile.y0,          tile.x1 - tile.x0, tile.y1 - tile.y0};
-    TileSweep tile_sweep(sweep, course_, value, place);
+    TileSweep<InkPaint> tile_sweep({sweep, course_, value, place});
     course_.waiting = kWaiting;
     set_start(course_, *slab);
     *slab = tile_sweep.run(fan, *slab);

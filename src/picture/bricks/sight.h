@@ -7,7 +7,8 @@
 #define THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
 
 #include "beam.h"
-#include "brick_ray.h"
+#include "shadow.h"
+#include "sweep.h"
 #include "thimble/picture/brick_render.h"
 #include "tile.h"
 
@@ -39,63 +40,6 @@ struct SightCourse : Course {
   }
 };
 
-// Rays of one direction, from wherever: what BrickRay reads of a course, and the way to start.
-struct ShadowCourse {
-  static constexpr Aim kAim = Aim::kShadow;
-  const uint8_t* directory;
-  const uint8_t* bricks;
-  const uint8_t* behind_bits;  // a bit a brick of the directory: nothing solid behind it (or null)
-  int32_t next_brick[3];
-  uint32_t last[3];
-  int32_t one_step[3];
-  uint32_t d[3];       // the direction, mirrored
-  int32_t cells[3];    // sides of the box
-  uint32_t near_left;  // counts of bricks, were it in the box's lowest
-  int c;
-  unsigned mirrored;
-  bool wide;
-
-  [[gnu::always_inline]] bool is_free(int32_t at) const {
-    return behind_bits != nullptr && (static_cast<uint32_t>(behind_bits[at >> 4]) >> (at >> 1 & 7) & 1U) != 0;
-  }
-  [[gnu::always_inline]] bool goes_down(int axis) const { return (mirrored >> axis & 1U) != 0; }
-
-  void set(const BrickMap& map, const Vec3i& direction, const uint8_t* free_bricks) {
-    directory = map.directory();
-    bricks = map.bricks();
-    behind_bits = free_bricks;
-    c = 0;
-    mirrored = 0;
-    near_left = 0;
-    uint32_t all = 0;
-    int32_t step = 2;
-    for (int i = 0; i < 3; ++i) {
-      const bool down = direction[i] < 0;
-      d[i] = static_cast<uint32_t>(down ? -direction[i] : direction[i]);
-      all |= d[i];
-      c = d[i] > d[c] ? i : c;
-      mirrored |= down ? 1U << i : 0U;
-      last[i] = down ? 0U : 3U << kPlaceShift[i];
-      one_step[i] = down ? -(1 << kPlaceShift[i]) : 1 << kPlaceShift[i];
-      const int32_t side = map.box().high[i] - map.box().low[i];
-      cells[i] = 4 * side;
-      next_brick[i] = down ? -step : step;
-      near_left += static_cast<uint32_t>(down ? 511 : 512 - side) << 10 * i;
-      step *= side;
-    }
-    wide = all >= 1U << 11;
-  }
-};
-
-// A point on a face of a voxel: on each axis the voxel, from the box's lowest corner, and how far in it, in 1/256.
-// Across the face it is on the voxel's plane.
-struct FacePoint {
-  int32_t voxel[3];
-  int32_t within[3];
-  int axis;
-  bool faces_up;  // the face looks to larger coordinates
-};
-
 // The integer part of `dividend / divisor`, below 256, for a core without a divider.
 [[gnu::always_inline]] inline uint32_t fraction_of(uint32_t dividend, uint32_t divisor) {
   if (kDivides) {
@@ -117,6 +61,27 @@ struct FacePoint {
 // Finds where the ray of direction `d` (mirrored) has landed, as `start_on_face` does: what is across a ray is rounded
 // down, in the world's own direction.
 template <int kAxis>
+[[gnu::always_inline]] inline void find_within(const SightCourse& course, const int32_t (&way)[3],
+                                               const Vec3<uint32_t>& d, FacePoint* point) {
+  const uint32_t speed = d[kAxis];
+  for (int i = 0; i < 3; ++i) {
+    if (i == kAxis) {
+      point->within[i] = 0;
+      continue;
+    }
+    const uint32_t in = static_cast<uint32_t>(way[kAxis]) * d[i] - static_cast<uint32_t>(way[i]) * speed;
+    THIMBLE_NOTE(Range::kBrickPlace, Exact(way[kAxis]) * Exact(d[i]));
+    THIMBLE_NOTE(Range::kBrickPlace, Exact(way[i]) * Exact(speed));
+    if (course.flip[i] == 0) {
+      point->within[i] = static_cast<int32_t>(fraction_of(in, speed));
+    } else {  // 256 less the quotient rounded up
+      point->within[i] = in == 0 ? 256 : 255 - static_cast<int32_t>(fraction_of(in - 1, speed));
+    }
+  }
+  point->axis = kAxis;
+  point->faces_up = course.flip[kAxis] != 0;
+}
+template <int kAxis>
 void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* point) {
   const Landing& landing = course.landing;
   int32_t way[3];  // from the eye to the voxel's near plane
@@ -128,20 +93,7 @@ void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* p
     point->voxel[i] = 4 * (flip != 0 ? side - 1 - brick : brick) + place;
     way[i] = (4 * brick + (place ^ flip)) * Q8::kOne - (course.origin[i] - (i == course.c ? 0 : kOutsideQ8));
   }
-  const uint32_t speed = d[kAxis];
-  for (int i = 0; i < 3; ++i) {
-    if (i == kAxis) {
-      point->within[i] = 0;
-      continue;
-    }
-    const uint32_t in = static_cast<uint32_t>(way[kAxis]) * d[i] - static_cast<uint32_t>(way[i]) * speed;
-    THIMBLE_NOTE(Range::kBrickPlace, Exact(way[kAxis]) * Exact(d[i]));
-    THIMBLE_NOTE(Range::kBrickPlace, Exact(way[i]) * Exact(speed));
-    point->within[i] = course.flip[i] != 0 ? 256 - static_cast<int32_t>(fraction_of(in + speed - 1, speed))
-                                           : static_cast<int32_t>(fraction_of(in, speed));
-  }
-  point->axis = kAxis;
-  point->faces_up = course.flip[kAxis] != 0;
+  find_within<kAxis>(course, way, d, point);
 }
 void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* point) {
   switch (course.landing.axis) {
@@ -155,74 +107,114 @@ void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* p
 }
 
 template <int kC>
-[[gnu::noinline]] int32_t shadow_along(const ShadowCourse& course, uint32_t number, uint32_t left,
-                                       int32_t cell, uint32_t place, const uint32_t (&within)[3]) {
-  constexpr int kA = kOtherA<kC>;
-  constexpr int kB = kOtherB<kC>;
-  const uint32_t d_a = course.d[kA];
-  const uint32_t d_b = course.d[kB];
-  const uint32_t d_c = course.d[kC];
-  BrickRay<kC, kAnySigns, ShadowCourse> ray(course, d_a, d_b, d_c);
-  // Back to the plane of c before it, and on from there.
-  const uint32_t rest_a = within[kA] * d_c - within[kC] * d_a - (d_c << 8);
-  const uint32_t rest_b = within[kB] * d_c - within[kC] * d_b - (d_c << 8);
-  ray.begin(number, left, cell, place, rest_a, rest_b);
-  return ray.trace();
-}
-
-// Whether the ray from a point on a face, which it leaves, meets something solid: `any_hit` of the tree.
-bool is_shadowed(const ShadowCourse& course, const FacePoint& point) {
-  uint32_t within[3];
-  uint32_t left = course.near_left;
-  uint32_t place = 0;
-  int32_t cell = 0;
-  for (int i = 0; i < 3; ++i) {
-    const bool down = course.goes_down(i);
-    int32_t voxel = point.voxel[i];
-    uint32_t in = static_cast<uint32_t>(point.within[i]);
-    if (i == point.axis) {
-      voxel += point.faces_up ? 1 : -1;
-    } else if (down) {
-      // A ray that goes down from a plane is in the voxel below.
-      voxel -= in == 0 ? 1 : 0;
-      in = in == 0 ? 0 : 256 - in;
-    }
-    if (static_cast<uint32_t>(voxel) >= static_cast<uint32_t>(course.cells[i])) {
-      return false;  // it leaves the box
-    }
-    const int32_t brick = voxel >> 2;
-    left += static_cast<uint32_t>((down ? -brick : brick) * (1 << 10 * i));
-    cell += brick * (down ? -course.next_brick[i] : course.next_brick[i]);
-    place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
-    within[i] = in;
-  }
-  const uint32_t number = half_at(course.directory, cell);
-  if (course.is_free(cell)) {
-    if (number == 0) {
-      return false;
-    }
-    left |= kInside;
-  }
-  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within)
-                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within)
-                                         : shadow_along<2>(course, number, left, cell, place, within);
-  return answer != kMissed;
-}
-
-template <int kC>
 [[gnu::noinline]] int32_t sight_along(const SightCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
   return BrickRay<kC, kAnySigns, SightCourse>(course, d_a, d_b, d_c).trace();
 }
+
+// Traces the ray of a pixel, which has the direction `d`, mirrored, and tells what it meets.
+template <class Sink>
+[[gnu::always_inline]] inline void see(Sink& sink, const SightCourse& course, int32_t x, int32_t y,
+                                       const Vec3<uint32_t>& d) {
+  const int32_t answer = course.c == 0   ? sight_along<0>(course, d.y, d.z, d.x)
+                         : course.c == 1 ? sight_along<1>(course, d.x, d.z, d.y)
+                                         : sight_along<2>(course, d.x, d.y, d.z);
+  if (answer == kShadowed) {
+    sink.hit(x, y, course, d);
+  } else if (answer == kMissed) {
+    sink.miss(x, y);
+  } else {
+    sink.ask(x, y);
+  }
+}
+
+// A face that a sweep has found: its voxel (as Landing's), how far its near planes are from the eye, the axis of the
+// face, and the voxel's place in the box. `within` is any point.
+struct SeenFace {
+  uint32_t voxel;
+  int32_t way[3];
+  FacePoint point;
+};
+
+// Finds where the ray of direction `d` meets it.
+void find_point(const SightCourse& course, const Vec3<uint32_t>& d, SeenFace* face) {
+  switch (face->point.axis) {
+    case 0:
+      return find_within<0>(course, face->way, d, &face->point);
+    case 1:
+      return find_within<1>(course, face->way, d, &face->point);
+    default:
+      return find_within<2>(course, face->way, d, &face->point);
+  }
+}
+
+// The pixels of a tile that show one face.
+struct SeenPixels {
+  const SightCourse& course;
+  const Camera::Vec3Q32& value;  // of the tile's first pixel
+  const TilePlace& place;
+  const Pixels& pixels;
+
+  // The direction of one, mirrored.
+  Vec3<uint32_t> direction(uint32_t pixel) const {
+    uint32_t turned[3];
+    find_direction(course, value, pixel, turned);
+    return in_world(course, turned);
+  }
+  static Vec3<uint32_t> in_world(const Course& course, const uint32_t (&turned)[3]) {
+    Vec3<uint32_t> d{};
+    for (int k = 0; k < 3; ++k) {
+      d[course.axis[k]] = turned[k];
+    }
+    return d;
+  }
+};
+
+// What a sweep does with its pixels where no inks are wanted.
+template <class Sink>
+struct SightPaint {
+  Sweep& sweep_;
+  SightCourse& course_;
+  const Camera::Vec3Q32& value_;
+  const TilePlace& place_;
+  Sink& sink_;
+
+  void begin_tile() {}
+
+  void paint_face(int32_t place, const int32_t (&cell)[3], int k, const Pixels& pixels) {
+    SeenFace face;
+    face.voxel = voxel_of(course_, place, cell);
+    face.point.axis = course_.axis[k];
+    face.point.faces_up = course_.flip[face.point.axis] != 0;
+    for (int m = 0; m < 3; ++m) {
+      const int axis = course_.axis[m];
+      face.way[axis] = distance_of(sweep_, m, cell[m]);
+      face.point.voxel[axis] = course_.flip[axis] != 0 ? 4 * sweep_.side[m] - 1 - cell[m] : cell[m];
+    }
+    sink_.face({course_, value_, place_, pixels}, face);
+  }
+
+  void paint_ray(uint32_t pixel, const uint32_t (&d)[3]) {
+    sweep_.left.word[pixel >> 5] &= ~(1U << (pixel & 31U));
+    see(sink_, course_, place_.x + static_cast<int32_t>(pixel & (kTileAcrossPx - 1)),
+        place_.y + static_cast<int32_t>(pixel / kTileAcrossPx), SeenPixels::in_world(course_, d));
+  }
+};
 
 // Goes through the tiles of one band, and says of each pixel what its ray meets:
 //
 //   miss(x, y)            nothing
 //   ask(x, y)             what only the tree knows
 //   hit(x, y, course, d)  `course.landing`, by the ray of direction d, mirrored
+//
+// and where tiles are swept (with `sweep`)
+//
+//   face(pixels, face)    all of them show that face
+//   miss(place, pixels)   all of them show nothing
 template <class Sink>
 class SightPainter {
  public:
-  SightPainter(const BrickFrame& frame, Sink& sink) : frame_(frame), sink_(sink) {
+  SightPainter(const BrickFrame& frame, Sweep* sweep, Sink& sink)
+      : frame_(frame), sweep_(sweep), sink_(sink) {
     course_.frame = &frame;
     course_.inks = nullptr;
     course_.directory = frame.map.directory();
@@ -247,20 +239,37 @@ class SightPainter {
     }
     const Fan fan(row, frame_.tile_low, frame_.tile_high);
     int32_t slab = 0;
+    bool begun = false;  // by the sweep
     if (fan.usable()) {
       use(fan.mirrored, fan.c);
-      slab = first_slab_along(course_, fan, slab);
-      if (slab == 4 * frame_.side[fan.c]) {
-        miss(tile);
-        return;
+      if (kSlots != 0 && sweep_ != nullptr && fan.mixed == 0) {
+        const int32_t origin = course_.origin[fan.c];
+        slab = origin < 0 ? 0 : origin >> 8;
+        if (slab >= 4 * frame_.side[fan.c]) {
+          miss(tile);
+          return;
+        }
+        begun = sweep_tile(tile, row, fan, &slab);
+        if (begun && sweep_->done()) {
+          return;
+        }
+      }
+      if (!begun) {
+        slab = first_slab_along(course_, fan, slab);
+        if (slab == 4 * frame_.side[fan.c]) {
+          miss(tile);
+          return;
+        }
       }
     }
     for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
       Camera::Vec3Q32 at = row;
       for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
-        draw_quad({x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
-                   y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1},
-                  at, fan, slab);
+        if (!begun || sweep_->has_quad(x - tile.x0, y - tile.y0)) {
+          draw_quad({x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
+                     y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1},
+                    at, fan, slab);
+        }
         for (int axis = 0; axis < 3; ++axis) {
           at[axis] += kQuadAcrossPx * affine.step_x[axis];
         }
@@ -272,6 +281,29 @@ class SightPainter {
   }
 
  private:
+  // As BrickPainter's.
+  [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
+                                    int32_t* slab) {
+    Sweep& sweep = *sweep_;
+    set_sweep_course(course_, &sweep);
+    const TilePlace place{nullptr, 0, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
+    TileSweep<SightPaint<Sink>> tile_sweep({sweep, course_, value, place, sink_});
+    course_.waiting = kWaiting;
+    set_start(course_, *slab);
+    *slab = tile_sweep.run(fan, *slab);
+    if (!tile_sweep.begun()) {
+      return false;
+    }
+    if (*slab != 4 * frame_.side[fan.c]) {
+      set_start(course_, *slab);
+      tile_sweep.draw_parts_of_quads();
+    } else if (!sweep.done()) {
+      sink_.miss(place, sweep.left);
+      sweep.left = {};
+    }
+    return true;
+  }
+
   void set(unsigned mirrored, int c) {
     set_course(course_, mirrored, c);
     course_.set_signs();
@@ -334,16 +366,7 @@ class SightPainter {
   }
 
   [[gnu::always_inline]] void trace(int32_t x, int32_t y, const Vec3<uint32_t>& d) {
-    const int32_t answer = course_.c == 0   ? sight_along<0>(course_, d.y, d.z, d.x)
-                           : course_.c == 1 ? sight_along<1>(course_, d.x, d.z, d.y)
-                                            : sight_along<2>(course_, d.x, d.y, d.z);
-    if (answer == kShadowed) {
-      sink_.hit(x, y, course_, d);
-    } else if (answer == kMissed) {
-      sink_.miss(x, y);
-    } else {
-      sink_.ask(x, y);
-    }
+    see(sink_, course_, x, y, d);
   }
 
   // Traces a quad whose rays do not all go the same way, so each takes a course of its own.
@@ -374,6 +397,7 @@ class SightPainter {
   }
 
   const BrickFrame& frame_;
+  Sweep* sweep_;  // null where tiles are not swept
   Sink& sink_;
   SightCourse course_;
 };

@@ -216,11 +216,69 @@ struct SweptBrick {
   int32_t b;
 };
 
+// The voxel of a cell on a, b and c: 64 times the number of the brick at `place`, and its bit.
+[[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
+                                                const int32_t (&cell)[3]) {
+  uint32_t voxel = half_at(course.directory, place) << 6;
+  for (int m = 0; m < 3; ++m) {
+    const int axis = course.axis[m];
+    voxel |= ((static_cast<uint32_t>(cell[m]) & 3U) ^ course.flip[axis]) << 2 * axis;
+  }
+  return voxel;
+}
+
+// What a sweep does with the pixels of a face, and with those of rays: their inks are stored.
+struct InkPaint {
+  Sweep& sweep_;
+  Course& course_;
+  const Camera::Vec3Q32& value_;
+  const TilePlace& place_;
+
+  void begin_tile() {
+    if (course_.frame->format == PixelFormat::kGray4) {
+      clear(place_);
+    }
+  }
+
+  void paint_face(int32_t place, const int32_t (&cell)[3], int k, const Pixels& pixels) {
+    store_pixels(place_, pixels, *course_.frame, ink_of_face(place, cell, k));
+  }
+
+  // The pixel of a ray of direction `d`, traced from where the course starts.
+  void paint_ray(uint32_t pixel, const uint32_t (&d)[3]) { draw_ray(pixel, trace_turned(course_, d)); }
+
+ private:
+  // Draws one pixel as its ray answered.
+  void draw_ray(uint32_t pixel, int32_t ink) {
+    const int32_t x = place_.x + static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
+    const int32_t down = static_cast<int32_t>(pixel / kTileAcrossPx);
+    const BrickFrame& frame = *course_.frame;
+    sweep_.left.word[pixel >> 5] &= ~(1U << (pixel & 31U));
+    if (ink == kAsk) {
+      ink = ask(frame, x, place_.y + down, sweep_.counts);
+    }
+    if (ink < 0) {
+      ink = static_cast<int32_t>(frame.background);
+      ++sweep_.misses;
+    }
+    store_ink(place_.line + place_.stride * static_cast<size_t>(down), x, place_.y + down, frame.format,
+              static_cast<uint32_t>(ink));
+  }
+
+  uint32_t ink_of_face(int32_t place, const int32_t (&cell)[3], int k) const {
+    const uint32_t voxel = voxel_of(course_, place, cell);
+    const int axis = course_.axis[k];
+    const uint32_t key = voxel << 3 | course_.face[axis];
+    const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
+    return seen.key == key ? seen.ink : static_cast<uint32_t>(look_up(course_, voxel, axis));
+  }
+};
+
 // A tile being swept.
-class TileSweep {
+template <class Paint>
+class TileSweep : private Paint {
  public:
-  TileSweep(Sweep& sweep, Course& course, const Camera::Vec3Q32& value, const TilePlace& place)
-      : sweep_(sweep), course_(course), value_(value), place_(place) {}
+  explicit TileSweep(const Paint& paint) : Paint(paint) {}
 
   // Whether anything was met that is worth drawing.
   bool begun() const { return begun_; }
@@ -279,9 +337,7 @@ class TileSweep {
   void begin() {
     begun_ = true;
     set_tile(course_, value_, place_.across, place_.down, &sweep_);
-    if (course_.frame->format == PixelFormat::kGray4) {
-      clear(place_);
-    }
+    this->begin_tile();
   }
 
   // Voxels of a slab under the tile's shadow.
@@ -489,7 +545,7 @@ class TileSweep {
       decide(cell, k, possible, &mine);
     }
     if ((mine.word[0] | mine.word[1] | mine.word[2] | mine.word[3]) != 0) {
-      store_pixels(place_, mine, *course_.frame, ink_of_face(place, cell, k));
+      this->paint_face(place, cell, k, mine);
     }
   }
 
@@ -505,7 +561,7 @@ class TileSweep {
           mine->word[i] |= 1U << bit;
           sweep_.left.word[i] &= ~(1U << bit);
         } else if (where == 0) {
-          draw_ray(32 * i + bit, trace_turned(course_, d));
+          this->paint_ray(32 * i + bit, d);
         }
       }
     }
@@ -527,46 +583,16 @@ class TileSweep {
         const uint32_t pixel = 32 * i + bits::lowest_bit(word);
         uint32_t d[3];
         find_direction(course_, value_, pixel, d);
-        draw_ray(pixel, trace_turned(course_, d));
+        this->paint_ray(pixel, d);
       }
     }
   }
 
  private:
-  // Draws one pixel as its ray answered.
-  void draw_ray(uint32_t pixel, int32_t ink) {
-    const int32_t x = place_.x + static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
-    const int32_t down = static_cast<int32_t>(pixel / kTileAcrossPx);
-    const BrickFrame& frame = *course_.frame;
-    sweep_.left.word[pixel >> 5] &= ~(1U << (pixel & 31U));
-    if (ink == kAsk) {
-      ink = ask(frame, x, place_.y + down, sweep_.counts);
-    }
-    if (ink < 0) {
-      ink = static_cast<int32_t>(frame.background);
-      ++sweep_.misses;
-    }
-    store_ink(place_.line + place_.stride * static_cast<size_t>(down), x, place_.y + down, frame.format,
-              static_cast<uint32_t>(ink));
-  }
-
- private:
-  uint32_t ink_of_face(int32_t place, const int32_t (&cell)[3], int k) const {
-    uint32_t voxel = half_at(course_.directory, place) << 6;
-    for (int m = 0; m < 3; ++m) {
-      const int axis = course_.axis[m];
-      voxel |= ((static_cast<uint32_t>(cell[m]) & 3U) ^ course_.flip[axis]) << 2 * axis;
-    }
-    const int axis = course_.axis[k];
-    const uint32_t key = voxel << 3 | course_.face[axis];
-    const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
-    return seen.key == key ? seen.ink : static_cast<uint32_t>(look_up(course_, voxel, axis));
-  }
-
-  Sweep& sweep_;
-  Course& course_;
-  const Camera::Vec3Q32& value_;
-  const TilePlace& place_;
+  using Paint::course_;
+  using Paint::place_;
+  using Paint::sweep_;
+  using Paint::value_;
   Reach reach_[2] = {};  // at the slab that is next
   // The rectangle that the shadow is drawn in to: so many columns, and pairs of rows.
   int32_t columns_ = kTileAcrossPx;

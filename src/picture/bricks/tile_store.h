@@ -66,6 +66,33 @@ template <class Pixel>
   }
 }
 
+// Stores pixels of three bytes.
+[[gnu::noinline]] void store_triples(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
+  const uint32_t four[3] = {ink | ink << 24, ink >> 8 | ink << 16, ink >> 16 | ink << 8};
+  uint8_t* line = place.line + 3 * static_cast<size_t>(place.x);
+  for (int i = 0; i < 2 * kTileWords; ++i, line += place.stride) {
+    uint8_t* to = line;
+    const bool words = (reinterpret_cast<size_t>(line) & 3U) == 0;
+    for (uint32_t row = pixels.word[i >> 1] >> 16 * (i & 1) & 0xFFFFU; row != 0; row >>= 4, to += 12) {
+      if (words && (row & 15U) == 15) {
+        Word* const whole = static_cast<Word*>(static_cast<void*>(to));
+        whole[0] = four[0];
+        whole[1] = four[1];
+        whole[2] = four[2];
+        continue;
+      }
+      uint8_t* one = to;
+      for (uint32_t bits = row & 15U; bits != 0; bits >>= 1, one += 3) {
+        if ((bits & 1U) != 0) {
+          one[0] = static_cast<uint8_t>(ink);
+          one[1] = static_cast<uint8_t>(ink >> 8);
+          one[2] = static_cast<uint8_t>(ink >> 16);
+        }
+      }
+    }
+  }
+}
+
 // Stores pixels of any format; those of less than a byte were cleared before.
 [[gnu::noinline]] void store_any(const TilePlace& place, const Pixels& pixels, PixelFormat format,
                                  uint32_t ink) {
@@ -80,12 +107,15 @@ template <class Pixel>
   }
 }
 
-void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame, uint32_t ink) {
+[[gnu::noinline]] void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame,
+                                    uint32_t ink) {
   if (frame.halfwords) {
     store_whole<Half>(place, pixels, ink);
   } else if (frame.format == PixelFormat::kGray8 ||
              (has_format(PixelFormat::kRgb332) && frame.format == PixelFormat::kRgb332)) {
     store_whole<uint8_t>(place, pixels, ink);
+  } else if (frame.format == PixelFormat::kRgb888) {
+    store_triples(place, pixels, ink);
   } else {
     store_any(place, pixels, frame.format, ink);
   }

@@ -1,0 +1,231 @@
+// Whether a whole face is lit by a distant light, or dark, proven at once; and by what its points are shadowed where
+// neither is. Internal to src/.
+//
+// All rays from the face lie, in each slab of voxels along the light's fastest axis c, between two planes of a and
+// two of b. If nothing solid is in that window of any slab the face is lit all over; if all of the window is solid
+// in one slab that all rays cross from plane to plane, it is dark all over. Else a point of it is dark where its ray
+// meets one of the voxels in the windows, each of which is a matter of three products.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_FACE_LIGHT_H
+#define THIMBLE_SRC_PICTURE_BRICKS_FACE_LIGHT_H
+
+#include "../../base/bits.h"
+#include "beam.h"
+#include "exposed.h"
+#include "shadow.h"
+
+namespace thimble::bricks {
+namespace {
+
+enum class FaceLight : uint8_t { kLit, kDark, kMixed };
+
+// The voxels that may hide a light from points of a face, by a, b and c, mirrored. Where there are more than these, or
+// the light runs along an axis, points are asked ray by ray.
+struct Blockers {
+  static constexpr uint32_t kMost = 12;
+  uint32_t count;
+  uint8_t cell[kMost][3];
+};
+
+// The rays of a face, which go up on all axes. In a slab they are on a and b from the first to the last voxel of a
+// window; rays that start on a plane of c start on that one, the others begin within a slab, so that the last of
+// them come from its far plane.
+class FaceBeam {
+ public:
+  FaceBeam(const ShadowCourse& course, const FacePoint& face, Blockers* blockers)
+      : course_(course), blockers_(blockers) {
+    blockers->count = course.d[0] != 0 && course.d[1] != 0 && course.d[2] != 0 ? 0 : Blockers::kMost + 1;
+    for (int k = 0; k < 3; ++k) {
+      const int axis = course.axes[k];
+      const int32_t own = face.voxel[axis];
+      const int32_t cell = course.goes_down(axis) ? course.cells[axis] - 1 - own : own;
+      const int32_t on = axis == face.axis ? 1 : 0;
+      if (k == 2) {
+        slab_ = cell + on;
+        begins_ = on == 0;
+      } else {
+        low_[k] = (cell + on) * kOne;
+        high_[k] = (cell + 1) * kOne + course.high_slope[axis];
+        low_slope_[k] = course.low_slope[axis];
+        high_slope_[k] = course.high_slope[axis];
+      }
+      last_[k] = course.cells[axis] - 1;
+      stride_[k] = course.next_brick[axis];
+    }
+  }
+
+  FaceLight find() {
+    while (slab_ <= last_[2]) {
+      // The bricks of the layer that the rays come into.
+      const int32_t more = 3 - (slab_ & 3);
+      int32_t to[2];
+      for (int k = 0; k < 2; ++k) {
+        from_[k] = low_[k] >> 18;
+        const int32_t end = last_[k] >> 2;
+        if (from_[k] > end) {
+          return result();
+        }
+        to[k] = (high_[k] + more * high_slope_[k]) >> 18;
+        to[k] = to[k] > end ? end : to[k];
+      }
+      uint32_t any = 0;
+      bool free = true;
+      int32_t row =
+          course_.near_place + (slab_ >> 2) * stride_[2] + from_[1] * stride_[1] + from_[0] * stride_[0];
+      const int32_t first = row;
+      for (int32_t b = from_[1]; b <= to[1]; ++b, row += stride_[1]) {
+        int32_t place = row;
+        for (int32_t a = from_[0]; a <= to[0]; ++a, place += stride_[0]) {
+          any |= half_at(course_.directory, place);
+          free = free && course_.is_free(place);
+        }
+      }
+      if (any != 0) {
+        if (look(first, to)) {
+          return FaceLight::kDark;
+        }
+      } else if (!free) {
+        const int32_t low_more = more + (begins_ ? 0 : 1);
+        begins_ = false;
+        for (int k = 0; k < 2; ++k) {
+          low_[k] += low_more * low_slope_[k];
+          high_[k] += (more + 1) * high_slope_[k];
+        }
+        slab_ += more + 1;
+      }
+      if (free) {
+        break;
+      }
+    }
+    return result();
+  }
+
+ private:
+  static constexpr int32_t kOne = 1 << 16;
+
+  FaceLight result() const { return some_ ? FaceLight::kMixed : FaceLight::kLit; }
+
+  // Goes through the slabs of a layer, in bricks of which some are not empty, the first of them at `row` in the
+  // directory. Whether all rays end there.
+  bool look(int32_t row, const int32_t (&to)[2]) {
+    // The windows, counted from the first brick: bits of a, and rows of b.
+    uint32_t across[4];
+    uint32_t down[4];
+    uint32_t all = 0;      // a bit a slab: whether all rays cross it, within the box
+    uint32_t met[4] = {};  // how much of a window is solid
+    const int32_t first = slab_ & 3;
+    const int32_t base_a = 4 * from_[0];
+    const int32_t base_b = 4 * from_[1];
+    for (int32_t i = first; i < 4; ++i) {
+      const int32_t end_a = high_[0] >> 16;
+      const int32_t end_b = high_[1] >> 16;
+      across[i] = (2U << (end_a - base_a)) - (1U << ((low_[0] >> 16) - base_a));
+      down[i] = (2U << (end_b - base_b)) - (1U << ((low_[1] >> 16) - base_b));
+      high_[0] += high_slope_[0];
+      high_[1] += high_slope_[1];
+      if (begins_) {
+        begins_ = false;  // rays that begin within the slab do not cross all of it
+        continue;
+      }
+      low_[0] += low_slope_[0];
+      low_[1] += low_slope_[1];
+      all |= end_a <= last_[0] && end_b <= last_[1] ? 1U << i : 0U;
+    }
+    const int32_t layer = slab_ & ~3;
+    slab_ = layer + 4;
+    for (int32_t b = from_[1]; b <= to[1]; ++b, row += stride_[1]) {
+      int32_t place = row;
+      for (int32_t a = from_[0]; a <= to[0]; ++a, place += stride_[0]) {
+        const auto number = static_cast<int32_t>(half_at(course_.directory, place));
+        if (number == 0) {
+          continue;
+        }
+        const Cells cells =
+            turned({word_at(course_.bricks, 8 * number), word_at(course_.bricks, 8 * number + 4)},
+                   course_.mirrored, course_.c);
+        for (int32_t i = first; i < 4; ++i) {
+          const uint32_t window = (across[i] >> 4 * (a - from_[0]) & 15U) *  // NOLINT: set from `first` on
+                                  kRows[down[i] >> 4 * (b - from_[1]) & 15U];
+          const uint32_t solid = (i < 2 ? cells.low : cells.high) >> 16 * (i & 1) & window;
+          if (solid != 0) {
+            some_ = true;
+            met[i] += bits::popcount32(solid);
+            note(solid, 4 * a, 4 * b, layer + i);
+          }
+        }
+      }
+    }
+    for (int32_t i = first; i < 4; ++i) {
+      if (met[i] != 0 && (all >> i & 1U) != 0 &&
+          met[i] == bits::popcount32(across[i]) * bits::popcount32(down[i])) {  // NOLINT
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void note(uint32_t solid, int32_t a, int32_t b, int32_t c) {
+    for (; solid != 0 && blockers_->count <= Blockers::kMost; solid &= solid - 1) {
+      if (blockers_->count < Blockers::kMost) {
+        const auto bit = static_cast<int32_t>(bits::lowest_bit(solid));
+        uint8_t* const cell = blockers_->cell[blockers_->count];
+        cell[0] = static_cast<uint8_t>(a + (bit & 3));
+        cell[1] = static_cast<uint8_t>(b + (bit >> 2));
+        cell[2] = static_cast<uint8_t>(c);
+      }
+      ++blockers_->count;
+    }
+  }
+
+  const ShadowCourse& course_;
+  Blockers* blockers_;
+  bool some_ = false;
+  bool begins_ = false;  // rays start within this slab
+  int32_t slab_ = 0;
+  // The window there, in 1/2^16 voxel.
+  int32_t low_[2];
+  int32_t high_[2];
+  int32_t low_slope_[2];
+  int32_t high_slope_[2];
+  int32_t last_[3];
+  int32_t stride_[3];
+  int32_t from_[2];  // bricks
+};
+
+// `face`: as a point of it. The light is in front of it. `blockers` are of use where it is mixed.
+[[gnu::noinline]] FaceLight light_of_face(const ShadowCourse& course, const FacePoint& face,
+                                          Blockers* blockers) {
+  return FaceBeam(course, face, blockers).find();
+}
+
+// Whether the light does not reach a point: its ray spends a length in a voxel when it has come into it on each axis
+// before it leaves it on another one, (low_i - p_i) / d_i < (high_j - p_j) / d_j.
+bool is_blocked(const ShadowCourse& course, const Blockers& blockers, const FacePoint& point) {
+  uint32_t at[3];
+  uint32_t d[3];
+  for (int k = 0; k < 3; ++k) {
+    const int axis = course.axes[k];
+    const int32_t on = axis == point.axis && point.faces_up ? 256 : point.within[axis];
+    const int32_t own = point.voxel[axis] * 256 + on;
+    at[k] = static_cast<uint32_t>(course.goes_down(axis) ? course.cells[axis] * 256 - own : own);
+    d[k] = course.d[axis];
+  }
+  // The windows keep these differences below 2^27, whatever is cut off above.
+  const auto overlap = [](uint32_t x_i, uint32_t d_i, uint32_t x_j, uint32_t d_j) {
+    const auto ahead = static_cast<int32_t>(x_i * d_j - x_j * d_i);
+    return ahead < static_cast<int32_t>(d_i << 8) && -ahead < static_cast<int32_t>(d_j << 8);
+  };
+  for (uint32_t i = 0; i < blockers.count; ++i) {
+    const uint32_t a = (uint32_t{blockers.cell[i][0]} << 8) - at[0];
+    const uint32_t b = (uint32_t{blockers.cell[i][1]} << 8) - at[1];
+    const uint32_t c = (uint32_t{blockers.cell[i][2]} << 8) - at[2];
+    if (overlap(a, d[0], c, d[2]) && overlap(b, d[1], c, d[2]) && overlap(a, d[0], b, d[1])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif

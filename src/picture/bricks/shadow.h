@@ -1,0 +1,139 @@
+// Rays from a point on a face towards a distant light. Internal to src/.
+#ifndef THIMBLE_SRC_PICTURE_BRICKS_SHADOW_H
+#define THIMBLE_SRC_PICTURE_BRICKS_SHADOW_H
+
+#include "brick_ray.h"
+
+namespace thimble::bricks {
+namespace {
+
+// Rays of one direction, from wherever: what BrickRay reads of a course, and the way to start.
+struct ShadowCourse {
+  static constexpr Aim kAim = Aim::kShadow;
+  const uint8_t* directory;
+  const uint8_t* bricks;
+  const uint8_t* behind_bits;  // a bit a brick of the directory: nothing solid behind it (or null)
+  int32_t next_brick[3];
+  uint32_t last[3];
+  int32_t one_step[3];
+  uint32_t d[3];       // the direction, mirrored
+  int32_t cells[3];    // sides of the box
+  uint32_t near_left;  // counts of bricks, were it in the box's lowest
+  int32_t near_place;  // in the directory, of the brick that all rays come from
+  // d / d[c], rounded down and up, in 1/2^16.
+  int32_t low_slope[3];
+  int32_t high_slope[3];
+  int c;
+  int axes[3];  // a, b and c
+  unsigned mirrored;
+  bool wide;
+
+  [[gnu::always_inline]] bool is_free(int32_t at) const {
+    return behind_bits != nullptr && (static_cast<uint32_t>(behind_bits[at >> 4]) >> (at >> 1 & 7) & 1U) != 0;
+  }
+  [[gnu::always_inline]] bool goes_down(int axis) const { return (mirrored >> axis & 1U) != 0; }
+
+  void set(const BrickMap& map, const Vec3i& direction, const uint8_t* free_bricks) {
+    directory = map.directory();
+    bricks = map.bricks();
+    behind_bits = free_bricks;
+    c = 0;
+    mirrored = 0;
+    near_left = 0;
+    near_place = 0;
+    uint32_t all = 0;
+    int32_t step = 2;
+    for (int i = 0; i < 3; ++i) {
+      const bool down = direction[i] < 0;
+      d[i] = static_cast<uint32_t>(down ? -direction[i] : direction[i]);
+      all |= d[i];
+      c = d[i] > d[c] ? i : c;
+      mirrored |= down ? 1U << i : 0U;
+      last[i] = down ? 0U : 3U << kPlaceShift[i];
+      one_step[i] = down ? -(1 << kPlaceShift[i]) : 1 << kPlaceShift[i];
+      const int32_t side = map.box().high[i] - map.box().low[i];
+      cells[i] = 4 * side;
+      next_brick[i] = down ? -step : step;
+      near_left += static_cast<uint32_t>(down ? 511 : 512 - side) << 10 * i;
+      near_place += down ? (side - 1) * step : 0;
+      step *= side;
+    }
+    for (int i = 0; i < 3; ++i) {
+      low_slope[i] = static_cast<int32_t>((d[i] << 16) / d[c]);
+      high_slope[i] = low_slope[i] + (static_cast<uint32_t>(low_slope[i]) * d[c] < d[i] << 16 ? 1 : 0);
+    }
+    wide = all >= 1U << 11;
+    axes[0] = c == 0 ? 1 : 0;
+    axes[1] = c == 2 ? 1 : 2;
+    axes[2] = c;
+  }
+};
+
+// A point on a face of a voxel: on each axis the voxel, from the box's lowest corner, and how far in it, in 1/256.
+// Across the face it is on the voxel's plane.
+struct FacePoint {
+  int32_t voxel[3];
+  int32_t within[3];
+  int axis;
+  bool faces_up;  // the face looks to larger coordinates
+};
+
+template <int kC>
+[[gnu::noinline]] int32_t shadow_along(const ShadowCourse& course, uint32_t number, uint32_t left,
+                                       int32_t cell, uint32_t place, const uint32_t (&within)[3]) {
+  constexpr int kA = kOtherA<kC>;
+  constexpr int kB = kOtherB<kC>;
+  const uint32_t d_a = course.d[kA];
+  const uint32_t d_b = course.d[kB];
+  const uint32_t d_c = course.d[kC];
+  BrickRay<kC, kAnySigns, ShadowCourse> ray(course, d_a, d_b, d_c);
+  // Back to the plane of c before it, and on from there.
+  const uint32_t rest_a = within[kA] * d_c - within[kC] * d_a - (d_c << 8);
+  const uint32_t rest_b = within[kB] * d_c - within[kC] * d_b - (d_c << 8);
+  ray.begin(number, left, cell, place, rest_a, rest_b);
+  return ray.trace();
+}
+
+// Whether the ray from a point on a face, which it leaves, meets something solid: `any_hit` of the tree.
+bool is_shadowed(const ShadowCourse& course, const FacePoint& point) {
+  uint32_t within[3];
+  uint32_t left = course.near_left;
+  uint32_t place = 0;
+  int32_t cell = 0;
+  for (int i = 0; i < 3; ++i) {
+    const bool down = course.goes_down(i);
+    int32_t voxel = point.voxel[i];
+    uint32_t in = static_cast<uint32_t>(point.within[i]);
+    if (i == point.axis) {
+      voxel += point.faces_up ? 1 : -1;
+    } else if (down) {
+      // A ray that goes down from a plane is in the voxel below.
+      voxel -= in == 0 ? 1 : 0;
+      in = in == 0 ? 0 : 256 - in;
+    }
+    if (static_cast<uint32_t>(voxel) >= static_cast<uint32_t>(course.cells[i])) {
+      return false;  // it leaves the box
+    }
+    const int32_t brick = voxel >> 2;
+    left += static_cast<uint32_t>((down ? -brick : brick) * (1 << 10 * i));
+    cell += brick * (down ? -course.next_brick[i] : course.next_brick[i]);
+    place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
+    within[i] = in;
+  }
+  const uint32_t number = half_at(course.directory, cell);
+  if (course.is_free(cell)) {
+    if (number == 0) {
+      return false;
+    }
+    left |= kInside;
+  }
+  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within)
+                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within)
+                                         : shadow_along<2>(course, number, left, cell, place, within);
+  return answer != kMissed;
+}
+
+}  // namespace
+}  // namespace thimble::bricks
+
+#endif
