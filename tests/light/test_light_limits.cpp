@@ -39,8 +39,8 @@ TEST_CASE(
 
 // A surface of heights, and the same with its axes exchanged, or one of them turned round.
 struct Columns {
-  Columns(std::int32_t width, std::int32_t depth, std::mt19937_64& random, unsigned dry)
-      : width(width), depth(depth) {
+  Columns(std::int32_t across, std::int32_t down, std::mt19937_64& random, unsigned dry)
+      : width(across), depth(down) {
     for (std::int32_t i = 0; i < width * depth; ++i) {
       heights.push_back(random() % 5 < dry ? -1 : static_cast<std::int32_t>(random() % 200000));
     }

@@ -590,7 +590,7 @@ TEST_CASE("tree limits: room in any number of bytes -> as much as fits, 65,000 b
     const EditRoom least = EditedWorld::room_of(tree);
     const std::size_t bytes = edited_world_bytes(level, least);
     CHECK(EditedWorld::room_in(tree, bytes - 1).nodes == 0);
-    for (const std::size_t more : {0, 1, 63, 64, 65}) {
+    for (const std::size_t more : {0U, 1U, 63U, 64U, 65U}) {
       CHECK(EditedWorld::room_in(tree, bytes + more).nodes == least.nodes);
     }
     std::size_t last = 0;
