@@ -37,6 +37,8 @@ struct Whole {
     scene.surfaces = Span<const Surface>(surfaces);
     scene.lights = Span<const Light>(lights);
     scene.ambient_q8[0] = 0x0102;
+    scene.ambient_q8[1] = 0x0304;
+    scene.ambient_q8[2] = 0x0506;
     scene.has_shadows = scene.has_sky = scene.has_depth_cue = true;
     scene.sky = {{10, 11, 12}, {13, 14, 15}, {16, 17, 18}};
     scene.fog = {{19, 20, 21}, 0xDEADBEEF};

@@ -20,7 +20,7 @@ import xml.etree.ElementTree as xml
 HERE = pathlib.Path(__file__).parent
 ROOMS = ("base", "tree", "trace", "picture", "light", "plane", "bake", "c", "misuse")
 WANTED = 97  # per cent
-AT_MOST_MS = 5000  # of tests a mutant
+AT_MOST_MS = 5000  # of tests a mutant, of its own rooms and again of the others
 SLOW_CPU_MS = 4000  # a test that takes longer is left out
 AT_ONCE = 100  # tests after which what is known is kept
 
@@ -97,6 +97,7 @@ class Cover:
     def __init__(self, kept):
         self.ms, self.crc, self.of, self.kills = {}, {}, {}, {}
         self.kept = kept
+        self.most_ms = AT_MOST_MS
         self.load(kept)
 
     def add(self, runners, tests):
@@ -128,17 +129,17 @@ class Cover:
 
     def tests(self, mutant):
         """The fastest first; but for three that killed neighbours."""
-        done = mutant.setdefault("done", set())
+        done = mutant["done"]
         order = sorted((t for t in self.of.get(mutant["number"], []) if t not in done), key=lambda t: self.ms[t])
         near = self.kills.get(mutant["key"][0], {})
         first = sorted((t for t in near if t in order), key=lambda t: -near[t] / (self.ms[t] + 5))[:3]
-        chosen, total = [], 0
+        chosen, total = [], sum(self.ms.get(t, 0) for t in done)
         for test in first + [t for t in order if t not in first]:
             total += self.ms[test]
-            if chosen and total > AT_MOST_MS:
+            if total > self.most_ms and (chosen or done):
                 break
             chosen.append(test)
-        done.update(chosen)
+        done += chosen
         return chosen
 
 
@@ -196,7 +197,7 @@ def main():
     runners = [Runner(given.program) for _ in range(2)]
     stat = os.stat(given.program)
     cover = Cover(given.work / f"cover-{stat.st_mtime_ns}.json")
-    # What an interrupted run of the same program has tried is not tried again.
+    # What an interrupted run of the same program has tried is not tried again: of what survived, the tests so far.
     kept = given.work / f"tried-{stat.st_mtime_ns}.jsonl"
     tried = {}
     if kept.is_file():
@@ -205,29 +206,27 @@ def main():
     rooms = {m["room"] for m in mutants}
     near = [t for t in tests if t[0] == "p" or t[2:].split("/")[0] in rooms]
     for mutant in mutants:
-        mutant.update(tried.get(mutant["number"], {"result": "", "tests": 0}))
+        mutant.update(tried.get(mutant["number"], {"result": "", "tests": 0, "done": []}))
         if tuple(mutant["key"]) in known:
             mutant.update(result="equivalent", by=known[tuple(mutant["key"])], ms=0, tests=0)
     with open(kept, "a") as keep:
 
         def note(mutant):
-            keep.write(json.dumps({name: mutant[name] for name in ("number", "result", "by", "ms", "tests")}) + "\n")
+            kept_of = ("number", "result", "by", "ms", "tests", "done")
+            keep.write(json.dumps({name: mutant[name] for name in kept_of}) + "\n")
             keep.flush()
 
         def attempt(runner, mutant):
             try_one(runner, mutant, cover)
-            if mutant["result"] != "survived":
-                note(mutant)
+            note(mutant)
 
         # The tests of the mutants' own rooms, then the others.
         for some in (near, tests):
-            waiting = [m for m in mutants if m["result"] in ("", "survived") and m["number"] not in tried]
+            waiting = [m for m in mutants if m["result"] in ("", "survived")]
             if waiting:
                 cover.add(runners, some)
                 in_two(runners, waiting, attempt, "mutants")
-        for mutant in mutants:
-            if mutant["result"] == "survived" and mutant["number"] not in tried:
-                note(mutant)
+            cover.most_ms += AT_MOST_MS
     for runner in runners:
         runner.close()
     if any(not m["result"] for m in mutants):

@@ -699,6 +699,33 @@ TEST_CASE("rays: beyond the limits -> refused, hit untouched") {
   CHECK(both.field.first_hit(ray_q8(far, -far, -fast, fast), &hit) == Status::kOk);
 }
 
+TEST_CASE("rays: into an answer that held another -> as into a new one, whatever the ray meets") {
+  Both both(40, 30);
+  both.field.set(CellBox{{20, 10}, {22, 20}});
+  BitField empty;
+  for (const BitField* field :
+       {&static_cast<const BitField&>(both.field), &static_cast<const BitField&>(empty)}) {
+    for (const FieldRay& ray :
+         {ray_q8(0, 3840, 1, 0), ray_q8(0, 100, 1, 0), ray_q8(-9, -9, -1, 3), ray_q8(10000, 3840, -7, 0),
+          ray_q8(5300, 3000, 1, 1), ray_q8(99, 9000, 2, 1)}) {
+      FieldHit fresh;
+      REQUIRE(field->first_hit(ray, &fresh) == Status::kOk);
+      FieldHit used;
+      REQUIRE(both.field.first_hit(ray_q8(3, 3840, 5, 1), &used) == Status::kOk);
+      REQUIRE(used.kind == FieldHitKind::kHit);
+      used.corner = true;
+      REQUIRE(field->first_hit(ray, &used) == Status::kOk);
+      CHECK(used.kind == fresh.kind);
+      CHECK(used.axis == fresh.axis);
+      CHECK(used.corner == fresh.corner);
+      CHECK(used.cell == fresh.cell);
+      CHECK(used.t_numerator == fresh.t_numerator);
+      CHECK(used.t_denominator == fresh.t_denominator);
+      CHECK(used.visits == fresh.visits);
+    }
+  }
+}
+
 TEST_CASE("rays: along rows and columns of an empty paper's world -> a word each 32 cells, a word a row") {
   Both both(800, 600);
   FieldHit hit;

@@ -1,0 +1,127 @@
+// Lit pictures of any scene, light and effects, and the CRC-32 of each dozen that was written down: whatever changes a
+// pixel, or what is counted, is seen here first. Whether they are right others say.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "support/lit_cases.h"
+#include "support/wide_cases.h"
+#include "thimble/base/crc32.h"
+
+namespace thimble::tests {
+namespace {
+
+// What a dozen is about: some effects are always on.
+struct Dozen {
+  EffectSet always;
+  std::uint32_t crc32;
+};
+
+std::uint32_t drawn_dozen(EffectSet always, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uint32_t crc = 0;
+  int drawn = 0;
+  while (drawn < 12) {
+    const WideScene scene = drawn % 4 == 0 ? random_scene(random) : cabinet(random);
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    LitCase lit = random_light(random, scene.level);
+    while ((always & Effect::kWater) != 0 && !lit.scene.has_water) {
+      lit = random_light(random, scene.level);
+    }
+    lit.effects |= always;
+    if (kHasPanelFormats && drawn % 3 == 0) {
+      frame.band.format = static_cast<PixelFormat>(pick(random, 0, 13));
+      frame.band.stride_bytes = 0;
+      frame.band.first_row = 0;
+      frame.band.rows = frame.camera.height_px();
+    }
+    const LitDrawn picture = draw_lit_core(scene, frame, lit);
+    crc = crc32({picture.pixels.data(), picture.pixels.size()}, crc);
+    std::vector<std::uint64_t> counts;
+    for (int kind = 0; kind < kLitRayKinds; ++kind) {
+      counts.push_back(picture.counts.rays[kind]);
+      counts.push_back(picture.counts.hits[kind]);
+      counts.push_back(picture.counts.node_visits[kind]);
+    }
+    counts.push_back(picture.counts.pending_high_water);
+    counts.push_back(picture.counts.step_limited);
+    std::vector<std::uint8_t> bytes(8 * counts.size());
+    std::memcpy(bytes.data(), counts.data(), bytes.size());
+    crc = crc32({bytes.data(), bytes.size()}, crc);
+    ++drawn;
+  }
+  return crc;
+}
+
+// Every dozen of rows[]; the first seed is that of the first row.
+template <std::size_t kRows>
+void check_dozens(const Dozen (&rows)[kRows], std::uint64_t seed) {
+  for (const Dozen& one : rows) {
+    CAPTURE(seed);
+    CHECK(drawn_dozen(one.always, seed++) == one.crc32);
+  }
+}
+
+TEST_CASE("lit written: light, shadows, glass, air and edges -> the CRC-32 of each dozen pictures") {
+  constexpr Dozen kRows[] = {
+      {Effect::kNone, 2958594627},
+      {Effect::kAll, 1396164661},
+      {Effect::kDirectLight | Effect::kShadows | Effect::kGlass, 3436558633},
+      {Effect::kMedia | Effect::kGlass | Effect::kShadows | Effect::kDirectLight, 8234051},
+      {Effect::kFog | Effect::kSky | Effect::kMirror, 3205576036},
+      {Effect::kEdges | Effect::kDirectLight, 2133069086},
+      {Effect::kEdges | Effect::kSmoothNormals, 849610702},
+  };
+  check_dozens(kRows, 20260831);
+}
+
+TEST_CASE("lit written: water, still, in waves and rippled -> the CRC-32 of each dozen pictures") {
+  constexpr Dozen kRows[] = {
+      {Effect::kWater | Effect::kGlass | Effect::kSky, 3169235279},
+      {Effect::kWater | Effect::kSky, 3056246200},
+      {Effect::kWater | Effect::kDirectLight | Effect::kRipples, 765901866},
+      {Effect::kWater | Effect::kGlass | Effect::kRipples | Effect::kSky, 2684741081},
+      {Effect::kWater | Effect::kSmoothNormals | Effect::kGlass | Effect::kShadows | Effect::kDirectLight, 1940633397},
+      {Effect::kWater | Effect::kGlass | Effect::kMedia | Effect::kFog, 2128388767},
+      {Effect::kAll, 1967487141},
+  };
+  check_dozens(kRows, 20260851);
+}
+
+TEST_CASE("lit written: smooth surfaces -> the CRC-32 of each dozen pictures") {
+  constexpr Dozen kRows[] = {
+      {Effect::kSmoothNormals | Effect::kGlass | Effect::kMirror, 1574333722},
+      {Effect::kSmoothNormals | Effect::kGlass | Effect::kSky, 375454999},
+      {Effect::kSmoothNormals | Effect::kMirror | Effect::kSky, 418956984},
+      {Effect::kSmoothNormals | Effect::kDirectLight | Effect::kAmbientOcclusion, 2641184345},
+      {Effect::kSmoothNormals | Effect::kDirectLight | Effect::kMedia, 1164292021},
+      {Effect::kSmoothNormals | Effect::kEmitterLight | Effect::kEmission, 2714488671},
+  };
+  check_dozens(kRows, 20260871);
+}
+
+TEST_CASE("lit written: effects that there are not -> as without any") {
+  std::mt19937_64 random(20260891);
+  for (int drawn = 0; drawn < 6;) {
+    const WideScene scene = cabinet(random);
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    LitCase lit = random_light(random, scene.level);
+    lit.effects = Effect::kNone;
+    const LitDrawn none = draw_lit_core(scene, frame, lit);
+    lit.effects = ~Effect::kAll;
+    CHECK(draw_lit_core(scene, frame, lit).pixels == none.pixels);
+    ++drawn;
+  }
+}
+
+}  // namespace
+}  // namespace thimble::tests

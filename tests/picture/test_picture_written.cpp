@@ -1,0 +1,245 @@
+// Cameras, any-time frames, cut-offs, node colours and edge samples of many kinds, and the CRC-32 of each that was written
+// down: whatever changes a ray, a pixel or a count is seen here first. Whether they are right others say.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "support/lit_cases.h"
+#include "support/ray_cases.h"
+#include "support/wide_cases.h"
+#include "thimble/base/crc32.h"
+#include "thimble/picture/anytime.h"
+#include "thimble/picture/brick_render.h"
+#include "thimble/picture/cutoff.h"
+#include "thimble/picture/edge_samples.h"
+
+namespace thimble::tests {
+namespace {
+
+// A CRC-32 over numbers, whatever the machine's order of bytes.
+struct Written {
+  void add(std::int64_t number) {
+    std::uint8_t bytes[8];
+    for (int i = 0; i < 8; ++i) {
+      bytes[i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(number) >> (8 * i));
+    }
+    crc = crc32({bytes, 8}, crc);
+  }
+  void add(const Vec3i& vector) {
+    for (int axis = 0; axis < 3; ++axis) {
+      add(vector[axis]);
+    }
+  }
+  void add(ConstBytes bytes) { crc = crc32(bytes, crc); }
+  void add(const RenderCounts& counts) {
+    add(static_cast<std::int64_t>(counts.rays));
+    add(static_cast<std::int64_t>(counts.hits));
+    add(static_cast<std::int64_t>(counts.node_visits));
+    add(static_cast<std::int64_t>(counts.step_limited));
+  }
+  std::uint32_t crc = 0;
+};
+
+std::int32_t up_to(std::mt19937_64& random, int bits) {
+  const auto size = static_cast<std::int32_t>(
+      random() & ((std::uint64_t{1} << (1 + random() % static_cast<unsigned>(bits))) - 1));
+  return random() % 2 == 0 ? -size : size;
+}
+
+void add_camera(const Camera& camera, Written* written) {
+  for (const std::int32_t x : {0, camera.width_px() / 3, camera.width_px() - 1}) {
+    for (const std::int32_t y : {0, camera.height_px() / 2, camera.height_px() - 1}) {
+      const Ray ray = camera.ray(x, y);
+      written->add(Vec3i{ray.origin.x.raw, ray.origin.y.raw, ray.origin.z.raw});
+      written->add(ray.direction);
+    }
+  }
+  written->add(camera.direction_bits());
+  written->add(camera.depth_per_t_q8());
+  written->add(camera.error_bound_px_q16());
+  const std::int32_t side = std::int32_t{1} << camera.level();
+  for (const VoxelBox& box :
+       {VoxelBox{{0, 0, 0}, {side, side, side}}, VoxelBox{{1, 0, side / 2}, {2, 1, side}}}) {
+    const DepthRange range = depth_range(camera, box);
+    written->add(range.near_q8);
+    written->add(range.far_q8);
+  }
+  for (const std::int32_t pixels_q16 : {1, 65536, 70000, 10 << 16, 512 << 16}) {
+    Cutoff cutoff;
+    written->add(static_cast<int>(cutoff.set(camera, Q16::from_raw(pixels_q16))));
+    written->add(cutoff.level());
+    for (const std::int32_t largest : {1, 100, 4095, 1 << 20}) {
+      written->add(cutoff.reach_q8(largest));
+    }
+  }
+}
+
+// Numbers of every size, which a uniform choice would never give.
+std::uint32_t cameras(bool perspective, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Written written;
+  int made = 0;
+  for (int number = 0; number < 3000; ++number) {
+    const int level = static_cast<int>(1 + random() % 12);
+    Vec3Q8 eye;
+    Vec3i forward;
+    Vec3i up;
+    for (int axis = 0; axis < 3; ++axis) {
+      eye[axis] = Q8::from_raw(up_to(random, 20));
+      forward[axis] = number % 7 == 0 && axis != number % 3 ? 0 : up_to(random, 20);
+      up[axis] = up_to(random, 14);
+    }
+    up = number % 2 == 0 ? default_up(forward) : up;
+    const auto width = static_cast<std::int32_t>(1 + random() % (number % 5 == 0 ? 4096 : 300));
+    const auto height = static_cast<std::int32_t>(1 + random() % (number % 5 == 0 ? 4096 : 300));
+    const int bits = number % 3 == 0 ? static_cast<int>(8 + random() % 13) : 0;
+    Camera camera;
+    Status status = Status::kOk;
+    if (perspective) {
+      const Q16 fov = Q16::from_raw(static_cast<std::int32_t>(65536 + random() % (119 << 16)));
+      status = camera.set(PerspectiveView{eye, forward, up, fov, width, height, bits}, level);
+    } else {
+      const Q14 span = Q14::from_raw(std::abs(up_to(random, 27)) + width * 400);
+      status = camera.set(OrthographicView{eye, forward, up, span, width, height, bits}, level);
+    }
+    written.add(static_cast<int>(status));
+    if (status == Status::kOk) {
+      ++made;
+      add_camera(camera, &written);
+    }
+  }
+  CHECK(made > 500);
+  return written.crc;
+}
+
+TEST_CASE("picture written: cameras of numbers of every size -> the CRC-32 of rays, depths and cut-offs") {
+  CHECK(cameras(true, 20260901) == 401325518U);
+  CHECK(cameras(false, 20260902) == 102344967U);
+}
+
+// By small steps, so that every order of pixels and every guess shows.
+TEST_CASE("picture written: any-time frames in small steps -> the CRC-32 of each step's picture and counts") {
+  std::mt19937_64 random(20260911);
+  Written written;
+  for (int drawn = 0; drawn < 40;) {
+    const WideScene scene = drawn % 3 == 0 ? random_scene(random) : cabinet(random);
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    const std::int32_t width = frame.camera.width_px();
+    const std::int32_t height = frame.camera.height_px();
+    const HeapBytes memory(anytime_bytes(width, height, frame.band.format));
+    AnytimeFrame anytime;
+    // A second use of the same object begins anew.
+    for (int use = 0; use < 2; ++use) {
+      const Status status = AnytimeFrame::make(scene.tree, frame.camera, frame.shading, frame.band.format,
+                                               memory.span(), &anytime);
+      written.add(static_cast<int>(status));
+      if (status != Status::kOk) {
+        break;
+      }
+      written.add(anytime.gray_range());
+      for (int step = 0; step < 9; ++step) {
+        const auto visits = static_cast<std::uint32_t>(random() % (step < 5 ? 900 : 20000));
+        const Width wanted = step % 3 == 0 ? Width::k64 : Width::kAuto;
+        written.add(static_cast<int>(anytime.refine(scene.tree, visits, wanted)));
+        written.add(anytime.inexact());
+        written.add(anytime.mean_error_bound_q8());
+        written.add(static_cast<std::int64_t>(anytime.given_visits()));
+        written.add(static_cast<std::int64_t>(anytime.spent_visits()));
+        written.add(anytime.reserve_visits());
+        written.add(anytime.counts());
+        written.add(anytime.band(0, height).pixels);
+      }
+    }
+    ++drawn;
+  }
+  CHECK(written.crc == 1226899613U);
+}
+
+TEST_CASE("picture written: frames cut off, by node colours -> the CRC-32 of pictures and counts") {
+  std::mt19937_64 random(20260921);
+  Written written;
+  NodeColors colors;  // used again for every tree
+  for (int drawn = 0; drawn < 60;) {
+    const WideScene scene = drawn % 3 == 0 ? random_scene(random) : cabinet(random);
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    const HeapBytes room(node_colors_bytes(scene.tree.node_count()));
+    written.add(static_cast<int>(NodeColors::make(scene.tree, frame.shading.palette,
+                                                  frame.shading.default_color, room.span(), &colors)));
+    for (std::uint32_t node = 0; node < colors.nodes(); node += 1 + node / 9) {
+      const Rgb8 color = colors.color(node);
+      written.add(Vec3i{color.r, color.g, color.b});
+    }
+    Cutoff cutoff;
+    written.add(static_cast<int>(
+        drawn % 4 == 0
+            ? cutoff.set_level(static_cast<int>(random() % 6))
+            : cutoff.set(frame.camera, Q16::from_raw(static_cast<std::int32_t>(random() % (40 << 16))))));
+    std::vector<std::uint8_t> pixels(band_size(frame), 0xA5);
+    Band band = frame.band;
+    band.pixels = {pixels.data(), pixels.size()};
+    RenderCounts counts;
+    const TraceOptions options{drawn % 5 == 0 ? 9 : UINT32_MAX, Width::kAuto};
+    written.add(static_cast<int>(
+        render_band_cut(scene.tree, frame.camera, frame.shading, cutoff, colors, band, &counts, options)));
+    written.add(counts);
+    written.add(ConstBytes{pixels.data(), pixels.size()});
+    for (int i = 0; i < 20; ++i) {
+      const auto x = static_cast<std::int32_t>(random() % static_cast<unsigned>(frame.camera.width_px()));
+      const auto y = static_cast<std::int32_t>(random() % static_cast<unsigned>(frame.camera.height_px()));
+      CutHit hit;
+      written.add(
+          static_cast<int>(closest_hit_cut(scene.tree, frame.camera.ray(x, y), cutoff, &hit, options)));
+      written.add(hit.cut ? 1 : 0);
+      written.add(static_cast<int>(hit.hit.kind));
+      written.add(hit.hit.visits);
+      written.add(hit.hit.voxel);
+      written.add(hit.hit.t_numerator);
+    }
+    ++drawn;
+  }
+  // Of a tree without nodes there are none, whatever was there before.
+  CHECK(colors.nodes() != 0);
+  CHECK(NodeColors::make(CompactTree(), {}, {}, {}, &colors) == Status::kOk);
+  CHECK(colors.nodes() == 0);
+  CHECK(written.crc == 1935503416U);
+}
+
+TEST_CASE("picture written: edges of rows of every kind -> the CRC-32 of their strengths and samples") {
+  std::mt19937_64 random(20260931);
+  Written written;
+  for (int number = 0; number < 500; ++number) {
+    const auto width = static_cast<std::int32_t>(1 + random() % 300);
+    const int channels = number % 2 == 0 ? 3 : 1;
+    std::vector<std::vector<std::uint8_t>> rows(3);
+    const unsigned spread = 1U << (random() % 9);
+    for (std::vector<std::uint8_t>& row : rows) {
+      std::uint8_t value = 128;
+      for (std::int32_t i = 0; i < width * channels; ++i) {
+        value = random() % 4 == 0 ? static_cast<std::uint8_t>(random() % spread) : value;
+        row.push_back(value);
+      }
+    }
+    std::vector<std::uint8_t> strengths(static_cast<std::size_t>(width));
+    std::vector<std::uint8_t> samples(static_cast<std::size_t>(width));
+    const auto view = [](const std::vector<std::uint8_t>& row) { return ConstBytes{row.data(), row.size()}; };
+    written.add(static_cast<int>(edge_strengths(view(rows[0]), view(rows[1]), view(rows[2]), channels, width,
+                                                {strengths.data(), strengths.size()})));
+    written.add(view(strengths));
+    written.add(
+        static_cast<int>(place_edge_samples(view(strengths), width, {samples.data(), samples.size()})));
+    written.add(view(samples));
+  }
+  CHECK(written.crc == 1976094725U);
+}
+
+}  // namespace
+}  // namespace thimble::tests

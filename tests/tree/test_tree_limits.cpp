@@ -1,0 +1,614 @@
+// Trees and maps where their numbers change kind: exactly as much room as is taken, one less, headers at the ends of their
+// ranges, the smallest worlds, prices of nodes by their definition.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/compact_damage.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/tree/edited_world.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+struct OwnedOctree {
+  explicit OwnedOctree(int level, std::size_t nodes = 40000) : bytes(Octree::octree_bytes(nodes)) {
+    REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
+  }
+  std::vector<std::uint8_t> bytes;
+  Octree octree;
+};
+
+bool equal_bytes(const HeapBytes& a, const HeapBytes& b) {
+  return std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end());
+}
+
+std::uint32_t load_32(const std::uint8_t* at) {
+  return at[0] | std::uint32_t{at[1]} << 8 | std::uint32_t{at[2]} << 16 | std::uint32_t{at[3]} << 24;
+}
+void store_32(std::uint8_t* at, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) {
+    at[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  }
+}
+
+// ---- the octree
+
+TEST_CASE("tree limits: an octree that was used and cleared -> as a new one, and its bytes those of none") {
+  OwnedOctree used(4);
+  OwnedOctree fresh(4);
+  const HeapBytes none = compact_of(fresh.octree);
+  for (int round = 0; round < 3; ++round) {
+    for (std::int32_t i = 0; i < 40; ++i) {
+      REQUIRE(used.octree.insert({i % 16, i * 7 % 16, i * 5 % 16}, static_cast<std::uint8_t>(i % 3)) ==
+              Status::kOk);
+    }
+    REQUIRE(used.octree.coarsen_to(20) == Status::kOk);
+    used.octree.clear();
+    CHECK(used.octree.nodes_used() == 0);
+    CHECK(used.octree.root() == Octree::kNone);
+    CHECK(equal_bytes(compact_of(used.octree), none));
+    CHECK(used.octree.nodes_at(0) == 0);
+    used.octree.coarsen_at(Octree::kPriceSteps - 1);
+    CHECK(used.octree.nodes_used() == 0);
+  }
+  REQUIRE(used.octree.insert({3, 2, 1}, 9) == Status::kOk);
+  REQUIRE(fresh.octree.insert({3, 2, 1}, 9) == Status::kOk);
+  CHECK(equal_bytes(compact_of(used.octree), compact_of(fresh.octree)));
+}
+
+// A voxel of another material, or a hole, takes 8 nodes for each level of the block that it is in.
+TEST_CASE(
+    "tree limits: a solid world opened in a pool of exactly the nodes it takes, or one less -> done, or "
+    "not") {
+  for (int level = 2; level <= 6; ++level) {
+    for (const bool removes : {false, true}) {
+      const std::size_t taken = 1 + 8 * static_cast<std::size_t>(removes ? level - 1 : level);
+      for (std::size_t less = 0; less < 2; ++less) {
+        OwnedOctree owned(level, taken - less);
+        REQUIRE(owned.octree.insert_block({0, 0, 0}, level, 1) == Status::kOk);
+        const Status status = removes ? owned.octree.remove({1, 2, 3}) : owned.octree.insert({1, 2, 3}, 2);
+        CAPTURE(level);
+        CHECK(status == (less == 0 ? Status::kOk : Status::kOutOfMemory));
+        CHECK(owned.octree.nodes_used() == (less == 0 ? taken : 1));
+      }
+    }
+    // A voxel alone takes a node a level.
+    OwnedOctree alone(level, static_cast<std::size_t>(level));
+    CHECK(alone.octree.insert({1, 2, 3}, 2) == Status::kOk);
+    OwnedOctree small(level, static_cast<std::size_t>(level) - 1);
+    CHECK(small.octree.insert({1, 2, 3}, 2) == Status::kOutOfMemory);
+  }
+}
+
+// A world of 4 x 4 x 4 with n voxels in m nodes: to merge it adds 64 - n for m nodes.
+TEST_CASE(
+    "tree limits: prices of a world of two levels -> merged from the step on that the definition says") {
+  std::mt19937_64 random(20260811);
+  for (int world = 0; world < 200; ++world) {
+    OwnedOctree owned(2, 20);
+    int voxels = 0;
+    int nodes = 0;
+    for (std::int32_t octant = 0; octant < 8; ++octant) {
+      const int here = pick_int(random, 0, 7) - 2;  // never a full node, which would be a block
+      nodes += here > 0 ? 1 : 0;
+      for (std::int32_t i = 0; i < here; ++i, ++voxels) {
+        REQUIRE(owned.octree.insert({(octant & 1) * 2 + (i & 1), (octant >> 1 & 1) * 2 + (i >> 1 & 1),
+                                     (octant >> 2) * 2 + (i >> 2)},
+                                    3) == Status::kOk);
+      }
+    }
+    if (nodes == 0) {
+      continue;
+    }
+    CAPTURE(world);
+    const double ratio = (64.0 - voxels) / nodes;
+    for (int step = -3; step < Octree::kPriceSteps + 3; ++step) {
+      const int taken = std::clamp(step, 0, Octree::kPriceSteps - 1);
+      const double price = std::ldexp(1 + taken % 4 / 4.0, taken / 4 - 27);
+      const auto wanted = static_cast<std::uint32_t>(ratio <= price ? 1 : nodes + 1);
+      REQUIRE(owned.octree.nodes_at(step) == wanted);
+      REQUIRE(owned.octree.nodes_used() == static_cast<std::uint32_t>(nodes) + 1);
+    }
+    const int step = pick_int(random, 90, 140);
+    const std::uint32_t foretold = owned.octree.nodes_at(step);
+    owned.octree.coarsen_at(step);
+    CHECK(owned.octree.nodes_used() == foretold);
+  }
+}
+
+// ---- compact trees from keys
+
+TEST_CASE("tree limits: worlds of 2, 4 and 8 a side by keys of either size -> the pool's bytes") {
+  std::mt19937_64 random(20260812);
+  for (int number = 0; number < 900; ++number) {
+    const int side = number < 255 ? 2 : pick_int(random, 0, 1) == 0 ? 4 : 8;
+    const int share = pick_int(random, 1, 8);
+    std::vector<reference::Voxel> voxels;
+    for (int i = 0; i < side * side * side; ++i) {
+      if (number < 255 ? (number + 1) >> i & 1 : pick_int(random, 1, 8) <= share) {
+        voxels.push_back({i % side, i / side % side, i / side / side});
+      }
+    }
+    if (voxels.empty()) {
+      continue;
+    }
+    CAPTURE(number);
+    const SceneUnderTest scene({side, side, side}, voxels, number % 3 == 0 ? 2 : 1, random());
+    REQUIRE(scene.same_bytes());
+  }
+}
+
+// ---- brick maps
+
+struct OwnedMap {
+  OwnedMap(const HeapBytes& bytes, std::size_t room_bytes)
+      : tree(open_or_throw(bytes)),
+        room(room_bytes),
+        status(BrickMap::make(tree, room.span(), &map, &size)) {}
+  CompactTree tree;
+  HeapBytes room;
+  BrickMap map;
+  std::size_t size = 0;
+  Status status;
+};
+
+// The bits of the cell of `voxel`, or 0 outside the map's box.
+bool map_has(const BrickMap& map, const Vec3i& voxel, std::uint32_t* number = nullptr) {
+  std::size_t entry = 0;
+  for (int axis = 2; axis >= 0; --axis) {
+    const std::int32_t at = (voxel[axis] >> 2) - map.box().low[axis];
+    const std::int32_t side = map.box().high[axis] - map.box().low[axis];
+    if (at < 0 || at >= side) {
+      return false;
+    }
+    entry = entry * static_cast<std::size_t>(side) + static_cast<std::size_t>(at);
+  }
+  const std::uint32_t brick = map.directory()[2 * entry] + 256U * map.directory()[2 * entry + 1];
+  if (number != nullptr) {
+    *number = brick;
+  }
+  const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
+  return (map.bricks()[8 * std::size_t{brick} + static_cast<std::size_t>(bit) / 8] >> (bit % 8) & 1) != 0;
+}
+
+TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -> each material as it is") {
+  for (int kind = 0; kind < 4; ++kind) {
+    for (const int side : {4, 8, 16}) {
+      OwnedOctree owned(side == 4 ? 2 : side == 8 ? 3 : 4);
+      const auto material = [&](const Vec3i& at) {
+        const int mixed = kind == 0 ? 1 : kind == 1 ? 0 : (at.x / 4 + at.y / 4 + at.z / 4) % 2;
+        return static_cast<std::uint8_t>(mixed != 0 ? 1 + (at.x + at.y + at.z) % 3 : 7);
+      };
+      const auto solid = [&](const Vec3i& at) { return (at.x * 3 + at.y * 5 + at.z) % 4 != 0 || kind == 3; };
+      for (std::int32_t i = 0; i < side * side * side; ++i) {
+        const Vec3i at{i % side, i / side % side, i / side / side};
+        if (solid(at)) {
+          REQUIRE(owned.octree.insert(at, material(at)) == Status::kOk);
+        }
+      }
+      const HeapBytes bytes = compact_of(owned.octree);
+      const OwnedMap made(bytes, most_brick_map_bytes(owned.octree.level()));
+      REQUIRE(made.status == Status::kOk);
+      CHECK(BrickMap::validate({made.room.view().data, made.size}) == nullptr);
+      CHECK((made.map.mixed_count() == 0) == (kind == 1 || (kind > 1 && side == 4)));
+      if (kind == 0) {
+        CHECK(made.map.mixed_count() == made.map.brick_count() - 1);
+      }
+      for (std::int32_t i = 0; i < side * side * side; ++i) {
+        const Vec3i at{i % side, i / side % side, i / side / side};
+        std::uint32_t number = 0;
+        REQUIRE(map_has(made.map, at, &number) == solid(at));
+        if (solid(at) && (kind != 3 || at.x == 0 || at.y == 0 || at.z == 0)) {
+          const auto bit = static_cast<unsigned>((at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3));
+          REQUIRE(made.map.material(made.tree, number, bit) == material(at));
+        }
+      }
+      // While it is made it takes 2 bytes a brick more, and nothing else where no brick is shared.
+      if (kind != 3) {
+        const std::size_t least = made.size + 2 * std::size_t{made.map.brick_count()};
+        const OwnedMap again(bytes, least);
+        REQUIRE(again.status == Status::kOk);
+        CHECK(again.size == made.size);
+        CHECK(std::equal(made.room.view().begin(), made.room.view().begin() + made.size,
+                         again.room.view().begin()));
+        CHECK(OwnedMap(bytes, least - 2).status == Status::kOutOfMemory);
+      }
+    }
+  }
+}
+
+TEST_CASE("tree limits: a map's header with a number beyond its range -> damaged, and told by validate") {
+  OwnedOctree owned(4);
+  REQUIRE(owned.octree.insert({1, 1, 1}, 5) == Status::kOk);
+  REQUIRE(owned.octree.insert({5, 1, 1}, 6) == Status::kOk);
+  REQUIRE(owned.octree.insert({5, 2, 1}, 5) == Status::kOk);
+  const HeapBytes bytes = compact_of(owned.octree);
+  const OwnedMap made(bytes, most_brick_map_bytes(4));
+  REQUIRE(made.status == Status::kOk);
+  std::uint8_t* const base = made.room.span().data;
+  const auto fault_with = [&](std::size_t at, std::uint8_t value) {
+    const std::uint8_t before = base[at];
+    base[at] = value;
+    BrickMap opened;
+    const Status status = BrickMap::open({base, made.size}, &opened);
+    const char* const text = BrickMap::validate({base, made.size});
+    base[at] = before;
+    CHECK(status == Status::kDamaged);
+    return std::string(text == nullptr ? "" : text);
+  };
+  int outside = 0;
+  int counts = 0;
+  for (std::size_t at = 4; at < kBrickMapHeaderBytes; ++at) {
+    for (int value = 0; value < 256; ++value) {
+      const std::uint8_t before = base[at];
+      base[at] = static_cast<std::uint8_t>(value);
+      BrickMap opened;
+      if (BrickMap::open({base, made.size}, &opened) == Status::kOk) {
+        // Whatever it says, it lies in its bytes and in the world.
+        for (int axis = 0; axis < 3; ++axis) {
+          CHECK(opened.box().low[axis] >= 0);
+          CHECK(opened.box().high[axis] <= 1 << (opened.level() - 2));
+        }
+        CHECK(opened.size_bytes() <= made.size);
+        base[at] = before;
+        continue;
+      }
+      base[at] = before;
+      const std::string text = fault_with(at, static_cast<std::uint8_t>(value));
+      outside += text == "box outside the world" ? 1 : 0;
+      counts += text == "size does not match the counts" ? 1 : 0;
+    }
+  }
+  CHECK(outside > 100);
+  CHECK(counts > 100);
+}
+
+// Bounds are in the header, under no other care than the checksum's: what lies beyond them is left out.
+TEST_CASE("tree limits: a map of a tree whose bounds are too small -> within them each voxel, nothing else") {
+  OwnedOctree owned(5);
+  Octree& octree = owned.octree;
+  for (const Vec3i& at : {Vec3i{0, 0, 0}, Vec3i{16, 16, 16}, Vec3i{8, 24, 8}}) {
+    REQUIRE(octree.insert_block(at, 3, 4) == Status::kOk);
+  }
+  REQUIRE(octree.insert_block({16, 0, 0}, 4, 2) == Status::kOk);
+  REQUIRE(octree.insert({31, 31, 31}, 1) == Status::kOk);
+  const HeapBytes sound = compact_of(octree);
+  const OwnedMap whole(sound, most_brick_map_bytes(5));
+  REQUIRE(whole.status == Status::kOk);
+  constexpr std::size_t kBounds = 28;  // low, then high: 2 bytes an axis
+  std::mt19937_64 random(20260813);
+  for (int number = 0; number < 60; ++number) {
+    HeapBytes damaged(sound.view().size);
+    std::copy(sound.view().begin(), sound.view().end(), damaged.span().begin());
+    Vec3i low;
+    Vec3i high;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = 4 * pick_int(random, 0, 6);
+      high[axis] = pick_int(random, low[axis] / 4 + 1, 8) * 4;
+      damaged.span()[kBounds + 2 * static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(low[axis]);
+      damaged.span()[kBounds + 6 + 2 * static_cast<std::size_t>(axis)] =
+          static_cast<std::uint8_t>(high[axis]);
+    }
+    repair_checksum(damaged.span());
+    const OwnedMap made(damaged, most_brick_map_bytes(5));
+    REQUIRE(made.status == Status::kOk);
+    REQUIRE(made.map.box() ==
+            VoxelBox{{low.x / 4, low.y / 4, low.z / 4}, {high.x / 4, high.y / 4, high.z / 4}});
+    CAPTURE(number);
+    bool same = true;
+    for (std::int32_t i = 0; i < 32 * 32 * 32; ++i) {
+      const Vec3i at{i % 32, i / 32 % 32, i / 1024};
+      const bool within =
+          at.x >= low.x && at.y >= low.y && at.z >= low.z && at.x < high.x && at.y < high.y && at.z < high.z;
+      same = same && map_has(made.map, at) == (within && map_has(whole.map, at));
+    }
+    REQUIRE(same);
+  }
+}
+
+// ---- shared trees
+
+HeapBytes shared_bytes(const CompactTree& compact) {
+  HeapBytes work(shared_work_bytes(compact.node_count()));
+  SharedBuild build;
+  REQUIRE(SharedTree::make(compact, {}, work.span(), nullptr, &build) == Status::kOutOfMemory);
+  HeapBytes bytes(build.bytes);
+  REQUIRE(SharedTree::make(compact, bytes.span(), work.span(), nullptr) == Status::kOk);
+  return bytes;
+}
+
+std::string shared_fault(const HeapBytes& bytes) {
+  HeapBytes work(shared_check_bytes(bytes.view().size));
+  std::fill(work.span().begin(), work.span().end(), std::uint8_t{0xFF});
+  const char* const text = SharedTree::validate(bytes.view(), work.span());
+  return text == nullptr ? "" : text;
+}
+
+HeapBytes some_shared(int level, int materials, std::uint64_t seed) {
+  OwnedOctree owned(level);
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 60; ++i) {
+    const int side = (1 << level) - 1;
+    REQUIRE(
+        owned.octree.insert({pick_int(random, 0, side), pick_int(random, 0, side), pick_int(random, 0, side)},
+                            static_cast<std::uint8_t>(i % materials)) == Status::kOk);
+  }
+  const HeapBytes compact = compact_of(owned.octree);
+  return shared_bytes(open_or_throw(compact));
+}
+
+// Where things stand in a shared tree's header: src/FORMAT.md.
+constexpr std::size_t kLinkBytes = 5;
+constexpr std::size_t kNodeCount = 16;
+constexpr std::size_t kRoot = 24;
+constexpr std::size_t kNodesEnd = 56;
+constexpr std::size_t kCountBytes = 60;
+
+TEST_CASE("tree limits: a shared tree's header -> links of 1 to 4 bytes, counts of 1 to 4 or of none") {
+  for (const int materials : {1, 3}) {
+    const HeapBytes bytes = some_shared(5, materials, 11);
+    REQUIRE(shared_fault(bytes).empty());
+    SharedTree opened;
+    for (int value = 0; value < 256; ++value) {
+      std::uint8_t& byte = bytes.span()[kLinkBytes];
+      const std::uint8_t before = byte;
+      byte = static_cast<std::uint8_t>(value);
+      const bool fine = value >= 1 && value <= 4;
+      CHECK((SharedTree::open(bytes.view(), &opened) == Status::kOk) == fine);
+      CHECK((shared_fault(bytes) == "links of no such size") == !fine);
+      byte = before;
+    }
+    for (int value = 0; value < 256; ++value) {
+      std::uint8_t& byte = bytes.span()[kCountBytes];
+      const std::uint8_t before = byte;
+      byte = static_cast<std::uint8_t>(value);
+      const bool fine = materials == 1 ? value == 0 : value >= 1 && value <= 4;
+      CHECK((SharedTree::open(bytes.view(), &opened) == Status::kOk) == fine);
+      CHECK((shared_fault(bytes) == "counts of no such size") == !fine);
+      byte = before;
+    }
+  }
+}
+
+TEST_CASE("tree limits: a shared tree that says another number of nodes -> told") {
+  for (int level = 1; level <= 6; ++level) {
+    const HeapBytes bytes = some_shared(level, 1, 12);
+    const std::uint32_t nodes = load_32(bytes.view().data + kNodeCount);
+    for (const std::uint32_t other : {nodes + 1, nodes - 1, nodes + 256, UINT32_MAX}) {
+      store_32(bytes.span().data + kNodeCount, other);
+      repair_checksum(bytes.span());
+      CAPTURE(level);
+      CHECK(shared_fault(bytes) == "another number of nodes");
+    }
+    store_32(bytes.span().data + kNodeCount, nodes);
+    repair_checksum(bytes.span());
+    CHECK(shared_fault(bytes).empty());
+  }
+}
+
+// The root is the last node: children that its mask promises beyond its links are nothing, whatever follows.
+TEST_CASE("tree limits: a shared tree's root with more children than it has links -> nothing is hit there") {
+  int zero_follows = 0;
+  for (int number = 0; number < 24; ++number) {
+    // All in the first octant; how many decides where the nodes end.
+    OwnedOctree owned(4);
+    for (std::int32_t i = 0; i <= number / 2; ++i) {
+      REQUIRE(owned.octree.insert({i * 3 % 7, i * 5 % 8, i % 8},
+                                  static_cast<std::uint8_t>(i * (number % 2))) == Status::kOk);
+    }
+    const HeapBytes compact = compact_of(owned.octree);
+    const HeapBytes made = shared_bytes(open_or_throw(compact));
+    // More bytes follow, of which each would be a solid block.
+    HeapBytes bytes(made.view().size + 64);
+    std::fill(bytes.span().begin(), bytes.span().end(), std::uint8_t{0});
+    std::copy(made.view().begin(), made.view().end(), bytes.span().begin());
+    const std::uint32_t root = load_32(bytes.view().data + kRoot);
+    REQUIRE(bytes.view()[root] == 1);
+    zero_follows += bytes.view()[load_32(bytes.view().data + kNodesEnd)] == 0 ? 1 : 0;
+    bytes.span()[root] = 0xFF;
+    repair_checksum(bytes.span());
+    CHECK(shared_fault(bytes) == "a node that is no node");
+    SharedTree tree;
+    REQUIRE(SharedTree::open(bytes.view(), &tree) == Status::kOk);
+    for (std::int32_t i = 0; i < 256; ++i) {
+      Ray ray;
+      ray.origin = {Q8::from_raw(4200), Q8::from_raw(i % 16 * 256 + 100), Q8::from_raw(i / 16 * 256 + 90)};
+      ray.direction = {-1000, 0, 0};
+      Hit hit;
+      REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
+      CHECK((hit.kind == HitKind::kMiss || (hit.voxel.x < 8 && hit.voxel.y < 8 && hit.voxel.z < 8)));
+    }
+  }
+  CHECK(zero_follows > 4);
+}
+
+TEST_CASE("tree limits: any workspace of a shared tree -> not a byte behind it is written") {
+  OwnedOctree owned(3);
+  REQUIRE(owned.octree.insert({1, 2, 3}, 1) == Status::kOk);
+  const HeapBytes compact = compact_of(owned.octree);
+  const CompactTree tree = open_or_throw(compact);
+  std::vector<std::uint32_t> words(400);
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(words.data());
+  std::vector<std::uint8_t> out(400);
+  int made = 0;
+  for (std::size_t size = 0; size < 4 * words.size() - 16; ++size) {
+    std::memset(bytes, 0xA5, 4 * words.size());
+    const Status status = SharedTree::make(tree, {out.data(), out.size()}, {bytes, size}, nullptr);
+    made += status == Status::kOk ? 1 : 0;
+    REQUIRE((status == Status::kOk || status == Status::kOutOfMemory));
+    REQUIRE(
+        std::all_of(bytes + size, bytes + 4 * words.size(), [](std::uint8_t byte) { return byte == 0xA5; }));
+  }
+  CHECK(made > 100);
+}
+
+TEST_CASE("tree limits: a shared tree's workspace at any address -> the same bytes") {
+  OwnedOctree owned(4);
+  for (std::int32_t i = 0; i < 50; ++i) {
+    REQUIRE(owned.octree.insert({i * 7 % 16, i * 3 % 16, i % 16}, static_cast<std::uint8_t>(i % 2)) ==
+            Status::kOk);
+  }
+  const HeapBytes compact = compact_of(owned.octree);
+  const CompactTree tree = open_or_throw(compact);
+  const HeapBytes wanted = shared_bytes(tree);
+  std::vector<std::uint64_t> words(shared_work_bytes(tree.node_count()) / 8 + 4);
+  for (std::size_t offset = 0; offset < 8; ++offset) {
+    HeapBytes out(wanted.view().size);
+    auto* const work = reinterpret_cast<std::uint8_t*>(words.data()) + offset;
+    REQUIRE(SharedTree::make(tree, out.span(), {work, 8 * words.size() - 8}, nullptr) == Status::kOk);
+    CHECK(equal_bytes(out, wanted));
+  }
+}
+
+// Links grow from 1 to 2 bytes where the nodes pass 256 bytes, and the counts of several materials may do that.
+TEST_CASE("tree limits: bytes with materials where links grow by a byte -> those of two materials") {
+  int grown = 0;
+  for (int points = 1; points < 120; ++points) {
+    OwnedOctree one(5);
+    OwnedOctree two(5);
+    std::mt19937_64 random(static_cast<std::uint64_t>(points));
+    for (int i = 0; i < points; ++i) {
+      // At even places, so that no block of eight is full.
+      const Vec3i at{2 * pick_int(random, 0, 15), 2 * pick_int(random, 0, 15), 2 * pick_int(random, 0, 15)};
+      REQUIRE(one.octree.insert(at, 7) == Status::kOk);
+      REQUIRE(two.octree.insert(at, 2) == Status::kOk);
+    }
+    REQUIRE(one.octree.insert({30, 30, 30}, 7) == Status::kOk);
+    REQUIRE(two.octree.insert({30, 30, 30}, 3) == Status::kOk);
+    REQUIRE(one.octree.insert({0, 0, 0}, 7) == Status::kOk);
+    REQUIRE(two.octree.insert({0, 0, 0}, 2) == Status::kOk);
+    const HeapBytes first = compact_of(one.octree);
+    const HeapBytes second = compact_of(two.octree);
+    const HeapBytes plain = shared_bytes(open_or_throw(first));
+    const HeapBytes colored = shared_bytes(open_or_throw(second));
+    grown += plain.view()[kLinkBytes] != colored.view()[kLinkBytes] ? 1 : 0;
+    SharedTree tree;
+    REQUIRE(SharedTree::open(plain.view(), &tree) == Status::kOk);
+    CHECK(tree.bytes_with_materials() == colored.view().size);
+  }
+  CHECK(grown > 2);
+}
+
+// ---- worlds that are edited
+
+TEST_CASE(
+    "tree limits: a block opened with exactly the room it takes -> done; with one less -> nothing done") {
+  for (int level = 2; level <= 5; ++level) {
+    OwnedOctree owned(level);
+    REQUIRE(owned.octree.insert_block({0, 0, 0}, level, 4) == Status::kOk);
+    const HeapBytes compact = compact_of(owned.octree);
+    const CompactTree tree = open_or_throw(compact);
+    const auto levels = static_cast<std::uint32_t>(level);
+    const EditRoom exact{1 + 8 * (levels - 1), 1 + 7 * levels, 1};
+    for (int less = 0; less < 4; ++less) {
+      for (const bool clears : {true, false}) {
+        EditRoom room = exact;
+        room.nodes -= less == 1 ? 1 : 0;
+        room.leaves -= less == 2 ? 1 : 0;
+        room.bricks -= less == 3 ? 1 : 0;
+        HeapBytes bytes(edited_world_bytes(level, room));
+        EditedWorld world;
+        REQUIRE(EditedWorld::make(tree, room, bytes.span(), &world) == Status::kOk);
+        const Status status = clears ? world.clear({1, 0, 1}) : world.set({1, 0, 1}, 5);
+        CAPTURE(level);
+        CAPTURE(less);
+        CHECK(status == (less == 0 ? Status::kOk : Status::kOutOfMemory));
+        CHECK(world.tree().node_count() == (less == 0 ? exact.nodes : 1));
+        if (less == 0) {
+          CHECK(world.free_room().nodes == 0);
+          CHECK(world.free_room().bricks == 0);
+          // As many bytes as the tree takes that it is, with a material a leaf.
+          CompactShape shape;
+          shape.level = level;
+          shape.nodes = exact.nodes;
+          shape.solid_blocks = 7 * (levels - 1);
+          shape.voxel_bits = clears ? 7 : 8;
+          shape.many_materials = true;
+          CHECK(world.tree().size_bytes() == compact_bytes(shape));
+        }
+      }
+    }
+  }
+}
+
+// Bricks solid of one material stand in a list of kSolidBrickKinds; the next material's is refused before it is made,
+// whichever voxel of the brick is the last.
+TEST_CASE(
+    "tree limits: solid bricks of as many materials as there may be, and one more -> refused, unchanged") {
+  OwnedOctree owned(4);
+  const HeapBytes none = compact_of(owned.octree);
+  const EditRoom room{4000, 6000, 60};
+  HeapBytes bytes(edited_world_bytes(4, room));
+  EditedWorld world;
+  REQUIRE(EditedWorld::make(open_or_throw(none), room, bytes.span(), &world) == Status::kOk);
+  const auto voxel_of = [](std::uint32_t brick, std::uint32_t bit) {
+    return Vec3i{static_cast<std::int32_t>((brick & 3U) * 4 + (bit & 3U)),
+                 static_cast<std::int32_t>((brick >> 2 & 3U) * 4 + (bit >> 2 & 3U)),
+                 static_cast<std::int32_t>((brick >> 4) * 4 + (bit >> 4))};
+  };
+  for (std::uint32_t kind = 0; kind < kSolidBrickKinds; ++kind) {
+    for (std::uint32_t bit = 0; bit < 64; ++bit) {
+      REQUIRE(world.set(voxel_of(kind, bit), static_cast<std::uint8_t>(kind + 1)) == Status::kOk);
+    }
+  }
+  CHECK(world.free_room().bricks == room.bricks);
+  constexpr std::uint32_t kBrick = kSolidBrickKinds;
+  for (std::uint32_t bit = 1; bit < 64; ++bit) {
+    REQUIRE(world.set(voxel_of(kBrick, bit), 200) == Status::kOk);
+  }
+  for (std::uint32_t last = 0; last < 64; ++last) {
+    const std::uint32_t nodes = world.tree().node_count();
+    CHECK(world.set(voxel_of(kBrick, last), 200) == Status::kOutOfMemory);
+    CHECK(world.tree().node_count() == nodes);
+    CHECK_FALSE(map_has(world.map(), voxel_of(kBrick, last)));
+    // Of a material that bricks have it may be, and elsewhere it goes on.
+    REQUIRE(world.set(voxel_of(kBrick, last), 1) == Status::kOk);
+    CHECK(map_has(world.map(), voxel_of(kBrick, last)));
+    REQUIRE(world.clear(voxel_of(kBrick, (last + 1) % 64)) == Status::kOk);
+    REQUIRE(world.set(voxel_of(kBrick, last), 200) == Status::kOk);
+  }
+}
+
+TEST_CASE("tree limits: room in any number of bytes -> as much as fits, 65,000 bricks at most, level 8 too") {
+  for (const int level : {2, 5, 8}) {
+    OwnedOctree owned(level);
+    REQUIRE(owned.octree.insert({1, 1, 1}, 4) == Status::kOk);
+    const HeapBytes compact = compact_of(owned.octree);
+    const CompactTree tree = open_or_throw(compact);
+    const EditRoom least = EditedWorld::room_of(tree);
+    const std::size_t bytes = edited_world_bytes(level, least);
+    CHECK(EditedWorld::room_in(tree, bytes - 1).nodes == 0);
+    for (const std::size_t more : {0U, 1U, 63U, 64U, 65U}) {
+      CHECK(EditedWorld::room_in(tree, bytes + more).nodes == least.nodes);
+    }
+    std::size_t last = 0;
+    for (std::size_t more = 64; more < 4000; more += 7) {
+      const EditRoom room = EditedWorld::room_in(tree, bytes + more);
+      CHECK(edited_world_bytes(level, room) <= bytes + more);
+      CHECK(room.bricks >= last);
+      CHECK(room.nodes - least.nodes == 9 * (room.bricks - least.bricks));
+      CHECK(room.leaves - least.leaves == 24 * (room.bricks - least.bricks));
+      last = room.bricks;
+    }
+    CHECK(last > 50);
+    CHECK(EditedWorld::room_in(tree, std::size_t{1} << 28).bricks == 65000);
+  }
+  OwnedOctree large(9);
+  REQUIRE(large.octree.insert({1, 1, 1}, 4) == Status::kOk);
+  const HeapBytes compact = compact_of(large.octree);
+  CHECK(EditedWorld::room_in(open_or_throw(compact), std::size_t{1} << 30).nodes == 0);
+}
+
+}  // namespace
