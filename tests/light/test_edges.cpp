@@ -155,4 +155,82 @@ TEST_CASE("edges: one ray or two of the camera's more a pixel that shows a face,
   CHECK(with.rays[0] <= pixels + 2 * without.hits[0]);
 }
 
+TEST_CASE("edges: a face that lies behind another one -> an edge from four pixels' sizes apart") {
+  // Parallel rays: a pixel is half a voxel wide, so four of them are two voxels.
+  const auto dark = [](int behind) {
+    LitWorld world;
+    world.box({0, 12, 0}, {16, 30, 32}, 1);
+    world.box({16, 12 + behind, 0}, {32, 30, 32}, 1);
+    world.lights = {sun({0, -1, 0}, 180)};
+    world.finish();
+    OrthographicView view;
+    view.eye = LitWorld::point({16 * 256 + 70, -20 * 256, 16 * 256 + 70});
+    view.forward = {0, 16, 0};
+    view.span = Q14::saturate(16);
+    view.width_px = 32;
+    view.height_px = 24;
+    REQUIRE(world.camera.set(view, world.tree.level()) == Status::kOk);
+    LitCounts counts;
+    world.draw(kLit | Effect::kEdges, &counts);
+    // A row has one edge, seen to the right: of all other pixels the one below is asked about, too.
+    CHECK(counts.rays[0] == (behind >= 2 ? 3U * 32 * 24 - 24 : 3U * 32 * 24));
+    return draw_both(world).dark;
+  };
+  CHECK(dark(1) == 0);
+  CHECK(dark(2) == 24);
+  CHECK(dark(3) == 24);
+}
+
+TEST_CASE("edges: greys a tenth of white apart -> none, nearer ones -> an edge; green counts most") {
+  const auto dark = [](const Rgb8& one, const Rgb8& other) {
+    LitWorld world;
+    put_block(&world, 0, 0);
+    world.surfaces[1].albedo = one;
+    world.surfaces[2].albedo = other;
+    world.lights = {sun({0, -1, 0}, 256)};
+    world.finish();
+    set_ambient(&world.scene, 0);
+    return draw_both(world).dark;
+  };
+  CHECK(dark({100, 100, 100}, {124, 124, 124}) > 100);
+  CHECK(dark({100, 100, 100}, {129, 129, 129}) == 0);
+  CHECK(dark({100, 100, 100}, {100, 139, 100}) > 100);  // 0.59 of it
+  CHECK(dark({100, 100, 100}, {100, 148, 100}) == 0);
+  CHECK(dark({100, 100, 100}, {181, 100, 100}) > 100);  // 0.30
+  CHECK(dark({100, 100, 100}, {191, 100, 100}) == 0);
+}
+
+TEST_CASE(
+    "edges: a face that goes on to one side alone -> an edge; a pixel of no size -> none; glass -> none") {
+  // A corner in the middle of a face 3 voxels wide, whose other side is empty.
+  LitWorld narrow;
+  narrow.box({8, 8, 0}, {11, 24, 24}, 1);
+  narrow.surfaces[1].albedo = {180, 180, 180};
+  narrow.lights = {sun({-1, -1, 0}, 200)};
+  narrow.finish();
+  set_ambient(&narrow.scene, 0);
+  narrow.look({-20 * 256, -20 * 256, 12 * 256}, {8 * 256, 8 * 256, 12 * 256}, 60);
+  CHECK(draw_both(narrow).dark > 10);  // a pixel is 1.3 voxels, so 2 are wide enough
+  LitWorld mirrored;
+  mirrored.box({21, 8, 0}, {24, 24, 24}, 1);
+  mirrored.surfaces[1].albedo = {180, 180, 180};
+  mirrored.lights = {sun({1, -1, 0}, 200)};
+  mirrored.finish();
+  set_ambient(&mirrored.scene, 0);
+  mirrored.look({52 * 256, -20 * 256, 12 * 256}, {24 * 256, 8 * 256, 12 * 256}, 60);
+  CHECK(draw_both(mirrored).dark > 10);
+
+  // So near that a pixel is less than 1/256 voxel.
+  LitWorld tiny;
+  put_block(&tiny, 160, 160);
+  tiny.look({16 * 256, 10 * 256 - 3, 12 * 256}, {16 * 256, 12 * 256, 12 * 256}, 40, 96, 72);
+  CHECK(draw_both(tiny).dark == 0);
+
+  LitWorld clear;
+  put_block(&clear, 160, 160);
+  clear.surfaces[1] = surface(SurfaceKind::kGlass, {160, 160, 160});
+  CHECK(draw_both(clear).dark > 100);  // without the effect glass is a face like any
+  CHECK(draw_both(clear, kLit | Effect::kGlass).dark == 0);
+}
+
 }  // namespace thimble::testing
