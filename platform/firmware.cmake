@@ -75,11 +75,8 @@ file(GLOB sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/arch/common/*.cpp
   ${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/*.cpp ${THIMBLE_PLATFORM_DIR}/drivers/*.cpp)
 list(FILTER sources EXCLUDE REGEX "/common/main\\.cpp$")
 add_library(thimble_port STATIC ${sources} ${generated}/scene.cpp)
-file(GLOB board_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME}/*.cpp)
-if(BOARD_CHIP)
-  file(GLOB chip_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP}/*.cpp)
-  list(APPEND board_sources ${chip_sources})
-endif()
+file(GLOB board_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME}/*.cpp
+  ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP}/*.cpp)
 add_library(thimble_board OBJECT ${board_sources})
 # Applications and what they share; the frames and cases that the tests share with them.
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/apps/*.cpp
