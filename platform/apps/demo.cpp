@@ -457,7 +457,9 @@ bool lights_next(const Demo& demo) {
 
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
   demo->is_lit = lights;
-  demo->is_whole = lights && (!demo->changed || demo->light.moves_whole());
+  if constexpr (kCanLight) {
+    demo->is_whole = lights && (!demo->changed || demo->light.moves_whole());
+  }
   return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
 
