@@ -93,7 +93,7 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
   }
   if constexpr (kCanLight) {
     if (engine == Engine::kLit) {
-      return draw_lit_scene(bench.shown, bench.camera, bench.shading, bench.light, band);
+      return draw_lit_scene(bench.shown, bench.camera, bench.shading, bench.light, band, false);
     }
   }
   if (engine == Engine::kDda) {

@@ -9,7 +9,8 @@
 //   c   CRC-32 of every frame on or off; on from the start where there is no display
 //   q   ends, with status 0
 //
-// A scene that was baked for effects (scene_light.h) turns in their light where frames by the brick map allow it.
+// A scene that was baked for effects (scene_light.h) turns in their light where frames by the brick map allow it; what
+// these leave out (edges) comes when it stands still.
 // Else it stands still at first: while it moves, or while a rate is held, frames are fast and without effects; as
 // soon as it does not, one is drawn with them, and then nothing until it moves again.
 //
@@ -73,6 +74,7 @@ struct Demo : Placed {
   SceneLight light;
   bool lights = false;            ///< as soon as it can (`lights_next`)
   bool is_lit = false;            ///< the picture that is shown
+  bool is_whole = false;          ///< with all effects
   uint32_t lit_instructions = 0;  ///< of the last frame that was lit to its end, where they are counted
 
   // The scene that is built here.
@@ -131,7 +133,7 @@ Status draw(const Demo& demo, const Band& band) {
   }
   if constexpr (kCanLight) {
     if (demo.is_lit) {
-      return draw_lit_scene(demo.shown, demo.camera, demo.shading, demo.light, band);
+      return draw_lit_scene(demo.shown, demo.camera, demo.shading, demo.light, band, !demo.is_whole);
     }
   }
   return draw_scene(demo.shown, demo.camera, demo.shading, band);
@@ -160,11 +162,15 @@ void flush(Demo* demo, const Band& band, uint32_t* crc) {
   *crc = 0;
   for (int32_t y = 0; y < height; y += demo->band_rows) {
     const Band band = band_at(*demo, y, height);
-    demo->is_lit = kCanLight && demo->is_lit && (demo->light.is_fast || port::buttons() == 0);
+    const bool slow = kCanLight && demo->is_lit && demo->is_whole && !demo->light.moves_whole();
+    if (slow && port::buttons() != 0) {
+      demo->is_lit = demo->light.is_fast;
+      demo->is_whole = false;
+    }
     // Light is drawn from here: the less stands on the stack the better.
-    const Status status = kCanLight && demo->is_lit
-                              ? draw_lit_scene(demo->shown, demo->camera, demo->shading, demo->light, band)
-                              : draw(*demo, band);
+    const Status status = kCanLight && demo->is_lit ? draw_lit_scene(demo->shown, demo->camera, demo->shading,
+                                                                     demo->light, band, !demo->is_whole)
+                                                    : draw(*demo, band);
     if (status != Status::kOk) {
       return status;
     }
@@ -455,6 +461,9 @@ bool lights_next(const Demo& demo) {
 
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
   demo->is_lit = lights;
+  if constexpr (kCanLight) {
+    demo->is_whole = lights && (!demo->changed || demo->light.moves_whole());
+  }
   return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
 
@@ -546,7 +555,7 @@ int demo() {
       demo->changed = true;
     }
     const bool lights = lights_next(*demo);
-    if (lights && demo->is_lit && !demo->changed) {
+    if (lights && demo->is_lit && demo->is_whole && !demo->changed) {
       continue;  // it is there already
     }
     const uint32_t start = port::instructions();

@@ -25,9 +25,13 @@ inline constexpr EffectSet kImageEffects = Effect::kAll;
 #endif
 /// Whether there is anything of light in this program.
 inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
+/// The effects of frames while the camera moves, where these are fast: all but what asks the tree for each pixel.
+constexpr EffectSet moving_effects(EffectSet effects) {
+  return effects & ~Effect::kEdges;
+}
 /// Whether its lit frames may go through the brick map.
 #ifdef THIMBLE_IMAGE_EFFECTS
-inline constexpr bool kLightsFast = is_flat(kImageEffects);
+inline constexpr bool kLightsFast = is_flat(moving_effects(kImageEffects));
 #else
 inline constexpr bool kLightsFast = true;
 #endif
@@ -49,9 +53,11 @@ struct FixedSet {
 struct SceneLight {
   BakedLighting baked;
   SunBricks suns[kLightsFast ? kMaxFlatSuns : 1];
-  bool is_fast = false;  ///< `draw_lit_scene` draws by the map
+  bool is_fast = false;  ///< `draw_lit_scene` draws moving frames by the map
   /// The effects that are drawn; Effect::kNone: the scene was baked for none.
   EffectSet effects() const { return baked.effects; }
+  /// Frames that move have all of the effects.
+  bool moves_whole() const { return is_fast && moving_effects(baked.effects) == baked.effects; }
 };
 
 /// Opens what `scene` has. Null when all is well, also without any light; else an English phrase.
@@ -91,7 +97,7 @@ struct SceneLight {
                                   {light.suns, kMaxFlatSuns}, band, counts);
   };
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
-  switch (light.effects() & ~Effect::kEmitterLight) {
+  switch (moving_effects(light.effects()) & ~Effect::kEmitterLight) {
     case Effect::kDirectLight:
       return draw(FixedSet<Effect::kDirectLight>());
     case kSun:
@@ -113,7 +119,8 @@ struct SceneLight {
 [[gnu::noinline]] inline void prove_light(const ShownScene& shown, Arena* arena, SceneLight* light) {
   if constexpr (kLightsFast) {
     const Span<const Light>& lights = light->baked.scene.lights;
-    light->is_fast = shown.has_map && is_flat(light->effects()) && lights.size <= kMaxFlatSuns;
+    light->is_fast =
+        shown.has_map && is_flat(moving_effects(light->effects())) && lights.size <= kMaxFlatSuns;
     for (size_t i = 0; i < lights.size && light->is_fast; ++i) {
       light->is_fast = !lights[i].is_point;
     }
@@ -124,15 +131,16 @@ struct SceneLight {
   }
 }
 
-/// As `draw_lit`, by the map where that is faster.
+/// As `draw_lit`, by the map where that is faster; `moves`: with `moving_effects` alone where that is.
 [[gnu::noinline]] inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera,
                                                const Shading& shading, const SceneLight& light,
-                                               const Band& band, LitCounts* counts = nullptr) {
+                                               const Band& band, bool moves, LitCounts* counts = nullptr) {
   if constexpr (kLightsFast) {
-    if (light.is_fast) {
+    if (light.is_fast && (moves || light.moves_whole())) {
 #ifdef THIMBLE_IMAGE_EFFECTS
-      return render_lit_band<kImageEffects>(shown.scene.tree(), shown.map, camera, shading, light.baked.scene,
-                                            {light.suns, kMaxFlatSuns}, band, counts);
+      return render_lit_band<moving_effects(kImageEffects)>(shown.scene.tree(), shown.map, camera, shading,
+                                                            light.baked.scene, {light.suns, kMaxFlatSuns},
+                                                            band, counts);
 #else
       return draw_lit_by_map(shown, camera, shading, light, band, counts);
 #endif
@@ -145,6 +153,7 @@ struct SceneLight {
 
 struct SceneLight {
   static constexpr bool is_fast = false;
+  static constexpr bool moves_whole() { return false; }
   static constexpr EffectSet effects() { return Effect::kNone; }
 };
 inline const char* open_light(const BakedScene& /*scene*/, SceneLight* /*light*/) {
@@ -157,7 +166,8 @@ inline const char* open_light(const BakedScene& /*scene*/, SceneLight* /*light*/
 }
 inline void prove_light(const ShownScene& /*shown*/, Arena* /*arena*/, SceneLight* /*light*/) {}
 inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera, const Shading& shading,
-                             const SceneLight& light, const Band& band, LitCounts* /*counts*/ = nullptr) {
+                             const SceneLight& light, const Band& band, bool /*moves*/,
+                             LitCounts* /*counts*/ = nullptr) {
   return draw_lit(shown.scene, camera, shading, light, band);
 }
 

@@ -1,9 +1,11 @@
 #!/bin/sh
 # What frames of every size take, in instructions: APP=bench for QEMU's MPS2 boards with other sizes, cores and scenes than
-# a board has, Cortex-M0 code on the Cortex-M3, and RV32 on the SiFive's core, up to the pictures that its 16 KiB hold. Measuring targets: nothing here is a board of platform/boards.
+# a board has, Cortex-M0 code on the Cortex-M3, and RV32 on the SiFive's core, up to the pictures that its 16 KiB hold.
+# Measuring targets: nothing here is a board of platform/boards.
 #   bench_frames.sh [--write]     --write: the table tests/budgets/frame_sizes.csv is written anew; else what grew beyond it fails
 # In the environment: TARGETS, SIZES, SCENES choose some of those below; THIMBLE is another build/release/thimble.
-# A picture is compared with that of the tree's rays on the first target that draws it, then by its CRCs.
+# A picture is compared with that of the tree's rays on the first target that draws it, then by its CRCs; one with light with
+# the simulator's.
 set -eu
 cd "$(dirname "$0")/../.."
 table=tests/budgets/frame_sizes.csv
@@ -14,11 +16,14 @@ mkdir -p "$work"
 targets=${TARGETS:-cortex-m3:mps2-an385 cortex-m0:mps2-an385 cortex-m4:mps2-an386 cortex-m7:mps2-an500 rv32imac:sifive_e}
 # width:height:format
 sizes=${SIZES:-128:64:gray4 160:128:rgb565 240:240:rgb565 320:240:rgb565 640:480:rgb565}
-# name=what `thimble bake` takes: the demonstration's valley, many small faces, open sky
-scenes=${SCENES:-valley=demo dust=cluster:6000,depth=6 castle=castle}
+# name=what `thimble bake` takes: the demonstration's valley, many small faces, open sky; +effects: with light, in two sizes
+scenes=${SCENES:-valley=demo dust=cluster:6000,depth=6 castle=castle sun=demo+direct-light,shadows}
 export CCACHE_DISABLE=1
 for scene in $scenes; do
-  "$thimble" bake "${scene#*=}" --board mps2-an500 --effects none -o "$work/${scene%%=*}.h" --quiet
+  what=${scene#*=}
+  effects=none
+  case $what in *+*) effects=${what#*+} ;; esac
+  "$thimble" bake "${what%%+*}" --board mps2-an500 --effects "$effects" -o "$work/${scene%%=*}.h" --quiet
 done
 echo core,scene,width,height,format,instructions_median,instructions_a_pixel,stack_bytes >"$work/measured.csv"
 failed=0
@@ -47,8 +52,26 @@ for target in $targets; do
     [ "$core:$width" != rv32imac:640 ] || continue
     for scene in $scenes; do
       name=${scene%%=*}
+      engine=brick_map
+      what=$alone
+      case $scene in
+        *+*)
+          engine=lit
+          what=ON
+          case $core:$width$height in
+            rv32*) continue ;;
+            *:240240) shown=pico ;;
+            *:320240) shown=mps2-an500 ;;
+            *) continue ;;
+          esac
+          # The simulator's pictures.
+          lit=${scene#*=}
+          "$thimble" sim "${lit%%+*}" --effects "${lit#*+}" --board $shown --app bench --display none --quiet |
+            grep '^lit\.lit_crc' >"$work/$width-$name.crc"
+          ;;
+      esac
       cmake -S . -B "$work/$core" -G Ninja -DCMAKE_TOOLCHAIN_FILE=platform/arch/$arch/toolchain.cmake \
-        -DTHIMBLE_BOARD=$board -DTHIMBLE_APP=bench -DTHIMBLE_SCENE_HEADER="$PWD/$work/$name.h" -DTHIMBLE_MEASURED=$alone \
+        -DTHIMBLE_BOARD=$board -DTHIMBLE_APP=bench -DTHIMBLE_SCENE_HEADER="$PWD/$work/$name.h" -DTHIMBLE_MEASURED=$what \
         "-DTHIMBLE_FACTS=CPU=$core;WIDTH_PX=$width;HEIGHT_PX=$height;FORMAT=$format$facts" \
         --log-level=WARNING -Wno-dev --no-warn-unused-cli >/dev/null
       cmake --build "$work/$core" -- --quiet >/dev/null
@@ -60,14 +83,14 @@ for target in $targets; do
         continue
       fi
       crcs=$work/$width-$name.crc
-      grep '^brick_map\.crc' "$log" >"$work/crc.now"
-      [ "$alone" = ON ] || cp "$work/crc.now" "$crcs"
+      grep -E "^$engine\\.(lit_)?crc" "$log" >"$work/crc.now"
+      [ "$what" = ON ] || cp "$work/crc.now" "$crcs"
       if ! grep -q '^exact,yes' "$log" || { [ -f "$crcs" ] && ! cmp -s "$crcs" "$work/crc.now"; }; then
         echo "bench-frames: $core $width x $height $name draws other pixels than the tree's rays; see $log" >&2
         failed=1
       fi
-      awk -F, -v OFS=, -v row="$core,$name,$width,$height,$format" '{ value[$1] = $2 }
-        END { print row, value["brick_map.instructions_median"], value["brick_map.instructions_a_ray"],
+      awk -F, -v OFS=, -v row="$core,$name,$width,$height,$format" -v engine="$engine" '{ value[$1] = $2 }
+        END { print row, value[engine ".instructions_median"], value[engine ".instructions_a_ray"],
           value["stack_high_water_bytes"] }' "$log" | tee -a "$work/measured.csv"
     done
   done

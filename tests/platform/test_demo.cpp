@@ -298,6 +298,33 @@ TEST_CASE(
   CHECK(holding.at(7) == crcs.at(6));
 }
 
+TEST_CASE("demo light: edges -> it turns in light without them, and has them when it stands still") {
+  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
+  const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kShadows | Effect::kEdges);
+  const Run run = run_demo(board, bytes_of(baked.bytes), 30, {{18, "t"}});
+  CHECK(run.fault == "");
+  const auto crcs = crcs_of(run.out, "frame");
+  // 18 that turn, one where it stops, one with edges at the same place.
+  REQUIRE(crcs.size() == 20);
+  CHECK(lit_frames(run.out) == 20);
+  CHECK(crcs.at(19) != crcs.at(18));
+  apps::SceneLight light;
+  REQUIRE(apps::open_light(baked.scene, &light) == nullptr);
+  Camera camera;
+  REQUIRE(apps::view_at(apps::orbit_of(baked.scene), baked.scene.tree(), 18, {}, 128, 64, &camera) ==
+          Status::kOk);
+  Shading shading = apps::demo_shading(baked.scene.palette());
+  shading.background =
+      apps::is_dark_behind(light.effects(), PixelFormat::kGray4) ? Rgb8{0, 0, 0} : shading.background;
+  std::vector<std::uint8_t> picture(64 * 64);
+  const Band band{Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64};
+  REQUIRE(apps::draw_lit(baked.scene, camera, shading, light, band) == Status::kOk);
+  CHECK(crcs.at(19) == crc32(bytes_of(picture)));
+  REQUIRE(render_lit_band(Effect::kDirectLight | Effect::kShadows, baked.scene.tree(), camera, shading,
+                          light.baked.scene, band) == Status::kOk);
+  CHECK(crcs.at(18) == crc32(bytes_of(picture)));
+}
+
 TEST_CASE("demo light: effects that are slow -> a fast frame, a lit one, and none until it moves") {
   const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
   const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kAmbientOcclusion);

@@ -68,7 +68,7 @@ class FaceBeam {
         to[k] = to[k] > end ? end : to[k];
       }
       uint32_t any = 0;
-      bool free = true;
+      bool clear = true;
       int32_t row =
           course_.near_place + (slab_ >> 2) * stride_[2] + from_[1] * stride_[1] + from_[0] * stride_[0];
       const int32_t first = row;
@@ -76,14 +76,14 @@ class FaceBeam {
         int32_t place = row;
         for (int32_t a = from_[0]; a <= to[0]; ++a, place += stride_[0]) {
           any |= half_at(course_.directory, place);
-          free = free && course_.is_free(place);
+          clear = clear && course_.is_free(place);
         }
       }
       if (any != 0) {
         if (look(first, to)) {
           return FaceLight::kDark;
         }
-      } else if (!free) {
+      } else if (!clear) {
         const int32_t low_more = more + (begins_ ? 0 : 1);
         begins_ = false;
         for (int k = 0; k < 2; ++k) {
@@ -92,7 +92,7 @@ class FaceBeam {
         }
         slab_ += more + 1;
       }
-      if (free) {
+      if (clear) {
         break;
       }
     }
