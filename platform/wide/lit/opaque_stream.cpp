@@ -72,7 +72,7 @@ void OpaqueParts::lay_out(const OpaqueShape& shape, uint8_t* at) {
 }
 
 OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes)
-    : frame_(frame), map_(map), materials_(map), shape_(shape), background_(lit::background(frame)) {
+    : frame_(frame), map_(map), shape_(shape), background_(lit::background(frame)) {
   parts_.lay_out(shape, Taker::aligned(bytes.data));
   const bool has_lights = (frame.effects & Effect::kDirectLight) != 0;
   for (uint32_t face = 0; face < kSides; ++face) {
@@ -101,7 +101,7 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
   const Hit& hit = parts_.hits[pixel];
   LitFace face;
   face.pixel = pixel;
-  face.material = materials_.of(hit);
+  face.material = unnamed_material(map_, hit);
   bool is_plain = hit.axis >= 0;
   if (is_plain) {
     const int axis = int{hit.axis};

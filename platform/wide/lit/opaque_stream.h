@@ -90,7 +90,6 @@ class OpaqueStream {
 
   lit::Frame frame_;
   const RayMap& map_;
-  MaterialFinder materials_;
   OpaqueShape shape_;
   OpaqueParts parts_;
   uint32_t face_count_ = 0;

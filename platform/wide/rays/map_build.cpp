@@ -1,6 +1,7 @@
 // The map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes reach.
 #include <algorithm>
 
+#include "wide/rays/leaf_tag.h"
 #include "wide/rays/map_parts.h"
 #include "wide/rays/ray_map.h"
 
@@ -8,6 +9,7 @@ namespace thimble::wide {
 namespace {
 
 constexpr uint32_t kMaxReach = 15;
+constexpr uint64_t kMaterials = 256;
 
 // False for a tree whose masks do not add up.
 bool measure(const CompactTree& tree, MapShape* shape) {
@@ -17,6 +19,7 @@ bool measure(const CompactTree& tree, MapShape* shape) {
   uint64_t bricks = 1;  // one that is solid through, which all such cubes share
   uint64_t leaves = kLeaves;
   uint64_t blocks = 0;
+  uint64_t solid_cubes = 0;  // or larger ones
   for (int level = tree.level(); level >= 1; --level) {
     shape->level_begin[level] = static_cast<uint32_t>(begin);
     shape->block_begin[level] = static_cast<uint32_t>(blocks);
@@ -28,6 +31,7 @@ bool measure(const CompactTree& tree, MapShape* shape) {
       solid += mask == 0 ? 1 : 0;
     }
     blocks += solid;
+    solid_cubes += level >= kBrickLevel ? solid : 0;
     const bool is_root = level == tree.level();
     if (level == kBrickLevel || (is_root && level < kBrickLevel)) {
       bricks += end - begin;
@@ -43,6 +47,11 @@ bool measure(const CompactTree& tree, MapShape* shape) {
     }
     begin = end;
     end += level == 1 ? 0 : children;
+  }
+  if (has_tags(tree)) {
+    const uint64_t of_materials = std::min(solid_cubes, kMaterials);
+    leaves = 2 * leaves + kLeaves * of_materials;  // a tag each, but in bricks that are solid through
+    bricks += of_materials;
   }
   shape->words = leaves + bricks * (has_nodes(tree) ? 2 : 1);
   return begin == tree.node_count();
@@ -65,7 +74,10 @@ class MapWriter : TreeWalk {
         top_(top),
         bricks_(bricks),
         bits_(map_level(tree) - kBrickLevel),
-        has_nodes_(has_nodes(tree)) {
+        has_nodes_(has_nodes(tree)),
+        has_tags_(has_tags(tree)),
+        next_voxel_(tree.node_count()) {
+    std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
     std::fill(top, top + shape.top, kEmptyCube);
     std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
     put_brick(UINT64_MAX);
@@ -89,18 +101,31 @@ class MapWriter : TreeWalk {
     }
     visit(
         level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
-        [&] { fill_cubes(level, corner); });
+        [&] { fill_cubes(level, corner, has_tags_ ? solid_brick(next_material(level)) : 0); });
+  }
+
+  // The material of the next solid block of a level.
+  uint8_t next_material(int level) { return tree_.material_of_block(next_block_[level]++); }
+
+  // Where the brick is that is solid through in a material.
+  uint32_t solid_brick(uint8_t material) {
+    if (solid_[material] == 0) {
+      std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
+      solid_[material] = next_word_;
+      put_brick(kSolidBrick | material);
+    }
+    return solid_[material];
   }
 
   uint32_t* cube(uint32_t x, uint32_t y, uint32_t z) const {
     return top_ + ((uint64_t{z} << bits_ | y) << bits_ | x);
   }
-  void fill_cubes(int level, const Corner& corner) {
+  void fill_cubes(int level, const Corner& corner, uint32_t brick) {
     const uint32_t side = uint32_t{1} << (level - kBrickLevel);
     const Corner low{corner.x >> kBrickLevel, corner.y >> kBrickLevel, corner.z >> kBrickLevel};
     for (uint32_t z = low.z; z < low.z + side; ++z) {
       for (uint32_t y = low.y; y < low.y + side; ++y) {
-        std::fill_n(cube(low.x, y, z), side, 0U);  // the first brick
+        std::fill_n(cube(low.x, y, z), side, brick << 4);
       }
     }
   }
@@ -108,6 +133,7 @@ class MapWriter : TreeWalk {
   // The brick whose node, or what there is of it in a smaller world, is `node`.
   void write_brick(uint32_t node, int level, const Corner& corner) {
     std::fill(brick_, brick_ + kLeaves, 0);
+    std::fill(tags_, tags_ + kLeaves, Collected());
     collect(level, corner);
     *cube(corner.x >> kBrickLevel, corner.y >> kBrickLevel, corner.z >> kBrickLevel) = next_word_ << 4;
     put_brick(node);
@@ -125,22 +151,79 @@ class MapWriter : TreeWalk {
         bricks_[next_word_++] = brick_[leaf];
       }
     }
+    for (unsigned leaf = 0; has_tags_ && node < kSolidBrick && leaf < kLeaves; ++leaf) {
+      if (brick_[leaf] != 0) {
+        bricks_[next_word_++] = tags_[leaf].is_plain ? tags_[leaf].whole() : tags_[leaf].tag.word();
+      }
+    }
+  }
+
+  // What is known of a leaf's materials.
+  struct Collected {
+    LeafTag tag;
+    bool has_voxels = false;  // with bytes of their own
+    bool has_first = false;   // and a material
+    bool is_plain = true;     // all have that
+    uint8_t material = 0;
+
+    void take(uint8_t of_voxel) {
+      is_plain = is_plain && (!has_first || material == of_voxel);
+      material = of_voxel;
+      has_first = true;
+    }
+    uint64_t whole() const {
+      LeafTag all;
+      all.plain = 0xFF;
+      all.material = material;
+      return all.word();
+    }
+  };
+
+  // Cells of a leaf that are solid through in one material.
+  void tag_cells(const Corner& leaf, unsigned cells, uint8_t material) {
+    Collected& to = tags_[bit_of(leaf, kLeafLevel)];
+    LeafTag& tag = to.tag;
+    if (tag.plain == 0) {
+      tag.material = material;
+    }
+    uint8_t& set = tag.material == material ? tag.plain : tag.other;
+    set = static_cast<uint8_t>(set | cells);
+    to.take(material);
+  }
+  void tag_voxels(const Corner& leaf, unsigned count) {
+    Collected& to = tags_[bit_of(leaf, kLeafLevel)];
+    if (!to.has_voxels) {
+      to.has_voxels = true;
+      to.tag.first_voxel = next_voxel_;
+    }
+    for (unsigned i = 0; i < count; ++i) {
+      to.take(tree_.voxel_material(next_voxel_++));
+    }
   }
 
   void collect(int level, const Corner& corner) {
     if (level == 1) {
       const unsigned mask = tree_.mask(next_node_[1]++);
       brick_[bit_of(corner, kLeafLevel)] |= spread(mask == 0 ? 0xFF : mask) << bit_of(corner, 0);
+      if (has_tags_ && mask == 0) {
+        tag_cells(corner, 1U << LeafOrder::cell_of(bit_of(corner, 0)), next_material(1));
+      } else if (has_tags_) {
+        tag_voxels(corner, static_cast<unsigned>(__builtin_popcount(mask)));
+      }
       return;
     }
     visit(
         level, [&](unsigned octant) { collect(level - 1, child_corner(corner, octant, level)); },
         [&] {
           const uint32_t side = level > kLeafLevel ? uint32_t{1} << (level - kLeafLevel) : 1;
+          const uint8_t material = has_tags_ ? next_material(level) : uint8_t{0};
           for (uint32_t i = 0; i < side * side * side; ++i) {
             const Corner leaf{corner.x + i % side * 4, corner.y + i / side % side * 4,
                               corner.z + i / side / side * 4};
             brick_[bit_of(leaf, kLeafLevel)] = ~uint64_t{0};
+            if (has_tags_) {
+              tag_cells(leaf, 0xFF, material);
+            }
           }
         });
   }
@@ -149,8 +232,13 @@ class MapWriter : TreeWalk {
   uint64_t* bricks_;
   int bits_;
   bool has_nodes_;
+  bool has_tags_;
   uint32_t next_word_ = 0;
+  uint32_t next_voxel_;
+  uint32_t next_block_[kMaxLevel + 1];
+  uint32_t solid_[kMaterials] = {};  // bricks; 0: not yet
   uint64_t brick_[kLeaves];
+  Collected tags_[kLeaves];
 };
 
 // Writes how far the empty cubes reach along one octant after the other. One of side k + 1 is a cube and those of
@@ -257,7 +345,7 @@ Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map, Span<con
   }
   top[top_words(shape, layers) - 1] = kEmptyCube;
   *map = RayMap(tree);
-  map->cells_ = {top, bricks, level, has_nodes(tree)};
+  map->cells_ = {top, bricks, level, has_nodes(tree), has_tags(tree)};
   for (uint8_t layer = 0; layer < layers.layers; ++layer) {
     map->layers_[layers.materials[layer]] = static_cast<uint8_t>(layer + 1);
   }

@@ -88,6 +88,10 @@ void write_media(const CompactTree& tree, const MapShape& shape, const MediaShap
 inline bool has_nodes(const CompactTree& tree) {
   return tree.many_materials() || tree.merged();
 }
+/// Whether bricks say where the materials of their voxels are.
+inline bool has_tags(const CompactTree& tree) {
+  return tree.many_materials() && !tree.merged();
+}
 inline int map_level(const CompactTree& tree) {
   return std::max(tree.level(), kBrickLevel);
 }

@@ -5,6 +5,7 @@
 
 #include "thimble/trace/trace.h"
 #include "wide/rays/job.h"
+#include "wide/rays/leaf_tag.h"
 
 namespace thimble::wide {
 namespace {
@@ -42,6 +43,64 @@ Status run(Job* job) {
   return job->status;
 }
 
+// What the map says of the leaf that a voxel is in.
+struct Leaf {
+  uint64_t voxels = 0;
+  const uint64_t* tag = nullptr;  // with tags; null in a brick that is solid through
+  uint64_t second = 0;            // word of the brick
+  unsigned voxel = 0;             // its bit
+
+  bool holds() const { return (voxels >> voxel & 1U) != 0; }
+};
+Leaf leaf_at(const MapCells& cells, const Vec3i& voxel) {
+  const auto part = [&](int axis, int level, uint64_t mask) {
+    return static_cast<uint64_t>(voxel[axis]) >> level & mask;
+  };
+  const auto bit = [&](int level) {
+    return part(0, level, 3) | part(1, level, 3) << 2 | part(2, level, 3) << 4;
+  };
+  const int bits = cells.level - kCubeLevel;
+  const uint64_t all = UINT64_MAX;
+  const uint32_t cube = cells.top[(part(2, kCubeLevel, all) << bits | part(1, kCubeLevel, all)) << bits |
+                                  part(0, kCubeLevel, all)];
+  Leaf leaf;
+  if ((cube & 15U) != 0) {
+    return leaf;
+  }
+  const uint64_t* const brick = cells.bricks + (cube >> 4);
+  const uint64_t of_leaf = uint64_t{1} << bit(2);
+  if ((*brick & of_leaf) == 0) {
+    return leaf;
+  }
+  const uint64_t* const at =
+      brick + cells.header() + static_cast<unsigned>(__builtin_popcountll(*brick & (of_leaf - 1)));
+  leaf.voxels = *at;
+  leaf.voxel = static_cast<unsigned>(bit(0));
+  leaf.second = brick[1];
+  if (cells.has_tags && leaf.second < kSolidBrick) {
+    leaf.tag = at + static_cast<unsigned>(__builtin_popcountll(*brick));
+  }
+  return leaf;
+}
+
+// The material of a solid voxel, where bricks have tags; false: the tree is to be asked.
+bool look_up(const CompactTree& tree, const Leaf& leaf, uint8_t* material) {
+  if (leaf.tag == nullptr) {
+    *material = static_cast<uint8_t>(leaf.second);
+    return is_solid_brick(leaf.second);
+  }
+  const LeafTag tag = LeafTag::of(*leaf.tag);
+  const unsigned cell = LeafOrder::cell_of(leaf.voxel);
+  if ((tag.plain >> cell & 1U) != 0) {
+    *material = tag.material;
+    return true;
+  }
+  const uint64_t before = leaf.voxels & kLeafOrder.before[leaf.voxel] &
+                          ~kLeafOrder.cells[static_cast<unsigned>(tag.plain | tag.other)];
+  *material = tree.voxel_material(tag.first_voxel + static_cast<uint32_t>(__builtin_popcountll(before)));
+  return (tag.other >> cell & 1U) == 0;
+}
+
 // The node of 2^3 voxels that a voxel is in, or the larger one that is solid through; without the part of the way
 // that the map knows.
 struct Parent {
@@ -54,7 +113,7 @@ Parent parent_of(const RayMap& map, const Vec3i& voxel) {
   const auto cube = [&](int axis) { return static_cast<uint64_t>(voxel[axis]) >> kCubeLevel; };
   const int bits = cells.level - kCubeLevel;
   const uint64_t known = cells.bricks[(cells.top[(cube(2) << bits | cube(1)) << bits | cube(0)] >> 4) + 1];
-  const bool is_known = known != UINT64_MAX && tree.level() > kCubeLevel;
+  const bool is_known = known < kSolidBrick && tree.level() > kCubeLevel;
   Parent parent{is_known ? static_cast<uint32_t>(known) : 0, is_known ? kCubeLevel : tree.level()};
   while (parent.level > 1 && tree.mask(parent.node) != 0) {
     --parent.level;
@@ -74,6 +133,9 @@ Block block_at(const RayMap& map, const Vec3i& voxel) {
   const CompactTree& tree = map.tree();
   Block block{voxel, 0, tree.uniform_material()};
   if (!map.cells()->has_nodes) {
+    return block;
+  }
+  if (map.cells()->has_tags && look_up(tree, leaf_at(*map.cells(), voxel), &block.material)) {
     return block;
   }
   const Parent parent = parent_of(map, voxel);
@@ -111,28 +173,6 @@ void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   hit->axis = static_cast<int8_t>(axis);
   hit->t_numerator = axis < 0 ? 0 : static_cast<int32_t>(last);
   hit->t_denominator = axis < 0 ? 1 : static_cast<int32_t>(speed * Q8::kOne);
-}
-
-// Whether the map holds a voxel.
-bool is_solid(const MapCells& cells, const Vec3i& voxel) {
-  const auto part = [&](int axis, int level, uint64_t mask) {
-    return static_cast<uint64_t>(voxel[axis]) >> level & mask;
-  };
-  const auto bit = [&](int level) {
-    return part(0, level, 3) | part(1, level, 3) << 2 | part(2, level, 3) << 4;
-  };
-  const int bits = cells.level - kCubeLevel;
-  const uint64_t all = UINT64_MAX;
-  const uint32_t cube = cells.top[(part(2, kCubeLevel, all) << bits | part(1, kCubeLevel, all)) << bits |
-                                  part(0, kCubeLevel, all)];
-  if ((cube & 15U) != 0) {
-    return false;
-  }
-  const uint64_t* const brick = cells.bricks + (cube >> 4);
-  const uint64_t leaf = uint64_t{1} << bit(2);
-  return (*brick & leaf) != 0 &&
-         (brick[cells.header() + static_cast<unsigned>(__builtin_popcountll(*brick & (leaf - 1)))] >> bit(0) &
-          1U) != 0;
 }
 
 RayPoint entry_of(const Hit& hit) {
@@ -187,7 +227,7 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   hit.visits = visits;
   if (job->exits != nullptr) {
     MediumExit& exit = job->exits[number];
-    exit.into_solid = job->in[number] == kInAir || is_solid(*job->map->cells(), voxel);
+    exit.into_solid = job->in[number] == kInAir || leaf_at(*job->map->cells(), voxel).holds();
     const Block block = exit.into_solid ? block_at(*job->map, voxel) : Block{voxel, 0, 0};
     hit.kind = HitKind::kHit;
     hit.voxel = block.corner;
@@ -255,23 +295,26 @@ Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits
   return run(&job);
 }
 
-uint8_t MaterialFinder::of(const Hit& hit) {
-  if (map_->cells() == nullptr || !map_->cells()->has_nodes || map_->tree().merged()) {
-    return hit.material;
+uint8_t unnamed_material(const RayMap& map, const Hit& hit) {
+  const bool has_none = map.cells() != nullptr && map.cells()->has_tags;
+  return has_none ? block_at(map, hit.voxel).material : hit.material;
+}
+
+bool RayMap::material_at(const Vec3i& voxel, uint8_t* material) const {
+  const int32_t side = int32_t{1} << tree_.level();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (voxel[axis] < 0 || voxel[axis] >= side) {
+      return false;
+    }
   }
-  const Vec3i at{hit.voxel.x >> 1, hit.voxel.y >> 1, hit.voxel.z >> 1};
-  const CompactTree& tree = map_->tree();
-  if (at != at_) {
-    at_ = at;
-    node_ = parent_of(*map_, hit.voxel).node;
-    mask_ = tree.mask(node_);
-    first_ = mask_ == 0 ? tree.block_material(node_) : tree.first_child(node_);
+  if (cells() == nullptr) {
+    return thimble::material_at(tree_, voxel, material);
   }
-  if (mask_ == 0) {
-    return static_cast<uint8_t>(first_);
+  if (!leaf_at(cells_, voxel).holds()) {
+    return false;
   }
-  const unsigned before = mask_ & ((1U << octant_of(hit.voxel, 0)) - 1);
-  return tree.voxel_material(first_ + static_cast<uint32_t>(__builtin_popcount(before)));
+  *material = block_at(*this, voxel).material;
+  return true;
 }
 
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,

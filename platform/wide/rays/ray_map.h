@@ -31,11 +31,13 @@ struct MapCells {
   /// a), 1 .. 15; what lies outside the world is empty. Else 16 times where its brick begins.
   const uint32_t* top = nullptr;
   /// Bricks one after the other: a bit for each leaf that holds something; with `has_nodes` the number of the
-  /// tree's node of this cube, or UINT64_MAX; then for each of these leaves its voxels, a bit each. The first
-  /// brick is solid through, and serves all such cubes.
+  /// tree's node of this cube, or more than any of them; then for each of these leaves its voxels, a bit each, and with
+  /// `has_tags` for each where its materials are (leaf_tag.h). The first brick is solid through, and serves all such
+  /// cubes; with `has_tags` there is one for each material.
   const uint64_t* bricks = nullptr;
   int level = 0;           ///< the map's world is 2^level voxels a side: the tree's, or 16
   bool has_nodes = false;  ///< the tree has several materials, or blocks made by coarsening
+  bool has_tags = false;   ///< several materials, and no such blocks
 
   /// Words of a brick before its leaves.
   uint64_t header() const { return has_nodes ? 2 : 1; }
@@ -64,6 +66,8 @@ class RayMap {
   const CompactTree& tree() const { return tree_; }
   /// Null without a map.
   const MapCells* cells() const { return cells_.top == nullptr ? nullptr : &cells_; }
+  /// As `thimble::material_at`: whether a voxel is solid, and then its material.
+  bool material_at(const Vec3i& voxel, uint8_t* material) const;
   /// The numbering of cubes in which all but the material is solid; 0: there is none.
   uint8_t layer_of(uint8_t material) const { return layers_[material]; }
 
@@ -89,25 +93,11 @@ Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoi
 /// level.
 Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
 
-/// The same without materials (0), where `MaterialFinder` knows them. Looking one up takes as long as a short ray, and
-/// the rays of a picture's neighbours meet the same voxels.
+/// The same without materials (0), where `unnamed_material` knows them: so each is looked up where it is wanted.
 Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
 
-/// Finds the materials of `first_unnamed_hit`. Remembers where it was, so ask in an order that goes from neighbour to
-/// neighbour. For one thread.
-class MaterialFinder {
- public:
-  explicit MaterialFinder(const RayMap& map) : map_(&map) {}
-  /// Of a kHit.
-  uint8_t of(const Hit& hit);
-
- private:
-  const RayMap* map_;
-  Vec3i at_{-1, -1, -1};  // the cube of 2^3 voxels, in such cubes
-  uint32_t node_ = 0;     // what it lies in
-  unsigned mask_ = 0;
-  uint32_t first_ = 0;  // its first voxel; or the material of all
-};
+/// The material of a kHit of `first_unnamed_hit`.
+uint8_t unnamed_material(const RayMap& map, const Hit& hit);
 
 /// The hits of `first_hit`, where what is entered at a t of `before[i]` or later is a miss.
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before, Span<Hit> hits);
