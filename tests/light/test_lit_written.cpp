@@ -87,7 +87,8 @@ TEST_CASE("lit written: water, still, in waves and rippled -> the CRC-32 of each
       {Effect::kWater | Effect::kSky, 3056246200},
       {Effect::kWater | Effect::kDirectLight | Effect::kRipples, 765901866},
       {Effect::kWater | Effect::kGlass | Effect::kRipples | Effect::kSky, 2684741081},
-      {Effect::kWater | Effect::kSmoothNormals | Effect::kGlass | Effect::kShadows | Effect::kDirectLight, 1940633397},
+      {Effect::kWater | Effect::kSmoothNormals | Effect::kGlass | Effect::kShadows | Effect::kDirectLight,
+       1940633397},
       {Effect::kWater | Effect::kGlass | Effect::kMedia | Effect::kFog, 2128388767},
       {Effect::kAll, 1967487141},
   };
