@@ -107,7 +107,7 @@ TEST_CASE("lighting section: its bytes -> as FORMAT.md has them") {
       1,    15,   7,    16,   22,                        // version, flags, bounces, occlusion
       0,    0x24, 0x23,                                  // 0, reach
       0xFF, 0x7E, 0,    0,                               // effects: all but fog
-      0x02, 0x01, 80,   0,    96,   0,                   // ambient
+      0x02, 0x01, 0x04, 0x03, 0x06, 0x05,                // ambient
       10,   11,   12,   13,   14,   15,   16,   17, 18,  // sky
       19,   20,   21,   0xEF, 0xBE, 0xAD, 0xDE,          // fog
       3,    0,    4,    0,    5,    0,    20,   0,  21, 0, 7,  26, 0, 0,  // water

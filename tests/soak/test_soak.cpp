@@ -2,7 +2,8 @@
 // inside: each pixel of each is the core's, and the core's hits are the judge's.
 //
 // A run takes four million pixels. THIMBLE_SOAK_MINUTES=60 goes on for that long, with a seed of its own for each frame
-// and a summary at the end (`make soak MINUTES=60 SEED=2`).
+// and a summary at the end (`make soak MINUTES=60 SEED=2`); with THIMBLE_DATA the scene files of that folder are among
+// its worlds.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -11,10 +12,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "readers/source.h"
 #include "reference/reference.h"
 #include "support/hard_frames.h"
 #include "support/lit_cases.h"
@@ -113,10 +116,41 @@ bool same_as(const FrameCase& frame, const std::vector<std::uint8_t>& expected, 
   return *status == Status::kOk && std::equal(expected.begin(), expected.end(), pixels.view().begin());
 }
 
+// The scene files of THIMBLE_DATA that are small enough to be read at once: as they are, or of 128 or 256 voxels a side.
+void add_files(std::vector<WideScene>* made) {
+  const char* const folder = std::getenv("THIMBLE_DATA");
+  if (folder == nullptr || number_from("THIMBLE_SOAK_MINUTES", 0) <= 0) {
+    return;
+  }
+  constexpr std::uintmax_t kMostBytes = 3000000;
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file() && entry.file_size() <= kMostBytes) {
+      names.push_back(entry.path().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (const char* const depth : {i % 2 == 0 ? "@7" : "@8", ""}) {
+      try {
+        const TrialWorld world(names[i] + depth);
+        if (world.tree().node_count() < 400000) {
+          made->push_back(scene_of({world.tree().bytes(), world.tree().size_bytes()}, "file"));
+        }
+        break;
+      } catch (const tools::InputError&) {
+        // No scene, or one that has its own size.
+      }
+    }
+  }
+  std::printf("%zu files of %s\n", made->size(), folder);
+}
+
 // The real ones among all worlds: houses and hills, a thick ball, and the command's own scenes.
 const std::vector<WideScene>& real_worlds() {
   static const std::vector<WideScene> worlds = [] {
     std::vector<WideScene> made;
+    add_files(&made);
     for (const auto& bytes : {city(8), thick_terrain(9), full_ball(7)}) {
       made.push_back(scene_of({bytes.data(), bytes.size()}, "solid"));
     }
