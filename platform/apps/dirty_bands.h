@@ -8,7 +8,8 @@
 ///     camera moved           mark_all(): every band; what each of them sees is found out while it is drawn
 ///     something that moves   mark_seeing(): the bands whose rays met its bounds when they were last drawn
 ///                            after a mark_all() (`note_sees`), whatever way they took there
-///     a body in the air      mark(band): the bands that its box can be seen in (`band_may_see`)
+///     a ball in the air      mark_passing(ball): the bands of which some ray, however it went, can meet the ball on
+///                            its fall (`note_passes`), when they were last drawn; a new ball: mark_all()
 ///     nothing                no band is drawn
 ///
 /// One byte a band, the application's.
@@ -20,12 +21,13 @@
 
 #include "port.h"
 #include "thimble/base/memory.h"
-#include "thimble/picture/camera.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::apps {
 
 class DirtyBands {
  public:
+  static constexpr int32_t kBalls = 6;
   /// For a picture of that height in bands of `band_rows`; `bytes` has at least `bytes_for` of them. All
   /// bands are marked.
   void begin(Bytes bytes, int32_t height_px, int32_t band_rows) {
@@ -54,6 +56,17 @@ class DirtyBands {
     uint8_t& flags = flags_.data[band];
     flags = static_cast<uint8_t>((flags & ~kSees) | (sees ? kSees : 0));
   }
+  /// Which balls some ray of a band can meet: a bit each, for the first kBalls.
+  void note_passes(int32_t band, uint32_t balls) {
+    uint8_t& flags = flags_.data[band];
+    flags = static_cast<uint8_t>((flags & ((1U << kFirstBall) - 1)) | balls << kFirstBall);
+  }
+  void mark_passing(int32_t ball) {
+    const auto bit = static_cast<uint8_t>(1U << (kFirstBall + ball));
+    mark_if(bit, bit);
+  }
+  bool sees(int32_t band) const { return (flags_.data[band] & kSees) != 0; }
+  bool passes_any(int32_t band) const { return flags_.data[band] >> kFirstBall != 0; }
   bool is_dirty(int32_t band) const { return (flags_.data[band] & kDirty) != 0; }
 
   /// The band was drawn and sent.
@@ -73,6 +86,7 @@ class DirtyBands {
  private:
   static constexpr uint8_t kDirty = 1;
   static constexpr uint8_t kSees = 2;
+  static constexpr int kFirstBall = 2;
 
   void mark_if(uint8_t mask, uint8_t value) {
     for (int32_t band = 0; band < count(); ++band) {
@@ -88,79 +102,6 @@ class DirtyBands {
   uint64_t drawn_ = 0;
   uint64_t skipped_ = 0;
 };
-
-/// A box in the air, in 1/256 voxel.
-struct BoxQ8 {
-  Vec3i low;
-  Vec3i high;
-};
-
-namespace bands {
-
-inline Vec3i varying(const Camera& camera, int32_t px, int32_t py) {
-  const Camera::Affine& affine = camera.affine();
-  const auto part = [&](int axis) {
-    return Camera::rounded(affine.base[axis] + px * affine.step_x[axis] + py * affine.step_y[axis]);
-  };
-  return {part(0), part(1), part(2)};
-}
-
-constexpr Vec3i from(const Vec3i& one, const Vec3i& other) {
-  return {other.x - one.x, other.y - one.y, other.z - one.z};
-}
-
-/// Whether the whole box lies on the far side of the plane of a row's rays, seen from the row `inner`.
-inline bool is_beyond(const Camera& camera, int32_t row, int32_t inner, const BoxQ8& box) {
-  const Vec3i left = varying(camera, 0, row);
-  const Vec3i right = varying(camera, camera.width_px(), row);
-  const Vec3i inside = varying(camera, 0, inner);
-  const bool is_perspective = camera.is_perspective();
-  const Vec3i along = is_perspective ? left : camera.direction();
-  const Vec3i across = is_perspective ? right : from(left, right);
-  // Components are below 2^21, so the normal's are below 2^43: it is brought to 2^30. Distances are below
-  // 2^23.
-  int64_t normal[3] = {int64_t{along.y} * across.z - int64_t{along.z} * across.y,
-                       int64_t{along.z} * across.x - int64_t{along.x} * across.z,
-                       int64_t{along.x} * across.y - int64_t{along.y} * across.x};
-  const auto is_large = [](int64_t value) {
-    return value >= (int64_t{1} << 30) || value <= -(int64_t{1} << 30);
-  };
-  while (is_large(normal[0]) || is_large(normal[1]) || is_large(normal[2])) {
-    for (int64_t& component : normal) {
-      component >>= 1;
-    }
-  }
-  const auto side = [&normal](int32_t x, int32_t y, int32_t z) {
-    return normal[0] * x + normal[1] * y + normal[2] * z;
-  };
-  const Vec3i step = is_perspective ? inside : from(left, inside);
-  const int64_t inner_side = side(step.x, step.y, step.z);
-  const Vec3i start = is_perspective ? Vec3i{} : left;
-  const Vec3i origin{camera.eye().x.raw + start.x, camera.eye().y.raw + start.y,
-                     camera.eye().z.raw + start.z};
-  for (int corner = 0; corner < 8; ++corner) {
-    const int64_t at = side(((corner & 1) != 0 ? box.high.x : box.low.x) - origin.x,
-                            ((corner & 2) != 0 ? box.high.y : box.low.y) - origin.y,
-                            ((corner & 4) != 0 ? box.high.z : box.low.z) - origin.z);
-    if (at == 0 || inner_side == 0 || (at > 0) == (inner_side > 0)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace bands
-
-/// Whether a ray of the rows from `first` to `end` - 1 may meet the box: false only where none does. It lies
-/// between the planes of the rows around, since it would have a corner on the near side of each; a row on
-/// either side is for rounding, of the rays (1/8 pixel) and of the planes.
-[[gnu::noinline]] inline bool band_may_see(const Camera& camera, int32_t first, int32_t end,
-                                           const BoxQ8& box) {
-  // The row that tells the sides apart is some rows away, where directions have few bits.
-  constexpr int32_t kApart = 16;
-  return !bands::is_beyond(camera, first - 2, first - 2 + kApart, box) &&
-         !bands::is_beyond(camera, end + 1, end + 1 - kApart, box);
-}
 
 }  // namespace thimble::apps
 

@@ -31,6 +31,7 @@
 #include "port.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/baked_lighting.h"
+#include "thimble/light/balls.h"
 #include "thimble/light/render.h"
 
 namespace thimble::apps {
@@ -39,6 +40,7 @@ namespace {
 constexpr int32_t kBandRows = 8;
 constexpr int kKeysAFrame = 64;
 constexpr int kBalls = 4;
+static_assert(kBalls <= DirtyBands::kBalls);
 /// Frames from one ball of the rain to the next.
 constexpr uint32_t kRainFrames = 24;
 
@@ -77,6 +79,7 @@ struct Pool : Placed {
   bool redraws = false;      ///< every band of every frame
   bool moved = true;         ///< the camera
   bool rippled = false;      ///< the water
+  bool dropped = false;      ///< a new ball: any ray may meet it
   bool second_band = false;  ///< of `bands` is next
 };
 
@@ -135,6 +138,7 @@ void drop_above(Pool* pool, int32_t x_q8, int32_t y_q8) {
     if (!ball.is_there) {
       ball = FallingBall{};
       ball.is_there = true;
+      pool->dropped = true;
       ball.center = {water.corner.x * Q8::kOne + x_q8, water.corner.y * Q8::kOne + y_q8,
                      water.corner.z * Q8::kOne + water.columns.rest_q8() + pool->ball_size.height_q8};
       return;
@@ -195,27 +199,16 @@ void rain(Pool* pool) {
   }
 }
 
-void mark_ball(Pool* pool, const FallingBall& ball) {
-  DirtyBands& dirty = pool->dirty;
-  for (int32_t i = 0; ball.is_there && i < dirty.count(); ++i) {
-    if (!dirty.is_dirty(i) &&
-        band_may_see(pool->camera, dirty.first_row(i), dirty.first_row(i) + dirty.rows(i),
-                     box_of(ball, pool->ball_size))) {
-      dirty.mark(i);
-    }
-  }
-}
-
-/// A frame's time. Balls are marked where they are no more and where they are.
+/// A frame's time.
 [[gnu::noinline]] void move(Pool* pool) {
   if (pool->raining != 0 && pool->raining++ % kRainFrames == 1) {
     rain(pool);
   }
-  for (FallingBall& ball : pool->balls) {
+  for (int i = 0; i < kBalls; ++i) {
+    FallingBall& ball = pool->balls[i];
     if (ball.is_there) {
-      mark_ball(pool, ball);
+      pool->dirty.mark_passing(i);
       fall(pool, &ball);
-      mark_ball(pool, ball);
     }
   }
   for (int i = 0; i < kStepsAFrame && !pool->water.columns.is_still(); ++i) {
@@ -226,86 +219,19 @@ void mark_ball(Pool* pool, const FallingBall& ball) {
 
 // ---- the picture
 
-/// Stores a pixel over another one.
-void store_over(uint8_t* row, int32_t x, int32_t y, PixelFormat format, const Rgb8& color) {
-  const auto column = static_cast<uint32_t>(x);
-  if (format == PixelFormat::kMono1) {
-    row[column >> 3] = static_cast<uint8_t>(row[column >> 3] & ~(0x80U >> (column & 7U)));
-  } else if (format == PixelFormat::kGray4) {
-    row[column >> 1] = static_cast<uint8_t>(row[column >> 1] & ((column & 1U) != 0 ? 0xF0U : 0x0FU));
-  } else if (kHasPanelFormats && format > PixelFormat::kRgb888) {
-    clear_panel_pixel(row, x, y, format);
+/// With the scene's effects: those that it was compiled for, or whatever it was baked with. `passed`: DrawnBalls.
+Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t* passed) {
+  Ball balls[kBalls];
+  for (int i = 0; i < kBalls; ++i) {
+    balls[i] = drawn_ball(pool.balls[i], pool.ball_size);
   }
-  store_pixel(row, x, y, format, color);
-}
-
-/// Whether nothing of the scene is met before the ball.
-bool is_in_front(const Pool& pool, const WaterSurface& surface, const Ray& ray, const BallHit& hit) {
-  Hit solid;
-  WaterHit wet;
-  if (closest_hit(tree_of(pool), ray, &solid) != Status::kOk) {
-    return false;
-  }
-  if (solid.kind == HitKind::kHit && !is_before(hit, solid.t_numerator, solid.t_denominator)) {
-    return false;
-  }
-  return !water_enter(surface, ray, &wet) || is_before(hit, wet.t_numerator, wet.t_denominator);
-}
-
-/// Draws a ball over the rows of a band.
-[[gnu::noinline]] void draw_ball(const Pool& pool, const FallingBall& ball, const Band& band) {
-  const port::Display& screen = display();
-  const size_t stride = row_bytes(screen.format, screen.width_px);
-  const WaterSurface surface = surface_of(pool.water, false);
-  for (int32_t row = 0; row < band.rows; ++row) {
-    const int32_t y = band.first_row + row;
-    uint8_t* const line = band.pixels.data + stride * row_place(screen.format, row);
-    RowRays rays(pool.camera, 0, y);
-    for (int32_t x = 0; x < screen.width_px; ++x, rays.next()) {
-      BallHit hit;
-      const Ray ray = rays.ray();
-      if (enter_ball(ray, ball, pool.ball_size, &hit) && is_in_front(pool, surface, ray, hit)) {
-        store_over(line, x, y, screen.format, falling_ball_color(ray, hit, pool.shading));
-      }
-    }
-  }
-}
-
-/// The balls, those farther away first: by the distance of their middles, which never touch.
-void draw_balls(const Pool& pool, const Band& band) {
-  const auto distance = [&pool](const FallingBall& ball) {
-    const Vec3Q8& eye = pool.camera.eye();
-    return length_of(int64_t{ball.center.x} - eye.x.raw, int64_t{ball.center.y} - eye.y.raw,
-                     int64_t{ball.center.z} - eye.z.raw);
-  };
-  bool is_drawn[kBalls] = {};
-  for (int count = 0; count < kBalls; ++count) {
-    int farthest = -1;
-    for (int i = 0; i < kBalls; ++i) {
-      if (pool.balls[i].is_there && !is_drawn[i] &&
-          (farthest < 0 || distance(pool.balls[i]) > distance(pool.balls[farthest]))) {
-        farthest = i;
-      }
-    }
-    if (farthest < 0) {
-      return;
-    }
-    is_drawn[farthest] = true;
-    if (band_may_see(pool.camera, band.first_row, band.first_row + band.rows,
-                     box_of(pool.balls[farthest], pool.ball_size))) {
-      draw_ball(pool, pool.balls[farthest], band);
-    }
-  }
-}
-
-/// With the scene's effects: those that it was compiled for, or whatever it was baked with.
-Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
+  const DrawnBalls drawn{{balls, kBalls}, passed};
 #ifdef THIMBLE_IMAGE_EFFECTS
-  return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
-                                                band, counts);
+  return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree_of(pool), drawn, pool.camera, pool.shading,
+                                                pool.lighting.scene, band, counts);
 #else
-  return render_lit_band(pool.lighting.effects, tree_of(pool), pool.camera, pool.shading, pool.lighting.scene,
-                         band, counts);
+  return render_lit_band(pool.lighting.effects, tree_of(pool), drawn, pool.camera, pool.shading,
+                         pool.lighting.scene, band, counts);
 #endif
 }
 
@@ -313,16 +239,16 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
 [[gnu::noinline]] Status draw_frame(Pool* pool) {
   const port::Display& screen = display();
   DirtyBands& dirty = pool->dirty;
-  // With a new camera: which bands waves can change, from now on.
-  const bool looks = pool->moved;
-  if (pool->moved || pool->redraws) {
+  // With a new camera: which bands waves can change, from now on. And where a ball that was there hid it.
+  const bool moved = pool->moved;
+  if (pool->moved || pool->redraws || pool->dropped) {
     dirty.mark_all();
   } else if (pool->rippled) {
     dirty.mark_seeing();
   }
   pool->moved = false;
   pool->rippled = false;
-  pool->lighting.scene.water = surface_of(pool->water, looks);
+  pool->dropped = false;
   if constexpr ((kImageEffects & Effect::kRipples) != 0) {
     // They run while the water does: what is at rest is not drawn again.
     pool->lighting.scene.ripple_phase = static_cast<uint8_t>(pool->water.columns.steps_done());
@@ -335,15 +261,19 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts) {
     Band band{pool->bands, screen.format, 0, dirty.first_row(i), dirty.rows(i)};
     band.pixels =
         next_band(pool->bands, pool->second_band, band_bytes(screen.format, screen.width_px, band.rows));
+    const bool looks = moved || dirty.passes_any(i);
+    pool->lighting.scene.water = surface_of(pool->water, looks);
     LitCounts counts;
-    const Status status = draw_band(*pool, band, &counts);
+    uint32_t passed = 0;
+    const Status status = draw_band(*pool, band, &counts, &passed);
     if (status != Status::kOk) {
       return status;
     }
     if (looks) {
-      dirty.note_sees(i, counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0);
+      const bool sees = counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0;
+      dirty.note_sees(i, sees || (!moved && dirty.sees(i)));
     }
-    draw_balls(*pool, band);
+    dirty.note_passes(i, passed);
     send_band(band, &pool->second_band);
     dirty.drawn(i);
   }

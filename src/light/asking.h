@@ -1,9 +1,11 @@
-// What the parts of a lit picture ask the tree, for both kinds of frame: one that asks at once, and one that is
-// told the answers (asked.h). Internal to src/.
+// What the parts of a lit picture ask the tree, for each kind of frame: one that asks at once, one with
+// balls beside the tree (balls.h), and one that is told the answers (asked.h). Internal to src/.
 #ifndef THIMBLE_SRC_LIGHT_ASKING_H
 #define THIMBLE_SRC_LIGHT_ASKING_H
 
+#include "arithmetic.h"
 #include "thimble/light/asked.h"
+#include "thimble/light/balls.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/trace/trace.h"
 
@@ -26,6 +28,31 @@ inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, cons
   }
   *hit = answer->hit;
   count_result(frame, kind, hit->kind, hit->visits);
+}
+
+/// The same with balls.
+template <class Place>
+inline void find_before(BallFrame& frame, LitRayKind kind, const Ray& ray, const Place& place, Hit* hit) {
+  find_solid(frame, kind, ray, hit);
+  RayPoint end = place();
+  if (hit->kind == HitKind::kHit && is_before(point_of(*hit), end)) {
+    end = point_of(*hit);
+  }
+  BoxHit ball;
+  if (meet_ball(frame, ray, &end, &ball)) {
+    hit->kind = HitKind::kHit;
+    hit->axis = static_cast<int8_t>(ball.axis);
+    hit->t_numerator = ball.at.t_numerator;
+    hit->t_denominator = ball.at.t_denominator;
+  }
+}
+
+/// Whether no light comes past what was found.
+[[gnu::always_inline]] inline bool is_opaque(const Frame& frame, const Hit& hit) {
+  return hit.kind == HitKind::kHit && !is_clear(frame, hit.material);
+}
+inline bool is_opaque(const BallFrame& frame, const Hit& hit) {
+  return frame.met != nullptr || is_opaque(static_cast<const Frame&>(frame), hit);
 }
 
 /// What a frame that is told says where there is no answer yet.

@@ -3,6 +3,7 @@
 #include "portable/groups.h"
 #include "portable/scene.h"
 #include "thimble/base/crc32.h"
+#include "thimble/light/balls.h"
 #include "thimble/light/render.h"
 
 namespace thimble::portable {
@@ -63,6 +64,7 @@ constexpr Box kBoxes[] = {
 struct State {
   LitScene scene;
   LitCounts counts;
+  uint32_t passed = 0;  ///< balls
   static void* operator new(size_t, void* at) { return at; }
   static void operator delete(void*, void*) {}
 };
@@ -104,8 +106,32 @@ bool make_scene(Check& check, State** state) {
   return true;
 }
 
+// In the air: one before the wall, one over the water before the steel; of places that no voxel has.
+constexpr Ball ball(const Vec3i& center, int32_t half_q8) {
+  Ball made;
+  made.center = center;
+  made.half_q8 = half_q8;
+  made.top_q8 = center.z + half_q8;
+  made.surface = surface({250, 92, 64}, SurfaceKind::kDiffuse);
+  return made;
+}
+constexpr Ball kBalls[] = {ball({9 * 256 + 77, 9 * 256 + 31, 10 * 256 + 5}, 300),
+                           ball({6 * 256 + 19, 2 * 256 + 40, 5 * 256 + 201}, 202)};
+
+template <EffectSet kSet, bool kHasBalls>
+Status draw_band(Check& check, State* state) {
+  if constexpr (kHasBalls) {
+    const DrawnBalls drawn{{kBalls, sizeof kBalls / sizeof kBalls[0]}, &state->passed};
+    return render_lit_band<kSet>(check.world.compact, drawn, check.camera, check.shading, state->scene,
+                                 check.band, &state->counts);
+  } else {
+    return render_lit_band<kSet>(check.world.compact, check.camera, check.shading, state->scene, check.band,
+                                 &state->counts);
+  }
+}
+
 // The picture in bands of that many rows.
-template <EffectSet kSet>
+template <EffectSet kSet, bool kHasBalls>
 [[gnu::noinline]] bool draw(Check& check, State* state, Bytes bytes, PixelFormat format, int32_t band_rows,
                             uint32_t* crc) {
   *crc = 0;
@@ -116,9 +142,8 @@ template <EffectSet kSet>
     check.band.format = format;
     check.band.first_row = y;
     check.band.rows = rows;
-    if (!check.equal(render_lit_band<kSet>(check.world.compact, check.camera, check.shading, state->scene,
-                                           check.band, &state->counts),
-                     Status::kOk, THIMBLE_WHAT("render_lit_band"))) {
+    if (!check.equal(draw_band<kSet, kHasBalls>(check, state), Status::kOk,
+                     THIMBLE_WHAT("render_lit_band"))) {
       return false;
     }
     *crc = crc32(check.band.pixels, *crc);
@@ -126,7 +151,7 @@ template <EffectSet kSet>
   return true;
 }
 
-template <EffectSet kSet>
+template <EffectSet kSet, bool kHasBalls = false>
 void run(Check& check, int index) {
   State* state = nullptr;
   THIMBLE_REQUIRE(make_scene(check, &state) && state != nullptr);
@@ -134,13 +159,14 @@ void run(Check& check, int index) {
   THIMBLE_REQUIRE(!bytes.empty());
   const golden::LitEntry& wanted = golden::kLitTable[index];
   uint32_t crc = 0;
-  THIMBLE_REQUIRE(draw<kSet>(check, state, bytes, wanted.format, kBandRows, &crc));
+  THIMBLE_REQUIRE((draw<kSet, kHasBalls>(check, state, bytes, wanted.format, kBandRows, &crc)));
   THIMBLE_EQUAL(crc, wanted.crc32);
   for (int kind = 0; kind < kLitRayKinds; ++kind) {
     check.note(static_cast<int64_t>(state->counts.rays[kind]));
     check.note(static_cast<int64_t>(state->counts.hits[kind]));
     check.note(static_cast<int64_t>(state->counts.node_visits[kind]));
   }
+  THIMBLE_EQUAL(state->passed, kHasBalls ? 3U : 0U);
   // No effect, no ray for it.
   constexpr EffectSet kSends[kLitRayKinds] = {Effect::kAll,
                                               Effect::kShadows,
@@ -152,7 +178,7 @@ void run(Check& check, int index) {
   for (int kind = 0; kind < kLitRayKinds; ++kind) {
     THIMBLE_CHECK((kSet & kSends[kind]) != 0 || state->counts.rays[kind] == 0);
   }
-  THIMBLE_REQUIRE(draw<kSet>(check, state, bytes, wanted.format, 1, &crc));
+  THIMBLE_REQUIRE((draw<kSet, kHasBalls>(check, state, bytes, wanted.format, 1, &crc)));
   THIMBLE_EQUAL(crc, wanted.crc32);
 }
 
@@ -171,6 +197,8 @@ constexpr Case kCases[] = {
      kArenaBytes, run<kDry | Effect::kSmoothNormals>, 4},
     {"direct light and shadows with dark edges, 16 greys -> the golden picture", kArenaBytes,
      run<kSunlit | Effect::kEdges>, 5},
+    {"balls beside the tree, with shadows and in a mirror -> the golden picture", kArenaBytes,
+     run<kSunlit | Effect::kMirror, true>, 6},
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ inline constexpr uint32_t kCommonGoldenCrc32 = 0x39872813;
 /// Of the formats of panels, in an image that has them all.
 inline constexpr uint32_t kPanelCrc32 = 0xA288AC74;
 /// Of lit pictures, all of which every board draws.
-inline constexpr uint32_t kLitCrc32 = 0x9AE99704;
+inline constexpr uint32_t kLitCrc32 = 0x957158C6;
 /// Of worlds of other shapes and of the plane, all of which every board runs.
 inline constexpr uint32_t kWorldCrc32 = 0x46A9ABE0;
 /// Of frames by bricks, all of which every board draws.

@@ -27,7 +27,7 @@ void occlude_face(AnyFrame& frame, const Spot& spot, Color* light) {
         },
         &hit);
     uint32_t share = kOpen;
-    if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
+    if (is_opaque(frame, hit)) {
       // All directions of the pattern have one length, 7 bits; the numerator has 23.
       // A face is only entered along its axis; inside a voxel t is 0, whatever it is divided by.
       const uint32_t along = hit.axis < 0 ? 0 : magnitude_32(ray.direction[hit.axis]);
@@ -51,6 +51,9 @@ void occlude(Frame& frame, const Spot& spot, Color* light) {
   occlude_face(frame, spot, light);
 }
 void occlude(AskedFrame& frame, const Spot& spot, Color* light) {
+  occlude_face(frame, spot, light);
+}
+void occlude(BallFrame& frame, const Spot& spot, Color* light) {
   occlude_face(frame, spot, light);
 }
 

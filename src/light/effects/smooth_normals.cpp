@@ -67,7 +67,7 @@ template <class AnyFrame>
     find_before(
         frame, LitRayKind::kOcclusion, ray, [&] { return beyond_reach(ray, occlusion); }, &hit);
     uint32_t share = kOpen;
-    if (hit.kind == HitKind::kHit && !is_clear(frame, hit.material)) {
+    if (is_opaque(frame, hit)) {
       const uint32_t distance =
           static_cast<uint32_t>(distance_q8(ray.direction, hit.t_numerator, hit.t_denominator));
       share = distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
@@ -138,6 +138,9 @@ void occlude(Frame& frame, const Spot& spot, const Slope& slope, Color* light) {
   occlude_slope(frame, spot, slope, light);
 }
 void occlude(AskedFrame& frame, const Spot& spot, const Slope& slope, Color* light) {
+  occlude_slope(frame, spot, slope, light);
+}
+void occlude(BallFrame& frame, const Spot& spot, const Slope& slope, Color* light) {
   occlude_slope(frame, spot, slope, light);
 }
 

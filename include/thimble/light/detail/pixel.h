@@ -1,7 +1,7 @@
 /// @file pixel.h
 /// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
 /// which the set names. Not for callers; it is here because the loop is compiled with the caller's set. A
-/// frame asks the tree itself; or it is asked.h's, to which somebody else gives the answers.
+/// frame asks the tree itself; or it is asked.h's, to which somebody else gives the answers; or balls.h's.
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
 /// since the weights of a pixel's rays never add up to more than 1.
@@ -475,8 +475,8 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
 }
 
 /// The colour of a pixel.
-template <EffectSet kSet>
-Color pixel(Frame& frame, const Ray& ray) {
+template <EffectSet kSet, class AnyFrame>
+Color pixel(AnyFrame& frame, const Ray& ray) {
   Color sum;
   frame.counts.rays[static_cast<int>(LitRayKind::kPrimary)] += 1;
   PendingRay first;
@@ -499,8 +499,8 @@ Color pixel(Frame& frame, const Ray& ray) {
   return sum;
 }
 
-template <EffectSet kSet>
-Status draw(Frame frame, const Band& band, LitCounts* counts) {
+template <EffectSet kSet, class AnyFrame = Frame>
+Status draw(AnyFrame frame, const Band& band, LitCounts* counts) {
   size_t stride = 0;
   const Status status = check_frame(frame, band, &stride);
   if (status != Status::kOk) {
