@@ -119,6 +119,13 @@ Status check_balls(const DrawnBalls& drawn, int level) {
     if ((ball.half_q8 & 1) != 0 || ball.half_q8 < 0) {
       return Status::kBadArgument;
     }
+    // Within what a centre's box may be computed of: further out no ray may start either.
+    constexpr int32_t kFar = INT32_MAX / 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ball.half_q8 > kFar || !is_within(ball.center[axis], kFar)) {
+        return Status::kOutOfRange;
+      }
+    }
     const BoxQ8 box = box_of(ball);
     for (int end = 0; end < 2; ++end) {
       const Vec3i& corner = end == 0 ? box.low : box.high;
