@@ -87,7 +87,7 @@ struct SceneLight {
 #endif
 }
 
-#ifndef THIMBLE_IMAGE_EFFECTS
+#if !defined(THIMBLE_IMAGE_EFFECTS) && !defined(THIMBLE_NO_MAP_LIGHT)
 /// Draws a band of a set that `is_flat` by the map; else kBadArgument.
 [[gnu::noinline]] inline Status draw_lit_by_map(const ShownScene& shown, const Camera& camera,
                                                 const Shading& shading, const SceneLight& light,
@@ -141,7 +141,7 @@ struct SceneLight {
       return render_lit_band<moving_effects(kImageEffects)>(shown.scene.tree(), shown.map, camera, shading,
                                                             light.baked.scene, {light.suns, kMaxFlatSuns},
                                                             band, counts);
-#else
+#elif !defined(THIMBLE_NO_MAP_LIGHT)
       return draw_lit_by_map(shown, camera, shading, light, band, counts);
 #endif
     }

@@ -44,22 +44,6 @@ void meet_solid(AskedFrame& frame, const PendingRay& now, Meeting* meeting) {
   }
 }
 
-namespace {
-
-// `begin_way` of a frame that may know a shorter way to a material.
-void begin_asked_way(const AskedFrame& frame, const Ray& ray, Leg* leg) {
-  if (frame.material_at == nullptr) {
-    begin_way(frame, ray, leg);
-    return;
-  }
-  uint8_t material = 0;
-  if (frame.material_at(frame.material_of, starting_voxel(ray), &material) && is_clear(frame, material)) {
-    leg->medium = {Medium::kSolid, material};
-  }
-}
-
-}  // namespace
-
 void meet_clear(AskedFrame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting) {
   meet(frame, now.kind, now.ray, leg, meeting);
 }
@@ -112,7 +96,7 @@ bool light_arrives_through(AskedFrame& frame, LightRay* light) {
   LightWay& way = *frame.way;
   const bool is_new = way.state == LightWay::kNew;
   if (is_new) {
-    begin_asked_way(frame, light->ray, &way.leg);
+    begin_way(frame, light->ray, &way.leg);
     way.state = LightWay::kUnderWay;
   } else {
     for (int i = 0; i < 3; ++i) {
@@ -135,7 +119,7 @@ bool light_arrives_through(AskedFrame& frame, LightRay* light) {
 void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg) {
   KnownRay& ray = *frame.ray;
   if (!ray.has_begun) {
-    begin_asked_way(frame, now.ray, leg);
+    begin_way(frame, now.ray, leg);
     ray.begins_in = leg->medium;
     ray.has_begun = true;
   }

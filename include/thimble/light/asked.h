@@ -162,9 +162,6 @@ struct AskedFrame : Frame {
   }
 
   Asked* questions = nullptr;  ///< of each kind; may be shared
-  /// As `thimble::material_at`, of whatever the rays go through; null: the tree is asked.
-  bool (*material_at)(const void* of, const Vec3i& voxel, uint8_t* material) = nullptr;
-  const void* material_of = nullptr;
   Frame* once =
       nullptr;  ///< counts what is taken once, though the step that it is part of may be taken again
   /// Six for each light of the scene: rays to distant lights differ only by the face that they start on. As they are

@@ -99,7 +99,7 @@ Status check_balls(const DrawnBalls& drawn, int level);
 
 }  // namespace lit
 
-/// As `render_lit_band` of render.h, with balls. kEffects is not Effect::kNone.
+/// As `render_lit_band` of render.h, with balls; with Effect::kNone, where nothing is lit, without them.
 /// Errors, with nothing drawn: those of `render_lit_band`; kOutOfRange for more than kMaxDrawnBalls balls or one that is
 /// not where a ray may start; kBadArgument for a side that is no multiple of 4.
 template <EffectSet kEffects>
@@ -108,16 +108,19 @@ template <EffectSet kEffects>
                                                      const LitScene& scene, const Band& band,
                                                      LitCounts* counts = nullptr,
                                                      const LitOptions& options = {}) {
-  static_assert(kEffects != Effect::kNone, "balls are drawn with light");
-  const Status status = lit::check_balls(drawn, tree.level());
-  if (status != Status::kOk) {
-    return status;
+  if constexpr (kEffects == Effect::kNone) {
+    return render_lit_band<kEffects>(tree, camera, shading, scene, band, counts, options);
+  } else {
+    const Status status = lit::check_balls(drawn, tree.level());
+    if (status != Status::kOk) {
+      return status;
+    }
+    return lit::draw<kEffects>(lit::BallFrame({tree, camera, shading, scene, options, kEffects}, drawn), band,
+                               counts);
   }
-  return lit::draw<kEffects>(lit::BallFrame({tree, camera, shading, scene, options, kEffects}, drawn), band,
-                             counts);
 }
 
-/// The same with a set that is known only now, as that of render.h; with Effect::kNone there are no balls.
+/// The same with a set that is known only now, as that of render.h.
 Status render_lit_band(EffectSet effects, const CompactTree& tree, const DrawnBalls& drawn,
                        const Camera& camera, const Shading& shading, const LitScene& scene, const Band& band,
                        LitCounts* counts = nullptr, const LitOptions& options = {});

@@ -77,12 +77,6 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
   asking_.once = &once_;
   frame_.suns = parts_.suns;
   asking_.suns = parts_.suns;
-  for (lit::AskedFrame* one : {&frame_, &asking_}) {
-    one->material_of = &map_;
-    one->material_at = [](const void* of, const Vec3i& voxel, uint8_t* material) {
-      return static_cast<const RayMap*>(of)->material_at(voxel, material);
-    };
-  }
 }
 
 bool Stream::begin(uint32_t number, PixelReader* pixels) {
