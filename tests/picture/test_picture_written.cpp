@@ -249,7 +249,8 @@ TEST_CASE("picture written: edges of rows of every kind -> the CRC-32 of their s
   for (int number = 0; number < 300; ++number) {
     std::vector<std::uint8_t> strengths(1 + random() % 200);
     for (std::uint8_t& strength : strengths) {
-      strength = random() % 3 == 0 ? 255 : static_cast<std::uint8_t>(random() % (number % 4 == 0 ? 17 : 256));
+      const bool greatest = random() % 3 == 0;
+      strength = static_cast<std::uint8_t>(greatest ? 255U : random() % (number % 4 == 0 ? 17U : 256U));
     }
     std::vector<std::uint8_t> samples(strengths.size());
     written.add(static_cast<int>(place_edge_samples({strengths.data(), strengths.size()},
