@@ -143,6 +143,9 @@ struct SceneLight {
                                                             band, counts);
 #elif !defined(THIMBLE_NO_MAP_LIGHT)
       return draw_lit_by_map(shown, camera, shading, light, band, counts);
+#else  // a port for which five more renderers are too much: the same pixels, ray by ray
+      return render_lit_band(moving_effects(light.effects()), shown.scene.tree(), camera, shading,
+                             light.baked.scene, band, counts);
 #endif
     }
   }

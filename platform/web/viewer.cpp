@@ -32,7 +32,8 @@ struct Viewer {
   Bytes picture;  // rows without gaps
   Bytes rows;     // of the fine camera, for one row of the picture
 };
-Viewer viewer;
+// Constant: what has a constructor is constructed anew by each call of an export.
+constinit Viewer viewer{};
 
 uint8_t* at(uintptr_t address) {
   return reinterpret_cast<uint8_t*>(address);

@@ -51,8 +51,9 @@ struct Written {
 };
 
 std::int32_t up_to(std::mt19937_64& random, int bits) {
-  const auto size = static_cast<std::int32_t>(
-      random() & ((std::uint64_t{1} << (1 + random() % static_cast<unsigned>(bits))) - 1));
+  const auto number = random();  // in an order that every compiler keeps
+  const auto most = static_cast<unsigned>(1 + random() % static_cast<unsigned>(bits));
+  const auto size = static_cast<std::int32_t>(number & ((std::uint64_t{1} << most) - 1));
   return random() % 2 == 0 ? -size : size;
 }
 
