@@ -18,7 +18,9 @@ int32_t cosine_127(uint32_t turn) {
   const uint32_t shifted = (turn + 64U) & 255U;
   const uint32_t half = shifted & 127U;
   const uint32_t place = half <= 64U ? half : 128U - half;
+  // The numbers of a table, not letters. NOLINTNEXTLINE(bugprone-signed-char-misuse)
   const int32_t low = kQuarterWave[place >> 2];
+  // NOLINTNEXTLINE(bugprone-signed-char-misuse)
   const int32_t high = kQuarterWave[place < 64U ? (place >> 2) + 1 : 16];
   const int32_t value = low + (high - low) * static_cast<int32_t>(place & 3U) / 4;
   return shifted >= 128U ? -value : value;

@@ -40,10 +40,11 @@ struct SightCourse : Course {
   }
 };
 
-// The integer part of `dividend / divisor`, below 256, for a core without a divider.
+// The integer part of `dividend / divisor`, below 256, also for a core without a divider. The divisor is a direction along
+// its longest axis, which is not 0.
 [[gnu::always_inline]] inline uint32_t fraction_of(uint32_t dividend, uint32_t divisor) {
   if (kDivides) {
-    return dividend / divisor;
+    return dividend / divisor;  // NOLINT(clang-analyzer-core.DivideZero)
   }
   uint32_t result = 0;
   divisor <<= 7;
