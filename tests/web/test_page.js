@@ -52,6 +52,18 @@ function sim(scene, board, app, frames, keys) {
   return JSON.parse(fs.readFileSync(stats, 'utf8')).frame_crc32;
 }
 
+// The canvas shows one of the first frames of the simulator, since the demonstration turns.
+async function showsAFrame(scene, board) {
+  const frames = new Set();
+  for (let count = 1; count <= 40; ++count) frames.add(sim(scene, board, 'demo', count));
+  let shown = await canvasCrc();
+  for (let i = 0; i < 400 && !frames.has(shown); ++i) {
+    await pause(i % 7);
+    shown = await canvasCrc();
+  }
+  holds(`CRC ${shown} of the canvas is that of a frame`, frames.has(shown));
+}
+
 async function desktop() {
   browser = await Chromium.open(url);
   await began();
@@ -67,16 +79,14 @@ async function desktop() {
     // A scene with light stands still, drawn once fast and once lit.
     await browser.click('#scene-castle');
     await began();
-    const wanted = sim('tools/gallery/scenes/castle.vox', 'lm3s6965evb', 'demo', 2);
-    for (let i = 0; i < 60 && await canvasCrc() !== wanted; ++i) await pause(50);
-    is('CRC of the canvas', await canvasCrc(), wanted);
+    await showsAFrame('tools/gallery/scenes/castle.vox', 'lm3s6965evb');
   });
   await test('arrow keys and the row of buttons steer', async () => {
     await changes('an arrow key', () => browser.key('ArrowLeft'));
     await pause(300);
     await changes('a button', () => browser.click('[data-hold="right"]'));
     await changes('a drag', () => browser.drag('#canvas', 80, 0));
-    await changes('a letter', () => browser.key('t', 'KeyT'));
+    await changes('a letter', () => browser.key('l', 'KeyL'));
   });
   await test('Pause holds the picture', async () => {
     await browser.click('#pause');
@@ -90,9 +100,7 @@ async function desktop() {
     await choose('mps2-an500');
     is('width', await browser.eval('canvas.width'), 320);
     await browser.until(`/ of 4,186,112$/.test(document.getElementById('ram').textContent)`);
-    const wanted = sim('tools/gallery/scenes/castle.vox', 'mps2-an500', 'demo', 2);
-    for (let i = 0; i < 60 && await canvasCrc() !== wanted; ++i) await pause(50);
-    is('CRC of the canvas', await canvasCrc(), wanted);
+    await showsAFrame('tools/gallery/scenes/castle.vox', 'mps2-an500');
     await choose('lm3s6965evb');
   });
   await test('? opens the help, Esc closes it', async () => {
@@ -290,9 +298,7 @@ async function drops() {
     await browser.drop([file]);
     await began();
     holds('it says so', (await text('said')).startsWith('fox.vox.gz: '));
-    const wanted = sim(file, 'lm3s6965evb', 'demo', 2);
-    for (let i = 0; i < 60 && await canvasCrc() !== wanted; ++i) await pause(50);
-    is('CRC of the canvas', await canvasCrc(), wanted);
+    await showsAFrame(file, 'lm3s6965evb');
   });
   await test('a scene dropped with its model, and baked bytes', async () => {
     await choose('raspi0');
