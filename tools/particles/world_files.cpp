@@ -11,7 +11,8 @@
 namespace thimble::tools {
 
 std::string state_csv(const ParticleWorld& world) {
-  std::string text = std::string(kStateColumns) + "\n";
+  std::string text(kStateColumns);
+  text += '\n';
   for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
     Particle ball;
     if (!world.particle(id, &ball)) {
