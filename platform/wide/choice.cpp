@@ -68,9 +68,9 @@ class Haze {
   Haze(const VoxelLists& lists, const WideFrame& frame, bool by_rows)
       : lists_(lists), frame_(frame), by_rows_(by_rows) {
     for (int axis = 0; axis < 3; ++axis) {
-      eye_cell_[axis] = frame.perspective                    ? frame.camera.eye()[axis].raw >> 8
-                        : frame.camera.direction()[axis] < 0 ? INT32_MAX
-                                                             : INT32_MIN;
+      eye_cell_[axis] = frame.perspective           ? frame.eye[axis] >> 8
+                        : frame.direction[axis] < 0 ? INT32_MAX
+                                                    : INT32_MIN;
     }
     // A block's bend is its pixels times this (TileDrawer::is_flat).
     const float bend_per_px = frame.perspective ? frame.norm_w / (4 * frame.reach_x) : 0;

@@ -1,5 +1,6 @@
 #include "wide/exact.h"
 
+#include "thimble/picture/camera.h"
 #include "thimble/tree/morton.h"
 #include "wide/kernels.h"
 
@@ -69,6 +70,11 @@ Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], 
   }
   *key = mirrored_key(corner, level, *down);
   return meeting;
+}
+
+Meeting meet_exactly(const WideFrame& frame, int32_t x, int32_t y, uint32_t entry, const uint32_t (&cube)[3],
+                     uint32_t* key, uint32_t* down) {
+  return meet_exactly(frame.camera->ray(x, y), entry, cube, key, down);
 }
 
 }  // namespace thimble::wide

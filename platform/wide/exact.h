@@ -5,9 +5,13 @@
 
 #include <stdint.h>
 
-#include "thimble/trace/ray.h"
+namespace thimble {
+struct Ray;
+}
 
 namespace thimble::wide {
+
+struct WideFrame;
 
 /// Side of an entry (voxel_lists.h) as a power of two, and its x without the bits that tell it.
 inline int32_t level_of(uint32_t entry) {
@@ -45,6 +49,9 @@ enum class Meeting : uint8_t {
 /// along which the ray runs downwards, and `key` the entry's key mirrored in them.
 Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
                      uint32_t* down);
+/// The same for the ray of pixel (x, y).
+Meeting meet_exactly(const WideFrame& frame, int32_t x, int32_t y, uint32_t entry, const uint32_t (&cube)[3],
+                     uint32_t* key, uint32_t* down);
 
 }  // namespace thimble::wide
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "thimble/picture/camera.h"
+
 namespace thimble::wide {
 namespace {
 
@@ -155,7 +157,11 @@ bool invert(const Camera& camera, Map map, Projection* to) {
 
 bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame) {
   frame->tile = tile;
-  frame->camera = camera;
+  frame->camera = &camera;
+  for (int axis = 0; axis < 3; ++axis) {
+    frame->eye[axis] = camera.eye()[axis].raw;
+    frame->direction[axis] = camera.direction()[axis];
+  }
   frame->perspective = camera.is_perspective();
   const Map map = store_exact(camera.affine(), frame);
   store_floats(map, frame);

@@ -30,8 +30,12 @@
 
 #include <stdint.h>
 
-#include "thimble/picture/camera.h"
-#include "thimble/tree/compact_tree.h"
+// What is compiled for each instruction set includes no public header: it takes longest, and stays as it is when
+// one of those changes.
+namespace thimble {
+class Camera;
+class CompactTree;
+}  // namespace thimble
 
 namespace thimble::wide {
 
@@ -75,7 +79,9 @@ struct WideFrame {
   double base_high[3], base_low[3];
   double step_x_high[3], step_x_low[3];
   double step_y_high[3], step_y_low[3];
-  Camera camera;
+  const Camera* camera;  ///< outlives the frame
+  int32_t eye[3];        ///< raw values, 1/256 voxel
+  int32_t direction[3];  ///< of all rays of a parallel camera
 
   /// Set by the caller where the lists leave out hidden voxels (hidden.h): the tree that they are in, and the
   /// number of one with material 0. Null: nothing is left out.

@@ -1,6 +1,11 @@
 #include "wide/gray_scale.h"
 
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
+
 namespace thimble::wide {
+
+static_assert(kMostFall == 255 - kFarBrightness);
 
 GrayScale gray_scale_of(const Camera& camera, const Shading& shading) {
   GrayScale made{};
@@ -19,7 +24,7 @@ GrayScale gray_scale_of(const Camera& camera, const Shading& shading) {
   made.far_q8 = static_cast<double>(shading.far_q8);
   made.cut = excess == 0 ? 1.0 : 1.0 / 256;
   made.inverse = 1.0 / static_cast<double>(range >> excess);
-  const double per_depth = static_cast<double>(255 - kFarBrightness) / range;
+  const double per_depth = static_cast<double>(kMostFall) / range;
   made.float_dividend = static_cast<float>(made.dividend);
   made.float_scale = static_cast<float>(made.scale);
   made.float_near = static_cast<float>(made.near_q8);
@@ -47,8 +52,9 @@ uint8_t code_of(GrayScale::Code code, const Hit& hit, const Ray& ray, const Came
   return shade(hit, ray, camera, shading).r;
 }
 
-uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, const Ray& ray,
+uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, int32_t x, int32_t y,
                      uint32_t entry, const uint32_t (&cube)[3]) {
+  const Ray ray = camera.ray(x, y);
   // The latest of the nearer planes, on a tie that of the lowest axis; one at or behind the origin is not
   // entered through.
   int64_t numerator = 0;

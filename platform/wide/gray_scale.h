@@ -5,10 +5,17 @@
 
 #include <stdint.h>
 
-#include "thimble/picture/camera.h"
-#include "thimble/picture/shading.h"
+namespace thimble {
+class Camera;
+struct Hit;
+struct Ray;
+struct Shading;
+}  // namespace thimble
 
 namespace thimble::wide {
+
+/// How much darker than the nearest the farthest is: 255 - kFarBrightness.
+inline constexpr int kMostFall = 215;
 
 /// A ray enters its box at t = numerator / (256 * speed), with the speed |direction| along the axis whose
 /// plane is passed last. The core rounds three times (src/picture/shading.cpp):
@@ -50,9 +57,9 @@ GrayScale gray_scale_of(const Camera& camera, const Shading& shading);
 uint8_t code_of(GrayScale::Code code, const Hit& hit, const Ray& ray, const Camera& camera,
                 const Shading& shading);
 
-/// Finds the core's grey of a ray that hits an entry of one voxel (voxel_lists.h) of the cube at `cube`, or
-/// the code of the face that it enters.
-uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, const Ray& ray,
+/// Finds the core's grey of the ray of pixel (x, y), which hits an entry of one voxel (voxel_lists.h) of the
+/// cube at `cube`, or the code of the face that it enters.
+uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, int32_t x, int32_t y,
                      uint32_t entry, const uint32_t (&cube)[3]);
 
 }  // namespace thimble::wide

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
 #include "thimble/trace/trace.h"
 #include "wide/exact.h"
 #include "wide/surface.h"
@@ -37,7 +39,7 @@ void find_start(const Ray& ray, int32_t (&cell)[3]) {
 }  // namespace
 
 void ask_core(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y, Batch* batch) {
-  const Ray ray = frame.camera.ray(x, y);
+  const Ray ray = frame.camera->ray(x, y);
   Hit hit;
   ++batch->counts.asked;
   if (closest_hit(*frame.hidden_in, ray, &hit) != Status::kOk || hit.kind != HitKind::kHit) {
@@ -55,7 +57,7 @@ void ask_core(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y
   if (depths.gray_scale != nullptr) {
     const uint32_t entry = within[0] | within[1] << 10 | within[2] << 20;
     depths.nearest_sum[at] = static_cast<uint16_t>(mirrored_sum(entry, down));
-    depths.gray[at] = code_of(depths.gray_scale->code, hit, ray, frame.camera, *depths.shading);
+    depths.gray[at] = code_of(depths.gray_scale->code, hit, ray, *frame.camera, *depths.shading);
   } else {
     depths.nearest[at] = cube_value(corner, down) | uint64_t{mirrored_key(within, 0, down)} << kEntryBits |
                          (frame.first_hidden + hit.material);
@@ -81,7 +83,7 @@ void ask_core_behind(const WideFrame& frame, const Depths& depths, int32_t x, in
 
 SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame) {
   SolidStarts starts;
-  const Camera& camera = frame.camera;
+  const Camera& camera = *frame.camera;
   const VoxelBox& bounds = tree.bounds();
   if (!frame.perspective) {
     // All rays begin on a plane, about: does that cut the box of what is solid?
@@ -146,7 +148,7 @@ void draw_plane_starts(const WideFrame& frame, const Depths& depths, int32_t y0,
   for (int32_t y = y0; y < y1; ++y) {
     for (int32_t x = frame.tile.x0; x < frame.tile.x1; ++x) {
       int32_t cell[3];
-      find_start(frame.camera.ray(x, y), cell);
+      find_start(frame.camera->ray(x, y), cell);
       const int32_t apart = (cell[0] ^ known[0]) | (cell[1] ^ known[1]) | (cell[2] ^ known[2]);
       if (level < 0 || apart >> level != 0) {
         is_solid = solid_at(tree, cell, &level);

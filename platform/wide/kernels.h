@@ -12,7 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/picture/shading.h"
 #include "wide/frame.h"
 #include "wide/gray_scale.h"
 
@@ -111,7 +110,6 @@ struct Picked {
   alignas(64) uint32_t place[kRoom];
 };
 inline constexpr int kPlaceBits = 14;
-static_assert(kMaxPicturePx <= 1 << kPlaceBits);
 
 /// What one thread has under way, also from run to run. Less than 32 KiB.
 struct Batch {

@@ -5,6 +5,9 @@
 #include "wide/crew.h"
 
 namespace thimble::wide {
+
+static_assert(kMaxPicturePx <= 1 << kPlaceBits);
+
 namespace {
 
 // From so many boxes on, in the order of the list, up to kMostCopies threads draw a picture each. Fewer are

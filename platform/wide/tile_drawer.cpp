@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "thimble/picture/camera.h"
 #include "wide/choice.h"
 #include "wide/coverage.h"
 #include "wide/surface_list.h"
@@ -51,7 +52,7 @@ TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Ba
       others_(others),
       next_share_(next_share),
       share_(next_share == nullptr ? 0 : (*next_share)++) {
-  const Camera& camera = frame_.camera;
+  const Camera& camera = *frame_.camera;
   for (int axis = 0; axis < 3; ++axis) {
     // Rays of a parallel camera come from beyond the world.
     eye_cell_[axis] = camera.is_perspective()        ? camera.eye()[axis].raw >> 8

@@ -47,11 +47,11 @@ inline Rays rays_of(const WideFrame& frame, hn::Vec<F64> x, hn::Vec<F64> y) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto varying = rounded(frame, axis, x, y);
     if (kPerspective) {
-      rays.origin[axis] = hn::Set(d, static_cast<double>(frame.camera.eye()[axis].raw));
+      rays.origin[axis] = hn::Set(d, static_cast<double>(frame.eye[axis]));
       rays.direction[axis] = varying;
     } else {
-      rays.origin[axis] = hn::Add(hn::Set(d, static_cast<double>(frame.camera.eye()[axis].raw)), varying);
-      rays.direction[axis] = hn::Set(d, static_cast<double>(frame.camera.direction()[axis]));
+      rays.origin[axis] = hn::Add(hn::Set(d, static_cast<double>(frame.eye[axis])), varying);
+      rays.direction[axis] = hn::Set(d, static_cast<double>(frame.direction[axis]));
     }
   }
   return rays;

@@ -84,10 +84,10 @@ HWY_INLINE EntryPlane entry_planes(const WideFrame& frame, const Pixels& pixels,
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     auto direction = varying_of(frame, axis, x, y, &off);
-    auto origin = hn::Set(d, static_cast<float>(frame.camera.eye()[axis].raw));
+    auto origin = hn::Set(d, static_cast<float>(frame.eye[axis]));
     if (!kPerspective) {
       origin = hn::Add(origin, direction);
-      direction = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      direction = hn::Set(d, static_cast<float>(frame.direction[axis]));
     }
     const auto downward = hn::Lt(direction, zero);
     const auto mirrored = hn::ConvertTo(d, hn::LoadU(di, corners.at[axis] + at));

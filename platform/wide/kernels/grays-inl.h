@@ -47,7 +47,7 @@ HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> pro
   const F32 d;
   const auto depth = hn::Mul(product, hn::Set(d, unit * scale.float_scale));
   const auto fall = hn::Mul(hn::Sub(depth, hn::Set(d, scale.float_near)), hn::Set(d, scale.float_per_depth));
-  const auto most = hn::Set(d, static_cast<float>(255 - kFarBrightness) + 0.5F);
+  const auto most = hn::Set(d, static_cast<float>(kMostFall) + 0.5F);
   const auto clamped = hn::Max(hn::Set(d, 0.5F), hn::Min(fall, most));
   const auto off = hn::Abs(hn::Sub(clamped, hn::Round(clamped)));
   *unclear = hn::Or(*unclear, hn::Lt(off, hn::Set(d, scale.margin)));
@@ -92,7 +92,7 @@ HWY_INLINE hn::Vec<U32> grays_of(const WideFrame& frame, const GrayScale& scale,
   auto ratio = hn::Zero(d);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
-    if (!kPerspective && frame.camera.direction()[axis] == 0) {
+    if (!kPerspective && frame.direction[axis] == 0) {
       continue;
     }
     const auto size = hn::Abs(aims.direction[axis]);
@@ -120,7 +120,7 @@ HWY_INLINE hn::Vec<U32> faces_of(const WideFrame& frame, const Aims& aims, hn::M
   auto largest = hn::Set(d, -1.0F);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
-    if (!kPerspective && frame.camera.direction()[axis] == 0) {
+    if (!kPerspective && frame.direction[axis] == 0) {
       continue;
     }
     const auto size = hn::Abs(aims.direction[axis]);
@@ -159,7 +159,7 @@ HWY_INLINE hn::Vec<HalfI32> grays_in_doubles(const GrayScale& scale, hn::Vec<F64
   const auto zero = hn::Zero(d);
   const auto dividend = hn::Set(d, scale.dividend);
   const auto near_plane = hn::Set(d, scale.near_q8);
-  const auto most_fall = hn::Set(d, static_cast<double>(255 - kFarBrightness));
+  const auto most_fall = hn::Set(d, static_cast<double>(kMostFall));
   const auto ratio = hn::Floor(hn::Div(dividend, speed));
   const auto high = hn::Floor(hn::Mul(ratio, hn::Set(d, 1.0 / 65536)));
   const auto low = hn::NegMulAdd(high, hn::Set(d, 65536), ratio);

@@ -57,7 +57,7 @@ HWY_INLINE Aims aims_of(const WideFrame& frame, const float (&origin)[3], hn::Ve
     if (kPerspective) {
       aims.direction[axis] = varying;
     } else {
-      aims.direction[axis] = hn::Set(d, static_cast<float>(frame.camera.direction()[axis]));
+      aims.direction[axis] = hn::Set(d, static_cast<float>(frame.direction[axis]));
       aims.center[axis] = hn::NegMulAdd(varying, hn::Set(d, 2.0F), aims.center[axis]);
     }
   }
@@ -98,7 +98,7 @@ HWY_INLINE Verdict judge(const WideFrame& frame, const Aims& aims, hn::Vec<F32> 
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = hn::Abs(direction[axis]);
-    still[axis] = !kPerspective && frame.camera.direction()[axis] == 0;
+    still[axis] = !kPerspective && frame.direction[axis] == 0;
   }
   auto excess = hn::Set(d, -1e30F);  // of the product that exceeds its bound by most
   auto magnitude = hn::Mul(half, hn::Add(hn::Add(size[0], size[1]), size[2]));

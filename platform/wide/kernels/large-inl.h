@@ -57,14 +57,13 @@ class LargeBox {
       uint32_t key = 0;
       uint32_t down = 0;
       ++batch_->counts.exact;
-      const Ray ray = frame.camera.ray(x + lane, y);
-      const Meeting meeting = meet_exactly(ray, entry_, batch_->corner, &key, &down);
+      const Meeting meeting = meet_exactly(frame, x + lane, y, entry_, batch_->corner, &key, &down);
       if (meeting == Meeting::kTouch && frame.hidden_in != nullptr) {
         ask_core_behind(frame, depths_, x + lane, y, entry_, key, down, batch_);
       }
       if (meeting == Meeting::kHit) {
-        const uint8_t gray = kGray ? code_exactly(frame.camera, *depths_.shading, depths_.gray_scale->code,
-                                                  ray, entry_, batch_->corner)
+        const uint8_t gray = kGray ? code_exactly(*frame.camera, *depths_.shading, depths_.gray_scale->code,
+                                                  x + lane, y, entry_, batch_->corner)
                                    : uint8_t{0};
         put(test, static_cast<uint32_t>(lane),
             kGray ? mirrored_sum(entry_, down) : value_of(*batch_, key, down, number_), gray);

@@ -34,8 +34,7 @@ HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> numb
 // Finds the corner of the batch's cube less the eye, in 1/512 voxel.
 inline void origin_of(const WideFrame& frame, const Batch& batch, float (&origin)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
-    origin[axis] =
-        static_cast<float>(int64_t{512} * batch.corner[axis] - int64_t{2} * frame.camera.eye()[axis].raw);
+    origin[axis] = static_cast<float>(int64_t{512} * batch.corner[axis] - int64_t{2} * frame.eye[axis]);
   }
 }
 
@@ -48,7 +47,7 @@ void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, B
     const int32_t y = static_cast<int32_t>(pairs.place[i] >> 16);
     uint32_t key = 0;
     uint32_t down = 0;
-    const Meeting meeting = meet_exactly(frame.camera.ray(x, y), pairs.entry[i], batch->corner, &key, &down);
+    const Meeting meeting = meet_exactly(frame, x, y, pairs.entry[i], batch->corner, &key, &down);
     if (meeting == Meeting::kTouch && frame.hidden_in != nullptr) {
       ask_core_behind(frame, depths, x, y, pairs.entry[i], key, down, batch);
     }
@@ -64,8 +63,8 @@ void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, B
     batch->number[batch->hits] = pairs.number[i];
     if (depths.gray_scale != nullptr) {
       batch->key[batch->hits] = mirrored_sum(pairs.entry[i], down);
-      batch->number[batch->hits] = code_exactly(frame.camera, *depths.shading, depths.gray_scale->code,
-                                                frame.camera.ray(x, y), pairs.entry[i], batch->corner);
+      batch->number[batch->hits] = code_exactly(*frame.camera, *depths.shading, depths.gray_scale->code, x, y,
+                                                pairs.entry[i], batch->corner);
     }
     batch->pixel[batch->hits] =
         static_cast<uint32_t>(32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U));

@@ -39,7 +39,7 @@ class Loop : public Peer {
       const Extent extent = extent_of<kPerspective>(view, low);
       for (std::int32_t y = extent.y0; y <= extent.y1; ++y) {
         for (std::int32_t x = extent.x0; x <= extent.x1; ++x) {
-          const Ray ray = view.frame.camera.ray(x, y);
+          const Ray ray = view.frame.camera->ray(x, y);
           Hit hit;
           if (!meets(ray, voxel, &hit)) {
             continue;
@@ -50,7 +50,7 @@ class Loop : public Peer {
           if (gray[pixel] == 0 || std::int64_t{hit.t_numerator} * nearest.speed <
                                       std::int64_t{nearest.numerator} * hit.t_denominator) {
             nearest = {hit.t_numerator, hit.t_denominator};
-            gray[pixel] = shade(hit, ray, view.frame.camera, view.shading).r;
+            gray[pixel] = shade(hit, ray, *view.frame.camera, view.shading).r;
             if (ids != nullptr) {
               ids[pixel] = voxel;
             }
