@@ -156,7 +156,8 @@ test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says f
 
 web: deps-web ## Make the page: one file that works from the disk and offline (build/web/thimble.html)
 	@sh platform/web/build.sh
-test-web: web all ## Test the page in headless Chromium (`make test` tests its modules under Node)
+# BUILT=yes: of what was built.
+test-web: $(if $(BUILT),,web all) ## Test the page in headless Chromium (`make test` tests its modules under Node)
 	@sh tests/web/run.sh
 bench-web: web ## Time frames in headless Chromium
 	@node tests/web/bench.js
