@@ -118,6 +118,10 @@ TEST_CASE("join: rows drawn apart, in any order -> byte for byte the picture of 
   SplitMix64 random(8);
   int number = 0;
   for (const Case& each : cases) {
+    if (kSanitized && number % 2 != 0) {
+      ++number;
+      continue;
+    }
     const std::string ending = each.endings[static_cast<std::size_t>(number++) % each.endings.size()];
     const Words render = together({"render", each.scene, "--size", "45x40", "--quiet"}, each.options);
     CAPTURE(render);

@@ -147,12 +147,8 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
 TEST_CASE(
     "render --samples auto: more pixels than are drawn together -> as in small bands; behind them, as of one "
     "sample") {
-#ifdef __SANITIZE_ADDRESS__
-  const std::vector<Words> scenes{{"castle", "--effects", "direct-light"}};
-#else
-  const std::vector<Words> scenes{{"castle"}, {"room"}};
-#endif
-  for (const Words& scene : scenes) {
+  for (const Words& scene : kSanitized ? std::vector<Words>{{"castle", "--effects", "direct-light"}}
+                                       : std::vector<Words>{{"castle"}, {"room"}}) {
     CAPTURE(scene);
     constexpr const char* kLarge = "260x200";
     const Picture whole = render(scene + Words{"--samples", "auto"}, kLarge);
@@ -173,11 +169,7 @@ TEST_CASE(
 }
 
 TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by half, with few rays") {
-#ifdef __SANITIZE_ADDRESS__
-  const std::string size = "80x60";
-#else
-  const std::string size = "240x180";
-#endif
+  const std::string size = kSanitized ? "80x60" : "240x180";
   for (const Words& words : {Words{"castle", "--shade", "color"}, Words{"ship", "--shade", "color"},
                              Words{"castle", "--effects", "direct-light,shadows"}, Words{"castle"}}) {
     CAPTURE(words);

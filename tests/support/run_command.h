@@ -11,6 +11,13 @@
 
 namespace thimble::tests {
 
+// Sanitized, the command takes ten times as long, and the optimised build tries all.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 struct CommandResult {
   int status = -1;  ///< exit status; -1 when a signal ended it
   int signal = 0;   ///< the signal that ended it, 0 for none

@@ -125,7 +125,7 @@ TEST_CASE("wide: lit scenes of any kind -> every byte is the core's") {
   check_lit_frames(20261123, many_or_few(600, 40), random_light);
 }
 TEST_CASE("wide: lit scenes in which rays end where they hit -> every byte is the core's") {
-  check_lit_frames(20261124, many_or_few(400, 30), random_opaque_light);
+  check_lit_frames(20261124, many_or_few(400, 15), random_opaque_light);
 }
 
 TEST_CASE("wide: the sky in lanes -> the core's, also where a length is rounded up") {
