@@ -14,7 +14,7 @@ fi
 # and the applications again, at other levels of optimisation.
 configure() {
   cmake -S "$root" -B "$1" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF --no-warn-unused-cli \
-    --log-level=WARNING -Wno-dev -DTHIMBLE_UNITY="$2" -DTHIMBLE_CORE_UNITY="$2" >/dev/null
+    --log-level=WARNING -Wno-dev -DTHIMBLE_UNITY="$2" -DTHIMBLE_CORE_UNITY="$2" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
   ninja -C "$1" --quiet thimble_generated
 }
 configure "$build" ON
