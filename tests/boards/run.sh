@@ -22,7 +22,10 @@ if [ "${1:-}" = --job ]; then
         sh "$here/effects.sh" || status=1
         sh "$here/own_scene.sh" || status=1
         ;;
-      pico) sh "$here/uf2.sh" pico || status=1 ;;
+      pico)
+        sh "$here/cores.sh" pico || status=1
+        sh "$here/uf2.sh" pico || status=1
+        ;;
       gba) sh "$here/cartridge.sh" gba || status=1 ;;
     esac
   } >"$log" 2>&1

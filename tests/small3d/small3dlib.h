@@ -124,10 +124,10 @@ inline void S3L_drawScene(S3L_Scene scene) {
               (double{1} * at[0] * by[0] + double{1} * at[1] * by[1] + double{1} * at[2] * by[2]) / S3L_F +
               by[3];
         }
-        const double scale = scene.camera.focalLength / turned[2] * (S3L_RESOLUTION_X / 2) / S3L_F;
-        is_before = is_before && turned[2] > S3L_F / 4;
-        corners[i][0] = S3L_RESOLUTION_X / 2 + turned[0] * scale + S3L_stand_in_fault_px;
-        corners[i][1] = S3L_RESOLUTION_Y / 2 - turned[1] * scale;
+        const double scale = scene.camera.focalLength / turned[2] * (S3L_RESOLUTION_X / 2.0) / S3L_F;
+        is_before = is_before && turned[2] > S3L_F / 4.0;
+        corners[i][0] = S3L_RESOLUTION_X / 2.0 + turned[0] * scale + S3L_stand_in_fault_px;
+        corners[i][1] = S3L_RESOLUTION_Y / 2.0 - turned[1] * scale;
         corners[i][2] = turned[2];
       }
       S3L_PixelInfo pixel{};
