@@ -21,6 +21,7 @@ if [ "${1:-}" = --job ]; then
       lm3s6965evb)
         sh "$here/effects.sh" || status=1
         sh "$here/own_scene.sh" || status=1
+        sh "$here/water.sh" || status=1
         ;;
       pico)
         sh "$here/cores.sh" pico || status=1

@@ -21,6 +21,10 @@ inline constexpr uint32_t kBlockPllSys = 1U << 12;
 inline constexpr uint32_t kBlockSpi1 = 1U << 17;
 inline constexpr uint32_t kBlockUart0 = 1U << 22;
 
+// Power-on state machine, 2.13: what is forced off is in reset.
+inline constexpr uintptr_t kPsmForceOff = 0x40010004;
+inline constexpr uint32_t kPsmCore1 = 1U << 16;
+
 // Crystal oscillator, 2.16.
 inline constexpr uintptr_t kXoscCtrl = 0x40024000;
 inline constexpr uint32_t kXoscEnable = 0xFABU << 12 | 0xAA0U;  ///< on, 1 to 15 MHz

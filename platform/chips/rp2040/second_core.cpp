@@ -57,6 +57,11 @@ bool port::start_core(const Bytes& stack) {
   for (uint8_t& byte : stack) {
     byte = kStackPaint;
   }
+  // Through a reset, so that the ROM has it, whatever ran there before us. Its first word is read with what else is there.
+  set_bits(rp2040::kPsmForceOff, rp2040::kPsmCore1);
+  wait_for_set(rp2040::kPsmForceOff, rp2040::kPsmCore1);
+  clear_bits(rp2040::kPsmForceOff, rp2040::kPsmCore1);
+  wait_for_set(rp2040::kSioFifoStatus, rp2040::kSioFifoFilled);
   const uint32_t top = word_of(stack.data + stack.size) & ~uint32_t{7};
   const auto entry = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(&thimble_second_core));
   const uint32_t words[] = {0, 0, 1, word_of(thimble_image_vectors), top, entry};

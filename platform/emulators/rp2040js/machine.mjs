@@ -9,12 +9,17 @@ export class LockUp extends Error {}
 
 // The second core, which rp2040js leaves out: another one of its cores on the same bus, an instruction of each by turns, with
 // what the two have for each other (RP2040 Datasheet, 2.3.1: CPUID and the FIFOs; the locks are rp2040js'). Until it is
-// launched the boot ROM has it, and does no more than repeat the words that launch it (2.8.2). No peripheral interrupts it.
+// launched, and after a reset, the boot ROM has it, and does no more than repeat the words that launch it (2.8.2). No
+// peripheral interrupts it.
 const kCpuId = 0x000;
 const kFifoStatus = 0x050;
 const kFifoWrite = 0x054;
 const kFifoRead = 0x058;
 const kFifoWords = 8;
+// The power-on state machine (2.13): what is forced off is in reset.
+const kPsm = 0x40010;
+const kPsmOff = 0x004;
+const kPsmCore1 = 1 << 16;
 class SecondCore {
   constructor(chip) {
     this.chip = chip;
@@ -23,6 +28,20 @@ class SecondCore {
     this.launch = []; // the words so far
     this.inboxes = [[], []]; // of each core
     const { sio } = chip;
+    const psm = chip.peripherals[kPsm];
+    const force = psm.writeUint32.bind(psm);
+    psm.writeUint32 = (offset, value) => {
+      const wasOff = (psm.readUint32(kPsmOff) & kPsmCore1) !== 0;
+      force(offset, value);
+      const isOff = (psm.readUint32(kPsmOff) & kPsmCore1) !== 0;
+      if (isOff) {
+        this.core = undefined;
+        this.launch = [];
+        this.inboxes[1] = [];
+      } else if (wasOff) {
+        this.inboxes[0].push(0); // the ROM's first word
+      }
+    };
     const read = sio.readUint32.bind(sio);
     const write = sio.writeUint32.bind(sio);
     sio.readUint32 = (offset) => {
