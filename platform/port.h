@@ -4,7 +4,7 @@
 /// An application (platform/apps) is one source for every board and for the host simulator. It calls the
 /// functions below and the core, and nothing else. A port (platform/boards/NAME with platform/arch/ARCH; on a
 /// desktop platform/host; on Linux without a window system platform/linux) defines every one of them but
-/// `draw`, `begin_flush` and `await_flush`.
+/// `draw`, `begin_flush`, `await_flush` and what is said of a second core.
 ///
 /// What the port has done before it calls the application: clocks and UART run, the display is on and black,
 /// .data and .bss are set up, the stack is painted (`kStackPaint`) and fenced as well as the chip can, and a
@@ -13,7 +13,7 @@
 /// What an application does: takes its memory from `arena()`, keeps nothing in static variables, draws bands
 /// and flushes them, looks at `running()` once a frame, and returns an exit status.
 ///
-/// None of these functions is called from an interrupt, and none is reentrant.
+/// None of these functions is called from an interrupt, and none is reentrant; a second core calls those that say so.
 #ifndef THIMBLE_PLATFORM_PORT_H
 #define THIMBLE_PLATFORM_PORT_H
 
@@ -89,6 +89,37 @@ inline void begin_flush(const Band& band) {
 constexpr void await_flush() {}
 constexpr int32_t band_buffers() {
   return 1;
+}
+#endif
+
+/// A second core (BOARD_CORES) that draws bands beside this one (apps/band_crew.h). It does nothing until it is asked to:
+/// `start_core` paints a stack for it, in bytes that stay its own, starts it, and says whether it is there; then
+/// `begin_share` has it call `share(argument)`, and `await_share` waits until that has returned. Between the two both
+/// cores run; what both touch, `begin_flush` and `await_flush` too, is touched between `lock` and `unlock`. The
+/// other functions of this file are for the first core.
+/// A port with one core has none of it, and the compiler removes what asks for it. The host, which simulates boards of
+/// either kind, has the number, so that memory is shared out as on the board, and no second core.
+#if defined(THIMBLE_CORES)
+inline constexpr bool kCanShare = true;
+constexpr int32_t cores() {
+  return THIMBLE_CORES;
+}
+bool start_core(const Bytes& stack);
+void begin_share(void (*share)(void*), void* argument);
+void await_share();
+void lock();
+void unlock();
+#else
+inline constexpr bool kCanShare = false;
+#if defined(THIMBLE_PORT_DRAWS)
+int32_t cores();
+#else
+constexpr int32_t cores() {
+  return 1;
+}
+#endif
+constexpr bool start_core(const Bytes& /*stack*/) {
+  return false;
 }
 #endif
 

@@ -23,7 +23,7 @@ if(THIMBLE_SANITIZE_THREADS)
   set(THIMBLE_FRONT_OPTIONS -O0)
   # What draws or sorts in several threads; the rest takes as long to compile and finds nothing. The simulator's own
   # thread has a board's stack, on which ThreadSanitizer has no room.
-  set(THIMBLE_TESTED "(wide/test_|viewer/test_pictures|tree/test_key_sort|picture/test_panel)")
+  set(THIMBLE_TESTED "(wide/test_|viewer/test_pictures|tree/test_key_sort|picture/test_panel|platform/test_band_crew)")
 endif()
 if(THIMBLE_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all

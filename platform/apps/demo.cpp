@@ -17,6 +17,7 @@
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
 // is held, and nothing but the arena is used.
 #include "apps/apps.h"
+#include "apps/band_crew.h"
 #include "apps/band_turns.h"
 #include "apps/demo_view.h"
 #include "apps/held_frame.h"
@@ -47,6 +48,29 @@ constexpr uint32_t kSpheresBeyond = 6;
 /// The largest pool, so that it is full in a minute.
 constexpr size_t kMostPoolBytes = size_t{256} << 10;
 
+#if defined(THIMBLE_CORES)
+/// What frames take that two cores draw.
+struct Crew {
+  CrewFrame frame;
+  Bytes bands;
+  Bytes stack;  ///< the second core's
+  bool is_there = false;
+  bool was_last = false;  ///< what was sent last is `frame.sending` of these bands, not of Demo::bands
+  uint32_t crc = 0;
+
+  void take(const Bytes& core_stack, const Bytes& all_bands) {
+    stack = core_stack;
+    bands = all_bands;
+  }
+  void leave() { was_last = false; }
+};
+#else
+struct Crew {
+  void take(const Bytes& /*stack*/, const Bytes& /*bands*/) {}
+  void leave() {}
+};
+#endif
+
 struct Demo : Placed {
   Arena arena{port::arena()};
   ShownScene shown;
@@ -61,6 +85,7 @@ struct Demo : Placed {
   bool turns = true;
   bool tells_crc = false;
   bool second_band = false;  ///< of `bands` is next
+  [[no_unique_address]] Crew crew;
 
   // Holding a rate of frames.
   HeldFrame* held = nullptr;  ///< once it was asked for
@@ -93,6 +118,11 @@ const port::Display& display() {
 int32_t most_band_rows() {
   const int32_t rows = port::band_buffers() > 1 ? kBrickTilePx * kMostThinned : kBandRows;
   return display().height_px < rows ? display().height_px : rows;
+}
+
+/// Bytes of the bands that all cores draw, of which one takes `band_bytes`: one for each core beside what is sent.
+size_t crew_bands(size_t band_bytes) {
+  return all_bands(band_bytes) + band_bytes * static_cast<size_t>(port::cores() - 1);
 }
 
 /// A cross from corner to corner: what a display shows that cannot show a message. Without an arena to draw
@@ -149,10 +179,95 @@ Status draw(const Demo& demo, const Band& band) {
 
 void flush(Demo* demo, const Band& band, uint32_t* crc) {
   send_band(band, &demo->second_band);
+  demo->crew.leave();
   if (demo->tells_crc) {
     *crc = crc32(band.pixels, *crc);
   }
 }
+
+#if defined(THIMBLE_CORES)
+struct PortLock {
+  static void lock() { port::lock(); }
+  static void unlock() { port::unlock(); }
+};
+
+/// The bands of one core.
+[[gnu::noinline]] void draw_bands(Demo* demo, int core) {
+  Crew& crew = demo->crew;
+  const port::Display& screen = display();
+  const size_t memory_bytes = crew.bands.size / CrewFrame::kMemories;
+  const auto band_of = [&](uint8_t memory, int32_t row, int32_t rows) {
+    const size_t bytes = band_bytes(screen.format, screen.width_px, rows);
+    return Band{crew.bands.subspan(memory * memory_bytes, bytes), screen.format, 0, row, rows};
+  };
+  draw_share<PortLock>(
+      &crew.frame, core,
+      [&](uint8_t memory, int32_t row, int32_t rows) { return draw(*demo, band_of(memory, row, rows)); },
+      [&](uint8_t memory, int32_t row, int32_t rows) {
+        const Band band = band_of(memory, row, rows);
+        port::begin_flush(band);
+        crew.crc = demo->tells_crc ? crc32(band.pixels, crew.crc) : 0;
+      });
+}
+
+/// Called by the second core alone.
+void draw_other_bands(void* demo) {
+  draw_bands(static_cast<Demo*>(demo), 1);
+}
+
+/// As `draw_frame`, by both cores: in bands of half the memory, so that none of them waits long for the other's last.
+[[gnu::noinline]] Status draw_frame_together(Demo* demo, uint32_t* crc) {
+  Crew& crew = demo->crew;
+  CrewFrame& frame = crew.frame;
+  frame.height_px = display().height_px;
+  frame.band_rows = demo->band_rows > 2 * kBrickTilePx ? 2 * kBrickTilePx : demo->band_rows;
+  frame.in_order = demo->tells_crc;
+  if (!crew.was_last) {
+    frame.begin_after(demo->second_band ? 0 : 1);
+  }
+  frame.begin();
+  crew.crc = 0;
+  port::begin_share(draw_other_bands, demo);
+  draw_bands(demo, 0);
+  port::await_share();
+  crew.was_last = true;
+  demo->second_band = frame.sending == 0;
+  *crc = crew.crc;
+  return frame.status;
+}
+
+/// Whether both cores draw: not where a hand may stop a frame whose light is slow.
+bool draws_together(const Demo& demo) {
+  return demo.crew.is_there && (!kCanLight || !demo.is_lit || !demo.is_whole || demo.light.moves_whole());
+}
+
+/// Starts the second core with as much stack as this one has.
+[[gnu::noinline]] void start_crew(Demo* demo) {
+  demo->crew.is_there = !demo->crew.stack.empty() && port::start_core(demo->crew.stack);
+  put(demo->crew.is_there ? "two cores draw\n" : "one core draws\n");
+}
+
+void tell_crew(const Demo& demo) {
+  uint32_t unused = 0;
+  while (unused < demo.crew.stack.size && demo.crew.stack[unused] == port::kStackPaint) {
+    ++unused;
+  }
+  put("second core's stack: ");
+  put_number(static_cast<uint32_t>(demo.crew.stack.size) - unused);
+  put(" of ");
+  put_number(demo.crew.stack.size);
+  put(" bytes used\n");
+}
+#else
+bool draws_together(const Demo& /*demo*/) {
+  return false;
+}
+Status draw_frame_together(Demo* /*demo*/, uint32_t* /*crc*/) {
+  return Status::kOk;
+}
+void start_crew(Demo* /*demo*/) {}
+void tell_crew(const Demo& /*demo*/) {}
+#endif
 
 /// Draws and flushes a frame; `crc` gets that of its bytes. A hand on the buttons need not wait for one whose light is
 /// slow: the rest of it is then a fast one.
@@ -160,6 +275,13 @@ void flush(Demo* demo, const Band& band, uint32_t* crc) {
   const int32_t height = display().height_px;
   const uint32_t start = kCanLight ? port::instructions() : 0;
   *crc = 0;
+  if (port::kCanShare && draws_together(*demo)) {
+    const Status status = draw_frame_together(demo, crc);
+    if (kCanLight && demo->is_lit) {
+      demo->lit_instructions = port::instructions() - start;
+    }
+    return status;
+  }
   for (int32_t y = 0; y < height; y += demo->band_rows) {
     const Band band = band_at(*demo, y, height);
     const bool slow = kCanLight && demo->is_lit && demo->is_whole && !demo->light.moves_whole();
@@ -501,14 +623,20 @@ void tell_frame(const Demo& demo, uint32_t crc) {
 bool take_bands(Demo* demo) {
   const port::Display& screen = display();
   const size_t row = row_bytes(screen.format, screen.width_px);
+  Bytes stack;
+  if (port::cores() > 1 && demo->arena.free_bytes() > 8 * port::facts().stack_bytes) {
+    stack = demo->arena.take(port::facts().stack_bytes);
+  }
   demo->band_rows = most_band_rows();
   while (demo->band_rows > band_row_multiple(screen.format) &&
-         all_bands(band_bytes(screen.format, screen.width_px, demo->band_rows)) >
+         crew_bands(band_bytes(screen.format, screen.width_px, demo->band_rows)) >
              demo->arena.free_bytes() / 2) {
     --demo->band_rows;
   }
-  demo->bands =
-      demo->arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, demo->band_rows))));
+  const size_t one = row * row_place(screen.format, whole_rows(screen.format, demo->band_rows));
+  const Bytes bands = demo->arena.take(crew_bands(one));
+  demo->bands = bands.subspan(0, all_bands(one));
+  demo->crew.take(stack, bands);
   return !demo->bands.empty();
 }
 
@@ -527,6 +655,7 @@ bool take_bands(Demo* demo) {
   if (!take_bands(demo)) {
     return "the arena does not hold a row of the picture";
   }
+  start_crew(demo);
   show_baked(demo);
   demo->lights = demo->light.effects() != Effect::kNone;
   demo->turns = !demo->lights || demo->light.is_fast;
@@ -591,6 +720,7 @@ int demo() {
     put_number(demo->lit_instructions);
     put("\n");
   }
+  tell_crew(*demo);
   return 0;
 }
 

@@ -36,6 +36,7 @@ struct BoardFacts {
   uint32_t core_mhz;
   uint32_t frame_instructions;  ///< of the demonstration, the median of its golden frames (bench)
   int32_t band_buffers;         ///< port::band_buffers()
+  int32_t cores;                ///< port::cores()
   AppStack app_stacks[5];       ///< those that there are, then empty ones
 };
 

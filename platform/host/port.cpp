@@ -62,6 +62,10 @@ int32_t band_buffers() {
   return here().band_buffers;
 }
 
+int32_t cores() {
+  return here().cores;
+}
+
 bool draw(const CompactTree& tree, const Camera& camera, const Shading& shading, const Band& band) {
   host::Simulation::State& state = here();
   if (state.frame.begins_with(tree, camera, shading, band,

@@ -207,6 +207,7 @@ Simulation::State::State(const SimulationOptions& options)
             options.board->visits_a_second,
             options.hold_fps},
       band_buffers(options.board->band_buffers),
+      cores(options.board->cores),
       arena(options.board->ram_bytes - options.board->stack_bytes, kRamPaint),
       flash((options.scene.size + kFlashAlignment - 1) / kFlashAlignment * kFlashAlignment, 0),
       scene(flash.bytes().subspan(0, options.scene.size)),

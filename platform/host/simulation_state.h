@@ -46,6 +46,7 @@ struct Simulation::State {
   int (*application)();
   port::Facts facts;
   std::int32_t band_buffers;
+  std::int32_t cores;
   GuardedBytes arena;
   GuardedBytes flash;
   ConstBytes scene;  ///< in it; aligned as on the board, so up to 7 bytes lie behind it

@@ -31,7 +31,10 @@ IFS=, read -r _ _ flash ram stack _ <"$work/$app.memory.csv"
 painted=$(sed -n 's/^stack: \([0-9]*\) of [0-9]* bytes used.*/\1/p' "$log" | tail -n 1)
 graphs=$(find "$work/CMakeFiles/$app.dir" "$work"/CMakeFiles/thimble*.dir "$work/src" -name '*.ci')
 bound_log=$work/$app.stack
-if "$THIMBLE_FIRMWARE/stack_bound" --image thimble_run thimble_systick "$symbols" $graphs >"$bound_log" 2>"$bound_log.err"; then
+# A second core has a stack of its own, and no interrupts.
+other=
+grep -qx thimble_second_core "$symbols" && other=,thimble_second_core
+if "$THIMBLE_FIRMWARE/stack_bound" --image "thimble_run$other" thimble_systick "$symbols" $graphs >"$bound_log" 2>"$bound_log.err"; then
   bound=$(head -n 1 "$bound_log")
 else
   bound=0
@@ -40,6 +43,21 @@ fi
 [ -n "$painted" ] || { painted=0 && complain "it did not say how much stack it used"; }
 [ "$painted" -le "$bound" ] || complain "used $painted bytes of stack, more than the bound $bound"
 [ "$bound" -le "$stack" ] || complain "may need $bound bytes of stack, the board keeps $stack"
+if [ -n "$other" ]; then
+  core_painted=$(sed -n "s/^second core's stack: \([0-9]*\) of [0-9]* bytes used.*/\1/p" "$log" | tail -n 1)
+  core_kept=$(sed -n "s/^second core's stack: [0-9]* of \([0-9]*\) bytes used.*/\1/p" "$log" | tail -n 1)
+  core_bound=0
+  if "$THIMBLE_FIRMWARE/stack_bound" --image thimble_second_core,thimble_run none "$symbols" $graphs >"$bound_log.core" 2>"$bound_log.err"; then
+    core_bound=$(head -n 1 "$bound_log.core")
+  else
+    complain "no bound of the second core's stack: $(head -n 3 "$bound_log.err" | tr '\n' ' ')"
+  fi
+  [ "${core_painted:-0}" -gt 0 ] || complain "it did not say how much stack the second core used"
+  [ "${core_painted:-0}" -le "$core_bound" ] || complain "the second core used $core_painted bytes of stack, more than the bound $core_bound"
+  [ "$core_bound" -le "${core_kept:-0}" ] || complain "the second core may need $core_bound bytes of stack, it has $core_kept"
+  # No budget of its own: it does a part of what the first does.
+  [ "$core_bound" -le "$bound" ] || complain "the second core may need $core_bound bytes of stack, the first $bound"
+fi
 echo "$board,$app,$flash,$ram,$bound,$painted" >>"$measured"
 
 row=$(grep "^$board,$app," tests/budgets/firmware.csv || true)
@@ -56,5 +74,5 @@ ROW
     [ "$painted" -le "$most_painted" ] || complain "stack used: $painted bytes, budget $most_painted"
   fi
 fi
-echo "flash $flash, data and bss $ram, stack $painted used, $bound at most, $stack kept"
+echo "flash $flash, data and bss $ram, stack $painted used, $bound at most, $stack kept${other:+; second core: $core_painted used, $core_bound at most}"
 exit $failed

@@ -21,8 +21,12 @@ if [ "${1:-}" = --job ]; then
       lm3s6965evb)
         sh "$here/effects.sh" || status=1
         sh "$here/own_scene.sh" || status=1
+        sh "$here/water.sh" || status=1
         ;;
-      pico) sh "$here/uf2.sh" pico || status=1 ;;
+      pico)
+        sh "$here/cores.sh" pico || status=1
+        sh "$here/uf2.sh" pico || status=1
+        ;;
       gba) sh "$here/cartridge.sh" gba || status=1 ;;
     esac
   } >"$log" 2>&1

@@ -118,6 +118,21 @@ for name in layering words format headers arduino one_unit tidy core.host core.c
   passes $name
 done
 
+# The table of boards repeats the budgets.
+mkdir -p "$tree/platform" "$tree/tests/budgets"
+board_tree() {
+  printf 'some,demo,2048,8,%s,64\n' "$1" >"$tree/tests/budgets/firmware.csv"
+  printf '| some | core | RAM | 2 KiB | 64, 1,280 | text |\n' >"$tree/platform/README.md"
+}
+board_tree 1280
+passes board_rows
+board_tree 1344
+catches board_rows 'the budgets say: | some | core | RAM | 2 KiB | 64, 1,344 | text |'
+mkdir -p "$tree/platform" "$tree/tests/budgets"
+board_tree 1280
+echo 'other,demo,2048,8,1280,64' >>"$tree/tests/budgets/firmware.csv"
+catches board_rows 'has no row for other'
+
 fresh
 add include/thimble/base/sum.h '#include <string.h>'
 catches layering 'the core includes more'
@@ -317,7 +332,7 @@ node() {
 }
 edge() { echo "edge: { sourcename: \"$1\" targetname: \"$2\" }"; }
 image() {
-  "$stack_bound" --image root tick "$work/kept" "$graph" >"$log" 2>&1
+  "$stack_bound" --image "${cores:-root}" tick "$work/kept" "$graph" >"$log" 2>&1
 }
 {
   node root 8; node file.cpp:_ZN5ThingC2Ev 100; node deep 24; node taken 200; node dropped 4000; node tick 16
@@ -334,6 +349,19 @@ wants() {
 wants 'a constructor, an interrupt' $((8 + 100 + 24 + 64 + 36 + 16))
 edge deep __indirect_call >>"$graph"
 wants 'a call through a pointer' $((8 + 100 + 24 + 200 + 64 + 36 + 16))
+# Where another core begins nobody calls, and it is no one's call through a pointer.
+{ node second 500; edge second __indirect_call; } >>"$graph"
+echo second >>"$work/kept"
+if image || ! grep -q 'is recursive' "$log"; then
+  cat "$log"
+  echo "selftest: the loop of another core should count as called through a pointer, unless it is named" >&2
+  failed=1
+fi
+cores=root,second
+wants 'another core' $((8 + 100 + 24 + 200 + 64 + 36 + 16))
+cores=second,root
+wants 'the other core itself' $((500 + 200 + 64 + 36 + 16))
+cores=root,second
 edge deep nowhere >>"$graph"
 if image || ! grep -q 'nowhere is called, and has no call graph' "$log"; then
   cat "$log"

@@ -1,12 +1,13 @@
 // The worst stack of every function of the core, from gcc's call graphs (-fcallgraph-info=su,da).
 //
 //   stack_bound TARGET STACK.csv GRAPH.ci...
-//   stack_bound --image ROOT INTERRUPT SYMBOLS GRAPH.ci...
+//   stack_bound --image ROOT[,OTHER] INTERRUPT SYMBOLS GRAPH.ci...
 //
 // The second form prints one number, the bytes that a whole image can need: from the function ROOT on, with
 // the handler INTERRUPT (and the frame that an exception pushes) on top wherever it strikes. SYMBOLS names
 // the functions that the linker kept, one a line. A call through a pointer counts as the worst of all kept
-// functions that nobody calls by name: those whose address somebody takes are among them.
+// functions that nobody calls by name: those whose address somebody takes are among them. `ROOT,OTHER` names where
+// another core begins, on a stack of its own: nobody calls that.
 //
 // A graph is a list of `node: { title: "id" label: "name\nplace\nN bytes (kind)\n..." }` and of
 // `edge: { sourcename: "id" targetname: "id" ... }`. Functions local to a file have `file:` before their id.
@@ -161,7 +162,9 @@ class Graph {
   }
 
   // Prints what an image needs from `root` on; the number of faults.
-  int judge_image(const std::string& root, const std::string& interrupt, const std::set<std::string>& kept) {
+  int judge_image(const std::string& roots, const std::string& interrupt, const std::set<std::string>& kept) {
+    const std::vector<std::string> starts = split(roots, ",");
+    const std::string& root = starts[0];
     std::set<std::string> called;
     for (const auto& [id, function] : functions_) {
       if (kept.contains(symbol_of(id))) {
@@ -171,7 +174,7 @@ class Graph {
     Function& indirect = functions_[kIndirectCall];
     for (const auto& [id, function] : functions_) {
       if (function.defined && kept.contains(symbol_of(id)) && !called.contains(id) && !joined_.contains(id) &&
-          id != root && id != interrupt) {
+          std::find(starts.begin(), starts.end(), id) == starts.end() && id != interrupt) {
         indirect.callees.insert(id);
       }
     }

@@ -23,9 +23,11 @@ set(BOARD_VISITS_A_SECOND 150000)
 set(BOARD_FRAME_INSTRUCTIONS 22457377)
 set(BOARD_HOLDS_FPS 25)
 set(BOARD_BAND_BUFFERS 2)
+set(BOARD_CORES 2)
 # A write to flash is a write to the cache's line and goes nowhere. When the stack overflows, the core cannot push the exception,
 # and Armv6-M locks up.
 set(BOARD_CATCHES ram nonsense scene)
 set(BOARD_LOCKS_UP stack)
 # The chip and its code are the pico's, which runs all of them.
 set(BOARD_TESTS "golden demo bench")
+set(BOARD_DEMO_EFFECTS direct-light,shadows)

@@ -22,6 +22,7 @@ set(BOARD_VISITS_A_SECOND 150000)
 set(BOARD_FRAME_INSTRUCTIONS 16800000)
 set(BOARD_HOLDS_FPS 30)
 set(BOARD_BAND_BUFFERS 2)
+set(BOARD_CORES 2)
 # A write to flash is a write to the cache's line and goes nowhere. When the stack overflows, the core cannot push the exception,
 # and Armv6-M locks up.
 set(BOARD_CATCHES ram nonsense scene)

@@ -21,6 +21,10 @@ inline constexpr uint32_t kBlockPllSys = 1U << 12;
 inline constexpr uint32_t kBlockSpi1 = 1U << 17;
 inline constexpr uint32_t kBlockUart0 = 1U << 22;
 
+// Power-on state machine, 2.13: what is forced off is in reset.
+inline constexpr uintptr_t kPsmForceOff = 0x40010004;
+inline constexpr uint32_t kPsmCore1 = 1U << 16;
+
 // Crystal oscillator, 2.16.
 inline constexpr uintptr_t kXoscCtrl = 0x40024000;
 inline constexpr uint32_t kXoscEnable = 0xFABU << 12 | 0xAA0U;  ///< on, 1 to 15 MHz
@@ -70,6 +74,14 @@ inline constexpr uintptr_t kSioIn = 0xD0000004;
 inline constexpr uintptr_t kSioOutSet = 0xD0000014;
 inline constexpr uintptr_t kSioOutClear = 0xD0000018;
 inline constexpr uintptr_t kSioEnableSet = 0xD0000024;
+
+// What the two cores have for each other, 2.3.1: a FIFO of 8 words each way, and locks.
+inline constexpr uintptr_t kSioFifoStatus = 0xD0000050;
+inline constexpr uint32_t kSioFifoFilled = 1U << 0;  ///< a word waits to be read
+inline constexpr uint32_t kSioFifoRoom = 1U << 1;    ///< a word may be written
+inline constexpr uintptr_t kSioFifoWrite = 0xD0000054;
+inline constexpr uintptr_t kSioFifoRead = 0xD0000058;
+inline constexpr uintptr_t kSioLock = 0xD0000100;  ///< read: 0 when the other core has it; written: free
 
 inline constexpr uintptr_t kUart0 = 0x40034000;  ///< a PL011, 4.2
 
