@@ -20,6 +20,8 @@
 namespace {
 
 using namespace thimble;
+using tests::board_of;
+using tests::flagship;
 using tests::Hand;
 
 const tools::Baked& dig_scene() {
@@ -49,15 +51,6 @@ std::vector<long> voxels_told(const std::string& out) {
     voxels.push_back(std::atol(out.c_str() + at + 9));
   }
   return voxels;
-}
-
-const platform::BoardFacts& board_of(const char* name) {
-  const platform::BoardFacts* board = platform::find_board(name);
-  REQUIRE(board != nullptr);
-  return *board;
-}
-const platform::BoardFacts& flagship() {
-  return board_of("lm3s6965evb");
 }
 
 constexpr long kBite = 19;

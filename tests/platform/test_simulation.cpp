@@ -19,17 +19,13 @@
 #include "host/strict_display.h"
 #include "host/y4m.h"
 #include "port.h"
+#include "support/simulated_run.h"
 
 namespace {
 
 using namespace thimble;
 using namespace thimble::host;
-
-const platform::BoardFacts& flagship() {
-  const platform::BoardFacts* board = platform::find_board("lm3s6965evb");
-  REQUIRE(board != nullptr);
-  return *board;
-}
+using tests::flagship;
 
 // The application of the test that runs; a simulation takes plain functions only.
 struct SimRan {

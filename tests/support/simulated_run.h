@@ -3,14 +3,28 @@
 #ifndef THIMBLE_TESTS_SUPPORT_SIMULATED_RUN_H
 #define THIMBLE_TESTS_SUPPORT_SIMULATED_RUN_H
 
+#include <doctest/doctest.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "boards/board_table.h"
 #include "host/simulation.h"
 
 namespace thimble::tests {
+
+/// A board's facts; without them the test ends.
+inline const platform::BoardFacts& board_of(const char* name) {
+  const platform::BoardFacts* board = platform::find_board(name);
+  REQUIRE(board != nullptr);
+  return *board;
+}
+/// The board that most cases are of.
+inline const platform::BoardFacts& flagship() {
+  return board_of("lm3s6965evb");
+}
 
 struct Hand {
   std::map<std::uint32_t, std::string> keys;       ///< by the frame before which they come over the UART
