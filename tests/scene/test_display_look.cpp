@@ -42,9 +42,10 @@ TEST_CASE(
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
   CHECK(baked_for(kOled).effects == (kSun | Effect::kEdges));
   CHECK(baked_for(DisplayFacts{PixelFormat::kMono1, 128, 64}).effects == (kSun | Effect::kEdges));
-  CHECK(baked_for(DisplayFacts{PixelFormat::kRgb565, 240, 240}).effects == kSun);
-  CHECK(baked_for(DisplayFacts{PixelFormat::kGray8, 240, 240}).effects == kSun);
-  CHECK(baked_for(std::nullopt).effects == kSun);
+  // Many colours get something light behind the scene.
+  CHECK(baked_for(DisplayFacts{PixelFormat::kRgb565, 240, 240}).effects == (kSun | Effect::kSky));
+  CHECK(baked_for(DisplayFacts{PixelFormat::kGray8, 240, 240}).effects == (kSun | Effect::kSky));
+  CHECK(baked_for(std::nullopt).effects == (kSun | Effect::kSky));
   CHECK(baked_for(kOled, false).effects == Effect::kNone);
 }
 

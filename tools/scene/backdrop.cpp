@@ -9,9 +9,6 @@
 namespace thimble::tools {
 namespace {
 
-constexpr Rgb8 kSoftTop{150, 168, 190};
-constexpr Rgb8 kSoftBottom{226, 224, 218};
-
 std::uint8_t between(std::uint8_t from, std::uint8_t to, std::int32_t part, std::int32_t whole) {
   return static_cast<std::uint8_t>((from * (whole - part) + to * part + whole / 2) / whole);
 }

@@ -13,6 +13,11 @@ namespace thimble::tools {
 
 class LitStreams;
 
+/// The gradient behind a scene, from top to bottom.
+inline constexpr Rgb8 kSoftTop{150, 168, 190};
+inline constexpr Rgb8 kSoftBottom{226, 224, 218};
+inline constexpr Rgb8 kSoftMiddle{188, 196, 204};
+
 /// Light that a ray finds behind the scene: kFullShare as it is, less in shadow.
 inline constexpr std::uint8_t kFullShare = 254;
 
