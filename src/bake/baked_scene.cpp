@@ -35,9 +35,11 @@ constexpr uint32_t kSpan = 56;
 constexpr uint32_t kCameraBytes = 60;
 
 constexpr SectionKind kKinds[] = {SectionKind::kTree,     SectionKind::kPalette, SectionKind::kCamera,
-                                  SectionKind::kBrickMap, SectionKind::kName,    SectionKind::kLighting};
+                                  SectionKind::kBrickMap, SectionKind::kName,    SectionKind::kLighting,
+                                  SectionKind::kLook};
 
-constexpr uint32_t kKindCount = sizeof kKinds / sizeof *kKinds;  // they are numbered from 1
+// Those that a reader must know are numbered from 1.
+constexpr uint32_t kKindCount = static_cast<uint32_t>(SectionKind::kLighting);
 
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
@@ -152,6 +154,8 @@ size_t section_bytes(const BakedParts& parts, SectionKind kind) {
       return parts.name.size;
     case SectionKind::kLighting:
       return parts.lighting.size;
+    case SectionKind::kLook:
+      return parts.look.size;
   }
   return 0;
 }
@@ -185,6 +189,9 @@ void write_section(uint8_t* to, const BakedParts& parts, SectionKind kind) {
       return;
     case SectionKind::kLighting:
       copy(to, parts.lighting);
+      return;
+    case SectionKind::kLook:
+      copy(to, parts.look);
       return;
   }
 }
@@ -285,6 +292,7 @@ const char* BakedScene::read(ConstBytes bytes, BakedScene* scene, uint32_t* plac
         break;
       case SectionKind::kBrickMap:
       case SectionKind::kLighting:
+      case SectionKind::kLook:
         break;  // whoever uses it opens it
     }
   }
@@ -341,7 +349,8 @@ ConstBytes BakedScene::section(SectionKind kind) const {
 
 size_t baked_bytes(const BakedParts& parts) {
   if (parts.palette.size > kMaxPaletteColors || parts.name.size > kMaxNameBytes ||
-      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX || parts.lighting.size > UINT32_MAX) {
+      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX || parts.lighting.size > UINT32_MAX ||
+      parts.look.size > UINT32_MAX) {
     return SIZE_MAX;
   }
   uint64_t bytes = kBakedHeaderBytes;

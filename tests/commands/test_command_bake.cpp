@@ -13,6 +13,7 @@
 #include "boards/board_table.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
+#include "support/baked_damage.h"
 #include "support/check_command.h"
 #include "support/file_bytes.h"
 #include "thimble/bake/baked_scene.h"
@@ -144,6 +145,59 @@ TEST_CASE(
   check_ok({"bake", mesh, "--depth", "5", "-o", oct, "--quiet"});
   const CommandResult said = run_command({"info", oct});
   CHECK(said.out.find("smooth-normals") != std::string::npos);
+}
+
+TEST_CASE(
+    "bake: without a word -> the baked scene's picture without a word is that of its file, byte for byte") {
+  const TemporaryFolder folder;
+  const std::string oct = folder.path("s.oct");
+  const Words small{"--size", "80x60"};
+  std::string strewn;
+  for (int i = 0; i < 300; ++i) {
+    strewn += std::to_string(i * 37 % 101) + " " + std::to_string(i * 53 % 97) + " " +
+              std::to_string(i * 29 % 89) + "\n";
+  }
+  const std::vector<std::string> scenes{
+      folder.write("s.vox", small_vox()),  // colours
+      folder.write("s.obj", "v 0 0 0\nv 9 0 0\nv 0 9 3\nv 4 4 9\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"),
+      folder.write("s.xyz", strewn),  // stars
+      folder.write("glass.scene",
+                   "depth 5\nmaterial clear glass color 215 240 232 index 1.5\nmaterial red color 200 40 30\n"
+                   "material gold metal color 230 190 80\nmaterial glow emit color 250 220 90 emission 2\n"
+                   "box red from 2 2 0 to 30 30 3\nball clear at 10 16 10 radius 6\n"
+                   "ball gold at 22 12 8 radius 5\nbox glow from 20 22 3 to 24 26 6\n"),
+      folder.write("lamp.scene",
+                   "depth 5\nlamp at 4 4 28\nmaterial red color 200 40 30\nbox red from 2 2 0 to 30 30 9\n"),
+      folder.write("off.scene",
+                   "depth 5\neffects off ambient-occlusion shadows\nmaterial red color 200 40 30\n"
+                   "box red from 2 2 0 to 30 30 9\nbox red from 9 9 9 to 14 14 20\n")};
+  for (const std::string& scene : scenes) {
+    CAPTURE(scene);
+    check_ok({"bake", scene, "--depth", "5", "-o", oct, "--quiet"});
+    const std::string own = render(folder, scene, joined({"--depth", "5"}, small));
+    CHECK(render(folder, oct, small, "baked.ppm") == own);
+    CHECK(render(folder, oct, joined({"--view", "left", "--ground", "off"}, small)) ==
+          render(folder, scene, joined({"--view", "left", "--ground", "off", "--depth", "5"}, small)));
+    check_ok({"bake", oct, "-o", folder.path("again.oct"), "--quiet"});
+    CHECK(render(folder, folder.path("again.oct"), small) == own);
+  }
+  // What was asked for is what is drawn; so is what suits a display.
+  const auto looks = [&](const Words& options) {
+    check_ok(joined({"bake", scenes[0], "-o", oct, "--quiet"}, options));
+    return open_text(read_text(oct)).section(SectionKind::kLook).size;
+  };
+  CHECK(looks({}) == 12);
+  CHECK(looks({"--effects", "auto"}) == 0);
+  CHECK(looks({"--board", "raspi0"}) == 0);
+  // A note of another version or size says nothing: then the scene is lit as it was baked.
+  CHECK(looks({}) == 12);
+  std::string bytes = read_text(oct);
+  const std::size_t at = static_cast<std::size_t>(open_text(bytes).section(SectionKind::kLook).data -
+                                                  reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  const std::string own = render(folder, oct, small);
+  bytes[at] = 2;
+  repair_baked_checksums({reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()});
+  CHECK(render(folder, folder.write("other.oct", bytes), small) != own);
 }
 
 TEST_CASE("bake: traced, hits and statistics -> those of the scene itself, node visits included") {

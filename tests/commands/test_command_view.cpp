@@ -9,6 +9,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -109,6 +111,18 @@ bool can_test(const VirtualDisplay& display) {
 bool point_into(const VirtualDisplay& display) {
   return display.xdotool("search --sync --onlyvisible --name '^thimble: '") &&
          display.xdotool("mousemove 60 60");
+}
+
+// What a window of 640 x 480 shows beside its text.
+std::string shown(const VirtualDisplay& display) {
+  std::string grid;
+  for (int y = 250; y < 470; y += 20) {
+    for (int x = 330; x < 630; x += 20) {
+      const thimble::Rgb8 pixel = display.pixel(x, y);
+      grid += {static_cast<char>(pixel.r), static_cast<char>(pixel.g), static_cast<char>(pixel.b)};
+    }
+  }
+  return grid;
 }
 
 // A shell's words of a printed command; none of those here is quoted.
@@ -393,6 +407,48 @@ TEST_CASE(
   const double stopped = frame_saved("walk-" + std::to_string(taken - 3) + ".png");
   CHECK(display.xdotool("sleep 0.5"));
   CHECK(frame_saved("walk-" + std::to_string(taken - 2) + ".png") == stopped);
+  REQUIRE(display.xdotool("key Escape"));
+  CHECK(viewing.wait() == 0);
+  CHECK(viewing.err().empty());
+}
+
+TEST_CASE("view: water -> still; space lets it rain, space again lays it to rest as render draws it") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing viewing(folder, {"water,depth=5", "--size", "640x480", "--samples", "1"});
+  REQUIRE(point_into(display));
+  // Whether nothing moves for half a second, within twenty.
+  std::string still;
+  const auto rests = [&] {
+    return wait_until(20, [&] {
+      still = shown(display);
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      return still == shown(display);
+    });
+  };
+  REQUIRE(rests());
+  const std::string own = still;
+  REQUIRE(display.xdotool("key space"));
+  // One place takes more colours than water at rest has by the viewer's sizes of pixels.
+  std::map<std::size_t, std::set<std::string>> colors;
+  CHECK(wait_until(20, [&] {
+    const std::string now = shown(display);
+    bool many = false;
+    for (std::size_t at = 0; at < now.size(); at += 3) {
+      colors[at].insert(now.substr(at, 3));
+      many = many || colors[at].size() > 24;
+    }
+    return many;
+  }));
+  REQUIRE(display.xdotool("key space"));
+  CHECK(rests());
+  CHECK(still == own);
+  REQUIRE(display.xdotool("key s"));
+  REQUIRE(viewing.prints("-o water-depth-5.png"));
+  check_same_picture(folder, line_with(viewing.out(), "-o water-depth-5.png"));
   REQUIRE(display.xdotool("key Escape"));
   CHECK(viewing.wait() == 0);
   CHECK(viewing.err().empty());

@@ -3,12 +3,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <vector>
 
+#include "scene/backdrop.h"
 #include "scene/baking.h"
+#include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/display_look.h"
 #include "scene/framing.h"
+#include "scene/host_memory.h"
+#include "scene/lit_streams.h"
 #include "scene/scene_shape.h"
 #include "scene/tone.h"
 #include "support/lit_world.h"
@@ -42,9 +47,10 @@ TEST_CASE(
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
   CHECK(baked_for(kOled).effects == (kSun | Effect::kEdges));
   CHECK(baked_for(DisplayFacts{PixelFormat::kMono1, 128, 64}).effects == (kSun | Effect::kEdges));
-  CHECK(baked_for(DisplayFacts{PixelFormat::kRgb565, 240, 240}).effects == kSun);
-  CHECK(baked_for(DisplayFacts{PixelFormat::kGray8, 240, 240}).effects == kSun);
-  CHECK(baked_for(std::nullopt).effects == kSun);
+  // Many colours get something light behind the scene.
+  CHECK(baked_for(DisplayFacts{PixelFormat::kRgb565, 240, 240}).effects == (kSun | Effect::kSky));
+  CHECK(baked_for(DisplayFacts{PixelFormat::kGray8, 240, 240}).effects == (kSun | Effect::kSky));
+  CHECK(baked_for(std::nullopt).effects == (kSun | Effect::kSky));
   CHECK(baked_for(kOled, false).effects == Effect::kNone);
 }
 
@@ -93,6 +99,44 @@ TEST_CASE(
       // No more than four times as bright.
       CHECK(bright <= 250);
       CHECK((bright >= 236 || lit.lights[0].color_q8[0] == 4 * strength));
+    }
+  }
+}
+
+TEST_CASE("backdrop: light on the ground by vectors -> what the core finds, ray by ray") {
+  for (const char* const name : {"spheres", "points:3000"}) {
+    CAPTURE(name);
+    const auto source = open_scene({.scene = name, .depth = 5});
+    const BuiltScene built(*source, {}, {});
+    const CompactTree& tree = built.compact();
+    ViewWishes view;
+    view.width_px = 96;
+    view.height_px = 72;
+    const Camera camera = frame_scene(view, *source, shape_of(tree)).camera;
+    LitScene scene;
+    const EffectSet effects = Effect::kDirectLight | Effect::kShadows;
+    HostMemory memory(LitStreams::bytes(tree, effects, scene, 1) + 4096);
+    Arena arena(memory.bytes());
+    const auto streams = LitStreams::make(tree, &arena, effects, scene, 1);
+    Look look;
+    look.has_ground = true;
+    look.toward_sun = {-300, -200, 500};
+    look.reach = 9;
+    std::vector<Ray> rays;
+    for (std::int32_t y = 0; y < 72; ++y) {
+      for (std::int32_t x = 0; x < 96; ++x) {
+        rays.push_back(camera.ray(x, y));
+      }
+    }
+    // Under the model, within it, and far above what is seen.
+    for (const std::int32_t ground_z : {tree.bounds().low.z, 7, 31}) {
+      look.ground_z = ground_z;
+      std::vector<std::uint8_t> core(rays.size());
+      std::vector<std::uint8_t> vectors(rays.size());
+      find_light_behind(tree, look, nullptr, {rays.data(), rays.size()}, core.data());
+      find_light_behind(tree, look, streams.get(), {rays.data(), rays.size()}, vectors.data());
+      CHECK(core == vectors);
+      CHECK(std::set<std::uint8_t>(core.begin(), core.end()).size() > 3);  // shadows and corners
     }
   }
 }

@@ -13,6 +13,7 @@
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
 #include "viewer/magnify.h"
+#include "viewer/moving_pool.h"
 #include "viewer/pace.h"
 #include "viewer/picking.h"
 #include "viewer/refinement.h"
@@ -193,6 +194,39 @@ TEST_CASE("fast frames: same view -> wide and rays show the same things; water i
     }
     CHECK(differ < 3 * 160 * 120 / 20);
   }
+}
+
+TEST_CASE(
+    "moving pool: rain -> rings that run on from frame to frame, the same in every run; shown in their "
+    "place") {
+  const auto scene = scene_of("water,depth=5");
+  const auto look = std::make_shared<const FinishedLook>(scene, viewer::LookWishes{});
+  FinishedPicture picture(look, view_of(96, 72));
+  REQUIRE(picture.water() != nullptr);
+  const auto drawn = [&] {
+    std::vector<std::uint8_t> rgb(std::size_t{3} * 96 * 72);
+    for (std::int32_t y = 0; y < 72; ++y) {
+      picture.draw_quick_row(1, y, rgb.data() + std::size_t{3} * 96 * static_cast<std::size_t>(y));
+    }
+    return rgb;
+  };
+  const std::vector<std::uint8_t> at_rest = drawn();
+  MovingPool pool(scene->tree(), *picture.water());
+  MovingPool again(scene->tree(), *picture.water());
+  std::vector<std::uint8_t> before = at_rest;
+  for (std::uint32_t frame = 0; frame <= MovingPool::kDropFrames; ++frame) {
+    CAPTURE(frame);
+    pool.step();
+    again.step();
+    picture.show_water(again.surface());
+    const std::vector<std::uint8_t> twin = drawn();
+    picture.show_water(pool.surface());
+    const std::vector<std::uint8_t> now = drawn();
+    CHECK(now == twin);
+    CHECK((frame == 0 || now != before));  // the first drop has hardly fallen
+    before = now;
+  }
+  CHECK(before != at_rest);
 }
 
 TEST_CASE("picking: a voxel seen from the front -> its name, its face and its colour; beside it nothing") {

@@ -45,6 +45,9 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   options.default_look = source.baked() == nullptr && !parse_generator(command.scene.arguments.scene);
   if (const platform::BoardFacts* const board = command.scene.board) {
     options.display = DisplayFacts{board->format, board->width_px, board->height_px};
+  } else {
+    options.keeps_look = options.default_look;
+    options.display = DisplayFacts{PixelFormat::kRgb888, command.view.width_px, command.view.height_px};
   }
   options.camera = [&command, &source, note](const CompactTree& tree) {
     Framing framing = frame_scene(command.view, source, shape_of(tree));
@@ -207,8 +210,10 @@ void add_bake(CLI::App& app) {
       *sub, &command->effects,
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
       "commas between them; a header states the set as a macro, so that firmware holds no others (default: "
-      "auto, for a file that states no light a sun over the viewer's shoulder with shadows, for a mesh "
-      "smooth-normals, and for a board's display of few greys edges)",
+      "auto, for a file that states no light a sun over the viewer's shoulder with shadows and a light "
+      "sky, for a mesh smooth-normals, and for a board's display of few greys edges instead of the sky; the "
+      "ground, which is no voxels, and the gentle end of bright tones are drawn by thimble render, for the "
+      "baked scene as for its file, and never by a chip)",
       false);
   add_text_option(
       *sub, "--name", "IDENT",

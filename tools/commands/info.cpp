@@ -126,6 +126,7 @@ void describe(const BakedScene& baked, const Row& row) {
   section("brick map", SectionKind::kBrickMap);
   section("name", SectionKind::kName);
   section("lighting", SectionKind::kLighting);
+  section("look", SectionKind::kLook);
   row("sections", sections + "rest " + grouped(baked.bytes().size - content));
   row("palette entries", std::to_string(baked.palette().size));
   row("camera", baked.has_camera() ? describe(baked.camera()) : "none");

@@ -48,20 +48,7 @@ $thimble sim "$out/scenes/waves.scene" --board raspi0 --display none --frames 10
 ffmpeg -loglevel error -y -i "$out/waves.y4m" -vf "fps=12.5,scale=320:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=112[p];\
 [b][p]paletteuse=dither=none:diff_mode=rectangle" "$out/waves.gif"
 rm "$out/waves.y4m"
-# The sheet of README.md here: twelve scenes without a word on how (ImageMagick).
-sheet=$(mktemp -d)
-sheet_of() {
-  number=10
-  for scene in "$@"; do
-    $thimble render "$scene" --size 240x180 --quiet -o "$sheet/$number.png"
-    number=$((number + 1))
-  done
-}
-sheet_of "$scenes/castle.vox" demo "$scenes/glass.scene" "$scenes/room.scene" "$scenes/lagoon.scene" spheres \
-  "$data/mesh/dragon_vrip_res2.ply.gz" water "$data/nbody/galaxy_littleendian.dat" cluster:200000 points:20000 \
-  "${STARS:-stars.xyz}"
-montage "$sheet"/*.png -tile 3x4 -geometry +0+0 "$out/defaults.png"
-rm -r "$sheet"
+sh "$out/sheet.sh" "$thimble" "$data"
 # simulator.png is the window of: thimble sim demo
 
 # The studies of tools/README.md. Their titles are the names of the files, so they run where these lie.

@@ -11,6 +11,7 @@
 #include "scene/default_look.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
+#include "scene/look_note.h"
 #include "scene/paths.h"
 #include "scene/scene_source.h"
 #include "thimble/tree/brick_map.h"
@@ -87,19 +88,13 @@ class Assembly {
     const UsedMaterials used = used_materials(tree);
     const bool by_rule = options.default_look && !options.effects.is_given && options.camera;
     if (by_rule) {
-      Framing framing;
-      framing.kept = camera_;
-      const SceneFacts facts = facts_of(source, lit, shape_of(tree));
-      lit = baked_look(facts, framing);
-      if (is_clay(facts)) {
-        std::fill(palette_.begin(), palette_.end(), kClay);
-        parts_.palette = {palette_.data(), palette_.size()};
+      light_by_rule(source, options, tree, used, &lit);
+    } else {
+      lit.find_glow(tree);
+      effects_ = chosen_effects(lit, used, options.effects);
+      if (const std::optional<LookNote> note = source.look_note(); note && !options.effects.is_given) {
+        keep(*note);  // baked again
       }
-    }
-    lit.find_glow(tree);
-    effects_ = chosen_effects(lit, used, options.effects);
-    if (by_rule && options.display && effects_ != Effect::kNone) {
-      suit(*options.display, tree, used, &lit);
     }
     lighting_ = lighting_section(lit, used, effects_, tree.level());
     parts_.lighting = {lighting_.data(), lighting_.size()};
@@ -139,6 +134,42 @@ class Assembly {
   }
 
  private:
+  void light_by_rule(const SceneSource& source, const BakingOptions& options, const CompactTree& tree,
+                     const UsedMaterials& used, LitDescription* lit) {
+    Framing framing;
+    framing.kept = camera_;
+    const SceneFacts facts = facts_of(source, *lit, shape_of(tree));
+    *lit = baked_look(facts, framing);
+    if (is_clay(facts)) {
+      std::fill(palette_.begin(), palette_.end(), kClay);
+      parts_.palette = {palette_.data(), palette_.size()};
+    }
+    lit->find_glow(tree);
+    effects_ = chosen_effects(*lit, used, options.effects);
+    if (!options.keeps_look && options.display && effects_ != Effect::kNone) {
+      suit(*options.display, tree, used, lit);
+    } else if (options.display && effects_ != Effect::kNone && !states_light(facts.lighting)) {
+      // Light alone: what the scene states itself is to be found again.
+      const LitDescription stated = *lit;
+      suit(*options.display, tree, used, lit);
+      lit->surfaces = stated.surfaces;
+      lit->rest.sky = stated.rest.sky;
+      lit->rest.fog = stated.rest.fog;
+    }
+    const bool many_colors = !options.display || !has_few_grays(options.display->format);
+    if (many_colors && effects_ != Effect::kNone && add_baked_sky(facts, lit)) {
+      effects_ |= Effect::kSky;
+    }
+    if (options.keeps_look) {
+      keep(note_of(facts));
+    }
+  }
+
+  void keep(const LookNote& note) {
+    look_ = look_section(note);
+    parts_.look = {look_.data(), look_.size()};
+  }
+
   void suit(const DisplayFacts& display, const CompactTree& tree, const UsedMaterials& used,
             LitDescription* lit) {
     if (has_few_grays(display.format) && (lit->off & Effect::kEdges) == 0) {
@@ -152,6 +183,7 @@ class Assembly {
   SceneCamera camera_;
   EffectSet effects_ = Effect::kNone;
   std::vector<std::uint8_t> lighting_;
+  std::vector<std::uint8_t> look_;
   std::vector<std::uint64_t> map_;  // for its alignment
   BakedParts parts_;
 };

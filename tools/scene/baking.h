@@ -31,6 +31,9 @@ struct BakingOptions {
   bool default_look = false;
   /// With `default_look`: the display that the light is to suit (display_look.h).
   std::optional<DisplayFacts> display;
+  /// With `default_look`: no display has the last word. The scene is baked so that its picture without another word is
+  /// that of the source (look_note.h); `display` says only at which size its brightness is measured.
+  bool keeps_look = false;
 };
 
 /// A baked scene and what its making took.

@@ -6,7 +6,9 @@
 
 #include "output/units.h"
 #include "readers/oct.h"
+#include "scene/backdrop.h"
 #include "scene/lit_setup.h"
+#include "scene/look_note.h"
 #include "scene/scene_source.h"
 #include "scene/tone.h"
 #include "thimble/trace/secondary_ray.h"
@@ -113,13 +115,6 @@ Vec3i sun_over_shoulder(const SceneCamera& camera, const VoxelBox& box) {
   return sun;
 }
 
-bool states_light(const LitDescription& lighting) {
-  const LitScene plain;
-  return !lighting.lights.empty() || (lighting.off & Effect::kDirectLight) != 0 ||
-         !std::equal(std::begin(plain.ambient_q8), std::end(plain.ambient_q8),
-                     std::begin(lighting.rest.ambient_q8));
-}
-
 std::uint64_t rays_a_sample(const LitScene& scene, EffectSet effects) {
   const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
   const std::uint64_t at_hit = (wanted(Effect::kShadows) ? scene.lights.size : 0) +
@@ -139,6 +134,12 @@ SceneFacts facts_without_shape(const SceneSource& source, const LitDescription& 
   facts.is_points = source.is_point_set();
   facts.is_mesh = source.is_mesh();
   facts.lighting = lighting;
+  if (const std::optional<LookNote> note = source.look_note()) {
+    facts.has_colors = note->has_colors;
+    facts.is_points = note->is_points;
+    facts.is_mesh = note->is_mesh;
+    facts.lighting = without_rule(*note, lighting);
+  }
   for (const Material& material : source.palette()) {
     facts.palette.push_back({material.color.r, material.color.g, material.color.b});
   }
@@ -182,15 +183,28 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light,
 
 }  // namespace
 
+bool states_light(const LitDescription& lighting) {
+  const LitScene plain;
+  return !lighting.lights.empty() || (lighting.off & Effect::kDirectLight) != 0 ||
+         !std::equal(std::begin(plain.ambient_q8), std::end(plain.ambient_q8),
+                     std::begin(lighting.rest.ambient_q8));
+}
+
 SceneFacts facts_expected(const SceneSource& source, const LitDescription& lighting) {
   SceneFacts facts = facts_without_shape(source, lighting);
-  expected_effects(source, lighting, {}, &facts.used);
+  expected_effects(source, facts.lighting, {}, &facts.used);
+  if (source.look_note()) {
+    facts.lighting.expect_glow();
+  }
   return facts;
 }
 
 SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, const SceneShape& shape) {
   SceneFacts facts = facts_without_shape(source, lighting);
   facts.bounds = shape.bounds;
+  if (source.look_note()) {
+    facts.lighting.find_glow(*shape.tree);
+  }
   facts.used = used_materials(*shape.tree);
   facts.surface_share = facts.is_points ? surface_share(*shape.tree) : 100;
   return facts;
@@ -288,6 +302,16 @@ LitDescription baked_look(const SceneFacts& facts, const Framing& framing) {
     lighting.on |= Effect::kSmoothNormals & ~lighting.off;
   }
   return lighting;
+}
+
+bool add_baked_sky(const SceneFacts& facts, LitDescription* lighting) {
+  if (lighting->rest.has_sky || (lighting->off & Effect::kSky) != 0 || states_light(facts.lighting) ||
+      !facts.forms_surface()) {
+    return false;
+  }
+  lighting->rest.has_sky = true;
+  lighting->rest.sky = {kSoftTop, kSoftTop, kSoftMiddle};
+  return true;
 }
 
 }  // namespace thimble::tools

@@ -119,9 +119,15 @@ inline bool is_clay(const SceneFacts& facts) {
   return !facts.has_colors && facts.forms_surface();
 }
 
+/// Whether the scene says how it is lit: then the rule adds no sun and no ground.
+bool states_light(const LitDescription& lighting);
+
 /// What is baked of the rule for a scene without lights of its own: its colours, the sun and exact shadows, slopes of
 /// meshes and of surfaces of points; no more than a small chip draws. Stars stay as they are.
 LitDescription baked_look(const SceneFacts& facts, const Framing& framing);
+/// What stands behind what `baked_look` lights, and what its glass and mirrors show: a sky in the colours of the
+/// gradient, for displays of many colours. False where the scene has one, wants none, or is stars.
+bool add_baked_sky(const SceneFacts& facts, LitDescription* lighting);
 
 }  // namespace thimble::tools
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "wide/lit/lit_renderer.h"
+#include "wide/rays/ray_map.h"
 #include "wide/threads.h"
 
 namespace thimble::tools {
@@ -29,6 +30,12 @@ class WideLitStreams final : public LitStreams {
     });
     return wide::render_lit_pixels(effects, map_, camera, shading, scene, {places_.data(), places_.size()},
                                    rgb, workspace_, &threads_, counts);
+  }
+  Status any_hit(Span<const Ray> rays, Span<std::uint8_t> hits) const override {
+    return wide::any_hit(map_, rays, hits);
+  }
+  Status first_entry_before(Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) const override {
+    return wide::first_entry_before(map_, rays, before, entries);
   }
 
  private:

@@ -10,11 +10,13 @@
 #include "scene/sample_place.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
+#include "thimble/trace/ray.h"
+#include "thimble/trace/secondary_ray.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 
-/// Draws one band at a time.
+/// Draws one band at a time, and traces rays through the same map.
 class LitStreams {
  public:
   virtual ~LitStreams() = default;
@@ -40,6 +42,13 @@ class LitStreams {
   virtual Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
                                const LitScene& scene, Span<const SamplePlace> places, Bytes rgb,
                                LitCounts* counts) = 0;
+
+  /// Whether each ray meets anything, 1 or 0, as the core's `any_hit`. This and the next: any number of threads at a
+  /// time, each with rays of its own. An error of a ray is the call's; the others are answered.
+  virtual Status any_hit(Span<const Ray> rays, Span<std::uint8_t> hits) const = 0;
+  /// Where each ray enters something solid, if before the point `before`: t as in the core's `Hit`; denominator 0 for
+  /// a miss.
+  virtual Status first_entry_before(Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) const = 0;
 };
 
 }  // namespace thimble::tools

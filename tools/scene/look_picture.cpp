@@ -65,15 +65,17 @@ Status LookRows::trace_colors(const Camera& camera, std::int32_t first_row, std:
 
 void LookRows::find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows,
                            Bytes shares) const {
-  const Look& look = *canvas_.look;
-  std::uint8_t* share = shares.data;
+  thread_local std::vector<Ray> row;
+  const auto width = static_cast<std::size_t>(camera.width_px());
+  row.resize(width);
   for (std::int32_t y = first_row; y < first_row + rows; ++y) {
     RowRays rays(camera, 0, y);
-    for (std::int32_t x = 0; x < camera.width_px(); ++x, rays.next(), ++share) {
-      if (!look.has_backdrop || !light_behind(*canvas_.tree, look, rays.ray(), share)) {
-        *share = kNothingBehind;
-      }
+    for (Ray& ray : row) {
+      ray = rays.ray();
+      rays.next();
     }
+    find_light_behind(*canvas_.tree, *canvas_.look, canvas_.streams, {row.data(), width},
+                      shares.data + width * static_cast<std::size_t>(y - first_row));
   }
 }
 
@@ -157,12 +159,16 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
   const auto tasks = static_cast<std::int32_t>((places.size + kAtOnce - 1) / kAtOnce);
   return for_rows(tasks, canvas_.streams->threads(), [&](std::int32_t task, std::size_t /*thread*/) {
     const std::size_t first = kAtOnce * static_cast<std::size_t>(task);
-    for (std::size_t i = first; i < std::min(first + kAtOnce, places.size); ++i) {
+    const std::size_t count = std::min(kAtOnce, places.size - first);
+    std::array<Ray, kAtOnce> rays;
+    std::array<std::uint8_t, kAtOnce> shares;
+    for (std::size_t i = 0; i < count; ++i) {
+      rays[i] = camera.ray(places.data[first + i].x, places.data[first + i].y);
+    }
+    find_light_behind(*canvas_.tree, look, canvas_.streams, {rays.data(), count}, shares.data());
+    for (std::size_t i = first; i < first + count; ++i) {
       const SamplePlace& place = places.data[i];
-      std::uint8_t share = kNothingBehind;
-      if (look.has_backdrop && !light_behind(*canvas_.tree, look, camera.ray(place.x, place.y), &share)) {
-        share = kNothingBehind;
-      }
+      const std::uint8_t share = shares[i - first];
       const std::uint8_t* color = colors.data + 3 * i;
       const Rgb8 behind =
           backdrop_color(look.background, place.px, place.py, whole.width_px(), whole.height_px());
@@ -240,7 +246,7 @@ std::uint32_t measured_exposure(const LookCanvas& canvas) {
       return 256;  // painting will say why
     }
     for (std::size_t x = 0; x < width; ++x) {
-      if (shares[x] == LookRows::kNothingBehind) {
+      if (shares[x] == kNothingBehind) {
         ++counts[gray_of({colors[3 * x], colors[3 * x + 1], colors[3 * x + 2]})];
       }
     }

@@ -73,7 +73,6 @@ class LookRows {
                LitCounts* counts) const {
     return trace(camera_, first_row, rows, colors, shares, counts);
   }
-  static constexpr std::uint8_t kNothingBehind = 255;
 
  private:
   Status trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,

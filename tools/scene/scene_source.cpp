@@ -290,6 +290,9 @@ class BakedFileScene final : public SceneSource {
   }
   LitDescription lighting() const override { return lit_ ? *lit_ : describe_palette(palette_); }
   const BakedScene* baked() const override { return &file_.scene; }
+  std::optional<LookNote> look_note() const override {
+    return read_look_note(file_.scene.section(SectionKind::kLook));
+  }
   std::array<std::int32_t, 3> extent() const override {
     const Vec3i& max = tree().bounds().high;
     return {max.x, max.y, max.z};

@@ -6,12 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "readers/oct.h"
 #include "readers/source.h"
 #include "scene/lit_description.h"
+#include "scene/look_note.h"
 #include "scene/scene_arguments.h"
 #include "scene/voxel_sink.h"
 
@@ -47,6 +49,8 @@ class SceneSource {
   virtual LitDescription lighting() const { return describe_palette(palette()); }
   /// The baked scene that it is, or null. Its bytes live as long as the source.
   virtual const BakedScene* baked() const { return nullptr; }
+  /// Of a baked scene: what it keeps of the scene that it was made from, if it does.
+  virtual std::optional<LookNote> look_note() const { return std::nullopt; }
   /// How many frames its file has; `SceneArguments::frame` takes one.
   virtual std::uint32_t frames() const { return 1; }
   /// The files that it was read from: its own, and those that a .scene names, each once. None for a

@@ -40,12 +40,13 @@ inline constexpr uint32_t kOptionalKind = uint32_t{1} << 31;
 
 /// What a section holds. 0 is no kind.
 enum class SectionKind : uint32_t {
-  kTree = 1,      ///< the compact tree (exactly one)
-  kPalette = 2,   ///< r, g, b a material, up to 256
-  kCamera = 3,    ///< SceneCamera
-  kBrickMap = 4,  ///< tables for frames on a chip (brick_map.h)
-  kName = 5,      ///< what it was made from: text in UTF-8, no final zero
-  kLighting = 6,  ///< surfaces, lights, sky, fog, water (baked_lighting.h)
+  kTree = 1,                  ///< the compact tree (exactly one)
+  kPalette = 2,               ///< r, g, b a material, up to 256
+  kCamera = 3,                ///< SceneCamera
+  kBrickMap = 4,              ///< tables for frames on a chip (brick_map.h)
+  kName = 5,                  ///< what it was made from: text in UTF-8, no final zero
+  kLighting = 6,              ///< surfaces, lights, sky, fog, water (baked_lighting.h)
+  kLook = kOptionalKind | 1,  ///< what `thimble render` needs to know of the source; nothing to the core
 };
 
 /// How a scene wants to be looked at. The picture's size is the display's own.
@@ -77,6 +78,7 @@ struct BakedParts {
   ConstBytes brick_map;
   ConstBytes name;
   ConstBytes lighting;  ///< as `BakedLighting::make` writes it
+  ConstBytes look;      ///< for `thimble render`
 };
 /// Bytes that `BakedScene::make` writes for these parts; SIZE_MAX when a scene cannot hold them.
 size_t baked_bytes(const BakedParts& parts);
