@@ -65,7 +65,6 @@ class DirtyBands {
     const auto bit = static_cast<uint8_t>(1U << (kFirstBall + ball));
     mark_if(bit, bit);
   }
-  bool sees(int32_t band) const { return (flags_.data[band] & kSees) != 0; }
   bool passes_any(int32_t band) const { return flags_.data[band] >> kFirstBall != 0; }
   bool is_dirty(int32_t band) const { return (flags_.data[band] & kDirty) != 0; }
 

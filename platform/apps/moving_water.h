@@ -87,11 +87,8 @@ inline bool is_filled(const CompactTree& tree, const WaterSurface& rest, int32_t
 /// The surface of now. `ever` makes its bounds those of all waves to come: nothing is met elsewhere, but more
 /// columns are looked at, and every ray that waves could change looks at one.
 inline WaterSurface surface_of(const MovingWater& water, bool ever) {
-  WaterSurface surface = water.columns.surface(water.corner);
-  if (ever) {
-    surface.highest_q8 = water.greatest_q8;
-  }
-  return surface;
+  return ever ? water.columns.surface_below(water.corner, water.greatest_q8)
+              : water.columns.surface(water.corner);
 }
 
 /// Where the ray comes upon the upper side of the water before anything solid: x and y in 1/256 voxel from

@@ -239,7 +239,7 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
 [[gnu::noinline]] Status draw_frame(Pool* pool) {
   const port::Display& screen = display();
   DirtyBands& dirty = pool->dirty;
-  // With a new camera: which bands waves can change, from now on. And where a ball that was there hid it.
+  // Which bands waves can change is found with a new camera, and where a ball can hide it.
   const bool moved = pool->moved;
   if (pool->moved || pool->redraws || pool->dropped) {
     dirty.mark_all();
@@ -270,8 +270,8 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
       return status;
     }
     if (looks) {
-      const bool sees = counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0;
-      dirty.note_sees(i, sees || (!moved && dirty.sees(i)));
+      // What a ball hides now is found when it has gone: until then its passing marks the band.
+      dirty.note_sees(i, counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0);
     }
     dirty.note_passes(i, passed);
     send_band(band, &pool->second_band);

@@ -469,6 +469,24 @@ TEST_CASE("baked scene: a palette that fills the last section -> no byte behind 
   }
 }
 
+TEST_CASE("baked scene: a part that fills the last section -> no byte behind the scene is written") {
+  const HeapBytes tree = small_tree();
+  const std::uint8_t words[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  for (int last = 0; last < 3; ++last) {
+    BakedParts parts;
+    parts.tree = tree.view();
+    ConstBytes* const filled[] = {&parts.brick_map, &parts.name, &parts.lighting};
+    *filled[last] = {words, 8};
+    const std::size_t size = baked_bytes(parts);
+    std::vector<std::uint8_t> bytes(size + 8, 0xA5);
+    REQUIRE(BakedScene::make(parts, {bytes.data(), bytes.size()}, nullptr) == Status::kOk);
+    CHECK(bytes[size - 1] == 8);
+    for (std::size_t i = size; i < bytes.size(); ++i) {
+      CHECK(bytes[i] == 0xA5);
+    }
+  }
+}
+
 TEST_CASE("baked scene: an empty world -> bakes, opens and shows nothing") {
   std::vector<std::uint8_t> pool(64);
   Octree octree;

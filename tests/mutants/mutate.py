@@ -2,8 +2,11 @@
 
     mutate.py ROOT OUT --count 2000 --seed 1     a sample of every file and kind
     mutate.py ROOT OUT --thirty                  thirty of that sample's rooms JUDGED, by a hash of the bytes of src
+    mutate.py ROOT OUT --thirty --draw TEXT      the thirty that src would have if its hash were TEXT
+    mutate.py ROOT OUT --judged                  all of the sample of which the thirty are
 
-OUT/mutants.json says what was chosen; OUT/part_0.cpp and so on are the core that has it.
+OUT/mutants.json says what was chosen; OUT/part_0.cpp and so on are the core that has it: the whole of it, since a
+function of a header is compiled into what includes it, in whichever room that stands.
 """
 import argparse
 import json
@@ -71,10 +74,10 @@ def write_tree(out, sources, chosen):
         write(out / file, rendered(source, by_file[file]) if file in by_file else source.decode())
 
 
-def refused(root, out, files, chosen):
+def refused(root, out, parts, chosen):
     """Mutants on lines at which the compiler refuses the copy: constants that it needs, say."""
     drop = set()
-    for file in files:
+    for file in parts:
         done = subprocess.run(["clang++", "-std=c++17", "-ffreestanding", "-w", "-Wno-c++11-narrowing", "-ferror-limit=0",
                                "-I" + str(root / "include"), "-include", str(root / "tests/mutants/mutant.h"),
                                "-fsyntax-only", str(out / file)], capture_output=True, text=True)
@@ -93,30 +96,34 @@ def main():
     options.add_argument("--count", type=int, default=2000)
     options.add_argument("--seed", type=int, default=SEED)
     options.add_argument("--thirty", action="store_true")
-    options.add_argument("--cache", default="")
+    options.add_argument("--judged", action="store_true")
+    options.add_argument("--draw", default="")
     given = options.parse_args()
     root, out = pathlib.Path(given.root).resolve(), pathlib.Path(given.out).resolve()
     out.mkdir(parents=True, exist_ok=True)
     sources = sites.sources_of(root)
-    if given.thirty:
-        state = sites.digest(*(s.decode() for s in sources.values()))
-        files = [f for f in sources if f.endswith(".cpp") and f.split("/")[1] in JUDGED]
-        mutants, fixed = sites.find(root, sources, files)
+    files = [f for f in sources if f.endswith(".cpp")]
+    if given.thirty or given.judged:
+        mutants, fixed = sites.find(root, sources, [f for f in files if f.split("/")[1] in JUDGED])
         mutants = [m for m in mutants if m.room in JUDGED]
         total = len(mutants)
         chosen = sites.sample(mutants, ONE_IN, SEED)
-        chosen = sorted(chosen, key=lambda m: sites.digest(state, *m.key))[:40]
+        if given.thirty:
+            state = given.draw or sites.digest(*(s.decode() for s in sources.values()))
+            chosen = sorted(chosen, key=lambda m: sites.digest(state, *m.key))[:40]
     else:
-        files = [f for f in sources if f.endswith(".cpp")]
         mutants, fixed = sites.find(root, sources, files)
         total = len(mutants)
         chosen = sites.sample(mutants, max(1, total // given.count), given.seed)
     for number, mutant in enumerate(chosen, 1):
         mutant.number = number
+    parts = [f"part_{part}.cpp" for part in range(PARTS)]
+    for number, part in enumerate(parts):
+        write(out / part, "".join(f'#include "{out / f}"\n' for f in files[number::PARTS]))
     dropped = 0
     while True:
         write_tree(out, sources, chosen)
-        drop = refused(root, out, files, chosen)
+        drop = refused(root, out, parts, chosen)
         if not drop:
             break
         dropped += len(drop)
@@ -124,8 +131,6 @@ def main():
     if given.thirty:
         chosen = chosen[:30]
         write_tree(out, sources, chosen)
-    for part in range(PARTS):
-        write(out / f"part_{part}.cpp", "".join(f'#include "{out / f}"\n' for f in files[part::PARTS]))
     (out / "mutants.json").write_text(json.dumps({
         "places": total, "compiled_away": fixed, "refused": dropped, "seed": given.seed,
         "mutants": [{"number": m.number, "room": m.room, "kind": m.kind, "line": m.line, "key": m.key} for m in chosen]}))

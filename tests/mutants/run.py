@@ -196,6 +196,9 @@ def main():
     mutants = [m for m in chosen["mutants"] if given.only in m["key"][0]]
     runners = [Runner(given.program) for _ in range(2)]
     stat = os.stat(given.program)
+    for old in list(given.work.glob("cover-*")) + list(given.work.glob("tried-*")):
+        if f"-{stat.st_mtime_ns}." not in old.name:
+            old.unlink()
     cover = Cover(given.work / f"cover-{stat.st_mtime_ns}.json")
     # What an interrupted run of the same program has tried is not tried again: of what survived, the tests so far.
     kept = given.work / f"tried-{stat.st_mtime_ns}.jsonl"

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "../../src/picture/bricks/place_across.h"
 #include "support/chip_worlds.h"
 #include "support/ray_cases.h"
 #include "thimble/picture/brick_render.h"
@@ -122,3 +123,33 @@ TEST_CASE("brick sweep: pictures of every size that displays have take the fast 
 }
 
 }  // namespace
+
+TEST_CASE("bricks: the place across a face, with a divider and without -> the greatest that is not beyond") {
+  const auto check = [](std::uint32_t in, std::uint32_t speed, bool flipped) {
+    // In the world's own direction: the greatest `place` with place * speed <= this.
+    const std::uint64_t along = flipped ? 256 * std::uint64_t{speed} - in : in;
+    for (const std::int32_t place :
+         {bricks::place_across<true>(in, speed, flipped), bricks::place_across<false>(in, speed, flipped)}) {
+      REQUIRE(place >= 0);
+      REQUIRE(place <= 256);
+      REQUIRE(static_cast<std::uint64_t>(place) * speed <= along);
+      REQUIRE((static_cast<std::uint64_t>(place) + 1) * speed > along);
+    }
+  };
+  for (const std::uint32_t speed : {1U, 2U, 3U, 7U, 128U, 255U, 256U, 257U, 4095U, 65535U, (1U << 20) - 3}) {
+    for (std::uint32_t place = 0; place <= 256; ++place) {
+      for (std::uint32_t more = 0; more < std::min(speed, 3U); ++more) {
+        for (const std::uint32_t in : {place * speed + more, (place + 1) * speed - 1 - more}) {
+          CAPTURE(speed);
+          CAPTURE(in);
+          if (in < 256 * speed) {
+            check(in, speed, false);
+          }
+          if (in <= 256 * speed) {
+            check(in, speed, true);
+          }
+        }
+      }
+    }
+  }
+}

@@ -14,6 +14,7 @@
 #include "port.h"
 #include "scene/baking.h"
 #include "scene/random.h"
+#include "support/lit_world.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/baked_lighting.h"
@@ -292,4 +293,58 @@ TEST_CASE(
   }
   CHECK(red > 8);
   CHECK(dark > 4);
+}
+
+TEST_CASE(
+    "water app: a ball hides a mirror that shows water while the camera moves -> waves are drawn there, "
+    "too") {
+  // What looks into the mirror comes by no water before it. No column is blocked. So narrow and tall that the ball hides whole bands.
+  testing::LitWorld world(4);
+  world.surfaces[1] = testing::surface(SurfaceKind::kMetal, {255, 255, 255});
+  world.box({0, 0, 0}, {16, 16, 1}, 0);
+  world.box({0, 15, 1}, {16, 16, 16}, 1);
+  world.box({0, 8, 1}, {16, 9, 2}, 0);
+  world.box({0, 9, 1}, {1, 15, 2}, 0);
+  world.box({15, 9, 1}, {16, 15, 2}, 0);
+  world.finish();
+  BakedLighting lighting;
+  lighting.scene = world.scene;
+  lighting.scene.has_water = true;
+  lighting.scene.water = still_water({1, 9, 1}, 14, 6, 160);
+  lighting.effects = Effect::kMirror | Effect::kWater | Effect::kDirectLight;
+  std::vector<std::uint8_t> section(lighting_bytes(lighting.scene));
+  REQUIRE(BakedLighting::make(lighting, 4, {section.data(), section.size()}) == Status::kOk);
+  SceneCamera camera;
+  camera.eye = testing::LitWorld::point({8 * 256 + 20, -3 * 256, 18 * 256});
+  camera.target = testing::LitWorld::point({8 * 256 + 20, 12 * 256, 6 * 256});
+  camera.fov_degrees = Q16::saturate(30);
+  BakedParts parts;
+  parts.tree = {world.tree.bytes(), world.tree.size_bytes()};
+  parts.camera = &camera;
+  parts.lighting = {section.data(), section.size()};
+  std::vector<std::uint8_t> bytes(baked_bytes(parts));
+  REQUIRE(BakedScene::make(parts, {bytes.data(), bytes.size()}, nullptr) == Status::kOk);
+
+  const platform::BoardFacts board = board_of("raspi0", 2, 320);
+  const std::uint32_t frames = 44;
+  for (const int row : {240, 262}) {
+    for (std::uint32_t moved = 4; moved < 20; moved += 3) {
+      CAPTURE(row);
+      CAPTURE(moved);
+      Hand hand;
+      hand.keys[1] = at_pixel('!', 1, row);
+      hand.keys[moved] = "+";
+      const Run some = run_water(board, bytes_of(bytes), frames, hand);
+      hand.keys[0] = "o";
+      const Run all = run_water(board, bytes_of(bytes), frames, hand);
+      REQUIRE(some.pictures.size() == frames);
+      REQUIRE(all.pictures.size() == frames);
+      CHECK(some.counters[0].skipped > 0);
+      CHECK(some.counters[0].splashes == 1);
+      for (std::size_t i = 0; i < frames; ++i) {
+        CAPTURE(i);
+        CHECK(some.pictures[i].bytes == all.pictures[i].bytes);
+      }
+    }
+  }
 }

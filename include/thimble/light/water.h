@@ -229,6 +229,11 @@ class Water {
   /// The water's geometry as the tracer wants it, its first column's floor at the voxel `corner`. It sees the
   /// heights as they change, but its bounds are of now: ask anew after every step and disturbance.
   WaterSurface surface(const Vec3i& corner) const;
+  /// The same with another upper bound, at least that of now (1/256 voxel): nothing is met elsewhere, but more columns
+  /// are looked at.
+  WaterSurface surface_below(const Vec3i& corner, int32_t bound_q8) const {
+    return {corner, width_, depth_, lowest_q8(), bound_q8, heights_, has_blocked_};
+  }
   /// Sum of all heights, in 1/65536 cubic voxel: (columns not blocked) * 256 * rest_q8, always.
   uint64_t volume_q16() const;
   /// CRC-32 of the heights (4 bytes each, little-endian), row by row, then of the fluxes along x and along y

@@ -7,6 +7,7 @@
 #define THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
 
 #include "beam.h"
+#include "place_across.h"
 #include "shadow.h"
 #include "sweep.h"
 #include "thimble/picture/brick_render.h"
@@ -40,25 +41,6 @@ struct SightCourse : Course {
   }
 };
 
-// The integer part of `dividend / divisor`, below 256, also for a core without a divider. The divisor is a direction along
-// its longest axis, which is not 0.
-[[gnu::always_inline]] inline uint32_t fraction_of(uint32_t dividend, uint32_t divisor) {
-  if (kDivides) {
-    return dividend / divisor;  // NOLINT(clang-analyzer-core.DivideZero)
-  }
-  uint32_t result = 0;
-  divisor <<= 7;
-  for (int i = 0; i < 8; ++i) {
-    result <<= 1;
-    if (dividend >= divisor) {
-      dividend -= divisor;
-      ++result;
-    }
-    dividend <<= 1;
-  }
-  return result;
-}
-
 // Finds where the ray of direction `d` (mirrored) has landed, as `start_on_face` does: what is across a ray is rounded
 // down, in the world's own direction.
 template <int kAxis>
@@ -73,11 +55,7 @@ template <int kAxis>
     const uint32_t in = static_cast<uint32_t>(way[kAxis]) * d[i] - static_cast<uint32_t>(way[i]) * speed;
     THIMBLE_NOTE(Range::kBrickPlace, Exact(way[kAxis]) * Exact(d[i]));
     THIMBLE_NOTE(Range::kBrickPlace, Exact(way[i]) * Exact(speed));
-    if (course.flip[i] == 0) {
-      point->within[i] = static_cast<int32_t>(fraction_of(in, speed));
-    } else {  // 256 less the quotient rounded up
-      point->within[i] = in == 0 ? 256 : 255 - static_cast<int32_t>(fraction_of(in - 1, speed));
-    }
+    point->within[i] = place_across<kDivides>(in, speed, course.flip[i] != 0);
   }
   point->axis = kAxis;
   point->faces_up = course.flip[kAxis] != 0;
