@@ -15,7 +15,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COLUMNS = ("file", "text", "untaken", "reason")
-REASONS = ("told", "no-such-value", "checked-before", "too-large", "copies", "open")
+REASONS = ("told", "no-such-value", "checked-before", "too-large", "copies", "invariant", "bounded", "left-inside",
+           "counted-twice", "asked-twice", "no-caller", "build", "wanted", "open")
 
 
 def counted(report):

@@ -142,7 +142,7 @@ void ParticleWorld::rest(uint32_t id) {
   Ball& ball = balls_[id];
   if (!pulled_) {
     ball.still = (ball.vx | ball.vy) != 0 ? 0 : static_cast<uint8_t>(ball.still + 1);
-    if (ball.still < kStillSteps && ball.confined < kConfinedSteps) {
+    if (ball.still < kStillSteps) {  // `confined` is of the time when there was gravity
       return;
     }
   }

@@ -84,7 +84,7 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
   const size_t least = tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel
                            ? SIZE_MAX
                            : edited_world_bytes(tree.level(), room);
-  if (least > bytes) {
+  if (least > bytes || room.bricks > kMostBricks) {
     return {};
   }
   if (bytes - least > kRounding) {

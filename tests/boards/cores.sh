@@ -20,7 +20,7 @@ if ! why=$(sh "platform/emulators/$(fact EMULATOR)/fetch.sh"); then
   say "skipped: $why"
   exit 0
 fi
-FRAMES=6 PLACE=flash sh platform/build.sh "$board" demo "$(sh tests/boards/scene.sh "$board")" >"$work/cores.build.log" 2>&1 || {
+FRAMES=4 PLACE=flash sh platform/build.sh "$board" demo "$(sh tests/boards/scene.sh "$board")" >"$work/cores.build.log" 2>&1 || {
   tail -n 5 "$work/cores.build.log" >&2
   fail "does not build"
   exit 1
@@ -33,11 +33,11 @@ if [ $status != 0 ] || ! grep -q '^two cores draw' "$work/cores.log"; then
   fail "exit status $status, $(tail -n 1 "$work/cores.noise")"
 fi
 echo '1: type c' >"$work/cores.keys"
-build/release/thimble sim demo --effects "${effects:-none}" --board "$board" --display none --frames 6 --keys "$work/cores.keys" \
+build/release/thimble sim demo --effects "${effects:-none}" --board "$board" --display none --frames 4 --keys "$work/cores.keys" \
   --quiet >"$work/cores.sim" 2>&1 || true
 grep '^frame [1-9]' "$work/cores.crcs" | tr -d '\r' >"$work/cores.frames" || true
 grep '^frame [1-9]' "$work/cores.sim" >"$work/cores.right" || true
-if [ "$(grep -c . "$work/cores.right")" -lt 5 ] || ! cmp -s "$work/cores.frames" "$work/cores.right"; then
+if [ "$(grep -c . "$work/cores.right")" -lt 3 ] || ! cmp -s "$work/cores.frames" "$work/cores.right"; then
   fail "its frames, $(tr '\n' ' ' <"$work/cores.frames"), are not the simulator's, $(tr '\n' ' ' <"$work/cores.right")"
 fi
 # The last frame is much like those of bench.

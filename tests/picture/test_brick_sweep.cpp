@@ -105,6 +105,116 @@ TEST_CASE("brick sweep: a million pixels of hard cameras -> the bytes and hits o
   CHECK(hits > wanted_pixels / 10);
 }
 
+// The picture by bricks against that of the tree, in these bands.
+void check_bricks(const ChipScene& scene, const PerspectiveView& view, ShadeMode mode, int rows) {
+  Camera camera;
+  REQUIRE(camera.set(view, scene.tree.level()) == Status::kOk);
+  Shading shading;
+  shading.mode = mode;
+  shading.far_q8 = 256 << scene.tree.level();
+  const std::size_t stride = row_bytes(PixelFormat::kRgb888, view.width_px);
+  RenderCounts counts;
+  RenderCounts wanted_counts;
+  const auto wanted = drawn(
+      scene, camera, shading, PixelFormat::kRgb888, stride, view.height_px,
+      [](const ChipScene& of, const Camera& by, const Shading& with, const Band& band, RenderCounts* sum) {
+        return render_band(of.tree, by, with, band, sum);
+      },
+      &wanted_counts);
+  const auto got = drawn(
+      scene, camera, shading, PixelFormat::kRgb888, stride, rows,
+      [](const ChipScene& of, const Camera& by, const Shading& with, const Band& band, RenderCounts* sum) {
+        return render_band(of.tree, of.map, by, with, band, sum);
+      },
+      &counts);
+  CHECK(got == wanted);
+  CHECK(counts.hits == wanted_counts.hits);
+}
+Vec3Q8 eye_at(int x, int y, int z) {
+  return {Q8::from_raw(x), Q8::from_raw(y), Q8::from_raw(z)};
+}
+
+TEST_CASE("bricks: rays of 14 bits and more that start over 64 voxels outside -> the tree's answer") {
+  const ChipScene three = make_chip_scene(7, {{30, 102, 55}, {0, 0, 0}, {127, 123, 127}});
+  check_bricks(
+      three,
+      {eye_at(32640, 48145, 15488), {-397, 18, -388}, {-459, -673, -407}, Q16::saturate(120), 3, 4, 14},
+      ShadeMode::kColor, 4);
+  // Any far eye, worlds of 128 and 256 voxels a side.
+  std::mt19937_64 random(64);
+  int drawn_views = 0;
+  for (int world = 0; world < 6; ++world) {
+    const int level = 7 + world % 2;
+    const int side = 256 << level;
+    std::vector<Vec3i> voxels;
+    for (int i = 0; i < 4000; ++i) {
+      const auto at = [&] { return pick_int(random, 0, (1 << level) - 1); };
+      voxels.push_back({at(), at(), at()});
+    }
+    const ChipScene scene = make_chip_scene(level, voxels);
+    for (int turn = 0; turn < 40; ++turn) {
+      CAPTURE(world);
+      CAPTURE(turn);
+      Vec3Q8 eye;
+      Vec3i forward;
+      for (int axis = 0; axis < 3; ++axis) {
+        eye[axis] = Q8::from_raw(pick_int(random, -side, 2 * side));
+        forward[axis] = pick_int(random, 0, side) - eye[axis].raw;
+      }
+      const PerspectiveView view{eye,
+                                 forward,
+                                 {},
+                                 Q16::from_raw(pick_int(random, 65536, 120 * 65536)),
+                                 pick_int(random, 1, 60),
+                                 pick_int(random, 1, 40),
+                                 pick_int(random, 0, 1) == 0 ? 0 : pick_int(random, kMinDirectionBits, 20)};
+      Camera camera;
+      if (camera.set(view, level) != Status::kOk) {
+        continue;
+      }
+      ++drawn_views;
+      check_bricks(scene, view, ShadeMode::kColor, view.height_px);
+    }
+  }
+  CHECK(drawn_views > 100);
+}
+
+TEST_CASE("brick sweep: rays of few bits, far apart on the picture's middle -> no division by nothing") {
+  const ChipScene one = make_chip_scene(6, {{11, 32, 32}});
+  check_bricks(one, {eye_at(2176, 8320, 8320), {1, 0, 0}, {0, 1, 0}, Q16::saturate(120), 5096, 40, 8},
+               ShadeMode::kColor, 8);
+  std::mt19937_64 random(65);
+  for (int turn = 0; turn < 12; ++turn) {
+    CAPTURE(turn);
+    Vec3i forward;
+    for (int axis = 0; axis < 3; ++axis) {
+      forward[axis] = pick_int(random, -20, 20);
+    }
+    forward[turn % 3] = 1000;
+    const PerspectiveView view{eye_at(2176, 8320, 8320),
+                               forward,
+                               {},
+                               Q16::saturate(pick_int(random, 90, 120)),
+                               pick_int(random, 3000, 7000),
+                               pick_int(random, 8, 60),
+                               pick_int(random, kMinDirectionBits, 10)};
+    Camera camera;
+    if (camera.set(view, 6) == Status::kOk) {
+      check_bricks(one, view, ShadeMode::kColor, 8);
+    }
+  }
+}
+
+TEST_CASE("brick sweep: a face whose half plane just holds all pixels of a cell -> painted") {
+  std::vector<Vec3i> pillar;
+  for (int z = 0; z < 64; ++z) {
+    pillar.push_back({20, 30, z});
+  }
+  check_bricks(make_chip_scene(6, pillar),
+               {eye_at(3644, 6941, 8320), {713, 201, 162}, {0, 0, 1}, Q16::saturate(30), 64, 48, 10},
+               ShadeMode::kNormal, 48);
+}
+
 TEST_CASE("brick sweep: pictures of every size that displays have take the fast way from inside the world") {
   std::mt19937_64 random(3);
   const ChipScene scene = make_chip_scene(random, ChipWorld::kHills, 6);

@@ -58,6 +58,23 @@ TEST_CASE("particles: spawn into a full place -> a status, and nothing has chang
   run(cells, 20);
 }
 
+TEST_CASE("particles: held for long under gravity, let go without -> goes on for ever") {
+  ParticleConfig config = box(400, 60, 1);
+  config.restitution_q16 = 65536;
+  config.gravity_q16 = {0, 32768};
+  ShadowedWorld shadow(config);
+  REQUIRE(shadow.world.spawn(q16(30), q16(30), 0, 0, 4, nullptr) == Status::kOk);
+  shadow.world.set_pointer(PointerMode::kDrag, {30, 30});
+  REQUIRE(shadow.world.dragged() == 0);
+  run(shadow, 250);
+  shadow.world.set_pointer(PointerMode::kNone, {30, 30});
+  REQUIRE(shadow.world.set_gravity({0, 0}) == Status::kOk);
+  REQUIRE(shadow.world.set_velocity(0, q16(1), 0) == Status::kOk);
+  run(shadow, 100);
+  CHECK_FALSE(ball_of(shadow, 0).asleep);
+  CHECK(ball_of(shadow, 0).vx_q16 == q16(1));
+}
+
 TEST_CASE("particles: two balls at the very same place -> the second is refused") {
   ShadowedWorld shadow(box(40, 40, 2));
   REQUIRE(shadow.world.spawn(q16(20), q16(20), 0, 0, 5, nullptr) == Status::kOk);

@@ -69,13 +69,12 @@ void fill(std::mt19937_64& random, ChipWorld world, int level, Octree* pool) {
   }
 }
 
-}  // namespace
-
-ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
+template <class Fill>
+ChipScene scene_of(int level, const Fill& fill_pool) {
   std::vector<std::uint8_t> pool_bytes(Octree::octree_bytes(100000));
   Octree pool;
   REQUIRE(Octree::make(level, {pool_bytes.data(), pool_bytes.size()}, &pool) == Status::kOk);
-  fill(random, world, level, &pool);
+  fill_pool(&pool);
   ChipScene scene{compact_of(pool, kMinRankShift), {}, {}, {}};
   scene.tree = open_or_throw(scene.tree_bytes);
   scene.map_words.resize(most_brick_map_bytes(level) / 8 + 1);
@@ -83,6 +82,20 @@ ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
                    8 * scene.map_words.size());
   REQUIRE(BrickMap::make(scene.tree, room, &scene.map) == Status::kOk);
   return scene;
+}
+
+}  // namespace
+
+ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
+  return scene_of(level, [&](Octree* pool) { fill(random, world, level, pool); });
+}
+
+ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels) {
+  return scene_of(level, [&](Octree* pool) {
+    for (const Vec3i& voxel : voxels) {
+      REQUIRE(pool->insert(voxel, 1) == Status::kOk);
+    }
+  });
 }
 
 Camera hard_chip_camera(std::mt19937_64& random, int level) {

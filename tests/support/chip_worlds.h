@@ -28,6 +28,8 @@ struct ChipScene {
 
 /// Materials 0 .. 9.
 ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level);
+/// These voxels, all of material 1.
+ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels);
 
 /// On lattice points and beside them, on diagonals, inside solids, outside; 1 to 120 degrees.
 Camera hard_chip_camera(std::mt19937_64& random, int level);

@@ -611,4 +611,44 @@ TEST_CASE("tree limits: room in any number of bytes -> as much as fits, 65,000 b
   CHECK(EditedWorld::room_in(open_or_throw(compact), std::size_t{1} << 30).nodes == 0);
 }
 
+TEST_CASE(
+    "tree limits: as many bricks as a map and an edited world have, and one more -> made, or out of range") {
+  for (const std::uint32_t bricks : {65000U, 65001U, 65280U, 65281U}) {
+    CAPTURE(bricks);
+    std::vector<std::uint32_t> keys(bricks);
+    for (std::uint32_t i = 0; i < bricks; ++i) {
+      keys[i] = i << 6;  // the first voxel of each brick, in Morton order
+    }
+    const Span<const std::uint32_t> span{keys.data(), keys.size()};
+    std::size_t size = 0;
+    REQUIRE(CompactTree::make(span, 8, 3, {}, nullptr, &size) == Status::kOutOfMemory);
+    HeapBytes bytes(size);
+    CompactTree tree;
+    REQUIRE(CompactTree::make(span, 8, 3, bytes.span(), &tree) == Status::kOk);
+    const OwnedMap made(bytes, most_brick_map_bytes(8));
+    CHECK(made.status == (bricks <= 65280 ? Status::kOk : Status::kOutOfRange));
+    const EditRoom room = EditedWorld::room_in(tree, std::size_t{1} << 26);
+    CHECK(room.bricks == (bricks <= 65000 ? bricks : 0));
+    CHECK((room.nodes != 0) == (bricks <= 65000));
+  }
+}
+
+TEST_CASE(
+    "tree limits: a map's bytes behind its directory -> looked at when it is validated, not when it is "
+    "opened") {
+  OwnedOctree owned(2);
+  REQUIRE(owned.octree.insert({1, 2, 3}, 4) == Status::kOk);
+  const HeapBytes compact = compact_of(owned.octree);
+  OwnedMap made(compact, most_brick_map_bytes(2));
+  REQUIRE(made.status == Status::kOk);
+  // One cell: two bytes, and six to the next multiple of eight.
+  for (std::size_t i = 2; i < 8; ++i) {
+    made.room.span()[kBrickMapHeaderBytes + i] = 0xFF;
+  }
+  const ConstBytes bytes(made.room.span().data, made.size);
+  BrickMap map;
+  CHECK(BrickMap::open(bytes, &map) == Status::kOk);
+  CHECK(BrickMap::validate(bytes) != nullptr);
+}
+
 }  // namespace

@@ -54,14 +54,14 @@ class EditedWorld {
   /// What `tree` takes: the least room with which `make` succeeds. One pass over the bricks of the world.
   static EditRoom room_of(const CompactTree& tree);
   /// The most room that `bytes` bytes hold for `tree`, shared out in the proportions that digging wants; none
-  /// (all 0) where they do not hold the tree.
+  /// (all 0) where they do not hold the tree, or the tree has more than 65,000 bricks.
   static EditRoom room_in(const CompactTree& tree, size_t bytes);
 
   /// Copies `tree` into `bytes` (at a multiple of 8, at least edited_world_bytes of the room). Some 1,000
-  /// instructions a brick of the world. Errors, with nothing written: `kOutOfRange` (levels that no brick map
+  /// instructions a brick of the world. Errors, with `world` unchanged: `kOutOfRange` (levels that no brick map
   /// has, room for more than 65,000 bricks or 2^24 nodes), `kBadArgument` (a coarsened tree, whose blocks are
-  /// no voxels; an odd address), `kOutOfMemory` (bytes or room too small, or more than kSolidBrickKinds
-  /// materials of solid bricks).
+  /// no voxels; an odd address), `kOutOfMemory` (bytes or room too small, or, with `bytes` written, more than
+  /// kSolidBrickKinds materials of solid bricks).
   static Status make(const CompactTree& tree, const EditRoom& room, Bytes bytes, EditedWorld* world);
 
   /// Makes `voxel` solid with `material`, whatever it was. Errors, with nothing changed: `kOutOfRange`

@@ -16,6 +16,9 @@ const kFifoStatus = 0x050;
 const kFifoWrite = 0x054;
 const kFifoRead = 0x058;
 const kFifoWords = 8;
+// So often in a row the second core looks for a word that is not there before it is left alone until there is one: what it
+// would do meanwhile is look again.
+const kLooks = 3;
 // The power-on state machine (2.13): what is forced off is in reset.
 const kPsm = 0x40010;
 const kPsmOff = 0x004;
@@ -27,6 +30,7 @@ class SecondCore {
     this.core = undefined; // once it was launched
     this.launch = []; // the words so far
     this.inboxes = [[], []]; // of each core
+    this.looks = 0; // of the second core, in vain
     const { sio } = chip;
     const psm = chip.peripherals[kPsm];
     const force = psm.writeUint32.bind(psm);
@@ -38,6 +42,7 @@ class SecondCore {
         this.core = undefined;
         this.launch = [];
         this.inboxes[1] = [];
+        this.looks = 0;
       } else if (wasOff) {
         this.inboxes[0].push(0); // the ROM's first word
       }
@@ -51,7 +56,11 @@ class SecondCore {
         return number;
       }
       if (offset === kFifoStatus) {
-        return (inbox.length > 0 ? 1 : 0) | (this.inboxes[1 - number].length < kFifoWords ? 2 : 0);
+        const status = (inbox.length > 0 ? 1 : 0) | (this.inboxes[1 - number].length < kFifoWords ? 2 : 0);
+        if (number === 1) {
+          this.looks = status === 2 ? this.looks + 1 : 0;
+        }
+        return status;
       }
       if (offset === kFifoRead) {
         return inbox.length > 0 ? inbox.shift() : 0;
@@ -64,12 +73,18 @@ class SecondCore {
         return;
       }
       const number = this.number();
+      this.looks = 0;
       if (number === 0 && this.core === undefined) {
         this.repeat(value >>> 0);
       } else if (this.inboxes[1 - number].length < kFifoWords) {
         this.inboxes[1 - number].push(value >>> 0);
       }
     };
+  }
+
+  // Whether the second core has something to do.
+  isAwake() {
+    return this.core !== undefined && (this.looks < kLooks || this.inboxes[1].length > 0);
   }
 
   // Of the core that runs now.
@@ -126,7 +141,7 @@ export class Machine {
         continue;
       }
       this.step(core);
-      if (second.core !== undefined && !stopped()) {
+      if (second.isAwake() && !stopped()) {
         chip.core = second.core;
         this.step(second.core);
         chip.core = core;

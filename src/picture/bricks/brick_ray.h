@@ -274,7 +274,8 @@ class BrickRay {
                    Exact(course_.origin[kB]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_b_));
       const uint32_t cell_a = kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), near_cell() + 0);
       const uint32_t cell_b = kDivides ? at_b / den_ : quotient(at_b, den_, most_cells(), near_cell() + 1);
-      if (seldom((cell_a | cell_b) >= 1024)) {
+      // Where one is negative the ray starts far outside, and its quotient means nothing.
+      if (seldom((cell_a | cell_b | (at_a | at_b) >> 21) >= 1024)) {
         return is_negative(at_a | at_b) ? kAsk : kMissed;
       }
       rest_a_ = at_a - (cell_a + 1) * den_;

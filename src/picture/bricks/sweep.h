@@ -363,6 +363,9 @@ class TileSweep : private Paint {
 
   bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
     const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
+    if (least[2] < 1) {
+      return false;  // rays that hardly go on along c, in pictures of rays of few bits
+    }
     for (int k = 0; k < 2; ++k) {
       if (greatest[k] > 2 * least[2]) {
         return false;
