@@ -115,9 +115,10 @@ const std::multimap<std::string, std::string>& values() {
 
 // What only a look at the scene, the rays or the budget tells: status 1.
 bool depends_on_input(const std::string& text) {
-  for (const char* phrase : {"is for point files", "is for .vox files", "parallel to the direction of view",
-                             "no room for", "does not take this ray", "more than", "budget", "--memory",
-                             "there is no terminal", "pixels differ", "does not take the rays"}) {
+  for (const char* phrase :
+       {"is for point files", "is for .vox files", "parallel to the direction of view", "no room for",
+        "does not take this ray", "more than", "budget", "--memory", "there is no terminal",
+        "the terminal cannot show", "pixels differ", "does not take the rays"}) {
     if (text.find(phrase) != std::string::npos) {
       return true;
     }
