@@ -57,7 +57,7 @@ function(thimble_write_board_table file)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
       ${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
     set(app_stacks)
-    foreach(app selftest golden lit worlds bricks demo water bench particles)
+    foreach(app selftest golden lit worlds bricks map_light demo water bench particles)
       if(DEFINED BOARD_STACK_BYTES_${app})
         string(APPEND app_stacks "{\"${app}\", ${BOARD_STACK_BYTES_${app}}}, ")
       endif()

@@ -43,15 +43,7 @@ else()
   set(THIMBLE_SCENE_INCLUDE "")
   set(THIMBLE_SCENE_BYTES "{}")
 endif()
-# The effects that the scene was baked for: the applications hold these and no others.
-set(THIMBLE_IMAGE_EFFECTS 0)
-if(THIMBLE_SCENE_HEADER)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${THIMBLE_SCENE_HEADER})
-  file(STRINGS ${THIMBLE_SCENE_HEADER} line REGEX "^#define THIMBLE_SCENE_EFFECTS ")
-  if(line MATCHES "EFFECTS (0x[0-9a-f]+)u?")
-    set(THIMBLE_IMAGE_EFFECTS ${CMAKE_MATCH_1})
-  endif()
-endif()
+include(${THIMBLE_PLATFORM_DIR}/scene_facts.cmake)
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/scene.cpp.in ${generated}/scene.cpp @ONLY)
 
 # One set of flags for the core, the port and the applications.
@@ -108,7 +100,7 @@ target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 # Those that draw a scene with light (apps/scene_light.h).
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp
   ${THIMBLE_PLATFORM_DIR}/apps/water.cpp PROPERTIES
-  COMPILE_DEFINITIONS THIMBLE_IMAGE_EFFECTS=${THIMBLE_IMAGE_EFFECTS})
+  COMPILE_DEFINITIONS "THIMBLE_IMAGE_EFFECTS=${THIMBLE_IMAGE_EFFECTS};THIMBLE_IMAGE_LAMPS=${THIMBLE_IMAGE_LAMPS}")
 target_link_libraries(thimble_apps PRIVATE thimble_app_warnings)
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/arch/common/memory.cpp PROPERTIES
   COMPILE_OPTIONS -fno-tree-loop-distribute-patterns)

@@ -14,6 +14,7 @@ constexpr Application kApplications[] = {
     {"formats", formats, false, false},
     {"worlds", worlds, false, false},
     {"bricks", bricks, false, false},
+    {"map_light", map_light, false, false},
     {"bench", bench, true, false},
 #if __has_include("apps/particles.cpp")
     {"particles", particles, false, true},

@@ -22,6 +22,8 @@ int lit();
 int worlds();
 /// Frames by bricks on the target, likewise.
 int bricks();
+/// Lit frames by bricks on the target, likewise.
+int map_light();
 /// The pixel formats of panels on the target, in an image that has them all; likewise.
 int formats();
 /// Instructions a frame and a ray, nodes visited, RAM and stack used.

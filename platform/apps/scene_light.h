@@ -23,6 +23,14 @@ inline constexpr EffectSet kImageEffects = THIMBLE_IMAGE_EFFECTS;
 #else
 inline constexpr EffectSet kImageEffects = Effect::kAll;
 #endif
+/// Whether lamps go through the brick map.
+#if defined(THIMBLE_IMAGE_EFFECTS) && !defined(THIMBLE_IMAGE_LAMPS)
+inline constexpr bool kImageLamps = false;
+#elif defined(THIMBLE_IMAGE_EFFECTS)
+inline constexpr bool kImageLamps = THIMBLE_IMAGE_LAMPS != 0;
+#else
+inline constexpr bool kImageLamps = true;
+#endif
 /// Whether there is anything of light in this program.
 inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
 /// The effects of frames while the camera moves, where these are fast: all but what asks the tree for each pixel.
@@ -43,12 +51,6 @@ constexpr bool is_dark_behind(EffectSet effects, PixelFormat format) {
 }
 
 #if !defined(THIMBLE_IMAGE_EFFECTS) || THIMBLE_IMAGE_EFFECTS != 0
-
-/// A set as a type.
-template <EffectSet kSet>
-struct FixedSet {
-  constexpr EffectSet operator()() const { return kSet; }
-};
 
 struct SceneLight {
   BakedLighting baked;
@@ -87,46 +89,24 @@ struct SceneLight {
 #endif
 }
 
-#if !defined(THIMBLE_IMAGE_EFFECTS) && !defined(THIMBLE_NO_MAP_LIGHT)
-/// Draws a band of a set that `is_flat` by the map; else kBadArgument.
-[[gnu::noinline]] inline Status draw_lit_by_map(const ShownScene& shown, const Camera& camera,
-                                                const Shading& shading, const SceneLight& light,
-                                                const Band& band, LitCounts* counts) {
-  const auto draw = [&](auto set) {
-    return render_lit_band<set()>(shown.scene.tree(), shown.map, camera, shading, light.baked.scene,
-                                  {light.suns, kMaxFlatSuns}, band, counts);
-  };
-  constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
-  switch (moving_effects(light.effects()) & ~Effect::kEmitterLight) {
-    case Effect::kDirectLight:
-      return draw(FixedSet<Effect::kDirectLight>());
-    case kSun:
-      return draw(FixedSet<kSun>());
-    case kSun | Effect::kEmission:
-      return draw(FixedSet<kSun | Effect::kEmission>());
-    case kSun | Effect::kSky:
-      return draw(FixedSet<kSun | Effect::kSky>());
-    case kSun | Effect::kEmission | Effect::kSky:
-      return draw(FixedSet<kSun | Effect::kEmission | Effect::kSky>());
-    default:
-      return Status::kBadArgument;
-  }
-}
-#endif
-
 /// Looks whether frames go through the map, and proves in bytes of the arena which bricks its lights reach freely, as
 /// far as these hold that: without it frames are slower, and the same.
 [[gnu::noinline]] inline void prove_light(const ShownScene& shown, Arena* arena, SceneLight* light) {
   if constexpr (kLightsFast) {
     const Span<const Light>& lights = light->baked.scene.lights;
-    light->is_fast =
-        shown.has_map && is_flat(moving_effects(light->effects())) && lights.size <= kMaxFlatSuns;
+    size_t suns = 0;
+    light->is_fast = shown.has_map && is_flat(moving_effects(light->effects())) &&
+                     (kImageLamps || lights.size <= kMaxFlatSuns);
     for (size_t i = 0; i < lights.size && light->is_fast; ++i) {
-      light->is_fast = !lights[i].is_point;
+      light->is_fast = kImageLamps ? lights[i].is_point || ++suns <= kMaxFlatSuns : !lights[i].is_point;
     }
+    suns = 0;
     for (size_t i = 0; i < lights.size && light->is_fast && (light->effects() & Effect::kShadows) != 0; ++i) {
+      if (kImageLamps && lights[i].is_point) {
+        continue;
+      }
       const Bytes room = arena->take(SunBricks::bytes(shown.map));
-      (void)SunBricks::make(shown.map, lights[i].place, room, &light->suns[i]);
+      (void)SunBricks::make(shown.map, lights[i].place, room, &light->suns[kImageLamps ? suns++ : i]);
     }
   }
 }
@@ -138,12 +118,13 @@ struct SceneLight {
   if constexpr (kLightsFast) {
     if (light.is_fast && (moves || light.moves_whole())) {
 #ifdef THIMBLE_IMAGE_EFFECTS
-      return render_lit_band<moving_effects(kImageEffects)>(shown.scene.tree(), shown.map, camera, shading,
-                                                            light.baked.scene, {light.suns, kMaxFlatSuns},
-                                                            band, counts);
+      return render_lit_band<moving_effects(kImageEffects), kImageLamps>(
+          shown.scene.tree(), shown.map, camera, shading, light.baked.scene, {light.suns, kMaxFlatSuns}, band,
+          counts);
 #elif !defined(THIMBLE_NO_MAP_LIGHT)
-      return draw_lit_by_map(shown, camera, shading, light, band, counts);
-#else  // a port for which five more renderers are too much: the same pixels, ray by ray
+      return render_lit_band(moving_effects(light.effects()), shown.scene.tree(), shown.map, camera, shading,
+                             light.baked.scene, {light.suns, kMaxFlatSuns}, band, counts);
+#else  // a port for which so many more renderers are too much: the same pixels, ray by ray
       return render_lit_band(moving_effects(light.effects()), shown.scene.tree(), camera, shading,
                              light.baked.scene, band, counts);
 #endif

@@ -51,7 +51,7 @@ inline constexpr EffectFlash kEffectFlash[] = {
 // clang-format on
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
-inline constexpr uint32_t kAllEffectsFlashBytes = 39916;
+inline constexpr uint32_t kAllEffectsFlashBytes = 39924;
 
 }  // namespace thimble
 

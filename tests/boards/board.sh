@@ -59,6 +59,8 @@ if [ -n "$(fact TESTS)" ] && [ -z "${LONG:-}" ]; then
 fi
 # Of those that hold the demonstration's scene in RAM, two will do.
 case $board in lm3s6965evb | pico) default="$default dig" ;; esac
+# One board of each kind of core.
+case $board in lm3s6965evb | microbit | mps2-an500 | sifive_e) default="$default map_light" ;; esac
 # The applications that there are; faults is judged by itself below.
 apps=
 for app in ${THIMBLE_TEST_APPS:-$default}; do
@@ -83,7 +85,7 @@ for app in $apps; do
   if [ "$status" != 0 ]; then
     tail -n 5 "$log" >&2
     fail "$app" "exit status $status$([ "$status" = 124 ] && echo " (no end within $limit_s s)")"
-  elif [ "$app" = selftest ] || [ "$app" = golden ] || [ "$app" = lit ] || [ "$app" = worlds ] || [ "$app" = bricks ]; then
+  elif [ "$app" = selftest ] || [ "$app" = golden ] || [ "$app" = lit ] || [ "$app" = worlds ] || [ "$app" = bricks ] || [ "$app" = map_light ]; then
     said=$(grep -E '^[1-9][0-9]* passed, 0 failed' "$log" | head -n 1)
     [ -n "$said" ] || fail "$app" "did not say how many passed"
     said="$said, $(sed -n 's/^\([0-9]* skipped\).*/\1/p' "$log" | head -n 1); "

@@ -17,7 +17,7 @@ judge() {
     }'
 }
 for board; do
-  for app in selftest golden lit worlds bricks; do
+  for app in selftest golden lit worlds bricks map_light; do
     sed -n "s/^result crc \([0-9a-f]*\) of the \([0-9]*\) cases that every board runs.*/${app}_\2 \1 $board/p" \
       "$work/$board/$app.log" 2>/dev/null || true
   done

@@ -85,8 +85,8 @@ complain "what lies in a folder detail is the core's own" \
   "$(includes tools platform tests | grep -E '"thimble/[a-z0-9_/]*detail/' || true)"
 complain "tools and platform see public headers only, never src" \
   "$(includes tools platform | grep -E '["/]src/' || true)"
-tests_on_boards='^platform/apps/(selftest|golden|formats|lit|worlds|bricks|cases)\.(cpp|h):'
-complain "platform sees no test; only the applications selftest, golden, formats, lit, worlds and bricks run those of tests/portable" \
+tests_on_boards='^platform/apps/(selftest|golden|formats|lit|worlds|bricks|map_light|cases)\.(cpp|h):'
+complain "platform sees no test; only the applications selftest, golden, formats, lit, worlds, bricks and map_light run those of tests/portable" \
   "$({
     includes platform | grep -E '["/](golden|portable|support|reference|tests)/' | grep -vE "$tests_on_boards"
     includes platform | grep -E "$tests_on_boards" | grep -E '["/](golden|support|reference|tests)/'

@@ -80,14 +80,17 @@ int run_all() {
   const bool sound = lists_agree() && names_differ(portable::kCoreGroups) &&
                      names_differ(portable::kGoldenGroups) && names_differ(portable::kLitGroups) &&
                      names_differ(portable::kPanelGroups) && names_differ(portable::kWorldGroups) &&
-                     names_differ(portable::kBrickGroups);
+                     names_differ(portable::kBrickGroups) && names_differ(portable::kMapLightGroups);
   const int core = apps::selftest();
   const int frames = apps::golden();
   const int formats = apps::formats();
   const int lit = apps::lit();
   const int worlds = apps::worlds();
   const int bricks = apps::bricks();
-  return sound && core == 0 && frames == 0 && formats == 0 && lit == 0 && worlds == 0 && bricks == 0 ? 0 : 1;
+  const int map_light = apps::map_light();
+  const bool passed =
+      core == 0 && frames == 0 && formats == 0 && lit == 0 && worlds == 0 && bricks == 0 && map_light == 0;
+  return sound && passed ? 0 : 1;
 }
 
 bool print_crcs(const char* all, const char* common, Span<const portable::Group* const> groups) {
@@ -142,6 +145,10 @@ int print_crc() {
   }
   printf("/// Of frames by bricks, all of which every board draws.\n");
   if (!print_crcs("kBrickCrc32", nullptr, portable::kBrickGroups)) {
+    return 1;
+  }
+  printf("/// Of lit frames by bricks.\n");
+  if (!print_crcs("kMapLightCrc32", nullptr, portable::kMapLightGroups)) {
     return 1;
   }
   printf("\n}  // namespace thimble::portable\n\n#endif\n");

@@ -65,6 +65,13 @@ constexpr LitWay kLitWays[] = {
     lit_way<kSun | Effect::kEmission | Effect::kSky>(),
     lit_way<kSun>(),
     lit_way<kSun | Effect::kEmitterLight>(),
+    lit_way<kSun | Effect::kEmitterLight | Effect::kEmission>(),
+    lit_way<kSun | Effect::kEmitterLight | Effect::kSky>(),
+    lit_way<kSun | Effect::kAmbientOcclusion>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmission>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kSky>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
     lit_way<Effect::kDirectLight>(),
     lit_way<Effect::kEmission>(),
     lit_way<Effect::kNone>(),
@@ -74,11 +81,7 @@ constexpr LitWay kLitWays[] = {
 /// Along axes and diagonals, flat, from below, of few bits and of many.
 Light hard_sun(std::mt19937_64& random) {
   Light light;
-  light.is_point = pick_int(random, 0, 15) == 0;
-  const int size = light.is_point                ? 64 * 256
-                   : pick_int(random, 0, 2) == 0 ? 1
-                   : pick_int(random, 0, 1) == 0 ? 20
-                                                 : 16384;
+  const int size = pick_int(random, 0, 2) == 0 ? 1 : pick_int(random, 0, 1) == 0 ? 20 : 16384;
   Vec3i place{};
   while (place == Vec3i{}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -92,23 +95,59 @@ Light hard_sun(std::mt19937_64& random) {
   return light;
 }
 
+/// In the world and outside of it, in the open and in solids, on lattice points, planes and edges.
+Light hard_lamp(std::mt19937_64& random, int level) {
+  Light light;
+  light.is_point = true;
+  const int side = 256 << level;
+  const int beyond = pick_int(random, 0, 4) == 0 ? side : 0;
+  Vec3i place{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int grain = pick_int(random, 0, 2) == 0 ? 1 : pick_int(random, 0, 1) == 0 ? 256 : 1024;
+    place[axis] = pick_int(random, -beyond, side + beyond) / grain * grain;
+  }
+  light.place = place;
+  light.reach = static_cast<std::uint16_t>(pick_int(random, 0, 9) == 0 ? 0 : pick_int(random, 1, 60));
+  for (PackedU16& channel : light.color_q8) {
+    channel = static_cast<std::uint16_t>(pick_int(random, 0, 3) == 0 ? 0 : pick_int(random, 1, 2000));
+  }
+  return light;
+}
+
+Occlusion hard_occlusion(std::mt19937_64& random) {
+  constexpr int kRays[] = {0, 4, 4, 8, 8, 16, 32, 200};
+  constexpr int kReach[] = {0, 1, 2, 5, 8, 12, 100, 65535};
+  Occlusion occlusion;
+  occlusion.rays = static_cast<std::uint8_t>(kRays[pick_int(random, 0, 7)]);
+  occlusion.reach = static_cast<std::uint16_t>(kReach[pick_int(random, 0, 7)]);
+  occlusion.strength =
+      static_cast<std::uint8_t>(pick_int(random, 0, 3) == 0 ? pick_int(random, 0, 255) : 255);
+  return occlusion;
+}
+
 struct LitLights {
   std::vector<Light> lights;
   std::vector<std::uint8_t> bytes;
   std::vector<SunBricks> free;
 };
 
-/// Lights with what is proven of them: all, a part, that of another light, nothing.
-LitLights hard_lights(std::mt19937_64& random, const BrickMap& map) {
+/// Lights with what is proven of the distant ones: all, a part, that of another light, nothing.
+LitLights hard_lights(std::mt19937_64& random, const BrickMap& map, int level) {
   LitLights made;
-  const int count = pick_int(random, 0, 3) == 0 ? pick_int(random, 0, 3) : 1;
+  const int suns = pick_int(random, 0, 3) == 0 ? pick_int(random, 0, 3) : 1;
+  const int lamps = std::max(0, pick_int(random, -2, 3));
+  const int first = pick_int(random, 0, lamps);
   const std::size_t size = SunBricks::bytes(map);
-  made.bytes.resize(size * static_cast<std::size_t>(count));
+  made.bytes.resize(size * static_cast<std::size_t>(suns));
   const int proven = pick_int(random, 0, 4);
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < suns + lamps; ++i) {
+    if (i < first || i >= first + suns) {
+      made.lights.push_back(hard_lamp(random, level));
+      continue;
+    }
     made.lights.push_back(hard_sun(random));
     const Vec3i towards = made.lights.back().place;
-    const Bytes room(made.bytes.data() + size * static_cast<std::size_t>(i), size);
+    const Bytes room(made.bytes.data() + size * made.free.size(), size);
     SunBricks sun;
     if (proven == 1) {
       REQUIRE(SunBricks::begin(map, towards, room, &sun) == Status::kOk);
@@ -160,7 +199,14 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
   std::uint64_t fast = 0;
   std::uint64_t shadows = 0;
   std::uint64_t sunny = 0;
-  for (unsigned turn = 0; pixels < wanted_pixels; ++turn) {
+  std::uint64_t by_lamps = 0;
+  std::uint64_t occluded = 0;
+  // Few pictures may be all of one kind: it goes on until each kind had its share.
+  const auto is_enough = [&] {
+    return pixels >= wanted_pixels && fast > wanted_pixels / 12 && by_lamps > wanted_pixels / 20 &&
+           occluded > wanted_pixels / 20 && shadows > wanted_pixels / 20 && sunny > wanted_pixels / 40;
+  };
+  for (unsigned turn = 0; !is_enough() && pixels < 10 * wanted_pixels; ++turn) {
     const std::uint64_t seed = random();
     CAPTURE(seed);
     std::mt19937_64 own(seed);
@@ -169,7 +215,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
     const std::vector<Surface> surfaces = hard_surfaces(own);
     for (int view = 0; view < 6; ++view) {
       CAPTURE(view);
-      const LitLights lights = hard_lights(own, scene.map);
+      const LitLights lights = hard_lights(own, scene.map, level);
       const Camera camera = hard_chip_camera(own, level);
       const LitWay& way = kLitWays[static_cast<std::size_t>(pick_int(own, 0, std::size(kLitWays) - 1))];
       Shading shading;
@@ -177,11 +223,13 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
       LitScene light;
       light.surfaces = {surfaces.data(), surfaces.size()};
       light.lights = {lights.lights.data(), lights.lights.size()};
-      light.occlusion.rays = 4;
+      light.occlusion = hard_occlusion(own);
       light.fog.density_q16 = 300;
       LitOptions options;
       options.dither = pick_int(own, 0, 3) != 0;
       options.max_visits = pick_int(own, 0, 9) == 0 ? 20 : UINT32_MAX;
+      const bool has_lamps = std::any_of(lights.lights.begin(), lights.lights.end(),
+                                         [](const Light& one) { return one.is_point; });
       const LitView lit{scene, camera, shading, light, options};
       const PixelFormat format = static_cast<PixelFormat>(pick_int(own, 0, 4));
       const std::size_t stride =
@@ -199,21 +247,34 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
       for (int kind = 0; kind < kLitRayKinds; ++kind) {
         CAPTURE(kind);
         REQUIRE(counts.rays[kind] == counts_wanted.rays[kind]);
-        REQUIRE(counts.hits[kind] == counts_wanted.hits[kind]);
+        // Rays to lamps and of occlusion end there by the map.
+        const bool ends = static_cast<LitRayKind>(kind) == LitRayKind::kOcclusion ||
+                          (static_cast<LitRayKind>(kind) == LitRayKind::kShadow && has_lamps);
+        REQUIRE(counts.hits[kind] <= counts_wanted.hits[kind]);
+        REQUIRE((ends || counts.hits[kind] == counts_wanted.hits[kind]));
       }
       constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+      constexpr int kOcclusion = static_cast<int>(LitRayKind::kOcclusion);
       const auto area =
           static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
       pixels += area;
       // What went by the map read no node for most rays.
-      fast += counts.node_visits[kShadow] < counts_wanted.node_visits[kShadow] / 4 ? area : 0;
+      const bool is_fast = counts.node_visits[kShadow] < counts_wanted.node_visits[kShadow] / 4;
+      fast += is_fast ? area : 0;
+      by_lamps += is_fast && has_lamps ? area : 0;
+      occluded += counts.node_visits[kOcclusion] < counts_wanted.node_visits[kOcclusion] / 4
+                      ? counts.hits[kOcclusion]
+                      : 0;
       shadows += counts.hits[kShadow];
       sunny += counts.rays[kShadow] - counts.hits[kShadow];
     }
   }
-  CHECK(fast > wanted_pixels / 12);
-  CHECK(shadows > wanted_pixels / 20);
-  CHECK(sunny > wanted_pixels / 40);
+  CAPTURE(fast);
+  CAPTURE(by_lamps);
+  CAPTURE(occluded);
+  CAPTURE(shadows);
+  CAPTURE(sunny);
+  CHECK(is_enough());
 }
 
 TEST_CASE(

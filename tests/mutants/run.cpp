@@ -67,6 +67,7 @@ std::vector<portable::Case> portable_cases(int group) {
   append(portable::kLitGroups);
   append(portable::kWorldGroups);
   append(portable::kBrickGroups);
+  append(portable::kMapLightGroups);
   std::vector<portable::Case> cases;
   if (static_cast<size_t>(group) < groups.size()) {
     for (int i = 0; i < groups[static_cast<size_t>(group)]->count; ++i) {

@@ -35,8 +35,9 @@ extern const Group kWaterGroup;        ///< moving water and its rays
 extern const Group kPanelGroup;        ///< pixels of panels, and a frame in each of their formats
 extern const Group kLitGroup;          ///< light, mirrors, glass, water in pictures
 extern const Group kPlaneGroup;        ///< bits in the plane, and the balls among them
-extern const Group kWorldGroup;  ///< worlds that are edited, maps, shared trees, what light does as bytes
-extern const Group kBrickGroup;  ///< frames by bricks, frames that stop at small blocks, samples at edges
+extern const Group kWorldGroup;     ///< worlds that are edited, maps, shared trees, what light does as bytes
+extern const Group kBrickGroup;     ///< frames by bricks, frames that stop at small blocks, samples at edges
+extern const Group kMapLightGroup;  ///< lit frames by bricks
 
 /// The core's own cases (the application `selftest`): every board runs all of them.
 inline constexpr const Group* kCoreGroups[] = {
@@ -55,6 +56,8 @@ inline constexpr const Group* kLitGroups[] = {&kLitGroup};
 inline constexpr const Group* kWorldGroups[] = {&kWorldGroup, &kPlaneGroup};
 /// Frames by bricks (the application `bricks`), which want as much stack as light does.
 inline constexpr const Group* kBrickGroups[] = {&kBrickGroup};
+/// Lit frames by bricks (the application `map_light`), on boards with flash for them.
+inline constexpr const Group* kMapLightGroups[] = {&kMapLightGroup};
 
 }  // namespace thimble::portable
 

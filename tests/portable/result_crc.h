@@ -20,6 +20,8 @@ inline constexpr uint32_t kLitCrc32 = 0x957158C6;
 inline constexpr uint32_t kWorldCrc32 = 0x46A9ABE0;
 /// Of frames by bricks, all of which every board draws.
 inline constexpr uint32_t kBrickCrc32 = 0xB9A37F48;
+/// Of lit frames by bricks.
+inline constexpr uint32_t kMapLightCrc32 = 0xE9706375;
 
 }  // namespace thimble::portable
 

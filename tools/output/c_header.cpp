@@ -100,6 +100,11 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
     names += (lighting.effects & effect) != 0 ? std::string(" ") + effect_name(effect) : "";
   }
   define("EFFECTS", effects.data() + (names.empty() ? "" : " /*" + names + " */"));
+  std::size_t lamps = 0;
+  for (const Light& light : lighting.scene.lights) {
+    lamps += light.is_point ? 1 : 0;
+  }
+  define("LAMPS", std::to_string(lamps));
   define("HAS_BRICK_MAP", scene.section(SectionKind::kBrickMap).empty() ? "0" : "1");
   text +=
       "\n/* Aligned, so that a chip that wants whole words reads them at once. Constant, so that it stays in "

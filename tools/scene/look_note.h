@@ -19,8 +19,7 @@ struct LookNote {
   bool is_mesh = false;
   bool is_points = false;
   bool has_colors = false;
-  bool has_own_light =
-      false;  ///< lights, ambient light and shadows are the scene's, not the rule's (default_look.h)
+  bool has_own_light = false;    ///< lights, ambient and shadows are the scene's, not of default_look.h
   bool has_own_sky = false;      ///< so is the sky, if there is one
   EffectSet on = Effect::kNone;  ///< what the scene's author turned on and off
   EffectSet off = Effect::kNone;

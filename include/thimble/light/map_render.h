@@ -2,10 +2,10 @@
 /// The pictures of render.h for chips that draw frames: a compact tree with a brick map beside it.
 ///
 /// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band. Where
-/// the light of a pixel is a function of the face that it shows and of the distant lights that reach it (a set that
-/// `is_flat`, at most kMaxFlatSuns lights, all of them distant, a camera that `draws_fast`, no limit of visits),
-/// the camera's rays and those to the lights go through the map, and a face's colour is looked up; everything else is
-/// drawn by the tree. An image has the first way only when its set allows it.
+/// the light of a pixel is a function of the face that it shows, of the lights that reach it and of what occludes it (a
+/// set that `is_flat`, at most kMaxFlatSuns distant lights, a camera that `draws_fast`, no limit of visits), all rays go
+/// through the map; everything else is drawn by the tree. An image has the first way only when its set allows it, and
+/// lamps there only when it says that it has any.
 ///
 /// Cost of the fast way: platform/README.md, "Light on a chip". Stack: tests/budgets/stack.csv.
 #ifndef THIMBLE_LIGHT_MAP_RENDER_H
@@ -21,25 +21,29 @@
 
 namespace thimble {
 
-/// Whether a set has the fast way: direct light alone, or with shadows and any of emission and sky.
+/// Whether a set has the fast way: direct light alone, or with shadows and any of occlusion, emission and sky.
 constexpr bool is_flat(EffectSet effects) {
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
   effects &= ~Effect::kEmitterLight;
-  return effects == Effect::kDirectLight || (effects & ~(Effect::kEmission | Effect::kSky)) == kSun;
+  return effects == Effect::kDirectLight ||
+         (effects & ~(Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky)) == kSun;
 }
-/// Lights that the fast way takes.
+/// Distant lights that the fast way takes.
 inline constexpr size_t kMaxFlatSuns = 2;
 
 namespace lit {
 
+/// In a set of the fast way: lamps, too. The bit is that of the effect that calls for them and has no code of its own.
+inline constexpr EffectSet kLamps = Effect::kEmitterLight;
+
 /// Whether the fast way takes the frame, whose set `is_flat`.
 bool draws_flat(const Frame& frame, const BrickMap& map);
-/// Draws the band where `draws_flat`. `suns` is of the lights, in their order; may be empty. What does not belong to its
-/// light is not looked at.
+/// Draws the band where `draws_flat`. `suns` is of the distant lights, in their order; may be empty. What does not belong to
+/// its light is not looked at.
 template <EffectSet kSet>
 Status draw_flat(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts);
-// flat.cpp has these, as functions of their own: the stack of an image is added up from their call graph.
+// src/light/flat has these, as functions of their own: the stack of an image is added up from their call graph.
 template <>
 Status draw_flat<0x001>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                         LitCounts* counts);
@@ -55,13 +59,51 @@ Status draw_flat<0x203>(const Frame& frame, const BrickMap& map, Span<const SunB
 template <>
 Status draw_flat<0x20B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                         LitCounts* counts);
+template <>
+Status draw_flat<0x007>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x1003>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x1007>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x00F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x100B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x100F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x207>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x1203>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x1207>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x20F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x120B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x120F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
 
 }  // namespace lit
 
 /// As `render_lit_band` (render.h) with `map`, which belongs to `tree`. `suns` (may be empty) has what is proven of
-/// each light of the scene, in their order. Of the counters those of nodes stay as they are for rays that read none.
+/// each distant light of the scene, in their order. `kHasLamps`: lamps go through the map, too; without it a scene with
+/// any is drawn by the tree. Of the counters those of nodes stay as they are for rays that read none, and rays to lamps
+/// and of occlusion hit nothing that is farther away than the lamp or a voxel beyond the reach.
 /// Errors, with nothing drawn: those of render.h, and kDamaged when the map is another tree's.
-template <EffectSet kEffects>
+template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight) != 0>
 [[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const BrickMap& map,
                                                      const Camera& camera, const Shading& shading,
                                                      const LitScene& scene, Span<const SunBricks> suns,
@@ -71,7 +113,10 @@ template <EffectSet kEffects>
     return Status::kDamaged;
   }
   if constexpr (is_flat(kEffects)) {
-    constexpr EffectSet kSet = kEffects & ~Effect::kEmitterLight;
+    // Rays to lamps without shadows would be none.
+    constexpr bool kTakesLamps = kHasLamps && (kEffects & Effect::kShadows) != 0;
+    constexpr EffectSet kSet =
+        (kEffects & ~Effect::kEmitterLight) | (kTakesLamps ? lit::kLamps : Effect::kNone);
     const lit::Frame frame{tree, camera, shading, scene, options, kSet};
     if (lit::draws_flat(frame, map)) {
       return lit::draw_flat<kSet>(frame, map, suns, band, counts);
@@ -79,6 +124,11 @@ template <EffectSet kEffects>
   }
   return render_lit_band<kEffects>(tree, camera, shading, scene, band, counts, options);
 }
+
+/// The same with a set that is known only now, as that of render.h; what a firmware image does not call it has none of.
+Status render_lit_band(EffectSet effects, const CompactTree& tree, const BrickMap& map, const Camera& camera,
+                       const Shading& shading, const LitScene& scene, Span<const SunBricks> suns,
+                       const Band& band, LitCounts* counts = nullptr, const LitOptions& options = {});
 
 }  // namespace thimble
 

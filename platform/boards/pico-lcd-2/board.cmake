@@ -29,5 +29,5 @@ set(BOARD_CORES 2)
 set(BOARD_CATCHES ram nonsense scene)
 set(BOARD_LOCKS_UP stack)
 # The chip and its code are the pico's, which runs all of them.
-set(BOARD_TESTS "golden demo bench")
+set(BOARD_TESTS "demo bench")
 set(BOARD_DEMO_EFFECTS direct-light,shadows)

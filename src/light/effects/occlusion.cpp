@@ -2,6 +2,7 @@
 // darkens the less the farther away it is, so that no edge of a layer shows.
 #include "../arithmetic.h"
 #include "../asking.h"
+#include "../occluding.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {
@@ -10,11 +11,10 @@ namespace {
 template <class AnyFrame>
 void occlude_face(AnyFrame& frame, const Spot& spot, Color* light) {
   const Occlusion& occlusion = frame.scene.occlusion;
-  const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
+  const int rays = occlusion_rays(occlusion);
   if (rays == 0 || occlusion.reach == 0) {
     return;
   }
-  constexpr uint32_t kOpen = 1U << 12;
   uint32_t open = 0;
   for (int i = 0; i < rays; ++i) {
     const Ray ray{spot.at, occlusion_direction(i, spot.face.axis, spot.face.negative)};
@@ -26,23 +26,16 @@ void occlude_face(AnyFrame& frame, const Spot& spot, Color* light) {
           return RayPoint{occlusion.reach, kOcclusionLength};
         },
         &hit);
-    uint32_t share = kOpen;
+    uint32_t share = kOpenShare;
     if (is_opaque(frame, hit)) {
-      // All directions of the pattern have one length, 7 bits; the numerator has 23.
       // A face is only entered along its axis; inside a voxel t is 0, whatever it is divided by.
       const uint32_t along = hit.axis < 0 ? 0 : magnitude_32(ray.direction[hit.axis]);
       const uint32_t component = along == 0 ? 1 : along;
-      const uint32_t distance_q8 = static_cast<uint32_t>(hit.t_numerator) * kOcclusionLength / component;
-      const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
-      share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+      share = share_of_way(occlusion, static_cast<uint32_t>(hit.t_numerator), component);
     }
     open += share;
   }
-  const uint32_t closed = kOpen - open / static_cast<uint32_t>(rays);
-  const uint32_t factor = kOpen - closed * occlusion.strength / 255;
-  for (uint32_t& channel : light->c) {
-    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
-  }
+  darken(occlusion, open, rays, light);
 }
 
 }  // namespace

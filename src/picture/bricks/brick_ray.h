@@ -105,9 +105,11 @@ class BrickRay {
     rest_b_ = rest_b;
     axis_ = kC;
   }
+  // Lets it end when it has crossed so many planes of c and comes to one more.
+  [[gnu::always_inline]] void end_after(uint32_t planes) { planes_ = planes; }
 
-  // Returns the ink of what the ray hits, kMissed or kAsk; without inks kShadowed in place of one. A ray of shadow is to
-  // be begun first.
+  // Returns the ink of what the ray hits, kMissed or kAsk; without inks kShadowed in place of one. A ray from a
+  // face is to be begun first.
   [[gnu::always_inline]] int32_t trace() {
     const int32_t started = start();
     if (started != kGoOn) {
@@ -116,7 +118,7 @@ class BrickRay {
     const uint32_t go_a = d_a_ << 8;
     const uint32_t go_b = d_b_ << 8;
 
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
+    if constexpr (kFromFace) {
       goto entered;
     }
   enter:  // a brick, by a plane of axis_
@@ -125,7 +127,7 @@ class BrickRay {
         return kMissed;
       }
       if (!begin_brick()) {
-        return OneCourse::kAim == Aim::kShadow ? kMissed : kAsk;
+        return kFromFace ? kMissed : kAsk;
       }
       goto entered;
     }
@@ -163,6 +165,9 @@ class BrickRay {
       }
       goto tie;
     }
+    if (ends()) {
+      return kMissed;
+    }
     if (step<kC>()) {
       axis_ = kC;
       goto enter;
@@ -194,7 +199,7 @@ class BrickRay {
     goto between;
   tie:
     if (!cross_together()) {
-      return kAsk;
+      return kFromFace ? kMissed : kAsk;
     }
     goto enter;
   hit:
@@ -214,6 +219,7 @@ class BrickRay {
 
   static constexpr int kA = kOtherA<kC>;
   static constexpr int kB = kOtherB<kC>;
+  static constexpr bool kFromFace = OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear;
   static constexpr bool mirrored(int axis) { return (kMirrored >> axis & 1U) != 0; }
   static constexpr uint32_t flip(int axis) { return mirrored(axis) ? 3U : 0U; }
   // The voxel of a brick, in place, behind which the next brick comes; and what a step adds.
@@ -248,7 +254,7 @@ class BrickRay {
   [[gnu::always_inline]] auto times() const {
     THIMBLE_NOTE(Range::kBrickTime, Exact(rest_a_) * Exact(d_b_));
     THIMBLE_NOTE(Range::kBrickTime, Exact(rest_b_) * Exact(d_a_));
-    if constexpr (kHasWideProducts || OneCourse::kAim == Aim::kShadow) {
+    if constexpr (kHasWideProducts || kFromFace) {
       return Times<int32_t>{order_of(course_, rest_a_, d_b_, rest_b_, d_a_), 0};
     } else {
       return Times<uint32_t>{rest_a_ * d_b_, rest_b_ * d_a_};
@@ -260,7 +266,7 @@ class BrickRay {
 
   // Finds the cell that the ray starts in.
   [[gnu::always_inline]] int32_t start() {
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
+    if constexpr (kFromFace) {
       return kGoOn;  // begin() did
     } else {
       const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
@@ -324,8 +330,11 @@ class BrickRay {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
       return kShadowed;
     } else {
-      if (!name_axis()) {
-        return kAsk;
+      // Of a hit that is near its t is asked, whichever faces are entered there.
+      if constexpr (OneCourse::kAim == Aim::kSight) {
+        if (!name_axis()) {
+          return kAsk;
+        }
       }
       course_.landing = {static_cast<uint32_t>(at_ - course_.bricks) * 8 + shift_, left_, cell_, axis_};
       return kShadowed;
@@ -335,7 +344,7 @@ class BrickRay {
   // Enters a brick where it is not as usual: the ray has left the box, or waits outside of it, or starts
   // here.
   [[gnu::always_inline]] bool begin_brick() {
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
+    if constexpr (kFromFace) {
       return false;
     } else {
       if ((left_ & kInside) != 0) {
@@ -381,13 +390,25 @@ class BrickRay {
     return false;
   }
 
+  // Whether the ray ends here, before a plane of c.
+  [[gnu::always_inline]] bool ends() {
+    if constexpr (OneCourse::kAim == Aim::kNear) {
+      return planes_-- == 0;
+    } else {
+      return false;
+    }
+  }
+
   // Crosses planes that the ray reaches at the same time: it spends none between them. False when closest_hit
-  // must say what it hits.
+  // must say what it hits, or when the ray ends here.
   [[gnu::always_inline]] bool cross_together() {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
       left_ &= ~kInside;  // it may stay in its brick, and that is looked at anew
     }
     if (rest_a_ == 0 || rest_b_ == 0) {  // with the plane of c
+      if (ends()) {
+        return false;
+      }
       if (rest_a_ == 0) {
         rest_a_ -= den_;
         step<kA>();
@@ -405,7 +426,7 @@ class BrickRay {
     step<kA>();
     step<kB>();
     axis_ = kA;
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
+    if constexpr (kFromFace) {
       return true;  // a hit is one, whatever it hits
     } else {
       return course_.exact_ties;
@@ -456,6 +477,7 @@ class BrickRay {
   uint32_t shift_;     // the voxel's place: x and y
   const uint8_t* at_;  // and z: its halfword
   int axis_;           // of the plane that was crossed last
+  uint32_t planes_;    // of c that are left (Aim::kNear)
 };
 
 template <int kC, unsigned kMirrored>

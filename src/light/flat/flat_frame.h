@@ -1,0 +1,593 @@
+// Lit frames by bricks, where the light of a pixel is that of the face and of the distant lights that reach it: rays
+// of the camera and to the lights through the map, colours looked up. Where a set has occlusion or lamps, each point
+// gathers its light by rays of its own (gather.h). ../README.md derives what is used. Internal to src/, one source of a
+// few sets each includes it.
+#ifndef THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
+#define THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
+
+#include "../../picture/panels.h"
+#include "../arithmetic.h"
+#include "../exposure.h"
+#include "thimble/light/map_render.h"
+
+// As in brick_render.cpp.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O2", "rename-registers")
+#endif
+
+#include "../../picture/bricks/face_light.h"
+#include "../../picture/bricks/sight.h"
+#include "gather.h"
+
+namespace thimble::lit {
+namespace {
+
+using namespace bricks;
+
+// How a format's pixels are made of a colour.
+enum class Storing : uint8_t { kGrays, kHalfwords, kBytes, kAny };
+
+Storing storing_of(PixelFormat format) {
+  if (format == PixelFormat::kMono1 || format == PixelFormat::kGray4) {
+    return Storing::kGrays;
+  }
+  return format == PixelFormat::kRgb565 ||
+                 (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
+                 (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)
+             ? Storing::kHalfwords
+         : format == PixelFormat::kGray8 || format == PixelFormat::kRgb888 ? Storing::kBytes
+                                                                           : Storing::kAny;
+}
+
+// From what rest of a channel on, of kWhite, the next step is stored, by a pixel's place in the dither.
+struct Thresholds {
+  uint16_t at[64];
+};
+constexpr Thresholds thresholds() {
+  Thresholds result{};
+  for (int32_t i = 0; i < 64; ++i) {
+    result.at[i] = static_cast<uint16_t>(kWhite - (128 - (2 * bayer_rank(i & 7, i >> 3) + 1)) * kWhite / 128);
+  }
+  return result;
+}
+constexpr Thresholds kDither = thresholds();
+constexpr uint32_t kNoDither = kWhite - 64 * kWhite / 128;
+
+// A colour as it is stored. kGrays: the step below, and what is left, of kWhite. kHalfwords: the pixel of the steps
+// below, and what is left of each channel. kBytes: the pixel. kAny: the colour itself.
+struct FlatInk {
+  uint32_t low;
+  uint16_t rest[3];
+  uint16_t key;
+};
+
+// Where most points have a light of their own few colours are kept.
+template <EffectSet kSet>
+constexpr uint32_t kInks = kGathersLight<kSet> ? 8 : 32;
+constexpr uint32_t kFaces = 64;
+constexpr uint16_t kNoKey = UINT16_MAX;
+constexpr uint32_t kNoFace = UINT32_MAX;
+
+constexpr int kAskedWords = kTileAcrossPx * kTileDownPx / 32;
+static_assert(kAskedWords == 4);
+
+uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
+  return band.pixels.data + stride * row_place(band.format, y - band.first_row);
+}
+
+// How far a band is drawn: the tile that is next, and the pixels of the one before it that only the tree knows.
+struct FlatProgress {
+  int32_t x;
+  int32_t y;
+  uint32_t asked[kAskedWords];
+};
+
+// What is drawn with; a Sink of SightPainter.
+template <EffectSet kSet>
+class FlatSink : Gathering<kSet> {
+ public:
+  FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
+      : frame_(frame),
+        map_(map),
+        band_(band),
+        stride_(stride),
+        storing_(storing_of(band.format)),
+        counts_(counts) {
+    const bool blue_first = has_format(PixelFormat::kBgr565) && band.format == PixelFormat::kBgr565;
+    shift_[0] = blue_first ? 0 : 11;
+    shift_[1] = 5;
+    shift_[2] = blue_first ? 11 : 0;
+    is_whole_ = storing_ == Storing::kHalfwords && frame.options.dither &&
+                ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
+    for (FlatInk& ink : inks_) {
+      ink.key = kNoKey;
+    }
+    for (uint32_t& seen : seen_) {
+      seen = kNoFace;
+    }
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      make_ink(background(frame), &sky_);
+    }
+  }
+
+  void set_lights(Span<const SunBricks> suns) {
+    if constexpr (kGathers) {
+      this->begin(frame_);
+    }
+    Spot spot;
+    for (unsigned face = 0; face < 6; ++face) {
+      lights_of_[face] = 0;
+      spot.face = {static_cast<int>(face >> 1), (face & 1U) == 0};
+      size_t lamps = 0;
+      for (size_t number = 0; number < frame_.scene.lights.size; ++number) {
+        const Light& light = frame_.scene.lights[number];
+        if constexpr (kHasLamps) {
+          if (light.is_point) {
+            ++lamps;
+            continue;
+          }
+        }
+        const size_t i = number - lamps;
+        LightRay ray;
+        if (light_ray(light, spot, &ray)) {
+          lights_of_[face] = static_cast<uint8_t>(lights_of_[face] | 1U << i);
+          if constexpr (kGathers) {
+            this->set_sun(i, face, ray);
+          }
+          if constexpr (kHasShadows) {
+            const bool known = i < suns.size && suns[i].belongs_to(map_, light.place);
+            suns_[i].set(map_, ray.ray.direction, known ? suns[i].bits() : nullptr);
+          }
+        }
+      }
+    }
+  }
+
+  void hit(int32_t x, int32_t y, const SightCourse& course, const Vec3<uint32_t>& d) {
+    const unsigned face = course.face[course.landing.axis];
+    unsigned lights = lights_of_[face];
+    if constexpr (kHasShadows) {
+      if (kGathers || lights != 0) {
+        FacePoint point;
+        find_point(course, d, &point);
+        for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+          if ((lights >> i & 1U) != 0) {
+            ++shadow_rays_;
+            if (is_shadowed(suns_[i], point)) {
+              lights &= ~(1U << i);
+              ++shadows_;
+            }
+          }
+        }
+        if constexpr (kGathers) {
+          ++hits_;
+          show_gathered(x, y, point, material_of(course.landing.voxel, face), face, lights);
+          return;
+        }
+      }
+    }
+    ++hits_;
+    store(x, y, ink_of_face(material_of(course.landing.voxel, face), face, lights));
+  }
+
+  void miss(int32_t x, int32_t y) {
+    ++misses_;
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      store(x, y, sky_);
+    } else {
+      lit::store(frame_, band_, line_of(y), x, y, sky_color(frame_, frame_.camera.ray(x, y).direction));
+    }
+  }
+
+  // All pixels of a face.
+  void face(const SeenPixels& seen, SeenFace& face) {
+    const unsigned side = seen.course.face[face.point.axis];
+    unsigned lights = lights_of_[side];
+    unsigned open = 0;  // lights that may reach a part of it
+    if constexpr (kHasShadows) {
+      for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+        if ((lights >> i & 1U) != 0) {
+          const FaceLight light = light_of_face(suns_[i], face.point, &blockers_[kSlots != 0 ? i : 0]);
+          lights &= ~(light == FaceLight::kDark ? 1U << i : 0U);
+          open |= light == FaceLight::kMixed ? 1U << i : 0U;
+          if (counts_ && light != FaceLight::kMixed) {
+            const uint32_t rays = count_of(seen.pixels);
+            shadow_rays_ += rays;
+            shadows_ += light == FaceLight::kDark ? rays : 0;
+          }
+        }
+      }
+    }
+    if (counts_) {
+      hits_ += count_of(seen.pixels);
+    }
+    const uint8_t material = material_of(face.voxel, side);
+    if (!kGathers && open == 0) {
+      store(seen.place, seen.pixels, ink_of_face(material, side, lights));
+    } else {
+      store_points(seen, face, material, lights, open);
+    }
+  }
+
+  void miss(const TilePlace& place, const Pixels& pixels) {
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      misses_ += counts_ ? count_of(pixels) : 0;
+      store(place, pixels, sky_);
+    } else {
+      for_each(pixels, [&](uint32_t pixel) {
+        miss(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+             place.y + static_cast<int32_t>(pixel / kTileAcrossPx));
+      });
+    }
+  }
+
+  void ask(int32_t x, int32_t y) {
+    const auto pixel = static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
+    asked_[pixel >> 5] |= 1U << (pixel & 31U);
+  }
+
+  // Hands over the pixels of a tile that only the tree knows; whether there are any.
+  bool take_asked(uint32_t (*asked)[kAskedWords]) {
+    uint32_t any = 0;
+    for (int i = 0; i < kAskedWords; ++i) {
+      (*asked)[i] = asked_[i];
+      any |= asked_[i];
+      asked_[i] = 0;
+    }
+    return any != 0;
+  }
+
+  void count(LitCounts* counts) const {
+    constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
+    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+    counts->rays[kPrimary] += hits_ + misses_;
+    counts->hits[kPrimary] += hits_;
+    counts->rays[kShadow] += shadow_rays_;
+    counts->hits[kShadow] += shadows_;
+    if constexpr (kGathers) {
+      this->add_counts(counts);
+    }
+  }
+  uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
+
+ private:
+  static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
+  static constexpr bool kHasLamps = (kSet & kLamps) != 0;
+  static constexpr bool kGathers = Gathering<kSet>::kGathers;
+
+  static uint32_t count_of(const Pixels& pixels) {
+    uint32_t count = 0;
+    for (uint32_t word : pixels.word) {
+      count += static_cast<uint32_t>(bits::popcount32(word));
+    }
+    return count;
+  }
+  template <class Call>
+  static void for_each(const Pixels& pixels, const Call& call) {
+    for (uint32_t i = 0; i < kTileWords; ++i) {
+      for (uint32_t word = pixels.word[i]; word != 0; word &= word - 1) {
+        call(32 * i + bits::lowest_bit(word));
+      }
+    }
+  }
+
+  // Asks the points of a face one by one which of the lights that are `open` reach them.
+  [[gnu::noinline]] void store_points(const SeenPixels& seen, SeenFace& face, uint8_t material,
+                                      unsigned lights, unsigned open) {
+    const unsigned side = seen.course.face[face.point.axis];
+    for_each(seen.pixels, [&](uint32_t pixel) {
+      find_point(seen.course, seen.direction(pixel), &face);
+      unsigned reach = lights;
+      for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+        if ((open >> i & 1U) != 0) {
+          ++shadow_rays_;
+          const size_t sun = kHasShadows && kSlots != 0 ? i : 0;
+          if (blockers_[sun].count <= Blockers::kMost ? is_blocked(suns_[sun], blockers_[sun], face.point)
+                                                      : is_shadowed(suns_[sun], face.point)) {
+            reach &= ~(1U << i);
+            ++shadows_;
+          }
+        }
+      }
+      const int32_t x = seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx);
+      const int32_t y = seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx);
+      if constexpr (kGathers) {
+        show_gathered(x, y, face.point, material, side, reach);
+      } else {
+        store(x, y, ink_of_face(material, side, reach));
+      }
+    });
+  }
+
+  // Stores a point that gathers its light; `reach`: the suns that it has.
+  [[gnu::noinline]] void show_gathered(int32_t x, int32_t y, const FacePoint& point, uint8_t material,
+                                       unsigned side, unsigned reach) {
+    Spot spot;
+    spot.face = {static_cast<int>(side >> 1), (side & 1U) == 0};
+    Color light;
+    if (!this->gather(frame_, map_, point, spot, reach, &light)) {
+      store(x, y, ink_of_face(material, side, reach));
+      return;
+    }
+    spot.surface = surface_of(frame_, material);
+    Color color = lit_color(spot, light);
+    if constexpr ((kSet & Effect::kEmission) != 0) {
+      add_emission(spot, &color);
+    }
+    FlatInk ink;
+    make_ink(color, &ink);
+    store(x, y, ink);
+  }
+
+  // 25 bits of a face's key: its place in the table and the upper 19 of them, beside the material.
+  [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
+    const uint32_t key = voxel << 3 | face;
+    uint32_t& seen = seen_[(key ^ key >> 6) % kFaces];
+    if (seen >> 8 != key >> 6) {
+      seen = key >> 6 << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
+    }
+    return static_cast<uint8_t>(seen);
+  }
+
+  [[gnu::always_inline]] const FlatInk& ink_of_face(uint8_t material, unsigned face, unsigned lights) {
+    const uint32_t key = uint32_t{material} << 5 | face << 2 | lights;
+    FlatInk& ink = inks_[(key ^ key >> 5) % kInks<kSet>];
+    if (seldom(ink.key != key)) {
+      look_up(material, face, lights, &ink);
+      ink.key = static_cast<uint16_t>(key);
+    }
+    return ink;
+  }
+  [[gnu::noinline]] void look_up(uint8_t material, unsigned face, unsigned lights, FlatInk* ink) {
+    make_ink(face_color(material, face, lights), ink);
+  }
+
+  // What a face of a material shows in these of the lights.
+  Color face_color(uint8_t material, unsigned face, unsigned lights) const {
+    Spot spot;
+    spot.face = {static_cast<int>(face >> 1), (face & 1U) == 0};
+    spot.surface = surface_of(frame_, material);
+    Color light;
+    if constexpr (kGathers) {
+      this->light_of_face(frame_, spot, lights, &light);
+    } else {
+      add_lights(spot, lights, &light);
+    }
+    Color color = lit_color(spot, light);
+    if constexpr ((kSet & Effect::kEmission) != 0) {
+      add_emission(spot, &color);
+    }
+    return color;
+  }
+  void add_lights(const Spot& spot, unsigned lights, Color* light) const {
+    ambient_light(frame_, spot, light);
+    for (size_t i = 0; i < frame_.scene.lights.size; ++i) {
+      LightRay ray;
+      if ((lights >> i & 1U) != 0 && light_ray(frame_.scene.lights[i], spot, &ray)) {
+        add_light(ray, light);
+      }
+    }
+  }
+
+  [[gnu::noinline]] void make_ink(const Color& color, FlatInk* ink) const {
+    if (storing_ == Storing::kAny) {
+      for (int i = 0; i < 3; ++i) {
+        ink->rest[i] = static_cast<uint16_t>(color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel);
+      }
+      return;
+    }
+    uint32_t channel[3];
+    expose(color, &channel);
+    ink->low = 0;
+    if (storing_ == Storing::kBytes) {
+      const Rgb8 stored = in_8_bits(channel);
+      ink->low = band_.format == PixelFormat::kGray8
+                     ? uint32_t{gray_of(stored)}
+                     : uint32_t{stored.r} | uint32_t{stored.g} << 8 | uint32_t{stored.b} << 16;
+      return;
+    }
+    if (storing_ == Storing::kGrays) {
+      channel[0] = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
+    }
+    for (int i = 0; i < (storing_ == Storing::kGrays ? 1 : 3); ++i) {
+      const uint32_t levels = storing_ == Storing::kHalfwords       ? (i == 1 ? 63 : 31)
+                              : band_.format == PixelFormat::kGray4 ? 15
+                                                                    : 1;
+      const uint32_t value = channel[i] * levels;
+      ink->low |= value / kWhite << (storing_ == Storing::kGrays ? 0 : shift_[i]);
+      ink->rest[i] = static_cast<uint16_t>(value % kWhite);
+    }
+  }
+
+  // The pixel of a halfword where the next step is stored from `limit` on.
+  [[gnu::always_inline]] uint32_t halfword(const FlatInk& ink, uint32_t limit) const {
+    return ink.low + (ink.rest[0] >= limit ? 1U << shift_[0] : 0U) + (ink.rest[1] >= limit ? 1U << 5 : 0U) +
+           (ink.rest[2] >= limit ? 1U << shift_[2] : 0U);
+  }
+
+  [[gnu::always_inline]] void store(int32_t x, int32_t y, const FlatInk& ink) {
+    uint8_t* line = line_of(y);
+    const uint32_t limit = frame_.options.dither ? kDither.at[(y & 7) << 3 | (x & 7)] : kNoDither;
+    if (storing_ == Storing::kGrays) {
+      const uint32_t step = ink.low + (ink.rest[0] >= limit ? 1U : 0U);
+      if (band_.format == PixelFormat::kGray4) {
+        line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | step << ((x & 1) != 0 ? 0 : 4));
+      } else {
+        line[x >> 3] = static_cast<uint8_t>(line[x >> 3] | step << (7 - (x & 7)));
+      }
+      return;
+    }
+    store_color(line, x, y, limit, ink);
+  }
+
+  // The same for a mask of a tile's pixels.
+  [[gnu::noinline]] void store(const TilePlace& place, const Pixels& pixels, const FlatInk& ink) {
+    if (storing_ == Storing::kBytes) {
+      const TilePlace bytes{line_of(place.y), stride_, place.x, place.y, place.across, place.down};
+      if (band_.format == PixelFormat::kRgb888) {
+        store_triples(bytes, pixels, ink.low);
+      } else {
+        store_whole<uint8_t>(bytes, pixels, ink.low);
+      }
+      return;
+    }
+    if (!is_whole_) {
+      for_each(pixels, [&](uint32_t pixel) {
+        store(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+              place.y + static_cast<int32_t>(pixel / kTileAcrossPx), ink);
+      });
+      return;
+    }
+    const uint32_t low = ink.low;
+    const uint32_t red = ink.rest[0];
+    const uint32_t green = ink.rest[1];
+    const uint32_t blue = ink.rest[2];
+    const uint32_t one_red = 1U << shift_[0];
+    const uint32_t one_blue = 1U << shift_[2];
+    const bool swaps = is_big_endian();
+    for (int32_t row = 0; row < place.down; ++row) {
+      uint32_t word = pixels.word[row >> 1] >> 16 * (row & 1) & 0xFFFFU;
+      if (word == 0) {
+        continue;
+      }
+      Half* to = static_cast<Half*>(static_cast<void*>(line_of(place.y + row))) + place.x;
+      const uint16_t* const limits = kDither.at + ((place.y + row) & 7) * 8;
+      for (uint32_t column = 0; word != 0;) {
+        const uint32_t none = bits::lowest_bit(word);
+        column += none;
+        word >>= none;
+        for (; (word & 1U) != 0; word >>= 1, ++column) {
+          const uint32_t limit = limits[column & 7U];
+          uint32_t value = low;
+          value += red >= limit ? one_red : 0;
+          value += green >= limit ? 1U << 5 : 0;
+          value += blue >= limit ? one_blue : 0;
+          to[column] = static_cast<Half>(swaps ? value >> 8 | value << 8 : value);
+        }
+      }
+    }
+  }
+
+  bool is_big_endian() const {
+    return has_format(PixelFormat::kRgb565Be) && band_.format == PixelFormat::kRgb565Be;
+  }
+
+  // Not inlined: formats whose pixels are seldom drawn one by one.
+  [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, uint32_t limit,
+                                     const FlatInk& ink) const {
+    if (storing_ == Storing::kHalfwords) {
+      const uint32_t value = halfword(ink, limit);
+      line[2 * x] = static_cast<uint8_t>(is_big_endian() ? value >> 8 : value);
+      line[2 * x + 1] = static_cast<uint8_t>(is_big_endian() ? value : value >> 8);
+    } else if (storing_ == Storing::kBytes) {
+      store_ink(line, x, y, band_.format, ink.low);
+    } else {
+      lit::store(frame_, band_, line, x, y, Color{{ink.rest[0], ink.rest[1], ink.rest[2]}});
+    }
+  }
+  const Frame& frame_;
+  const BrickMap& map_;
+  const Band& band_;
+  size_t stride_;
+  Storing storing_;
+  bool counts_;       // rays of faces that are drawn as a whole are counted
+  bool is_whole_;     // halfwords may be stored as such
+  uint8_t shift_[3];  // of a halfword's channels
+  uint8_t lights_of_[6];
+  uint32_t hits_ = 0;
+  uint32_t misses_ = 0;
+  uint32_t shadow_rays_ = 0;
+  uint32_t shadows_ = 0;
+  uint32_t asked_[kAskedWords] = {};
+  FlatInk sky_;
+  FlatInk inks_[kInks<kSet>];
+  uint32_t seen_[kFaces];  // material, from bit 8 on the face; kFaces is 2^6
+  ShadowCourse suns_[kHasShadows ? kMaxFlatSuns : 1];
+  Blockers blockers_[kHasShadows && kSlots != 0 ? kMaxFlatSuns : 1];  // of the face that is being drawn
+};
+
+bool shares_bytes(PixelFormat format) {
+  return format == PixelFormat::kMono1 || format == PixelFormat::kGray4 || format > PixelFormat::kRgb888;
+}
+
+// Draws tiles up to one with pixels that only the tree knows. Not inlined: what it keeps is gone from the stack when
+// the tree is asked.
+template <EffectSet kSet>
+[[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                                  const Band& band, size_t stride, FlatProgress* progress,
+                                  LitCounts* counts) {
+  FlatSink<kSet> sink(frame, map, band, stride, counts != nullptr);
+  sink.set_lights(suns);
+  const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
+  Sweep sweep;
+  sweep.course = kNoKey;
+  const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
+  SightPainter<FlatSink<kSet>> painter(sights, swept ? &sweep : nullptr, sink);
+  const int32_t width = frame.camera.width_px();
+  const int32_t end = band.first_row + band.rows;
+  for (bool open = false; progress->y < end && !open;) {
+    const int32_t x = progress->x;
+    const int32_t y = progress->y;
+    const int32_t tile_end = (y / kTileDownPx + 1) * kTileDownPx;
+    const bool last = x + kTileAcrossPx >= width;
+    painter.draw_tile({x, last ? width : x + kTileAcrossPx, y, tile_end < end ? tile_end : end});
+    progress->x = last ? 0 : x + kTileAcrossPx;
+    progress->y = last ? tile_end : y;
+    open = sink.take_asked(&progress->asked);
+  }
+  if (counts != nullptr) {
+    sink.count(counts);
+  }
+}
+
+// Draws what was asked, of the tile at (x, y).
+template <EffectSet kSet>
+[[gnu::noinline]] void draw_asked(const Frame& of, const Band& band, size_t stride, int32_t x, int32_t y,
+                                  const FlatProgress& progress, LitCounts* counts) {
+  Frame frame = of;
+  for (int32_t pixel = 0; pixel < kTileAcrossPx * kTileDownPx; ++pixel) {
+    if ((progress.asked[pixel >> 5] >> (pixel & 31) & 1U) != 0) {
+      const int32_t px = x + pixel % kTileAcrossPx;
+      const int32_t py = y - y % kTileDownPx + pixel / kTileAcrossPx;
+      store(frame, band, line_of(band, stride, py), px, py,
+            lit::pixel<kSet & ~kLamps>(frame, frame.camera.ray(px, py)));
+    }
+  }
+  if (counts != nullptr) {
+    add_counts(frame.counts, counts);
+  }
+}
+
+template <EffectSet kSet>
+Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                  LitCounts* counts) {
+  size_t stride = 0;
+  const Status status = check_frame(frame, band, &stride);
+  if (status != Status::kOk) {
+    return status;
+  }
+  const int32_t end = band.first_row + band.rows;
+  for (int32_t y = band.first_row; y < end && shares_bytes(band.format); ++y) {
+    if (begins_bytes(band.format, y - band.first_row)) {
+      clear_row(frame, band, line_of(band, stride, y));
+    }
+  }
+  FlatProgress progress{0, band.first_row, {}};
+  while (progress.y < end) {
+    draw_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+    if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
+      continue;
+    }
+    const int32_t width = frame.camera.width_px();
+    const bool first = progress.x == 0;
+    draw_asked<kSet>(frame, band, stride,
+                     first ? (width - 1) / kTileAcrossPx * kTileAcrossPx : progress.x - kTileAcrossPx,
+                     first ? progress.y - 1 : progress.y, progress, counts);
+  }
+  return Status::kOk;
+}
+
+}  // namespace
+}  // namespace thimble::lit
+
+#endif

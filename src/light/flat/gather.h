@@ -1,0 +1,192 @@
+// Light that each point gathers by rays of its own through the map: occlusion, and lamps with their shadows. Internal
+// to src/.
+#ifndef THIMBLE_SRC_LIGHT_FLAT_GATHER_H
+#define THIMBLE_SRC_LIGHT_FLAT_GATHER_H
+
+#include "../../picture/bricks/near.h"
+#include "../arithmetic.h"
+#include "../occluding.h"
+#include "thimble/light/map_render.h"
+
+namespace thimble::lit {
+namespace {
+
+using namespace bricks;
+
+template <EffectSet kSet>
+constexpr bool kGathersLight = (kSet & (Effect::kAmbientOcclusion | kLamps)) != 0;
+
+// What a set keeps that gathers nothing.
+template <EffectSet kSet, bool = kGathersLight<kSet>>
+class Gathering {
+ public:
+  static constexpr bool kGathers = false;
+};
+
+template <EffectSet kSet>
+class Gathering<kSet, true> {
+ public:
+  static constexpr bool kGathers = true;
+
+  void begin(const Frame& frame) {
+    const Occlusion& occlusion = frame.scene.occlusion;
+    rays_ = kOccludes && occlusion.reach != 0 ? occlusion_rays(occlusion) : 0;
+    // A box of 256 voxels a side ends within 512 along any direction of the pattern.
+    const uint32_t reach = occlusion.reach < 512 ? occlusion.reach : 512;
+    reach_q12_ = ((reach << 20) + kOcclusionLength - 1) / kOcclusionLength;
+    for (unsigned face = 0; face < 6; ++face) {
+      for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+        suns_[face][i] = {};
+      }
+    }
+  }
+  // What sun `number` gives a face that it reaches.
+  void set_sun(size_t number, unsigned face, const LightRay& ray) { add_light(ray, &suns_[face][number]); }
+
+  // The light of a face that nothing hides but for the suns that do not reach it, without lamps.
+  void light_of_face(const Frame& frame, const Spot& spot, unsigned lights, Color* light) const {
+    ambient_light(frame, spot, light);
+    if (rays_ != 0) {
+      darken(frame.scene.occlusion, kOpenShare, 1, light);
+    }
+    add_suns(spot, lights, light);
+  }
+
+  // Gathers the light of a point. False when it is that of its face.
+  bool gather(const Frame& frame, const BrickMap& map, const FacePoint& point, const Spot& spot,
+              unsigned lights, Color* light) {
+    NearPoint from(map, point);
+    bool own = false;
+    ambient_light(frame, spot, light);
+    if constexpr (kOccludes) {
+      if (rays_ != 0) {
+        const uint32_t open = open_of(frame.scene.occlusion, from, spot.face);
+        own = open != kOpenShare * static_cast<uint32_t>(rays_);
+        darken(frame.scene.occlusion, open, rays_, light);
+      }
+    }
+    add_suns(spot, lights, light);
+    if constexpr (kHasLamps) {
+      own = add_lamps(frame, map, from, point, spot.face, light) || own;
+    }
+    return own;
+  }
+
+  void add_counts(LitCounts* counts) const {
+    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+    constexpr int kOcclusion = static_cast<int>(LitRayKind::kOcclusion);
+    counts->rays[kShadow] += lamp_rays_;
+    counts->hits[kShadow] += lamp_hits_;
+    counts->rays[kOcclusion] += occlusion_rays_;
+    counts->hits[kOcclusion] += occlusion_hits_;
+  }
+
+ private:
+  static constexpr bool kOccludes = (kSet & Effect::kAmbientOcclusion) != 0;
+  static constexpr bool kHasLamps = (kSet & kLamps) != 0;
+  static constexpr bool kHasEmission = (kSet & Effect::kEmission) != 0;
+  static unsigned number_of(const Face& face) {
+    return 2 * static_cast<unsigned>(face.axis) + (face.negative ? 0U : 1U);
+  }
+
+  void add_suns(const Spot& spot, unsigned lights, Color* light) const {
+    const Color(&suns)[kMaxFlatSuns] = suns_[number_of(spot.face)];
+    for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+      for (int channel = 0; (lights >> i & 1U) != 0 && channel < 3; ++channel) {
+        light->c[channel] += suns[i].c[channel];
+      }
+    }
+  }
+
+  // How much of what is around the point is open. The pattern has four quadrants by turns, and in each all directions
+  // have the same signs.
+  uint32_t open_of(const Occlusion& occlusion, NearPoint& from, const Face& face) {
+    const int along_x = face.axis == 2 ? 0 : face.axis + 1;
+    const int along_y = face.axis == 0 ? 2 : face.axis - 1;
+    const unsigned up = face.negative ? 1U << face.axis : 0U;
+    uint32_t open = 0;
+    for (int quadrant = 0; quadrant < 4; ++quadrant) {
+      const bool left = quadrant == 1 || quadrant == 2;
+      const bool back = quadrant >= 2;
+      const bool in_box = from.begin(up | (left ? 1U << along_x : 0U) | (back ? 1U << along_y : 0U));
+      for (int i = quadrant; i < rays_; i += 4) {
+        const PatternDirection& direction = kOcclusionPattern[i];
+        uint32_t d[3];
+        d[along_x] = static_cast<uint32_t>(left ? -direction.x : direction.x);
+        d[along_y] = static_cast<uint32_t>(back ? -direction.y : direction.y);
+        d[face.axis] = static_cast<uint8_t>(direction.z);
+        int c = d[along_x] > d[along_y] ? along_x : along_y;
+        c = d[face.axis] > d[c] ? face.axis : c;
+        NearHit hit;
+        if (in_box && from.trace(d, c, (d[c] * reach_q12_ >> 12) + 1, &hit)) {
+          open += share_of_way(occlusion, hit.way, d[hit.axis]);
+          ++occlusion_hits_;
+        } else {
+          open += kOpenShare;
+        }
+      }
+    }
+    occlusion_rays_ += static_cast<uint32_t>(rays_);
+    return open;
+  }
+
+  // Adds the lamps that reach a point; whether any does.
+  bool add_lamps(const Frame& frame, const BrickMap& map, NearPoint& from, const FacePoint& point,
+                 const Face& face, Color* light) {
+    Spot spot;
+    spot.face = face;
+    for (int i = 0; i < 3; ++i) {
+      const int32_t within = i != point.axis ? point.within[i] : point.faces_up ? 256 : 0;
+      spot.at[i] = Q8::from_raw(256 * (4 * map.box().low[i] + point.voxel[i]) + within);
+    }
+    bool any = false;
+    for (const Light& lamp : frame.scene.lights) {
+      LightRay ray;
+      if (lamp.is_point && light_ray(lamp, spot, &ray) && lamp_arrives(frame, map, from, ray)) {
+        add_light(ray, light);
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  bool lamp_arrives(const Frame& frame, const BrickMap& map, NearPoint& from, const LightRay& ray) {
+    uint32_t d[3];
+    unsigned mirrored = 0;
+    int c = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      d[axis] = magnitude_32(ray.ray.direction[axis]);
+      mirrored |= ray.ray.direction[axis] < 0 ? 1U << axis : 0U;
+      c = d[axis] > d[c] ? axis : c;
+    }
+    ++lamp_rays_;
+    // The lamp is at t = numerator / 256, where the ray has gone numerator * d along an axis.
+    const auto lamp_at = static_cast<uint32_t>(ray.place.t_numerator);
+    NearHit hit;
+    if (!from.begin(mirrored) || !from.trace(d, c, lamp_at * d[c], &hit)) {
+      return true;
+    }
+    ++lamp_hits_;
+    if (hit.way >= lamp_at * d[hit.axis]) {
+      return true;
+    }
+    if constexpr (kHasEmission) {
+      return surface_of(frame, map.material(frame.tree, hit.voxel >> 6, hit.voxel & 63U)).kind ==
+             SurfaceKind::kEmit;
+    }
+    return false;
+  }
+
+  int rays_ = 0;            // of occlusion, a point
+  uint32_t reach_q12_ = 0;  // of occlusion: 1/256 voxel for each unit of a direction, in 1/2^12
+  Color suns_[6][kMaxFlatSuns];
+  uint32_t lamp_rays_ = 0;
+  uint32_t lamp_hits_ = 0;
+  uint32_t occlusion_rays_ = 0;
+  uint32_t occlusion_hits_ = 0;
+};
+
+}  // namespace
+}  // namespace thimble::lit
+
+#endif

@@ -1,0 +1,291 @@
+// Lit frames by the brick map and with balls, where a format, a list or a world ends: each is the picture
+// that the tree alone gives, or a status.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "support/lit_world.h"
+#include "support/scene_under_test.h"
+#include "thimble/light/balls.h"
+#include "thimble/light/map_render.h"
+#include "thimble/tree/brick_map.h"
+
+namespace thimble::testing::map_edges {
+namespace {
+
+using tests::HeapBytes;
+
+// A house of a few walls, in all materials.
+struct House : LitWorld {
+  explicit House(bool empty = false) : LitWorld(5) {
+    if (!empty) {
+      box({2, 2, 0}, {30, 30, 2}, 1);
+      box({6, 6, 2}, {8, 26, 14}, 2);
+      box({6, 24, 2}, {26, 26, 10}, 3);
+      box({16, 10, 2}, {20, 14, 20}, 4);
+      voxel({24, 8, 5}, 2);
+    }
+    surfaces[1] = surface(SurfaceKind::kDiffuse, {210, 190, 150});
+    surfaces[2] = surface(SurfaceKind::kDiffuse, {200, 60, 30});
+    surfaces[3] = surface(SurfaceKind::kEmit, {90, 120, 220});
+    surfaces[4] = surface(SurfaceKind::kDiffuse, {40, 160, 70});
+    scene.has_shadows = true;
+    scene.has_sky = true;
+    shading.background = {30, 60, 90};
+    lights = {sun({-5, -9, 16}), sun({7, -3, 4}, 120)};
+    finish();
+    look({-14 * 256 + 3, -20 * 256 + 17, 24 * 256}, {16 * 256, 16 * 256, 6 * 256}, 46, 53, 37);
+  }
+};
+
+constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+
+template <EffectSet kSet>
+void compare(const House& world, const BrickMap& map, Span<const SunBricks> suns, PixelFormat format,
+             bool dither, bool counted, std::size_t offset) {
+  const Camera& camera = world.camera;
+  const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
+  LitOptions options;
+  options.dither = dither;
+  std::vector<std::uint8_t> fast(size + offset, 0x5A);
+  std::vector<std::uint8_t> right(size + offset, 0x5A);
+  LitCounts fast_counts;
+  LitCounts right_counts;
+  REQUIRE(render_lit_band<kSet>(world.tree, map, camera, world.shading, world.scene, suns,
+                                {{fast.data() + offset, size}, format, 0, 0, camera.height_px()},
+                                counted ? &fast_counts : nullptr, options) == Status::kOk);
+  REQUIRE(render_lit_band<kSet>(world.tree, camera, world.shading, world.scene,
+                                {{right.data() + offset, size}, format, 0, 0, camera.height_px()},
+                                &right_counts, options) == Status::kOk);
+  CAPTURE(static_cast<int>(format));
+  CAPTURE(dither);
+  CAPTURE(counted);
+  CAPTURE(suns.size);
+  CHECK(fast == right);
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    CHECK(fast_counts.rays[kind] == (counted ? right_counts.rays[kind] : 0));
+    CHECK(fast_counts.hits[kind] == (counted ? right_counts.hits[kind] : 0));
+  }
+}
+
+TEST_CASE(
+    "lit frames by the map: every format, with dither and without, counted or not -> the tree's bytes") {
+  for (const bool empty : {false, true}) {
+    const House world(empty);
+    HeapBytes room(most_brick_map_bytes(5));
+    BrickMap map;
+    REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+    HeapBytes sun_bytes(SunBricks::bytes(map));
+    SunBricks sun;
+    REQUIRE(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOk);
+    for (int number = 0; number < kPixelFormats; ++number) {
+      const auto format = static_cast<PixelFormat>(number);
+      for (int bits = 0; bits < 8; ++bits) {
+        const bool dither = (bits & 1) != 0;
+        const bool counted = (bits & 2) != 0;
+        const std::size_t offset = (bits & 4) != 0 ? 1 : 0;  // of a buffer that begins between halfwords
+        compare<kSun>(world, map, {&sun, 1}, format, dither, counted, offset);
+        compare<kSun | Effect::kEmission | Effect::kSky>(world, map, {&sun, bits < 4 ? 1U : 0U}, format,
+                                                         dither, counted, offset);
+        compare<Effect::kDirectLight>(world, map, {}, format, dither, counted, offset);
+        compare<kSun | Effect::kEmission>(world, map, {&sun, 1}, format, dither, counted, offset);
+        compare<kSun | Effect::kSky>(world, map, {&sun, 1}, format, dither, counted, offset);
+      }
+    }
+  }
+}
+
+// Faces of many pixels are drawn as wholes.
+TEST_CASE(
+    "lit frames by the map: large faces in formats of halfwords and less, counted or not -> the tree's "
+    "bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  HeapBytes sun_bytes(SunBricks::bytes(map));
+  SunBricks sun;
+  REQUIRE(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOk);
+  world.look({-6 * 256 + 3, -9 * 256 + 17, 18 * 256}, {16 * 256, 16 * 256, 4 * 256}, 40, 240, 176);
+  for (const PixelFormat format : {PixelFormat::kRgb565, PixelFormat::kRgb565Be, PixelFormat::kBgr565,
+                                   PixelFormat::kGray4, PixelFormat::kMono1Pages}) {
+    for (const bool counted : {false, true}) {
+      compare<kSun>(world, map, {&sun, 1}, format, true, counted, 0);
+      compare<Effect::kDirectLight>(world, map, {}, format, true, counted, 0);
+      compare<kSun | Effect::kEmission | Effect::kSky>(world, map, {&sun, 1}, format, true, counted, 0);
+    }
+  }
+}
+
+TEST_CASE(
+    "lit frames by the map: a set that is known only at run time, with lamps and without -> the tree's "
+    "bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  world.scene.occlusion = {6, 160, 8};
+  const auto draw = [&](EffectSet effects, const BrickMap& by, std::vector<std::uint8_t>* bytes,
+                        LitCounts* counts) {
+    bytes->assign(band_bytes(PixelFormat::kRgb888, 53, 37), 0x5A);
+    return render_lit_band(effects, world.tree, by, world.camera, world.shading, world.scene, {},
+                           {{bytes->data(), bytes->size()}, PixelFormat::kRgb888, 0, 0, 37}, counts, {});
+  };
+  constexpr EffectSet kBeside[] = {Effect::kAmbientOcclusion, Effect::kEmission, Effect::kSky,
+                                   Effect::kMirror};
+  int fast = 0;
+  for (const bool lamps : {false, true}) {
+    if (lamps) {
+      world.lights.push_back(lamp({12 * 256, 14 * 256 + 9, 9 * 256}, 300, 12));
+      world.finish();
+      REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+    }
+    std::vector<EffectSet> sets{Effect::kDirectLight};
+    for (unsigned bits = 0; bits < 16; ++bits) {
+      sets.push_back(kSun);
+      for (unsigned i = 0; i < 4; ++i) {
+        sets.back() |= (bits >> i & 1U) != 0 ? kBeside[i] : Effect::kNone;
+      }
+    }
+    for (const EffectSet effects : sets) {
+      CAPTURE(lamps);
+      CAPTURE(effects);
+      std::vector<std::uint8_t> bytes;
+      LitCounts by_map;
+      LitCounts by_tree;
+      REQUIRE(draw(effects, map, &bytes, &by_map) == Status::kOk);
+      const std::vector<Rgb8> right = world.draw(effects, &by_tree);
+      REQUIRE(3 * right.size() == bytes.size());
+      bool same = true;
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        same = same && right[i] == Rgb8{bytes[3 * i], bytes[3 * i + 1], bytes[3 * i + 2]};
+      }
+      CHECK(same);
+      constexpr auto kShadow = static_cast<int>(LitRayKind::kShadow);
+      CHECK(by_map.rays[kShadow] == by_tree.rays[kShadow]);
+      fast += by_map.node_visits[0] < by_tree.node_visits[0] ? 1 : 0;
+    }
+    std::vector<std::uint8_t> bytes;
+    CHECK(draw(kSun, BrickMap(), &bytes, nullptr) == Status::kDamaged);
+  }
+  // The tree draws those with a mirror, and lamps without shadows.
+  CHECK(fast == 9 + 8);
+}
+
+TEST_CASE(
+    "lit frames by the map: too little room, a stranger's map, too many lights -> a status, nothing drawn") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, 53, 37), 0x5A);
+  const std::vector<std::uint8_t> before = bytes;
+  const auto draw = [&](const BrickMap& by, std::size_t size) {
+    return render_lit_band<kSun>(world.tree, by, world.camera, world.shading, world.scene, {},
+                                 {{bytes.data(), size}, PixelFormat::kGray8, 0, 0, 37});
+  };
+  CHECK(draw(map, bytes.size() - 1) == Status::kOutOfMemory);
+  CHECK(draw(BrickMap(), bytes.size()) == Status::kDamaged);
+  world.surfaces.resize(kMaxSurfaces + 1);
+  world.finish();
+  CHECK(draw(map, bytes.size()) == Status::kOutOfRange);
+  CHECK(bytes == before);
+
+  SunBricks sun;
+  const std::size_t size = SunBricks::bytes(map);
+  REQUIRE(size > 1);
+  HeapBytes sun_bytes(size);
+  CHECK(SunBricks::begin(map, {1, 2, 3}, {nullptr, size}, &sun) == Status::kOutOfMemory);
+  CHECK(SunBricks::begin(map, {1, 2, 3}, {sun_bytes.span().data, size - 1}, &sun) == Status::kOutOfMemory);
+  CHECK(SunBricks::begin(map, {0, 0, 0}, sun_bytes.span(), &sun) == Status::kBadArgument);
+  CHECK(SunBricks::begin(BrickMap(), {1, 2, 3}, sun_bytes.span(), &sun) == Status::kBadArgument);
+  CHECK_FALSE(sun.belongs_to(map, {1, 2, 3}));
+  CHECK(SunBricks::begin(map, {1, 2, 3}, sun_bytes.span(), &sun) == Status::kOk);
+  CHECK(sun.belongs_to(map, {1, 2, 3}));
+}
+
+// ---- balls
+
+Ball ball_at(const Vec3i& voxel, int half_q8, Rgb8 color) {
+  Ball ball;
+  ball.center = {voxel.x * 256, voxel.y * 256, voxel.z * 256};
+  ball.half_q8 = half_q8;
+  ball.bottom_q8 = ball.center.z - half_q8;
+  ball.top_q8 = ball.center.z + half_q8;
+  ball.surface = surface(SurfaceKind::kDiffuse, color);
+  return ball;
+}
+
+struct BallPicture {
+  Status status;
+  std::vector<std::uint8_t> bytes;
+};
+BallPicture draw_balls(const House& world, EffectSet effects, const std::vector<Ball>& balls) {
+  BallPicture made{Status::kOk, std::vector<std::uint8_t>(band_bytes(PixelFormat::kRgb888, 53, 37), 0x5A)};
+  made.status = render_lit_band(effects, world.tree, {{balls.data(), balls.size()}, nullptr}, world.camera,
+                                world.shading, world.scene,
+                                {{made.bytes.data(), made.bytes.size()}, PixelFormat::kRgb888, 0, 0, 37});
+  return made;
+}
+
+TEST_CASE("balls: one behind another, in either order, within one another -> the same picture") {
+  const House world;
+  // On the line from the eye to what it looks at, the second half way behind the first; then the same place,
+  // one larger.
+  const std::vector<Ball> rows[] = {
+      {ball_at({4, 1, 13}, 768, {255, 0, 0}), ball_at({8, 5, 11}, 768, {0, 0, 255})},
+      {ball_at({4, 1, 13}, 768, {255, 0, 0}), ball_at({4, 1, 13}, 512, {0, 0, 255})}};
+  for (const std::vector<Ball>& balls : rows) {
+    for (const EffectSet effects :
+         {kSun, Effect::kDirectLight, kSun | Effect::kMirror | Effect::kAmbientOcclusion}) {
+      const BallPicture one = draw_balls(world, effects, balls);
+      const BallPicture other = draw_balls(world, effects, {balls[1], balls[0]});
+      REQUIRE(one.status == Status::kOk);
+      CHECK(one.bytes == other.bytes);
+      CHECK(one.bytes != draw_balls(world, effects, {balls[1]}).bytes);
+    }
+  }
+}
+
+TEST_CASE("balls: with no effect -> the plain picture, without them") {
+  const House world;
+  const BallPicture plain = draw_balls(world, Effect::kNone, {ball_at({4, 1, 13}, 768, {255, 0, 0})});
+  REQUIRE(plain.status == Status::kOk);
+  const std::vector<Rgb8> right = world.draw(Effect::kNone);
+  bool same = true;
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    same = same && Rgb8{plain.bytes[3 * i], plain.bytes[3 * i + 1], plain.bytes[3 * i + 2]} == right[i];
+  }
+  CHECK(same);
+}
+
+TEST_CASE("balls: of no such side, or where no ray may start -> a status, nothing drawn") {
+  const House world;
+  const auto with = [&](const Vec3i& center_q8, std::int32_t half) {
+    Ball ball = ball_at({4, 1, 13}, 256, {255, 0, 0});
+    ball.half_q8 = half;
+    ball.center = center_q8;
+    const BallPicture made = draw_balls(world, kSun, {ball});
+    CHECK((made.status == Status::kOk || made.bytes == std::vector<std::uint8_t>(made.bytes.size(), 0x5A)));
+    return made.status;
+  };
+  const Vec3i middle{4096, 4096, 4096};
+  CHECK(with(middle, 512) == Status::kOk);
+  CHECK(with(middle, 0) == Status::kOk);
+  CHECK(with(middle, 511) == Status::kBadArgument);
+  CHECK(with(middle, -2) == Status::kBadArgument);
+  for (const std::int32_t half : {1 << 20, 1 << 30, INT32_MAX - 1}) {
+    CHECK(with(middle, half) == Status::kOutOfRange);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t far : {1 << 20, -(1 << 20), 1 << 30, INT32_MAX, INT32_MIN}) {
+      Vec3i center = middle;
+      center[axis] = far;
+      CHECK(with(center, 512) == Status::kOutOfRange);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thimble::testing::map_edges
