@@ -7,6 +7,7 @@
 #include "thimble/light/asked.h"
 #include "thimble/light/balls.h"
 #include "thimble/light/detail/pixel.h"
+#include "thimble/light/slope.h"
 #include "thimble/trace/trace.h"
 
 namespace thimble::lit {
@@ -28,6 +29,18 @@ inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, cons
   }
   *hit = answer->hit;
   count_result(frame, kind, hit->kind, hit->visits);
+}
+
+/// The same for a ray of occlusion round a slope.
+inline void find_around(AskedFrame& frame, const Ray& ray, Hit* hit) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.note(Question::kAround, ray, {});
+    *hit = Hit{};
+    return;
+  }
+  *hit = answer->hit;
+  count_result(frame, LitRayKind::kOcclusion, hit->kind, hit->visits);
 }
 
 /// The same with balls.
@@ -119,6 +132,26 @@ inline Status find_exit(AskedFrame& frame, const Ray& ray, uint8_t material, con
   }
   *exit = *answer;
   return Status::kOk;
+}
+
+/// What is asked for slopes.
+[[gnu::always_inline]] inline const CompactTree& source_of_slopes(Frame& frame) {
+  return frame.tree;
+}
+inline AskedFrame& source_of_slopes(AskedFrame& frame) {
+  return frame;
+}
+
+/// The slope of a body at a point on its face: `surface_normal`. Without an answer the frame is open.
+inline Vec3i surface_normal(AskedFrame& frame, const Body& body, const Vec3Q8& at, const Face& face,
+                            uint32_t* visits) {
+  const Answer* answer = frame.look();
+  if (answer == nullptr) {
+    frame.ask_slope(at, face, body.index_q12);
+    return {};
+  }
+  *visits += answer->hit.visits;
+  return answer->hit.voxel;
 }
 
 }  // namespace thimble::lit

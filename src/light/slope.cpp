@@ -8,158 +8,41 @@
 // where it leaves its course by kEdgeStep at once, it is taken to go on as before. So a cube stays a cube.
 #include "thimble/light/slope.h"
 
-#include "../base/bits.h"
-#include "../base/integers.h"
-#include "thimble/light/optics.h"
+#include "slope_parts.h"
 #include "thimble/trace/secondary_ray.h"
 
 namespace thimble::lit {
 namespace {
 
-constexpr int kSide = 12;    // of the window
-constexpr int kShell = 3;    // voxels that a body is thick at least; what is thinner is a shell
-constexpr int kColumns = 5;  // looked at to each side of the point's own
-static_assert(kSide == 2 * kColumns + 2, "one more where the window begins before an odd voxel");
-// Distances are in 1/64 voxel: R^2 has 17 bits, a term 26, and all those of one sign, half a ball, 31 less a
-// tenth.
-constexpr int32_t kUnit = 64;
-constexpr int32_t kReachSquare = (kSlopeReachHalves * kUnit / 2) * (kSlopeReachHalves * kUnit / 2);
 // What R^2 - d^2 adds up to over the whole voxels between two planes needs these sums for each plane.
 struct Sums {
-  int32_t first[kSide + 1] = {};   // of d
-  int32_t second[kSide + 1] = {};  // of d^2
-  int32_t third[kSide + 1] = {};   // of d^3, below 2^30
+  int32_t first[kSlopeSide + 1] = {};   // of d
+  int32_t second[kSlopeSide + 1] = {};  // of d^2
+  int32_t third[kSlopeSide + 1] = {};   // of d^3, below 2^30
 };
-
-constexpr bool is_inside(const Vec3i& at) {
-  return at.x >= 0 && at.x < kSide && at.y >= 0 && at.y < kSide && at.z >= 0 && at.z < kSide;
-}
-
-// Bit x of a row.
-struct Window {
-  Vec3i low;
-  uint16_t rows[kSide][kSide] = {};  // z, y
-
-  bool is_solid(const Vec3i& at) const { return is_inside(at) && (rows[at.z][at.y] >> at.x & 1U) != 0; }
-  void put(const Vec3i& at, bool solid) {
-    if (is_inside(at)) {
-      const unsigned bit = 1U << at.x;
-      rows[at.z][at.y] = static_cast<uint16_t>(solid ? rows[at.z][at.y] | bit : rows[at.z][at.y] & ~bit);
-    }
-  }
-  // A solid block; corner in voxels of the window, which the block may exceed.
-  void fill(const Vec3i& corner, int32_t side) {
-    const int32_t from = greater(corner.x, 0);
-    const unsigned bits = (1U << lesser(corner.x + side, kSide)) - (1U << from);
-    for (int32_t z = greater(corner.z, 0); z < lesser(corner.z + side, kSide); ++z) {
-      for (int32_t y = greater(corner.y, 0); y < lesser(corner.y + side, kSide); ++y) {
-        rows[z][y] = static_cast<uint16_t>(rows[z][y] | bits);
-      }
-    }
-  }
-};
-
-// Octants of a node of half side `half` at `corner` (of the window) that reach into the window.
-unsigned octants_inside(const Vec3i& corner, int32_t half) {
-  constexpr uint8_t kLower[3] = {0x55, 0x33, 0x0F};
-  unsigned octants = 0xFF;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int32_t low = corner[axis];
-    const bool lower = low < kSide && low + half > 0;
-    const bool upper = low + half < kSide && low + 2 * half > 0;
-    octants &= (lower ? kLower[axis] : 0U) | (upper ? 0xFFU & ~kLower[axis] : 0U);
-  }
-  return octants;
-}
-
-// The voxels of a node of level 1, which begins at an even place of the window and so lies inside.
-void put_voxels(const CompactTree& tree, const Body& body, uint32_t index, unsigned mask, const Vec3i& corner,
-                Window* window) {
-  if (!body.holds_all()) {
-    unsigned kept = 0;
-    uint32_t number = tree.first_child(index);
-    for (unsigned left = mask; left != 0; left &= left - 1, ++number) {
-      kept |= body.holds(tree.voxel_material(number)) ? left & (0U - left) : 0U;
-    }
-    mask = kept;
-  }
-  for (int pair = 0; pair < 4; ++pair) {
-    uint16_t& row = window->rows[corner.z + (pair >> 1)][corner.y + (pair & 1)];
-    row = static_cast<uint16_t>(row | ((mask >> (2 * pair)) & 3U) << corner.x);
-  }
-}
-
-// Reads the window off the tree: every node that reaches into it once. Levels fall with every step down, and
-// an octant is taken off a list fixed on the way in, so that it ends whatever the tree holds.
-uint32_t read_window(const CompactTree& tree, const Body& body, Window* window) {
-  struct OpenNode {
-    uint32_t first_child;
-    uint8_t mask;
-    uint8_t left;
-  } stack[kMaxLevel + 1];
-  const Vec3i& low = window->low;
-  uint32_t visits = 0;
-  uint32_t index = 0;
-  int level = tree.level();
-  Vec3i place;  // of the node in the world
-  for (;;) {
-    if (index < tree.node_count()) {
-      const uint8_t mask = tree.mask(index);
-      const Vec3i corner{place.x - low.x, place.y - low.y, place.z - low.z};
-      ++visits;
-      if (mask == 0) {
-        if (body.holds_all() || body.holds(tree.block_material(index))) {
-          window->fill(corner, int32_t{1} << level);
-        }
-      } else if (level == 1) {
-        put_voxels(tree, body, index, mask, corner, window);
-      } else {
-        const unsigned left = mask & octants_inside(corner, int32_t{1} << (level - 1));
-        stack[level] = {tree.first_child(index), mask, static_cast<uint8_t>(left)};
-        --level;
-      }
-    }
-    // On to the next octant of the lowest node that has one left.
-    do {
-      ++level;
-    } while (level <= tree.level() && stack[level].left == 0);
-    if (level > tree.level()) {
-      return visits;
-    }
-    OpenNode& open = stack[level];
-    const unsigned octant = bits::lowest_bit(open.left);
-    open.left = static_cast<uint8_t>(open.left & (open.left - 1U));
-    index = open.first_child + bits::popcount8(open.mask & ((1U << octant) - 1U));
-    --level;
-    const int32_t side = int32_t{1} << level;
-    for (int axis = 0; axis < 3; ++axis) {
-      place[axis] = (place[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
-    }
-  }
-}
 
 // The gradient, outwards. `point` is in 1/64 voxel of the window.
-Vec3i gradient(const Window& window, const Vec3i& point) {
+Vec3i gradient(const SlopeWindow& window, const Vec3i& point) {
   Sums sums;
-  for (int32_t x = 0; x < kSide; ++x) {
-    const int32_t d = x * kUnit + kUnit / 2 - point.x;
+  for (int32_t x = 0; x < kSlopeSide; ++x) {
+    const int32_t d = x * kSlopeUnit + kSlopeUnit / 2 - point.x;
     sums.first[x + 1] = sums.first[x] + d;
     sums.second[x + 1] = sums.second[x] + d * d;
     sums.third[x + 1] = sums.third[x] + d * d * d;
   }
   Vec3i normal;
-  for (int32_t z = 0; z < kSide; ++z) {
-    const int32_t dz = z * kUnit + kUnit / 2 - point.z;
-    for (int32_t y = 0; y < kSide; ++y) {
-      const int32_t dy = y * kUnit + kUnit / 2 - point.y;
-      const int32_t rest = kReachSquare - dy * dy - dz * dz;
+  for (int32_t z = 0; z < kSlopeSide; ++z) {
+    const int32_t dz = z * kSlopeUnit + kSlopeUnit / 2 - point.z;
+    for (int32_t y = 0; y < kSlopeSide; ++y) {
+      const int32_t dy = y * kSlopeUnit + kSlopeUnit / 2 - point.y;
+      const int32_t rest = kSlopeReachSquare - dy * dy - dz * dz;
       unsigned row = rest > 0 ? window.rows[z][y] : 0U;
       if (row == 0) {
         continue;
       }
       // The voxels of the row that are within reach.
       int32_t from = 0;
-      int32_t to = kSide;
+      int32_t to = kSlopeSide;
       while (from < to && sums.second[from + 1] - sums.second[from] >= rest) {
         ++from;
       }
@@ -184,9 +67,9 @@ Vec3i gradient(const Window& window, const Vec3i& point) {
 }
 
 // The columns of the window along an axis: how high the surface stands in each above the middle, followed
-// from the middle outwards, at most kColumns up or down.
+// from the middle outwards, at most kSlopeColumns up or down.
 struct Columns {
-  Window* window;
+  SlopeWindow* window;
   Vec3i middle;  // the voxel that has the point
   int axis;      // along them
   int side_u;    // the other two
@@ -194,9 +77,9 @@ struct Columns {
   int32_t up;  // 1 or -1
   bool cuts;   // where edges are
   bool changed = false;
-  int8_t heights[2 * kColumns + 1][2 * kColumns + 1] = {};
+  int8_t heights[2 * kSlopeColumns + 1][2 * kSlopeColumns + 1] = {};
 
-  Columns(Window* of, const Vec3i& at, int along, bool upwards, bool cuts_edges)
+  Columns(SlopeWindow* of, const Vec3i& at, int along, bool upwards, bool cuts_edges)
       : window(of),
         middle(at),
         axis(along),
@@ -205,8 +88,8 @@ struct Columns {
         up(upwards ? 1 : -1),
         cuts(cuts_edges) {}
 
-  int8_t& height(int u, int v) { return heights[kColumns + u][kColumns + v]; }
-  int height_at(int u, int v) const { return heights[kColumns + u][kColumns + v]; }
+  int8_t& height(int u, int v) { return heights[kSlopeColumns + u][kSlopeColumns + v]; }
+  int height_at(int u, int v) const { return heights[kSlopeColumns + u][kSlopeColumns + v]; }
   // From a height near by.
   int measure(int u, int v, int height) const {
     Vec3i at = middle;
@@ -214,14 +97,14 @@ struct Columns {
     at[side_v] += v;
     at[axis] += up * height;
     if (window->is_solid(at)) {
-      for (; height < kColumns; ++height) {
+      for (; height < kSlopeColumns; ++height) {
         at[axis] += up;
         if (!window->is_solid(at)) {
           break;
         }
       }
     } else {
-      while (height > -kColumns) {
+      while (height > -kSlopeColumns) {
         --height;
         at[axis] -= up;
         if (window->is_solid(at)) {
@@ -236,7 +119,7 @@ struct Columns {
     Vec3i at = middle;
     at[side_u] += u;
     at[side_v] += v;
-    for (int above = -kSide; above <= kSide; ++above) {
+    for (int above = -kSlopeSide; above <= kSlopeSide; ++above) {
       at[axis] = middle[axis] + up * above;
       window->put(at, above <= height);
     }
@@ -255,7 +138,7 @@ struct Columns {
       const int before = height_at(u - far_u, v - far_v);
       height_there = first ? before : 2 * before - height_at(u - 2 * far_u, v - 2 * far_v);
     }
-    return clamped(height_there, -kColumns, kColumns);
+    return clamped(height_there, -kSlopeColumns, kSlopeColumns);
   }
   // What is solid at a height but not below is the shell of a body: as if all were solid below.
   bool thicken(int u, int v, int top) {
@@ -267,8 +150,8 @@ struct Columns {
       return false;
     }
     bool thin = false;
-    for (int below = 1; is_inside(at); ++below) {
-      if (below > kShell && !thin) {
+    for (int below = 1; SlopeWindow::is_inside(at); ++below) {
+      if (below > kSlopeShell && !thin) {
         return false;
       }
       thin = thin || !window->is_solid(at);
@@ -297,7 +180,7 @@ struct Columns {
     bool wall = false;
     height(0, 0) = static_cast<int8_t>(measure(0, 0, 0));
     changed = thicken(0, 0, height(0, 0));
-    for (int ring = 1; ring <= kColumns; ++ring) {
+    for (int ring = 1; ring <= kSlopeColumns; ++ring) {
       for (int along = 1 - ring; along <= ring; ++along) {
         for (int side = -ring; side <= ring; side += 2 * ring) {
           // The last round does the corners.
@@ -315,7 +198,7 @@ struct Columns {
   bool are_level() const {
     for (const auto& row : heights) {
       for (const int8_t one : row) {
-        if (one != heights[kColumns][kColumns]) {
+        if (one != heights[kSlopeColumns][kSlopeColumns]) {
           return false;
         }
       }
@@ -325,8 +208,8 @@ struct Columns {
 };
 
 // Whether the voxel has nothing solid close behind it.
-bool is_shell(const Window& window, Vec3i voxel, const Vec3i& out) {
-  for (int behind = 1; behind < kShell; ++behind) {
+bool is_shell(const SlopeWindow& window, Vec3i voxel, const Vec3i& out) {
+  for (int behind = 1; behind < kSlopeShell; ++behind) {
     voxel = {voxel.x - out.x, voxel.y - out.y, voxel.z - out.z};
     if (!window.is_solid(voxel)) {
       return true;
@@ -356,14 +239,14 @@ Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at
                      uint32_t* visits) {
   Vec3i flat;
   flat[face.axis] = face.negative ? -kUnitQ14 : kUnitQ14;
-  Window window;
+  SlopeWindow window;
   Vec3i middle;
   Vec3i point;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t voxel = at[axis].floor();
-    window.low[axis] = (voxel - kColumns) & ~1;
+    window.low[axis] = slope_window_low(voxel);
     middle[axis] = voxel - window.low[axis] - (axis == face.axis && !face.negative ? 1 : 0);
-    point[axis] = (at[axis].raw - window.low[axis] * Q8::kOne) / (Q8::kOne / kUnit);
+    point[axis] = (at[axis].raw - window.low[axis] * Q8::kOne) / (Q8::kOne / kSlopeUnit);
   }
   *visits += read_window(tree, body, &window);
   Vec3i out;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/lit_cases.h"
+#include "support/lit_world.h"
 #include "support/wide_cases.h"
 #include "wide/lit/kernels.h"
 #include "wide/lit/lit_renderer.h"
@@ -21,9 +22,50 @@ LitCase random_opaque_light(std::mt19937_64& random, int level) {
                 (Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kEmission |
                  Effect::kSky | Effect::kEmitterLight);
   lit.effects |= pick(random, 0, 1) == 0 ? Effect::kDirectLight | Effect::kShadows : Effect::kSky;
-  const auto is_lamp = [](const Light& light) { return light.is_point; };
-  lit.lights.erase(std::remove_if(lit.lights.begin(), lit.lights.end(), is_lamp), lit.lights.end());
+  return lit;
+}
+
+// Many lamps: in what is solid, on faces and corners of voxels, far away, and such as reach nowhere; most materials are
+// clear, or shine.
+LitCase random_lamps(std::mt19937_64& random, int level) {
+  LitCase lit = random_light(random, level);
+  const std::int64_t side = std::int64_t{1} << level;
+  lit.lights.resize(std::min<std::size_t>(lit.lights.size(), 2));
+  for (std::int64_t i = pick(random, 1, 12); i > 0; --i) {
+    const bool is_far = pick(random, 0, 5) == 0;
+    Vec3i place =
+        is_far ? random_voxel(random, -4 * 256 * side, 5 * 256 * side) : random_voxel(random, 0, 256 * side);
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = pick(random, 0, 2) == 0 ? place[axis] / 256 * 256 : place[axis];
+    }
+    Light light = testing::lamp(place);
+    for (PackedU16& channel : light.color_q8) {
+      channel = static_cast<std::uint16_t>(pick(random, 0, 3) == 0 ? 65535 : pick(random, 0, 3) * 200);
+    }
+    light.reach =
+        static_cast<std::uint16_t>(pick(random, 0, 4) == 0 ? pick(random, 0, 2) : pick(random, 0, 65535));
+    lit.lights.push_back(light);
+  }
+  constexpr SurfaceKind kKinds[] = {SurfaceKind::kGlass, SurfaceKind::kEmit, SurfaceKind::kMedia,
+                                    SurfaceKind::kDiffuse};
+  for (Surface& one : lit.surfaces) {
+    one.kind = kKinds[pick(random, 0, 3)];
+    one.density_q8 = static_cast<std::uint16_t>(pick(random, 0, 40));
+  }
+  lit.effects |= Effect::kDirectLight | Effect::kShadows;
+  lit.effects &= ~(pick(random, 0, 3) == 0 ? Effect::kNone : Effect::kSmoothNormals);
   lit.scene.lights = {lit.lights.data(), lit.lights.size()};
+  return lit;
+}
+
+// Slopes of everything, most of the time with glass and mirrors.
+LitCase random_smooth_light(std::mt19937_64& random, int level) {
+  LitCase lit = random_light(random, level);
+  lit.effects |= Effect::kSmoothNormals | Effect::kDirectLight;
+  lit.effects &=
+      pick(random, 0, 1) == 0 ? Effect::kAll : ~(Effect::kFog | Effect::kWater | Effect::kDepthCue);
+  lit.effects |= pick(random, 0, 2) == 0 ? Effect::kNone : Effect::kGlass | Effect::kMirror;
+  lit.scene.occlusion.reach = static_cast<std::uint16_t>(pick(random, 1, 30));
   return lit;
 }
 
@@ -128,12 +170,84 @@ TEST_CASE("wide: lit scenes in which rays end where they hit -> every byte is th
   check_lit_frames(20261124, many_or_few(400, 15), random_opaque_light);
 }
 
+TEST_CASE("wide: many lamps, in solids, behind glass and out of reach -> every byte is the core's") {
+  check_lit_frames(20261125, many_or_few(300, 20), random_lamps);
+}
+
+TEST_CASE("wide: rays to lamps in lanes -> the core's direction, place and brightness") {
+  const BestInstructionSet after;
+  std::mt19937_64 random(78);
+  constexpr std::size_t kCount = 100;
+  int shining = 0;
+  int wrong = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    wide::use_instruction_set(trial % wide::instruction_set_count());
+    const std::int64_t scale = std::int64_t{1} << pick(random, 1, 22);
+    Light light = testing::lamp(random_voxel(random, -scale, scale));
+    for (PackedU16& channel : light.color_q8) {
+      channel =
+          static_cast<std::uint16_t>(pick(random, 0, 2) == 0 ? pick(random, 0, 3) : pick(random, 0, 65535));
+    }
+    light.reach =
+        static_cast<std::uint16_t>(pick(random, 0, 1) == 0 ? pick(random, 1, 10) : pick(random, 1, 65535));
+    const int axis = static_cast<int>(pick(random, 0, 2));
+    const bool is_negative = pick(random, 0, 1) == 0;
+    std::vector<std::int32_t> of[10];
+    for (auto& column : of) {
+      column.resize(kCount + wide::kMostLightLanes);
+    }
+    wide::LampRays lamp;
+    for (int turn = 0; turn < 3; ++turn) {
+      lamp.place[turn] = light.place[(axis + turn) % 3];
+      lamp.color_q8[turn] = light.color_q8[turn];
+      lamp.at[turn] = of[turn].data();
+      lamp.direction[turn] = of[3 + turn].data();
+      lamp.brightness[turn] = of[6 + turn].data();
+      for (std::size_t i = 0; i < kCount; ++i) {
+        // Ways of which the largest component is about a power of two, equal ones, none at all, any.
+        const std::int64_t way = pick(random, 0, 1) == 0
+                                     ? (std::int64_t{1} << pick(random, 0, 22)) - pick(random, 0, 3)
+                                     : pick(random, 0, scale);
+        of[turn][i] = static_cast<std::int32_t>(lamp.place[turn] + (pick(random, 0, 1) == 0 ? way : -way));
+      }
+    }
+    lamp.numerator = of[9].data();
+    lamp.is_negative = is_negative;
+    lamp.reach = light.reach;
+    wide::aim_at(lamp, kCount);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      lit::Spot spot;
+      spot.face = {axis, is_negative};
+      for (int turn = 0; turn < 3; ++turn) {
+        spot.at[(axis + turn) % 3] = Q8::from_raw(of[turn][i]);
+      }
+      lit::LightRay expected;
+      const bool shines = lit::light_ray(light, spot, &expected);
+      shining += shines ? 1 : 0;
+      bool is_same = true;
+      for (int turn = 0; turn < 3; ++turn) {
+        const auto bright = static_cast<std::uint32_t>(of[6 + turn][i]);
+        is_same = is_same && bright == (shines ? expected.brightness[turn] : 0);
+        is_same = is_same && (!shines || of[3 + turn][i] == expected.ray.direction[(axis + turn) % 3]);
+      }
+      is_same = is_same && (!shines || of[9][i] == expected.place.t_numerator);
+      wrong += is_same ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(shining > 5000);
+}
+
+TEST_CASE("wide: lit scenes with slopes -> every byte is the core's") {
+  check_lit_frames(20261126, many_or_few(80, 10), random_smooth_light);
+}
+
 TEST_CASE("wide: the sky in lanes -> the core's, also where a length is rounded up") {
   const BestInstructionSet after;
   std::mt19937_64 random(77);
   constexpr std::size_t kCount = 4000;
   std::vector<std::int32_t> axes[3];
-  for (std::size_t i = 0; i < kCount + wide::kMostSkyLanes; ++i) {
+  for (std::size_t i = 0; i < kCount + wide::kMostLightLanes; ++i) {
     for (auto& axis : axes) {
       const std::int64_t most = std::int64_t{1} << pick(random, 0, 20);
       const std::int64_t size = pick(random, 0, 1) == 0 ? pick(random, 0, most - 1) : most - 1;
@@ -146,7 +260,7 @@ TEST_CASE("wide: the sky in lanes -> the core's, also where a length is rounded 
   scene.sky = {{255, 255, 255}, {0, 0, 0}, {255, 255, 255}};
   const CompactTree tree;
   const lit::Frame frame{tree, Camera(), Shading(), scene, LitOptions(), Effect::kSky};
-  std::vector<std::int32_t> shares(kCount + wide::kMostSkyLanes);
+  std::vector<std::int32_t> shares(kCount + wide::kMostLightLanes);
   for (int set = 0; set < wide::instruction_set_count(); ++set) {
     wide::use_instruction_set(set);
     wide::find_sky_shares(axes[0].data(), axes[1].data(), axes[2].data(), kCount, shares.data());

@@ -23,7 +23,7 @@
 ///     store(frame, band, line, x, y, sum)
 ///
 /// Light through clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for
-/// each light. What is rare is asked of the tree at once all the same: slopes, single voxels, water.
+/// each light. What is rare is asked of the tree at once all the same: single voxels, water.
 #ifndef THIMBLE_LIGHT_ASKED_H
 #define THIMBLE_LIGHT_ASKED_H
 
@@ -44,28 +44,45 @@ enum class Question : uint8_t {
   kAny,      ///< `any_hit`: of the answer `hit.kind` alone counts
   kBefore,   ///< `closest_hit`, where a hit at or after `before` may be given or left out
   kNear,     ///< the same for occlusion: one `before` for all; the material only where things may be clear
+  kAround,   ///< the same for occlusion round a slope (slope_reach)
   kOn,       ///< from the point `before` on: `closest_hit_from`, or of a ray in a material its `leave_medium`
 };
-inline constexpr int kQuestions = 5;
+inline constexpr int kQuestions = 6;
 /// What a ray of kOn is in that is in no material.
 inline constexpr uint16_t kInNothing = 256;
 
 /// Questions of one kind, in the order in which they were asked. All rays pass `check_ray`.
 struct Asked {
   Ray* rays = nullptr;
-  RayPoint* before = nullptr;  ///< kBefore, kNear and kOn alone; else null
+  RayPoint* before = nullptr;  ///< kBefore and kOn alone; else null
   uint16_t* in = nullptr;      ///< kOn alone: a material, or kInNothing
   uint32_t* answer = nullptr;  ///< the number of the answer that is wanted
   uint32_t count = 0;
 };
 
-/// Where an answer is put: `hit` as the core's, its visits what whoever answered counted; `into_solid` is false.
+/// From where on a hit of kAround counts no more: its rays have the lengths of the pattern (127, or 1 less or more) times
+/// 128 but for some units, and `distance_q8` is off by less than 2^-13 of itself.
+constexpr RayPoint slope_reach(const Occlusion& occlusion) {
+  return {occlusion.reach + (occlusion.reach >> 13) + 1, 125 * 128};
+}
+
+/// Where a slope is wanted: the arguments of `surface_normal` for a body of this index.
+struct AskedSlope {
+  Vec3Q8 at;
+  Face face{0, false};
+  uint16_t index_q12 = 0;
+  uint32_t answer = 0;  ///< the number of the answer that is wanted
+};
+
+/// Where an answer is put: `hit` as the core's, its visits what whoever answered counted; `into_solid` is false. Of a
+/// slope `hit.voxel` is the normal.
 using Answer = MediumExit;
 
 /// The most answers that a step of one ray takes.
 constexpr size_t most_answers(EffectSet effects, const LitScene& scene) {
   constexpr EffectSet kStretching = Effect::kGlass | Effect::kMedia | Effect::kWater;
-  const size_t on_way = (effects & kStretching) != 0 ? kMaxLegs : 1U;
+  const size_t legs = (effects & kStretching) != 0 ? kMaxLegs : 1U;
+  const size_t on_way = (effects & Effect::kSmoothNormals) != 0 ? 2 * legs : legs;
   const size_t light = ((effects & Effect::kAmbientOcclusion) != 0 ? scene.occlusion.rays : 0U) +
                        ((effects & Effect::kShadows) != 0 ? scene.lights.size : 0U);
   return on_way > light ? on_way : light;
@@ -150,6 +167,11 @@ struct AskedFrame : Frame {
     }
     to.answer[to.count++] = number + asked - 1;
   }
+  /// Asks for the slope that `look` did not find: nothing that follows it counts.
+  void ask_slope(const Vec3Q8& at, const Face& face, uint16_t index_q12) {
+    slopes[slope_count++] = {at, face, index_q12, number + asked - 1};
+    is_open = true;
+  }
   /// Leaves a surface's light to `shine`.
   void show(const Spot& spot, const Slope* slope, const Weight& weight) {
     ray->spot = spot;
@@ -162,6 +184,9 @@ struct AskedFrame : Frame {
   }
 
   Asked* questions = nullptr;  ///< of each kind; may be shared
+  /// With Effect::kSmoothNormals: one for each ray that takes a step before they are answered.
+  AskedSlope* slopes = nullptr;
+  uint32_t slope_count = 0;
   Frame* once =
       nullptr;  ///< counts what is taken once, though the step that it is part of may be taken again
   /// Six for each light of the scene: rays to distant lights differ only by the face that they start on. As they are
@@ -194,6 +219,9 @@ bool light_arrives_through(AskedFrame& frame, LightRay* light);
 void occlude(AskedFrame& frame, const Spot& spot, Color* light);
 void occlude(AskedFrame& frame, const Spot& spot, const Slope& slope, Color* light);
 void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg);
+Slope slope_at(AskedFrame& frame, LitRayKind kind, const Spot& spot);
+bool cross_slope(AskedFrame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count);
 bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, LightRay* ray);
 bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, const Slope& slope, LightRay* ray);
 

@@ -55,7 +55,7 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, PixelFlow* flow, Byte
 
 Status draw_by_either(const lit::Frame& frame, const RayMap& map, PixelFlow flow, Bytes workspace,
                       Threads* threads, LitCounts* counts) {
-  return is_opaque(frame.effects, frame.scene)
+  return is_opaque(frame.effects)
              ? draw_by<OpaqueStream, OpaqueShape>(frame, map, &flow, workspace, threads, counts)
              : draw_by<Stream, StreamShape>(frame, map, &flow, workspace, threads, counts);
 }

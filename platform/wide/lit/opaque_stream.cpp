@@ -2,22 +2,13 @@
 
 #include <algorithm>
 
-#include "thimble/light/optics.h"
 #include "wide/lit/kernels.h"
-#include "wide/lit/taker.h"
 
 namespace thimble::wide {
 namespace {
 
 constexpr EffectSet kOpaque = Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion |
                               Effect::kEmission | Effect::kSky | Effect::kEmitterLight;
-constexpr uint32_t kOpen = 1U << 12;  // of occlusion: nothing is in the way
-
-uint32_t rays_around(EffectSet effects, const LitScene& scene) {
-  const Occlusion& occlusion = scene.occlusion;
-  const bool any = (effects & Effect::kAmbientOcclusion) != 0 && occlusion.reach != 0;
-  return any ? std::min<uint32_t>(occlusion.rays, kOcclusionDirections) : 0;
-}
 
 uint32_t channel_of(const Rgb8& color, int channel) {
   return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
@@ -35,55 +26,52 @@ int64_t whole_quotient(int64_t dividend, int64_t divisor) {
 
 }  // namespace
 
-bool is_opaque(EffectSet effects, const LitScene& scene) {
-  if ((effects & ~kOpaque) != 0) {
-    return false;
-  }
-  const bool lights = (effects & Effect::kDirectLight) != 0;
-  return !lights || std::none_of(scene.lights.data, scene.lights.data + scene.lights.size,
-                                 [](const Light& light) { return light.is_point; });
+bool is_opaque(EffectSet effects) {
+  return (effects & ~kOpaque) == 0;
 }
 
 OpaqueShape::OpaqueShape(EffectSet effects, const LitScene& scene, uint32_t slot_count)
-    : slots(slot_count), around(rays_around(effects, scene)) {}
+    : slots(slot_count), lights(effects, scene, slot_count) {}
 
 size_t OpaqueShape::bytes() const {
+  Taker taker(nullptr);
   OpaqueParts parts;
-  parts.lay_out(*this, nullptr);
-  return parts.bytes + Taker::kAlignment;
+  parts.lay_out(*this, &taker);
+  FaceLightsParts lit;
+  lit.lay_out(lights, &taker);
+  return taker.used() + Taker::kAlignment;
 }
 
-void OpaqueParts::lay_out(const OpaqueShape& shape, uint8_t* at) {
-  Taker taker(at);
+void OpaqueParts::lay_out(const OpaqueShape& shape, Taker* taker) {
   const size_t slots = shape.slots;
-  rays = taker.take<Ray>(slots * std::max(1U, shape.around));
-  hits = taker.take<Hit>(slots);
-  faces = taker.take<LitFace>(slots);
-  asking = taker.take<uint32_t>(slots);
-  any = taker.take<uint8_t>(slots);
+  rays = taker->take<Ray>(slots);
+  hits = taker->take<Hit>(slots);
+  beyond = taker->take<uint32_t>(slots);
   for (int32_t*& column : sky) {
-    column = taker.take<int32_t>(slots + kMostSkyLanes);
+    column = taker->take<int32_t>(slots + kMostLightLanes);
   }
-  met = taker.take<RayPoint>(slots * shape.around);
-  light = taker.take<lit::Color>(slots);
-  colors = taker.take<lit::Color>(slots);
-  places = taker.take<PixelSlot>(slots);
-  bytes = taker.used();
+  colors = taker->take<lit::Color>(slots);
+  places = taker->take<PixelSlot>(slots);
 }
+
+namespace {
+
+// Where the parts begin, and what their arrays are taken from after them.
+Taker laid_out(const OpaqueShape& shape, Bytes bytes, OpaqueParts* parts) {
+  Taker taker(Taker::aligned(bytes.data));
+  parts->lay_out(shape, &taker);
+  return taker;
+}
+
+}  // namespace
 
 OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes)
-    : frame_(frame), map_(map), shape_(shape), background_(lit::background(frame)) {
-  parts_.lay_out(shape, Taker::aligned(bytes.data));
-  const bool has_lights = (frame.effects & Effect::kDirectLight) != 0;
-  for (uint32_t face = 0; face < kSides; ++face) {
-    Side& side = sides_[face];
-    side.spot.face = {static_cast<int>(face % kInside / 2), face % 2 == 0};
-    if (has_lights) {
-      lit::ambient_light(frame, side.spot, &side.ambient);
-    } else {
-      lit::plain_light(frame, side.spot, &side.ambient);
-    }
-  }
+    : frame_(frame),
+      map_(map),
+      shape_(shape),
+      taker_(laid_out(shape, bytes, &parts_)),
+      lights_(frame, map, shape.lights, &taker_),
+      background_(lit::background(frame)) {
   for (uint32_t material = 0; material < 256; ++material) {
     const Surface surface = lit::surface_of(frame, static_cast<uint8_t>(material));
     const bool shines = (frame.effects & Effect::kEmission) != 0 && surface.kind == SurfaceKind::kEmit;
@@ -93,6 +81,12 @@ OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const Opa
           shines ? channel_of(surface.albedo, i) * uint32_t{surface.emission_q8} / (256 / lit::kLevel) : 0;
     }
   }
+}
+
+LitCounts OpaqueStream::counts() const {
+  LitCounts all = frame_.counts;
+  lit::add_counts(lights_.counts(), &all);
+  return all;
 }
 
 // lit::spot_of, for what is met through one face alone.
@@ -132,7 +126,7 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
     const lit::Spot spot = lit::spot_of(frame_, now, meeting);
     face.at = spot.at;
     face.face = static_cast<uint8_t>(2 * spot.face.axis + (spot.face.negative ? 0 : 1));
-    face.face = static_cast<uint8_t>(face.face + (spot.inside ? kInside : 0U));
+    face.face = static_cast<uint8_t>(face.face + (spot.inside ? FaceLights::kInside : 0U));
   }
   return face;
 }
@@ -141,13 +135,13 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
 void OpaqueStream::show_sky(uint32_t count) {
   if ((frame_.effects & Effect::kSky) == 0) {
     for (uint32_t i = 0; i < count; ++i) {
-      parts_.colors[parts_.asking[i]] = background_;
+      parts_.colors[parts_.beyond[i]] = background_;
     }
     return;
   }
   // Behind the last one too; any direction but zero.
-  for (uint32_t i = 0; i < count + kMostSkyLanes; ++i) {
-    const Vec3i direction = i < count ? parts_.rays[parts_.asking[i]].direction : Vec3i{1, 0, 0};
+  for (uint32_t i = 0; i < count + kMostLightLanes; ++i) {
+    const Vec3i direction = i < count ? parts_.rays[parts_.beyond[i]].direction : Vec3i{1, 0, 0};
     for (int axis = 0; axis < 3; ++axis) {
       parts_.sky[axis][i] = direction[axis];
     }
@@ -161,7 +155,7 @@ void OpaqueStream::show_sky(uint32_t count) {
     const auto share = static_cast<uint32_t>(shares[i]);
     const lit::Color& to = beyond[parts_.sky[2][i] < 0 ? 1 : 0];
     for (int c = 0; c < 3; ++c) {
-      parts_.colors[parts_.asking[i]].c[c] = (horizon.c[c] * (4096 - share) + to.c[c] * share) >> 12;
+      parts_.colors[parts_.beyond[i]].c[c] = (horizon.c[c] * (4096 - share) + to.c[c] * share) >> 12;
     }
   }
 }
@@ -174,119 +168,27 @@ void OpaqueStream::find_faces(uint32_t count) {
   for (uint32_t pixel = 0; pixel < count; ++pixel) {
     visits += parts_.hits[pixel].visits;
     if (parts_.hits[pixel].kind == HitKind::kHit) {
-      parts_.faces[face_count_++] = face_of_hit(pixel);
+      lights_.faces()[face_count_++] = face_of_hit(pixel);
     } else {
-      parts_.asking[beyond++] = pixel;
+      parts_.beyond[beyond++] = pixel;
     }
   }
   show_sky(beyond);
   frame_.counts.rays[kPrimary] += count;
   frame_.counts.hits[kPrimary] += face_count_;
   frame_.counts.node_visits[kPrimary] += visits;
-  for (uint32_t i = 0; i < face_count_; ++i) {
-    parts_.light[i] = sides_[parts_.faces[i].face].ambient;
-  }
-}
-
-// lit::occlude.
-void OpaqueStream::occlude() {
-  const uint32_t around = shape_.around;
-  if (around == 0) {
-    return;
-  }
-  uint32_t asking = 0;
-  Ray* ray = parts_.rays;
-  for (uint32_t i = 0; i < face_count_; ++i) {
-    const LitFace& face = parts_.faces[i];
-    if (face.face >= kInside) {
-      continue;
-    }
-    parts_.asking[asking++] = i;
-    for (uint32_t n = 0; n < around; ++n) {
-      *ray++ = {face.at, occlusion_direction(static_cast<int>(n), face.face / 2, face.face % 2 == 0)};
-    }
-  }
-  const size_t rays = size_t{asking} * around;
-  const Occlusion& occlusion = frame_.scene.occlusion;
-  (void)first_entry_before(map_, {parts_.rays, rays}, RayPoint{occlusion.reach, kOcclusionLength},
-                           {parts_.met, rays});
-  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
-  const RayPoint* met = parts_.met;
-  uint64_t hits = 0;
-  for (uint32_t i = 0; i < asking; ++i) {
-    uint32_t open = 0;
-    for (uint32_t n = 0; n < around; ++n, ++met) {
-      uint32_t share = kOpen;
-      if (met->t_denominator != 0) {
-        ++hits;
-        const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
-        const uint32_t distance_q8 = static_cast<uint32_t>(met->t_numerator) * kOcclusionLength / along;
-        share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;
-      }
-      open += share;
-    }
-    const uint32_t closed = kOpen - open / around;
-    const uint32_t factor = kOpen - closed * occlusion.strength / 255;
-    for (uint32_t& channel : parts_.light[parts_.asking[i]].c) {
-      channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
-    }
-  }
-  constexpr int kKind = static_cast<int>(LitRayKind::kOcclusion);
-  frame_.counts.rays[kKind] += rays;
-  frame_.counts.hits[kKind] += hits;
-}
-
-void OpaqueStream::add_sun(size_t number) {
-  lit::LightRay to[kInside];
-  bool shines[kInside];
-  for (uint32_t face = 0; face < kInside; ++face) {
-    shines[face] = lit::light_ray(frame_.scene.lights[number], sides_[face].spot, &to[face]);
-  }
-  uint32_t asking = 0;
-  for (uint32_t i = 0; i < face_count_; ++i) {
-    const LitFace& face = parts_.faces[i];
-    parts_.asking[asking] = i;
-    asking += face.face < kInside && shines[face.face] ? 1U : 0U;
-  }
-  const bool has_shadows = (frame_.effects & Effect::kShadows) != 0;
-  std::fill_n(parts_.any, asking, uint8_t{0});
-  if (has_shadows) {
-    for (uint32_t i = 0; i < asking; ++i) {
-      const LitFace& face = parts_.faces[parts_.asking[i]];
-      parts_.rays[i] = {face.at, to[face.face].ray.direction};
-    }
-    (void)any_hit(map_, {parts_.rays, asking}, {parts_.any, asking});
-    constexpr int kKind = static_cast<int>(LitRayKind::kShadow);
-    frame_.counts.rays[kKind] += asking;
-    for (uint32_t i = 0; i < asking; ++i) {
-      frame_.counts.hits[kKind] += parts_.any[i];
-    }
-  }
-  for (uint32_t i = 0; i < asking; ++i) {
-    const uint32_t open = parts_.any[i] - 1U;
-    const uint32_t n = parts_.asking[i];
-    const lit::LightRay& sun = to[parts_.faces[n].face];
-    for (int c = 0; c < 3; ++c) {
-      parts_.light[n].c[c] += sun.brightness[c] & open;
-    }
-  }
-}
-
-void OpaqueStream::add_suns() {
-  const bool has_lights = (frame_.effects & Effect::kDirectLight) != 0;
-  for (size_t i = 0; has_lights && i < frame_.scene.lights.size; ++i) {
-    add_sun(i);
-  }
 }
 
 // lit::lit_color and lit::add_emission.
 void OpaqueStream::paint() {
   for (uint32_t i = 0; i < face_count_; ++i) {
-    const Paint& paint = paints_[parts_.faces[i].material];
-    lit::Color& color = parts_.colors[parts_.faces[i].pixel];
+    const LitFace& face = lights_.faces()[i];
+    const lit::Color& light = lights_.light()[i];
+    const Paint& paint = paints_[face.material];
+    lit::Color& color = parts_.colors[face.pixel];
     for (int c = 0; c < 3; ++c) {
       constexpr uint32_t kPart = lit::kFullLight / lit::kLevel;
-      const uint32_t strength = std::min<uint32_t>(parts_.light[i].c[c], UINT16_MAX);
+      const uint32_t strength = std::min<uint32_t>(light.c[c], UINT16_MAX);
       const uint32_t lit = std::min((paint.albedo[c] * strength + kPart / 2) / kPart, lit::kMaxChannel);
       color.c[c] = std::min(lit + paint.emission[c], lit::kMaxChannel);
     }
@@ -297,8 +199,7 @@ void OpaqueStream::paint() {
 void OpaqueStream::light_up(uint32_t count) {
   (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
   find_faces(count);
-  occlude();
-  add_suns();
+  lights_.shine(face_count_);
   paint();
 }
 

@@ -6,40 +6,62 @@
 #include "wide/lit/taker.h"
 
 namespace thimble::wide {
+namespace {
 
-void StreamParts::lay_out(const StreamShape& shape, uint8_t* at) {
-  Taker taker(at);
-  slots = taker.take<StreamSlot>(shape.slots);
-  pending = taker.take<lit::PendingRay>(size_t{shape.slots} * shape.pending);
-  lights = taker.take<lit::KnownLight>(size_t{shape.slots} * shape.lights);
-  suns = taker.take<lit::KnownLight>(size_t{6} * shape.lights);
-  answers = taker.take<lit::Answer>(size_t{shape.slots} * shape.answers);
-  waiting = taker.take<uint32_t>(shape.slots);
+// Faces whose slopes are kept, for each pixel under way: those of some rows.
+constexpr uint32_t kSlopesASlot = 2;
+
+}  // namespace
+
+void StreamParts::lay_out(const StreamShape& shape, Taker* taker) {
+  slots = taker->take<StreamSlot>(shape.slots);
+  pending = taker->take<lit::PendingRay>(size_t{shape.slots} * shape.pending);
+  lights = taker->take<lit::KnownLight>(size_t{shape.slots} * shape.lights);
+  suns = taker->take<lit::KnownLight>(size_t{6} * shape.lights);
+  answers = taker->take<lit::Answer>(size_t{shape.slots} * shape.answers);
+  waiting = taker->take<uint32_t>(shape.slots);
   uint32_t most_hits = 0;
   for (int i = 0; i < lit::kQuestions; ++i) {
     const bool names =
         i != static_cast<int>(lit::Question::kAny) && i != static_cast<int>(lit::Question::kOn);
     most_hits = names ? std::max(most_hits, shape.most[i]) : most_hits;
-    questions[i].rays = taker.take<Ray>(shape.most[i]);
-    questions[i].answer = taker.take<uint32_t>(shape.most[i]);
+    questions[i].rays = taker->take<Ray>(shape.most[i]);
+    questions[i].answer = taker->take<uint32_t>(shape.most[i]);
     const bool is_on = i == static_cast<int>(lit::Question::kOn);
     const bool has_point = is_on || i == static_cast<int>(lit::Question::kBefore);
-    questions[i].before = has_point ? taker.take<RayPoint>(shape.most[i]) : nullptr;
-    questions[i].in = is_on ? taker.take<uint16_t>(shape.most[i]) : nullptr;
+    questions[i].before = has_point ? taker->take<RayPoint>(shape.most[i]) : nullptr;
+    questions[i].in = is_on ? taker->take<uint16_t>(shape.most[i]) : nullptr;
   }
-  exits = taker.take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
-  any = taker.take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
-  hits = taker.take<Hit>(most_hits);
-  bytes = taker.used();
+  slopes = taker->take<lit::AskedSlope>(shape.most_slopes);
+  known_slopes = taker->take<KnownSlope>(shape.known_slopes);
+  known_windows = taker->take<KnownWindow>(shape.known_slopes / 4);
+  exits = taker->take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
+  any = taker->take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
+  hits = taker->take<Hit>(most_hits);
+  shown = taker->take<ShownFace>(shape.slots);
+  done = taker->take<uint32_t>(shape.slots);
 }
 
 StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot_count)
     : slots(slot_count),
       pending(std::max(1U, static_cast<uint32_t>(lit::pending_rays(effects)))),
-      answers(static_cast<uint32_t>(lit::most_answers(effects, scene))),
-      lights(static_cast<uint32_t>(scene.lights.size)),
-      most{} {
+      answers(1),
+      lights(0),
+      most{},
+      of_faces(effects, scene, slot_count),
+      most_slopes((effects & Effect::kSmoothNormals) != 0 ? slot_count : 0),
+      known_slopes(most_slopes * kSlopesASlot) {
+  constexpr EffectSet kStretching = Effect::kGlass | Effect::kMedia | Effect::kWater;
   const bool clear = (effects & (Effect::kGlass | Effect::kMedia)) != 0;
+  answers = (effects & kStretching) != 0 ? uint32_t{lit::kMaxLegs} : 1U;
+  most[static_cast<int>(lit::Question::kClosest)] = slots;
+  most[static_cast<int>(lit::Question::kOn)] = clear ? slots : 0;
+  if ((effects & Effect::kSmoothNormals) == 0) {
+    return;
+  }
+  // What the light on slopes takes.
+  answers = static_cast<uint32_t>(lit::most_answers(effects, scene));
+  lights = static_cast<uint32_t>(scene.lights.size);
   const bool shadows = (effects & Effect::kShadows) != 0;
   uint32_t suns = 0;
   for (size_t i = 0; shadows && i < scene.lights.size; ++i) {
@@ -51,15 +73,30 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
   most[static_cast<int>(lit::Question::kAny)] = slots * (clear ? 0 : suns);
   most[static_cast<int>(lit::Question::kBefore)] = slots * lamps;
   most[static_cast<int>(lit::Question::kNear)] = slots * around;
+  most[static_cast<int>(lit::Question::kAround)] = most_slopes * around;
   // A step of its own way, or one of each light's.
   most[static_cast<int>(lit::Question::kOn)] = clear ? slots * std::max(1U, suns + lamps) : 0;
 }
 
 size_t StreamShape::bytes() const {
+  Taker taker(nullptr);
   StreamParts parts;
-  parts.lay_out(*this, nullptr);
-  return parts.bytes + Taker::kAlignment;
+  parts.lay_out(*this, &taker);
+  FaceLightsParts lit;
+  lit.lay_out(of_faces, &taker);
+  return taker.used() + Taker::kAlignment;
 }
+
+namespace {
+
+// Where the parts begin, and what their arrays are taken from after them.
+Taker laid_out(const StreamShape& shape, Bytes bytes, StreamParts* parts) {
+  Taker taker(Taker::aligned(bytes.data));
+  parts->lay_out(shape, &taker);
+  return taker;
+}
+
+}  // namespace
 
 Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes)
     : frame_(frame),
@@ -69,14 +106,22 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
       shape_(shape),
       steps_(lit::steps_of(frame.effects)),
       is_clear_((frame.effects & (Effect::kGlass | Effect::kMedia)) != 0),
-      is_wet_((frame.effects & Effect::kWater) != 0) {
-  parts_.lay_out(shape, Taker::aligned(bytes.data));
+      is_wet_((frame.effects & Effect::kWater) != 0),
+      is_smooth_((frame.effects & Effect::kSmoothNormals) != 0),
+      taker_(laid_out(shape, bytes, &parts_)),
+      slopes_(frame, parts_.known_slopes, parts_.known_windows, shape.known_slopes),
+      lights_(frame, map, shape.of_faces, &taker_) {
   frame_.questions = parts_.questions;
   asking_.questions = parts_.questions;
+  frame_.slopes = parts_.slopes;
   frame_.once = &once_;
   asking_.once = &once_;
   frame_.suns = parts_.suns;
   asking_.suns = parts_.suns;
+  const LitMedia media = lit_media(frame.effects, frame.scene);
+  for (size_t i = 0; i < media.count; ++i) {
+    is_clear_material_[media.materials[i]] = true;
+  }
 }
 
 bool Stream::begin(uint32_t number, PixelReader* pixels) {
@@ -104,16 +149,20 @@ void Stream::begin_ray(uint32_t number) {
   StreamSlot& slot = parts_.slots[number];
   slot.ray.has_spot = false;
   slot.ray.has_lights = false;
-  slot.ray.has_begun = false;
-  slot.known = 0;
-  if (!is_clear_) {
-    // What it will ask first, without going there.
-    begin_step(number, &frame_);
-    (void)frame_.look();
-    frame_.note(lit::Question::kClosest,
-                parts_.pending[size_t{number} * shape_.pending + slot.pending - 1].ray, {});
-    slot.known = 1;
+  const Ray& ray = parts_.pending[size_t{number} * shape_.pending + slot.pending - 1].ray;
+  // What it will ask first, without going there; and what it begins in, which the map knows sooner than the tree.
+  begin_step(number, &frame_);
+  (void)frame_.look();
+  uint8_t material = 0;
+  slot.ray.has_begun = true;
+  slot.ray.begins_in = {};
+  if (is_clear_ && map_.material_at(starting_voxel(ray), &material) && is_clear_material_[material]) {
+    slot.ray.begins_in = {lit::Medium::kSolid, material};
+    frame_.note(lit::Question::kOn, ray, {}, material);
+  } else {
+    frame_.note(lit::Question::kClosest, ray, {});
   }
+  slot.known = 1;
 }
 
 bool Stream::follow(uint32_t number) {
@@ -123,7 +172,7 @@ bool Stream::follow(uint32_t number) {
   size_t count = slot.pending - 1;
   lit::Color sum;
   begin_step(number, &frame_);
-  if (is_clear_ || is_wet_) {
+  if (is_clear_ || is_wet_ || is_smooth_) {
     const LitCounts counts = frame_.counts;
     steps_.follow(frame_, pending[count], pending, &count, &sum);
     if (!frame_.is_answered()) {
@@ -166,32 +215,65 @@ bool Stream::shine(uint32_t number) {
   return true;
 }
 
+void Stream::show_face(uint32_t number) {
+  lit::KnownRay& ray = parts_.slots[number].ray;
+  const lit::Spot& spot = ray.spot;
+  LitFace& face = lights_.faces()[face_count_];
+  face.at = spot.at;
+  face.pixel = number;
+  face.face = static_cast<uint8_t>(2 * spot.face.axis + (spot.face.negative ? 0 : 1));
+  face.face = static_cast<uint8_t>(face.face + (spot.inside ? FaceLights::kInside : 0U));
+  parts_.shown[face_count_++] = {ray.weight, spot.surface};
+  ray.has_spot = false;
+}
+
+// lit::face_color of the faces that were met since the last time.
+void Stream::light_faces() {
+  lights_.shine(face_count_);
+  lit::Spot spot;
+  for (uint32_t i = 0; i < face_count_; ++i) {
+    const ShownFace& shown = parts_.shown[i];
+    spot.surface = shown.surface;
+    lit::Color color = lit::lit_color(spot, lights_.light()[i]);
+    if ((frame_.effects & Effect::kEmission) != 0) {
+      lit::add_emission(spot, &color);
+    }
+    lit::add(color, shown.weight, &parts_.slots[lights_.faces()[i].pixel].sum);
+  }
+  face_count_ = 0;
+}
+
 bool Stream::go_on(uint32_t number) {
   StreamSlot& slot = parts_.slots[number];
-  for (;;) {
-    if (slot.ray.has_spot) {
-      if (!shine(number)) {
-        return false;
-      }
-    } else {
-      if (!follow(number)) {
-        return false;
-      }
-      if (slot.ray.has_spot) {
-        continue;
-      }
-    }
-    if (slot.pending == 0) {
-      return true;
-    }
-    begin_ray(number);
-    if (slot.known != 0) {
+  if (!slot.ray.has_spot && !follow(number)) {
+    return false;
+  }
+  if (slot.ray.has_spot) {
+    if (!slot.ray.has_slope) {
+      show_face(number);
+    } else if (!shine(number)) {
       return false;
     }
   }
+  if (slot.pending == 0) {
+    return true;
+  }
+  begin_ray(number);
+  return false;
+}
+
+void Stream::answer_slopes() {
+  for (uint32_t i = 0; i < frame_.slope_count; ++i) {
+    const lit::AskedSlope& slope = parts_.slopes[i];
+    lit::Answer& answer = parts_.answers[slope.answer];
+    answer.hit.visits = 0;
+    answer.hit.voxel = slopes_.normal(slope.at, slope.face, slope.index_q12, &answer.hit.visits);
+  }
+  frame_.slope_count = 0;
 }
 
 void Stream::answer() {
+  answer_slopes();
   const auto asked = [&](lit::Question question) -> lit::Asked& {
     return parts_.questions[static_cast<int>(question)];
   };
@@ -213,13 +295,15 @@ void Stream::answer() {
     put(before.answer[i], parts_.hits[i]);
   }
   // What is clear hides nothing; where nothing is, the material does not matter.
-  lit::Asked& near = asked(lit::Question::kNear);
   const Occlusion& occlusion = frame_.scene.occlusion;
-  (void)first_hit_within(map_, {near.rays, near.count}, {occlusion.reach, kOcclusionLength},
-                         {parts_.hits, near.count}, is_clear_);
-  for (uint32_t i = 0; i < near.count; ++i) {
-    put(near.answer[i], parts_.hits[i]);
-  }
+  const auto find_within = [&](const lit::Asked& near, const RayPoint& end) {
+    (void)first_hit_within(map_, {near.rays, near.count}, end, {parts_.hits, near.count}, is_clear_);
+    for (uint32_t i = 0; i < near.count; ++i) {
+      put(near.answer[i], parts_.hits[i]);
+    }
+  };
+  find_within(asked(lit::Question::kNear), {occlusion.reach, kOcclusionLength});
+  find_within(asked(lit::Question::kAround), lit::slope_reach(occlusion));
   static_assert(lit::kInNothing == kInAir);
   lit::Asked& on = asked(lit::Question::kOn);
   (void)first_change(map_, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count},
@@ -242,6 +326,7 @@ void Stream::answer() {
 LitCounts Stream::counts() const {
   LitCounts all = frame_.counts;
   lit::add_counts(once_.counts, &all);
+  lit::add_counts(lights_.counts(), &all);
   return all;
 }
 
@@ -256,18 +341,21 @@ void Stream::draw(PixelFlow* flow) {
   // It ends: each turn gives every ray that waits an answer more, and a pixel has a bounded number of rays.
   while (waiting != 0) {
     uint32_t left = 0;
+    uint32_t done = 0;
     for (uint32_t i = 0; i < waiting; ++i) {
       const uint32_t number = parts_.waiting[i];
-      const StreamSlot& slot = parts_.slots[number];
-      bool is_begun = true;
-      while (is_begun && go_on(number)) {
-        pixels.store(slot.at, slot.sum);
-        is_begun = begin(number, &pixels);
-        if (slot.known != 0) {
-          break;
-        }
+      if (go_on(number)) {
+        parts_.done[done++] = number;
+      } else {
+        parts_.waiting[left++] = number;
       }
-      if (is_begun) {
+    }
+    light_faces();
+    for (uint32_t i = 0; i < done; ++i) {
+      const uint32_t number = parts_.done[i];
+      const StreamSlot& slot = parts_.slots[number];
+      pixels.store(slot.at, slot.sum);
+      if (begin(number, &pixels)) {
         parts_.waiting[left++] = number;
       }
     }

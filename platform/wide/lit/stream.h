@@ -8,8 +8,10 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/asked.h"
+#include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
 #include "wide/lit/pixel_flow.h"
+#include "wide/lit/slope_table.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -23,8 +25,11 @@ struct StreamShape {
   uint32_t slots;                  ///< pixels under way at once
   uint32_t pending;                ///< rays of one of them that wait to be followed
   uint32_t answers;                ///< to a step of one ray
-  uint32_t lights;                 ///< of the scene
+  uint32_t lights;                 ///< of the scene, that slopes ask about
   uint32_t most[lit::kQuestions];  ///< questions of each kind at once
+  FaceLightsShape of_faces;
+  uint32_t most_slopes;   ///< that are wanted at once
+  uint32_t known_slopes;  ///< faces whose slopes are kept
 };
 
 /// A pixel under way.
@@ -36,9 +41,14 @@ struct StreamSlot {
   uint32_t known = 0;  ///< answers of the step that the ray takes
 };
 
+/// Of a face that is to be lit, what its pixel gets of the light.
+struct ShownFace {
+  lit::Weight weight;
+  Surface surface;
+};
+
 struct StreamParts {
-  /// Cuts bytes at a multiple of 64 into arrays; null: only finds out how many bytes.
-  void lay_out(const StreamShape& shape, uint8_t* at);
+  void lay_out(const StreamShape& shape, Taker* taker);
 
   StreamSlot* slots;
   lit::PendingRay* pending;
@@ -47,10 +57,14 @@ struct StreamParts {
   lit::Answer* answers;
   uint32_t* waiting;
   lit::Asked questions[lit::kQuestions];
+  lit::AskedSlope* slopes;
+  KnownSlope* known_slopes;
+  KnownWindow* known_windows;
   uint8_t* any;
   Hit* hits;
   MediumExit* exits;
-  size_t bytes;
+  ShownFace* shown;
+  uint32_t* done;  ///< slots whose pixels wait for light alone
 };
 
 class Stream {
@@ -69,11 +83,15 @@ class Stream {
   // Begins the last of a pixel's pending rays.
   void begin_ray(uint32_t number);
   void begin_step(uint32_t number, lit::AskedFrame* frame);
-  // Takes a pixel's steps; each returns false when the pixel waits for answers.
+  // Takes a pixel's steps; each returns false when the pixel waits for answers. `shine` is for slopes; faces are only
+  // noted, and lit all together.
   bool go_on(uint32_t number);
   bool follow(uint32_t number);
   bool shine(uint32_t number);
+  void show_face(uint32_t number);
+  void light_faces();
   void answer();
+  void answer_slopes();
 
   lit::AskedFrame frame_;
   lit::AskedFrame asking_;  // its counts are nobody's
@@ -83,7 +101,13 @@ class Stream {
   lit::Steps steps_;
   bool is_clear_;  // rays may begin in something clear
   bool is_wet_;
+  bool is_clear_material_[256] = {};
+  bool is_smooth_;
   StreamParts parts_;
+  Taker taker_;
+  SlopeTable slopes_;
+  FaceLights lights_;
+  uint32_t face_count_ = 0;
 };
 
 }  // namespace thimble::wide

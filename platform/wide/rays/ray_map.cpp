@@ -175,8 +175,17 @@ void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   hit->t_denominator = axis < 0 ? 1 : static_cast<int32_t>(speed * Q8::kOne);
 }
 
-RayPoint entry_of(const Hit& hit) {
-  return hit.kind == HitKind::kHit ? RayPoint{hit.t_numerator, hit.t_denominator} : RayPoint{0, 0};
+// What is told of a hit without its voxel.
+void put_class(Job* job, size_t ray, const Hit& hit) {
+  if (hit.kind != HitKind::kHit) {
+    return;
+  }
+  const uint8_t found = job->classes == nullptr ? uint8_t{1} : job->classes[hit.material];
+  if (job->any != nullptr) {
+    job->any[ray] = found;
+  } else if (found != 0) {
+    job->entries[ray] = {hit.t_numerator, hit.t_denominator};
+  }
 }
 
 }  // namespace
@@ -207,10 +216,8 @@ void trace_by_core(Job* job, size_t ray) {
   } else if (job->exits != nullptr) {
     job->exits[ray].hit = hit;
     job->exits[ray].into_solid = hit.kind == HitKind::kHit;
-  } else if (job->any != nullptr) {
-    job->any[ray] = hit.kind == HitKind::kHit ? 1 : 0;
   } else {
-    job->entries[ray] = entry_of(hit);
+    put_class(job, ray, hit);
   }
 }
 
@@ -258,11 +265,12 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   }
   if (job->hits != nullptr) {
     job->hits[number] = hit;
-  } else if (job->any != nullptr) {
-    job->any[number] = hit.kind == HitKind::kHit ? 1 : 0;
-  } else {
-    job->entries[number] = entry_of(hit);
+    return;
   }
+  if (job->classes != nullptr && hit.kind == HitKind::kHit) {
+    hit.material = block_at(*job->map, voxel).material;
+  }
+  put_class(job, number, hit);
 }
 
 void put_no_exit(Job* job, size_t ray, uint32_t visits) {
@@ -331,8 +339,23 @@ Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint&
   return run(&job);
 }
 
-Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) {
+Status first_class(const RayMap& map, Span<const Ray> rays, const uint8_t* classes, Span<uint8_t> found) {
+  Job job{&map, rays.data, rays.size, nullptr, Bound::kNone, found.data, nullptr};
+  job.classes = classes;
+  return run(&job);
+}
+
+Status first_class_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
+                          const uint8_t* classes, Span<uint8_t> found) {
+  Job job{&map, rays.data, rays.size, before.data, Bound::kBefore, found.data, nullptr};
+  job.classes = classes;
+  return run(&job);
+}
+
+Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries,
+                          const uint8_t* classes) {
   Job job{&map, rays.data, rays.size, &before, Bound::kBefore, nullptr, nullptr, entries.data, false, 0};
+  job.classes = classes;
   return run(&job);
 }
 

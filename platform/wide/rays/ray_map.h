@@ -106,9 +106,19 @@ Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayP
 Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint& before, Span<Hit> hits,
                         bool with_materials);
 
+/// `classes[material]` of the solid voxel that each ray enters first, 0 for a miss: what a shadow asks of materials.
+/// 256 classes, none 0.
+Status first_class(const RayMap& map, Span<const Ray> rays, const uint8_t* classes, Span<uint8_t> found);
+
+/// The same, where what is entered at a t of `before[i]` or later is a miss.
+Status first_class_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
+                          const uint8_t* classes, Span<uint8_t> found);
+
 /// Where each ray enters the first solid voxel, if before the point `before`: t as in `Hit`, without the voxel, its
-/// face and material; denominator 0 for a miss. For occlusion, which asks how far away what is near is.
-Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries);
+/// face and material; denominator 0 for a miss. For occlusion, which asks how far away what is near is. With
+/// `classes`, a voxel whose material has 0 among the 256 counts as a miss.
+Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries,
+                          const uint8_t* classes = nullptr);
 
 /// The first solid voxel in which each ray spends a positive length after `from[i]`: as `closest_hit_from`. So
 /// a ray goes on behind glass that it passed.

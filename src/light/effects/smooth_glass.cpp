@@ -1,6 +1,7 @@
 // Boundaries of clear solids by their slope (Effect::kSmoothNormals): what glass.cpp does by their faces. Apart
 // from it, with small parts of its own, so that an image without slopes keeps its bytes.
 #include "../arithmetic.h"
+#include "../asking.h"
 #include "slope_rays.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/light/slope.h"
@@ -57,10 +58,9 @@ struct SlopeStart {
   }
 };
 
-}  // namespace
-
-bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
-                 size_t* count) {
+template <class AnyFrame>
+[[gnu::always_inline]] inline bool cross_bent(AnyFrame& frame, PendingRay* now, Leg* leg,
+                                              const Meeting& meeting, PendingRay* pending, size_t* count) {
   const uint32_t here = index_of(frame, leg->medium);
   const uint32_t there = index_of(frame, meeting.beyond);
   const int8_t axis = meeting.hit.axis;
@@ -74,7 +74,12 @@ bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
   const Body body{frame.scene.surfaces, frame.effects, static_cast<uint16_t>(entering ? there : here)};
   const Vec3Q8 at = start_on_face(now->ray, meeting.hit);
   uint32_t visits = 0;
-  Vec3i normal = surface_normal(frame.tree, body, at, {axis, forwards == entering}, &visits);
+  Vec3i normal = surface_normal(source_of_slopes(frame), body, at, {axis, forwards == entering}, &visits);
+  if constexpr (AnyFrame::kIsAsked) {
+    if (frame.is_open) {
+      return false;
+    }
+  }
   frame.counts.node_visits[static_cast<int>(now->kind)] += visits;
   if (magnitude_32(normal[axis]) == static_cast<uint32_t>(kUnitQ14)) {
     return cross(frame, now, leg, meeting, pending, count);
@@ -100,6 +105,17 @@ bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
     start.send(frame, *now, meeting.beyond, shorten(refracted), false, kOneQ16 - back, pending, count);
   }
   return false;
+}
+
+}  // namespace
+
+bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count) {
+  return cross_bent(frame, now, leg, meeting, pending, count);
+}
+bool cross_slope(AskedFrame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count) {
+  return cross_bent(frame, now, leg, meeting, pending, count);
 }
 
 }  // namespace thimble::lit

@@ -64,8 +64,12 @@ template <class AnyFrame>
     const Ray ray{slope.start, turn.direction(i)};
     count_ray(frame, LitRayKind::kOcclusion);
     Hit hit;
-    find_before(
-        frame, LitRayKind::kOcclusion, ray, [&] { return beyond_reach(ray, occlusion); }, &hit);
+    if constexpr (AnyFrame::kIsAsked) {
+      find_around(frame, ray, &hit);
+    } else {
+      find_before(
+          frame, LitRayKind::kOcclusion, ray, [&] { return beyond_reach(ray, occlusion); }, &hit);
+    }
     uint32_t share = kOpen;
     if (is_opaque(frame, hit)) {
       const uint32_t distance =
@@ -81,13 +85,19 @@ template <class AnyFrame>
   }
 }
 
-}  // namespace
-
-Slope slope_at(Frame& frame, LitRayKind kind, const Spot& spot) {
+template <class AnyFrame>
+[[gnu::always_inline]] inline Slope find_slope_at(AnyFrame& frame, LitRayKind kind, const Spot& spot) {
   const Body body{frame.scene.surfaces, frame.effects, 0};
   Slope slope;
   uint32_t visits = 0;
-  slope.normal = surface_normal(frame.tree, body, spot.at, spot.face, &visits);
+  if constexpr (AnyFrame::kIsAsked) {
+    slope.normal = surface_normal(frame, body, spot.at, spot.face, &visits);
+    if (frame.is_open) {
+      return slope;
+    }
+  } else {
+    slope.normal = surface_normal(frame.tree, body, spot.at, spot.face, &visits);
+  }
   frame.counts.node_visits[static_cast<int>(kind)] += visits;
   slope.bent = magnitude_32(slope.normal[spot.face.axis]) != static_cast<uint32_t>(kUnitQ14);
   slope.start = spot.at;
@@ -102,6 +112,15 @@ Slope slope_at(Frame& frame, LitRayKind kind, const Spot& spot) {
     }
   }
   return slope;
+}
+
+}  // namespace
+
+Slope slope_at(Frame& frame, LitRayKind kind, const Spot& spot) {
+  return find_slope_at(frame, kind, spot);
+}
+Slope slope_at(AskedFrame& frame, LitRayKind kind, const Spot& spot) {
+  return find_slope_at(frame, kind, spot);
 }
 
 bool light_ray(const Light& light, const Spot& spot, const Slope& slope, LightRay* ray) {

@@ -64,9 +64,9 @@ inline FloatRay ray_of(const View& view, std::int32_t x, std::int32_t y) {
     const float rest =
         frame.map_rest[0][axis] + column * frame.map_rest[1][axis] + row * frame.map_rest[2][axis];
     const float varying = whole + ((rest + kRounder) - kRounder);
-    const float eye = static_cast<float>(frame.camera.eye()[axis].raw) / 256;
+    const float eye = static_cast<float>(frame.camera->eye()[axis].raw) / 256;
     ray.origin[axis] = frame.perspective ? eye : eye + varying / 256;
-    ray.direction[axis] = frame.perspective ? varying : static_cast<float>(frame.camera.direction()[axis]);
+    ray.direction[axis] = frame.perspective ? varying : static_cast<float>(frame.camera->direction()[axis]);
   }
   return ray;
 }

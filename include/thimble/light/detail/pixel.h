@@ -65,6 +65,7 @@ constexpr size_t pending_rays(EffectSet effects) {
 /// What all pixels of a band share.
 struct Frame {
   static constexpr bool kIsAsked = false;  ///< its questions are answered at once
+  static constexpr bool is_open = false;   ///< so none of them is
 
   const CompactTree& tree;
   const Camera& camera;
@@ -341,8 +342,8 @@ void draw_edges(Frame& frame, const Ray& ray, const Hit& hit, const Spot& spot, 
 }
 
 /// A boundary of glass or water, where there are ripples.
-template <EffectSet kSet>
-bool cross_water(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+template <EffectSet kSet, class AnyFrame>
+bool cross_water(AnyFrame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
                  size_t* count) {
   if (has<kSet, Effect::kRipples>(frame) && meeting.at_surface) {
     return cross_ripples(frame, now, leg, meeting, pending, count);
@@ -390,10 +391,8 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
     } else {
       meet_solid(frame, now, &meeting);
     }
-    if constexpr (AnyFrame::kIsAsked) {
-      if (frame.is_open) {
-        return;
-      }
+    if (frame.is_open) {
+      return;
     }
     if constexpr (kHasWater<kSet>) {
       meet_water(frame, now, leg, &meeting);
@@ -415,8 +414,7 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
       scatter(frame, now, leg, meeting, &now.weight, sum);
     }
     if (!meeting.found) {
-      add_beyond<kSet>(frame, now, sum);
-      return;
+      return add_beyond<kSet>(frame, now, sum);
     }
     if (meeting.opaque) {
       const Spot spot = spot_of(frame, now, meeting);
@@ -429,6 +427,9 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
       if constexpr ((kSet & Effect::kSmoothNormals) != 0) {
         if (has<kSet, Effect::kSmoothNormals>(frame) && !spot.inside) {
           const Slope slope = slope_at(frame, now.kind, spot);
+          if (frame.is_open) {
+            return;
+          }
           if (slope.bent) {
             if constexpr ((kSet & Effect::kMirror) != 0) {
               send_mirrored(frame, &now, spot, slope, pending, count);

@@ -17,7 +17,7 @@ using U64 = hn::RebindToUnsigned<F64>;
 using I32 = hn::Rebind<int32_t, F64>;
 using VF = hn::Vec<F64>;
 
-static_assert(hn::MaxLanes(F64()) <= kMostSkyLanes);
+static_assert(hn::MaxLanes(F64()) <= kMostLightLanes);
 
 // Doubles that hold integers: products stay below 2^34, and whole parts of quotients and roots are the integers',
 // since those differ from the next whole number, or half, by more than 2^-19.

@@ -210,7 +210,7 @@ HWY_INLINE void put_hits(Job* job, const Lanes& lanes, uint32_t hits) {
   for (; hits != 0; hits &= hits - 1) {
     const unsigned lane = static_cast<unsigned>(__builtin_ctz(hits));
     const size_t number = flips[lane] >> 32;
-    if (job->any != nullptr && job->bound != Bound::kBefore) {
+    if (job->any != nullptr && job->classes == nullptr && job->bound != Bound::kBefore) {
       job->any[number] = 1;
       continue;
     }

@@ -1,0 +1,399 @@
+#include "wide/lit/face_lights.h"
+
+#include <algorithm>
+
+#include "thimble/light/optics.h"
+#include "wide/lit/kernels.h"
+#include "wide/lit/lit_renderer.h"
+
+namespace thimble::wide {
+namespace {
+
+constexpr uint32_t kOpen = 1U << 12;  // of occlusion: nothing is in the way
+
+// What the material that a ray to a light enters first does to it. Nothing, or beyond the lamp: 0.
+enum ShadowClass : uint8_t { kBlocks = 1, kGoesOn = 2, kSpares = 3 };
+
+uint32_t rays_around(EffectSet effects, const LitScene& scene) {
+  const Occlusion& occlusion = scene.occlusion;
+  const bool any = (effects & Effect::kAmbientOcclusion) != 0 && occlusion.reach != 0;
+  return any ? std::min<uint32_t>(occlusion.rays, kOcclusionDirections) : 0;
+}
+
+}  // namespace
+
+FaceLightsShape::FaceLightsShape(EffectSet effects, const LitScene& scene, uint32_t face_count)
+    : faces(face_count),
+      around(rays_around(effects, scene)),
+      has_lamps(false),
+      has_through(false),
+      has_water(false) {
+  if ((effects & Effect::kDirectLight) != 0 && scene.lights.size != 0) {
+    has_lamps = std::any_of(scene.lights.data, scene.lights.data + scene.lights.size,
+                            [](const Light& light) { return light.is_point; });
+    const bool shadows = (effects & Effect::kShadows) != 0;
+    has_through = shadows && lit_media(effects, scene).count != 0;
+    has_water = shadows && (effects & Effect::kWater) != 0;
+  }
+}
+
+void FaceLightsParts::lay_out(const FaceLightsShape& shape, Taker* taker) {
+  const size_t count = shape.faces;
+  const size_t of_lamps = shape.has_lamps ? count + kMostLightLanes : 0;
+  const size_t of_ways = shape.has_through ? count : 0;
+  faces = taker->take<LitFace>(count);
+  light = taker->take<lit::Color>(count);
+  rays = taker->take<Ray>(count * std::max(1U, shape.around));
+  asking = taker->take<uint32_t>(count);
+  any = taker->take<uint8_t>(count);
+  points = taker->take<RayPoint>(std::max(of_lamps, count * shape.around));
+  bright = taker->take<lit::Color>(count);
+  order = taker->take<uint32_t>(of_lamps);
+  numerator = taker->take<int32_t>(of_lamps);
+  for (int axis = 0; axis < 3; ++axis) {
+    at[axis] = taker->take<int32_t>(of_lamps);
+    direction[axis] = taker->take<int32_t>(of_lamps);
+    brightness[axis] = taker->take<int32_t>(of_lamps);
+  }
+  in_water = taker->take<uint8_t>(shape.has_water ? count : 0);
+  under_way = taker->take<uint32_t>(of_ways);
+  through = taker->take<lit::LightRay>(of_ways);
+  ways = taker->take<lit::LightWay>(of_ways);
+  answers = taker->take<lit::Answer>(of_ways);
+  for (const lit::Question question : {lit::Question::kClosest, lit::Question::kBefore, lit::Question::kOn}) {
+    lit::Asked& asked = questions[static_cast<int>(question)];
+    asked.rays = taker->take<Ray>(of_ways);
+    asked.answer = taker->take<uint32_t>(of_ways);
+    asked.before = question == lit::Question::kClosest ? nullptr : taker->take<RayPoint>(of_ways);
+    asked.in = question == lit::Question::kOn ? taker->take<uint16_t>(of_ways) : nullptr;
+  }
+  hits = taker->take<Hit>(of_ways);
+  exits = taker->take<MediumExit>(of_ways);
+}
+
+FaceLights::FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker)
+    : frame_(frame), once_(frame), asking_(frame), map_(map), shape_(shape) {
+  parts_.lay_out(shape, taker);
+  asking_.questions = parts_.questions;
+  asking_.once = &once_;
+  const bool has_lights = (frame.effects & Effect::kDirectLight) != 0;
+  for (uint32_t face = 0; face < kSides; ++face) {
+    Side& side = sides_[face];
+    side.spot.face = {static_cast<int>(face % kInside / 2), face % 2 == 0};
+    if (has_lights) {
+      lit::ambient_light(frame, side.spot, &side.ambient);
+    } else {
+      lit::plain_light(frame, side.spot, &side.ambient);
+    }
+  }
+  std::fill_n(of_occlusion_, 256, uint8_t{1});
+  std::fill_n(of_suns_, 256, uint8_t{kBlocks});
+  std::fill_n(of_lamps_, 256, uint8_t{kBlocks});
+  for (size_t i = 0; i < std::min<size_t>(frame.scene.surfaces.size, 256); ++i) {
+    if ((frame.effects & Effect::kEmission) != 0 && frame.scene.surfaces[i].kind == SurfaceKind::kEmit) {
+      of_lamps_[i] = kSpares;
+      has_shining_ = true;
+    }
+  }
+  const LitMedia media = lit_media(frame.effects, frame.scene);
+  has_clear_ = media.count != 0;
+  for (size_t i = 0; i < media.count; ++i) {
+    of_occlusion_[media.materials[i]] = 0;
+    of_suns_[media.materials[i]] = of_lamps_[media.materials[i]] = kGoesOn;
+  }
+}
+
+LitCounts FaceLights::counts() const {
+  LitCounts all = frame_.counts;
+  lit::add_counts(once_.counts, &all);
+  return all;
+}
+
+// lit::occlude.
+void FaceLights::occlude() {
+  const uint32_t around = shape_.around;
+  if (around == 0) {
+    return;
+  }
+  uint32_t asking = 0;
+  Ray* ray = parts_.rays;
+  for (uint32_t i = 0; i < count_; ++i) {
+    const LitFace& face = parts_.faces[i];
+    if (face.face >= kInside) {
+      continue;
+    }
+    parts_.asking[asking++] = i;
+    for (uint32_t n = 0; n < around; ++n) {
+      *ray++ = {face.at, occlusion_direction(static_cast<int>(n), face.face / 2, face.face % 2 == 0)};
+    }
+  }
+  const size_t rays = size_t{asking} * around;
+  const Occlusion& occlusion = frame_.scene.occlusion;
+  (void)first_entry_before(map_, {parts_.rays, rays}, RayPoint{occlusion.reach, kOcclusionLength},
+                           {parts_.points, rays}, has_clear_ ? of_occlusion_ : nullptr);
+  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
+  const RayPoint* met = parts_.points;
+  uint64_t hits = 0;
+  for (uint32_t i = 0; i < asking; ++i) {
+    uint32_t open = 0;
+    for (uint32_t n = 0; n < around; ++n, ++met) {
+      uint32_t share = kOpen;
+      if (met->t_denominator != 0) {
+        ++hits;
+        const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
+        const uint32_t distance_q8 = static_cast<uint32_t>(met->t_numerator) * kOcclusionLength / along;
+        share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;
+      }
+      open += share;
+    }
+    const uint32_t closed = kOpen - open / around;
+    const uint32_t factor = kOpen - closed * occlusion.strength / 255;
+    for (uint32_t& channel : parts_.light[parts_.asking[i]].c) {
+      channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
+    }
+  }
+  constexpr int kKind = static_cast<int>(LitRayKind::kOcclusion);
+  frame_.counts.rays[kKind] += rays;
+  frame_.counts.hits[kKind] += hits;
+}
+
+// Which faces' rays may begin in water: those in the box of its columns, or on it.
+void FaceLights::note_water() {
+  const WaterSurface& water = frame_.scene.water;
+  const int32_t sizes[3] = {water.width * Q8::kOne, water.depth * Q8::kOne, water.highest_q8};
+  for (uint32_t i = 0; i < count_; ++i) {
+    bool is_in = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int32_t from_low = parts_.faces[i].at[axis].raw - water.corner[axis] * Q8::kOne;
+      is_in = is_in && from_low >= 0 && from_low <= sizes[axis];
+    }
+    parts_.in_water[i] = is_in ? 1 : 0;
+  }
+}
+
+void FaceLights::sort_by_face() {
+  uint32_t next[kInside + 1] = {};
+  for (uint32_t i = 0; i < count_; ++i) {
+    next[parts_.faces[i].face < kInside ? parts_.faces[i].face + 1U : 0U] += 1;
+  }
+  next[0] = 0;
+  for (uint32_t face = 1; face <= kInside; ++face) {
+    next[face] += next[face - 1];
+  }
+  for (uint32_t i = 0; i < count_; ++i) {
+    const LitFace& face = parts_.faces[i];
+    if (face.face < kInside) {
+      const uint32_t to = next[face.face]++;
+      parts_.order[to] = i;
+      for (int axis = 0; axis < 3; ++axis) {
+        parts_.at[axis][to] = face.at[axis].raw;
+      }
+    }
+  }
+  std::copy_n(next, kInside, face_ends_);
+}
+
+// The rays to a lamp that brings light; the number of them.
+uint32_t FaceLights::aim_at_lamp(const Light& light) {
+  if (light.reach == 0) {
+    return 0;
+  }
+  uint32_t begin = 0;
+  uint32_t asking = 0;
+  for (uint32_t face = 0; face < kInside; ++face) {
+    const uint32_t end = face_ends_[face];
+    LampRays lamp;
+    for (int turn = 0; turn < 3; ++turn) {
+      const int axis = (static_cast<int>(face) / 2 + turn) % 3;
+      lamp.place[turn] = light.place[axis];
+      lamp.at[turn] = parts_.at[axis] + begin;
+      lamp.direction[turn] = parts_.direction[axis] + begin;
+      lamp.color_q8[turn] = light.color_q8[turn];
+      lamp.brightness[turn] = parts_.brightness[turn] + begin;
+    }
+    lamp.is_negative = face % 2 == 0;
+    lamp.reach = light.reach;
+    lamp.numerator = parts_.numerator + begin;
+    aim_at(lamp, end - begin);
+    for (uint32_t i = begin; i < end; ++i) {
+      lit::Color& bright = parts_.bright[asking];
+      Ray& ray = parts_.rays[asking];
+      for (int axis = 0; axis < 3; ++axis) {
+        bright.c[axis] = static_cast<uint32_t>(parts_.brightness[axis][i]);
+        ray.origin[axis].raw = parts_.at[axis][i];
+        ray.direction[axis] = parts_.direction[axis][i];
+      }
+      parts_.points[asking] = {parts_.numerator[i], Q8::kOne};
+      parts_.asking[asking] = parts_.order[i];
+      asking += (bright.c[0] | bright.c[1] | bright.c[2]) != 0 ? 1U : 0U;
+    }
+    begin = end;
+  }
+  return asking;
+}
+
+void FaceLights::find_shadows(const Light& light, uint32_t asking) {
+  constexpr int kKind = static_cast<int>(LitRayKind::kShadow);
+  const Span<const Ray> rays{parts_.rays, asking};
+  const Span<uint8_t> found{parts_.any, asking};
+  if (light.is_point) {
+    const Span<const RayPoint> points{parts_.points, asking};
+    (void)(has_clear_ || has_shining_ ? first_class_before(map_, rays, points, of_lamps_, found)
+                                      : any_hit_before(map_, rays, points, found));
+  } else {
+    (void)(has_clear_ ? first_class(map_, rays, of_suns_, found) : any_hit(map_, rays, found));
+  }
+  frame_.counts.rays[kKind] += asking;
+  for (uint32_t i = 0; i < asking; ++i) {
+    frame_.counts.hits[kKind] += parts_.any[i] != 0 && parts_.any[i] != kGoesOn ? 1U : 0U;
+  }
+}
+
+// A ray to a light as the core keeps it.
+lit::LightRay FaceLights::ray_of(const Light& light, uint32_t number) const {
+  lit::LightRay ray;
+  ray.ray = parts_.rays[number];
+  std::copy_n(parts_.bright[number].c, 3, ray.brightness);
+  ray.is_point = light.is_point;
+  ray.place = light.is_point ? parts_.points[number] : RayPoint();
+  return ray;
+}
+
+// Answers what rays through something clear have asked.
+void FaceLights::answer() {
+  lit::Asked& closest = parts_.questions[static_cast<int>(lit::Question::kClosest)];
+  (void)first_hit(map_, {closest.rays, closest.count}, {parts_.hits, closest.count});
+  for (uint32_t i = 0; i < closest.count; ++i) {
+    parts_.answers[closest.answer[i]].hit = parts_.hits[i];
+  }
+  lit::Asked& before = parts_.questions[static_cast<int>(lit::Question::kBefore)];
+  (void)first_hit_before(map_, {before.rays, before.count}, {before.before, before.count},
+                         {parts_.hits, before.count});
+  for (uint32_t i = 0; i < before.count; ++i) {
+    parts_.answers[before.answer[i]].hit = parts_.hits[i];
+  }
+  static_assert(lit::kInNothing == kInAir);
+  lit::Asked& on = parts_.questions[static_cast<int>(lit::Question::kOn)];
+  (void)first_change(map_, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count},
+                     {parts_.exits, on.count});
+  for (uint32_t i = 0; i < on.count; ++i) {
+    parts_.answers[on.answer[i]] = parts_.exits[i];
+  }
+  closest.count = before.count = on.count = 0;
+}
+
+// Follows the rays that come to something clear, or begin in it (which is then what they enter first), stretch by
+// stretch, by the core's own function.
+void FaceLights::go_through(const Light& light, uint32_t asking) {
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < asking; ++i) {
+    if (parts_.any[i] == kGoesOn) {
+      parts_.through[i] = ray_of(light, i);
+      parts_.ways[i] = {};
+      parts_.answers[i] = {};
+      parts_.under_way[count++] = i;
+    }
+  }
+  // It ends: a ray has a bounded number of stretches.
+  for (uint32_t known = 0; count != 0; known = 1) {
+    uint32_t left = 0;
+    for (uint32_t n = 0; n < count; ++n) {
+      const uint32_t i = parts_.under_way[n];
+      asking_.begin(parts_.answers + i, i, known, &known_, nullptr);
+      asking_.way = &parts_.ways[i];
+      lit::LightRay& ray = parts_.through[i];
+      const bool arrives = lit::light_arrives_through(asking_, &ray);
+      if (!asking_.is_answered()) {
+        parts_.under_way[left++] = i;
+        continue;
+      }
+      parts_.any[i] = arrives ? 0 : kBlocks;
+      std::copy_n(ray.brightness, 3, parts_.bright[i].c);
+    }
+    count = left;
+    answer();
+  }
+}
+
+void FaceLights::filter_by_water(const Light& light, uint32_t number) {
+  lit::LightRay ray = ray_of(light, number);
+  lit::filter_by_water(frame_, &ray);
+  std::copy_n(ray.brightness, 3, parts_.bright[number].c);
+}
+
+// Adds what the rays to a light bring, where nothing is in the way.
+void FaceLights::add_arriving(const Light& light, uint32_t asking) {
+  if ((frame_.effects & Effect::kShadows) == 0) {
+    for (uint32_t i = 0; i < asking; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        parts_.light[parts_.asking[i]].c[c] += parts_.bright[i].c[c];
+      }
+    }
+    return;
+  }
+  find_shadows(light, asking);
+  if (has_clear_) {
+    go_through(light, asking);
+  }
+  for (uint32_t i = 0; i < asking; ++i) {
+    const bool arrives = parts_.any[i] != kBlocks;
+    if (shape_.has_water && arrives && parts_.in_water[parts_.asking[i]] != 0) {
+      filter_by_water(light, i);
+    }
+    const uint32_t open = arrives ? UINT32_MAX : 0;
+    for (int c = 0; c < 3; ++c) {
+      parts_.light[parts_.asking[i]].c[c] += parts_.bright[i].c[c] & open;
+    }
+  }
+}
+
+void FaceLights::add_sun(const Light& light) {
+  lit::LightRay to[kInside];
+  bool shines[kInside];
+  for (uint32_t face = 0; face < kInside; ++face) {
+    shines[face] = lit::light_ray(light, sides_[face].spot, &to[face]);
+  }
+  uint32_t asking = 0;
+  for (uint32_t i = 0; i < count_; ++i) {
+    const LitFace& face = parts_.faces[i];
+    if (face.face < kInside && shines[face.face]) {
+      const lit::LightRay& sun = to[face.face];
+      parts_.asking[asking] = i;
+      parts_.rays[asking] = {face.at, sun.ray.direction};
+      std::copy_n(sun.brightness, 3, parts_.bright[asking].c);
+      ++asking;
+    }
+  }
+  add_arriving(light, asking);
+}
+
+void FaceLights::add_lamp(const Light& light) {
+  add_arriving(light, aim_at_lamp(light));
+}
+
+void FaceLights::shine(uint32_t count) {
+  count_ = count;
+  for (uint32_t i = 0; i < count; ++i) {
+    parts_.light[i] = sides_[parts_.faces[i].face].ambient;
+  }
+  occlude();
+  if ((frame_.effects & Effect::kDirectLight) == 0) {
+    return;
+  }
+  if (shape_.has_lamps) {
+    sort_by_face();
+  }
+  if (shape_.has_water) {
+    note_water();
+  }
+  for (size_t i = 0; i < frame_.scene.lights.size; ++i) {
+    const Light& light = frame_.scene.lights[i];
+    if (light.is_point) {
+      add_lamp(light);
+    } else {
+      add_sun(light);
+    }
+  }
+}
+
+}  // namespace thimble::wide

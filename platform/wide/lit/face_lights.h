@@ -1,0 +1,115 @@
+/// @file face_lights.h
+/// The light on many faces at once: ambient light, occlusion, suns and lamps, with shadows, also through what is clear
+/// and under water. What lit::face_color says of one of them, for all but slopes.
+#ifndef THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
+#define THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/light/asked.h"
+#include "wide/lit/taker.h"
+#include "wide/rays/ray_map.h"
+
+namespace thimble::wide {
+
+/// A lit point of a face.
+struct LitFace {
+  Vec3Q8 at;
+  uint32_t pixel;  ///< the caller's
+  uint8_t face;  ///< 2 * axis, and 1 more where it looks to larger coordinates; 6 more: the ray began inside
+  uint8_t material;
+};
+
+/// How much of everything there is for so many faces.
+struct FaceLightsShape {
+  FaceLightsShape(EffectSet effects, const LitScene& scene, uint32_t face_count);
+
+  uint32_t faces;
+  uint32_t around;   ///< rays of occlusion a face
+  bool has_lamps;    ///< lights that are points
+  bool has_through;  ///< shadows through what is clear
+  bool has_water;    ///< shadows under water
+};
+
+struct FaceLightsParts {
+  void lay_out(const FaceLightsShape& shape, Taker* taker);
+
+  LitFace* faces;
+  lit::Color* light;   ///< by face
+  Ray* rays;           ///< of a light, or of occlusion
+  uint32_t* asking;    ///< the faces that they come from
+  uint8_t* any;        ///< what they meet: a ShadowClass
+  RayPoint* points;    ///< where lamps are on them; where rays of occlusion enter something
+  lit::Color* bright;  ///< what they bring, if nothing is in the way
+  // Of lamps: faces that look one way side by side.
+  uint32_t* order;
+  int32_t* at[3];
+  int32_t* direction[3];
+  int32_t* numerator;
+  int32_t* brightness[3];
+  uint8_t* in_water;  ///< by face: its rays may begin in water
+  // Of what is clear.
+  uint32_t* under_way;
+  lit::LightRay* through;
+  lit::LightWay* ways;
+  lit::Answer* answers;
+  lit::Asked questions[lit::kQuestions];
+  Hit* hits;
+  MediumExit* exits;
+};
+
+class FaceLights {
+ public:
+  static constexpr uint32_t kInside = 6;  ///< the first of the faces of what a ray begins in
+  static constexpr uint32_t kSides = 12;
+
+  FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker);
+
+  /// To be filled by the caller; then `shine` finds the light of so many of them.
+  LitFace* faces() const { return parts_.faces; }
+  void shine(uint32_t count);
+  const lit::Color* light() const { return parts_.light; }
+  LitCounts counts() const;
+
+ private:
+  // What is the same for all faces that look one way.
+  struct Side {
+    lit::Spot spot;  // with its face alone
+    lit::Color ambient;
+  };
+
+  void occlude();
+  void note_water();
+  void sort_by_face();
+  void add_sun(const Light& light);
+  void add_lamp(const Light& light);
+  uint32_t aim_at_lamp(const Light& light);
+  void add_arriving(const Light& light, uint32_t asking);
+  void filter_by_water(const Light& light, uint32_t number);
+  void find_shadows(const Light& light, uint32_t asking);
+  void go_through(const Light& light, uint32_t asking);
+  void answer();
+  lit::LightRay ray_of(const Light& light, uint32_t number) const;
+
+  lit::Frame frame_;
+  lit::Frame once_;         // counts the stretches of rays through what is clear
+  lit::AskedFrame asking_;  // its own counts are nobody's
+  lit::KnownRay known_;
+  const RayMap& map_;
+  FaceLightsShape shape_;
+  FaceLightsParts parts_;
+  uint32_t count_ = 0;
+  uint32_t face_ends_[kInside] = {};  // in `order`
+  Side sides_[kSides];
+  // What a material does to a ray.
+  uint8_t of_suns_[256];
+  uint8_t of_lamps_[256];
+  uint8_t of_occlusion_[256];
+  bool has_clear_ = false;
+  bool has_shining_ = false;
+};
+
+}  // namespace thimble::wide
+
+#endif

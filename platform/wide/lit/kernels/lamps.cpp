@@ -1,0 +1,118 @@
+// Rays from points of faces to a lamp, and what it gives there: lit::light_ray, in lanes.
+#include "wide/lit/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "wide/lit/kernels/lamps.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace thimble::wide::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F64 = hn::CappedTag<double, 8>;
+using U64 = hn::RebindToUnsigned<F64>;
+using I32 = hn::Rebind<int32_t, F64>;
+using VF = hn::Vec<F64>;
+
+static_assert(hn::MaxLanes(F64()) <= kMostLightLanes);
+
+HWY_INLINE VF number(double value) {
+  return hn::Set(F64(), value);
+}
+// To the nearest, of what is not below 0; halves go up.
+HWY_INLINE VF rounded(VF value, VF scale) {
+  return hn::Floor(hn::MulAdd(value, scale, number(0.5)));
+}
+
+// What of a way to the lamp its length and direction are found from.
+struct LampWay {
+  VF size[3];    // of the direction, 15 bits
+  VF stretched;  // a power of two by which its largest component comes to 2^14 .. 2^15 - 1
+  VF numerator;  // a power of two by which it comes to the lamp
+};
+
+// ray_towards. `size`: of the way, below 2^25.
+HWY_INLINE LampWay shorten_way(const VF (&size)[3]) {
+  const F64 d;
+  const U64 du;
+  const VF one = number(1.0);
+  const VF largest = hn::Max(size[0], hn::Max(size[1], size[2]));
+  // 2^14 over the largest power of two in it. Of no way at all it is no number that means anything.
+  const auto power = hn::And(hn::BitCast(du, largest), hn::Set(du, uint64_t{0x7FF} << 52));
+  const VF to_15_bits = hn::BitCast(d, hn::Sub(hn::Set(du, (uint64_t{2 * 1023 + 14}) << 52), power));
+  VF scale = hn::Min(to_15_bits, one);
+  const auto carries = hn::Gt(rounded(largest, scale), number(32767.0));
+  scale = hn::IfThenElse(carries, hn::Mul(scale, number(0.5)), scale);
+  LampWay way;
+  for (int axis = 0; axis < 3; ++axis) {
+    way.size[axis] = rounded(size[axis], scale);
+  }
+  way.stretched = hn::Max(to_15_bits, one);
+  way.numerator = hn::Div(one, scale);
+  return way;
+}
+
+// Shares in 2^-16 of a lamp's light, by distance and by angle. Doubles hold the integers: products stay below 2^33,
+// and a quotient or root that is no integer differs from the next one, or half, by more than 2^-33.
+HWY_INLINE VF share_of_lamp(const LampWay& way, VF reach) {
+  VF size[3];
+  VF square = hn::Zero(F64());
+  for (int axis = 0; axis < 3; ++axis) {
+    size[axis] = hn::Mul(way.size[axis], way.stretched);
+    square = hn::MulAdd(size[axis], size[axis], square);
+  }
+  const VF length = hn::Floor(hn::Add(hn::Sqrt(square), number(0.5)));
+  const VF distance = rounded(length, hn::Div(way.numerator, way.stretched));
+  const VF ratio = hn::Add(number(256.0), hn::Floor(hn::Div(distance, reach)));
+  const VF left = hn::Floor(hn::Div(number(4294967295.0), hn::Mul(ratio, ratio)));
+  const VF falloff = hn::IfThenElseZero(hn::Le(ratio, number(65535.0)), left);
+  const VF half = hn::Floor(hn::Mul(length, number(0.5)));
+  const VF cosine = hn::Floor(hn::Div(hn::MulAdd(size[0], number(16384.0), half), length));
+  return hn::Floor(hn::Mul(hn::Mul(falloff, hn::Min(cosine, number(16384.0))), number(1.0 / 16384)));
+}
+
+void aim_at(const LampRays& lamp, size_t count) {
+  const F64 d;
+  const I32 di;
+  const VF zero = hn::Zero(d);
+  const VF reach = number(lamp.reach);
+  for (size_t at = 0; at < count; at += hn::Lanes(d)) {
+    VF way[3];
+    VF size[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      way[axis] = hn::Sub(number(lamp.place[axis]), hn::PromoteTo(d, hn::LoadU(di, lamp.at[axis] + at)));
+      size[axis] = hn::Abs(way[axis]);
+    }
+    const LampWay ray = shorten_way(size);
+    const auto is_before = lamp.is_negative ? hn::Lt(way[0], zero) : hn::Gt(way[0], zero);
+    const auto leaves = hn::And(is_before, hn::Gt(ray.size[0], zero));
+    const VF share = share_of_lamp(ray, reach);
+    const auto put = [&](int32_t* to, VF of) { hn::StoreU(hn::DemoteTo(di, of), di, to + at); };
+    for (int i = 0; i < 3; ++i) {
+      const VF color = number(lamp.color_q8[i]);
+      const VF bright = hn::Floor(hn::Mul(hn::MulAdd(color, share, number(2048.0)), number(1.0 / 4096)));
+      put(lamp.brightness[i], hn::IfThenElseZero(leaves, bright));
+      put(lamp.direction[i], hn::CopySign(ray.size[i], way[i]));
+    }
+    put(lamp.numerator, ray.numerator);
+  }
+}
+
+}  // namespace
+}  // namespace thimble::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace thimble::wide {
+
+HWY_EXPORT(aim_at);
+
+void aim_at(const LampRays& lamp, size_t count) {
+  HWY_DYNAMIC_DISPATCH(aim_at)(lamp, count);
+}
+
+}  // namespace thimble::wide
+#endif

@@ -1,0 +1,336 @@
+#include "wide/lit/slope_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "thimble/light/slope.h"
+#include "wide/lit/kernels.h"
+
+namespace thimble::wide {
+namespace {
+
+constexpr int kSide = lit::kSlopeSide;
+constexpr int kColumns = lit::kSlopeColumns;
+constexpr unsigned kAll = (1U << kSide) - 1;
+
+int side_u_of(int axis) {
+  return axis == 0 ? 1 : 0;
+}
+int side_v_of(int axis) {
+  return axis == 2 ? 1 : 2;
+}
+
+constexpr std::array<uint16_t, kAll + 1> reversed_words() {
+  std::array<uint16_t, kAll + 1> words{};
+  for (unsigned word = 0; word <= kAll; ++word) {
+    for (int bit = 0; bit < kSide; ++bit) {
+      words[word] = static_cast<uint16_t>(words[word] | (word >> bit & 1U) << (kSide - 1 - bit));
+    }
+  }
+  return words;
+}
+constexpr std::array<uint16_t, kAll + 1> kReversed = reversed_words();
+
+int turned(int place, bool upwards) {
+  return upwards ? place : kSide - 1 - place;
+}
+
+// From rows along x to columns along an axis.
+void turn_to(int axis, bool upwards, const uint16_t (*rows)[kSide], ColumnBits* columns) {
+  if (axis == 0) {
+    for (int z = 0; z < kSide; ++z) {
+      for (int y = 0; y < kSide; ++y) {
+        columns->at[z][y] = upwards ? rows[z][y] : kReversed[rows[z][y]];
+      }
+    }
+    return;
+  }
+  uint16_t words[16][kTurnLanes] = {};
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      (axis == 1 ? words[turned(y, upwards)][z] : words[turned(z, upwards)][y]) = rows[z][y];
+    }
+  }
+  turn_words(words);
+  for (int v = 0; v < kSide; ++v) {
+    for (int x = 0; x < kSide; ++x) {
+      columns->at[v][x] = words[x][v];
+    }
+  }
+}
+
+// And back.
+void turn_from(int axis, bool upwards, const ColumnBits& columns, uint16_t (*rows)[kSide]) {
+  if (axis == 0) {
+    for (int z = 0; z < kSide; ++z) {
+      for (int y = 0; y < kSide; ++y) {
+        rows[z][y] = upwards ? columns.at[z][y] : kReversed[columns.at[z][y]];
+      }
+    }
+    return;
+  }
+  uint16_t words[16][kTurnLanes] = {};
+  for (int v = 0; v < kSide; ++v) {
+    for (int x = 0; x < kSide; ++x) {
+      words[x][v] = columns.at[v][x];
+    }
+  }
+  turn_words(words);
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      rows[z][y] = axis == 1 ? words[turned(y, upwards)][z] : words[turned(z, upwards)][y];
+    }
+  }
+}
+
+// The order in which the surface is followed, ring by ring and the corners of a ring last; and from which three columns
+// the next one's height is expected: that of the first and of the second, less that of the third.
+struct Step {
+  int8_t u;
+  int8_t v;
+  uint8_t at;  // places in an array of heights
+  uint8_t plus[2];
+  uint8_t minus;
+};
+constexpr int kAcross = 2 * kColumns + 1;
+constexpr int kSteps = kAcross * kAcross - 1;
+
+constexpr uint8_t place_of(int u, int v) {
+  return static_cast<uint8_t>((kColumns + u) * kAcross + kColumns + v);
+}
+constexpr Step step_to(int u, int v) {
+  const int step_u = u > 0 ? 1 : -1;
+  const int step_v = v > 0 ? 1 : -1;
+  const int size_u = u < 0 ? -u : u;
+  const int size_v = v < 0 ? -v : v;
+  Step step{static_cast<int8_t>(u), static_cast<int8_t>(v), place_of(u, v), {}, 0};
+  if (size_u == size_v) {
+    step.plus[0] = place_of(u - step_u, v);
+    step.plus[1] = place_of(u, v - step_v);
+    step.minus = place_of(u - step_u, v - step_v);
+  } else {
+    const int far_u = size_u > size_v ? step_u : 0;
+    const int far_v = far_u == 0 ? step_v : 0;
+    const bool first = size_u + size_v == 1;
+    step.plus[0] = step.plus[1] = place_of(u - far_u, v - far_v);
+    step.minus = first ? step.plus[0] : place_of(u - 2 * far_u, v - 2 * far_v);
+  }
+  return step;
+}
+constexpr std::array<Step, kSteps> all_steps() {
+  std::array<Step, kSteps> steps{};
+  size_t count = 0;
+  for (int ring = 1; ring <= kColumns; ++ring) {
+    for (int along = 1 - ring; along <= ring; ++along) {
+      for (int side = -ring; side <= ring; side += 2 * ring) {
+        const int other = along == ring ? -side : along;
+        steps[count++] = step_to(side, along == ring ? side : other);
+        steps[count++] = step_to(other, side);
+      }
+    }
+  }
+  return steps;
+}
+constexpr std::array<Step, kSteps> kOrder = all_steps();
+
+// The core's Columns (src/light/slope.cpp) on words: a loop over voxels there is a count of bits here.
+struct Columns {
+  ColumnBits* bits;
+  int middle_w;
+  int middle_u;
+  int middle_v;
+  int side_u;
+  int side_v;
+  bool cuts;  // where edges are
+  bool changed = false;
+  int8_t heights[kAcross * kAcross] = {};
+
+  Columns(ColumnBits* of, const Vec3i& middle, int along, bool upwards, bool cuts_edges)
+      : bits(of),
+        middle_w(turned(middle[along], upwards)),
+        middle_u(middle[side_u_of(along)]),
+        middle_v(middle[side_v_of(along)]),
+        side_u(side_u_of(along)),
+        side_v(side_v_of(along)),
+        cuts(cuts_edges) {}
+
+  int height(int u, int v) const { return heights[place_of(u, v)]; }
+  // Where a column ends, from a height near by.
+  int measure(unsigned word, int height) const {
+    const int place = middle_w + height;
+    if (place >= 0 && (word >> place & 1U) != 0) {
+      return std::min(kColumns, height + __builtin_ctz(~(word >> (place + 1))));
+    }
+    const unsigned below = place > 0 ? word & ((1U << place) - 1) : 0U;
+    return below == 0 ? -kColumns : std::max(-kColumns, 31 - __builtin_clz(below) - middle_w);
+  }
+  unsigned filled_to(int height) const { return ((1U << (middle_w + height + 1)) - 1) & kAll; }
+  // The column, solid below its top where it is a shell.
+  unsigned thickened(unsigned word, int top) const {
+    const int place = middle_w + top;
+    if (place < 0 || (word >> place & 1U) == 0) {
+      return word;
+    }
+    const unsigned down = (2U << place) - 1;
+    const unsigned shell = down & ~(down >> lit::kSlopeShell);
+    return (word & shell) == shell ? word : word | down;
+  }
+  // Whether the column beside the middle, in direction `out`, was cut off.
+  bool follow(const Vec3i& out) {
+    uint16_t* const middle = &bits->at[middle_v][middle_u];
+    const int top = measure(*middle, 0);
+    heights[place_of(0, 0)] = static_cast<int8_t>(top);
+    const unsigned of_middle = thickened(*middle, top);
+    unsigned changes = of_middle ^ *middle;
+    *middle = static_cast<uint16_t>(of_middle);
+    bool wall = false;
+    for (const Step& step : kOrder) {
+      const int wanted = std::clamp(heights[step.plus[0]] + heights[step.plus[1]] - heights[step.minus],
+                                    -kColumns, kColumns);
+      const auto at_u = static_cast<unsigned>(middle_u + step.u);
+      const auto at_v = static_cast<unsigned>(middle_v + step.v);
+      // Nothing is solid beside the window, and what is made solid there is forgotten.
+      uint16_t nothing = 0;
+      uint16_t* const column = at_u < kSide && at_v < kSide ? &bits->at[at_v][at_u] : &nothing;
+      const int found = measure(*column, wanted);
+      if (cuts && std::abs(found - wanted) >= lit::kEdgeStep) {
+        heights[step.at] = static_cast<int8_t>(wanted);
+        *column = static_cast<uint16_t>(filled_to(wanted));
+        changes = 1;
+        wall = wall ||
+               (std::abs(step.u) + std::abs(step.v) == 1 && step.u == out[side_u] && step.v == out[side_v]);
+      } else {
+        heights[step.at] = static_cast<int8_t>(found);
+        const unsigned word = thickened(*column, found);
+        changes |= word ^ *column;
+        *column = static_cast<uint16_t>(word);
+      }
+    }
+    changed = changes != 0;
+    return wall;
+  }
+  // Whether all end where the middle one does.
+  bool are_level() const {
+    return std::all_of(heights, heights + kAcross * kAcross,
+                       [this](int8_t one) { return one == heights[place_of(0, 0)]; });
+  }
+};
+
+Vec3i middle_of(const Vec3i& voxel, const Face& face) {
+  Vec3i middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = voxel[axis] - lit::slope_window_low(voxel[axis]);
+  }
+  middle[face.axis] -= face.negative ? 0 : 1;
+  return middle;
+}
+
+// In the order of the axes.
+Vec3i gradient_along(int axis, bool upwards, const ColumnBits& columns, const Vec3i& point) {
+  const int32_t turned_point[3] = {upwards ? point[axis] : kSide * lit::kSlopeUnit - point[axis],
+                                   point[side_u_of(axis)], point[side_v_of(axis)]};
+  int32_t turned_gradient[3];
+  find_gradient(columns.at[0], turned_point, turned_gradient);
+  Vec3i gradient;
+  gradient[axis] = upwards ? turned_gradient[0] : -turned_gradient[0];
+  gradient[side_u_of(axis)] = turned_gradient[1];
+  gradient[side_v_of(axis)] = turned_gradient[2];
+  return gradient;
+}
+
+// Follows the surface of a face along an axis.
+void follow(int along, bool upwards, const Face& face, KnownSlope* known) {
+  if (along == face.axis) {
+    known->cut = known->columns;
+  } else {
+    uint16_t rows[kSide][kSide];
+    turn_from(face.axis, !face.negative, known->columns, rows);
+    turn_to(along, upwards, rows, &known->cut);
+  }
+  Vec3i out;
+  out[face.axis] = face.negative ? -1 : 1;
+  Columns columns(&known->cut, middle_of(known->voxel, face), along, upwards, true);
+  const bool wall = columns.follow(out);
+  known->keeps_face = along == face.axis
+                          ? columns.are_level()
+                          : wall || columns.height(out[columns.side_u], out[columns.side_v]) >= 0;
+  known->is_cut = columns.changed;
+}
+
+uint8_t number_of(int axis, bool upwards) {
+  return static_cast<uint8_t>(2 * axis + (upwards ? 1 : 0));
+}
+
+// Numbers that lie far apart for places that lie side by side.
+uint32_t mixed(const Vec3i& place, uint32_t rest) {
+  uint32_t mix = static_cast<uint32_t>(place.x) * 0x9E3779B1U + static_cast<uint32_t>(place.y) * 0x85EBCA77U +
+                 static_cast<uint32_t>(place.z) * 0xC2B2AE3DU + rest * 0x27D4EB2FU;
+  mix = (mix ^ mix >> 15) * 0x2C1B3C6DU;
+  return mix >> 12;
+}
+
+}  // namespace
+
+const lit::SlopeWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q12, uint32_t* visits) {
+  KnownWindow& known = windows_[mixed(low, index_q12) & (count_ / 4 - 1)];
+  if (!known.is_known || known.window.low != low || known.index_q12 != index_q12) {
+    known = {};
+    known.window.low = low;
+    known.index_q12 = index_q12;
+    known.is_known = true;
+    const lit::Body body{frame_->scene.surfaces, frame_->effects, index_q12};
+    lit::read_slope_window(frame_->tree, body, &known.window, visits);
+  }
+  return known.window;
+}
+
+KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t index_q12, uint32_t* visits) {
+  const uint8_t number = number_of(face.axis, !face.negative);
+  KnownSlope& known = places_[mixed(voxel, number + 8U * index_q12) & (count_ - 1)];
+  if (known.face == number && known.voxel == voxel && known.index_q12 == index_q12) {
+    return known;
+  }
+  known.voxel = voxel;
+  known.face = number;
+  known.index_q12 = index_q12;
+  known.course = KnownSlope::kNone;
+  Vec3i low;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = lit::slope_window_low(voxel[axis]);
+  }
+  turn_to(face.axis, !face.negative, window_at(low, index_q12, visits).rows, &known.columns);
+  Columns columns(&known.columns, middle_of(voxel, face), face.axis, !face.negative, false);
+  const unsigned behind = 3U << (columns.middle_w - 2);
+  static_assert(lit::kSlopeShell == 3);
+  if ((known.columns.at[columns.middle_v][columns.middle_u] & behind) != behind) {
+    columns.follow({});
+  }
+  return known;
+}
+
+Vec3i SlopeTable::normal(const Vec3Q8& at, const Face& face, uint16_t index_q12, uint32_t* visits) {
+  const Vec3i voxel{at.x.floor(), at.y.floor(), at.z.floor()};
+  KnownSlope& known = find(voxel, face, index_q12, visits);
+  Vec3i point;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int32_t low = lit::slope_window_low(voxel[axis]) * Q8::kOne;
+    point[axis] = (at[axis].raw - low) / (Q8::kOne / lit::kSlopeUnit);
+  }
+  const Vec3i normal = gradient_along(face.axis, !face.negative, known.columns, point);
+  const int along = lit::slope_axis(normal, face);
+  if (along < 0) {
+    return lit::unit_of_slope({}, face);
+  }
+  const bool upwards = along == face.axis ? !face.negative : normal[along] > 0;
+  if (known.course != number_of(along, upwards)) {
+    follow(along, upwards, face, &known);
+    known.course = number_of(along, upwards);
+  }
+  if (known.keeps_face) {
+    return lit::unit_of_slope({}, face);
+  }
+  return lit::unit_of_slope(known.is_cut ? gradient_along(along, upwards, known.cut, point) : normal, face);
+}
+
+}  // namespace thimble::wide
