@@ -35,7 +35,7 @@ for room in base tree trace picture light plane bake c; do
   "$build/thimble_tests_covered" --source-file="*/tests/$room/*" >"$out/$room.out" 2>&1 ||
     { cat "$out/$room.out"; exit 1; }
 done
-"$build/thimble_tests_covered" --test-case='wide: lit scenes in which rays end*,wide: a lit picture*' >"$out/wide.out" 2>&1 ||
+"$build/thimble_tests_covered" --test-case='wide: lit scenes in which rays end*,wide: a lit picture*,wide: lit scenes with slopes*' >"$out/wide.out" 2>&1 ||
   { cat "$out/wide.out"; exit 1; }
 count all
 

@@ -4,22 +4,9 @@
 set -eu
 cd "$(dirname "$0")/../.."
 board=$1
-. platform/board_facts.sh
-export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
-work=$THIMBLE_FIRMWARE/$board
+app=cores
+. tests/boards/emulated.sh
 effects=$(fact DEMO_EFFECTS)
-failed=0
-say() {
-  printf '%-18s %-10s %s\n' "$board" cores "$1"
-}
-fail() {
-  say "FAILED: $1"
-  failed=1
-}
-if ! why=$(sh "platform/emulators/$(fact EMULATOR)/fetch.sh"); then
-  say "skipped: $why"
-  exit 0
-fi
 FRAMES=4 PLACE=flash sh platform/build.sh "$board" demo "$(sh tests/boards/scene.sh "$board")" >"$work/cores.build.log" 2>&1 || {
   tail -n 5 "$work/cores.build.log" >&2
   fail "does not build"

@@ -4,22 +4,8 @@
 set -eu
 cd "$(dirname "$0")/../.."
 board=$1
-. platform/board_facts.sh
-export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
-work=$THIMBLE_FIRMWARE/$board
-emulator=platform/emulators/$(fact EMULATOR)
-failed=0
-say() {
-  printf '%-18s %-10s %s\n' "$board" uf2 "$1"
-}
-fail() {
-  say "FAILED: $1"
-  failed=1
-}
-if ! why=$(sh "$emulator/fetch.sh"); then
-  say "skipped: $why"
-  exit 0
-fi
+app=uf2
+. tests/boards/emulated.sh
 run() {
   status=0
   timeout 120 sh "$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$@" $(fact EMULATOR_OPTIONS) </dev/null >"$work/uf2.log" 2>"$work/uf2.said" || status=$?

@@ -421,6 +421,9 @@ TEST_CASE(
 }
 
 TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near what was counted there") {
+  if (kSanitized) {
+    return;  // of one size alone, and counts are the same
+  }
   const TemporaryFolder folder;
   accuracy(
       {"demo", "--size", "128x64", "--shade", "color", "--rounds", "1", "--json", folder.path("d.json")});

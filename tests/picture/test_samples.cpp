@@ -15,7 +15,7 @@ namespace {
 TEST_CASE("samples: random fine rows -> each channel's mean to the nearest, halves up, in every format") {
   std::mt19937_64 random(5);
   for (int across = 1; across <= kMaxSamplesAcross; ++across) {
-    for (const PixelFormat format : kFormats) {
+    for (const PixelFormat format : testing::kFormats) {
       const std::int32_t width = 13;
       const HeapBytes fine(samples_bytes(width, across));
       for (std::uint8_t& byte : fine.span()) {

@@ -52,10 +52,13 @@ function sim(scene, board, app, frames, keys) {
   return JSON.parse(fs.readFileSync(stats, 'utf8')).frame_crc32;
 }
 
-// The canvas shows one of the first frames of the simulator, since the demonstration turns.
-async function showsAFrame(scene, board) {
+// The first frames of the simulator. To be found before the page draws them: the demonstration turns meanwhile.
+function firstFrames(scene, board) {
   const frames = new Set();
-  for (let count = 1; count <= 40; ++count) frames.add(sim(scene, board, 'demo', count));
+  for (let count = 1; count <= 60; ++count) frames.add(sim(scene, board, 'demo', count));
+  return frames;
+}
+async function showsAFrame(frames) {
   let shown = await canvasCrc();
   for (let i = 0; i < 400 && !frames.has(shown); ++i) {
     await pause(i % 7);
@@ -77,9 +80,10 @@ async function desktop() {
   });
   await test('the canvas shows a frame of the simulator', async () => {
     // A scene with light stands still, drawn once fast and once lit.
+    const frames = firstFrames('tools/gallery/scenes/castle.vox', 'lm3s6965evb');
     await browser.click('#scene-castle');
     await began();
-    await showsAFrame('tools/gallery/scenes/castle.vox', 'lm3s6965evb');
+    await showsAFrame(frames);
   });
   await test('arrow keys and the row of buttons steer', async () => {
     await changes('an arrow key', () => browser.key('ArrowLeft'));
@@ -97,10 +101,11 @@ async function desktop() {
     await changes('going on', () => browser.click('#pause'));
   });
   await test('another board has its own display, RAM and picture', async () => {
+    const frames = firstFrames('tools/gallery/scenes/castle.vox', 'mps2-an500');
     await choose('mps2-an500');
+    await showsAFrame(frames);
     is('width', await browser.eval('canvas.width'), 320);
     await browser.until(`/ of 4,186,112$/.test(document.getElementById('ram').textContent)`);
-    await showsAFrame('tools/gallery/scenes/castle.vox', 'mps2-an500');
     await choose('lm3s6965evb');
   });
   await test('? opens the help, Esc closes it', async () => {
@@ -257,6 +262,7 @@ async function links() {
   });
   await test('a link whose file stayed elsewhere asks for it, and then shows its view', async () => {
     const file = path.resolve('tools/gallery/scenes/fox.vox.gz');
+    const frames = firstFrames(file, 'lm3s6965evb');
     await browser.drop([file]);
     await began();
     await browser.drag('#canvas', 60, 10);
@@ -295,10 +301,11 @@ async function links() {
 async function drops() {
   await test('a dropped file is baked and shown', async () => {
     const file = path.resolve('tools/gallery/scenes/fox.vox.gz');
+    const frames = firstFrames(file, 'lm3s6965evb');
     await browser.drop([file]);
     await began();
     holds('it says so', (await text('said')).startsWith('fox.vox.gz: '));
-    await showsAFrame(file, 'lm3s6965evb');
+    await showsAFrame(frames);
   });
   await test('a scene dropped with its model, and baked bytes', async () => {
     await choose('raspi0');

@@ -1,0 +1,212 @@
+// The particle world where a number, a list or a word of bits ends: no cells, no balls of that number, a seed
+// that the generator cannot begin with, as many balls as a word of words has bits.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "thimble/plane/particles.h"
+
+namespace thimble::tests::particles_edges {
+namespace {
+
+struct OwnedWorld {
+  explicit OwnedWorld(const ParticleConfig& config) : bytes(particles_bytes(config), 0xA5) {
+    REQUIRE(ParticleWorld::make(config, {bytes.data(), bytes.size()}, &world) == Status::kOk);
+  }
+  Particle ball(std::uint32_t id) const {
+    Particle one;
+    REQUIRE(world.particle(id, &one));
+    return one;
+  }
+  std::vector<std::uint8_t> bytes;
+  ParticleWorld world;
+};
+
+ParticleConfig weightless(std::int32_t width, std::int32_t height, std::uint32_t capacity) {
+  ParticleConfig config;
+  config.width = width;
+  config.height = height;
+  config.capacity = capacity;
+  config.least_diameter = 1;
+  config.gravity_q16 = {0, 0};
+  return config;
+}
+
+TEST_CASE("particles edges: numbers of no ball -> nothing there holds them, nothing is known of them") {
+  OwnedWorld owned(weightless(40, 30, 5));
+  ParticleWorld& world = owned.world;
+  std::uint32_t id = 99;
+  REQUIRE(world.spawn(10 << 16, 10 << 16, 0, 0, 4, &id) == Status::kOk);
+  std::uint32_t other = 99;
+  REQUIRE(world.spawn(20 << 16, 20 << 16, 0, 0, 4, &other) == Status::kOk);
+  REQUIRE(world.remove(id) == Status::kOk);
+  Particle one;
+  one.diameter = 77;
+  for (const std::uint32_t nobody : {id, 2U, 5U, 1000000U, kNoBall}) {
+    CAPTURE(nobody);
+    CHECK_FALSE(world.is_held(nobody));
+    CHECK_FALSE(world.particle(nobody, &one));
+    CHECK(world.remove(nobody) == Status::kOutOfRange);
+    CHECK(world.set_velocity(nobody, 1, 1) == Status::kOutOfRange);
+  }
+  CHECK(one.diameter == 77);
+  // Without gravity each ball is held; under it those that lie on something.
+  CHECK(world.is_held(other));
+  REQUIRE(world.set_gravity({0, 6554}) == Status::kOk);
+  CHECK_FALSE(world.is_held(other));
+  world.draw_wall({20, 22}, 1);
+  CHECK(world.is_held(other));
+}
+
+TEST_CASE("particles edges: walls in worlds of no cells, or by a brush of none -> nothing is drawn") {
+  for (const Vec2i size : {Vec2i{0, 20}, Vec2i{20, 0}, Vec2i{0, 0}}) {
+    OwnedWorld owned(weightless(size.x, size.y, 2));
+    const std::uint32_t before = owned.world.state_crc32();
+    owned.world.draw_wall({-3, -3}, {30, 30}, 5);
+    owned.world.erase_wall({-3, -3}, {30, 30}, 5);
+    CHECK(owned.world.state_crc32() == before);
+    CHECK(owned.world.ball_at({0, 0}) == kNoBall);
+  }
+  OwnedWorld owned(weightless(20, 20, 2));
+  const std::uint32_t before = owned.world.state_crc32();
+  for (const std::int32_t diameter : {0, -1, INT32_MIN}) {
+    owned.world.draw_wall({5, 5}, {9, 9}, diameter);
+    CHECK(owned.world.state_crc32() == before);
+  }
+  owned.world.draw_wall({5, 5}, {9, 9}, 1);
+  CHECK(owned.world.state_crc32() != before);
+  for (std::int32_t i = 0; i < 20; ++i) {
+    CHECK(owned.world.field().test({i, i}) == (i >= 5 && i <= 9));
+  }
+}
+
+// Marsaglia's generator of 32 bits stays 0 for ever once it is 0; the one seed that would make it so begins
+// it with 1.
+TEST_CASE("particles edges: the seed whose mixture is 0 -> the numbers that follow 1") {
+  constexpr std::uint32_t kZeroSeed = 1952021129;
+  static_assert((kZeroSeed * 2654435761U ^ 0x9E3779B9U) == 0);
+  ParticleConfig config = weightless(300, 200, 50);
+  config.least_diameter = 3;
+  config.most_diameter = 12;
+  config.seed = kZeroSeed;
+  OwnedWorld owned(config);
+  std::uint32_t state = 1;
+  const auto below = [&](std::uint32_t limit) {
+    state ^= state << 13;
+    state ^= state >> 17;
+    state ^= state << 5;
+    return static_cast<std::int32_t>(std::uint64_t{state} * limit >> 32);
+  };
+  for (int i = 0; i < 3; ++i) {  // far apart, as it happens
+    std::uint32_t id = 0;
+    REQUIRE(owned.world.spawn_random(1000, &id) == Status::kOk);
+    const Particle made = owned.ball(id);
+    CHECK(made.diameter == 3 + below(10));
+    CHECK(made.vx_q16 == below(2001) - 1000);
+    CHECK(made.vy_q16 == below(2001) - 1000);
+    CHECK(made.corner.x == below(static_cast<std::uint32_t>(300 - made.diameter + 1)));
+    CHECK(made.corner.y == below(static_cast<std::uint32_t>(200 - made.diameter + 1)));
+  }
+}
+
+TEST_CASE("particles edges: a ball that is taken away while it is dragged -> the next of its number is not") {
+  OwnedWorld owned(weightless(60, 40, 2));
+  ParticleWorld& world = owned.world;
+  std::uint32_t id = 99;
+  REQUIRE(world.spawn(10 << 16, 10 << 16, 0, 0, 6, &id) == Status::kOk);
+  std::uint32_t other = 99;
+  REQUIRE(world.spawn(40 << 16, 30 << 16, 0, 0, 6, &other) == Status::kOk);
+  world.set_pointer(PointerMode::kDrag, {10, 10});
+  REQUIRE(world.dragged() == id);
+  REQUIRE(world.remove(other) == Status::kOk);
+  CHECK(world.dragged() == id);
+  REQUIRE(world.remove(id) == Status::kOk);
+  CHECK(world.dragged() == kNoBall);
+  std::uint32_t again = 99;
+  REQUIRE(world.spawn(10 << 16, 10 << 16, 0, 0, 6, &again) == Status::kOk);
+  REQUIRE(again == id);
+  world.set_pointer(PointerMode::kDrag, {30, 10});
+  for (int step = 0; step < 10; ++step) {
+    world.step();
+  }
+  CHECK(owned.ball(again).x_q16 / 65536 == 10);
+}
+
+// 32,768 balls fill one word of the highest level: behind the last one that is awake there is no word to look
+// at.
+TEST_CASE("particles edges: the last of 32,768 balls awake, or the last but some -> just those move") {
+  constexpr std::uint32_t kCount = 32768;
+  ParticleConfig config = weightless(512, 130, kCount);
+  config.most_diameter = 1;
+  OwnedWorld owned(config);
+  ParticleWorld& world = owned.world;
+  for (std::uint32_t id = 0; id < kCount; ++id) {
+    const auto x = static_cast<std::int32_t>(2 * (id % 256));
+    const auto y = static_cast<std::int32_t>(id / 256);
+    REQUIRE(world.spawn(x * 65536 + 32769, y * 65536 + 32769, 0, 0, 1, nullptr) == Status::kOk);
+  }
+  for (int step = 0; step < 24; ++step) {
+    world.step();
+  }
+  REQUIRE(world.asleep() == kCount);
+  for (const std::uint32_t id : {31744U, 31744U + 31U, 32000U, 32700U, 32735U, 32736U, 32767U, 31743U, 0U}) {
+    const std::int32_t before = owned.ball(id).x_q16;
+    REQUIRE(world.set_velocity(id, 65536, 0) == Status::kOk);
+    world.step();
+    CAPTURE(id);
+    CHECK(world.counters().moves == 1);
+    CHECK(owned.ball(id).x_q16 == before + 65536);
+    REQUIRE(world.set_velocity(id, 0, 0) == Status::kOk);
+    for (int step = 0; step < 24; ++step) {
+      world.step();
+      CHECK(world.counters().moves == 0);
+    }
+    CHECK(world.asleep() == kCount);
+  }
+}
+
+TEST_CASE("particles edges: a restitution above 1 -> refused; 0 and 1 -> taken") {
+  OwnedWorld owned(weightless(20, 20, 2));
+  const std::uint32_t before = owned.world.config().restitution_q16;
+  for (const std::uint32_t wrong : {65537U, 1U << 31, UINT32_MAX}) {
+    CHECK(owned.world.set_restitution(wrong) == Status::kOutOfRange);
+    CHECK(owned.world.config().restitution_q16 == before);
+  }
+  for (const std::uint32_t right : {0U, 65536U}) {
+    CHECK(owned.world.set_restitution(right) == Status::kOk);
+    CHECK(owned.world.config().restitution_q16 == right);
+  }
+}
+
+// In a shaft a pointer moves the lower of two balls up and down by four cells, so that neither keeps to its
+// place: the one above falls asleep in the step in which the one that holds it has kept to its hollow for
+// 200, and the other never does.
+TEST_CASE("particles edges: a ball on one that a pointer stirs -> asleep after 200 steps in its hollow") {
+  for (const std::int32_t width : {8, 9, 10}) {
+    ParticleConfig config;
+    config.width = width;
+    config.height = 80;
+    config.capacity = 2;
+    config.most_diameter = 8;
+    config.restitution_q16 = 0;
+    config.gravity_q16 = {0, 6554};
+    OwnedWorld owned(config);
+    ParticleWorld& world = owned.world;
+    std::uint32_t low = 99;
+    std::uint32_t high = 99;
+    REQUIRE(world.spawn(width << 15, 60 << 16, 0, 0, 8, &low) == Status::kOk);
+    REQUIRE(world.spawn(width << 15, 52 << 16, 0, 0, 8, &high) == Status::kOk);
+    for (int step = 1; step <= 200; ++step) {
+      world.set_pointer(PointerMode::kDrag, {width / 2, step / 8 % 2 == 0 ? 60 : 56});
+      REQUIRE(world.dragged() == low);
+      world.step();
+      CAPTURE(step);
+      REQUIRE_FALSE(owned.ball(low).asleep);
+      REQUIRE(owned.ball(high).asleep == (step == 200));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thimble::tests::particles_edges

@@ -1,0 +1,807 @@
+// Trees, maps and worlds at the ends of what their functions take: views of nothing, headers that contradict
+// one another, links and chains cut off, the last number that fits. Each answer is worked out by hand from
+// src/FORMAT.md.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "support/compact_damage.h"
+#include "support/scene_under_test.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/edited_world.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
+
+namespace thimble::tests::tree_edges {
+namespace {
+
+struct OwnedPool {
+  explicit OwnedPool(int level, std::size_t nodes = 4000) : words(2 * nodes + 1) {
+    REQUIRE(Octree::make(level, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * nodes}, &octree) ==
+            Status::kOk);
+  }
+  /// As if something else had written into the pool: node `index` is followed by `next`.
+  void cut_chain(std::uint32_t index, std::uint32_t next) {
+    std::uint32_t& word = words[2 * std::size_t{index} + 1];
+    word = (word & 31U) | next << 5;
+  }
+  std::vector<std::uint32_t> words;
+  Octree octree;
+};
+
+void put(std::uint8_t* at, std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) {
+    at[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  }
+}
+
+std::string text_of(const char* text) {
+  return text == nullptr ? "" : text;
+}
+
+// ---- the octree
+
+TEST_CASE("tree edges: the children of a voxel, of a solid block, of an octant that is empty -> none") {
+  OwnedPool pool(2);
+  REQUIRE(pool.octree.insert_block({0, 0, 0}, 1, 4) == Status::kOk);
+  REQUIRE(pool.octree.insert({2, 0, 0}, 5) == Status::kOk);
+  const Octree::NodeView root = pool.octree.node(pool.octree.root());
+  REQUIRE(root.mask == 3);
+  const Octree::NodeView block = pool.octree.node(pool.octree.child(root, 0));
+  const Octree::NodeView voxels = pool.octree.node(pool.octree.child(root, 1));
+  CHECK(block.solid());
+  CHECK(block.material == 4);
+  CHECK(voxels.mask == 1);
+  CHECK(voxels.material == 5);
+  for (int octant = 0; octant < 8; ++octant) {
+    CHECK(pool.octree.child(block, octant) == Octree::kNone);
+    CHECK(pool.octree.child(voxels, octant) == Octree::kNone);
+    CHECK((pool.octree.child(root, octant) == Octree::kNone) == (octant > 1));
+  }
+}
+
+TEST_CASE("tree edges: a pool whose chain leads out of it -> no child there, and a view of nothing") {
+  OwnedPool pool(2);
+  for (const std::int32_t octant : {0, 1, 2}) {
+    REQUIRE(pool.octree.insert({octant % 2 * 2, octant / 2 * 2, 0}, 4) == Status::kOk);
+  }
+  const Octree::NodeView root = pool.octree.node(pool.octree.root());
+  REQUIRE(root.mask == 7);
+  pool.cut_chain(root.first_child, 1000000);
+  CHECK(pool.octree.child(root, 0) == root.first_child);
+  CHECK(pool.octree.child(root, 1) == 1000000);
+  CHECK(pool.octree.node(1000000).first_child == Octree::kNone);
+  CHECK(pool.octree.child(root, 2) == Octree::kNone);
+}
+
+// The material of a world that one node has to hold is that of its largest piece, the lowest of equal ones.
+TEST_CASE("tree edges: a pool of one node that coarsens -> the world, in the material of its largest piece") {
+  struct Row {
+    std::array<Vec3i, 2> first;  // of material 5
+    int count;
+    Vec3i last;  // of material 9
+    int material;
+  };
+  for (const Row& row :
+       {Row{{{{1, 0, 0}}}, 1, {0, 0, 0}, 9}, Row{{{{1, 0, 0}}}, 1, {0, 1, 0}, 5},
+        Row{{{{1, 0, 0}, {0, 1, 0}}}, 2, {0, 0, 0}, 5}, Row{{{{1, 0, 0}, {0, 1, 0}}}, 2, {1, 0, 0}, 5}}) {
+    OwnedPool pool(1, 1);
+    pool.octree.set_coarsen(true);
+    for (int i = 0; i < row.count; ++i) {
+      REQUIRE(pool.octree.insert(row.first[static_cast<std::size_t>(i)], 5) == Status::kOk);
+    }
+    const std::uint64_t there = static_cast<std::uint64_t>(row.count) + (pool.octree.test(row.last) ? 0 : 1);
+    REQUIRE(pool.octree.insert(row.last, 9) == Status::kOk);
+    CHECK(pool.octree.nodes_used() == 1);
+    CHECK(pool.octree.voxels() == 8);
+    CHECK(pool.octree.solid_added() == 8 - there);
+    CHECK(pool.octree.material({1, 1, 1}) == row.material);
+    CHECK(pool.octree.node(pool.octree.root()).merged);
+  }
+}
+
+TEST_CASE("tree edges: a block into a pool too small for its path -> the block above it, merged") {
+  for (int nodes = 1; nodes <= 3; ++nodes) {
+    OwnedPool pool(4, static_cast<std::size_t>(nodes));
+    pool.octree.set_coarsen(true);
+    REQUIRE(pool.octree.insert_block({8, 8, 0}, 1, 7) == Status::kOk);
+    // The path's last node is of level 4, 3, 2.
+    const std::uint64_t side = std::uint64_t{16} >> (nodes - 1);
+    CHECK(pool.octree.nodes_used() == static_cast<std::uint32_t>(nodes));
+    CHECK(pool.octree.voxels() == side * side * side);
+    CHECK(pool.octree.solid_added() == side * side * side - 8);
+    CHECK(pool.octree.material({8, 8, 0}) == 7);
+    CHECK(pool.octree.test({0, 0, 0}) == (nodes == 1));
+  }
+}
+
+// Seven truly full blocks and one that merging filled make no solid block: a hit on that one reports its
+// corner.
+TEST_CASE("tree edges: a block that completes seven others, one of them merged -> eight blocks stay") {
+  for (const bool merges : {true, false}) {
+    OwnedPool pool(2);
+    Octree& octree = pool.octree;
+    for (std::int32_t i = 0; i < 7; ++i) {  // 7 of the first octant's voxels, of two materials
+      REQUIRE(octree.insert({i & 1, i >> 1 & 1, i >> 2}, i == 3 ? 6 : 4) == Status::kOk);
+    }
+    for (std::int32_t i = 1; i < 7; ++i) {
+      REQUIRE(octree.insert_block({(i & 1) * 2, (i >> 1 & 1) * 2, (i >> 2) * 2}, 1, 4) == Status::kOk);
+    }
+    REQUIRE(octree.nodes_used() == 1 + 7 + 7);
+    if (merges) {
+      REQUIRE(octree.coarsen_to(8) == Status::kOk);  // adds 1 voxel and saves 7 nodes
+      REQUIRE(octree.solid_added() == 1);
+    } else {
+      REQUIRE(octree.insert_block({0, 0, 0}, 1, 4) == Status::kOk);
+    }
+    REQUIRE(octree.nodes_used() == 8);
+    REQUIRE(octree.insert_block({2, 2, 2}, 1, 4) == Status::kOk);
+    CHECK(octree.voxels() == 64);
+    CHECK(octree.nodes_used() == (merges ? 9 : 1));
+    const HeapBytes bytes = compact_of(octree);
+    const CompactTree tree = open_or_throw(bytes);
+    REQUIRE(tree.node_count() == (merges ? 9 : 1));
+    CHECK(tree.mask(0) == (merges ? 0xFF : 0));
+    for (std::uint32_t node = 0; node < tree.node_count(); ++node) {
+      CHECK(tree.is_merged(node) == (merges && node == 1));
+    }
+  }
+}
+
+TEST_CASE("tree edges: coarsening at a price out of range -> at the nearest one") {
+  constexpr int kLast = Octree::kPriceSteps - 1;
+  for (const int step : {INT32_MIN, -1, 0, kLast, kLast + 1, INT32_MAX}) {
+    OwnedPool pool(3);
+    // Four solid blocks of two materials, which merging joins for nothing; 8 voxels to a block of 512.
+    for (std::int32_t i = 0; i < 8; ++i) {
+      REQUIRE(pool.octree.insert_block({(i & 1) * 2, (i >> 1 & 1) * 2, (i >> 2) * 2}, 1,
+                                       static_cast<std::uint8_t>(i % 2)) == Status::kOk);
+    }
+    REQUIRE(pool.octree.insert({7, 7, 7}, 3) == Status::kOk);
+    // At the least price what adds nothing goes: the eight blocks; at the greatest everything.
+    const bool cheap = step <= 0;
+    CHECK(pool.octree.nodes_at(step) == (cheap ? 4 : 1));
+    pool.octree.coarsen_at(step);
+    CHECK(pool.octree.nodes_used() == (cheap ? 4 : 1));
+    CHECK(pool.octree.solid_added() == (cheap ? 0 : 512 - 65));
+  }
+}
+
+// ---- compact trees
+
+TEST_CASE("tree edges: views of no tree -> nothing in them, and no part of a world") {
+  const CompactTree none;
+  CHECK(none.voxel_count() == 0);
+  CHECK(none.solid_added() == 0);
+  const SharedTree no_shared;
+  CHECK(no_shared.voxel_count() == 0);
+  CHECK(no_shared.solid_added() == 0);
+  CHECK(no_shared.bytes_with_materials() == 0);
+  CHECK(no_shared.material({0, 0, 0}) == 0);
+
+  // A view of nothing has the level of the smallest worlds, which does not make it one of the parts.
+  OwnedPool pool(1);
+  REQUIRE(pool.octree.insert({0, 0, 0}, 1) == Status::kOk);
+  const HeapBytes bytes = compact_of(pool.octree);
+  std::vector<CompactTree> parts(8, open_or_throw(bytes));
+  HeapBytes out(500);
+  CHECK(CompactTree::make({parts.data(), parts.size()}, out.span(), nullptr) == Status::kOk);
+  for (const std::size_t place : {0U, 3U, 7U}) {
+    std::vector<CompactTree> some = parts;
+    some[place] = none;
+    CHECK(CompactTree::make({some.data(), some.size()}, out.span(), nullptr) == Status::kBadArgument);
+  }
+  // More parts than the largest world has voxels: the count alone is looked at.
+  const Span<const CompactTree> many{parts.data(), (std::size_t{1} << 36) + 1};
+  CHECK(CompactTree::make(many, out.span(), nullptr) == Status::kBadArgument);
+}
+
+TEST_CASE("tree edges: solid parts, one of them merged -> eight blocks, as each part was") {
+  for (int merged = -1; merged < 8; ++merged) {
+    OwnedPool solid(2);
+    REQUIRE(solid.octree.insert_block({0, 0, 0}, 2, 3) == Status::kOk);
+    OwnedPool coarse(2);
+    REQUIRE(coarse.octree.insert({1, 1, 1}, 3) == Status::kOk);
+    REQUIRE(coarse.octree.coarsen_to(1) == Status::kOk);
+    const HeapBytes solid_bytes = compact_of(solid.octree);
+    const HeapBytes coarse_bytes = compact_of(coarse.octree);
+    std::vector<CompactTree> parts(8, open_or_throw(solid_bytes));
+    if (merged >= 0) {
+      parts[static_cast<std::size_t>(merged)] = open_or_throw(coarse_bytes);
+    }
+    HeapBytes out(500);
+    CompactTree whole;
+    REQUIRE(CompactTree::make({parts.data(), parts.size()}, out.span(), &whole) == Status::kOk);
+    CHECK(CompactTree::validate(out.view()) == nullptr);
+    CHECK(whole.voxel_count() == 512);
+    CHECK(whole.solid_added() == (merged < 0 ? 0 : 63));
+    REQUIRE(whole.node_count() == (merged < 0 ? 1 : 9));
+    for (std::uint32_t node = 0; node < whole.node_count(); ++node) {
+      CHECK(whole.is_merged(node) == (merged >= 0 && node == static_cast<std::uint32_t>(merged) + 1));
+    }
+  }
+}
+
+TEST_CASE("tree edges: a pool whose chains break off -> what is left of it, with fewer nodes than promised") {
+  OwnedPool pool(2);
+  for (const std::int32_t octant : {0, 1, 2}) {
+    REQUIRE(pool.octree.insert({octant % 2 * 2, octant / 2 * 2, 0}, 4) == Status::kOk);
+  }
+  REQUIRE(CompactTree::validate(compact_of(pool.octree).view()) == nullptr);
+  pool.cut_chain(pool.octree.node(pool.octree.root()).first_child, Octree::kNone);
+  const HeapBytes bytes = compact_of(pool.octree);
+  const CompactTree tree = open_or_throw(bytes);
+  CHECK(tree.node_count() == 2);
+  CHECK(tree.mask(0) == 7);
+  CHECK(tree.mask(1) == 1);
+  CHECK(tree.voxel_count() == 1);
+  CHECK(text_of(CompactTree::validate(bytes.view())) == "fewer nodes than the masks call for");
+
+  // Of voxels, materials: those that are lost are 0.
+  OwnedPool voxels(1);
+  for (std::int32_t i = 0; i < 4; ++i) {
+    REQUIRE(voxels.octree.insert({i & 1, i >> 1, 0}, static_cast<std::uint8_t>(11 + i)) == Status::kOk);
+  }
+  const Octree::NodeView root = voxels.octree.node(voxels.octree.root());
+  REQUIRE(root.has_children);
+  voxels.cut_chain(voxels.octree.child(root, 1), Octree::kNone);
+  const HeapBytes cut = compact_of(voxels.octree);
+  const CompactTree left = open_or_throw(cut);
+  REQUIRE(left.node_count() == 1);
+  CHECK(left.mask(0) == 0x0F);
+  CHECK(left.voxel_material(1) == 11);
+  CHECK(left.voxel_material(2) == 12);
+  CHECK(left.voxel_material(3) == 0);
+  CHECK(left.voxel_material(4) == 0);
+}
+
+// A part whose masks promise more nodes than it has is solid where they lack: four nodes, and children 1 to 8.
+TEST_CASE("tree edges: a part of a world with fewer nodes than its masks call for -> solid there") {
+  OwnedPool pool(2);
+  for (std::int32_t octant = 0; octant < 3; ++octant) {
+    REQUIRE(pool.octree.insert({octant % 2 * 2, octant / 2 * 2, 0}, 4) == Status::kOk);
+  }
+  HeapBytes bytes = compact_of(pool.octree);
+  REQUIRE(bytes.view().size == kCompactHeaderBytes + 8);
+  bytes.span()[kCompactHeaderBytes] = 0xFF;
+  repair_checksum(bytes.span());
+  const CompactTree part = open_or_throw(bytes);
+  HeapBytes out(500);
+  CompactTree whole;
+  REQUIRE(CompactTree::make({&part, 1}, out.span(), &whole) == Status::kOk);
+  REQUIRE(whole.node_count() == 9);
+  CHECK(whole.mask(0) == 0xFF);
+  for (std::uint32_t node = 1; node < 9; ++node) {
+    CHECK(whole.mask(node) == (node < 4 ? 1 : 0));
+  }
+  CHECK(whole.voxel_count() == 3 + 5 * 8);
+  CHECK(CompactTree::validate(out.view()) == nullptr);
+}
+
+// Keys that lie in no world of that level: the header asks for others. What comes of them is no tree, and
+// told.
+TEST_CASE("tree edges: keys beyond the world -> not a byte too many, and no sound tree") {
+  for (int level = 1; level <= 9; ++level) {
+    for (const std::uint32_t beyond : {std::uint32_t{1} << (3 * level), std::uint32_t{1} << 29}) {
+      const std::array<std::uint32_t, 3> keys{0, 1, beyond};
+      std::size_t size = 0;
+      REQUIRE(CompactTree::make({keys.data(), keys.size()}, level, 3, {}, nullptr, &size) ==
+              Status::kOutOfMemory);
+      HeapBytes out(size);
+      REQUIRE(CompactTree::make({keys.data(), keys.size()}, level, 3, out.span(), nullptr) == Status::kOk);
+      CHECK(CompactTree::validate(out.view()) != nullptr);
+    }
+  }
+}
+
+// ---- shared trees
+
+/// The bytes of a shared tree by hand: its nodes behind one another, and where each level begins.
+struct SharedByHand {
+  int level = 3;
+  int link_bytes = 1;
+  int count_bytes = 0;
+  bool merged = false;
+  std::uint32_t leaves = 1;
+  std::uint32_t nodes = 0;
+  std::uint32_t root = 0;
+  std::vector<std::uint32_t> begins;  // from level 2 on
+  std::vector<std::uint8_t> node_bytes;
+  Vec3i low;
+  Vec3i high{1, 1, 1};
+
+  std::uint32_t front() const { return static_cast<std::uint32_t>(shared_front_bytes(level)); }
+  HeapBytes bytes() const {
+    const std::size_t end = front() + node_bytes.size();
+    const std::size_t padded = (end + 3) & ~std::size_t{3};
+    const std::size_t size = padded + (count_bytes != 0 ? (leaves + 3U) & ~3U : 0U);
+    HeapBytes made(size);
+    std::uint8_t* const base = made.span().data;
+    std::fill(base, base + size, std::uint8_t{0});
+    put(base, 0x01474D54, 4);
+    base[4] = static_cast<std::uint8_t>(level);
+    base[5] = static_cast<std::uint8_t>(link_bytes);
+    base[6] = static_cast<std::uint8_t>((count_bytes != 0 ? 1 : 0) | (merged ? 2 : 0));
+    base[7] = count_bytes != 0 ? 0 : 9;
+    put(base + 8, size, 4);
+    put(base + 16, nodes, 4);
+    put(base + 20, leaves, 4);
+    put(base + 24, root, 4);
+    for (int axis = 0; axis < 3; ++axis) {
+      put(base + 28 + 2 * axis, static_cast<std::uint64_t>(low[axis]), 2);
+      put(base + 34 + 2 * axis, static_cast<std::uint64_t>(high[axis]), 2);
+    }
+    put(base + 56, end, 4);
+    put(base + 60, static_cast<std::uint64_t>(count_bytes), 4);
+    for (std::size_t i = 0; i < begins.size(); ++i) {
+      put(base + 64 + 4 * i, begins[i], 4);
+    }
+    std::copy(node_bytes.begin(), node_bytes.end(), base + front());
+    for (std::uint32_t leaf = 0; count_bytes != 0 && leaf < leaves; ++leaf) {
+      base[padded + leaf] = static_cast<std::uint8_t>(100 + leaf);
+    }
+    repair_checksum(made.span());
+    return made;
+  }
+  std::string fault() const {
+    const HeapBytes made = bytes();
+    HeapBytes work(shared_check_bytes(made.view().size));
+    return text_of(SharedTree::validate(made.view(), work.span()));
+  }
+};
+
+SharedTree opened(const HeapBytes& bytes) {
+  SharedTree tree;
+  REQUIRE(SharedTree::open(bytes.view(), &tree) == Status::kOk);
+  return tree;
+}
+
+// Two nodes of level 2, of a voxel at (0,0,0) and of a full block at (4,0,0), 8 voxels; the root of level 3.
+SharedByHand two_nodes() {
+  SharedByHand tree;
+  tree.count_bytes = 1;
+  tree.leaves = 9;
+  tree.nodes = 3;
+  tree.high = {6, 2, 2};
+  tree.begins = {72, 76};
+  tree.node_bytes = {1, 0x01, 1, 0xFF, 3, 9, 72, 74};
+  tree.root = 76;
+  return tree;
+}
+
+TEST_CASE("tree edges: a shared tree written by hand -> sound, each material where it belongs") {
+  const SharedByHand made = two_nodes();
+  CHECK(made.fault().empty());
+  const HeapBytes bytes = made.bytes();
+  const SharedTree tree = opened(bytes);
+  CHECK(tree.material({0, 0, 0}) == 100);
+  for (std::int32_t i = 0; i < 8; ++i) {
+    CHECK(tree.material({4 + (i & 1), i >> 1 & 1, i >> 2}) == 101 + i);
+  }
+  // Empty: an octant without a child on each level; and outside, on each axis and side.
+  for (const Vec3i& at : {Vec3i{1, 0, 0}, Vec3i{2, 0, 0}, Vec3i{0, 4, 0}, Vec3i{8, 0, 0}, Vec3i{0, 8, 0},
+                          Vec3i{0, 0, 8}, Vec3i{-1, 0, 0}, Vec3i{0, -1, 0}, Vec3i{0, 0, INT32_MIN}}) {
+    CHECK(tree.material(at) == 0);
+  }
+}
+
+TEST_CASE(
+    "tree edges: a shared tree with links into its last bytes -> read to the end of the nodes, no farther") {
+  // The first child is byte 75, a mask of 8 children of which the root's 4 bytes are there: 3, 9, 75, 74 have
+  // 2, 2, 4 and 3 bits, so that 11 leaves come before the other child's, more than there are.
+  SharedByHand tree = two_nodes();
+  tree.node_bytes[6] = 75;
+  HeapBytes bytes = tree.bytes();
+  CHECK(opened(bytes).material({4, 0, 0}) == 0);
+  CHECK_FALSE(tree.fault().empty());
+  // Were there more leaves, it would be the twelfth's.
+  tree.leaves = 14;
+  bytes = tree.bytes();
+  CHECK(opened(bytes).material({4, 0, 0}) == 111);
+  tree.leaves = 9;
+  // A child before the first node has no leaves: the other child's are the first.
+  tree.node_bytes[6] = 1;
+  bytes = tree.bytes();
+  CHECK(opened(bytes).material({4, 0, 0}) == 100);
+  CHECK(opened(bytes).material({0, 0, 0}) == 0);
+  CHECK(tree.fault() == "a link that leads to no node of the level below");
+  // One behind them, likewise.
+  tree.node_bytes[6] = 80;
+  bytes = tree.bytes();
+  CHECK(opened(bytes).material({4, 0, 0}) == 100);
+  CHECK(opened(bytes).material({0, 0, 0}) == 0);
+  // The root's own count and links cut off: nothing is before the second child, and it is nowhere.
+  tree = two_nodes();
+  tree.node_bytes.resize(5);
+  bytes = tree.bytes();
+  CHECK(opened(bytes).material({4, 0, 0}) == 0);
+  CHECK(tree.fault() == "a node that is no node");
+}
+
+TEST_CASE("tree edges: a node that is the last byte of a tree with merged blocks -> it has no children") {
+  SharedByHand tree;
+  tree.level = 2;
+  tree.merged = true;
+  tree.nodes = 1;
+  tree.begins = {68};
+  tree.node_bytes = {1, 0, 1};
+  tree.root = 68;
+  CHECK(tree.fault().empty());
+  HeapBytes bytes = tree.bytes();
+  CHECK(opened(bytes).child(68, 1, 0) == (SharedTree::kInline | 1));
+  tree.node_bytes = {1, 0};
+  bytes = tree.bytes();
+  CHECK(opened(bytes).child(68, 1, 0) == SharedTree::kNowhere);
+  tree.node_bytes = {1};
+  bytes = tree.bytes();
+  CHECK(opened(bytes).child(68, 1, 0) == SharedTree::kNowhere);
+  CHECK(opened(bytes).material({0, 0, 0}) == 0);
+  for (const std::uint32_t node : {0U, 67U, 69U, 1U << 20, SharedTree::kNowhere, SharedTree::kInline | 1U}) {
+    CHECK(opened(bytes).child(node, 1, 0) == SharedTree::kNowhere);
+  }
+}
+
+TEST_CASE("tree edges: a shared tree's header against itself -> what is wrong is told") {
+  SharedByHand tree = two_nodes();
+  // Bounds: not below one another, beyond the world, or of nothing at all.
+  for (int axis = 0; axis < 3; ++axis) {
+    tree.low[axis] = tree.high[axis];
+    CHECK(tree.fault() == "bounds outside the world");
+    tree.low[axis] = 0;
+    const std::int32_t before = tree.high[axis];
+    tree.high[axis] = 9;
+    CHECK(tree.fault() == "bounds outside the world");
+    tree.high[axis] = 8;
+    CHECK(tree.fault().empty());
+    tree.high[axis] = before;
+  }
+  SharedByHand empty;
+  empty.level = 1;
+  empty.leaves = 0;
+  empty.root = SharedTree::kNowhere;
+  empty.high = {0, 0, 0};
+  CHECK(empty.fault().empty());
+  for (int axis = 0; axis < 3; ++axis) {
+    empty.high[axis] = 1;
+    CHECK(empty.fault() == "bounds outside the world");
+    empty.low[axis] = 1;
+    CHECK(empty.fault() == "bounds outside the world");
+    empty.low[axis] = empty.high[axis] = 0;
+  }
+  // A world of 2 x 2 x 2 has no nodes, only a root.
+  empty.node_bytes = {1};
+  CHECK(empty.fault() == "another number of nodes");
+
+  const HeapBytes bytes = two_nodes().bytes();
+  HeapBytes work(shared_check_bytes(bytes.view().size));
+  CHECK(SharedTree::validate(bytes.view(), work.span()) == nullptr);
+  std::uint32_t place = 99;
+  CHECK(text_of(SharedTree::validate(bytes.view(), {work.span().data, work.span().size - 1}, &place)) ==
+        "the workspace is too small");
+  CHECK(place == 0);
+}
+
+TEST_CASE(
+    "tree edges: the root of a shared tree -> a node of the highest level, a block, or 8 voxels; else told") {
+  SharedByHand tree = two_nodes();
+  for (std::uint32_t root = 0; root < 90; ++root) {
+    tree.root = root;
+    CAPTURE(root);
+    CHECK(tree.fault() == (root == 76 ? "" : "a root that is no node"));
+  }
+  for (const std::uint32_t root : {SharedTree::kInline | 5, SharedTree::kInline | SharedTree::kMergedBit}) {
+    tree.root = root;
+    CHECK(tree.fault() == "a root that is no node");
+  }
+  tree.root = SharedTree::kInline;  // a solid world, of one leaf
+  CHECK(tree.fault() == "wrong count of leaves");
+
+  SharedByHand small;
+  small.level = 1;
+  for (const std::uint32_t root : {0U, 5U, 64U, SharedTree::kInline | 0x205, SharedTree::kInline | 0x105}) {
+    small.root = root;
+    CHECK(small.fault() == "a root that is no node");
+  }
+  small.root = SharedTree::kInline | 5;
+  CHECK(small.fault().empty());
+  small.root = SharedTree::kInline;
+  CHECK(small.fault().empty());
+  small.merged = true;
+  small.root = SharedTree::kInline | SharedTree::kMergedBit;
+  CHECK(small.fault().empty());
+}
+
+// A node a level, its eight children all the node below; at level 1 seven voxels each: 7 * 8^(level - 1)
+// leaves.
+TEST_CASE("tree edges: a tree of as many leaves as take 1 to 4 bytes -> its bytes with a count a node") {
+  for (int level = 2; level <= 11; ++level) {
+    SharedByHand tree;
+    tree.level = level;
+    tree.nodes = static_cast<std::uint32_t>(level - 1);
+    tree.high = {1 << level, 1 << level, 1 << level};
+    tree.begins.push_back(tree.front());
+    tree.node_bytes.assign(9, 0xFE);
+    tree.node_bytes[0] = 0xFF;
+    tree.leaves = 56;
+    for (int above = 3; above <= level; ++above) {
+      const std::uint32_t below = tree.begins.back();
+      tree.begins.push_back(tree.front() + static_cast<std::uint32_t>(tree.node_bytes.size()));
+      tree.node_bytes.push_back(0xFF);
+      tree.node_bytes.insert(tree.node_bytes.end(), 8, static_cast<std::uint8_t>(below));
+      tree.leaves *= 8;
+    }
+    tree.root = tree.begins.back();
+    CAPTURE(level);
+    REQUIRE(tree.fault().empty());
+    const HeapBytes bytes = tree.bytes();
+    // 9 bytes a node, and in all but the lowest a count; links stay of one byte below 257.
+    const std::uint64_t count = tree.leaves < 256        ? 1
+                                : tree.leaves < 65536    ? 2
+                                : tree.leaves < 16777216 ? 3
+                                                         : 4;
+    const std::uint64_t above = static_cast<std::uint64_t>(level) - 2;
+    const std::uint64_t end = tree.front() + 9 * (above + 1) + count * above;
+    REQUIRE(end <= 256);
+    CHECK(opened(bytes).bytes_with_materials() == ((end + 3) & ~std::uint64_t{3}) + tree.leaves);
+  }
+}
+
+// Nothing is solid, and yet the header says that there are several materials: it takes no byte for them.
+TEST_CASE("tree edges: an empty tree of several materials, shared -> empty") {
+  OwnedPool pool(3);
+  HeapBytes bytes = compact_of(pool.octree);
+  bytes.span()[6] = 1;
+  repair_checksum(bytes.span());
+  REQUIRE(CompactTree::validate(bytes.view()) == nullptr);
+  const CompactTree tree = open_or_throw(bytes);
+  HeapBytes work(shared_work_bytes(0));
+  HeapBytes out(200);
+  SharedTree shared;
+  SharedBuild build;
+  REQUIRE(SharedTree::make(tree, out.span(), work.span(), &shared, &build) == Status::kOk);
+  CHECK(shared.empty());
+  CHECK(build.bytes == shared_front_bytes(3));
+  CHECK(shared.material({1, 2, 3}) == 0);
+  CHECK(SharedTree::validate({out.view().data, build.bytes}, work.span()) == nullptr);
+}
+
+// ---- brick maps
+
+struct MapOf {
+  explicit MapOf(const CompactTree& from, std::size_t room_bytes)
+      : tree(from), room(room_bytes), status(BrickMap::make(tree, room.span(), &map, &size)) {}
+  CompactTree tree;
+  HeapBytes room;
+  BrickMap map;
+  std::size_t size = 0;
+  Status status;
+};
+
+TEST_CASE("tree edges: a brick map of no tree, or of a level without maps -> out of range, and of no tree") {
+  HeapBytes out(most_brick_map_bytes(2));
+  BrickMap map;
+  CHECK(BrickMap::make(CompactTree(), out.span(), &map) == Status::kOutOfRange);
+  for (const int level : {1, 9, 12}) {
+    OwnedPool pool(level);
+    REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
+    const HeapBytes bytes = compact_of(pool.octree);
+    CHECK(BrickMap::make(open_or_throw(bytes), out.span(), &map) == Status::kOutOfRange);
+  }
+  OwnedPool pool(2);
+  REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
+  const HeapBytes bytes = compact_of(pool.octree);
+  const MapOf made(open_or_throw(bytes), most_brick_map_bytes(2));
+  REQUIRE(made.status == Status::kOk);
+  CHECK(made.map.belongs_to(made.tree));
+  CHECK_FALSE(map.belongs_to(made.tree));
+  CHECK_FALSE(made.map.belongs_to(CompactTree()));
+  // The same checksum in a world of another level: not its own.
+  OwnedPool larger(3);
+  REQUIRE(larger.octree.insert({1, 1, 1}, 2) == Status::kOk);
+  HeapBytes other = compact_of(larger.octree);
+  std::copy_n(bytes.view().data + 12, 4, other.span().data + 12);
+  CHECK_FALSE(made.map.belongs_to(open_or_throw(other)));
+}
+
+TEST_CASE(
+    "tree edges: a map with its checksum put right -> cells beyond its bricks and a first brick not empty "
+    "told") {
+  OwnedPool pool(3);
+  REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
+  REQUIRE(pool.octree.insert({5, 1, 1}, 2) == Status::kOk);
+  const HeapBytes bytes = compact_of(pool.octree);
+  const auto fault_with = [&](std::size_t at, std::uint8_t value) {
+    const MapOf made(open_or_throw(bytes), most_brick_map_bytes(3));
+    REQUIRE(made.status == Status::kOk);
+    REQUIRE(made.map.brick_count() == 3);
+    made.room.span()[at] = value;
+    repair_checksum({made.room.span().data, made.size});
+    const ConstBytes view{made.room.view().data, made.size};
+    BrickMap map;
+    const std::string text = text_of(BrickMap::validate(view));
+    CHECK(BrickMap::open(view, &map) == (text.empty() ? Status::kOk : Status::kDamaged));
+    return text;
+  };
+  // Two cells, of 4 bytes and 4 more; then three bricks of 8.
+  for (const std::size_t cell : {0U, 1U}) {
+    CHECK(fault_with(kBrickMapHeaderBytes + 2 * cell, 2).empty());
+    CHECK(fault_with(kBrickMapHeaderBytes + 2 * cell, 3) == "a cell names a brick that is not there");
+    CHECK(fault_with(kBrickMapHeaderBytes + 2 * cell + 1, 1) == "a cell names a brick that is not there");
+  }
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(fault_with(kBrickMapHeaderBytes + 8 + i, 0x80) == "brick 0 is not empty");
+    CHECK(fault_with(kBrickMapHeaderBytes + 16 + i, 0x80).empty());
+  }
+}
+
+// 65,280 bricks of one voxel, and solid ones of as many materials as are given.
+TEST_CASE("tree edges: 65,535 bricks, the empty one included -> a map; one more -> out of range") {
+  constexpr std::uint64_t kBricks = 65280;
+  for (const std::uint64_t kinds : {254U, 255U}) {
+    std::vector<std::uint64_t> keys;
+    for (std::uint64_t brick = 0; brick < kBricks + kinds; ++brick) {
+      const std::uint64_t voxels = brick < kBricks ? 1 : 64;
+      for (std::uint64_t i = 0; i < voxels; ++i) {
+        keys.push_back((64 * brick + i) << 8 | (brick < kBricks ? 0 : brick - kBricks + 1));
+      }
+    }
+    const Span<const std::uint64_t> span{keys.data(), keys.size()};
+    std::size_t size = 0;
+    REQUIRE(CompactTree::make(span, 8, {}, nullptr, &size) == Status::kOutOfMemory);
+    HeapBytes bytes(size);
+    CompactTree tree;
+    REQUIRE(CompactTree::make(span, 8, bytes.span(), &tree) == Status::kOk);
+    const MapOf made(tree, most_brick_map_bytes(8));
+    CHECK(made.status == (kinds == 254 ? Status::kOk : Status::kOutOfRange));
+    CHECK(made.map.brick_count() == (kinds == 254 ? kMaxBricks : 0));
+  }
+}
+
+// An origin says the place of a brick's first node in 24 bits. No world has as many nodes as that; damaged
+// bytes may: a root (of level 2, a brick) whose child the directory puts at the very end of 2^24 masks.
+TEST_CASE("tree edges: a brick whose nodes begin at 2^24 -> out of range; one before -> a map") {
+  constexpr std::uint32_t kEnd = std::uint32_t{1} << 24;
+  for (const std::uint32_t child : {kEnd - 1, kEnd}) {
+    CompactShape shape;
+    shape.level = 2;
+    shape.nodes = kEnd + 1;
+    shape.voxel_bits = 2;
+    shape.many_materials = true;
+    const std::size_t size = compact_bytes(shape);
+    std::vector<std::uint64_t> words(size / 8 + 1);
+    auto* const base = reinterpret_cast<std::uint8_t*>(words.data());
+    put(base, 0x01424D54, 4);
+    base[4] = 2;
+    base[5] = kDefaultRankShift;
+    base[6] = 1;
+    put(base + 8, size, 4);
+    put(base + 16, shape.nodes, 4);
+    put(base + 24, shape.voxel_bits, 4);
+    for (int axis = 0; axis < 3; ++axis) {
+      put(base + 34 + 2 * axis, 4, 2);
+    }
+    std::uint8_t* const masks = base + kCompactHeaderBytes;
+    masks[0] = 1;
+    masks[child] = 3;
+    // The directory: children before each 64 nodes. The root's is `child`; that one's are the two voxels.
+    std::uint8_t* const ranks = masks + ((shape.nodes + 3) & ~3U);
+    const std::size_t blocks = (shape.nodes + 63) / 64;
+    put(ranks, child - 1, 4);
+    put(ranks + 4 * std::size_t{child / 64}, shape.nodes - 1, 4);
+    std::uint8_t* const materials = ranks + 4 * blocks;
+    materials[0] = 6;
+    materials[1] = 7;
+    CompactTree tree;
+    REQUIRE(CompactTree::open({base, size}, &tree) == Status::kOk);
+    REQUIRE(tree.first_child(0) == child);
+    const MapOf made(tree, most_brick_map_bytes(2));
+    CHECK(made.status == (child < kEnd ? Status::kOk : Status::kOutOfRange));
+    if (child < kEnd) {
+      CHECK(made.map.mixed_count() == 1);
+      CHECK(made.map.material(tree, 1, 0) == 6);
+      CHECK(made.map.material(tree, 1, 1) == 7);
+    }
+  }
+}
+
+// ---- worlds that are edited
+
+TEST_CASE("tree edges: an edited world of no tree, of a level without maps, of too much room -> refused") {
+  OwnedPool pool(2);
+  REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
+  const HeapBytes bytes = compact_of(pool.octree);
+  const CompactTree tree = open_or_throw(bytes);
+  const EditRoom room{100, 100, 10};
+  std::vector<std::uint64_t> words(edited_world_bytes(2, room) / 8 + 2);
+  const Bytes memory{reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()};
+  EditedWorld world;
+  const auto make = [&](const CompactTree& from, const EditRoom& wanted, Bytes to) {
+    return EditedWorld::make(from, wanted, to, &world);
+  };
+  for (const int level : {1, 9}) {
+    OwnedPool other(level);
+    REQUIRE(other.octree.insert({1, 1, 1}, 2) == Status::kOk);
+    const HeapBytes of_level = compact_of(other.octree);
+    CHECK(make(open_or_throw(of_level), room, memory) == Status::kOutOfRange);
+    CHECK(EditedWorld::room_in(open_or_throw(of_level), std::size_t{1} << 30).nodes == 0);
+  }
+  CHECK(make(tree, {1U << 24, 100, 10}, memory) == Status::kOutOfRange);
+  CHECK(make(tree, {(1U << 24) - 1, 100, 10}, memory) == Status::kOutOfMemory);
+  CHECK(make(tree, {100, 100, 65001}, memory) == Status::kOutOfRange);
+  CHECK(make(tree, {100, 100, 65000}, memory) == Status::kOutOfMemory);
+  for (std::size_t odd = 1; odd < 8; ++odd) {
+    CHECK(make(tree, room, {memory.data + odd, memory.size - 8}) == Status::kBadArgument);
+  }
+  REQUIRE(pool.octree.insert({3, 3, 3}, 2) == Status::kOk);
+  REQUIRE(pool.octree.coarsen_to(1) == Status::kOk);
+  const HeapBytes coarse = compact_of(pool.octree);
+  CHECK(make(open_or_throw(coarse), room, memory) == Status::kBadArgument);
+  // A view of nothing is of level 1; a world of nothing takes no edit.
+  CHECK(make(CompactTree(), room, memory) == Status::kOutOfRange);
+  CHECK(world.set({0, 0, 0}, 1) == Status::kOutOfRange);
+  CHECK(world.clear({0, 0, 0}) == Status::kOutOfRange);
+  CHECK(world.pack({}) == Status::kBadArgument);
+  REQUIRE(make(tree, room, memory) == Status::kOk);
+  CHECK(world.tree().voxel_count() == 1);
+}
+
+TEST_CASE("tree edges: edits outside the world, on each side of it -> out of range, nothing changed") {
+  OwnedPool pool(3);
+  REQUIRE(pool.octree.insert({1, 2, 3}, 2) == Status::kOk);
+  const HeapBytes bytes = compact_of(pool.octree);
+  const CompactTree tree = open_or_throw(bytes);
+  const EditRoom room{100, 100, 10};
+  std::vector<std::uint64_t> words(edited_world_bytes(3, room) / 8 + 1);
+  EditedWorld world;
+  REQUIRE(EditedWorld::make(tree, room, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()},
+                            &world) == Status::kOk);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t outside : {-1, 8, INT32_MIN, INT32_MAX}) {
+      Vec3i at{4, 4, 4};
+      at[axis] = outside;
+      CHECK(world.set(at, 3) == Status::kOutOfRange);
+      CHECK(world.clear(at) == Status::kOutOfRange);
+    }
+  }
+  HeapBytes packed(bytes.view().size);
+  REQUIRE(world.pack(packed.span()) == Status::kOk);
+  CHECK(std::equal(packed.view().begin(), packed.view().end(), bytes.view().begin()));
+}
+
+TEST_CASE("tree edges: a tree with solid bricks of 32 materials -> an edited world; of 33 -> out of memory") {
+  OwnedPool pool(4);
+  for (std::int32_t kind = 0; kind < 33; ++kind) {
+    const HeapBytes bytes = compact_of(pool.octree);
+    const EditRoom room{1000, 1000, 10};
+    std::vector<std::uint64_t> words(edited_world_bytes(4, room) / 8 + 1);
+    const Bytes memory{reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()};
+    EditedWorld world;
+    if (kind > 30) {
+      REQUIRE(EditedWorld::make(open_or_throw(bytes), room, memory, &world) == Status::kOk);
+      // Nothing more of a material that none has, where all 32 are taken.
+      const Vec3i brick{(kind & 3) * 4, (kind >> 2 & 3) * 4, (kind >> 4) * 4};
+      Status status = Status::kOk;
+      for (std::int32_t i = 0; i < 64 && status == Status::kOk; ++i) {
+        status = world.set({brick.x + (i & 3), brick.y + (i >> 2 & 3), brick.z + (i >> 4)}, 90);
+        CHECK((status == Status::kOk) == (kind < 32 || i < 63));
+      }
+    }
+    REQUIRE(pool.octree.insert_block({(kind & 3) * 4, (kind >> 2 & 3) * 4, (kind >> 4) * 4}, 2,
+                                     static_cast<std::uint8_t>(kind + 1)) == Status::kOk);
+  }
+  const HeapBytes bytes = compact_of(pool.octree);
+  const EditRoom room{1000, 1000, 10};
+  std::vector<std::uint64_t> words(edited_world_bytes(4, room) / 8 + 1);
+  EditedWorld world;
+  CHECK(EditedWorld::make(open_or_throw(bytes), room,
+                          {reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()},
+                          &world) == Status::kOutOfMemory);
+  CHECK(world.tree().bytes() == nullptr);
+}
+
+}  // namespace
+}  // namespace thimble::tests::tree_edges
