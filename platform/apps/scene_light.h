@@ -94,19 +94,20 @@ struct SceneLight {
 [[gnu::noinline]] inline void prove_light(const ShownScene& shown, Arena* arena, SceneLight* light) {
   if constexpr (kLightsFast) {
     const Span<const Light>& lights = light->baked.scene.lights;
+    const bool has_shadows = (light->effects() & Effect::kShadows) != 0;
+    // Of lamps without shadows the tree draws.
+    const bool takes_lamps = kImageLamps && has_shadows;
     size_t suns = 0;
-    light->is_fast = shown.has_map && is_flat(moving_effects(light->effects())) &&
-                     (kImageLamps || lights.size <= kMaxFlatSuns);
-    for (size_t i = 0; i < lights.size && light->is_fast; ++i) {
-      light->is_fast = kImageLamps ? lights[i].is_point || ++suns <= kMaxFlatSuns : !lights[i].is_point;
+    light->is_fast = shown.has_map && is_flat(moving_effects(light->effects()));
+    for (const Light& one : lights) {
+      light->is_fast = light->is_fast && (one.is_point ? takes_lamps : ++suns <= kMaxFlatSuns);
     }
     suns = 0;
-    for (size_t i = 0; i < lights.size && light->is_fast && (light->effects() & Effect::kShadows) != 0; ++i) {
-      if (kImageLamps && lights[i].is_point) {
-        continue;
+    for (const Light& one : lights) {
+      if (light->is_fast && has_shadows && !one.is_point) {
+        const Bytes room = arena->take(SunBricks::bytes(shown.map));
+        (void)SunBricks::make(shown.map, one.place, room, &light->suns[suns++]);
       }
-      const Bytes room = arena->take(SunBricks::bytes(shown.map));
-      (void)SunBricks::make(shown.map, lights[i].place, room, &light->suns[kImageLamps ? suns++ : i]);
     }
   }
 }

@@ -57,6 +57,7 @@ Status render_lit_band(EffectSet effects, const CompactTree& tree, const BrickMa
   if (!map.belongs_to(tree)) {
     return Status::kDamaged;
   }
+  effects &= Effect::kAll;
   if (is_flat(effects)) {
     EffectSet set = effects & ~lit::kLamps;
     for (const Light& light : scene.lights) {

@@ -59,8 +59,8 @@ if [ -n "$(fact TESTS)" ] && [ -z "${LONG:-}" ]; then
 fi
 # Of those that hold the demonstration's scene in RAM, two will do.
 case $board in lm3s6965evb | pico) default="$default dig" ;; esac
-# One board of each kind of core.
-case $board in lm3s6965evb | microbit | mps2-an500 | sifive_e) default="$default map_light" ;; esac
+# One board of each kind of core: Cortex-M3, M0, M7, M4, RV32.
+case $board in lm3s6965evb | microbit | mps2-an500 | netduinoplus2 | sifive_e) default="$default map_light" ;; esac
 # The applications that there are; faults is judged by itself below.
 apps=
 for app in ${THIMBLE_TEST_APPS:-$default}; do

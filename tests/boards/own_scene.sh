@@ -1,22 +1,53 @@
 #!/bin/sh
-# A scene of one's own as firmware: own_scene.sh. A scene text with glass, a mirror and a sun is baked into a header;
-# the image made from it has the effects that this calls for, dark edges for its few greys, and no others, keeps its
-# stack, and draws the simulator's pictures. Prints a line a question; exit status 1 when an answer is wrong. After
-# board.sh has built lm3s6965evb.
+# Scenes of one's own as firmware: own_scene.sh BOARD. A scene text is baked into a header; the image made from it has
+# the effects that this calls for and no others, keeps its stack, and draws the simulator's pictures. On lm3s6965evb:
+# glass, a mirror and a sun, dark edges for its few greys, by the tree; on microbit a lamp, a sun and occlusion, by the
+# brick map. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
-board=lm3s6965evb
+board=$1
 work=$THIMBLE_FIRMWARE/$board
 thimble=build/release/thimble
 measured=$THIMBLE_FIRMWARE/$board.measured
 failed=0
 fail() {
-  echo "FAILED: $*"
+  echo "FAILED: own scene on $board: $*"
   failed=1
 }
-mkdir -p "$work"
-cat >"$work/own.scene" <<'TEXT'
+say() {
+  [ $failed = 1 ] || echo "own scene on $board: $*"
+}
+# build APPS HEADER: leaves the log where it can be shown.
+build() {
+  FRAMES=3 sh platform/build.sh "$board" "$1" "$2" >"$work/own.log" 2>&1 || {
+    tail -n 5 "$work/own.log"
+    fail "the firmware does not build"
+    exit 1
+  }
+  arm-none-eabi-nm -C "$work/demo.elf" >"$work/own.symbols"
+}
+holds() {
+  grep -q "thimble::lit::$1" "$work/own.symbols"
+}
+# run APP: what it says, in own.APP.log; and whether it keeps its stack, which no row of the budgets tells of this scene.
+run() {
+  sh platform/emulate.sh "$board" "$1" </dev/null >"$work/own.said" 2>/dev/null || fail "$1 ends with status $?"
+  tr -d '\r' <"$work/own.said" >"$work/own.$1.log"
+  cp "$measured" "$measured.kept" 2>/dev/null || : >"$measured.kept"
+  said=$(UPDATE=1 sh tests/boards/budget.sh "$board" "$1" "$work/own.$1.log") || fail "$said"
+  mv "$measured.kept" "$measured"
+}
+# draws_as_the_simulator SCENE [OPTION...]
+draws_as_the_simulator() {
+  run bench
+  grep 'lit_crc' "$work/own.bench.log" >"$work/own.crcs" || fail "it tells no CRC"
+  "$thimble" sim "$@" --board "$board" --app bench --display none --quiet | grep 'lit_crc' >"$work/own.golden" || true
+  cmp -s "$work/own.crcs" "$work/own.golden" || fail "its lit pictures are not the simulator's"
+}
+
+glass_and_mirror() {
+  cat >"$work/own.scene" <<'TEXT'
 depth 5
 camera eye 40 -14 26 target 15 16 6 fov 40
 sun toward 6 -5 9
@@ -28,38 +59,64 @@ box floor from 0 30 2 to 32 32 20
 ball bottle at 18 12 9 radius 7
 box steel from 3 18 2 to 12 27 14
 TEXT
-"$thimble" bake "$work/own.scene" --board "$board" -o "$work/own.h" --quiet
-# build APPS HEADER: leaves the log where it can be shown.
-build() {
-  FRAMES=3 sh platform/build.sh "$board" "$1" "$2" >"$work/own.log" 2>&1 || {
-    tail -n 5 "$work/own.log"
-    fail "the scene's firmware does not build"
-    exit 1
-  }
-  arm-none-eabi-nm -C "$work/demo.elf" >"$work/own.symbols"
-}
-grep -q 'define THIMBLE_SCENE_EFFECTS 0x2033u' "$work/own.h" || fail "the header does not name direct light, shadows, mirror, glass, and edges for 16 greys"
-build 'demo;bench' "$work/own.h"
-for function in light_ray light_arrives_through send_mirrored meet_clear cross meets_edge; do
-  grep -q "thimble::lit::$function(" "$work/own.symbols" || fail "the image has no $function"
-done
-for function in meet_water begin_in_water scatter sky_color fade_in_fog occlude add_emission cue_depth light_arrives; do
-  ! grep -q "thimble::lit::$function(" "$work/own.symbols" || fail "the image has $function, which its scene does not call for"
-done
-sh platform/emulate.sh "$board" demo </dev/null >"$work/own.demo.log" 2>/dev/null || fail "the demonstration ends with status $?"
-lit=$(sed -n 's/^instructions of a lit frame: \([0-9]*\).*/\1/p' "$work/own.demo.log")
-[ -n "$lit" ] || fail "it drew no frame with light"
-cp "$measured" "$measured.kept" 2>/dev/null || : >"$measured.kept"
-said=$(UPDATE=1 sh tests/boards/budget.sh "$board" demo "$work/own.demo.log") || fail "$said"
-mv "$measured.kept" "$measured"
-sh platform/emulate.sh "$board" bench </dev/null 2>/dev/null | tr -d '\r' | grep 'lit_crc' >"$work/own.crcs" || fail "it tells no CRC"
-"$thimble" sim "$work/own.scene" --board "$board" --app bench --display none --quiet | grep 'lit_crc' >"$work/own.golden" || true
-cmp -s "$work/own.crcs" "$work/own.golden" || fail "its lit pictures are not the simulator's"
-[ $failed = 1 ] || echo "own scene: glass, mirror, sun and dark edges, and nothing else; a lit frame takes $lit instructions; $said"
+  "$thimble" bake "$work/own.scene" --board "$board" -o "$work/own.h" --quiet
+  grep -q 'define THIMBLE_SCENE_EFFECTS 0x2033u' "$work/own.h" || fail "the header does not name direct light, shadows, mirror, glass, and edges for 16 greys"
+  build 'demo;bench' "$work/own.h"
+  for function in light_ray light_arrives_through send_mirrored meet_clear cross meets_edge; do
+    holds "$function(" || fail "the image has no $function"
+  done
+  for function in meet_water begin_in_water scatter sky_color fade_in_fog occlude add_emission cue_depth light_arrives; do
+    ! holds "$function(" || fail "the image has $function, which its scene does not call for"
+  done
+  run demo
+  of_demo=$said
+  lit=$(sed -n 's/^instructions of a lit frame: \([0-9]*\).*/\1/p' "$work/own.demo.log")
+  [ -n "$lit" ] || fail "it drew no frame with light"
+  draws_as_the_simulator "$work/own.scene"
+  say "glass, mirror, sun and dark edges, and nothing else; a lit frame takes $lit instructions; $of_demo"
 
-# The same scene without them.
-"$thimble" bake "$work/own.scene" --board "$board" --effects none -o "$work/own.h" --quiet
-build demo "$work/own.h"
-! grep -q 'thimble::lit::\|open_lighting' "$work/own.symbols" || fail "baked for no effects, the image holds some"
-[ $failed = 1 ] || echo "own scene: baked for no effects the image holds none"
+  "$thimble" bake "$work/own.scene" --board "$board" --effects none -o "$work/own.h" --quiet
+  build demo "$work/own.h"
+  ! grep -q 'thimble::lit::\|open_lighting' "$work/own.symbols" || fail "baked for no effects, the image holds some"
+  say "baked for no effects the image holds none"
+}
+
+# The sets of map_render.h: 4103 is sun, shadows, occlusion and lamps, 7 the same without lamps.
+lamp() {
+  cat >"$work/own.scene" <<'TEXT'
+depth 5
+camera eye 40 -14 26 target 15 16 6 fov 40
+sun toward 6 -5 9
+lamp at 20 10 12 color 255 206 140 brightness 1.5 reach 26
+material floor color 190 180 160
+material steel color 120 160 226
+box floor from 0 0 0 to 32 32 2
+box floor from 0 30 2 to 32 32 20
+ball steel at 18 14 9 radius 7
+box steel from 3 18 2 to 12 27 14
+TEXT
+  effects=direct-light,shadows,ambient-occlusion
+  "$thimble" bake "$work/own.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
+  grep -q 'define THIMBLE_SCENE_LAMPS 1$' "$work/own.h" || fail "the header does not name its lamp"
+  build 'demo;bench' "$work/own.h"
+  holds 'draw_flat<4103u' || fail "lamps do not go through the map"
+  run demo
+  of_demo=$said
+  draws_as_the_simulator "$work/own.scene" --effects $effects
+  say "a lamp, the sun and occlusion by the map; $of_demo"
+
+  grep -v '^lamp' "$work/own.scene" >"$work/own_sun.scene"
+  "$thimble" bake "$work/own_sun.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
+  grep -q 'define THIMBLE_SCENE_LAMPS 0$' "$work/own.h" || fail "the header names a lamp"
+  build demo "$work/own.h"
+  holds 'draw_flat<7u' || fail "occlusion does not go through the map"
+  ! holds 'draw_flat<4' || fail "the image holds lamps, of which its scene has none"
+  say "without a lamp the image has nothing for one"
+}
+
+case $board in
+  lm3s6965evb) glass_and_mirror ;;
+  microbit) lamp ;;
+  *) fail "there is no scene for it" ;;
+esac
 exit $failed

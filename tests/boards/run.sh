@@ -20,9 +20,10 @@ if [ "${1:-}" = --job ]; then
     case $2 in
       lm3s6965evb)
         sh "$here/effects.sh" || status=1
-        sh "$here/own_scene.sh" || status=1
+        sh "$here/own_scene.sh" lm3s6965evb || status=1
         sh "$here/water.sh" || status=1
         ;;
+      microbit) sh "$here/own_scene.sh" microbit || status=1 ;;
       pico)
         sh "$here/cores.sh" pico || status=1
         sh "$here/uf2.sh" pico || status=1

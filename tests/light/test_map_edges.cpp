@@ -187,6 +187,16 @@ TEST_CASE(
   };
   CHECK(draw(map, bytes.size() - 1) == Status::kOutOfMemory);
   CHECK(draw(BrickMap(), bytes.size()) == Status::kDamaged);
+  const House stranger(true);
+  HeapBytes other_room(most_brick_map_bytes(5));
+  BrickMap other;
+  REQUIRE(BrickMap::make(stranger.tree, other_room.span(), &other) == Status::kOk);
+  CHECK(draw(other, bytes.size()) == Status::kDamaged);
+  const std::vector<Light> lights = world.lights;
+  world.lights.resize(kMaxLights + 1, lamp({2000, 2000, 2000}));
+  world.finish();
+  CHECK(draw(map, bytes.size()) == Status::kOutOfRange);
+  world.lights = lights;
   world.surfaces.resize(kMaxSurfaces + 1);
   world.finish();
   CHECK(draw(map, bytes.size()) == Status::kOutOfRange);

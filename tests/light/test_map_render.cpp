@@ -60,17 +60,23 @@ constexpr LitWay lit_way() {
 }
 
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+// All sets of the fast way, and some that the tree draws.
 constexpr LitWay kLitWays[] = {
     lit_way<kSun>(),
+    lit_way<kSun | Effect::kEmission>(),
+    lit_way<kSun | Effect::kSky>(),
     lit_way<kSun | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun>(),
     lit_way<kSun | Effect::kEmitterLight>(),
     lit_way<kSun | Effect::kEmitterLight | Effect::kEmission>(),
     lit_way<kSun | Effect::kEmitterLight | Effect::kSky>(),
+    lit_way<kSun | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
     lit_way<kSun | Effect::kAmbientOcclusion>(),
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmission>(),
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kSky>(),
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kSky>(),
+    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky>(),
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
     lit_way<Effect::kDirectLight>(),
     lit_way<Effect::kEmission>(),
@@ -95,19 +101,20 @@ Light hard_sun(std::mt19937_64& random) {
   return light;
 }
 
-/// In the world and outside of it, in the open and in solids, on lattice points, planes and edges.
+/// In the world and outside of it, as far as rays may be, in the open and in solids, on lattice points, planes and edges.
 Light hard_lamp(std::mt19937_64& random, int level) {
   Light light;
   light.is_point = true;
   const int side = 256 << level;
-  const int beyond = pick_int(random, 0, 4) == 0 ? side : 0;
+  const int beyond = pick_int(random, 0, 4) == 0 ? side * pick_int(random, 1, 4) : 0;
   Vec3i place{};
   for (int axis = 0; axis < 3; ++axis) {
     const int grain = pick_int(random, 0, 2) == 0 ? 1 : pick_int(random, 0, 1) == 0 ? 256 : 1024;
     place[axis] = pick_int(random, -beyond, side + beyond) / grain * grain;
   }
   light.place = place;
-  light.reach = static_cast<std::uint16_t>(pick_int(random, 0, 9) == 0 ? 0 : pick_int(random, 1, 60));
+  const int reach = pick_int(random, 0, 9);
+  light.reach = static_cast<std::uint16_t>(reach == 0 ? 0 : reach == 1 ? 65535 : pick_int(random, 1, 60));
   for (PackedU16& channel : light.color_q8) {
     channel = static_cast<std::uint16_t>(pick_int(random, 0, 3) == 0 ? 0 : pick_int(random, 1, 2000));
   }
@@ -136,12 +143,14 @@ LitLights hard_lights(std::mt19937_64& random, const BrickMap& map, int level) {
   LitLights made;
   const int suns = pick_int(random, 0, 3) == 0 ? pick_int(random, 0, 3) : 1;
   const int lamps = std::max(0, pick_int(random, -2, 3));
-  const int first = pick_int(random, 0, lamps);
+  std::vector<bool> is_sun(static_cast<std::size_t>(suns + lamps));
+  std::fill_n(is_sun.begin(), suns, true);
+  std::shuffle(is_sun.begin(), is_sun.end(), random);
   const std::size_t size = SunBricks::bytes(map);
   made.bytes.resize(size * static_cast<std::size_t>(suns));
   const int proven = pick_int(random, 0, 4);
-  for (int i = 0; i < suns + lamps; ++i) {
-    if (i < first || i >= first + suns) {
+  for (const bool shines_from_afar : is_sun) {
+    if (!shines_from_afar) {
       made.lights.push_back(hard_lamp(random, level));
       continue;
     }
