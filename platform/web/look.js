@@ -25,6 +25,21 @@ class Look {
   point(ofTarget) {
     return [0, 1, 2].map((axis) => this.x.own_camera(ofTarget, axis));
   }
+  // What a named view frames: the corners of what is solid, and the slope of the picture's upper edge, 0 for a parallel
+  // view, `span` voxels wide.
+  frame() {
+    const corner = (high) => [0, 1, 2].map((axis) => this.x.bounds(high, axis));
+    return {low: corner(false), high: corner(true), slope: Math.tan(this.x.fov() / 65536 * Math.PI / 360),
+      span: this.x.span() / 16384, aspect: this.stride / 3 / this.height};
+  }
+  // What a pixel of the picture shows, `point` in voxels; null for nothing.
+  pick(x, y) {
+    const at = this.x.pick(x, y);
+    if (at === 0) return null;
+    const numbers = [...new Int32Array(this.x.memory.buffer, at, 10)];
+    const [face, material, color, kind] = numbers.slice(6);
+    return {point: numbers.slice(0, 3).map((q8) => q8 / 256), voxel: numbers.slice(3, 6), face, material, color, kind};
+  }
   // False, and the view as it was, where there is no such camera (Orbit.camera()).
   see({eye, target, zoom, own}) {
     return this.x.look(...eye, ...target, zoom, own) !== 0;
@@ -44,6 +59,14 @@ class Look {
   }
 }
 
+// In the words of the viewer on the desktop (tools/viewer/picking.cpp).
+const FACES = ['left face (-x)', 'right face (+x)', 'front face (-y)', 'back face (+y)', 'bottom face (-z)', 'top face (+z)'];
+const KINDS = ['', ' metal', ' glass', ' that glows', ' cloud'];
+function nameOf({voxel, face, material, color, kind}) {
+  return `voxel ${voxel}: ${face < 0 ? 'the eye is in it' : `its ${FACES[face]}`}, material ${material}, ` +
+    `#${color.toString(16).padStart(6, '0')}${KINDS[kind]}`;
+}
+
 if (typeof module !== 'undefined') {
-  module.exports = {Look, BAND_ROWS};
+  module.exports = {Look, BAND_ROWS, nameOf};
 }

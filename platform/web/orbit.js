@@ -4,54 +4,104 @@
 
 const DIGITS = 5;
 const written = (x) => Number(x.toFixed(DIGITS));
+const within = (x, low, high) => Math.max(low, Math.min(high, x));
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+// The named views, keys 1 to 6 (tools/scene/framing.cpp): the degrees that the eye goes round to the right, and up.
+const VIEWS = {1: [0, 0], 2: [180, 0], 3: [-90, 0], 4: [90, 0], 5: [0, 90], 6: [-45, 35.264389682754654]};
+const FILL = 0.9;  // of the picture, by a named view
+const FLIGHT = 0.7;  // distances a second
 
 class Orbit {
   // From the scene's own camera: eye and target in 1/256 voxel.
-  constructor(eye, target, side) {
+  constructor(eye, target, side, isParallel = false) {
     this.own = {eye, target};
+    this.isParallel = isParallel;
     this.side = side;
     this.reset();
   }
   reset() {
-    const {eye, target} = this.own;
-    this.target = target.map((x) => x / 256);
-    const away = eye.map((x, i) => x / 256 - this.target[i]);
-    this.distance = Math.max(Math.hypot(...away), 0.5);
+    const [eye, target] = [this.own.eye, this.own.target].map((point) => point.map((x) => x / 256));
+    this.place(eye, target);
     this.firstDistance = this.distance;
-    this.yaw = Math.atan2(away[1], away[0]);
-    this.pitch = Math.asin(away[2] / this.distance);
     this.isOwn = true;
+  }
+  place(eye, target) {
+    const away = eye.map((x, i) => x - target[i]);
+    this.target = target;
+    this.distance = Math.max(Math.hypot(...away), 0.5);
+    this.yaw = away[0] || away[1] ? Math.atan2(away[1], away[0]) : -Math.PI / 2;
+    this.pitch = Math.asin(away[2] / this.distance);
+  }
+  // Of the picture, in the world. Straight down the picture's up is +y, so only a yaw of -90 degrees looks so.
+  axes() {
+    const [x, y, up] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.sin(this.pitch)];
+    const flat = Math.abs(this.pitch) > 1.57 ? 0 : Math.cos(this.pitch);
+    return {right: [-y, x, 0], above: [-up * x, -up * y, flat], away: [flat * x, flat * y, up]};
   }
   turn(right, up) {
     this.yaw -= right;
-    this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + up));
+    this.pitch = within(this.pitch + up, -1.55, 1.55);
     this.changed();
   }
   approach(factor) {
-    this.distance = Math.max(0.5, Math.min(3 * this.side, this.distance * factor));
+    this.distance *= factor;
     this.changed();
   }
   // Along the picture's axes, in parts of the distance.
-  move(right, up) {
-    const across = [-Math.sin(this.yaw), Math.cos(this.yaw), 0];
-    const above = [-Math.sin(this.pitch) * Math.cos(this.yaw), -Math.sin(this.pitch) * Math.sin(this.yaw),
-      Math.cos(this.pitch)];
-    for (let i = 0; i < 3; ++i) {
-      const moved = this.target[i] + this.distance * (right * across[i] + up * above[i]);
-      this.target[i] = Math.max(-this.side, Math.min(2 * this.side, moved));
+  move(right, up, forward = 0, by = this.distance) {
+    const axes = this.axes();
+    this.target = this.target.map((x, i) => x + by * (right * axes.right[i] + up * axes.above[i] - forward * axes.away[i]));
+    this.changed();
+  }
+  // Seconds of flight.
+  fly(right, up, forward) {
+    this.move(right, up, forward, FLIGHT * Math.max(this.distance, 0.05 * this.side));
+  }
+  // Turns where it stands, so that `point` is in the middle; a parallel view goes there.
+  lookAt(point) {
+    const {away} = this.axes();
+    if (this.isParallel) this.target = point;
+    else this.place(this.target.map((x, i) => x + this.distance * away[i]), point);
+    this.changed();
+  }
+  // A named view of what lies between two corners (Look.frame()).
+  show([turn, tilt], {low, high, slope, span, aspect}) {
+    [this.yaw, this.pitch] = [turn - 90, tilt].map((degrees) => degrees * Math.PI / 180);
+    const {right, above, away} = this.axes();
+    const middle = low.map((x, i) => (x + high[i]) / 2);
+    const corners = Array.from({length: 8}, (_, n) => middle.map((x, i) => (n >> i & 1 ? high[i] - x : x - high[i])));
+    const most = (axis, open) => Math.max(...corners.map((corner) => dot(corner, axis) + open * dot(corner, away)));
+    // Where two planes through the eye that open so far touch the corners: along the axis, and away.
+    const touch = (axis, open) => {
+      const [above, below] = [most(axis, open), most(axis.map((x) => -x), open)];
+      return {along: (above - below) / 2, away: (above + below) / (2 * open)};
+    };
+    this.target = middle;
+    if (this.isParallel) {
+      this.distance = this.firstDistance * 2 * Math.max(most(right, 0), most(above, 0) * aspect) / FILL / span;
+    } else {
+      const [x, y] = [touch(right, slope * aspect * FILL), touch(above, slope * FILL)];
+      this.target = middle.map((at, i) => at + x.along * right[i] + y.along * above[i]);
+      this.distance = Math.max(x.away, y.away);
     }
     this.changed();
   }
+  // Keeps the target in the world or near it, and the eye where rays may start (tools/viewer/orbit.cpp).
   changed() {
+    this.pitch = within(this.pitch, -1.5708, 1.5708);
+    this.target = this.target.map((x) => within(x, -this.side, 2 * this.side));
+    const reach = this.axes().away.map((a, i) => (a === 0 ? Infinity : ((a > 0 ? 4.99 : -3.99) * this.side - this.target[i]) / a));
+    this.distance = within(this.distance, 0.5, Math.min(4 * this.side, ...reach));
     for (const name of ['yaw', 'pitch', 'distance']) this[name] = written(this[name]);
     this.target = this.target.map(written);
     this.isOwn = false;
   }
   // Whole numbers of 1/256 voxel: eye, then target, and how wide a parallel view is, in 1/256 of its own.
   camera() {
-    const away = [Math.cos(this.pitch) * Math.cos(this.yaw), Math.cos(this.pitch) * Math.sin(this.yaw),
-      Math.sin(this.pitch)];
-    const eye = this.target.map((x, i) => Math.round(256 * (x + this.distance * away[i])));
+    const {away} = this.axes();
+    // A parallel view is the same from farther away, and nothing stands behind the eye there.
+    const back = this.isParallel ? Math.max(this.distance, 2 * this.side) : this.distance;
+    const eye = this.target.map((x, i) => Math.round(256 * (x + back * away[i])));
     return {eye, target: this.target.map((x) => Math.round(256 * x)),
       zoom: Math.round(256 * this.distance / this.firstDistance), own: this.isOwn};
   }
@@ -63,14 +113,13 @@ class Orbit {
     const words = text.split(',');
     const numbers = words.map(Number);
     if (words.length !== 6 || !words.every((word) => /^-?\d{1,7}(\.\d+)?$/.test(word))) return false;
-    [this.yaw, this.pitch] = numbers;
-    this.distance = Math.max(0.5, Math.min(3 * this.side, numbers[2]));
-    this.target = numbers.slice(3).map((x) => Math.max(-this.side, Math.min(2 * this.side, x)));
-    this.turn(0, 0);
+    [this.yaw, this.pitch, this.distance] = numbers;
+    this.target = numbers.slice(3);
+    this.changed();
     return true;
   }
 }
 
 if (typeof module !== 'undefined') {
-  module.exports = {Orbit};
+  module.exports = {Orbit, VIEWS};
 }

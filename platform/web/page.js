@@ -13,12 +13,15 @@ const APP_KEYS = {
   demo: [['t', 'Turn'], ['l', 'Light'], ['b', 'Build on the chip'], ['s', 'Scene'], ['h', 'Hold a rate']],
   water: [['m', 'Rain'], ['b', 'Drop'], ['t', 'Turn'], ['+', 'Nearer'], ['-', 'Farther'], ['k', 'Calm']],
   particles: [['0', 'No gravity'], ['r', 'Again']],
-  look: [['+', 'Nearer'], ['-', 'Farther'], ['0', 'Own view']],
+  look: [['+', 'Nearer'], ['-', 'Farther'], ['0', 'Own view'], ['1', 'Front'], ['2', 'Back'], ['3', 'Left side'],
+    ['4', 'Right side'], ['5', 'Top'], ['6', 'Iso'], ['p', 'Name voxel']],
 };
 const MODULE_OF = {demo: 'scene', water: 'plane', particles: 'plane'};
 const VIEW_BOARD = 'raspi0';  // its display and flash are those of "look around"
 const FRAME_MS = 1000 / 30;
 const SLICE_MS = 12;
+// To the right, up, forward, while held.
+const FLIGHTS = {w: [0, 0, 1], a: [-1, 0, 0], s: [0, 0, -1], d: [1, 0, 0], PageUp: [0, 1, 0], PageDown: [0, -1, 0]};
 const $ = (id) => document.getElementById(id);
 const LIES = matchMedia('(orientation: landscape) and (max-height: 34rem)');  // page.css
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -209,13 +212,14 @@ async function openViewer(own, made, board) {
   const look = new Look(code, made.baked, board.width, board.height);
   const side = 1 << look.x.level();
   const view = orbit?.of === current() && orbit.side === side ? !orbit.isOwn && orbit.text() : state.view;
-  orbit = new Orbit(look.point(false), look.point(true), side);
+  orbit = new Orbit(look.point(false), look.point(true), side, look.x.fov() === 0);
   orbit.of = current();
   if (view) orbit.take(view);
   state.view = null;
   const picture = new Display(board);
-  viewer = {look, board, picture, step: look.x.has_map() ? 1 : 4, phase: 'moved', row: 0, crew: null};
+  viewer = {look, board, picture, step: look.x.has_map() ? 1 : 4, phase: 'moved', row: 0, crew: null, flown: 0};
   hireCrew(viewer, {module: code, scene: made.baked, width: board.width, height: board.height});
+  pointed = null;
   prepareCanvas(board);
   showKeys('look');
   $('uart').textContent = '';
@@ -249,6 +253,10 @@ function closeAll() {
 function lookOn(now) {
   const {look, board, crew} = viewer;
   const began = performance.now();
+  // A frame that took long does not throw the camera across the scene.
+  const seconds = Math.min(now - viewer.flown, 100) / 1000;
+  viewer.flown = now;
+  for (const key of flying) moved(() => orbit.fly(...FLIGHTS[key].map((way) => way * seconds)));
   if (viewer.phase === 'moved') {
     const camera = orbit.camera();
     if (!look.see(camera)) return;
@@ -415,6 +423,8 @@ function tick(now) {
 
 const held = new Map();  // what holds it: the button's bit
 let tapped = 0;  // buttons that went down since the last frame
+const flying = new Set();
+let pointed = null;  // the pixel where the pointer was last
 const heldButtons = () => [...held.values()].reduce((all, bit) => all | bit, 0);
 function hold(by, name) {
   if (viewer !== null) {
@@ -432,12 +442,22 @@ function type(text) {
     if (text === '+') moved(() => orbit.approach(0.85));
     if (text === '-') moved(() => orbit.approach(1 / 0.85));
     if (text === '0') moved(() => orbit.reset());
+    if (text in VIEWS) moved(() => orbit.show(VIEWS[text], viewer.look.frame()));
+    if (text === 'p') {
+      const picked = viewer.look.pick(...pointed ?? [canvas.width >> 1, canvas.height >> 1]);
+      say(picked === null ? 'There is nothing under the pointer.' : nameOf(picked));
+    }
   } else if (machine !== null) {
     machine.type(text);
     machine.wanted = true;
   }
 }
 
+// The key's name in FLIGHTS, whether Shift is held or not; of the keys that scroll, where the picture has the focus.
+function flightOf({key, target}) {
+  const name = key.length === 1 ? key.toLowerCase() : key;
+  return viewer !== null && Object.hasOwn(FLIGHTS, name) && (key.length === 1 || target === canvas) ? name : undefined;
+}
 const KEY_BUTTONS = {ArrowUp: 'up', ArrowDown: 'down', ArrowLeft: 'left', ArrowRight: 'right', Enter: 'select', ' ': 'select'};
 addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || $('dialog').open) return;
@@ -448,7 +468,11 @@ addEventListener('keydown', (event) => {
   // What has the focus keeps the keys that it needs itself.
   const own = event.target.closest?.('button, select, summary, input, pre');
   const name = KEY_BUTTONS[event.key];
-  if (name !== undefined) {
+  const flight = flightOf(event);
+  if (flight !== undefined && !own?.matches('select')) {
+    event.preventDefault();
+    flying.add(flight);
+  } else if (name !== undefined) {
     if (own && (name === 'select' || own.matches('select, pre'))) return;
     event.preventDefault();
     hold(event.key, name);
@@ -456,8 +480,14 @@ addEventListener('keydown', (event) => {
     type(event.key);
   }
 });
-addEventListener('keyup', (event) => held.delete(event.key));
-addEventListener('blur', () => held.clear());
+addEventListener('keyup', ({key}) => {
+  held.delete(key);
+  flying.delete(key.length === 1 ? key.toLowerCase() : key);
+});
+addEventListener('blur', () => {
+  held.clear();
+  flying.clear();
+});
 
 for (const button of document.querySelectorAll('[data-hold]')) {
   const name = button.dataset.hold;
@@ -484,11 +514,13 @@ function pixelAt(event) {
 canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 canvas.addEventListener('pointerdown', (event) => {
   canvas.setPointerCapture(event.pointerId);
+  pointed = pixelAt(event);
   pointers.set(event.pointerId, {x: event.clientX, y: event.clientY, from: [event.clientX, event.clientY]});
   if (machine?.app === 'water') type(`${event.button === 0 ? '@' : '!'}${pixelAt(event)}.`);
 });
 canvas.addEventListener('pointermove', (event) => {
   const pointer = pointers.get(event.pointerId);
+  pointed = pixelAt(event);
   if (pointer === undefined) return;
   const [dx, dy] = [event.clientX - pointer.x, event.clientY - pointer.y];
   const before = spread();
@@ -515,6 +547,10 @@ for (const end of ['pointerup', 'pointercancel']) {
     held.delete('drag y');
   });
 }
+canvas.addEventListener('dblclick', () => {
+  const picked = viewer?.look.pick(...pointed);
+  if (picked && picked.face >= 0) moved(() => orbit.lookAt(picked.point));
+});
 function spread() {
   const [a, b] = [...pointers.values()];
   return b === undefined ? 1 : Math.hypot(a.x - b.x, a.y - b.y);

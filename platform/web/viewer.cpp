@@ -34,6 +34,7 @@ struct Viewer {
 };
 // Constant: what has a constructor is constructed anew by each call of an export.
 constinit Viewer viewer{};
+int32_t picked[10];
 
 uint8_t* at(uintptr_t address) {
   return reinterpret_cast<uint8_t*>(address);
@@ -125,6 +126,53 @@ extern "C" {
   const thimble::SceneCamera& own = thimble::web::viewer.shown.scene.camera();
   const thimble::Vec3Q8& point = of_target ? own.target : own.eye;
   return axis == 0 ? point.x.raw : axis == 1 ? point.y.raw : point.z.raw;
+}
+
+// The box of what is solid: component `axis` of its low or its high corner, in voxels.
+[[clang::export_name("bounds")]] int32_t thimble_bounds(bool high, int axis) {
+  const thimble::VoxelBox& box = thimble::web::viewer.shown.scene.tree().bounds();
+  return (high ? box.high : box.low)[axis];
+}
+// The vertical angle of view, in 1/65536 degree; 0 for a parallel view, whose width in 1/16384 voxel is `span`.
+[[clang::export_name("fov")]] int32_t thimble_fov() {
+  const thimble::SceneCamera& own = thimble::web::viewer.shown.scene.camera();
+  return own.is_perspective ? own.fov_degrees.raw : 0;
+}
+[[clang::export_name("span")]] int32_t thimble_span() {
+  return thimble::web::viewer.shown.scene.camera().span.raw;
+}
+
+// What the ray of a pixel of the picture hits: the point in 1/256 voxel and the voxel, three numbers each; the
+// face as in Shading::face_light, -1 where the eye is in it; material, colour (red at bit 16), SurfaceKind.
+// Null for nothing.
+[[clang::export_name("pick")]] const int32_t* thimble_pick(int32_t x_px, int32_t y_px) {
+  using namespace thimble;
+  using namespace thimble::web;
+  const Camera& camera = viewer.camera;
+  if (x_px < 0 || y_px < 0 || x_px >= camera.width_px() || y_px >= camera.height_px()) {
+    return nullptr;
+  }
+  const Ray ray = camera.ray(x_px, y_px);
+  Hit hit;
+  if (closest_hit(viewer.shown.scene.tree(), ray, &hit) != Status::kOk || hit.kind != HitKind::kHit) {
+    return nullptr;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    // The product is below 2^51 (camera.h, ray.h).
+    const int64_t along = int64_t{ray.direction[axis]} * hit.t_numerator * Q8::kOne / hit.t_denominator;
+    picked[axis] = ray.origin[axis].raw + static_cast<int32_t>(along);
+    picked[3 + axis] = hit.voxel[axis];
+  }
+  const Face face = face_of(hit, ray.direction);
+  const Span<const Rgb8> palette = viewer.shown.scene.palette();
+  const Rgb8 color = hit.material < palette.size ? palette[hit.material] : Rgb8{255, 255, 255};
+  const Span<const Surface>& surfaces = viewer.light.baked.scene.surfaces;
+  const SurfaceKind kind = hit.material < surfaces.size ? surfaces[hit.material].kind : SurfaceKind::kDiffuse;
+  picked[6] = hit.axis < 0 ? -1 : 2 * face.axis + (face.negative ? 0 : 1);
+  picked[7] = hit.material;
+  picked[8] = color.r << 16 | color.g << 8 | color.b;
+  picked[9] = static_cast<int32_t>(kind);
+  return picked;
 }
 
 // Looks from there to there, in 1/256 voxel; the width of a parallel view is `zoom` / 256 of the scene's own.

@@ -76,20 +76,30 @@ class Chromium {
       await this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: 1, clickCount: 1});
     }
   }
-  async drag(selector, dx, dy, button = 'left') {
+  async drag(selector, dx, dy, {button = 'left', shift = false} = {}) {
     const {x, y} = await this.middle(selector);
-    const event = (type, part) => this.send('Input.dispatchMouseEvent',
-      {type, x: x + dx * part, y: y + dy * part, button, buttons: 1, clickCount: 1});
+    const event = (type, part) => this.send('Input.dispatchMouseEvent', {type, x: x + dx * part, y: y + dy * part, button,
+      buttons: button === 'right' ? 2 : 1, clickCount: 1, modifiers: shift ? 8 : 0});
     await event('mousePressed', 0);
     for (const part of [0.25, 0.5, 0.75, 1]) await event('mouseMoved', part);
     await event('mouseReleased', 1);
+  }
+  async point(x, y) {
+    await this.send('Input.dispatchMouseEvent', {type: 'mouseMoved', x, y});
+  }
+  async doubleClick(x, y) {
+    for (const clickCount of [1, 2]) {
+      for (const type of ['mousePressed', 'mouseReleased']) {
+        await this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: 1, clickCount});
+      }
+    }
   }
   async wheel(selector, deltaY) {
     const {x, y} = await this.middle(selector);
     await this.send('Input.dispatchMouseEvent', {type: 'mouseWheel', x, y, deltaX: 0, deltaY});
   }
   async key(key, code = key, text = key.length === 1 ? key : undefined) {
-    const windowsVirtualKeyCode = {ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13}[key];
+    const windowsVirtualKeyCode = {ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13, PageUp: 33, PageDown: 34}[key];
     await this.send('Input.dispatchKeyEvent', {type: 'keyDown', key, code, text, windowsVirtualKeyCode});
     await new Promise((done) => setTimeout(done, 120));
     await this.send('Input.dispatchKeyEvent', {type: 'keyUp', key, code, windowsVirtualKeyCode});

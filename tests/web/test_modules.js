@@ -6,8 +6,9 @@ const path = require('path');
 const zlib = require('zlib');
 const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
-const {Look} = require('../../platform/web/look.js');
-const {Orbit} = require('../../platform/web/orbit.js');
+const {Look, nameOf} = require('../../platform/web/look.js');
+const {Orbit, VIEWS} = require('../../platform/web/orbit.js');
+const {judgeCases} = require('./cases.js');
 const {crews} = require('./crew_cases.js');
 const made = require('./files.js');
 const {test, is, holds, end} = require('./check.js');
@@ -18,8 +19,6 @@ const moduleOf = (name) => new WebAssembly.Module(fs.readFileSync(path.join(fold
 const modules = {scene: moduleOf('scene'), plane: moduleOf('plane'), cases: moduleOf('cases'), bake: moduleOf('bake')};
 const boards = boardsOf(modules.scene);
 const boardOf = (name) => boards.find((board) => board.name === name);
-const numbers = fs.readFileSync('tests/portable/result_crc.h', 'utf8');
-const resultOf = (name) => new RegExp(`${name} = 0x([0-9A-F]+)`).exec(numbers)[1].toLowerCase();
 
 function command(...words) {
   return spawnSync(thimble, words, {encoding: 'utf8'});
@@ -47,19 +46,10 @@ async function main() {
     for (const board of boards) holds(`the command lists ${board.name}`, listed.includes(board.name));
   });
 
-  for (const board of boards) {
-    for (const [app, crc] of [['selftest', 'kCoreCrc32'], ['golden', 'kCommonGoldenCrc32'], ['lit', 'kLitCrc32']]) {
-      await test(`${app} on ${board.name}`, () => {
-        const machine = run(modules.cases, {board, app, connected: false});
-        is('status', machine.status, 0);
-        holds('none failed', /^[1-9]\d* passed, 0 failed$/m.test(machine.output));
-        is('the CRC of every board', /crc (\w+) of the \d+ cases that every board/.exec(machine.output)?.[1],
-          resultOf(crc));
-        const use = machine.use();
-        holds('the arena was used', use.ram > 0 && use.ram <= use.ramLimit);
-      });
-    }
-  }
+  await judgeCases(boards, (board, app) => {
+    const machine = run(modules.cases, {board, app, connected: false});
+    return {...machine, ...machine.use()};
+  });
 
   const golden = fs.readFileSync('tests/golden/particles_table.h', 'utf8').toLowerCase();
   for (const board of boards) {
@@ -195,35 +185,175 @@ async function bakes() {
   }
 }
 
-// What is shown at rest is what the command renders, pixel by pixel where a ray hits; what stands behind is the board's.
+// A scene to look around in, from the scene's own view.
+function opened(scene, width, height) {
+  const file = [scene, `tools/gallery/scenes/${scene}`].find((name) => fs.existsSync(name));
+  const {baked} = new Baker(modules.bake, file === undefined ? [] : filesOf(file)).bake(path.basename(scene), boardOf('raspi0'));
+  const look = new Look(modules.scene, baked, width, height);
+  const orbit = new Orbit(look.point(false), look.point(true), 1 << look.x.level(), look.x.fov() === 0);
+  fs.writeFileSync(path.join(work, 'look.oct'), baked);
+  return {look, orbit};
+}
+function drawn({look, orbit}, kind) {
+  holds('there is such a view', look.see(orbit.camera()));
+  look.band(kind, 0, look.height);
+  return Buffer.from(look.rows(0, look.height));
+}
+// What the command makes of the same bytes, as RGB.
+function rendered(width, height, ...words) {
+  const out = path.join(work, 'look.ppm');
+  const told = command('render', path.join(work, 'look.oct'), '--size', `${width}x${height}`, '--effects', 'auto',
+    '-o', out, '--quiet', ...words);
+  is(`what render says of ${words.join(' ')}`, told.stderr, '');
+  return fs.readFileSync(out).subarray(-3 * width * height);
+}
+function pixelsThatDiffer(a, b) {
+  let count = 0;
+  for (let i = 0; i < a.length; i += 3) count += a.subarray(i, i + 3).equals(b.subarray(i, i + 3)) ? 0 : 1;
+  return count;
+}
+
+// What is shown at rest is what the command renders of the same bytes, with one sample a pixel, then with four.
 async function looks() {
-  for (const [scene, ...files] of [['castle.vox', 'castle.vox'], ['room.scene', 'room.scene']]) {
-    await test(`${scene} to look around in is lit as by the command`, () => {
-      const [width, height] = [160, 120];
-      const {baked} = new Baker(modules.bake, filesOf(...files.map((file) => `tools/gallery/scenes/${file}`)))
-        .bake(scene, boardOf('raspi0'));
-      const look = new Look(modules.scene, baked, width, height);
-      look.see(new Orbit(look.point(false), look.point(true), 1 << look.x.level()).camera());
-      look.band('lit', 0, height);
-      const mine = Buffer.from(look.rows(0, height));
-      const oct = path.join(work, 'look.oct');
-      const out = path.join(work, 'look.ppm');
-      fs.writeFileSync(oct, baked);
-      const told = command('render', oct, '--size', `${width}x${height}`, '--effects', 'auto', '-o', out, '--quiet');
-      is('status', told.status, 0);
-      const wanted = fs.readFileSync(out).subarray(-3 * width * height);
-      const behind = mine.subarray(0, 3);
+  const [width, height] = [160, 120];
+  for (const scene of ['castle.vox', 'room.scene', 'waves.scene']) {
+    for (const [kind, samples] of [['lit', '1'], ['fine', '4']]) {
+      await test(`${scene} to look around in is lit as by the command, ${samples} samples`, () => {
+        const mine = drawn(opened(scene, width, height), kind);
+        holds('it shows something', new Set(mine).size > 50);
+        is('pixels that are others', pixelsThatDiffer(mine, rendered(width, height, '--samples', samples)), 0);
+      });
+    }
+  }
+  await test('a scene without light has the mean of four samples, too', () => {
+    const mine = drawn(opened('demo', width, height), 'fine');
+    const four = drawn(opened('demo', 2 * width, 2 * height), 'lit');
+    const mean = Buffer.alloc(mine.length);
+    for (let i = 0; i < mine.length; ++i) {
+      const at = 6 * Math.floor(i / 3) + i % 3 + 6 * width * Math.floor(i / (3 * width));
+      const sum = four[at] + four[at + 3] + four[at + 6 * width] + four[at + 6 * width + 3];
+      mean[i] = (sum + 2) >> 2;
+    }
+    is('pixels that are others', pixelsThatDiffer(mine, mean), 0);
+  });
+  for (const scene of ['castle.vox', 'room.scene']) {
+    await test(`${scene}: what is under the pointer is what the command's ray hits`, () => {
+      const {look, orbit} = opened(scene, width, height);
+      look.see(orbit.camera());
+      const csv = path.join(work, 'look_hits.csv');
+      rendered(width, height, '--hits', csv);
+      const rows = fs.readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((row) => row.split(',').map(Number));
+      let wrong = 0;
       let hits = 0;
-      let others = 0;
-      for (let i = 0; i < mine.length; i += 3) {
-        if (scene !== 'room.scene' && mine.subarray(i, i + 3).equals(behind)) continue;
-        ++hits;
-        others += mine.subarray(i, i + 3).equals(wanted.subarray(i, i + 3)) ? 0 : 1;
+      for (const [x, y, isHit, vx, vy, vz, t, axis, , ...ray] of rows) {
+        const picked = look.pick(x, y);
+        hits += isHit;
+        if (isHit === 0 || picked === null) {
+          wrong += isHit === 0 && picked === null ? 0 : 1;
+          continue;
+        }
+        const far = picked.point.some((at, i) => Math.abs(at - ray[i] / 256 - t * ray[3 + i]) > 1 / 128);
+        const face = 2 * axis + (ray[3 + axis] < 0 ? 1 : 0);
+        wrong += far || picked.voxel.join() !== [vx, vy, vz].join() || picked.face !== face ? 1 : 0;
       }
-      holds(`${hits} pixels show the scene`, hits > 4000);
-      is('pixels that are others', others, 0);
+      holds(`${hits} pixels hit something`, hits > 4000);
+      is('pixels that are others', wrong, 0);
+      is('beyond the picture', [look.pick(-1, 0), look.pick(0, height), look.pick(width, 0)].join(), ',,');
     });
   }
+  await test('what is picked is named as on the desktop', () => {
+    const picked = {voxel: [12, 3, 40], face: 5, material: 7, color: 0x0a522d, kind: 2};
+    is('it', nameOf(picked), 'voxel 12,3,40: its top face (+z), material 7, #0a522d glass');
+    is('inside', nameOf({...picked, face: -1, kind: 0}), 'voxel 12,3,40: the eye is in it, material 7, #0a522d');
+  });
+  for (const [kind, is_] of [['', ''], ['metal ', ' metal'], ['glass ', ' glass'], ['emit ', ' that glows']]) {
+    await test(`a ${kind}box is named by its material and colour`, () => {
+      write('named.scene', 'depth 4\ncamera eye 8 -20 8 target 8 8 8 fov 35\nambient color 255 255 255 brightness 1\n' +
+        `material first color 1 2 3\nmaterial second ${kind}color 10 160 45\n` +
+        'box first from 0 15 0 to 16 16 16\nbox second from 4 4 4 to 12 12 12\n');
+      const {look, orbit} = opened(path.join(work, 'named.scene'), width, height);
+      look.see(orbit.camera());
+      const materials = [[80, 60], [50, 20]].map(([x, y]) => {
+        const said = nameOf(look.pick(x, y));
+        return said.replace(/^voxel \d+,(4|15),\d+: its front face \(-y\), material \d+, /, '');
+      });
+      is('they', materials.join('|'), `#0aa02d${is_}|#010203`);
+      holds('each has its own', look.pick(80, 60).material !== look.pick(50, 20).material);
+    });
+  }
+  // Of a room, which the command frames by the same corners. What stands behind is the board's, and black there.
+  for (const [key, name] of ['front', 'back', 'left', 'right', 'top', 'iso'].entries()) {
+    await test(`key ${key + 1} shows the room as --view ${name}`, () => {
+      const room = opened('room.scene', width, height);
+      room.orbit.show(VIEWS[key + 1], room.look.frame());
+      const first = drawn(room, 'lit');
+      const mine = Buffer.from(first);
+      const wanted = rendered(width, height, '--view', name, '--fov', String(room.look.x.fov() / 65536));
+      let shown = 0;
+      for (let i = 0; i < mine.length; i += 3) {
+        if (wanted.readUIntBE(i, 3) !== 0) ++shown;
+        else wanted.copy(mine, i, i, i + 3);
+      }
+      holds(`${shown} pixels show it`, shown > 8000);
+      // A mirror to the right shows some pixels of what stands behind.
+      holds('it is the command\'s', pixelsThatDiffer(mine, wanted) <= (name === 'right' ? 24 : 0));
+      room.orbit.take(room.orbit.text());
+      const linked = drawn(room, 'lit');
+      is('pixels that a link shows otherwise', pixelsThatDiffer(linked, first), 0);
+    });
+    await test(`key ${key + 1} frames a parallel view as --view ${name}`, () => {
+      write('parallel.scene', fs.readFileSync('tools/gallery/scenes/room.scene', 'utf8').replace(/ fov 62/, ' span 77'));
+      const room = opened(path.join(work, 'parallel.scene'), width, height);
+      room.orbit.show(VIEWS[key + 1], room.look.frame());
+      const shown = edgesOf(drawn(room, 'lit'), [146, 186, 222]);
+      const wanted = edgesOf(rendered(width, height, '--view', name, '--projection', 'orthographic'), [0, 0, 0]);
+      holds(`the edges ${shown} are ${wanted}, within a pixel`, shown.every((at, i) => Math.abs(at - wanted[i]) <= 1));
+    });
+  }
+  await test('hands lead a view as on the desktop', () => {
+    const {look, orbit} = opened('castle.vox', width, height);
+    const eye = () => orbit.camera().eye.map((q8) => q8 / 256);
+    const near = (what, a, b) => holds(`${what}: ${a} is ${b}`, a.every((x, i) => Math.abs(x - b[i]) < 0.02));
+    orbit.show(VIEWS[1], look.frame());
+    const [x, y, z] = eye();
+    const speed = 0.7 * orbit.distance;
+    for (const [way, to] of [[[0, 0, 1], [0, speed, 0]], [[1, 0, 0], [speed, 0, 0]], [[0, 1, 0], [0, 0, speed]]]) {
+      orbit.fly(...way);
+      near(`a second of flight ${way}`, eye(), [x + to[0], y + to[1], z + to[2]]);
+      orbit.fly(...way.map((part) => -part));
+      near('and back', eye(), [x, y, z]);
+    }
+    const point = [20.5, 30.25, 10];
+    orbit.lookAt(point);
+    near('what is looked at', orbit.target, point);
+    near('the eye stays', eye(), [x, y, z]);
+    orbit.turn(0.5, 0.25);
+    near('and is turned around', orbit.target, point);
+    const high = new Orbit([0, 0, 0], [256, 0, 0], 1024);
+    holds('there is a link', high.take('-1.5708,1.5708,3000,512,512,512'));
+    is('straight down is so from far away', high.camera().eye.join(), '131072,131072,899072');
+    for (const [kind, act] of [['away', () => orbit.approach(1e9)], ['sideways', () => orbit.move(1e9, 1e9)],
+      ['onward', () => orbit.fly(0, 0, 1e9)]]) {
+      for (const key of [1, 2, 3, 4, 5, 6]) {
+        orbit.show(VIEWS[key], look.frame());
+        act();
+        holds(`far ${kind} from view ${key} there is a picture`, look.see(orbit.camera()));
+      }
+    }
+  });
+}
+// The columns and rows between which a picture shows something.
+function edgesOf(picture, [r, g, b]) {
+  const edges = [Infinity, Infinity, -1, -1];
+  const [width, height] = [160, 120];
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      const at = 3 * (y * width + x);
+      if (picture[at] === r && picture[at + 1] === g && picture[at + 2] === b) continue;
+      edges.splice(0, 4, Math.min(edges[0], x), Math.min(edges[1], y), Math.max(edges[2], x), Math.max(edges[3], y));
+    }
+  }
+  return edges;
 }
 
 function write(name, text) {

@@ -7,6 +7,7 @@ const path = require('path');
 const zlib = require('zlib');
 const {Chromium} = require('./chromium.js');
 const {test, is, holds, end} = require('./check.js');
+const {judgeCases} = require('./cases.js');
 const {judgeAccess} = require('./access.js');
 
 const [, , page, thimble, only] = process.argv;
@@ -166,6 +167,7 @@ async function looks() {
     await browser.click('#look');
     await began();
   });
+  await hands();
   await test('one thread and workers finish the same picture', async () => {
     const pictures = [];
     for (const size of [1, 2, 3]) {
@@ -214,6 +216,97 @@ async function looks() {
     await browser.eval(`Worker = Worker_; restart({look: false})`);
     shown = await browser.eval('Number(document.documentElement.dataset.ready)');
     browser.events = browser.events.filter((event) => !/Refused to create a worker|data:text/.test(JSON.stringify(event)));
+  });
+}
+// The viewer's keys and gestures, as on the desktop.
+async function hands() {
+  const view = () => browser.eval('({yaw: orbit.yaw, pitch: orbit.pitch, target: orbit.target, eye: orbit.camera().eye})');
+  const key = (name) => browser.key(name, name.length > 1 ? name : /\d/.test(name) ? `Digit${name}` : `Key${name.toUpperCase()}`);
+  const rests = () => browser.until(`viewer.phase !== 'moved'`);
+  // What the command's ray of each pixel hits, from the scene's own view.
+  const oct = path.join(work, 'hands.oct');
+  const csv = path.join(work, 'hands.csv');
+  spawnSync(thimble, ['bake', 'tools/gallery/scenes/castle.vox', '--board', 'raspi0', '-o', oct, '--quiet']);
+  spawnSync(thimble, ['render', oct, '--size', '640x480', '--effects', 'auto', '--hits', csv, '-o', path.join(work, 'hands.ppm'), '--quiet']);
+  const hits = fs.readFileSync(csv, 'utf8').split('\n');
+  await browser.eval(`restart({scene: 'castle', look: true})`);
+  await test('keys 1 to 6 are the named views', async () => {
+    for (const [name, yaw, pitch] of [['1', -90, 0], ['2', 90, 0], ['3', -180, 0], ['4', 0, 0], ['5', -90, 90], ['6', -135, 35.26]]) {
+      await changes(`key ${name}`, () => key(name));
+      const at = await view();
+      holds(`key ${name} looks from ${at.yaw}, ${at.pitch}`, Math.abs(at.yaw * 180 / Math.PI - yaw) < 0.01 && Math.abs(at.pitch * 180 / Math.PI - pitch) < 0.01);
+    }
+    await changes('the button of a view', () => browser.click('[data-key="1"]'));
+  });
+  await test('W A S D, Page Up and Page Down fly while held', async () => {
+    await key('1');  // along +y
+    await browser.eval('canvas.focus()');
+    for (const [name, axis, sign] of [['w', 1, 1], ['s', 1, -1], ['a', 0, -1], ['D', 0, 1], ['PageUp', 2, 1], ['PageDown', 2, -1]]) {
+      const before = (await view()).target;
+      await changes(`key ${name}`, () => key(name));
+      const after = (await view()).target;
+      const way = after.map((x, i) => x - before[i]);
+      holds(`key ${name} flies ${way}`, sign * way[axis] > 1 && way.every((x, i) => i === axis || Math.abs(x) < 0.01));
+      await pause(100);
+      is('where it is let go', (await view()).target.join(), after.join());
+    }
+    is('the page has not scrolled', await browser.eval('scrollY'), await browser.eval('canvas.scrollIntoView({block: "center"}), scrollY'));
+  });
+  await test('right and Shift drags move, others turn', async () => {
+    for (const hand of [{button: 'right'}, {shift: true}]) {
+      await key('1');
+      const before = await view();
+      await changes(`a drag by ${JSON.stringify(hand)}`, () => browser.drag('#canvas', 60, 30, hand));
+      const after = await view();
+      is('the direction', [after.yaw, after.pitch].join(), [before.yaw, before.pitch].join());
+      holds('the picture follows the pointer', after.target[0] < before.target[0] - 1 && after.target[2] > before.target[2] + 1);
+    }
+    const before = await view();
+    await browser.drag('#canvas', 60, 30);
+    const after = await view();
+    is('the target of a plain drag', after.target.join(), before.target.join());
+    holds('it turns', after.yaw !== before.yaw && after.pitch !== before.pitch);
+  });
+  await test('p names what is under the pointer, a double click looks at it', async () => {
+    await key('0');
+    await rests();
+    const {x, y, width, height} = await browser.middle('#canvas');
+    for (const [dx, dy] of [[0, 0], [0.08, 0.1], [-0.1, 0.05]]) {
+      await browser.point(x + dx * width, y + dy * height);
+      const [px, py] = await browser.eval('pointed');
+      holds(`the pixel ${px},${py} lies there`, Math.abs(px - 320 - dx * 640) <= 1 && Math.abs(py - 240 - dy * 480) <= 1);
+      await key('p');
+      const [, , isHit, vx, vy, vz, , axis, ...ray] = hits[1 + py * 640 + px].split(',').map(Number);
+      is('the command hits', isHit, 1);
+      const faces = [['right', '+x', 'left', '-x'], ['back', '+y', 'front', '-y'], ['top', '+z', 'bottom', '-z']][axis];
+      const [side, way] = ray[4 + axis] < 0 ? faces : faces.slice(2);
+      const said = await text('said');
+      holds(`"${said}" names it`, said.startsWith(`voxel ${vx},${vy},${vz}: its ${side} face (${way}), material `) && /material \d+, #[0-9a-f]{6}$/.test(said));
+    }
+    await browser.point(x - width / 2 + 3, y - height / 2 + 3);
+    await key('p');
+    is('the sky', await text('said'), 'There is nothing under the pointer.');
+    const before = await view();
+    await browser.point(x + 0.08 * width, y + 0.1 * height);
+    const point = await browser.eval('viewer.look.pick(...pointed).point');
+    await changes('a double click', () => browser.doubleClick(x + 0.08 * width, y + 0.1 * height));
+    const after = await view();
+    holds(`it looks at ${after.target}, which is ${point}`, after.target.every((at, i) => Math.abs(at - point[i]) < 0.01));
+    holds('it stands where it stood', after.eye.every((at, i) => Math.abs(at - before.eye[i]) <= 2));
+    await rests();
+    const middle = await browser.eval('viewer.look.pick(320, 240).point');
+    holds(`the middle shows ${middle}`, middle.every((at, i) => Math.abs(at - point[i]) < 1));
+    await key('0');
+  });
+  await test('the help names every key, and opens at its first', async () => {
+    const named = await browser.eval(`[...document.querySelectorAll('dialog th')].map((cell) => cell.textContent).join('\\n')`);
+    await browser.key('?', 'Slash');
+    is('how far it is scrolled', await browser.eval(`document.getElementById('dialog').scrollTop`), 0);
+    await browser.key('Escape');
+    const keys = await browser.eval(`[...APP_KEYS.look.map(([key]) => key), ...Object.keys(FLIGHTS), '?']`);
+    const shown = (name) => new RegExp(`(^|\\s)${{'+': '\\+', '-': '\u2212', '?': '\\?', PageUp: 'Page Up', PageDown: 'Page Down'}[name] ?? name}([\\s,]|$)`, 'im').test(named);
+    is('keys that it lacks', keys.filter((name) => !shown(name)).join(), '');
+    for (const hand of ['drag', 'right or Shift drag', 'double click', 'wheel', 'pinch', 'two fingers']) holds(hand, named.includes(hand));
   });
 }
 // Until all samples are drawn.
@@ -464,6 +557,25 @@ async function telephone() {
       });
     }
   }
+  await test('a double tap looks at what is there, a button names it', async () => {
+    const {x, y, width} = await browser.middle('#canvas');
+    await changes('a double tap', async () => {
+      for (let tap = 0; tap < 2; ++tap) {
+        await browser.touch('touchStart', [{x: x + 0.1 * width, y, id: 1}]);
+        await browser.touch('touchEnd', []);
+      }
+    });
+    await browser.until(`viewer.phase !== 'moved'`);
+    const [target, middle] = await browser.eval('[orbit.target, viewer.look.pick(320, 240).point]');
+    holds(`the middle ${middle} is what is turned around, ${target}`, middle.every((at, i) => Math.abs(at - target[i]) < 1));
+    await browser.touch('touchStart', [{x, y, id: 1}]);
+    await browser.touch('touchEnd', []);
+    await browser.click('[data-key="p"]');
+    holds('it is named', /^voxel \d+,\d+,\d+: its /.test(await text('said')));
+    await browser.eval('orbit.reset(); moved(() => {})');
+    await finish();
+    is('the page keeps its size', await browser.eval('visualViewport.scale'), 1);
+  });
   await test('fingers steer a board: a swipe, its buttons, water', async () => {
     await browser.turnTo(412, 915);
     await browser.eval(`restart({scene: 'castle', board: 'mps2-an500', look: false})`);
@@ -526,6 +638,21 @@ async function turnsByFingers() {
   is('the page does not scroll or grow under it', await browser.eval('[scrollY, visualViewport.scale].join()'), `${page},1`);
 }
 
+// The core's own cases, and pictures whose CRCs every board has.
+async function cases() {
+  browser = await Chromium.open(url);
+  await browser.until(`document.documentElement.dataset.ready === '1'`, 30);
+  const wasm = fs.readFileSync(path.join(path.dirname(page), 'modules/cases.wasm')).toString('base64');
+  await browser.eval(`state.paused = true; (async () => {
+    window.cases = await WebAssembly.compile(Uint8Array.from(atob('${wasm}'), (c) => c.charCodeAt(0))); })()`);
+  await judgeCases(await browser.eval('boards'), (board, app) => browser.eval(`(() => {
+    const machine = new Machine(cases, {board: boards[${board.index}], app: '${app}', connected: false});
+    machine.goOn = false;
+    while (machine.step() !== 'ended') {}
+    return {status: machine.status, output: machine.output, ...machine.use()}; })()`));
+  await browser.close();
+}
+
 // From a server, with the headers that shared memory needs and without: the page needs neither.
 async function served() {
   const pictures = [];
@@ -578,7 +705,7 @@ async function calm() {
   await browser.close();
 }
 
-(only === undefined ? desktop().then(telephone).then(served).then(calm) : {telephone, served, calm}[only]()).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? desktop().then(telephone).then(served).then(calm).then(cases) : {telephone, served, calm, cases}[only]()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
   browser?.process.kill('SIGKILL');
   process.exit(1);
