@@ -108,8 +108,7 @@ for target in $targets; do
         case $name in
           ball) display= ;;
           panels)
-            display="tests/boards/panels_host.cpp tests/support/page_model.cpp tests/support/color_model.cpp
-              platform/drivers/page_panel.cpp platform/drivers/color_panel.cpp"
+            display="tests/boards/panels_host.cpp tests/support/page_model.cpp tests/support/color_model.cpp"
             ;;
         esac
         g++ -std=c++20 -O1 -Iinclude -Iplatform -Itests -o "$work/$name/run" "$object" $display "$library"

@@ -14,7 +14,6 @@ if [ "${1:-}" = --job ]; then
       examples) sh "$here/examples.sh" "$THIMBLE_FIRMWARE/examples" || status=1 ;;
       emulate) sh "$here/emulate.sh" || status=1 ;;
       frames) sh "$here/golden_frames.sh" || status=1 ;;
-      formats) sh "$here/formats.sh" microbit || status=1 ;;
       *) sh "$here/board.sh" "$2" || status=1 ;;
     esac
     case $2 in
@@ -29,6 +28,7 @@ if [ "${1:-}" = --job ]; then
         sh "$here/uf2.sh" pico || status=1
         ;;
       gba) sh "$here/cartridge.sh" gba || status=1 ;;
+      microbit) sh "$here/formats.sh" microbit || status=1 ;;
     esac
   } >"$log" 2>&1
   cat "$log"
@@ -62,7 +62,7 @@ failed=0
     esac
   done
   printf '0 examples\n0 frames\n'
-  case " $boards " in *microbit*) printf '2 emulate\n1 formats\n' ;; esac
+  case " $boards " in *microbit*) printf '2 emulate\n' ;; esac
 } | sort -k1,1nr -k2 | cut -d ' ' -f 2 | UPDATE=$update xargs -P 2 -n 1 sh "$here/run.sh" --job || failed=1
 # What must be one number everywhere.
 sh "$here/same.sh" $boards || failed=1

@@ -2,7 +2,8 @@
 # Who may include whom. layering.sh ROOT
 #   include, src     <stdint.h>, <stddef.h>, and headers of their own room or of a room below it; a public header
 #                    none of src; only src and public headers those of a folder `detail`
-#   src/c            all rooms, and thimble/thimble_c.h, which only it sees
+#   drivers          of panels: rooms up to the picture; no room sees them
+#   src/c            all rooms but drivers, and thimble/thimble_c.h, which only it sees
 #   tools, platform  no header of src
 #   platform         nothing of the tests but "portable/..." in the applications that run them on boards
 #   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
@@ -34,7 +35,7 @@ rooms_below() {
     picture) echo base tree trace ;;
     light) echo base tree trace picture ;;
     plane) echo base ;;
-    bake) echo base tree trace picture ;;
+    bake | drivers) echo base tree trace picture ;;
     c) echo base tree trace picture light plane bake ;;
     *) echo "layering: src/$1 is no room that tests/checks/layering.sh knows" >&2 && return 1 ;;
   esac

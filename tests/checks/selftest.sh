@@ -13,7 +13,7 @@ log=$work/log
 # A small sound tree, made anew for each case.
 fresh() {
   rm -rf "$tree"
-  mkdir -p "$tree/include/thimble/base" "$tree/include/thimble/tree" "$tree/src/base" "$tree/src/tree" \
+  mkdir -p "$tree/include/thimble/base" "$tree/include/thimble/tree" "$tree/src/base" "$tree/src/tree" "$tree/src/drivers" \
     "$tree/tools" "$tree/platform/apps" "$tree/platform/examples" "$tree/tests/reference" "$tree/tests/portable"
   cp "$here/../../.clang-format" "$here/../../.clang-tidy" "$tree/"
   cat >"$tree/include/thimble/base/sum.h" <<'H'
@@ -144,6 +144,10 @@ passes layering
 add src/tree/node.h ''
 add src/base/sum.cpp '#include "../tree/node.h"'
 catches layering 'src/base/ sees only itself and the rooms below it'
+add src/drivers/panel.h ''
+add src/drivers/panel.cpp '#include "thimble/base/sum.h"'
+add src/tree/tree.cpp '#include "../drivers/panel.h"'
+catches layering 'src/tree/ sees only itself and the rooms below it'
 add include/thimble/tree/node.h ''
 add include/thimble/base/sum.h '#include "../tree/node.h"'
 catches layering 'include/thimble/base/ sees only itself'
@@ -259,6 +263,11 @@ for target in host cortex-m0 cortex-m3 rv32; do
   catches core.$target 'is recursive'
   add src/base/sum.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
   catches core.$target 'through a pointer'
+  # A driver may, since what it calls is the board's.
+  add src/drivers/panel.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
+  passes core.$target
+  add src/drivers/panel.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
+  catches core.$target 'is recursive'
   add src/base/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
   catches core.$target 'not known when compiling'
   add src/base/sum.cpp 'bool seldom(int n) { if (n == 0) [[unlikely]] { return true; } auto l = [&]<int k>() { return n == k; }; return l.template operator()<3>(); }'

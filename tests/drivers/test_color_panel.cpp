@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "drivers/color_panel.h"
 #include "support/panel_model.h"
+#include "thimble/drivers/color_panel.h"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "drivers/page_panel.h"
 #include "support/panel_model.h"
+#include "thimble/drivers/page_panel.h"
 
 namespace {
 

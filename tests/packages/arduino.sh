@@ -1,6 +1,6 @@
 #!/bin/sh
-# The library as the Arduino IDE builds it, by its builder: both examples, and the README's ball as a sketch, compiled
-# with a platform of ours, run on a Cortex-M3 of QEMU; the pictures are those that this machine draws ray by ray.
+# The library as the Arduino IDE builds it, by its builder: both examples, and as sketches the README's ball and one that
+# draws it by the library's drivers, compiled with a platform of ours, run on a Cortex-M3 of QEMU; the pictures are those that this machine draws ray by ray.
 name=arduino
 . tests/packages/common.sh
 need arduino-builder arm-none-eabi-g++
@@ -18,15 +18,21 @@ awk 'BEGIN {
     }
   }
 }' >"$core/binary.h"
-mkdir -p "$WORK/sketches/Ball" "$WORK/tools"
-printf 'int ball();\nvoid setup() { exit(ball()); }\nvoid loop() {}\n' >"$WORK/sketches/Ball/Ball.ino"
-{ printf '#include <thimble.h>\n#define main ball\n'; cat platform/examples/ball/main.cpp; } >"$WORK/sketches/Ball/ball.cpp"
+mkdir -p "$WORK/tools"
+# sketch NAME PROGRAM: a program of ours as a sketch.
+sketch() {
+  mkdir -p "$WORK/sketches/$1"
+  printf 'int program();\nvoid setup() { exit(program()); }\nvoid loop() {}\n' >"$WORK/sketches/$1/$1.ino"
+  { printf '#include <thimble.h>\n#define main program\n'; cat "$2"; } >"$WORK/sketches/$1/program.cpp"
+}
+sketch Ball platform/examples/ball/main.cpp
+sketch Panels tests/packages/panels.cpp
 cp -R "$WORK/libraries/thimble/examples/SSD1306" "$WORK/libraries/thimble/examples/ST7789" "$WORK/sketches/"
 
 # One place for all, so that the library is compiled once.
 all=$(cd "$WORK" && pwd)
 mkdir -p "$all/build" "$all/sketches/Sketch"
-for sketch in SSD1306 ST7789 Ball; do
+for sketch in SSD1306 ST7789 Ball Panels; do
   rm -f "$all/sketches/Sketch/"*
   cp "$all/sketches/$sketch/"* "$all/sketches/Sketch/"
   mv "$all/sketches/Sketch/$sketch.ino" "$all/sketches/Sketch/Sketch.ino"
@@ -41,6 +47,8 @@ command -v qemu-system-arm >/dev/null 2>&1 || {
   exit 0
 }
 same_ball in_qemu arm "$all/Ball.elf"
+no_drivers "$all/Ball.elf"
+same_panels in_qemu arm "$all/Panels.elf"
 for sketch in SSD1306 ST7789; do
   color=$([ $sketch = ST7789 ] && echo true || echo false)
   logged g++ -std=c++20 -O1 -Iinclude -I"$WORK/sketches/$sketch" -DEXPECTED_COLOR=$color $here/expected.cpp "$LIBTHIMBLE" -o "$WORK/expected"
@@ -48,4 +56,4 @@ for sketch in SSD1306 ST7789; do
   in_qemu arm "$all/$sketch.elf" </dev/null >"$WORK/$sketch.shown" 2>"$WORK/$sketch.err" || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
   cmp "$WORK/$sketch.expected" "$WORK/$sketch.shown" || fail "$sketch shows another picture than this machine draws"
 done
-say "the ball and both examples, built by arduino-builder, show what they should"
+say "the ball, both examples and the drivers, built by arduino-builder, show what they should"

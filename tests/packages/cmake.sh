@@ -5,9 +5,11 @@ name=cmake
 . tests/packages/common.sh
 need cmake ninja
 archive=$(cd "$PACKAGES" && pwd)/thimble-$VERSION.tar.gz
-logged cmake -S tests/packages/cmake -B "$WORK/fetch" -G Ninja -DARCHIVE="$archive" -DBALL="$PWD/platform/examples/ball/main.cpp"
+logged cmake -S tests/packages/cmake -B "$WORK/fetch" -G Ninja -DARCHIVE="$archive"
 logged cmake --build "$WORK/fetch" -- -j1
 same_ball "$WORK/fetch/ball"
+no_drivers "$WORK/fetch/ball"
+same_panels "$WORK/fetch/panels"
 unpack "thimble-$VERSION.tar.gz"
 logged cmake -S "$WORK/thimble-$VERSION" -B "$WORK/build" -G Ninja
 logged cmake --build "$WORK/build" -- -j1
@@ -17,6 +19,7 @@ for prefix in first moved; do
   logged cmake -S tests/consumer -B "$WORK/found_$prefix" -G Ninja -DCMAKE_PREFIX_PATH="$(cd "$WORK/$prefix" && pwd)"
   logged cmake --build "$WORK/found_$prefix"
   same_ball "$WORK/found_$prefix/consumer"
+  same_panels "$WORK/found_$prefix/consumer_panels"
 done
 if command -v pkg-config >/dev/null 2>&1; then
   export PKG_CONFIG_PATH="$WORK/moved/lib/pkgconfig"
@@ -26,4 +29,4 @@ if command -v pkg-config >/dev/null 2>&1; then
   logged c++ -std=c++20 -O1 -Itests tests/packages/golden.cpp tests/golden/scenes.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/golden"
   logged "$WORK/golden"
 fi
-say "FetchContent, find_package and pkg-config, the prefix moved: the ball is drawn (CPM is not here: it calls FetchContent)"
+say "FetchContent, find_package and pkg-config, the prefix moved: the ball is drawn, also on panels (CPM is not here: it calls FetchContent)"

@@ -33,16 +33,26 @@ logged() {
     fail "$*"
   }
 }
-# same_ball COMMAND...: prints the ball of the README, character by character what the library of this tree printed.
-same_ball() {
+# same ball|panels COMMAND...: prints, character by character, what that program printed with the library of this tree.
+same() {
+  said=$WORK/$1 right=$PACKAGES/../test-packages/$1.txt
+  shift
   status=0
-  "$@" </dev/null >"$WORK/ball.txt" 2>"$WORK/ball.err" || status=$?
+  "$@" </dev/null >"$said.txt" 2>"$said.err" || status=$?
   # A UART is a terminal's: some send a carriage return with each line.
-  tr -d '\r' <"$WORK/ball.txt" >"$WORK/ball.plain"
-  [ $status = 0 ] && cmp -s "$WORK/ball.plain" "$PACKAGES/../test-packages/ball.txt" || {
-    head -n 40 "$WORK/ball.plain" "$WORK/ball.err" >&2
-    fail "the ball is another one (exit status $status): $*"
+  tr -d '\r' <"$said.txt" >"$said.plain"
+  [ $status = 0 ] && cmp -s "$said.plain" "$right" || {
+    head -n 40 "$said.plain" "$said.err" >&2
+    fail "the $(basename "$said") prints something else (exit status $status): $*"
   }
+}
+# same_ball COMMAND...: the program of the README. same_panels COMMAND...: its ball by the drivers of two panels.
+same_ball() { same ball "$@"; }
+same_panels() { same panels "$@"; }
+# no_drivers FILE: a program that draws on no panel holds nothing of their drivers.
+no_drivers() {
+  nm -C "$1" >"$WORK/symbols" && [ -s "$WORK/symbols" ] || fail "$1 has no symbols"
+  ! grep -m 3 'thimble::drivers::' "$WORK/symbols" >&2 || fail "$1 holds drivers that it does not use"
 }
 chip_options='-ffreestanding -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti -Wall -Wextra -Werror'
 arm_options="-mcpu=cortex-m3 -mthumb -Os $chip_options"

@@ -23,7 +23,7 @@ if [ "$(id -u)" -eq 0 ]; then
 else
   logged dpkg-deb -x "$deb" "$WORK/root"
 fi
-for file in bin/thimble include/thimble/thimble.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake \
+for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/page_panel.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake \
   share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
@@ -33,5 +33,8 @@ if command -v pkg-config >/dev/null 2>&1; then
   export PKG_CONFIG_PATH
   logged c++ -std=c++17 platform/examples/ball/main.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/ball"
   same_ball "$WORK/ball"
+  no_drivers "$WORK/ball"
+  logged c++ -std=c++17 tests/packages/panels.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/panels"
+  same_panels "$WORK/panels"
 fi
-say "$(basename "$deb"): lintian, dpkg, the command and the library: the ball is drawn"
+say "$(basename "$deb"): lintian, dpkg, the command and the library: the ball is drawn, also on panels"

@@ -16,6 +16,7 @@ from manifests import LINK, VERSION  # noqa: E402
 ARDUINO = f"thimble-arduino-{VERSION}.zip"
 PLATFORMIO = f"thimble-platformio-{VERSION}.tar.gz"
 IDF = f"thimble-esp-idf-{VERSION}.tar.gz"
+ZEPHYR = f"thimble-zephyr-{VERSION}.tar.gz"
 PAIR = f"thimble-pair-{VERSION}.zip"
 SOURCE = f"thimble-{VERSION}.tar.gz"
 
@@ -39,6 +40,10 @@ def swap(name, file, old, new):
 
 PROPERTIES = "thimble/library.properties"
 version = VERSION.encode()
+# Where each archive has headers and sources of drivers.
+DRIVERS = {ARDUINO: ("thimble/src/thimble", "thimble/src/core"), PLATFORMIO: ("include/thimble", "src"),
+           IDF: ("thimble/include/thimble", "thimble/src"), ZEPHYR: ("thimble/include/thimble", "thimble/src"),
+           SOURCE: (f"thimble-{VERSION}/include/thimble", f"thimble-{VERSION}/src"), PAIR: ("thimble", "thimble")}
 CASES = [
     ("was not made", lambda loaded: loaded.pop(PAIR)),
     ("no plain file", put(ARDUINO, "thimble/src/link.h", LINK)),
@@ -52,6 +57,10 @@ CASES = [
     ("says @VERSION@", put(PAIR, "thimble/extra.txt", b"@VERSION@")),
     ("include/thimble/base/vec.h is missing", drop(PLATFORMIO, "include/thimble/base/vec.h")),
     ("src/base/bits.h is missing", drop(ARDUINO, "thimble/src/core/base/bits.h")),
+    *(("drivers/panel.h is missing", drop(name, f"{at[0]}/drivers/panel.h")) for name, at in DRIVERS.items()),
+    *(("drivers/page_panel.cpp is missing", drop(name, f"{at[1]}/drivers/page_panel.cpp")) for name, at in DRIVERS.items()),
+    ("src/drivers/color_panel.cpp is missing", swap(PAIR, "thimble/thimble.cpp", b"// ---- src/base/crc32.cpp\n",
+                                                    b"// ---- src/base/crc32.cpp\n// ---- src/drivers/color_panel.cpp\n")),
     ("which is not there", put(ARDUINO, "thimble/src/core/base/more.cpp", b'#include "thimble/base/vec.h"\n')),
     ("include/thimble/base/vec.h is missing", swap(PAIR, "thimble/thimble.h", b"// ---- include/thimble/base/vec.h", b"//")),
     ("not FIELD=VALUE", put(ARDUINO, PROPERTIES, b"name\n")),

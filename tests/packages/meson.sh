@@ -5,12 +5,14 @@ name=meson
 . tests/packages/common.sh
 need meson ninja pkg-config
 mkdir -p "$WORK/app/subprojects/packagefiles"
-cp tests/packages/meson/meson.build platform/examples/ball/main.cpp "$WORK/app/"
+cp tests/packages/meson/meson.build platform/examples/ball/main.cpp tests/packages/panels.cpp "$WORK/app/"
 cp "$PACKAGES/thimble.wrap" "$WORK/app/subprojects/"
 cp "$PACKAGES/thimble-$VERSION.tar.gz" "$WORK/app/subprojects/packagefiles/"
 logged meson setup --buildtype=plain --fatal-meson-warnings "$WORK/app/build" "$WORK/app"
 logged ninja -j1 -C "$WORK/app/build"
 same_ball "$WORK/app/build/ball"
+no_drivers "$WORK/app/build/ball"
+same_panels "$WORK/app/build/panels"
 
 unpack "thimble-$VERSION.tar.gz"
 logged meson setup --prefix=/opt/thimble --libdir=lib "$WORK/build" "$WORK/thimble-$VERSION"
@@ -25,6 +27,8 @@ flags=$(pkg-config --define-variable=prefix="$installed" --cflags --libs thimble
 case $flags in *"$installed/include"*"$installed/lib"*-lthimble*) ;; *) fail "pkg-config says $flags" ;; esac
 logged c++ -std=c++17 platform/examples/ball/main.cpp $flags -o "$WORK/ball"
 same_ball "$WORK/ball"
+logged c++ -std=c++17 tests/packages/panels.cpp $flags -o "$WORK/panels"
+same_panels "$WORK/panels"
 logged c++ -std=c++20 -O1 -Itests tests/packages/golden.cpp tests/golden/scenes.cpp $flags -o "$WORK/golden"
 logged "$WORK/golden"
-say "subproject, installed and found by pkg-config: $(cat "$WORK/log"), the ball is drawn"
+say "subproject, installed and found by pkg-config: $(cat "$WORK/log"), the ball is drawn, also on panels"

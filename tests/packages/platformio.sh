@@ -18,7 +18,11 @@ find "$sources" -name '*.cpp' | sort | while read -r source; do
   echo "$object"
 done >"$WORK/objects"
 logged arm-none-eabi-ar rcs "$WORK/libthimble.a" $(cat "$WORK/objects")
-logged arm-none-eabi-g++ $options platform/examples/ball/main.cpp $bare_link "$WORK/libthimble.a" -lgcc -o "$WORK/ball.elf"
+for program in platform/examples/ball/main.cpp tests/packages/panels.cpp; do
+  logged arm-none-eabi-g++ $options $program $bare_link "$WORK/libthimble.a" -lgcc -o "$WORK/$(basename $program .cpp).elf"
+done
+no_drivers "$WORK/main.elf"
 need qemu-system-arm
-same_ball in_qemu arm "$WORK/ball.elf"
-say "$(wc -l <"$WORK/objects") files compiled by the manifest's rules: the ball is drawn"
+same_ball in_qemu arm "$WORK/main.elf"
+same_panels in_qemu arm "$WORK/panels.elf"
+say "$(wc -l <"$WORK/objects") files compiled by the manifest's rules: the ball is drawn, also on panels"

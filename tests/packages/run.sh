@@ -14,9 +14,11 @@ if [ "${1:-}" = --one ]; then
   exec sh "tests/packages/$2.sh"
 fi
 mkdir -p "$work"
-# What each package's ball must be, from the library of this tree.
+# What each package's ball and panels must be, from the library of this tree.
 g++ -std=c++17 -O1 -Iinclude platform/examples/ball/main.cpp "$LIBTHIMBLE" -o "$work/ball"
 "$work/ball" >"$work/ball.txt"
+g++ -std=c++17 -O1 -Iinclude tests/packages/panels.cpp "$LIBTHIMBLE" -o "$work/panels"
+"$work/panels" >"$work/panels.txt"
 [ "$(grep -c '[*#]' "$work/ball.txt")" -gt 16 ] || {
   echo "test-packages: the README's program draws no ball" >&2
   exit 1

@@ -12,10 +12,12 @@ bare arm
 logged cmake -S tests/packages/zephyr -B "$WORK/build" -G Ninja -DCMAKE_SYSTEM_NAME=Generic -DCMAKE_BUILD_TYPE=None \
   -DCMAKE_CXX_COMPILER=arm-none-eabi-g++ -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY -DCONFIG_THIMBLE=y \
   -DCMAKE_CXX_FLAGS="$arm_options" -DMODULE="$module/$module_cmake" -DSAMPLE="$module/$module_sample" \
-  -DBALL="$PWD/platform/examples/ball/main.cpp" -DBARE="$PWD/tests/packages/bare/arm.ld;$WORK/bare_start.o;$WORK/bare_memory.o"
+  -DBARE="$PWD/tests/packages/bare/arm.ld;$WORK/bare_start.o;$WORK/bare_memory.o"
 logged cmake --build "$WORK/build" -- -j1
 need qemu-system-arm
 same_ball in_qemu arm "$WORK/build/ball"
+no_drivers "$WORK/build/ball"
+same_panels in_qemu arm "$WORK/build/panels"
 for order in RGB_565 BGR_565 RGB_888; do
   in_qemu arm "$WORK/build/sample_$order" </dev/null >"$WORK/$order.shown" 2>"$WORK/$order.err" ||
     fail "the sample ends with $? on a display with $order: $(tail -n 1 "$WORK/$order.shown")"
@@ -25,4 +27,4 @@ sed 's/\(..\)\(..\)/\2\1/g' "$WORK/BGR_565.shown" | cmp - "$WORK/RGB_565.shown" 
 [ "$(sort -u "$WORK/RGB_888.shown" | wc -l)" -gt 8 ] || fail "the sample shows no ball"
 in_qemu arm "$WORK/build/sample_MONO01" </dev/null >"$WORK/mono.shown" 2>"$WORK/mono.err" && fail "a display that the sample does not draw on is taken"
 grep -q 'RGB_565 and RGB_888' "$WORK/mono.shown" || fail "on another display the sample says: $(cat "$WORK/mono.shown")"
-say "module.yml, Kconfig, CMake and the sample: the ball is drawn"
+say "module.yml, Kconfig, CMake and the sample: the ball is drawn, also on panels"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/panel.h"
+#include "thimble/drivers/panel.h"
 
 namespace thimble::tests {
 

@@ -1,4 +1,4 @@
-"""The pair: all public headers as thimble.h, all of src as thimble.cpp; a C face stays a file of its own."""
+"""The pair: all public headers as thimble.h, all of src as thimble.cpp; a C face and drivers stay files of their own."""
 
 import posixpath
 
@@ -8,6 +8,11 @@ import tree
 def is_c(name):
     """A header that C can read cannot go into one that it cannot."""
     return name.endswith("_c.h")
+
+
+def is_driver(name):
+    """A panel's driver would be code in each program: what is one object the linker takes as a whole."""
+    return "/drivers/" in name
 
 
 def _resolve(of, path):
@@ -43,6 +48,16 @@ class _Text:
         self.parts.append(f"// ---- {name}\n".encode() + data.strip() + b"\n")
 
 
+def _driver(name):
+    """Headers and sources of drivers in one folder; what they include of the core is in thimble.h."""
+
+    def to(prefix, path):
+        target = _resolve(name, path)
+        return prefix + (b'"' + posixpath.basename(target).encode() + b'"' if is_driver(target) else b'"../thimble.h"')
+
+    return tree.each_include(tree.read(name), to)
+
+
 def _opening(what, version):
     return (
         f"// Thimble {version}: {what} Written by `make packages` from the tree; change that, not this.\n"
@@ -55,11 +70,11 @@ def files(_):
     header = _Text()
     # The tour of the first page goes first.
     for name in ["include/thimble/thimble.h"] + tree.headers():
-        if not is_c(name):
+        if not is_c(name) and not is_driver(name):
             header.add(name)
     source = _Text(header.done)
     for name in tree.sources():
-        if name.endswith(".cpp"):
+        if name.endswith(".cpp") and not is_driver(name):
             source.add(name)
     made = {
         "thimble.h": _opening("the public headers, all in one.", version) + b"\n#pragma once\n\n"
@@ -68,8 +83,10 @@ def files(_):
         + b'\n#include "thimble.h"\n\n' + b"\n".join(source.parts),
         **tree.common("pair"),
     }
-    for name in tree.headers():
+    for name in tree.headers() + tree.sources():
         if is_c(name):
             made[posixpath.basename(name)] = tree.read(name)
+        elif is_driver(name):
+            made["drivers/" + posixpath.basename(name)] = _driver(name)
     # Below a folder of its name, so that "thimble/thimble.h" is what it is elsewhere.
     return {"thimble-pair-{version}.zip": tree.below("thimble", made)}

@@ -1,11 +1,11 @@
 // A baked model on two displays by their drivers: an SSD1306 of 128 x 64 and an ST7789 of 240 x 240. RAM: a band of
 // 3,840 bytes. scene.h is made by
 //   thimble bake MODEL.vox --size 128x64 -o scene.h
-#include "../../drivers/color_panel.h"
-#include "../../drivers/page_panel.h"
 #include "panels.h"
 #include "scene.h"
 #include "thimble/bake/baked_scene.h"
+#include "thimble/drivers/color_panel.h"
+#include "thimble/drivers/page_panel.h"
 #include "thimble/picture/render.h"
 using namespace thimble;
 

@@ -1,4 +1,4 @@
-#include "page_panel.h"
+#include "thimble/drivers/page_panel.h"
 
 namespace thimble::drivers {
 namespace {

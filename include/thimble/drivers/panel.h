@@ -7,13 +7,13 @@
 ///
 /// Every function of a driver returns false as soon as the board's function did, or where an argument is not one
 /// that the panel takes; then nothing was sent.
-#ifndef THIMBLE_PLATFORM_DRIVERS_PANEL_H
-#define THIMBLE_PLATFORM_DRIVERS_PANEL_H
+#ifndef THIMBLE_DRIVERS_PANEL_H
+#define THIMBLE_DRIVERS_PANEL_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/picture/render.h"
+#include "../picture/render.h"
 
 namespace thimble::drivers {
 

@@ -1,9 +1,9 @@
-#include "color_panel.h"
+#include "thimble/drivers/color_panel.h"
 
 namespace thimble::drivers {
 namespace {
 
-constexpr uint8_t kReset = 0x01;
+constexpr uint8_t kSoftwareReset = 0x01;
 constexpr uint8_t kSleepIn = 0x10;
 constexpr uint8_t kSleepOut = 0x11;
 constexpr uint8_t kNormalMode = 0x13;
@@ -11,8 +11,8 @@ constexpr uint8_t kInverseOff = 0x20;
 constexpr uint8_t kInverseOn = 0x21;
 constexpr uint8_t kDisplayOff = 0x28;
 constexpr uint8_t kDisplayOn = 0x29;
-constexpr uint8_t kColumns = 0x2A;
-constexpr uint8_t kRows = 0x2B;
+constexpr uint8_t kColumnRange = 0x2A;
+constexpr uint8_t kRowRange = 0x2B;
 constexpr uint8_t kWrite = 0x2C;
 constexpr uint8_t kAddressControl = 0x36;
 constexpr uint8_t kPixelFormat = 0x3A;
@@ -83,7 +83,7 @@ bool ColorPanel::window(int32_t x, int32_t y, int32_t width_px, int32_t height_p
                              static_cast<uint8_t>(last >> 8), static_cast<uint8_t>(last)};
     return command(code, bytes, sizeof bytes);
   };
-  return range(kColumns, first_column_ + x, width_px) && range(kRows, first_row_ + y, height_px) &&
+  return range(kColumnRange, first_column_ + x, width_px) && range(kRowRange, first_row_ + y, height_px) &&
          command(kWrite, nullptr, 0);
 }
 
@@ -156,13 +156,13 @@ bool St7735::begin(const PanelBus& bus, const ColorGeometry& geometry, PixelForm
                    Rotation rotation) {
   // Frame rate in normal mode: 333 kHz / ((1 * 2 + 40) * (lines + 2C + 2D)), some 80 frames a second.
   static constexpr Step kSteps[] = {
-      {kReset, kResetMs, 0, {}}, {kSleepOut, kSleepMs, 0, {}}, {0xB1, 0, 3, {0x01, 0x2C, 0x2D}}};
+      {kSoftwareReset, kResetMs, 0, {}}, {kSleepOut, kSleepMs, 0, {}}, {0xB1, 0, 3, {0x01, 0x2C, 0x2D}}};
   return ColorPanel::begin(bus, geometry, format, rotation, Span<const Step>(kSteps, 3), code_of(format, 0));
 }
 
 bool St7789::begin(const PanelBus& bus, const ColorGeometry& geometry, PixelFormat format,
                    Rotation rotation) {
-  static constexpr Step kSteps[] = {{kReset, kResetMs, 0, {}}, {kSleepOut, kSleepMs, 0, {}}};
+  static constexpr Step kSteps[] = {{kSoftwareReset, kResetMs, 0, {}}, {kSleepOut, kSleepMs, 0, {}}};
   return ColorPanel::begin(bus, geometry, format, rotation, Span<const Step>(kSteps, 2),
                            code_of(format, 0x50));
 }
@@ -171,9 +171,9 @@ bool Ili9341::begin(const PanelBus& bus, const ColorGeometry& geometry, PixelFor
                     Rotation rotation) {
   // GVDD 4.6 V; VGH and VGL; VCOMH 4.25 V, VCOML -1.5 V, and their offset; 79 frames a second; 320 lines.
   static constexpr Step kSteps[] = {
-      {kReset, kResetMs, 0, {}},        {0xC0, 0, 1, {0x23}},        {0xC1, 0, 1, {0x10}},
-      {0xC5, 0, 2, {0x3E, 0x28}},       {0xC7, 0, 1, {0x86}},        {0xB1, 0, 2, {0x00, 0x18}},
-      {0xB6, 0, 3, {0x08, 0x82, 0x27}}, {kSleepOut, kSleepMs, 0, {}}};
+      {kSoftwareReset, kResetMs, 0, {}}, {0xC0, 0, 1, {0x23}},        {0xC1, 0, 1, {0x10}},
+      {0xC5, 0, 2, {0x3E, 0x28}},        {0xC7, 0, 1, {0x86}},        {0xB1, 0, 2, {0x00, 0x18}},
+      {0xB6, 0, 3, {0x08, 0x82, 0x27}},  {kSleepOut, kSleepMs, 0, {}}};
   return ColorPanel::begin(bus, geometry, format, rotation, Span<const Step>(kSteps, 8),
                            format == PixelFormat::kRgb444 ? uint8_t{0} : code_of(format, 0x50));
 }

@@ -10,8 +10,8 @@
 ///   ST7735   Sitronix, ST7735R, V0.2 and ST7735S, V1.1: "Address Control", "Command", "Power Level Definition"
 ///   ST7789   Sitronix, ST7789V, V1.0: "Address Control", "Command", "Power Level Definition"
 ///   ILI9341  ILI Technology, ILI9341, V1.11: 8.2 and 8.3 (commands), "MCU to memory write/read direction"
-#ifndef THIMBLE_PLATFORM_DRIVERS_COLOR_PANEL_H
-#define THIMBLE_PLATFORM_DRIVERS_COLOR_PANEL_H
+#ifndef THIMBLE_DRIVERS_COLOR_PANEL_H
+#define THIMBLE_DRIVERS_COLOR_PANEL_H
 
 #include "panel.h"
 

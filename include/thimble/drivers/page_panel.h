@@ -12,8 +12,8 @@
 ///   SSD1306  Solomon Systech, SSD1306, Rev 1.1: 8.9 (power on), 9 and 10 (commands), appendix "Charge Pump Regulator"
 ///   SH1106   Sino Wealth, SH1106, V2.3: "Commands", "Power On and Initialization"
 ///   ST7567   Sitronix, ST7567: "Instruction Table", "Operation Flow"
-#ifndef THIMBLE_PLATFORM_DRIVERS_PAGE_PANEL_H
-#define THIMBLE_PLATFORM_DRIVERS_PAGE_PANEL_H
+#ifndef THIMBLE_DRIVERS_PAGE_PANEL_H
+#define THIMBLE_DRIVERS_PAGE_PANEL_H
 
 #include "panel.h"
 
