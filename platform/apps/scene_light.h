@@ -106,7 +106,10 @@ struct SceneLight {
         continue;
       }
       const Bytes room = arena->take(SunBricks::bytes(shown.map));
-      (void)SunBricks::make(shown.map, lights[i].place, room, &light->suns[kImageLamps ? suns++ : i]);
+      SunBricks& sun = light->suns[kImageLamps ? suns++ : i];
+      if (SunBricks::make(shown.map, lights[i].place, room, &sun) == Status::kOk) {
+        sun.prove();
+      }
     }
   }
 }
