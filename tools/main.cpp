@@ -19,8 +19,8 @@
 #include "output/output_file.h"
 #include "output/suggestion.h"
 #include "output/units.h"
-#include "readers/source.h"
-#include "scene/generators.h"
+#include "readers/input_error.h"
+#include "scene/generator_words.h"
 #include "scene/named_scenes.h"
 
 namespace {
@@ -66,12 +66,8 @@ bool is_scene(const std::string& word) {
   if (word.empty() || word.starts_with("-")) {
     return false;
   }
-  try {
-    if (thimble::tools::parse_generator(word)) {
-      return true;
-    }
-  } catch (const thimble::tools::InputError&) {
-    return true;  // a generator that says what is wrong with it
+  if (thimble::tools::is_generator(word)) {
+    return true;
   }
   std::error_code error;
   if (word.find_first_of("./") != std::string::npos || std::filesystem::exists(word, error)) {

@@ -103,7 +103,7 @@ typedef struct THIMBLE_HANDLE thimble_bricks {
 typedef struct THIMBLE_HANDLE thimble_light {
   uint64_t opaque[THIMBLE_WORDS_LIGHT];
 } thimble_light_t;
-/// A picture that is refined until there is no more time. Made by thimble_frame_begin.
+/// A picture that is refined until there is no more time. Made by thimble_frame_make.
 typedef struct THIMBLE_HANDLE thimble_frame {
   uint64_t opaque[THIMBLE_WORDS_FRAME];
 } thimble_frame_t;
@@ -452,12 +452,11 @@ int32_t thimble_tree_trace(const thimble_tree_t* tree, const thimble_ray_t* ray,
 /// Bytes that a frame works in: the picture, rows without gaps, at its front, and a bit a pixel. Each side
 /// 1 .. 16384; 0 beyond that and for an unknown format.
 size_t thimble_frame_bytes(int32_t format, int32_t width_px, int32_t height_px);
-/// Begins a frame: all background. `bytes` are thimble_frame_bytes of the camera's picture; the palette of
+/// Makes a frame, all background. `bytes` are thimble_frame_bytes of the camera's picture; the palette of
 /// `shading` outlives the frame. THIMBLE_BAD_ARGUMENT: null, not open or set, another level, format, mode;
 /// THIMBLE_OUT_OF_MEMORY: size_bytes. Cost: clears the picture.
-int32_t thimble_frame_begin(thimble_frame_t* frame, const thimble_tree_t* tree,
-                            const thimble_camera_t* camera, const thimble_shading_t* shading, int32_t format,
-                            void* bytes, size_t size_bytes);
+int32_t thimble_frame_make(thimble_frame_t* frame, const thimble_tree_t* tree, const thimble_camera_t* camera,
+                           const thimble_shading_t* shading, int32_t format, void* bytes, size_t size_bytes);
 /// Goes on with so many visits of nodes more, from coarse to fine: the bytes hold a whole picture at all
 /// times. What is left over, less than a ray may need, is kept for the next call. THIMBLE_BAD_ARGUMENT:
 /// null, not begun, another tree's level.

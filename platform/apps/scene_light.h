@@ -106,7 +106,10 @@ struct SceneLight {
     for (const Light& one : lights) {
       if (light->is_fast && has_shadows && !one.is_point) {
         const Bytes room = arena->take(SunBricks::bytes(shown.map));
-        (void)SunBricks::make(shown.map, one.place, room, &light->suns[suns++]);
+        SunBricks& sun = light->suns[suns++];
+        if (SunBricks::make(shown.map, one.place, room, &sun) == Status::kOk) {
+          sun.prove();
+        }
       }
     }
   }

@@ -22,6 +22,11 @@ constexpr int64_t wide_product(int32_t a, int32_t b) {
 constexpr uint64_t wide_product_u(uint32_t a, uint32_t b) {
   return uint64_t{a} * b;
 }
+/// a * b where one of them has 64 bits, as a camera's step from pixel to pixel, and the other is a count of 32, which a
+/// loop widens once; callers know that the product stays below 2^63.
+constexpr int64_t wide_multiple(int64_t a, int64_t b) {
+  return a * b;
+}
 /// Whether a * b < c * d, exactly: which of the fractions a / d and c / b is the lesser, for b and d above 0.
 constexpr bool is_product_less(int32_t a, int32_t b, int32_t c, int32_t d) {
   return wide_product(a, b) < wide_product(c, d);

@@ -10,9 +10,9 @@ extern "C" size_t thimble_frame_bytes(int32_t format, int32_t width_px, int32_t 
              : anytime_bytes(width_px, height_px, static_cast<PixelFormat>(format));
 }
 
-extern "C" int32_t thimble_frame_begin(thimble_frame_t* frame, const thimble_tree_t* tree,
-                                       const thimble_camera_t* camera, const thimble_shading_t* shading,
-                                       int32_t format, void* bytes, size_t size_bytes) {
+extern "C" int32_t thimble_frame_make(thimble_frame_t* frame, const thimble_tree_t* tree,
+                                      const thimble_camera_t* camera, const thimble_shading_t* shading,
+                                      int32_t format, void* bytes, size_t size_bytes) {
   const CompactTree* const from = held<CompactTree>(tree);
   const Camera* const view = held<Camera>(camera);
   Shading look;

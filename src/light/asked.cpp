@@ -1,6 +1,6 @@
 // Lit pictures whose rays somebody else traces: the loop of detail/pixel.h, compiled with a frame that is told the
 // answers. As many of them as in dispatch.cpp.
-#include "thimble/light/asked.h"
+#include "thimble/light/host/asked.h"
 
 #include "folded.h"
 #include "through.h"

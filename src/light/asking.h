@@ -4,10 +4,10 @@
 #define THIMBLE_SRC_LIGHT_ASKING_H
 
 #include "arithmetic.h"
-#include "thimble/light/asked.h"
 #include "thimble/light/balls.h"
 #include "thimble/light/detail/pixel.h"
-#include "thimble/light/slope.h"
+#include "thimble/light/host/asked.h"
+#include "thimble/light/host/slope.h"
 #include "thimble/trace/trace.h"
 
 namespace thimble::lit {

@@ -6,7 +6,7 @@
 // which is the gradient of what is solid, blurred by (R^2 - d^2)^2: smooth in the point too, so that no
 // voxel shows. Before that, the surface is followed from column to column along the normal's largest axis;
 // where it leaves its course by kEdgeStep at once, it is taken to go on as before. So a cube stays a cube.
-#include "thimble/light/slope.h"
+#include "thimble/light/host/slope.h"
 
 #include "slope_parts.h"
 #include "thimble/trace/secondary_ray.h"

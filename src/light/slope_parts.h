@@ -4,8 +4,8 @@
 
 #include "../base/bits.h"
 #include "../base/integers.h"
+#include "thimble/light/host/slope_window.h"
 #include "thimble/light/optics.h"
-#include "thimble/light/slope_window.h"
 
 namespace thimble::lit {
 namespace {

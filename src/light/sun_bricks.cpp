@@ -1,8 +1,7 @@
 // Which bricks have nothing behind them towards a distant light: all bricks that a ray from somewhere in one can pass
 // through, layer by layer along the axis on which the light's rays move fastest.
-#include "thimble/light/sun_bricks.h"
-
 #include "../base/bits.h"
+#include "thimble/light/map_render.h"
 #include "thimble/light/optics.h"
 
 namespace thimble {
@@ -13,7 +12,7 @@ size_t SunBricks::bytes(const BrickMap& map) {
   return (static_cast<size_t>((high.x - low.x) * (high.y - low.y) * (high.z - low.z)) + 7) / 8;
 }
 
-Status SunBricks::begin(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun) {
+Status SunBricks::make(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun) {
   const size_t size = bytes(map);
   if (map.directory() == nullptr || towards == Vec3i{}) {
     return Status::kBadArgument;
@@ -34,14 +33,6 @@ Status SunBricks::begin(const BrickMap& map, const Vec3i& towards, Bytes room, S
   result.cells_ = static_cast<uint32_t>(result.side_.x * result.side_.y * result.side_.z);
   *sun = result;
   return Status::kOk;
-}
-
-Status SunBricks::make(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun) {
-  const Status status = begin(map, towards, room, sun);
-  if (status == Status::kOk) {
-    sun->prove(sun->cells_);
-  }
-  return status;
 }
 
 bool SunBricks::prove(uint32_t bricks) {

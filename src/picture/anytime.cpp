@@ -508,7 +508,7 @@ uint32_t AnytimeFrame::mean_error_bound_q8() const {
   if (inexact_ == 0) {
     return 0;
   }
-  const uint64_t greys_q8 = (uint64_t{inexact_} * gray_range_) << 8;  // below 2^44
+  const uint64_t greys_q8 = wide_product_u(inexact_, gray_range_) << 8;  // below 2^44
   return static_cast<uint32_t>(divide(greys_q8 + pixels() - 1, pixels()));
 }
 

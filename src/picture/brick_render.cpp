@@ -3,6 +3,7 @@
 #include "thimble/picture/brick_render.h"
 
 #include "../base/bits.h"
+#include "../base/wide_arithmetic.h"
 #include "band.h"
 
 // Whatever the rest is compiled for, this file is for speed, with the headers that follow. (gcc has these on
@@ -115,8 +116,7 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     }
     y = y1;
   }
-  const uint64_t rays =
-      static_cast<uint64_t>(static_cast<uint32_t>(width)) * static_cast<uint32_t>(band.rows);
+  const uint64_t rays = wide_product_u(static_cast<uint32_t>(width), static_cast<uint32_t>(band.rows));
   done.hits = rays - painter.misses();
   if (counts != nullptr) {
     counts->rays += rays;

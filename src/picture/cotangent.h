@@ -24,7 +24,7 @@ constexpr uint64_t half_angle_cotangent_q39(Q16 fov_degrees) {
   constexpr uint32_t kDegreesQ8 = 1922527338U;  // its reciprocal
 
   const uint32_t angle = static_cast<uint32_t>(fov_degrees.raw);
-  const uint64_t radians_q31 = (uint64_t{angle} * kRadianQ54) >> 23;         // up to 1.05
+  const uint64_t radians_q31 = wide_product_u(angle, kRadianQ54) >> 23;      // up to 1.05
   const uint64_t square_q31 = shift_rounded(radians_q31 * radians_q31, 31);  // up to 1.1
   // Horner's rule on alternating series: 1 - z (c0 - z (c1 - ...)). Every bracket is positive, below 2^32,
   // and every product below 2^64.

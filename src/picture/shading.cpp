@@ -13,8 +13,9 @@ constexpr uint32_t kDepthFall = 255 - kFarBrightness;
 // The camera's affine function at the middle of the picture, in 32.32.
 int64_t at_middle(const Camera& camera, int axis) {
   const Camera::Affine& affine = camera.affine();
-  return affine.base[axis] +
-         (affine.step_x[axis] * (camera.width_px() - 1) + affine.step_y[axis] * (camera.height_px() - 1)) / 2;
+  return affine.base[axis] + (wide_multiple(affine.step_x[axis], camera.width_px() - 1) +
+                              wide_multiple(affine.step_y[axis], camera.height_px() - 1)) /
+                                 2;
 }
 
 uint8_t channel(uint8_t albedo, uint32_t light) {
@@ -34,7 +35,7 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
   }
   for (int axis = 0; axis < 3; ++axis) {
     forward[axis] =
-        camera.is_perspective() ? at_middle(camera, axis) >> 20 : int64_t{camera.direction()[axis]} * 256;
+        camera.is_perspective() ? at_middle(camera, axis) >> 20 : wide_product(camera.direction()[axis], 256);
   }
   if (length == 0 || bounds.empty()) {
     return {};
@@ -46,7 +47,7 @@ DepthRange depth_range(const Camera& camera, const VoxelBox& bounds) {
     int64_t dot = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t plane = ((corner >> axis) & 1U) != 0 ? bounds.high[axis] : bounds.low[axis];
-      dot += int64_t{plane * Q8::kOne - camera.eye()[axis].raw} * forward[axis];
+      dot += wide_multiple(plane * Q8::kOne - camera.eye()[axis].raw, forward[axis]);
       THIMBLE_NOTE(Range::kDepthDot, Exact(dot));
     }
     near_dot = dot < near_dot ? dot : near_dot;

@@ -102,8 +102,8 @@ int thimble_face_in_c(void) {
   WANT(info.voxels == 256 + 8 && info.nodes + info.nodes_free >= 2000);
 
   WANT(thimble_frame_bytes(THIMBLE_FORMAT_GRAY8, WIDTH, HEIGHT) == sizeof frame_bytes);
-  WANT(thimble_frame_begin(&frame, &tree, &camera, &shading, THIMBLE_FORMAT_GRAY8, frame_bytes,
-                           sizeof frame_bytes) == THIMBLE_OK);
+  WANT(thimble_frame_make(&frame, &tree, &camera, &shading, THIMBLE_FORMAT_GRAY8, frame_bytes,
+                          sizeof frame_bytes) == THIMBLE_OK);
   while (thimble_frame_inexact(&frame) != 0) {
     WANT(thimble_frame_refine(&frame, &tree, 5000) == THIMBLE_OK);
   }

@@ -35,8 +35,8 @@ struct Things {
     REQUIRE(thimble_particles_make(&particles, &config, balls.bytes().data, balls.bytes().size) ==
             THIMBLE_OK);
     frame_bytes = ExactBytes(thimble_frame_bytes(THIMBLE_FORMAT_GRAY4, 24, 16));
-    REQUIRE(thimble_frame_begin(&frame, &tree, &camera, &shading, THIMBLE_FORMAT_GRAY4,
-                                frame_bytes.bytes().data, frame_bytes.bytes().size) == THIMBLE_OK);
+    REQUIRE(thimble_frame_make(&frame, &tree, &camera, &shading, THIMBLE_FORMAT_GRAY4,
+                               frame_bytes.bytes().data, frame_bytes.bytes().size) == THIMBLE_OK);
   }
 
   ConstBytes baked;
@@ -248,7 +248,7 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
     (void)thimble_frame_bytes(frame_format, values.any<std::int32_t>(), values.any<std::int32_t>());
     ExactBytes memory(values.bits() % 3000);
     thimble_frame_t frame = {};
-    const std::int32_t begun = thimble_frame_begin(
+    const std::int32_t begun = thimble_frame_make(
         odd.target(&frame), odd.handle(&things.tree), odd.handle(&things.camera), odd.data(&shading),
         frame_format, values.one_in(9) ? nullptr : memory.bytes().data, memory.bytes().size);
     check(begun, odd);

@@ -408,11 +408,11 @@ TEST_CASE("C face: a frame that is refined -> the picture of C++ after every ste
     Picture cpp_bytes(size, 2);
     thimble_frame_t frame = {};
     AnytimeFrame expected;
-    CHECK(thimble_frame_begin(&frame, &tree, &look.c_camera, &look.c_shading, format, c_bytes.data(),
-                              size - 1) == THIMBLE_OUT_OF_MEMORY);
+    CHECK(thimble_frame_make(&frame, &tree, &look.c_camera, &look.c_shading, format, c_bytes.data(),
+                             size - 1) == THIMBLE_OUT_OF_MEMORY);
     CHECK(frame.opaque[0] == 0);
-    REQUIRE(thimble_frame_begin(&frame, &tree, &look.c_camera, &look.c_shading, format, c_bytes.data(),
-                                size) == THIMBLE_OK);
+    REQUIRE(thimble_frame_make(&frame, &tree, &look.c_camera, &look.c_shading, format, c_bytes.data(),
+                               size) == THIMBLE_OK);
     REQUIRE(AnytimeFrame::make(world.scene.tree(), look.camera, look.shading,
                                static_cast<PixelFormat>(format), {cpp_bytes.data(), size},
                                &expected) == Status::kOk);

@@ -56,7 +56,7 @@ int main() {
 C
   {
     printf '# [Sum](src/base/sum.cpp)\n\n    make hello   # says so\n    thimble -o made\n    thimble made # a file that is there\n'
-    printf '    thimble --window     # window\n\n```cpp\n'
+    printf '\n```cpp\n'
     cat "$tree/platform/examples/sum.cpp"
     printf '```\n'
   } >"$tree/README.md"
@@ -132,6 +132,17 @@ mkdir -p "$tree/platform" "$tree/tests/budgets"
 board_tree 1280
 echo 'other,demo,2048,8,1280,64' >>"$tree/tests/budgets/firmware.csv"
 catches board_rows 'has no row for other'
+# frame_tree INSTRUCTIONS: a board that says what a frame takes.
+frame_tree() {
+  mkdir -p "$tree/platform/boards/some" "$tree/tests/budgets"
+  board_tree 1280
+  sed -i 's/text/3.01 million (a few)/' "$tree/platform/README.md"
+  echo "set(BOARD_FRAME_INSTRUCTIONS $1)" >"$tree/platform/boards/some/board.cmake"
+}
+frame_tree 3014999
+passes board_rows
+frame_tree 3015001
+catches board_rows 'the budgets say: .* 3.02 million (a few) |'
 
 fresh
 add include/thimble/base/sum.h '#include <string.h>'
@@ -161,6 +172,20 @@ add src/lone.cpp ''
 catches layering 'stand in rooms'
 add tools/tool.cpp '#include "thimble/base/detail/sum.h"'
 catches layering "the core's own"
+mkdir -p "$tree/include/thimble/base/host" "$tree/platform/wide" "$tree/tests/base"
+add include/thimble/base/host/sum.h '#include "../sum.h"'
+add src/base/sum.cpp '#include "thimble/base/host/sum.h"'
+add tests/base/test_sum.cpp '#include "thimble/base/host/sum.h"'
+add platform/wide/sum.cpp '#include "thimble/base/host/sum.h"'
+passes layering
+add platform/apps/app.cpp '#include "thimble/base/host/sum.h"'
+catches layering "host's own renderer"
+add tools/tool.cpp '#include "thimble/base/host/sum.h"'
+catches layering "host's own renderer"
+mkdir -p "$tree/include/thimble/base/host"
+add include/thimble/base/host/more.h ''
+add include/thimble/base/sum.h '#include "host/more.h"'
+catches layering 'for callers includes none of a folder host'
 add tools/tool.cpp '#include "../src/base/sum.h"'
 catches layering 'never src'
 add platform/port.cpp '#include "../src/base/sum.h"'
@@ -185,6 +210,23 @@ add tools/tool.cpp "$(lines 800 '// nothing')"
 catches sizes 'longer than 800 lines'
 add tools/CMakeLists.txt "$(lines 121 '# nothing')"
 catches sizes 'longer than 120 lines'
+for kind in js py sh; do
+  add "tools/script.$kind" "$(lines 800 nothing)"
+  passes sizes
+  add "tools/script.$kind" nothing
+  catches sizes 'these scripts are longer than 800 lines'
+done
+# headers COUNT: so many for callers, and two that are not.
+headers() {
+  mkdir -p "$tree/include/thimble/base/detail" "$tree/include/thimble/base/host"
+  for number in $(seq 2 "$1") detail/0 host/0; do
+    echo >"$tree/include/thimble/base/$number.h"
+  done
+}
+headers 34
+passes sizes
+headers 35
+catches sizes '35 headers for callers'
 add README.md "$(lines 150 nothing)"
 catches sizes 'longer than 150 lines'
 add README.md "$(lines 23 'five ' | tr -d '\n')"
@@ -222,10 +264,41 @@ add README.md '    thimble gone.vox   # a scene'
 catches readme_commands 'thimble gone.vox'
 add README.md '    make unheard-of'
 catches readme_commands 'make unheard-of'
+if command -v Xvfb >/dev/null && command -v xdotool >/dev/null; then
+  add README.md '    thimble --window     # window'
+  catches readme_commands 'opens no window'
+fi
+add README.md '    make install   # somewhere'
+add Makefile 'all:
+	false
+install: all
+	mkdir -p "$(PREFIX)" && echo installed >"$(PREFIX)/made"'
+passes readme_commands
+sed -i 's/echo installed/false/' "$tree/Makefile"
+catches readme_commands 'this fails: make install'
 
 for fault in 'float x;' 'int* p = new int;' 'auto y = std::move(x);' 'virtual void f();' '/* a */ double z; // b'; do
   add src/base/sum.cpp "$fault"
   catches words 'must do without'
+done
+add include/thimble/base/sum.h 'struct Sum { static Status make(int a); static Status open(int a); Status begin(); };'
+passes words
+for fault in 'static Status begin(int a);' 'static constexpr Status set(int a);'; do
+  add include/thimble/base/sum.h "struct Total { $fault };"
+  catches words 'is called open or make'
+done
+add include/thimble/thimble_c.h 'int32_t thimble_sum_make(int count);'
+passes words
+add include/thimble/thimble_c.h 'int32_t thimble_sum_begin(int count);'
+catches words 'in C a handle is filled by'
+for fault in 'return int64_t{a} * b;' 'return b * static_cast<uint64_t>(f(a));' 'return x * affine.step_x[axis];'; do
+  add src/base/sum.cpp "// $fault"
+  mkdir -p "$tree/src/trace" "$tree/src/plane"
+  add src/plane/sum.cpp "long f(int a) { $fault }"
+  add src/trace/sum.cpp 'long f(int a) { return (int64_t{a} << 3) + int64_t{1} - affine.step_x[axis]; }'
+  passes words
+  add src/trace/sum.cpp "long f(int a) { $fault }"
+  catches words 'a product of 64 bits has a name'
 done
 add src/base/sum.cpp 'int   x   ;'
 catches format 'make format'

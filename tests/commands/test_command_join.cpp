@@ -12,7 +12,7 @@
 
 #include "output/output_file.h"
 #include "output/part_file.h"
-#include "readers/source.h"
+#include "readers/input_error.h"
 #include "scene/random.h"
 #include "support/run_command.h"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "support/scene_under_test.h"
+#include "thimble/light/map_render.h"
 #include "thimble/light/optics.h"
 #include "thimble/light/scene.h"
-#include "thimble/light/sun_bricks.h"
 #include "thimble/light/water.h"
 #include "thimble/tree/octree.h"
 
@@ -151,7 +151,7 @@ struct SunWorld {
   Vec3i side;
 };
 
-// sun_bricks.h: k layers on along the sun's largest axis, a ray from a brick has moved by more than k - 1 and less than
+// sun_bricks.cpp: k layers on along the sun's largest axis, a ray from a brick has moved by more than k - 1 and less than
 // k + 1 layers' share of the others.
 TEST_CASE(
     "light limits: bricks that the sun reaches freely -> those that their definition says, in whole bytes") {
@@ -173,6 +173,7 @@ TEST_CASE(
     std::vector<std::uint8_t> room(SunBricks::bytes(world.map));
     SunBricks sun;
     REQUIRE(SunBricks::make(world.map, towards, {room.data(), room.size()}, &sun) == Status::kOk);
+    CHECK_FALSE(sun.prove());
     REQUIRE(SunBricks::make(world.map, towards, {room.data(), room.size() - 1}, &sun) ==
             Status::kOutOfMemory);
     int c = 0;

@@ -79,6 +79,7 @@ TEST_CASE(
     HeapBytes sun_bytes(SunBricks::bytes(map));
     SunBricks sun;
     REQUIRE(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOk);
+    sun.prove();
     for (int number = 0; number < kPixelFormats; ++number) {
       const auto format = static_cast<PixelFormat>(number);
       for (int bits = 0; bits < 8; ++bits) {
@@ -107,6 +108,7 @@ TEST_CASE(
   HeapBytes sun_bytes(SunBricks::bytes(map));
   SunBricks sun;
   REQUIRE(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOk);
+  sun.prove();
   world.look({-6 * 256 + 3, -9 * 256 + 17, 18 * 256}, {16 * 256, 16 * 256, 4 * 256}, 40, 240, 176);
   for (const PixelFormat format : {PixelFormat::kRgb565, PixelFormat::kRgb565Be, PixelFormat::kBgr565,
                                    PixelFormat::kGray4, PixelFormat::kMono1Pages}) {
@@ -206,12 +208,12 @@ TEST_CASE(
   const std::size_t size = SunBricks::bytes(map);
   REQUIRE(size > 1);
   HeapBytes sun_bytes(size);
-  CHECK(SunBricks::begin(map, {1, 2, 3}, {nullptr, size}, &sun) == Status::kOutOfMemory);
-  CHECK(SunBricks::begin(map, {1, 2, 3}, {sun_bytes.span().data, size - 1}, &sun) == Status::kOutOfMemory);
-  CHECK(SunBricks::begin(map, {0, 0, 0}, sun_bytes.span(), &sun) == Status::kBadArgument);
-  CHECK(SunBricks::begin(BrickMap(), {1, 2, 3}, sun_bytes.span(), &sun) == Status::kBadArgument);
+  CHECK(SunBricks::make(map, {1, 2, 3}, {nullptr, size}, &sun) == Status::kOutOfMemory);
+  CHECK(SunBricks::make(map, {1, 2, 3}, {sun_bytes.span().data, size - 1}, &sun) == Status::kOutOfMemory);
+  CHECK(SunBricks::make(map, {0, 0, 0}, sun_bytes.span(), &sun) == Status::kBadArgument);
+  CHECK(SunBricks::make(BrickMap(), {1, 2, 3}, sun_bytes.span(), &sun) == Status::kBadArgument);
   CHECK_FALSE(sun.belongs_to(map, {1, 2, 3}));
-  CHECK(SunBricks::begin(map, {1, 2, 3}, sun_bytes.span(), &sun) == Status::kOk);
+  CHECK(SunBricks::make(map, {1, 2, 3}, sun_bytes.span(), &sun) == Status::kOk);
   CHECK(sun.belongs_to(map, {1, 2, 3}));
 }
 

@@ -159,12 +159,14 @@ LitLights hard_lights(std::mt19937_64& random, const BrickMap& map, int level) {
     const Bytes room(made.bytes.data() + size * made.free.size(), size);
     SunBricks sun;
     if (proven == 1) {
-      REQUIRE(SunBricks::begin(map, towards, room, &sun) == Status::kOk);
+      REQUIRE(SunBricks::make(map, towards, room, &sun) == Status::kOk);
       sun.prove(static_cast<std::uint32_t>(pick_int(random, 0, 400)));
     } else if (proven == 2) {
       REQUIRE(SunBricks::make(map, {towards.x, towards.y, towards.z + 1000}, room, &sun) == Status::kOk);
+      sun.prove();
     } else if (proven != 0) {
       REQUIRE(SunBricks::make(map, towards, room, &sun) == Status::kOk);
+      sun.prove();
     }
     made.free.push_back(sun);
   }
@@ -308,6 +310,7 @@ TEST_CASE(
   std::vector<std::uint8_t> room(SunBricks::bytes(scene.map));
   SunBricks sun;
   REQUIRE(SunBricks::make(scene.map, light.place, {room.data(), room.size()}, &sun) == Status::kOk);
+  sun.prove();
   Camera camera;
   const Vec3Q8 eye{Q8::from_raw(15 * 256), Q8::from_raw(9 * 256 + 100), Q8::from_raw(8 * 256)};
   REQUIRE(camera.set(PerspectiveView{eye, {-1, 0, 0}, {}, Q16::saturate(20), 33, 17, 0}, 4) == Status::kOk);
@@ -372,13 +375,14 @@ TEST_CASE("bricks free towards a sun: bad arguments, and bits that another light
   CHECK(SunBricks::make(scene.map, {0, 0, 1}, {room.data(), room.size() - 1}, &sun) == Status::kOutOfMemory);
   CHECK_FALSE(sun.belongs_to(scene.map, {0, 0, 1}));
   REQUIRE(SunBricks::make(scene.map, {3, -1, 9}, {room.data(), room.size()}, &sun) == Status::kOk);
+  CHECK_FALSE(sun.prove());
   CHECK(sun.belongs_to(scene.map, {3, -1, 9}));
   CHECK_FALSE(sun.belongs_to(scene.map, {3, -1, 8}));
   CHECK_FALSE(sun.belongs_to(BrickMap{}, {3, -1, 9}));
   const std::vector<std::uint8_t> whole = room;
   CHECK(std::count(whole.begin(), whole.end(), 0) < static_cast<std::ptrdiff_t>(whole.size()));
   // Slices of any size come to the same.
-  REQUIRE(SunBricks::begin(scene.map, {3, -1, 9}, {room.data(), room.size()}, &sun) == Status::kOk);
+  REQUIRE(SunBricks::make(scene.map, {3, -1, 9}, {room.data(), room.size()}, &sun) == Status::kOk);
   CHECK(std::count(room.begin(), room.end(), 0) == static_cast<std::ptrdiff_t>(room.size()));
   int slices = 1;
   while (sun.prove(7)) {

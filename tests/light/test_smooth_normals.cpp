@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "support/lit_world.h"
+#include "thimble/light/host/slope.h"
 #include "thimble/light/optics.h"
 #include "thimble/light/render.h"
-#include "thimble/light/slope.h"
 #include "thimble/trace/secondary_ray.h"
 
 namespace {

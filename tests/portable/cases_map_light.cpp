@@ -87,6 +87,7 @@ void light(Check& check, int index) {
   State* state = new (bytes.data) State;
   THIMBLE_REQUIRE_OK(BrickMap::make(check.world.compact, map, &state->map));
   THIMBLE_REQUIRE_OK(SunBricks::make(state->map, kLights[0].place, sun, &state->sun));
+  state->sun.prove();
   THIMBLE_REQUIRE(look(check, index));
   state->scene.surfaces = {kSurfaces, sizeof kSurfaces / sizeof kSurfaces[0]};
   state->scene.lights = {kLights, kLamps ? sizeof kLights / sizeof kLights[0] : kSuns};

@@ -11,7 +11,7 @@
 #include "output/part_file.h"
 #include "output/progress.h"
 #include "output/units.h"
-#include "readers/source.h"
+#include "readers/input_error.h"
 #include "scene/film.h"
 
 namespace thimble::tools {

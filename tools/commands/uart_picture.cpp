@@ -12,7 +12,8 @@
 #include "output/image.h"
 #include "output/output_file.h"
 #include "readers/file_bytes.h"
-#include "readers/source.h"
+#include "readers/input_error.h"
+#include "thimble/picture/camera.h"
 
 namespace thimble::tools {
 namespace {

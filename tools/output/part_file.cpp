@@ -13,7 +13,7 @@
 
 #include "output/output_file.h"
 #include "output/units.h"
-#include "readers/source.h"
+#include "readers/input_error.h"
 #include "thimble/picture/camera.h"
 
 namespace thimble::tools {

@@ -17,8 +17,8 @@
 #include <string_view>
 #include <utility>
 
+#include "readers/input_error.h"
 #include "readers/shared_bytes.h"
-#include "readers/source.h"
 
 namespace thimble::tools {
 

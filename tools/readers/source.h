@@ -11,30 +11,17 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "readers/input_error.h"
+#include "readers/progress.h"
 #include "readers/shared_bytes.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 
 namespace thimble::tools {
-
-/// Input that cannot be used. `what()` is one clear sentence without the file's name and without a full stop
-/// at its end: it names the place (line, byte offset, chunk) and the limit. The command prints
-/// `thimble: FILE: sentence` on stderr and exits with status 1.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// An option that this input can never take, as the command line alone tells: exit status 2.
-class UsageError : public InputError {
- public:
-  using InputError::InputError;
-};
 
 struct Rgb {
   std::uint8_t r = 255, g = 255, b = 255;
@@ -133,9 +120,6 @@ struct SceneText;
 
 using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh, BakedFile,
                             std::shared_ptr<const SceneText>, std::unique_ptr<VoxelGrid>>;
-
-/// Called now and then while reading: fraction done, 0..1. May throw to cancel.
-using Progress = std::function<void(double)>;
 
 }  // namespace thimble::tools
 

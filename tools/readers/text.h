@@ -11,7 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "readers/source.h"
+#include "readers/input_error.h"
+#include "readers/progress.h"
 
 namespace thimble::tools {
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scene/demo_world.h"
+#include "scene/generator_words.h"
 #include "scene/palette.h"
 #include "scene/random.h"
 
@@ -465,6 +466,14 @@ std::optional<GeneratorSpec> parse_generator(const std::string& text) {
     parse_options(text.substr(options + 1), spec);
   }
   return spec;
+}
+
+bool is_generator(const std::string& word) {
+  try {
+    return parse_generator(word).has_value();
+  } catch (const InputError&) {
+    return true;
+  }
 }
 
 std::vector<std::string> generator_examples() {

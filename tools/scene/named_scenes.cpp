@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "output/suggestion.h"
-#include "readers/source.h"
+#include "readers/input_error.h"
 
 namespace thimble::tools {
 namespace {

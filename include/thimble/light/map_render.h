@@ -14,12 +14,54 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../base/memory.h"
+#include "../base/status.h"
+#include "../base/vec.h"
 #include "../picture/brick_render.h"
 #include "../tree/brick_map.h"
 #include "render.h"
-#include "sun_bricks.h"
 
 namespace thimble {
+
+/// From where nothing is in the way to a distant light: a bit a brick of the map, so that most shadow rays end after a few
+/// voxels. The bits' bytes and the map's outlive it.
+///
+///     SunBricks sun;
+///     const Bytes bytes = arena.take(SunBricks::bytes(map));
+///     SunBricks::make(map, scene.lights[0].place, bytes, &sun); sun.prove();
+class SunBricks {
+ public:
+  SunBricks() = default;
+
+  /// Bytes that `make` takes: a bit a brick of the map's box, 512 for a full world of 64.
+  static size_t bytes(const BrickMap& map);
+
+  /// Nothing proven yet, which is never wrong: `towards` is as `Light::place` of a distant light. Errors, `*sun` as it
+  /// was: kOutOfMemory; kBadArgument for no direction or no map.
+  static Status make(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun);
+
+  /// Proves for up to `bricks` more whether anything solid lies behind them towards the light: all at once, or a few at a
+  /// time for a light that moves. Whether any are left. Cost: some ten instructions for each brick that lies behind
+  /// another, up to the first that is not empty; some millions in a world of 64.
+  bool prove(uint32_t bricks = UINT32_MAX);
+
+  /// Whether it is of this map, which has not been opened anew, and of a distant light there.
+  bool belongs_to(const BrickMap& map, const Vec3i& towards) const {
+    return bits_ != nullptr && directory_ == map.directory() && towards_ == towards;
+  }
+  /// A bit a brick, in the directory's order, the lowest of a byte first.
+  const uint8_t* bits() const { return bits_; }
+
+ private:
+  bool is_free(const Vec3i& brick) const;
+
+  uint8_t* bits_ = nullptr;
+  const uint8_t* directory_ = nullptr;
+  Vec3i towards_;
+  Vec3i side_;
+  uint32_t done_ = 0;
+  uint32_t cells_ = 0;
+};
 
 /// Whether a set has the fast way: direct light alone, or with shadows and any of occlusion, emission and sky.
 constexpr bool is_flat(EffectSet effects) {

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/light/asked.h"
+#include "thimble/light/host/asked.h"
 #include "wide/lit/taker.h"
 #include "wide/rays/ray_map.h"
 

@@ -3,7 +3,7 @@
 /// traces one after another.
 ///
 /// Every pixel is the core's, for every instruction set and number of threads: what a ray shows is worked out
-/// by the core's own code, which is told the answers (light/asked.h), and each answer is the core's.
+/// by the core's own code, which is told the answers (light/host/asked.h), and each answer is the core's.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_LIT_RENDERER_H
 #define THIMBLE_PLATFORM_WIDE_LIT_LIT_RENDERER_H
 

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #include "thimble/base/memory.h"
-#include "thimble/light/asked.h"
+#include "thimble/light/host/asked.h"
 #include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
 #include "wide/lit/pixel_flow.h"

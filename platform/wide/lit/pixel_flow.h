@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "thimble/light/asked.h"
+#include "thimble/light/host/asked.h"
 #include "wide/lit/lit_renderer.h"
 
 namespace thimble::wide {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "thimble/light/slope.h"
+#include "thimble/light/host/slope.h"
 #include "wide/lit/kernels.h"
 
 namespace thimble::wide {

@@ -11,8 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "thimble/light/asked.h"
-#include "thimble/light/slope_window.h"
+#include "thimble/light/host/asked.h"
+#include "thimble/light/host/slope_window.h"
 
 namespace thimble::wide {
 

@@ -4,7 +4,7 @@
 #include "../asking.h"
 #include "slope_rays.h"
 #include "thimble/light/detail/pixel.h"
-#include "thimble/light/slope.h"
+#include "thimble/light/host/slope.h"
 
 namespace thimble::lit {
 namespace {

@@ -4,6 +4,7 @@
 #define THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
 
 #include "../../base/ranges.h"
+#include "../../base/wide_arithmetic.h"
 #include "course.h"
 
 namespace thimble::bricks {
@@ -56,8 +57,8 @@ void margins_of(const Camera& camera, int32_t across_px, int32_t down_px, Vec3i*
   across_px = across_px < camera.width_px() ? across_px : camera.width_px();
   down_px = down_px < camera.height_px() ? down_px : camera.height_px();
   for (int axis = 0; axis < 3; ++axis) {
-    const int64_t across = affine.step_x[axis] * (across_px - 1);
-    const int64_t down = affine.step_y[axis] * (down_px - 1);
+    const int64_t across = wide_multiple(affine.step_x[axis], across_px - 1);
+    const int64_t down = wide_multiple(affine.step_y[axis], down_px - 1);
     const int64_t least = (across < 0 ? across : 0) + (down < 0 ? down : 0);
     const int64_t greatest = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
     // Halves go away from zero: half a unit below may be rounded down.

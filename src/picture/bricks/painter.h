@@ -92,7 +92,8 @@ class BrickPainter {
     Camera::Vec3Q32 value;
     const Camera::Affine& affine = frame_.camera.affine();
     for (int axis = 0; axis < 3; ++axis) {
-      value[axis] = affine.base[axis] + tile.x0 * affine.step_x[axis] + tile.y0 * affine.step_y[axis];
+      value[axis] = affine.base[axis] + wide_multiple(tile.x0, affine.step_x[axis]) +
+                    wide_multiple(tile.y0, affine.step_y[axis]);
     }
     const Fan fan(value, frame_.tile_low, frame_.tile_high);
     int32_t slab = 0;
@@ -125,7 +126,7 @@ class BrickPainter {
       for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
         if (begun && !sweep_->has_quad(x - tile.x0, y - tile.y0)) {
           for (int axis = 0; axis < 3; ++axis) {
-            at[axis] += kQuadAcrossPx * affine.step_x[axis];
+            at[axis] += wide_multiple(kQuadAcrossPx, affine.step_x[axis]);
           }
           continue;
         }
@@ -133,11 +134,11 @@ class BrickPainter {
                         y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1};
         draw_quad(quad, at, fan, slab);
         for (int axis = 0; axis < 3; ++axis) {
-          at[axis] += kQuadAcrossPx * affine.step_x[axis];
+          at[axis] += wide_multiple(kQuadAcrossPx, affine.step_x[axis]);
         }
       }
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += kQuadDownPx * affine.step_y[axis];
+        row[axis] += wide_multiple(kQuadDownPx, affine.step_y[axis]);
       }
     }
   }

@@ -214,7 +214,8 @@ class SightPainter {
     Camera::Vec3Q32 row;
     const Camera::Affine& affine = frame_.camera.affine();
     for (int axis = 0; axis < 3; ++axis) {
-      row[axis] = affine.base[axis] + tile.x0 * affine.step_x[axis] + tile.y0 * affine.step_y[axis];
+      row[axis] = affine.base[axis] + wide_multiple(tile.x0, affine.step_x[axis]) +
+                  wide_multiple(tile.y0, affine.step_y[axis]);
     }
     const Fan fan(row, frame_.tile_low, frame_.tile_high);
     int32_t slab = 0;
@@ -250,11 +251,11 @@ class SightPainter {
                     at, fan, slab);
         }
         for (int axis = 0; axis < 3; ++axis) {
-          at[axis] += kQuadAcrossPx * affine.step_x[axis];
+          at[axis] += wide_multiple(kQuadAcrossPx, affine.step_x[axis]);
         }
       }
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += kQuadDownPx * affine.step_y[axis];
+        row[axis] += wide_multiple(kQuadDownPx, affine.step_y[axis]);
       }
     }
   }

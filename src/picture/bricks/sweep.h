@@ -104,7 +104,8 @@ void find_direction(const Course& course, const Camera::Vec3Q32& value, uint32_t
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axis[k];
     const int64_t own = (course.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis];
-    const int64_t sum = own + x * course.step_x[axis] + y * course.step_y[axis] + (int64_t{1} << 31);
+    const int64_t sum = own + wide_multiple(x, course.step_x[axis]) + wide_multiple(y, course.step_y[axis]) +
+                        (int64_t{1} << 31);
     d[k] = static_cast<uint32_t>(static_cast<uint64_t>(sum) >> 32);
   }
 }
@@ -144,7 +145,7 @@ bool set_steps(const Camera& camera, Sweep* sweep) {
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t x = affine.step_x[axis] < 0 ? -affine.step_x[axis] : affine.step_x[axis];
     const int64_t y = affine.step_y[axis] < 0 ? -affine.step_y[axis] : affine.step_y[axis];
-    const int64_t here = (kTileAcrossPx - 1) * x + (kTileDownPx - 1) * y;
+    const int64_t here = wide_multiple(kTileAcrossPx - 1, x) + wide_multiple(kTileDownPx - 1, y);
     most = here > most ? here : most;
   }
   constexpr int kMostBits = 12;

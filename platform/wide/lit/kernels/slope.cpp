@@ -5,7 +5,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "thimble/light/slope_window.h"
+#include "thimble/light/host/slope_window.h"
 #include "wide/lit/kernels.h"
 
 HWY_BEFORE_NAMESPACE();

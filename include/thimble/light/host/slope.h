@@ -1,16 +1,16 @@
 /// @file slope.h
 /// The slope of a surface of voxels: the gradient of what is solid around a point of it. What
 /// Effect::kSmoothNormals asks for at every hit; src/light/README.md says how it was chosen.
-#ifndef THIMBLE_LIGHT_SLOPE_H
-#define THIMBLE_LIGHT_SLOPE_H
+#ifndef THIMBLE_LIGHT_HOST_SLOPE_H
+#define THIMBLE_LIGHT_HOST_SLOPE_H
 
 #include <stdint.h>
 
-#include "../base/memory.h"
-#include "../base/vec.h"
-#include "../picture/shading.h"
-#include "../tree/compact_tree.h"
-#include "scene.h"
+#include "../../base/memory.h"
+#include "../../base/vec.h"
+#include "../../picture/shading.h"
+#include "../../tree/compact_tree.h"
+#include "../scene.h"
 
 namespace thimble::lit {
 

@@ -24,18 +24,18 @@
 ///
 /// Light through clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for
 /// each light. What is rare is asked of the tree at once all the same: single voxels, water.
-#ifndef THIMBLE_LIGHT_ASKED_H
-#define THIMBLE_LIGHT_ASKED_H
+#ifndef THIMBLE_LIGHT_HOST_ASKED_H
+#define THIMBLE_LIGHT_HOST_ASKED_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../base/status.h"
-#include "../trace/ray.h"
-#include "../trace/secondary_ray.h"
-#include "../tree/compact_tree.h"
-#include "detail/pixel.h"
-#include "scene.h"
+#include "../../base/status.h"
+#include "../../trace/ray.h"
+#include "../../trace/secondary_ray.h"
+#include "../../tree/compact_tree.h"
+#include "../detail/pixel.h"
+#include "../scene.h"
 
 namespace thimble::lit {
 

@@ -1,13 +1,13 @@
 /// @file slope_window.h
 /// The window in which the slope of a surface is found (slope.h), for a host that keeps what many points of a face share.
-#ifndef THIMBLE_LIGHT_SLOPE_WINDOW_H
-#define THIMBLE_LIGHT_SLOPE_WINDOW_H
+#ifndef THIMBLE_LIGHT_HOST_SLOPE_WINDOW_H
+#define THIMBLE_LIGHT_HOST_SLOPE_WINDOW_H
 
 #include <stdint.h>
 
-#include "../base/vec.h"
-#include "../picture/shading.h"
-#include "../tree/compact_tree.h"
+#include "../../base/vec.h"
+#include "../../picture/shading.h"
+#include "../../tree/compact_tree.h"
 #include "slope.h"
 
 namespace thimble::lit {
