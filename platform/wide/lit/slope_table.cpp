@@ -84,8 +84,9 @@ void turn_from(int axis, bool upwards, const ColumnBits& columns, uint16_t (*row
   }
 }
 
-// The order in which the surface is followed, ring by ring and the corners of a ring last; and from which three columns
-// the next one's height is expected: that of the first and of the second, less that of the third.
+// The order in which the surface is followed, ring by ring and the corners of a ring last; and from which
+// three columns the next one's height is expected: that of the first and of the second, less that of the
+// third.
 struct Step {
   int8_t u;
   int8_t v;
@@ -272,7 +273,7 @@ uint32_t mixed(const Vec3i& place, uint32_t rest) {
 
 }  // namespace
 
-const lit::SlopeWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q12, uint32_t* visits) {
+const KnownWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q12) {
   KnownWindow& known = windows_[mixed(low, index_q12) & (count_ / 4 - 1)];
   if (!known.is_known || known.window.low != low || known.index_q12 != index_q12) {
     known = {};
@@ -280,12 +281,12 @@ const lit::SlopeWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q
     known.index_q12 = index_q12;
     known.is_known = true;
     const lit::Body body{frame_->scene.surfaces, frame_->effects, index_q12};
-    lit::read_slope_window(frame_->tree, body, &known.window, visits);
+    lit::read_slope_window(frame_->tree, body, &known.window, &known.visits);
   }
-  return known.window;
+  return known;
 }
 
-KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t index_q12, uint32_t* visits) {
+KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t index_q12) {
   const uint8_t number = number_of(face.axis, !face.negative);
   KnownSlope& known = places_[mixed(voxel, number + 8U * index_q12) & (count_ - 1)];
   if (known.face == number && known.voxel == voxel && known.index_q12 == index_q12) {
@@ -299,7 +300,9 @@ KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t inde
   for (int axis = 0; axis < 3; ++axis) {
     low[axis] = lit::slope_window_low(voxel[axis]);
   }
-  turn_to(face.axis, !face.negative, window_at(low, index_q12, visits).rows, &known.columns);
+  const KnownWindow& window = window_at(low, index_q12);
+  known.visits = window.visits;
+  turn_to(face.axis, !face.negative, window.window.rows, &known.columns);
   Columns columns(&known.columns, middle_of(voxel, face), face.axis, !face.negative, false);
   const unsigned behind = 3U << (columns.middle_w - 2);
   static_assert(lit::kSlopeShell == 3);
@@ -311,7 +314,8 @@ KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t inde
 
 Vec3i SlopeTable::normal(const Vec3Q8& at, const Face& face, uint16_t index_q12, uint32_t* visits) {
   const Vec3i voxel{at.x.floor(), at.y.floor(), at.z.floor()};
-  KnownSlope& known = find(voxel, face, index_q12, visits);
+  KnownSlope& known = find(voxel, face, index_q12);
+  *visits += known.visits;
   Vec3i point;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t low = lit::slope_window_low(voxel[axis]) * Q8::kOne;
