@@ -65,8 +65,9 @@ LitCase random_smooth_light(std::mt19937_64& random, int level) {
   lit.effects &=
       pick(random, 0, 1) == 0 ? Effect::kAll : ~(Effect::kFog | Effect::kWater | Effect::kDepthCue);
   lit.effects |= pick(random, 0, 2) == 0 ? Effect::kNone : Effect::kGlass | Effect::kMirror;
-  lit.scene.occlusion.reach =
-      static_cast<std::uint16_t>(pick(random, 0, 3) == 0 ? pick(random, 1, 65535) : pick(random, 1, 30));
+  // One in four reaches far.
+  const std::int64_t reach = pick(random, 1, 40);
+  lit.scene.occlusion.reach = static_cast<std::uint16_t>(reach > 30 ? 65535 - 6553 * (40 - reach) : reach);
   return lit;
 }
 
