@@ -30,8 +30,8 @@
 
 #include <stdint.h>
 
-// What is compiled for each instruction set includes no public header: it takes longest, and stays as it is when
-// one of those changes.
+// What is compiled for each instruction set includes no public header: it takes longest, and stays as it is
+// when one of those changes.
 namespace thimble {
 class Camera;
 class CompactTree;

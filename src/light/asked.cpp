@@ -15,10 +15,9 @@ void follow_asked(AskedFrame& frame, const PendingRay& now, PendingRay* pending,
 
 template <EffectSet kSet>
 void shine(AskedFrame& frame, Color* sum) {
-  const KnownRay& ray = *frame.ray;
-  const Color color =
-      ray.has_slope ? slope_color<kSet>(frame, ray.spot, ray.slope) : face_color<kSet>(frame, ray.spot);
-  frame.ray->has_lights = true;
+  KnownRay& ray = *frame.ray;
+  const Color color = slope_color<kSet>(frame, ray.spot, ray.slope);
+  ray.has_lights = true;
   add(color, ray.weight, sum);
 }
 
@@ -126,43 +125,6 @@ void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg) {
   leg->medium = ray.begins_in;
 }
 
-namespace {
-
-// Whether a face is turned away from a lamp: its ray's component along the axis, rounded, has this sign or is 0.
-bool is_turned_away(const Light& lamp, const Spot& spot) {
-  const int axis = spot.face.axis;
-  const int32_t way = lamp.place[axis] - spot.at[axis].raw;
-  return spot.face.negative ? way >= 0 : way <= 0;
-}
-
-}  // namespace
-
-bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, LightRay* ray) {
-  KnownLight& known = frame.lights[number];
-  frame.way = &known.way;
-  if (!frame.ray->has_lights) {
-    known.way = {};
-  }
-  if (!frame.scene.lights[number].is_point) {
-    const int face = 2 * spot.face.axis + (spot.face.negative ? 0 : 1);
-    KnownLight& sun = frame.suns[6 * number + static_cast<size_t>(face)];
-    if (!sun.is_known) {
-      sun.shines = light_ray(frame.scene.lights[number], spot, &sun.ray);
-      sun.is_known = true;
-    }
-    *ray = sun.ray;
-    ray->ray.origin = spot.at;
-    return sun.shines;
-  }
-  if (!frame.ray->has_lights) {
-    const Light& lamp = frame.scene.lights[number];
-    known.shines = !is_turned_away(lamp, spot) && light_ray(lamp, spot, &known.ray);
-  }
-  if (known.shines) {
-    *ray = known.ray;
-  }
-  return known.shines;
-}
 bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, const Slope& slope, LightRay* ray) {
   KnownLight& known = frame.lights[number];
   frame.way = &known.way;

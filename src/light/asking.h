@@ -31,11 +31,12 @@ inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, cons
   count_result(frame, kind, hit->kind, hit->visits);
 }
 
-/// The same for a ray of occlusion round a slope.
-inline void find_around(AskedFrame& frame, const Ray& ray, Hit* hit) {
+/// The same for a ray of occlusion round a slope, `aimed()`.
+template <class Aimed>
+inline void find_around(AskedFrame& frame, const Aimed& aimed, Hit* hit) {
   const Answer* answer = frame.look();
   if (answer == nullptr) {
-    frame.note(Question::kAround, ray, {});
+    frame.note(Question::kAround, aimed(), {});
     *hit = Hit{};
     return;
   }

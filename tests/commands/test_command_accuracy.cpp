@@ -422,7 +422,7 @@ TEST_CASE(
 
 TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near what was counted there") {
   if (kSanitized) {
-    return;  // of one size alone, and counts are the same
+    return;  // It draws one size, and a sanitized build counts the same.
   }
   const TemporaryFolder folder;
   accuracy(

@@ -359,23 +359,31 @@ TEST_CASE("bake: a .h -> compiles as C and C++ without a warning and holds the .
   // A file's name may hold anything.
   const std::string odd = folder.write("* \\ ?\n\".xyz", "1 2 3\n");
   check_ok({"bake", odd, "-o", folder.path("odd.h"), "--quiet", "--name", "odd"});
+  const std::string lamps =
+      folder.write("lamps.scene",
+                   "depth 4\nsun toward -5 -9 16\nlamp at 2 6 14 color 255 220 180 reach 12\n"
+                   "lamp at 9 6 14 color 90 220 180 reach 7\nmaterial floor color 170 150 130\n"
+                   "box floor from 0 0 0 to 16 16 2\n");
+  check_ok({"bake", lamps, "-o", folder.path("lamps.h"), "--quiet", "--name", "lit"});
   const std::string source =
       folder.write("main.c",
                    "#include \"s.h\"\n"
                    "#include \"s.h\"\n"
                    "#include \"other.h\"\n"
                    "#include \"odd.h\"\n"
+                   "#include \"lamps.h\"\n"
                    "#include <stdio.h>\n"
                    "#if THIMBLE_SCENE_DEPTH != 5 || THIMBLE_SCENE_VERSION != 1 || \\\n"
                    "    THIMBLE_SCENE_VOXELS < 1000 || !THIMBLE_SCENE_HAS_CAMERA || \\\n"
                    "    !THIMBLE_SCENE_IS_PERSPECTIVE || THIMBLE_SCENE_HAS_BRICK_MAP || \\\n"
                    "    THIMBLE_SCENE_CRC32 == 0 || THIMBLE_SCENE_IS_ORTHOGRAPHIC || \\\n"
-                   "    MY_SCENE2_IS_PERSPECTIVE || !MY_SCENE2_IS_ORTHOGRAPHIC\n"
+                   "    MY_SCENE2_IS_PERSPECTIVE || !MY_SCENE2_IS_ORTHOGRAPHIC || \\\n"
+                   "    THIMBLE_SCENE_LAMPS != 0 || LIT_LAMPS != 2\n"
                    "#error facts\n"
                    "#endif\n"
                    "int main(void) {\n"
                    "  if (((uintptr_t)thimble_scene) % 4 != 0) return 3;\n"
-                   "  if (my_Scene2[0] != 0x54 || odd[1] != 0x4D) return 4;\n"
+                   "  if (my_Scene2[0] != 0x54 || odd[1] != 0x4D || lit[1] != 0x4D) return 4;\n"
                    "  return fwrite(thimble_scene, 1, THIMBLE_SCENE_BYTES, stdout) != "
                    "sizeof thimble_scene;\n"
                    "}\n");

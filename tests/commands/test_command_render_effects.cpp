@@ -116,17 +116,19 @@ Direct draw_directly(const std::string& scene, thimble::PixelFormat format) {
 TEST_CASE("render effects: any number of threads -> the same picture and counts, dithered and sampled too") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kScene);
-  for (const Words& more : {Words{}, {"--samples", "4"}, {"--memory", "64K"}}) {
+  for (const Words& more : {Words{}, {"--samples", "4"}, {"--memory", "64K"}, {"--effects", "all"}}) {
+    // Slopes are kept by each thread: in a picture so large that every one has some.
+    const std::string size = more == Words{"--effects", "all"} ? "160x121" : "50x37";
     for (const char* ending : {".ppm", ".pbm"}) {
       Words alone = more;
       alone.insert(alone.end(), {"--threads", "1"});
-      const Picture one = render(scene, alone, ending, "50x37");
+      const Picture one = render(scene, alone, ending, size);
       CHECK(one.stats["threads"] == 1);
       for (const char* threads : {"2", "5"}) {
         CAPTURE(threads);
         Words words = more;
         words.insert(words.end(), {"--threads", threads});
-        const Picture many = render(scene, words, ending, "50x37");
+        const Picture many = render(scene, words, ending, size);
         CHECK(many.bytes == one.bytes);
         CHECK(many.stats["rays_by_kind"] == one.stats["rays_by_kind"]);
         CHECK(many.stats["node_visits_by_kind"] == one.stats["node_visits_by_kind"]);

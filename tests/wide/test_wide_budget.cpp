@@ -104,29 +104,32 @@ TEST_CASE("wide: less and less memory for lit pictures -> fewer threads, then no
   const WideScene scene = crowd();
   const Camera camera = camera_of(scene.level);
   const Shading shading;
-  const std::vector<Light> lights{testing::sun({3, -5, 9})};
+  const std::vector<Light> lights{testing::sun({3, -5, 9}), testing::lamp({20 * 256, -9 * 256, 90 * 256})};
   LitScene lit;
   lit.lights = {lights.data(), lights.size()};
   lit.occlusion.rays = 4;
-  const EffectSet effects =
+  constexpr EffectSet kFlat =
       Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kSky;
-  Pixels expected(band_bytes(PixelFormat::kRgb888, kSidePx, kSidePx));
-  Band band;
-  band.pixels = Bytes(expected.data(), expected.size());
-  band.rows = kSidePx;
-  REQUIRE(render_lit_band(effects, scene.tree, camera, shading, lit, band) == Status::kOk);
-  check_budgets(
-      tools::LitStreams::bytes(scene.tree, effects, lit, kCrew), expected,
-      [&](Arena* arena, int threads) {
-        return tools::LitStreams::make(scene.tree, arena, effects, lit, threads);
-      },
-      [&](tools::LitStreams* streams) {
-        Pixels drawn(expected.size());
-        Band part = band;
-        part.pixels = Bytes(drawn.data(), drawn.size());
-        CHECK(streams->render(effects, camera, shading, lit, part, nullptr) == Status::kOk);
-        return drawn;
-      });
+  for (const EffectSet effects : {kFlat, kFlat | Effect::kSmoothNormals}) {
+    CAPTURE(effects);
+    Pixels expected(band_bytes(PixelFormat::kRgb888, kSidePx, kSidePx));
+    Band band;
+    band.pixels = Bytes(expected.data(), expected.size());
+    band.rows = kSidePx;
+    REQUIRE(render_lit_band(effects, scene.tree, camera, shading, lit, band) == Status::kOk);
+    check_budgets(
+        tools::LitStreams::bytes(scene.tree, effects, lit, kCrew), expected,
+        [&](Arena* arena, int threads) {
+          return tools::LitStreams::make(scene.tree, arena, effects, lit, threads);
+        },
+        [&](tools::LitStreams* streams) {
+          Pixels drawn(expected.size());
+          Band part = band;
+          part.pixels = Bytes(drawn.data(), drawn.size());
+          CHECK(streams->render(effects, camera, shading, lit, part, nullptr) == Status::kOk);
+          return drawn;
+        });
+  }
 }
 
 }  // namespace thimble::tests

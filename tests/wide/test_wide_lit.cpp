@@ -25,8 +25,8 @@ LitCase random_opaque_light(std::mt19937_64& random, int level) {
   return lit;
 }
 
-// Many lamps: in what is solid, on faces and corners of voxels, far away, and such as reach nowhere; most materials are
-// clear, or shine.
+// Many lamps: in what is solid, on faces and corners of voxels, far away, and such as reach nowhere; most
+// materials are clear, or shine.
 LitCase random_lamps(std::mt19937_64& random, int level) {
   LitCase lit = random_light(random, level);
   const std::int64_t side = std::int64_t{1} << level;
@@ -65,7 +65,9 @@ LitCase random_smooth_light(std::mt19937_64& random, int level) {
   lit.effects &=
       pick(random, 0, 1) == 0 ? Effect::kAll : ~(Effect::kFog | Effect::kWater | Effect::kDepthCue);
   lit.effects |= pick(random, 0, 2) == 0 ? Effect::kNone : Effect::kGlass | Effect::kMirror;
-  lit.scene.occlusion.reach = static_cast<std::uint16_t>(pick(random, 1, 30));
+  // One in four reaches far.
+  const std::int64_t reach = pick(random, 1, 40);
+  lit.scene.occlusion.reach = static_cast<std::uint16_t>(reach > 30 ? 65535 - 6553 * (40 - reach) : reach);
   return lit;
 }
 

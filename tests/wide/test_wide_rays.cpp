@@ -1,6 +1,7 @@
 // Rays in vectors give the core's answers: hard rays through random worlds, by every instruction set.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct RayBatch {
   std::vector<Hit> first_from;
   std::vector<std::uint16_t> in;
   std::vector<MediumExit> change;
+  std::uint8_t classes[256] = {};  // by material; few, 0 among them
 };
 
 bool is_before(const Hit& hit, const RayPoint& point) {
@@ -126,6 +128,9 @@ RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_
   }
   RayCases cases(random(), {side, side, side}, targets);
   RayBatch batch;
+  for (std::uint8_t& one : batch.classes) {
+    one = static_cast<std::uint8_t>(pick(random, 0, 3));
+  }
   while (batch.rays.size() < count) {
     add_ray(random, tree, to_core(cases.next().ray), &batch);
     const Hit hit = batch.first.back();
@@ -204,16 +209,29 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   });
   // One bound for all rays; of a merged block the t counts, not how it is written.
   const RayPoint reach = batch.before.front();
-  std::vector<RayPoint> entries(count, RayPoint{7, 7});
-  CHECK(wide::first_entry_before(map, rays, reach, {entries.data(), count}) == Status::kOk);
-  check_each("first_entry_before", batch, [&](std::size_t i) {
-    const Hit& hit = batch.first[i];
-    if (hit.kind != HitKind::kHit || !is_before(hit, reach)) {
-      return entries[i].t_denominator == 0;
-    }
-    return entries[i].t_denominator > 0 && std::int64_t{entries[i].t_numerator} * hit.t_denominator ==
-                                               std::int64_t{hit.t_numerator} * entries[i].t_denominator;
+  for (const std::uint8_t* classes : {static_cast<const std::uint8_t*>(nullptr), batch.classes}) {
+    std::vector<RayPoint> entries(count, RayPoint{7, 7});
+    CHECK(wide::first_entry_before(map, rays, reach, {entries.data(), count}, classes) == Status::kOk);
+    check_each("first_entry_before", batch, [&](std::size_t i) {
+      const Hit& hit = batch.first[i];
+      if (hit.kind != HitKind::kHit || !is_before(hit, reach) ||
+          (classes != nullptr && classes[hit.material] == 0)) {
+        return entries[i].t_denominator == 0;
+      }
+      return entries[i].t_denominator > 0 && std::int64_t{entries[i].t_numerator} * hit.t_denominator ==
+                                                 std::int64_t{hit.t_numerator} * entries[i].t_denominator;
+    });
+  }
+  const auto class_of = [&](std::size_t i) { return batch.classes[batch.first[i].material]; };
+  std::fill(any.begin(), any.end(), std::uint8_t{7});
+  CHECK(wide::first_class(map, rays, batch.classes, to_any) == Status::kOk);
+  check_each("first_class", batch, [&](std::size_t i) {
+    return any[i] == (batch.first[i].kind == HitKind::kHit ? class_of(i) : 0);
   });
+  std::fill(any.begin(), any.end(), std::uint8_t{7});
+  CHECK(wide::first_class_before(map, rays, before, batch.classes, to_any) == Status::kOk);
+  check_each("first_class_before", batch,
+             [&](std::size_t i) { return any[i] == (hit_before(i) ? class_of(i) : 0); });
   CHECK(wide::first_hit_before(map, rays, before, to_hits) == Status::kOk);
   check_each("first_hit_before", batch,
              [&](std::size_t i) { return same(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
@@ -243,6 +261,9 @@ std::uint64_t check_random_scenes(std::uint64_t first_seed, int scenes, std::siz
       CAPTURE(wide::instruction_set());
       check_answers(made.map, batch);
     }
+    if (i % 4 == 0) {
+      check_answers(wide::RayMap(scene.tree), batch);  // without a map: the core's
+    }
     traced += batch.rays.size();
   }
   return traced;
@@ -254,8 +275,8 @@ TEST_CASE("rays: hard rays through random worlds -> the core's answers by every 
   CHECK(check_random_scenes(31000, many_or_few(300, 40), 300) > 10000);
 }
 
-// All kinds of leaves: some voxels of several materials beside cells, leaves and cubes that are solid through in one,
-// and merged ones.
+// All kinds of leaves: some voxels of several materials beside cells, leaves and cubes that are solid through
+// in one, and merged ones.
 TEST_CASE("rays: the material of every voxel -> the tree's") {
   for (int level = 1; level <= 6; ++level) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {

@@ -19,9 +19,9 @@ inline constexpr const char* kDefaultIdentifier = "thimble_scene";
 bool is_identifier(std::string_view text);
 
 /// The header: macros IDENTIFIER_BYTES, _DEPTH, ... (the identifier in capitals: THIMBLE_SCENE_... by
-/// default; _EFFECTS is the set of scene.h that the scene was baked for, 0 for none, _LAMPS how many of its lights are
-/// points), then `static const
-/// uint8_t identifier[IDENTIFIER_BYTES]`, aligned to 4 bytes. It includes <stdint.h> and nothing else.
+/// default; _EFFECTS is the set of scene.h that the scene was baked for, 0 for none, _LAMPS how many of its
+/// lights are points), then `static const uint8_t identifier[IDENTIFIER_BYTES]`, aligned to 4 bytes. It
+/// includes <stdint.h> and nothing else.
 std::string c_header_text(const BakedScene& scene, std::string_view identifier);
 
 }  // namespace thimble::tools

@@ -11,6 +11,9 @@ namespace {
 
 constexpr uint32_t kOpen = 1U << 12;  // of occlusion: nothing is in the way
 
+// The calls of ray_map.h refuse no ray here: each begins on a face of the world, and its direction has at most 15 bits
+// and is not 0. So their statuses are not looked at.
+
 // What the material that a ray to a light enters first does to it. Nothing, or beyond the lamp: 0.
 enum ShadowClass : uint8_t { kBlocks = 1, kGoesOn = 2, kSpares = 3 };
 
@@ -214,7 +217,9 @@ uint32_t FaceLights::aim_at_lamp(const Light& light) {
     lamp.is_negative = face % 2 == 0;
     lamp.reach = light.reach;
     lamp.numerator = parts_.numerator + begin;
-    aim_at(lamp, end - begin);
+    if (end != begin) {
+      aim_at(lamp, end - begin);
+    }
     for (uint32_t i = begin; i < end; ++i) {
       lit::Color& bright = parts_.bright[asking];
       Ray& ray = parts_.rays[asking];
@@ -282,8 +287,8 @@ void FaceLights::answer() {
   closest.count = before.count = on.count = 0;
 }
 
-// Follows the rays that come to something clear, or begin in it (which is then what they enter first), stretch by
-// stretch, by the core's own function.
+// Follows the rays of which something clear is the first that they enter, stretch by stretch, by the core's own
+// function. What a ray begins in it enters first.
 void FaceLights::go_through(const Light& light, uint32_t asking) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < asking; ++i) {
@@ -323,6 +328,9 @@ void FaceLights::filter_by_water(const Light& light, uint32_t number) {
 
 // Adds what the rays to a light bring, where nothing is in the way.
 void FaceLights::add_arriving(const Light& light, uint32_t asking) {
+  if (asking == 0) {
+    return;
+  }
   if ((frame_.effects & Effect::kShadows) == 0) {
     for (uint32_t i = 0; i < asking; ++i) {
       for (int c = 0; c < 3; ++c) {
@@ -373,6 +381,9 @@ void FaceLights::add_lamp(const Light& light) {
 
 void FaceLights::shine(uint32_t count) {
   count_ = count;
+  if (count == 0) {
+    return;
+  }
   for (uint32_t i = 0; i < count; ++i) {
     parts_.light[i] = sides_[parts_.faces[i].face].ambient;
   }

@@ -1,6 +1,6 @@
 /// @file face_lights.h
-/// The light on many faces at once: ambient light, occlusion, suns and lamps, with shadows, also through what is clear
-/// and under water. What lit::face_color says of one of them, for all but slopes.
+/// The light on many faces at once: ambient light, occlusion, suns and lamps, with shadows, also through what
+/// is clear and under water. What lit::face_color says of one of them, for all but slopes.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
 #define THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
 
@@ -18,7 +18,7 @@ struct LitFace {
   Vec3Q8 at;
   uint32_t pixel;  ///< the caller's
   uint8_t face;  ///< 2 * axis, and 1 more where it looks to larger coordinates; 6 more: the ray began inside
-  uint8_t material;
+  uint8_t material;  ///< of use to OpaqueStream alone
 };
 
 /// How much of everything there is for so many faces.
@@ -39,7 +39,7 @@ struct FaceLightsParts {
   lit::Color* light;   ///< by face
   Ray* rays;           ///< of a light, or of occlusion
   uint32_t* asking;    ///< the faces that they come from
-  uint8_t* any;        ///< what they meet: a ShadowClass
+  uint8_t* any;        ///< what they meet: 0, or a class of face_lights.cpp
   RayPoint* points;    ///< where lamps are on them; where rays of occlusion enter something
   lit::Color* bright;  ///< what they bring, if nothing is in the way
   // Of lamps: faces that look one way side by side.
@@ -65,6 +65,9 @@ class FaceLights {
   static constexpr uint32_t kSides = 12;
 
   FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker);
+  // Its frame that asks points to its other one.
+  FaceLights(const FaceLights&) = delete;
+  FaceLights& operator=(const FaceLights&) = delete;
 
   /// To be filled by the caller; then `shine` finds the light of so many of them.
   LitFace* faces() const { return parts_.faces; }

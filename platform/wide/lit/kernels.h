@@ -11,8 +11,8 @@ namespace thimble::wide {
 /// So many numbers behind the last are read, and written.
 inline constexpr size_t kMostLightLanes = 8;
 
-/// Of rays of these directions, none zero, the share in 1/4096 that lit::sky_color mixes into the horizon: of the
-/// zenith where z is not below 0, else of the ground.
+/// Of rays of these directions, none zero, the share in 1/4096 that lit::sky_color mixes into the horizon: of
+/// the zenith where z is not below 0, else of the ground.
 void find_sky_shares(const int32_t* x, const int32_t* y, const int32_t* z, size_t count, int32_t* shares);
 
 /// A lamp, and points on faces that look one way. Of three axes the faces' own comes first.
@@ -31,9 +31,9 @@ struct LampRays {
 /// lit::light_ray, for many points. Of a brightness that is 0 the rest means nothing.
 void aim_at(const LampRays& lamp, size_t count);
 
-/// Of columns of a slope's window (slope_table.h), the gradient at a point as lit::surface_normal adds it up: `point` and
-/// what comes are along the columns, along their rows, and across; in 1/64 voxel of the window. Across the columns the point
-/// is in the window's sixth or seventh voxel.
+/// Of columns of a slope's window (slope_table.h), the gradient at a point as lit::surface_normal adds it up:
+/// `point` and what comes are along the columns, along their rows, and across; in 1/64 voxel of the window.
+/// Across the columns the point is in the window's sixth or seventh voxel.
 void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradient);
 
 /// Lanes of the words that `turn_words` turns.

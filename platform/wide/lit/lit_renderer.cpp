@@ -14,7 +14,8 @@ namespace {
 constexpr uint32_t kSlots = 1024;
 constexpr uint32_t kLeastSlots = 64;
 
-// Either kind of stream fits in what was asked for, so that a workspace serves all sets of effects within one.
+// Either kind of stream fits in what was asked for, so that a workspace serves all sets of effects within
+// one.
 size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
   return std::max(StreamShape(effects, scene, slots).bytes(), OpaqueShape(effects, scene, slots).bytes());
 }

@@ -18,8 +18,8 @@ lit::Color color_of(const Rgb8& color) {
   return {{color.r * lit::kLevel, color.g * lit::kLevel, color.b * lit::kLevel}};
 }
 
-// Whole part of a quotient of integers, of which the dividend is below 2^52 and the divisor below 2^21: a double is
-// off by less than what tells it from the next whole number.
+// Whole part of a quotient of integers, of which the dividend is below 2^52 and the divisor below 2^21: a
+// double is off by less than what tells it from the next whole number.
 int64_t whole_quotient(int64_t dividend, int64_t divisor) {
   return static_cast<int64_t>(static_cast<double>(dividend) / static_cast<double>(divisor));
 }
@@ -113,7 +113,8 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
       const int64_t steps = whole_quotient(offset, speed);
       face.at[other] = Q8::from_raw(
           low + static_cast<int32_t>(std::clamp(steps, int64_t{0}, static_cast<int64_t>(side) - 1)));
-      // It enters through a second face where it comes to that plane at the same t: at an offset of 0, or of the side.
+      // It enters through a second face where it comes to that plane at the same t: at an offset of 0, or of
+      // the side.
       is_plain = is_plain && (direction == 0 || offset != (direction > 0 ? 0 : side * speed));
     }
   }

@@ -1,9 +1,9 @@
 /// @file opaque_stream.h
-/// One thread's share of a lit picture in which each ray of a pixel ends where it first meets something: nothing is
-/// clear, nothing mirrors, no slope, no fog.
+/// One thread's share of a lit picture in which each ray of a pixel ends where it first meets something:
+/// nothing is clear, nothing mirrors, and there is no water, slope, fog, depth cue, edge or ripple.
 ///
-/// Most pictures are such. Nothing is asked twice, so nothing of a pixel is kept but its place: the pixels of a
-/// share go through one short loop after another, and their rays through the map in between.
+/// Most pictures are such. Nothing is asked twice, so nothing of a pixel is kept but its place: the pixels of
+/// a share go through one short loop after another, and their rays through the map in between.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_OPAQUE_STREAM_H
 #define THIMBLE_PLATFORM_WIDE_LIT_OPAQUE_STREAM_H
 

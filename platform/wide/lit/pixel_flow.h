@@ -67,8 +67,8 @@ class PixelReader {
  public:
   explicit PixelReader(PixelFlow* flow) : flow_(*flow), rays_(flow->frame_.camera, 0, 0) {}
 
-  /// Takes the next pixel; false: there is none left. Rows are taken from their beginning, and what shares bytes by
-  /// one thread.
+  /// Takes the next pixel; false: there is none left. Rows are taken from their beginning, and what shares
+  /// bytes by one thread.
   bool next(Ray* ray, PixelSlot* at) {
     if (x_ == flow_.width_ || at_ == end_) {
       if (!begin_row()) {

@@ -84,8 +84,9 @@ void turn_from(int axis, bool upwards, const ColumnBits& columns, uint16_t (*row
   }
 }
 
-// The order in which the surface is followed, ring by ring and the corners of a ring last; and from which three columns
-// the next one's height is expected: that of the first and of the second, less that of the third.
+// The order in which the surface is followed, ring by ring and the corners of a ring last; and from which
+// three columns the next one's height is expected: that of the first and of the second, less that of the
+// third.
 struct Step {
   int8_t u;
   int8_t v;
@@ -134,7 +135,9 @@ constexpr std::array<Step, kSteps> all_steps() {
 }
 constexpr std::array<Step, kSteps> kOrder = all_steps();
 
-// The core's Columns (src/light/slope.cpp) on words: a loop over voxels there is a count of bits here.
+// The core's Columns (src/light/slope.cpp) on words: a loop over voxels there is a count of bits here. Nothing branches on
+// what is solid, which nobody can predict. Heights are -kColumns .. kColumns, middle_w is 4 .. 7: a place above the
+// window's lower end is -1 at the least, so words are looked at with a bit more below them.
 struct Columns {
   ColumnBits* bits;
   int middle_w;
@@ -142,41 +145,41 @@ struct Columns {
   int middle_v;
   int side_u;
   int side_v;
-  bool cuts;  // where edges are
   bool changed = false;
+  bool has_edge = false;  // a column leaves the course
   int8_t heights[kAcross * kAcross] = {};
 
-  Columns(ColumnBits* of, const Vec3i& middle, int along, bool upwards, bool cuts_edges)
+  Columns(ColumnBits* of, const Vec3i& middle, int along, bool upwards)
       : bits(of),
         middle_w(turned(middle[along], upwards)),
         middle_u(middle[side_u_of(along)]),
         middle_v(middle[side_v_of(along)]),
         side_u(side_u_of(along)),
-        side_v(side_v_of(along)),
-        cuts(cuts_edges) {}
+        side_v(side_v_of(along)) {}
 
   int height(int u, int v) const { return heights[place_of(u, v)]; }
   // Where a column ends, from a height near by.
   int measure(unsigned word, int height) const {
-    const int place = middle_w + height;
-    if (place >= 0 && (word >> place & 1U) != 0) {
-      return std::min(kColumns, height + __builtin_ctz(~(word >> (place + 1))));
-    }
-    const unsigned below = place > 0 ? word & ((1U << place) - 1) : 0U;
-    return below == 0 ? -kColumns : std::max(-kColumns, 31 - __builtin_clz(below) - middle_w);
+    const unsigned wide = word << 1;
+    const auto place = static_cast<unsigned>(middle_w + height + 1);
+    const int up = std::min(kColumns, height + __builtin_ctz(~(wide >> (place + 1))));
+    const unsigned below = (wide & ((1U << place) - 1)) | 1U;
+    const int down = std::max(-kColumns, 30 - __builtin_clz(below) - middle_w);
+    const int is_solid = 0 - static_cast<int>(wide >> place & 1U);
+    return down + ((up - down) & is_solid);
   }
   unsigned filled_to(int height) const { return ((1U << (middle_w + height + 1)) - 1) & kAll; }
   // The column, solid below its top where it is a shell.
   unsigned thickened(unsigned word, int top) const {
-    const int place = middle_w + top;
-    if (place < 0 || (word >> place & 1U) == 0) {
-      return word;
-    }
-    const unsigned down = (2U << place) - 1;
+    const auto place = static_cast<unsigned>(middle_w + top + 1);
+    const unsigned down = (1U << place) - 1;
     const unsigned shell = down & ~(down >> lit::kSlopeShell);
-    return (word & shell) == shell ? word : word | down;
+    const unsigned is_thin = (~word & shell) != 0 ? 1U : 0U;
+    return word | (down & (0U - ((word << 1 >> place) & is_thin & 1U)));
   }
-  // Whether the column beside the middle, in direction `out`, was cut off.
+  // Follows the surface; with kCuts, where it leaves its course it is taken to go on as before. Whether the column
+  // beside the middle, in direction `out`, was cut off.
+  template <bool kCuts>
   bool follow(const Vec3i& out) {
     uint16_t* const middle = &bits->at[middle_v][middle_u];
     const int top = measure(*middle, 0);
@@ -184,7 +187,9 @@ struct Columns {
     const unsigned of_middle = thickened(*middle, top);
     unsigned changes = of_middle ^ *middle;
     *middle = static_cast<uint16_t>(of_middle);
-    bool wall = false;
+    unsigned edges = 0;
+    unsigned wall = 0;
+    const unsigned beside = place_of(out[side_u], out[side_v]);
     for (const Step& step : kOrder) {
       const int wanted = std::clamp(heights[step.plus[0]] + heights[step.plus[1]] - heights[step.minus],
                                     -kColumns, kColumns);
@@ -193,22 +198,20 @@ struct Columns {
       // Nothing is solid beside the window, and what is made solid there is forgotten.
       uint16_t nothing = 0;
       uint16_t* const column = at_u < kSide && at_v < kSide ? &bits->at[at_v][at_u] : &nothing;
-      const int found = measure(*column, wanted);
-      if (cuts && std::abs(found - wanted) >= lit::kEdgeStep) {
-        heights[step.at] = static_cast<int8_t>(wanted);
-        *column = static_cast<uint16_t>(filled_to(wanted));
-        changes = 1;
-        wall = wall ||
-               (std::abs(step.u) + std::abs(step.v) == 1 && step.u == out[side_u] && step.v == out[side_v]);
-      } else {
-        heights[step.at] = static_cast<int8_t>(found);
-        const unsigned word = thickened(*column, found);
-        changes |= word ^ *column;
-        *column = static_cast<uint16_t>(word);
-      }
+      const unsigned word = *column;
+      const int found = measure(word, wanted);
+      const unsigned edge = std::abs(found - wanted) >= lit::kEdgeStep ? 1U : 0U;
+      edges |= edge;
+      const unsigned cut = kCuts ? 0U - edge : 0U;
+      const unsigned solid = (thickened(word, found) & ~cut) | (filled_to(wanted) & cut);
+      heights[step.at] = static_cast<int8_t>(found + ((wanted - found) & static_cast<int>(cut)));
+      changes |= (solid ^ word) | (cut & 1U);
+      wall |= cut & (step.at == beside ? 1U : 0U);
+      *column = static_cast<uint16_t>(solid);
     }
     changed = changes != 0;
-    return wall;
+    has_edge = edges != 0;
+    return wall != 0;
   }
   // Whether all end where the middle one does.
   bool are_level() const {
@@ -250,8 +253,8 @@ void follow(int along, bool upwards, const Face& face, KnownSlope* known) {
   }
   Vec3i out;
   out[face.axis] = face.negative ? -1 : 1;
-  Columns columns(&known->cut, middle_of(known->voxel, face), along, upwards, true);
-  const bool wall = columns.follow(out);
+  Columns columns(&known->cut, middle_of(known->voxel, face), along, upwards);
+  const bool wall = columns.follow<true>(out);
   known->keeps_face = along == face.axis
                           ? columns.are_level()
                           : wall || columns.height(out[columns.side_u], out[columns.side_v]) >= 0;
@@ -272,7 +275,7 @@ uint32_t mixed(const Vec3i& place, uint32_t rest) {
 
 }  // namespace
 
-const lit::SlopeWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q12, uint32_t* visits) {
+const KnownWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q12) {
   KnownWindow& known = windows_[mixed(low, index_q12) & (count_ / 4 - 1)];
   if (!known.is_known || known.window.low != low || known.index_q12 != index_q12) {
     known = {};
@@ -280,12 +283,12 @@ const lit::SlopeWindow& SlopeTable::window_at(const Vec3i& low, uint16_t index_q
     known.index_q12 = index_q12;
     known.is_known = true;
     const lit::Body body{frame_->scene.surfaces, frame_->effects, index_q12};
-    lit::read_slope_window(frame_->tree, body, &known.window, visits);
+    lit::read_slope_window(frame_->tree, body, &known.window, &known.visits);
   }
-  return known.window;
+  return known;
 }
 
-KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t index_q12, uint32_t* visits) {
+KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t index_q12) {
   const uint8_t number = number_of(face.axis, !face.negative);
   KnownSlope& known = places_[mixed(voxel, number + 8U * index_q12) & (count_ - 1)];
   if (known.face == number && known.voxel == voxel && known.index_q12 == index_q12) {
@@ -299,19 +302,28 @@ KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t inde
   for (int axis = 0; axis < 3; ++axis) {
     low[axis] = lit::slope_window_low(voxel[axis]);
   }
-  turn_to(face.axis, !face.negative, window_at(low, index_q12, visits).rows, &known.columns);
-  Columns columns(&known.columns, middle_of(voxel, face), face.axis, !face.negative, false);
+  const KnownWindow& window = window_at(low, index_q12);
+  known.visits = window.visits;
+  turn_to(face.axis, !face.negative, window.window.rows, &known.columns);
+  Columns columns(&known.columns, middle_of(voxel, face), face.axis, !face.negative);
   const unsigned behind = 3U << (columns.middle_w - 2);
   static_assert(lit::kSlopeShell == 3);
   if ((known.columns.at[columns.middle_v][columns.middle_u] & behind) != behind) {
-    columns.follow({});
+    columns.follow<false>({});
+    if (!columns.has_edge) {
+      // Followed again along the face's axis it takes the same course, and nothing is left to make solid.
+      known.course = number;
+      known.keeps_face = columns.are_level();
+      known.is_cut = false;
+    }
   }
   return known;
 }
 
 Vec3i SlopeTable::normal(const Vec3Q8& at, const Face& face, uint16_t index_q12, uint32_t* visits) {
   const Vec3i voxel{at.x.floor(), at.y.floor(), at.z.floor()};
-  KnownSlope& known = find(voxel, face, index_q12, visits);
+  KnownSlope& known = find(voxel, face, index_q12);
+  *visits += known.visits;
   Vec3i point;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t low = lit::slope_window_low(voxel[axis]) * Q8::kOne;

@@ -17,7 +17,6 @@ void StreamParts::lay_out(const StreamShape& shape, Taker* taker) {
   slots = taker->take<StreamSlot>(shape.slots);
   pending = taker->take<lit::PendingRay>(size_t{shape.slots} * shape.pending);
   lights = taker->take<lit::KnownLight>(size_t{shape.slots} * shape.lights);
-  suns = taker->take<lit::KnownLight>(size_t{6} * shape.lights);
   answers = taker->take<lit::Answer>(size_t{shape.slots} * shape.answers);
   waiting = taker->take<uint32_t>(shape.slots);
   uint32_t most_hits = 0;
@@ -116,8 +115,6 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
   frame_.slopes = parts_.slopes;
   frame_.once = &once_;
   asking_.once = &once_;
-  frame_.suns = parts_.suns;
-  asking_.suns = parts_.suns;
   const LitMedia media = lit_media(frame.effects, frame.scene);
   for (size_t i = 0; i < media.count; ++i) {
     is_clear_material_[media.materials[i]] = true;
@@ -150,7 +147,8 @@ void Stream::begin_ray(uint32_t number) {
   slot.ray.has_spot = false;
   slot.ray.has_lights = false;
   const Ray& ray = parts_.pending[size_t{number} * shape_.pending + slot.pending - 1].ray;
-  // What it will ask first, without going there; and what it begins in, which the map knows sooner than the tree.
+  // What it will ask first, without going there; and what it begins in, which the map knows sooner than the
+  // tree.
   begin_step(number, &frame_);
   (void)frame_.look();
   uint8_t material = 0;

@@ -53,7 +53,6 @@ struct StreamParts {
   StreamSlot* slots;
   lit::PendingRay* pending;
   lit::KnownLight* lights;
-  lit::KnownLight* suns;
   lit::Answer* answers;
   uint32_t* waiting;
   lit::Asked questions[lit::kQuestions];
@@ -72,8 +71,8 @@ class Stream {
   /// `bytes` has shape.bytes(), at any address.
   Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes);
 
-  /// Draws what it takes from the flow, until that ends. Pixels that are done make room for others, so that as many
-  /// as there are slots are under way.
+  /// Draws what it takes from the flow, until that ends. Pixels that are done make room for others, so that
+  /// as many as there are slots are under way.
   void draw(PixelFlow* flow);
   LitCounts counts() const;
 
@@ -83,8 +82,8 @@ class Stream {
   // Begins the last of a pixel's pending rays.
   void begin_ray(uint32_t number);
   void begin_step(uint32_t number, lit::AskedFrame* frame);
-  // Takes a pixel's steps; each returns false when the pixel waits for answers. `shine` is for slopes; faces are only
-  // noted, and lit all together.
+  // Takes a pixel's steps; each returns false when the pixel waits for answers. `shine` is for slopes; faces
+  // are only noted, and lit all together.
   bool go_on(uint32_t number);
   bool follow(uint32_t number);
   bool shine(uint32_t number);

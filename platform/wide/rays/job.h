@@ -28,8 +28,8 @@ struct Job {
   Status status = Status::kOk;  ///< the first error
   MediumExit* exits = nullptr;
   const uint16_t* in = nullptr;  ///< with `exits`
-  const uint8_t* classes =
-      nullptr;  ///< with `any`, what it gets by material; with `entries`, 0: it counts as a miss
+  /// By material: with `any`, what it gets; with `entries`, 0 where the voxel counts as a miss.
+  const uint8_t* classes = nullptr;
 };
 
 /// Traces all rays of a job that has a map. kernels/trace.cpp.

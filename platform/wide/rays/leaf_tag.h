@@ -7,8 +7,8 @@
 
 namespace thimble::wide {
 
-/// A leaf is eight cells of 2^3 voxels, numbered as octants. The tree keeps a byte for each voxel of a cell, and one
-/// for a cell that is solid through in one material.
+/// A leaf is eight cells of 2^3 voxels, numbered as octants. The tree keeps a byte for each voxel of a cell,
+/// and one for a cell that is solid through in one material.
 struct LeafTag {
   uint32_t first_voxel = 0;  ///< the tree's number of the first voxel that has a byte of its own
   uint8_t plain = 0;         ///< a bit for each cell whose voxels have `material`
@@ -28,7 +28,8 @@ struct LeafTag {
   }
 };
 
-/// Second word of a brick that is solid through in one material; of others it is a node's number, or all ones.
+/// Second word of a brick that is solid through in one material; of others it is a node's number, or all
+/// ones.
 inline constexpr uint64_t kSolidBrick = uint64_t{1} << 63;
 constexpr bool is_solid_brick(uint64_t second) {
   return second >> 8 == kSolidBrick >> 8;

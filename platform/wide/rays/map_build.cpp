@@ -1,4 +1,5 @@
-// The map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes reach.
+// The map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes
+// reach.
 #include <algorithm>
 
 #include "wide/rays/leaf_tag.h"
@@ -241,8 +242,9 @@ class MapWriter : TreeWalk {
   Collected tags_[kLeaves];
 };
 
-// Writes how far the empty cubes reach along one octant after the other. One of side k + 1 is a cube and those of
-// side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell bricks, comes last.
+// Writes how far the empty cubes reach along one octant after the other. One of side k + 1 is a cube and
+// those of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell bricks, comes
+// last.
 class Reaches {
  public:
   Reaches(uint32_t* top, int bits) : top_(top), side_(size_t{1} << bits) {}

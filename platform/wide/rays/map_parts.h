@@ -1,5 +1,6 @@
 /// @file map_parts.h
-/// What the two halves of making a map share: the cubes and leaves of its numbering, and the walk down the tree.
+/// What the two halves of making a map share: the cubes and leaves of its numbering, and the walk down the
+/// tree.
 #ifndef THIMBLE_PLATFORM_WIDE_RAYS_MAP_PARTS_H
 #define THIMBLE_PLATFORM_WIDE_RAYS_MAP_PARTS_H
 
@@ -81,7 +82,8 @@ struct MediaShape {
 /// Those of `materials` that the tree holds, as many as there may be layers.
 MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials);
 
-/// Writes the cubes of all layers, one layer after the other, at `top`, and their bricks from word `next_word` on.
+/// Writes the cubes of all layers, one layer after the other, at `top`, and their bricks from word
+/// `next_word` on.
 void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
                  uint64_t* bricks, uint64_t next_word);
 

@@ -1,5 +1,5 @@
-// The layers of a map: for a material that rays go through, where it is not. A cube that it fills is empty there, one
-// that holds nothing of it is solid.
+// The layers of a map: for a material that rays go through, where it is not. A cube that it fills is empty
+// there, one that holds nothing of it is solid.
 #include <algorithm>
 
 #include "wide/rays/map_parts.h"

@@ -101,8 +101,8 @@ bool look_up(const CompactTree& tree, const Leaf& leaf, uint8_t* material) {
   return (tag.other >> cell & 1U) == 0;
 }
 
-// The node of 2^3 voxels that a voxel is in, or the larger one that is solid through; without the part of the way
-// that the map knows.
+// The node of 2^3 voxels that a voxel is in, or the larger one that is solid through; without the part of the
+// way that the map knows.
 struct Parent {
   uint32_t node;
   int level;
@@ -152,8 +152,8 @@ Block block_at(const RayMap& map, const Vec3i& voxel) {
   return block;
 }
 
-// The face by which a ray enters a block, and its t: the lower plane that it crosses last, of several the one of
-// the lowest axis. Compares products of 23 and 20 bits.
+// The face by which a ray enters a block, and its t: the lower plane that it crosses last, of several the one
+// of the lowest axis. Compares products of 23 and 20 bits.
 void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   int64_t last = 0;
   int64_t speed = 1;

@@ -61,20 +61,28 @@ template <class AnyFrame>
   const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
   uint32_t open = 0;
   for (int i = 0; i < rays; ++i) {
-    const Ray ray{slope.start, turn.direction(i)};
-    count_ray(frame, LitRayKind::kOcclusion);
-    Hit hit;
+    const auto share_along = [&](const Vec3i& direction, const Hit& hit) {
+      const uint32_t distance =
+          static_cast<uint32_t>(distance_q8(direction, hit.t_numerator, hit.t_denominator));
+      return distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+    };
+    uint32_t share = kOpen;
     if constexpr (AnyFrame::kIsAsked) {
-      find_around(frame, ray, &hit);
+      // Most answers are misses, for which nobody wants to know the direction.
+      const auto aimed = [&] { return Ray{slope.start, turn.direction(i)}; };
+      count_ray(frame, LitRayKind::kOcclusion);
+      Hit hit;
+      find_around(frame, aimed, &hit);
+      share = is_opaque(frame, hit) ? share_along(aimed().direction, hit) : kOpen;
     } else {
+      const Ray ray{slope.start, turn.direction(i)};
+      count_ray(frame, LitRayKind::kOcclusion);
+      Hit hit;
       find_before(
           frame, LitRayKind::kOcclusion, ray, [&] { return beyond_reach(ray, occlusion); }, &hit);
-    }
-    uint32_t share = kOpen;
-    if (is_opaque(frame, hit)) {
-      const uint32_t distance =
-          static_cast<uint32_t>(distance_q8(ray.direction, hit.t_numerator, hit.t_denominator));
-      share = distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+      if (is_opaque(frame, hit)) {
+        share = share_along(ray.direction, hit);
+      }
     }
     open += share;
   }

@@ -1,29 +1,32 @@
 /// @file asked.h
-/// Lit pictures whose rays somebody else traces, many at once: the code of render.h, with its questions to the
-/// tree written down instead of answered.
+/// Lit pictures whose rays somebody else traces, many at once: the code of render.h, with its questions to
+/// the tree written down instead of answered.
 ///
-/// What a picture is made of stands in detail/pixel.h and is compiled twice: with a `Frame` that asks the tree
-/// at once, as a chip does, and with an `AskedFrame`, whose questions are noted and answered by whoever drives it,
-/// those of many rays at once. A ray then takes steps, each of them a function called again and again until all
-/// that it asks is known, and what it gives counts:
+/// What a picture is made of stands in detail/pixel.h and is compiled twice: with a `Frame` that asks the
+/// tree at once, as a chip does, and with an `AskedFrame`, whose questions are noted and answered by whoever
+/// drives it, those of many rays at once. A ray then takes steps, each of them a function called again and
+/// again until all that it asks is known, and what it gives counts:
 ///
-///     follow   the ray's way: what it meets, what it sends on. Stops where an answer is wanted, and has then sent
-///              nothing on. Without clear solids and water the only one is that of `closest_hit` for the ray, and
-///              nothing is counted before it is there.
-///     shine    where it met a surface: the light there. Asks for all of it, shadows and occlusion, at once;
-///              where it asks nothing it counts nothing.
+///     follow   the ray's way: what it meets, what it sends on. Stops where an answer is wanted, and has then
+///              sent nothing on. Without clear solids, water and slopes the only one is that of `closest_hit`
+///              for the ray, and nothing is counted before it is there.
+///     shine    where it met a surface whose slope is bent: the light there. Asks for all of it, shadows and
+///              occlusion, at once; where it asks nothing it counts nothing.
 ///
-/// What counts is what the core's own renderer gives: the same code with the same answers.
+/// The light of faces is the driver's: what `face_color` says of `ray->spot`. What counts is what the core's
+/// own renderer gives: the same code with the same answers.
 ///
 ///     AskedFrame frame(...);  // and room for questions and answers
 ///     const Steps steps = steps_of(frame.effects);
 ///     for each pixel: pending[0] = its ray, count = 1; then until count is 0:
 ///       take the last of `pending`; begin and follow it, until frame.is_answered();
-///       if frame.shows(): begin and shine, until frame.is_answered()
+///       if frame.shows() a slope: begin and shine, until frame.is_answered()
+///       if it shows a face: add its light, weighed by `ray->weight`
 ///     store(frame, band, line, x, y, sum)
 ///
-/// Light through clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for
-/// each light. What is rare is asked of the tree at once all the same: single voxels, water.
+/// Between two calls the driver answers `questions` and `slopes`, and sets their counts to 0. Light through
+/// clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for each
+/// light. What is rare is asked of the tree at once all the same: single voxels, water.
 #ifndef THIMBLE_LIGHT_HOST_ASKED_H
 #define THIMBLE_LIGHT_HOST_ASKED_H
 
@@ -60,8 +63,8 @@ struct Asked {
   uint32_t count = 0;
 };
 
-/// From where on a hit of kAround counts no more: its rays have the lengths of the pattern (127, or 1 less or more) times
-/// 128 but for some units, and `distance_q8` is off by less than 2^-13 of itself.
+/// From where on a hit of kAround counts no more: its rays have the lengths of the pattern (127, or 1 less or
+/// more) times 128 but for some units, and `distance_q8` is off by less than 2^-13 of itself.
 constexpr RayPoint slope_reach(const Occlusion& occlusion) {
   return {occlusion.reach + (occlusion.reach >> 13) + 1, 125 * 128};
 }
@@ -74,8 +77,8 @@ struct AskedSlope {
   uint32_t answer = 0;  ///< the number of the answer that is wanted
 };
 
-/// Where an answer is put: `hit` as the core's, its visits what whoever answered counted; `into_solid` is false. Of a
-/// slope `hit.voxel` is the normal.
+/// Where an answer is put: `hit` as the core's, its visits what whoever answered counted; `into_solid` is
+/// false. Of a slope `hit.voxel` is the normal.
 using Answer = MediumExit;
 
 /// The most answers that a step of one ray takes.
@@ -102,8 +105,7 @@ struct LightWay {
 struct KnownLight {
   LightRay ray;
   LightWay way;
-  bool shines = false;    ///< else the face is turned away from it
-  bool is_known = false;  ///< of `AskedFrame::suns`
+  bool shines = false;  ///< else the slope is turned away from it
 };
 
 /// What is kept of a ray from one call to the next.
@@ -113,7 +115,7 @@ struct KnownRay {
   bool has_begun = false;
   // Of the light where it ends:
   bool has_spot = false;
-  bool has_slope = false;
+  bool has_slope = false;   ///< a bent one, of which `shine` works out the light; else a face
   bool has_lights = false;  ///< one for each light of the scene is in AskedFrame::lights
   Spot spot;
   Slope slope;
@@ -141,7 +143,7 @@ struct AskedFrame : Frame {
   /// After it: whether all was answered, so that what it gave counts. Else it is to be taken again when the
   /// questions have their answers: then `asked` are known.
   bool is_answered() const { return asked <= known && !waits; }
-  /// After `follow`: whether the ray ended on a surface, of which `shine` is to work out the light.
+  /// After `follow`: whether the ray ended on a surface, whose light is to be worked out.
   bool shows() const { return ray->has_spot; }
 
   // --- For the parts of detail/pixel.h. Each `look` is for the next answer, whether it is there or not.
@@ -172,7 +174,7 @@ struct AskedFrame : Frame {
     slopes[slope_count++] = {at, face, index_q12, number + asked - 1};
     is_open = true;
   }
-  /// Leaves a surface's light to `shine`.
+  /// Leaves a surface's light to `shine`, or without a slope to the driver.
   void show(const Spot& spot, const Slope* slope, const Weight& weight) {
     ray->spot = spot;
     ray->weight = weight;
@@ -186,12 +188,9 @@ struct AskedFrame : Frame {
   Asked* questions = nullptr;  ///< of each kind; may be shared
   /// With Effect::kSmoothNormals: one for each ray that takes a step before they are answered.
   AskedSlope* slopes = nullptr;
-  uint32_t slope_count = 0;
-  Frame* once =
-      nullptr;  ///< counts what is taken once, though the step that it is part of may be taken again
-  /// Six for each light of the scene: rays to distant lights differ only by the face that they start on. As they are
-  /// made at first; may be shared.
-  KnownLight* suns = nullptr;
+  uint32_t slope_count = 0;  ///< to be set to 0 by whoever answered them
+  /// Counts what is taken once, though the step that it is part of may be taken again.
+  Frame* once = nullptr;
   Answer* answers = nullptr;
   KnownRay* ray = nullptr;
   KnownLight* lights = nullptr;
@@ -216,13 +215,13 @@ void meet_solid(AskedFrame& frame, const PendingRay& now, Meeting* meeting);
 void meet_clear(AskedFrame& frame, const PendingRay& now, const Leg& leg, Meeting* meeting);
 bool light_arrives(AskedFrame& frame, const LightRay& light);
 bool light_arrives_through(AskedFrame& frame, LightRay* light);
+/// For slopes that are not raised.
 void occlude(AskedFrame& frame, const Spot& spot, Color* light);
 void occlude(AskedFrame& frame, const Spot& spot, const Slope& slope, Color* light);
 void begin_leg(AskedFrame& frame, const PendingRay& now, Leg* leg);
 Slope slope_at(AskedFrame& frame, LitRayKind kind, const Spot& spot);
 bool cross_slope(AskedFrame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
                  size_t* count);
-bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, LightRay* ray);
 bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, const Slope& slope, LightRay* ray);
 
 }  // namespace thimble::lit

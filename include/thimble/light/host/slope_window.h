@@ -1,5 +1,6 @@
 /// @file slope_window.h
-/// The window in which the slope of a surface is found (slope.h), for a host that keeps what many points of a face share.
+/// The window in which the slope of a surface is found (slope.h), for a host that keeps what many points of a
+/// face share.
 #ifndef THIMBLE_LIGHT_HOST_SLOPE_WINDOW_H
 #define THIMBLE_LIGHT_HOST_SLOPE_WINDOW_H
 
@@ -46,9 +47,11 @@ constexpr int32_t slope_window_low(int32_t voxel) {
 
 // --- slope_steps.cpp: the parts of surface_normal, for a host -------------------------------------------
 
-/// Reads the voxels of the window at `window->low`, which is even, off the tree; adds the nodes read to `*visits`.
+/// Reads the voxels of the window at `window->low`, which is even, off the tree; adds the nodes read to
+/// `*visits`.
 void read_slope_window(const CompactTree& tree, const Body& body, SlopeWindow* window, uint32_t* visits);
-/// The axis along which the surface is followed where the gradient at a face is `normal`; -1: the normal is the face's.
+/// The axis along which the surface is followed where the gradient at a face is `normal`; -1: the normal is
+/// the face's.
 int slope_axis(const Vec3i& normal, const Face& face);
 /// The unit normal of the gradient that is left after that.
 Vec3i unit_of_slope(const Vec3i& normal, const Face& face);

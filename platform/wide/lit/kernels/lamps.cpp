@@ -55,8 +55,8 @@ HWY_INLINE LampWay shorten_way(const VF (&size)[3]) {
   return way;
 }
 
-// Shares in 2^-16 of a lamp's light, by distance and by angle. Doubles hold the integers: products stay below 2^33,
-// and a quotient or root that is no integer differs from the next one, or half, by more than 2^-33.
+// Shares in 2^-16 of a lamp's light, by distance and by angle. Doubles hold the integers: products stay below
+// 2^33, and a quotient or root that is no integer differs from the next one, or half, by more than 2^-33.
 HWY_INLINE VF share_of_lamp(const LampWay& way, VF reach) {
   VF size[3];
   VF square = hn::Zero(F64());

@@ -19,8 +19,8 @@ using VF = hn::Vec<F64>;
 
 static_assert(hn::MaxLanes(F64()) <= kMostLightLanes);
 
-// Doubles that hold integers: products stay below 2^34, and whole parts of quotients and roots are the integers',
-// since those differ from the next whole number, or half, by more than 2^-19.
+// Doubles that hold integers: products stay below 2^34, and whole parts of quotients and roots are the
+// integers', since those differ from the next whole number, or half, by more than 2^-19.
 HWY_INLINE VF share_of_sky(VF x, VF y, VF z) {
   const F64 d;
   const U64 du;

@@ -1,5 +1,5 @@
-// The slope of a surface in lanes (slope_table.h): what R^2 - d^2 adds up to over the voxels of a window, and windows
-// turned from one axis to another.
+// The slope of a surface in lanes (slope_table.h): what R^2 - d^2 adds up to over the voxels of a window, and
+// windows turned from one axis to another.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "wide/lit/kernels/slope.cpp"
 #include <hwy/foreach_target.h>
@@ -21,14 +21,14 @@ constexpr int kSide = lit::kSlopeSide;
 constexpr int kReach = lit::kSlopeColumns;
 constexpr int32_t kUnit = lit::kSlopeUnit;
 
-// Columns to each side that may have a voxel within reach, so many rows before the point's: the voxel's centre is at
-// least so many less a half away from it both ways.
+// Columns to each side that may have a voxel within reach, so many rows before the point's: the voxel's
+// centre is at least so many less a half away from it both ways.
 constexpr int kHalves[2 * kReach + 1] = {3, 4, 5, 5, 5, 5, 5, 5, 5, 4, 3};
 static_assert(lit::kSlopeReachHalves == 11);
 
-// A lane is a voxel of the column: it has R^2 - d^2, or 0 where that is less or nothing is solid. Numbers of columns
-// and rows times these come as sums of sums, from the last one down. Whatever a sum passes on its way, what it ends at
-// fits 32 bits.
+// A lane is a voxel of the column: it has R^2 - d^2, or 0 where that is less or nothing is solid. Numbers of
+// columns and rows times these come as sums of sums, from the last one down. Whatever a sum passes on its
+// way, what it ends at fits 32 bits.
 void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradient) {
   const I32 d;
   const auto zero = hn::Zero(d);

@@ -13,8 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// t is off by 2^-52 of itself at most, and two planes' t differ by 2^-43: a factor on the end that moves it before
-// every crossing at that t, and after all others; and one that moves a bound of any fraction behind all below it.
+// t is off by 2^-52 of itself at most, and two planes' t differ by 2^-43: a factor on the end that moves it
+// before every crossing at that t, and after all others; and one that moves a bound of any fraction behind
+// all below it.
 constexpr double kJustBefore = 1.0 - 0x1p-46;
 constexpr double kJustAfter = 1.0 + 0x1p-46;
 // Numerators of a plane's t.
@@ -63,8 +64,8 @@ HWY_INLINE VF load_column(const Rows& rows, size_t column) {
 }
 
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-// Where the numbers of a column are in a row of records of `kStep` numbers each: in two vectors, and in what that
-// gave and a third.
+// Where the numbers of a column are in a row of records of `kStep` numbers each: in two vectors, and in what
+// that gave and a third.
 template <uint32_t kStep>
 struct ColumnTable {
   alignas(64) uint32_t first[kStep][16];
@@ -141,8 +142,8 @@ struct PointColumns {
   }
 };
 
-// Rays that leave something look through the layer of what they are in, all over the world. What has none, and those
-// that are not in the world where they begin, are the core's.
+// Rays that leave something look through the layer of what they are in, all over the world. What has none,
+// and those that are not in the world where they begin, are the core's.
 HWY_INLINE void add_layers(const Job& job, size_t first, size_t count, NewRays* rays) {
   const U64 du;
   const F64 d;
@@ -264,8 +265,8 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&pl
   return rays;
 }
 
-// Puts up to kLanes rays, from number `first` on, into the queue; those that never come to anything are left out,
-// and those that are beyond the limits are traced by the core.
+// Puts up to kLanes rays, from number `first` on, into the queue; those that never come to anything are left
+// out, and those that are beyond the limits are traced by the core.
 HWY_INLINE void enqueue(Job* job, size_t first, size_t count, Queue* queue) {
   const F64 d;
   const U64 du;

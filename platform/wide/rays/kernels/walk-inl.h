@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// The cells of a cube of 4^3 that a ray can still come to, its own among them: by octant and cell, and what each
-// axis has to say by its direction (4: down) and coordinate.
+// The cells of a cube of 4^3 that a ray can still come to, its own among them: by octant and cell, and what
+// each axis has to say by its direction (4: down) and coordinate.
 struct AheadTable {
   alignas(64) uint64_t on_axis[3][8];
   uint64_t of[8 * 64];
@@ -174,8 +174,8 @@ HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
   sight->unit = hn::IfThenElse(is_last, hn::Set(d, uint64_t{1} << kCube), hn::Set(d, uint64_t{1} << kLeaf));
 }
 
-// The empty box ahead of each lane: a coordinate in units of `grain` is that of its lower corner, and its side.
-// `solid`: there is none, since the voxel is solid.
+// The empty box ahead of each lane: a coordinate in units of `grain` is that of its lower corner, and its
+// side. `solid`: there is none, since the voxel is solid.
 struct Box {
   VU grain;
   VU side;
