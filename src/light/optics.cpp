@@ -20,8 +20,8 @@ constexpr int32_t rounded(int64_t value, int shift) {
 }
 
 // The integer nearest to the root.
-#if UINTPTR_MAX > 0xFFFFFFFFU
-// Where divisions are fast: two steps of Heron's, from a straight line within 4 per cent of the root, never below it
+#if UINTPTR_MAX > 0xFFFFFFFFU || defined(__ARM_FEATURE_IDIV) || defined(__riscv_div)
+// Where the core divides: two steps of Heron's, from a straight line within 4 per cent of the root, never below it
 // afterwards: within 1 / 1,000 and 1 / 1,000,000.
 constexpr uint32_t root_rounded(uint32_t value) {
   if (value == 0) {
@@ -132,6 +132,29 @@ constexpr uint16_t kFall[65] = {0,     706,   1404,  2095,  2779,  3455,  4123, 
                                 24843, 25281, 25715, 26144, 26568, 26988, 27403, 27814, 28220, 28622, 29020,
                                 29413, 29802, 30187, 30568, 30945, 31317, 31686, 32050, 32411, 32768};
 
+// t * length * 2^exponent in 1/256 voxel, for a length in 2^14 .. 2^16.
+int32_t distance_along(uint32_t length, int exponent, int32_t t_numerator, int32_t t_denominator) {
+  const uint32_t component = static_cast<uint32_t>(t_denominator) >> 8;
+  if (component == 0 || t_numerator <= 0) {
+    return 0;
+  }
+  // length / component in Q28 by two divisions: the first quotient is below 2^32, what it leaves below 2^20.
+  const uint32_t dividend = length << 16;
+  const uint32_t high = dividend / component;
+  const uint32_t low = ((dividend - high * component) << 12) / component;
+  // 2^24 * 2^32, and 2^24 * 2^12 >> 12.
+  const uint64_t distance_q16 = wide_product_u(static_cast<uint32_t>(t_numerator), high) +
+                                (wide_product_u(static_cast<uint32_t>(t_numerator), low) >> 12);
+  THIMBLE_NOTE(Range::kLength, Exact(distance_q16));
+  const uint64_t distance = shift_rounded(distance_q16, 16 - exponent);  // the exponent is -14 .. 6
+  return distance < INT32_MAX ? static_cast<int32_t>(distance) : INT32_MAX;
+}
+
+// |component| / length in Q14, rounded. Below 2^29 + 2^15.
+uint32_t share_of_length(int32_t component, uint32_t length) {
+  return ((magnitude_32(component) << 14) + (length >> 1)) / length;
+}
+
 }  // namespace
 
 Vec3i shorten(const Vec3i& direction) {
@@ -154,8 +177,7 @@ Vec3i unit_q14(const Vec3i& direction) {
     return unit;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    // Below 2^29 + 2^15.
-    unit[axis] = signed_as(unit[axis], ((magnitude_32(unit[axis]) << 14) + (length >> 1)) / length);
+    unit[axis] = signed_as(unit[axis], share_of_length(unit[axis], length));
   }
   return unit;
 }
@@ -296,23 +318,17 @@ uint32_t transmittance_q16(uint32_t halvings_q16) {
 }
 
 int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denominator) {
-  const uint32_t component = static_cast<uint32_t>(t_denominator) >> 8;
-  if (component == 0 || t_numerator <= 0) {
-    return 0;
-  }
-  // |direction| = length * 2^exponent, the length in 2^14 .. 2^16.
+  const Scaled scale = scaled(direction);
+  return distance_along(length_of(scale.direction), scale.exponent, t_numerator, t_denominator);
+}
+
+int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denominator, int axis,
+                    uint32_t* cosine_q14) {
   const Scaled scale = scaled(direction);
   const uint32_t length = length_of(scale.direction);
-  // length / component in Q28 by two divisions: the first quotient is below 2^32, what it leaves below 2^20.
-  const uint32_t dividend = length << 16;
-  const uint32_t high = dividend / component;
-  const uint32_t low = ((dividend - high * component) << 12) / component;
-  // 2^24 * 2^32, and 2^24 * 2^12 >> 12.
-  const uint64_t distance_q16 = wide_product_u(static_cast<uint32_t>(t_numerator), high) +
-                                (wide_product_u(static_cast<uint32_t>(t_numerator), low) >> 12);
-  THIMBLE_NOTE(Range::kLength, Exact(distance_q16));
-  const uint64_t distance = shift_rounded(distance_q16, 16 - scale.exponent);  // the exponent is -14 .. 6
-  return distance < INT32_MAX ? static_cast<int32_t>(distance) : INT32_MAX;
+  // No component is longer than that.
+  *cosine_q14 = length == 0 ? 0 : share_of_length(scale.direction[axis], length);
+  return distance_along(length, scale.exponent, t_numerator, t_denominator);
 }
 
 }  // namespace thimble

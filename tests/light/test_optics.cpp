@@ -522,6 +522,44 @@ TEST_CASE("distance_q8: any direction and t -> within the bound, clamped at the 
   CHECK(distance_q8({kMaxDirection, kMaxDirection, 1}, 1 << 24, 256) == INT32_MAX);
 }
 
+TEST_CASE("distance_q8 with a cosine: rays to a point, any others -> both as apart, and the definition's") {
+  std::mt19937_64 random(seed());
+  int wrong = 0;
+  int to_points = 0;
+  for (int i = 0; i < kSweep; ++i) {
+    const Vec3i direction = random_direction(random, static_cast<int>(pick(random, 1, 20)));
+    const int axis = static_cast<int>(pick(random, 0, 2));
+    const bool to_point = pick(random, 0, 1) != 0;
+    const auto numerator =
+        static_cast<std::int32_t>(pick(random, -1, std::int64_t{1} << pick(random, 0, 24)));
+    const int other = static_cast<int>(pick(random, 0, 2));
+    const std::int32_t denominator = to_point ? 256 : 256 * std::abs(direction[other]);
+    std::uint32_t cosine = 99999;
+    const std::int32_t distance = distance_q8(direction, numerator, denominator, axis, &cosine);
+    wrong += distance == distance_q8(direction, numerator, denominator) ? 0 : 1;
+    const std::uint32_t unit = static_cast<std::uint32_t>(std::abs(unit_q14(direction)[axis]));
+    wrong += cosine == std::min(unit, std::uint32_t{1} << 14) ? 0 : 1;
+    // Up to 15 bits the direction is scaled up by 2^n, and its length is a whole number then.
+    std::int64_t largest = 0;
+    for (int k = 0; k < 3; ++k) {
+      largest = std::max<std::int64_t>(largest, std::abs(direction[k]));
+    }
+    if (to_point && numerator > 0 && largest > 0 && largest < 1 << 15) {
+      ++to_points;
+      int shift = 0;
+      while (largest << shift < 1 << 14) {
+        ++shift;
+      }
+      const std::int64_t length =
+          length_of({direction.x * (1 << shift), direction.y * (1 << shift), direction.z * (1 << shift)});
+      const std::int64_t half = shift == 0 ? 0 : std::int64_t{1} << (shift - 1);
+      wrong += distance == std::min<std::int64_t>((length * numerator + half) >> shift, INT32_MAX) ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(to_points > kSweep / 10);
+}
+
 TEST_CASE("occlusion pattern: each prefix -> balanced, cosine distributed, never in the plane") {
   for (const int count : {4, 8, 16, 32}) {
     int x = 0;

@@ -115,6 +115,9 @@ uint32_t transmittance_q16(uint32_t halvings_q16);
 /// in `Hit`: numerator 0 .. 2^24, denominator 256 times a component of `direction`, or 1 for t = 0. Clamped
 /// to INT32_MAX. One root, two 32-bit divisions.
 int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denominator);
+/// The same, and |unit_q14(direction)[axis]|, at most 2^14, by the same root and one division more.
+int32_t distance_q8(const Vec3i& direction, int32_t t_numerator, int32_t t_denominator, int axis,
+                    uint32_t* cosine_q14);
 
 /// Directions of a hemisphere round +z in 1/127, cosine distributed: the first 4, 8, 16 and 32 have equal
 /// shares of the disc below them each, and their sideways components add up to 0. None lies in the plane.

@@ -34,12 +34,15 @@ bool light_ray(const Light& light, const Spot& spot, LightRay* ray) {
   if (!leaves_face(ray->ray.direction, axis, spot.face.negative)) {
     return false;
   }
+  uint32_t cosine = 0;
   if (light.is_point) {
     const int32_t distance =
-        distance_q8(ray->ray.direction, ray->place.t_numerator, ray->place.t_denominator);
+        distance_q8(ray->ray.direction, ray->place.t_numerator, ray->place.t_denominator, axis, &cosine);
     share_q16 = falloff_q16(static_cast<uint32_t>(distance), light.reach);
+  } else {
+    cosine = cosine_q14(ray->ray.direction, axis);
   }
-  share_q16 = (share_q16 * cosine_q14(ray->ray.direction, axis)) >> 14;
+  share_q16 = (share_q16 * cosine) >> 14;
   bool shines = false;
   for (int i = 0; i < 3; ++i) {
     ray->brightness[i] = (light.color_q8[i] * share_q16 + 2048) >> 12;  // 16 bits by 16

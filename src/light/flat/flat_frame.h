@@ -112,7 +112,7 @@ class FlatSink : Gathering<kSet> {
 
   void set_lights(Span<const SunBricks> suns) {
     if constexpr (kGathers) {
-      this->begin(frame_);
+      this->begin(frame_, map_);
     }
     Spot spot;
     for (unsigned face = 0; face < 6; ++face) {
@@ -305,7 +305,7 @@ class FlatSink : Gathering<kSet> {
     Spot spot;
     spot.face = {static_cast<int>(side >> 1), (side & 1U) == 0};
     Color light;
-    if (!this->gather(frame_, map_, point, spot, reach, &light)) {
+    if (!this->gather(frame_, map_, point, reach, &spot, &light)) {
       store(x, y, ink_of_face(material, side, reach));
       return;
     }

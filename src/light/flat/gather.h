@@ -28,7 +28,8 @@ class Gathering<kSet, true> {
  public:
   static constexpr bool kGathers = true;
 
-  void begin(const Frame& frame) {
+  void begin(const Frame& frame, const BrickMap& map) {
+    from_.set_map(map);
     const Occlusion& occlusion = frame.scene.occlusion;
     rays_ = kOccludes && occlusion.reach != 0 ? occlusion_rays(occlusion) : 0;
     // A box of 256 voxels a side ends within 512 along any direction of the pattern.
@@ -52,22 +53,23 @@ class Gathering<kSet, true> {
     add_suns(spot, lights, light);
   }
 
-  // Gathers the light of a point. False when it is that of its face.
-  bool gather(const Frame& frame, const BrickMap& map, const FacePoint& point, const Spot& spot,
-              unsigned lights, Color* light) {
-    NearPoint from(map, point);
+  // Gathers the light of a point; `spot` has its face. False when it is that of its face.
+  bool gather(const Frame& frame, const BrickMap& map, const FacePoint& point, unsigned lights, Spot* at,
+              Color* light) {
+    Spot& spot = *at;
+    from_.set(point);
     bool own = false;
     ambient_light(frame, spot, light);
     if constexpr (kOccludes) {
       if (rays_ != 0) {
-        const uint32_t open = open_of(frame.scene.occlusion, from, spot.face);
+        const uint32_t open = open_of(frame.scene.occlusion, spot.face);
         own = open != kOpenShare * static_cast<uint32_t>(rays_);
         darken(frame.scene.occlusion, open, rays_, light);
       }
     }
     add_suns(spot, lights, light);
     if constexpr (kHasLamps) {
-      own = add_lamps(frame, map, from, point, spot.face, light) || own;
+      own = add_lamps(frame, map, &spot, light) || own;
     }
     return own;
   }
@@ -100,7 +102,7 @@ class Gathering<kSet, true> {
 
   // How much of what is around the point is open. The pattern has four quadrants by turns, and in each all directions
   // have the same signs.
-  uint32_t open_of(const Occlusion& occlusion, NearPoint& from, const Face& face) {
+  uint32_t open_of(const Occlusion& occlusion, const Face& face) {
     const int along_x = face.axis == 2 ? 0 : face.axis + 1;
     const int along_y = face.axis == 0 ? 2 : face.axis - 1;
     const unsigned up = face.negative ? 1U << face.axis : 0U;
@@ -108,7 +110,7 @@ class Gathering<kSet, true> {
     for (int quadrant = 0; quadrant < 4; ++quadrant) {
       const bool left = quadrant == 1 || quadrant == 2;
       const bool back = quadrant >= 2;
-      const bool in_box = from.begin(up | (left ? 1U << along_x : 0U) | (back ? 1U << along_y : 0U));
+      const bool in_box = from_.begin(up | (left ? 1U << along_x : 0U) | (back ? 1U << along_y : 0U));
       for (int i = quadrant; i < rays_; i += 4) {
         const PatternDirection& direction = kOcclusionPattern[i];
         uint32_t d[3];
@@ -118,7 +120,7 @@ class Gathering<kSet, true> {
         int c = d[along_x] > d[along_y] ? along_x : along_y;
         c = d[face.axis] > d[c] ? face.axis : c;
         NearHit hit;
-        if (in_box && from.trace(d, c, (d[c] * reach_q12_ >> 12) + 1, &hit)) {
+        if (in_box && from_.trace(d, c, (d[c] * reach_q12_ >> 12) + 1, &hit)) {
           open += share_of_way(occlusion, hit.way, d[hit.axis]);
           ++occlusion_hits_;
         } else {
@@ -131,26 +133,21 @@ class Gathering<kSet, true> {
   }
 
   // Adds the lamps that reach a point; whether any does.
-  bool add_lamps(const Frame& frame, const BrickMap& map, NearPoint& from, const FacePoint& point,
-                 const Face& face, Color* light) {
-    Spot spot;
-    spot.face = face;
+  bool add_lamps(const Frame& frame, const BrickMap& map, Spot* spot, Color* light) {
     for (int i = 0; i < 3; ++i) {
-      const int32_t within = i != point.axis ? point.within[i] : point.faces_up ? 256 : 0;
-      spot.at[i] = Q8::from_raw(256 * (4 * map.box().low[i] + point.voxel[i]) + within);
+      spot->at[i] = Q8::from_raw(from_.place(i));
     }
     bool any = false;
     for (const Light& lamp : frame.scene.lights) {
-      LightRay ray;
-      if (lamp.is_point && light_ray(lamp, spot, &ray) && lamp_arrives(frame, map, from, ray)) {
-        add_light(ray, light);
+      if (lamp.is_point && light_ray(lamp, *spot, &ray_) && lamp_arrives(frame, map, ray_)) {
+        add_light(ray_, light);
         any = true;
       }
     }
     return any;
   }
 
-  bool lamp_arrives(const Frame& frame, const BrickMap& map, NearPoint& from, const LightRay& ray) {
+  bool lamp_arrives(const Frame& frame, const BrickMap& map, const LightRay& ray) {
     uint32_t d[3];
     unsigned mirrored = 0;
     int c = 0;
@@ -163,7 +160,7 @@ class Gathering<kSet, true> {
     // The lamp is at t = numerator / 256, where the ray has gone numerator * d along an axis.
     const auto lamp_at = static_cast<uint32_t>(ray.place.t_numerator);
     NearHit hit;
-    if (!from.begin(mirrored) || !from.trace(d, c, lamp_at * d[c], &hit)) {
+    if (!from_.begin(mirrored) || !from_.trace(d, c, lamp_at * d[c], &hit)) {
       return true;
     }
     ++lamp_hits_;
@@ -177,6 +174,8 @@ class Gathering<kSet, true> {
     return false;
   }
 
+  NearPoint<kHasLamps> from_;
+  LightRay ray_;            // to a lamp
   int rays_ = 0;            // of occlusion, a point
   uint32_t reach_q12_ = 0;  // of occlusion: 1/256 voxel for each unit of a direction, in 1/2^12
   Color suns_[6][kMaxFlatSuns];

@@ -16,6 +16,7 @@
 
 #include "../../base/ranges.h"
 #include "inks.h"
+#include "layers.h"
 #include "thimble/picture/brick_render.h"
 #include "thimble/trace/trace.h"
 
@@ -131,7 +132,7 @@ class BrickRay {
       }
       goto entered;
     }
-    if (!find_brick()) {
+    if (!find_brick() || !skip_air()) {
       return kMissed;
     }
   entered:
@@ -220,6 +221,17 @@ class BrickRay {
   static constexpr int kA = kOtherA<kC>;
   static constexpr int kB = kOtherB<kC>;
   static constexpr bool kFromFace = OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear;
+  // Whether layers of empty bricks are gone through at once. Cores without a divider are those with little flash, and
+  // have not the code.
+  static constexpr bool skips_layers() {
+    if constexpr (OneCourse::kAim == Aim::kNear) {
+      return OneCourse::kRunsFar && kDivides;
+    } else {
+      return false;
+    }
+  }
+  static constexpr uint32_t kFarPlanes =
+      8;  // ends of rays, and rays of occlusion, are sooner there voxel by voxel
   static constexpr bool mirrored(int axis) { return (kMirrored >> axis & 1U) != 0; }
   static constexpr uint32_t flip(int axis) { return mirrored(axis) ? 3U : 0U; }
   // The voxel of a brick, in place, behind which the next brick comes; and what a step adds.
@@ -322,6 +334,38 @@ class BrickRay {
     } else {
       at_ = brick_at(half_at(course_.directory, cell_));
     }
+    return true;
+  }
+
+  // Whether the ray is in a brick with nothing in it: all of these are the first.
+  [[gnu::always_inline]] bool is_empty() const { return static_cast<size_t>(at_ - course_.bricks) < 8; }
+
+  // Whether the plane of c is one between layers: several planes that are crossed together may be in one brick.
+  [[gnu::always_inline]] bool comes_from_layer() const {
+    const uint32_t own = kC == 2 ? row_of(at_) : shift_ & kField<kC>;
+    return own == (last<kC>() ^ kField<kC>);
+  }
+  // Goes on through empty bricks, where it has just come to one. False when it ends there.
+  [[gnu::always_inline]] bool skip_air() {
+    if constexpr (skips_layers()) {
+      return planes_ < kFarPlanes || axis_ != kC || !is_empty() || !comes_from_layer() || skip_empty();
+    } else {
+      return true;
+    }
+  }
+  // The same, from a plane of c between two layers of bricks.
+  [[gnu::always_inline]] bool skip_empty() {
+    LayerPlace at{{rest_a_, rest_b_}, left_, cell_, planes_, row_of(at_) << 3 | shift_, 0};
+    if (!skip_layers(course_, kC, &at)) {
+      return false;
+    }
+    rest_a_ = at.rest[0];
+    rest_b_ = at.rest[1];
+    left_ = at.left;
+    cell_ = at.cell;
+    planes_ = at.planes;
+    shift_ = at.place & 15U;
+    at_ = course_.bricks + 8 * at.number + (at.place >> 4 << 1);
     return true;
   }
 

@@ -8,9 +8,12 @@
 namespace thimble::bricks {
 namespace {
 
+// `kFar`: some of the rays run far through the air, to lamps.
 // A ray: what BrickRay reads of a course, its direction, mirrored, and where it begins.
+template <bool kFar>
 struct NearRay {
   static constexpr Aim kAim = Aim::kNear;
+  static constexpr bool kRunsFar = kFar;
   static constexpr bool wide = true;  // the comparison serves directions of few bits, too
   const uint8_t* directory;
   const uint8_t* bricks;
@@ -26,14 +29,14 @@ struct NearRay {
   mutable Landing landing;
 };
 
-template <int kC>
-[[gnu::noinline]] bool near_along(const NearRay& from) {
+template <int kC, bool kFar>
+[[gnu::noinline]] bool near_along(const NearRay<kFar>& from) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
   const uint32_t d_a = from.d[kA];
   const uint32_t d_b = from.d[kB];
   const uint32_t d_c = from.d[kC];
-  BrickRay<kC, kAnySigns, NearRay> ray(from, d_a, d_b, d_c);
+  BrickRay<kC, kAnySigns, NearRay<kFar>> ray(from, d_a, d_b, d_c);
   // Back to the plane of c before it, and on from there.
   const uint32_t rest_a = from.within[kA] * d_c - from.within[kC] * d_a - (d_c << 8);
   const uint32_t rest_b = from.within[kB] * d_c - from.within[kC] * d_b - (d_c << 8);
@@ -50,46 +53,58 @@ struct NearHit {
 };
 
 // A point on a face, from which rays leave.
+template <bool kFar>
 class NearPoint {
  public:
-  NearPoint(const BrickMap& map, const FacePoint& point) {
+  [[gnu::cold, gnu::noinline]] void set_map(const BrickMap& map) {
     ray_.directory = map.directory();
     ray_.bricks = map.bricks();
+    near_left_ = 0;
     int32_t stride = 2;
     for (int i = 0; i < 3; ++i) {
-      side_[i] = map.box().high[i] - map.box().low[i];
+      const int32_t side = map.box().high[i] - map.box().low[i];
+      low_[i] = 1024 * map.box().low[i];
+      size_[i] = 1024 * side;
+      near_left_ += static_cast<uint32_t>(512 - side) << 10 * i;
       stride_[i] = stride;
-      stride *= side_[i];
-      at_[i] = 256 * point.voxel[i] + (i != point.axis ? point.within[i] : point.faces_up ? 256 : 0);
+      stride *= side;
     }
+    set_signs(0);
   }
+  void set(const FacePoint& point) {
+    for (int i = 0; i < 3; ++i) {
+      at_[i] = 256 * point.voxel[i] + point.within[i];
+    }
+    at_[point.axis] = 256 * (point.voxel[point.axis] + (point.faces_up ? 1 : 0));
+  }
+  // Where it is in the world, in 1/256 voxel.
+  int32_t place(int axis) const { return low_[axis] + at_[axis]; }
 
   // Sets the signs of the rays that follow: bit a, axis a is mirrored. False when they leave the box at once. They leave
   // the face.
   bool begin(unsigned mirrored) {
-    mirrored_ = mirrored;
-    ray_.left = 0;
-    ray_.cell = 0;
-    ray_.place = 0;
+    if (mirrored != mirrored_) {
+      set_signs(mirrored);
+    }
+    uint32_t left = near_left_;
+    uint32_t place = 0;
+    int32_t cell = near_cell_;
     for (int i = 0; i < 3; ++i) {
-      const bool down = (mirrored >> i & 1U) != 0;
-      // A ray that goes down from a plane is in the voxel below.
-      const int32_t own = own_place(i, down);
-      const int32_t cell = own >> 8;
-      const int32_t side = side_[i];
-      if (cell >= 4 * side) {
+      const int32_t own = own_place(i);
+      if (own >= size_[i]) {
         return false;
       }
-      const int32_t voxel = down ? 4 * side - 1 - cell : cell;
-      const int32_t step = 1 << kPlaceShift[i];
-      ray_.next_brick[i] = down ? -stride_[i] : stride_[i];
-      ray_.one_step[i] = down ? -step : step;
-      ray_.last[i] = down ? 0U : 3U << kPlaceShift[i];
+      const int32_t brick = own >> 10;
+      left += static_cast<uint32_t>(brick) << 10 * i;
+      cell += brick * ray_.next_brick[i];
+      // Mirrored, the voxel's place in its brick is counted from the other side.
+      const uint32_t voxel = static_cast<uint32_t>(own) >> 8 & 3U;
+      place |= (is_mirrored(i) ? 3 - voxel : voxel) << 2 * i;
       ray_.within[i] = static_cast<uint32_t>(own) & 255U;
-      ray_.left += static_cast<uint32_t>(512 - side + (cell >> 2)) << 10 * i;
-      ray_.cell += (voxel >> 2) * stride_[i];
-      ray_.place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
     }
+    ray_.left = left;
+    ray_.cell = cell;
+    ray_.place = place;
     return true;
   }
 
@@ -100,30 +115,52 @@ class NearPoint {
     ray_.d[1] = d[1];
     ray_.d[2] = d[2];
     ray_.planes = (reach + ray_.within[c] - 1) >> 8;
-    return (c == 0 ? near_along<0>(ray_) : c == 1 ? near_along<1>(ray_) : near_along<2>(ray_)) && find(hit);
+    return (c == 0   ? near_along<0, kFar>(ray_)
+            : c == 1 ? near_along<1, kFar>(ray_)
+                     : near_along<2, kFar>(ray_)) &&
+           find(hit);
   }
 
  private:
+  [[gnu::noinline]] void set_signs(unsigned mirrored) {
+    mirrored_ = mirrored;
+    near_cell_ = 0;
+    for (int i = 0; i < 3; ++i) {
+      const bool down = is_mirrored(i);
+      const int32_t step = 1 << kPlaceShift[i];
+      ray_.next_brick[i] = down ? -stride_[i] : stride_[i];
+      ray_.one_step[i] = down ? -step : step;
+      ray_.last[i] = down ? 0U : static_cast<uint32_t>(3 * step);
+      near_cell_ += down ? ((size_[i] >> 10) - 1) * stride_[i] : 0;
+    }
+  }
+
   bool find(NearHit* hit) const {
     const Landing& landing = ray_.landing;
     const int axis = landing.axis;
-    const bool down = (mirrored_ >> axis & 1U) != 0;
     const auto bricks = static_cast<int32_t>(count_of(landing.left, axis) - count_of(ray_.left, axis));
     const auto place = static_cast<int32_t>(landing.voxel >> 2 * axis & 3U);
-    const int32_t way = 256 * (4 * bricks + (down ? 3 - place : place)) - (own_place(axis, down) & 1023);
+    const int32_t way =
+        256 * (4 * bricks + (is_mirrored(axis) ? 3 - place : place)) - (own_place(axis) & 1023);
     hit->axis = axis;
     hit->way = way > 0 ? static_cast<uint32_t>(way) : 0;
     hit->voxel = landing.voxel;
     return true;
   }
-  // From the box's near side, in 1/256 voxel.
-  int32_t own_place(int axis, bool down) const { return down ? 1024 * side_[axis] - at_[axis] : at_[axis]; }
+  bool is_mirrored(int axis) const { return (mirrored_ >> axis & 1U) != 0; }
+  // From the box's side at which the rays come in, in 1/256 voxel.
+  int32_t own_place(int axis) const { return is_mirrored(axis) ? size_[axis] - at_[axis] : at_[axis]; }
 
-  int32_t side_[3];    // of the box, in bricks
+  // Of the box, in 1/256 voxel.
+  int32_t low_[3];
+  int32_t size_[3];
   int32_t stride_[3];  // of the directory, in bytes
   int32_t at_[3];      // in the box, in 1/256 voxel
   unsigned mirrored_;
-  NearRay ray_;
+  // Of the brick that all rays of these signs come from: counts of bricks, the place in the directory.
+  uint32_t near_left_;
+  int32_t near_cell_;
+  NearRay<kFar> ray_;
 };
 
 }  // namespace
