@@ -20,8 +20,8 @@ constexpr int32_t rounded(int64_t value, int shift) {
 }
 
 // The integer nearest to the root.
-#if UINTPTR_MAX > 0xFFFFFFFFU || defined(__ARM_FEATURE_IDIV) || defined(__riscv_div)
-// Where the core divides: two steps of Heron's, from a straight line within 4 per cent of the root, never below it
+#if UINTPTR_MAX > 0xFFFFFFFFU || defined(__ARM_FEATURE_IDIV)
+// Where the core divides fast: two steps of Heron's, from a straight line within 4 per cent of the root, never below it
 // afterwards: within 1 / 1,000 and 1 / 1,000,000.
 constexpr uint32_t root_rounded(uint32_t value) {
   if (value == 0) {
