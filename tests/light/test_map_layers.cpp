@@ -82,7 +82,7 @@ TEST_CASE("lamps by the map: voxels that hang in the air, empty bricks around th
     Camera camera;
     REQUIRE(camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(50), kWide, kHigh, 0}, level) ==
             Status::kOk);
-    std::vector<Light> lamps(1 + turn / 6 % 2);
+    std::vector<Light> lamps(turn / 6 % 2 == 0 ? 1 : 2);
     for (Light& lamp : lamps) {
       lamp.is_point = true;
       lamp.reach = 60;
