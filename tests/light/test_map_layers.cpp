@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -113,6 +114,115 @@ TEST_CASE("lamps by the map: voxels that hang in the air, empty bricks around th
   // Both happen often, or else nothing was tested.
   CHECK(hidden > 10000);
   CHECK(reached > 100000);
+}
+
+// The middle pixel meets a wall on a corner of bricks; from there the ray to the lamp crosses planes of bricks on two
+// axes or on all three at the same time, once or again and again. What hangs beside its way hides the lamp only where
+// the ray spends a length in it.
+TEST_CASE("lamps by the map: planes of bricks crossed at the same time -> the tree's shadows") {
+  std::mt19937_64 random(20261126);
+  constexpr int kPicture = 3;
+  constexpr int kLevel = 6;
+  constexpr int kSide = 1 << kLevel;
+  // Bricks that the ray goes along the wall's axis and the other two.
+  constexpr int kWays[][3] = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {2, 2, 1}, {1, 2, 2},
+                              {3, 1, 1}, {1, 3, 1}, {1, 0, 1}, {2, 1, 0}, {1, 3, 3}, {4, 3, 2}};
+  int hidden = 0;
+  int reached = 0;
+  for (int turn = 0; turn < 6000; ++turn) {
+    CAPTURE(turn);
+    const int axis = turn % 3;
+    const bool high = turn / 3 % 2 != 0;
+    const int(&way)[3] = kWays[static_cast<std::size_t>(turn / 6) % std::size(kWays)];
+    // Where the ray begins, and how it goes, in voxels; on half of the turns off the corner along one axis.
+    Vec3i start{};
+    Vec3i step{};
+    for (int i = 0; i < 3; ++i) {
+      const int other = (axis + i) % 3;
+      const bool down = i == 0 ? high : pick_int(random, 0, 1) != 0;
+      start[other] =
+          i == 0 ? (high ? kSide - 4 : 4) : 4 * (down ? pick_int(random, 8, 15) : pick_int(random, 1, 8));
+      step[other] = (down ? -4 : 4) * way[i];
+    }
+    const int off = (axis + pick_int(random, 1, 2)) % 3;
+    start[off] += turn % 2 * pick_int(random, 0, 3);
+    int times = 0;
+    const auto fits = [&](int count) {
+      bool all = true;
+      for (int i = 0; i < 3; ++i) {
+        const int end = start[i] + count * step[i];
+        all = all && end >= 0 && end <= kSide;
+      }
+      return all;
+    };
+    while (fits(times + 1)) {
+      ++times;
+    }
+    REQUIRE(times > 0);
+    // The wall, and voxels that touch the ray's way or stand in it.
+    std::vector<Vec3i> voxels;
+    for (int i = 0; i < kSide; ++i) {
+      for (int k = 0; k < kSide; ++k) {
+        Vec3i at{};
+        at[axis] = high ? kSide - 4 : 3;
+        at[(axis + 1) % 3] = i;
+        at[(axis + 2) % 3] = k;
+        voxels.push_back(at);
+      }
+    }
+    for (int i = pick_int(random, 1, 3); i > 0; --i) {
+      const int along = pick_int(random, 1, 4 * times);
+      Vec3i at{};
+      bool in_air = true;
+      for (int other = 0; other < 3; ++other) {
+        at[other] = start[other] + along * step[other] / 4 - pick_int(random, 0, 1);
+        in_air = in_air && at[other] >= 0 && at[other] < kSide;
+      }
+      in_air = in_air && (high ? at[axis] < kSide - 4 : at[axis] > 3);
+      if (in_air) {
+        voxels.push_back(at);
+      }
+    }
+    const ChipScene scene = make_chip_scene(kLevel, voxels);
+    // The eye looks straight at the wall from before everything that hangs.
+    Vec3Q8 eye{};
+    Vec3i forward{};
+    for (int i = 0; i < 3; ++i) {
+      eye[i] = Q8::from_raw(256 * (i == axis ? start[i] + (high ? -1 : 1) : start[i]));
+    }
+    forward[axis] = high ? 1 : -1;
+    Camera camera;
+    REQUIRE(camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(10), kPicture, kPicture, 0}, kLevel) ==
+            Status::kOk);
+    Light lamp;
+    lamp.is_point = true;
+    lamp.reach = 200;
+    lamp.place = Vec3i{256 * (start.x + times * step.x), 256 * (start.y + times * step.y),
+                       256 * (start.z + times * step.z)};
+    lamp.color_q8[0] = lamp.color_q8[1] = lamp.color_q8[2] = 2000;
+    LitScene lit;
+    lit.lights = {&lamp, 1};
+    const Shading shading;
+    std::vector<std::uint8_t> bytes[2];
+    LitCounts counts[2];
+    for (int by_map = 0; by_map < 2; ++by_map) {
+      bytes[by_map].resize(3 * kPicture * kPicture);
+      const Band band{{bytes[by_map].data(), bytes[by_map].size()}, PixelFormat::kRgb888, 0, 0, kPicture};
+      REQUIRE((by_map != 0 ? render_lit_band<kByLamps>(scene.tree, scene.map, camera, shading, lit, {}, band,
+                                                       &counts[1])
+                           : render_lit_band<kByLamps>(scene.tree, camera, shading, lit, band, &counts[0])) ==
+              Status::kOk);
+    }
+    REQUIRE(bytes[1] == bytes[0]);
+    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+    REQUIRE(counts[1].rays[kShadow] == counts[0].rays[kShadow]);
+    hidden += counts[0].hits[kShadow] != 0 ? 1 : 0;
+    reached += counts[0].rays[kShadow] != counts[0].hits[kShadow] ? 1 : 0;
+  }
+  CAPTURE(hidden);
+  CAPTURE(reached);
+  CHECK(hidden > 100);
+  CHECK(reached > 1000);
 }
 
 }  // namespace
