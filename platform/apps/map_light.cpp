@@ -6,8 +6,8 @@
 namespace thimble::apps {
 
 int map_light() {
-  return run_cases("map_light", portable::kMapLightGroups, portable::kMapLightCrc32,
-                   portable::kMapLightCrc32);
+  return run_cases("map_light", portable::kMapLightGroups, portable::kMapLightCrc32, portable::kMapLightCrc32,
+                   portable::kLitArenaBytes);
 }
 
 }  // namespace thimble::apps

@@ -12,12 +12,13 @@ namespace thimble::lit {
 /// How much light comes by a ray that meets nothing.
 inline constexpr uint32_t kOpenShare = 1U << 12;
 
-/// Rays a face.
+/// How many rays a point sends.
 constexpr int occlusion_rays(const Occlusion& occlusion) {
   return occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
 }
 
-/// By one that meets something at `way` (1/256 voxel) along an axis of which its direction has `component`.
+/// How open the way of one is that meets something at `way` (1/256 voxel) along an axis of which its direction has
+/// `component`.
 /// All directions of the pattern have one length, 7 bits; the way has 23.
 [[gnu::always_inline]] inline uint32_t share_of_way(const Occlusion& occlusion, uint32_t way,
                                                     uint32_t component) {

@@ -9,7 +9,7 @@ namespace {
 
 using namespace brick_world;
 
-constexpr uint32_t kRowsBytes = 160;
+constexpr uint32_t kRowsBytes = 112;
 constexpr uint32_t kSunBytes = 16;
 
 constexpr Surface surface(const Rgb8& albedo, SurfaceKind kind = SurfaceKind::kDiffuse) {
@@ -39,9 +39,9 @@ struct State {
   static void* operator new(size_t, void* at) { return at; }
   static void operator delete(void*, void*) {}
 };
-constexpr uint32_t kArenaBytes = kPoolBytes + kTreeBytes + kMapBytes + 2 * kRowsBytes + kSunBytes + 896;
-static_assert(sizeof(State) + 64 <= 896);
-static_assert(kArenaBytes <= kCommonArenaBytes);
+constexpr uint32_t kArenaBytes = kPoolBytes + kTreeBytes + kMapBytes + 2 * kRowsBytes + kSunBytes + 880;
+static_assert(sizeof(State) + 64 <= 880);
+static_assert(kArenaBytes <= kLitArenaBytes);
 
 constexpr PixelFormat kFormats[] = {PixelFormat::kRgb565, PixelFormat::kGray4, PixelFormat::kRgb888,
                                     PixelFormat::kMono1};

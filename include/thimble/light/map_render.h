@@ -143,7 +143,7 @@ Status draw_flat<0x120F>(const Frame& frame, const BrickMap& map, Span<const Sun
 /// As `render_lit_band` (render.h) with `map`, which belongs to `tree`. `suns` (may be empty) has what is proven of
 /// each distant light of the scene, in their order. `kHasLamps`: lamps go through the map, too; without it a scene with
 /// any is drawn by the tree. Of the counters those of nodes stay as they are for rays that read none, and rays to lamps
-/// and of occlusion hit nothing that is farther away than the lamp or a voxel beyond the reach.
+/// and of occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach.
 /// Errors, with nothing drawn: those of render.h, and kDamaged when the map is another tree's.
 template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight) != 0>
 [[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const BrickMap& map,
@@ -155,7 +155,7 @@ template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight
     return Status::kDamaged;
   }
   if constexpr (is_flat(kEffects)) {
-    // Rays to lamps without shadows would be none.
+    // Without shadows no ray goes to a lamp, and the tree draws.
     constexpr bool kTakesLamps = kHasLamps && (kEffects & Effect::kShadows) != 0;
     constexpr EffectSet kSet =
         (kEffects & ~Effect::kEmitterLight) | (kTakesLamps ? lit::kLamps : Effect::kNone);
@@ -167,7 +167,7 @@ template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight
   return render_lit_band<kEffects>(tree, camera, shading, scene, band, counts, options);
 }
 
-/// The same with a set that is known only now, as that of render.h; what a firmware image does not call it has none of.
+/// The same with a set that is known only now, as that of render.h; an image that does not call it holds nothing of it.
 Status render_lit_band(EffectSet effects, const CompactTree& tree, const BrickMap& map, const Camera& camera,
                        const Shading& shading, const LitScene& scene, Span<const SunBricks> suns,
                        const Band& band, LitCounts* counts = nullptr, const LitOptions& options = {});

@@ -16,7 +16,7 @@ using namespace bricks;
 template <EffectSet kSet>
 constexpr bool kGathersLight = (kSet & (Effect::kAmbientOcclusion | kLamps)) != 0;
 
-// What a set keeps that gathers nothing.
+// A set that gathers nothing keeps nothing.
 template <EffectSet kSet, bool = kGathersLight<kSet>>
 class Gathering {
  public:
@@ -35,11 +35,6 @@ class Gathering<kSet, true> {
     // A box of 256 voxels a side ends within 512 along any direction of the pattern.
     const uint32_t reach = occlusion.reach < 512 ? occlusion.reach : 512;
     reach_q12_ = ((reach << 20) + kOcclusionLength - 1) / kOcclusionLength;
-    for (unsigned face = 0; face < 6; ++face) {
-      for (size_t i = 0; i < kMaxFlatSuns; ++i) {
-        suns_[face][i] = {};
-      }
-    }
   }
   // What sun `number` gives a face that it reaches.
   void set_sun(size_t number, unsigned face, const LightRay& ray) { add_light(ray, &suns_[face][number]); }

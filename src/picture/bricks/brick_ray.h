@@ -87,7 +87,7 @@ constexpr bool is_positive(uint32_t value) {
 constexpr unsigned kAnySigns = 8;
 
 // A ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored. Everything is inlined into
-// `trace_one`, where the members become registers. What is asked of a ray is the course's (sight.h has two more).
+// `trace_one`, where the members become registers. What is asked of a ray is the course's (sight.h and near.h have others).
 template <int kC, unsigned kMirrored, class OneCourse = Course>
 class BrickRay {
  public:
