@@ -36,7 +36,7 @@ constexpr uint32_t count_of(uint32_t counts, int axis) {
 using Half [[gnu::may_alias]] = uint16_t;
 using Word [[gnu::may_alias]] = uint32_t;
 
-[[gnu::always_inline]] inline uint32_t half_at(const uint8_t* bytes, int32_t offset) {
+uint32_t half_at(const uint8_t* bytes, int32_t offset) {
   // Through void: compilers for small chips warn of a cast that promises an alignment.
   return *static_cast<const Half*>(static_cast<const void*>(bytes + offset));
 }
