@@ -79,5 +79,25 @@ TEST_CASE("baked scene: a name of more than 255 bytes -> told, at its entry") {
   }
 }
 
+TEST_CASE("baked scene: a look, which the core does not read -> its bytes, a sound scene; without one none") {
+  const HeapBytes tree = some_tree();
+  std::vector<std::uint8_t> look;
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{12}, std::size_t{300}}) {
+    CAPTURE(size);
+    look.resize(size, static_cast<std::uint8_t>(size + 7));
+    BakedParts parts;
+    parts.tree = tree.view();
+    parts.look = {look.data(), look.size()};
+    HeapBytes bytes(baked_bytes(parts));
+    BakedScene scene;
+    REQUIRE(BakedScene::make(parts, bytes.span(), &scene) == Status::kOk);
+    std::uint32_t place = 0;
+    CHECK(BakedScene::validate(bytes.view(), &place) == nullptr);
+    const ConstBytes written = scene.section(SectionKind::kLook);
+    CHECK(std::vector<std::uint8_t>(written.begin(), written.end()) == look);
+    CHECK(scene.tree().voxel_count() == 1);
+  }
+}
+
 }  // namespace
 }  // namespace thimble::tests::baked_edges
