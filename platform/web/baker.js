@@ -1,8 +1,15 @@
-// The command's readers and bake (tools/web), for files that were dropped. An instance bakes one scene and is thrown
-// away: an error in a file ends it with a sentence.
+// The command's readers, bake, framing and looks (tools/web). An instance bakes one scene and knows how that looks; an
+// error in a file ends it with a sentence.
 'use strict';
 
 class BakeError extends Error {}
+// Keys of the named views: NamedView (tools/scene/framing.h).
+const VIEWS = {1: 3, 2: 4, 3: 5, 4: 6, 5: 7, 6: 2};
+
+// To where a module's next call takes its camera from (tools/web/look_block.h).
+function writeCamera(x, {eye, target, zoom, own}) {
+  new Int32Array(x.memory.buffer, x.camera(), 8).set([...eye, ...target, zoom, own ? 1 : 0]);
+}
 
 class Baker {
   // `files`: [{name, bytes}], the bytes inflated.
@@ -34,6 +41,7 @@ class Baker {
 
   // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen.
   bake(scene, board, options = {}) {
+    this.x = null;  // of a scene that could not be baked there is no look
     const x = this.instance();
     const put = (bytes) => {
       const at = x.room(bytes.length);
@@ -49,12 +57,33 @@ class Baker {
       const facts = x.facts();
       const end = memory.indexOf(0, facts);
       const found = JSON.parse(new TextDecoder().decode(memory.slice(facts, end)));
+      this.x = x;
       return {...found, baked: memory.slice(at, at + size)};
     } catch (error) {
       if (error instanceof BakeError) throw error;
       throw new BakeError(/memory|out of bounds/.test(error.message) ?
         'does not fit the memory that the browser gives' : `could not be read: ${error.message}`);
     }
+  }
+
+  // How the scene that was baked looks from a camera (Orbit.camera()), for Look.take(), and whether it is stars; null
+  // where there is no such camera. `exposure`: that of the last finished picture.
+  look(camera, width, height, exposure) {
+    const {x} = this;
+    writeCamera(x, camera);
+    const at = x.look(width, height, exposure);
+    if (at === 0) return null;
+    return {block: new Uint8Array(x.memory.buffer).slice(at, at + x.look_bytes()), isStars: x.is_stars() !== 0};
+  }
+  // The finished picture of the last look, of stars.
+  stars(width, height) {
+    const at = this.x.stars();
+    return new Uint8Array(this.x.memory.buffer).slice(at, at + 3 * width * height);
+  }
+  // The camera of a named view, for Orbit.show().
+  frame(view, width, height) {
+    const numbers = [...new Int32Array(this.x.memory.buffer, this.x.frame(VIEWS[view], width, height), 7)];
+    return {eye: numbers.slice(0, 3), target: numbers.slice(3, 6), zoom: numbers[6]};
   }
 
   // The greatest smaller depth that fits, as what bake() returns; null where none does.
@@ -72,5 +101,5 @@ class Baker {
 }
 
 if (typeof module !== 'undefined') {
-  module.exports = {Baker, BakeError};
+  module.exports = {Baker, BakeError, VIEWS, writeCamera};
 }

@@ -2,7 +2,7 @@
 // they need no headers of a server and work from the disk too.
 'use strict';
 
-// What a worker runs: it draws bands of a scene, or bakes one.
+// What a worker runs: it draws bands of a scene, or bakes one and says how it looks.
 function serve(self) {
   let look = null;
   let baker = null;
@@ -21,16 +21,24 @@ function serve(self) {
       }
       self.postMessage(answer);
     } else {
-      if (job !== data.job) look.see(data.camera);
+      if (job !== data.job) {
+        look.see(data.view.camera);
+        look.take(data.view.block);
+      }
       job = data.job;
-      look.band(data.kind, data.first, data.rows);
+      if (data.kind === 'expose') {
+        self.postMessage({job, exposure: look.expose()});
+        return;
+      }
+      look.band(data.kind, data.first, data.rows, data.view.exposure);
       const bytes = look.rows(data.first, data.first + data.rows).slice();
       self.postMessage({job, first: data.first, bytes}, [bytes.buffer]);
     }
   };
 }
 function workerSource() {
-  return `'use strict';\n${Look}\n${BakeError}\n${Baker}\n(${serve})(self);`;
+  return `'use strict';\nconst COARSE = ${COARSE};\nconst VIEWS = ${JSON.stringify(VIEWS)};\n` +
+    `${[writeCamera, Look, BakeError, Baker].join('\n')}\n(${serve})(self);`;
 }
 // Null where the browser gives none.
 function startWorker() {
@@ -47,10 +55,11 @@ function startWorker() {
 // Draws pictures by bands, each worker one band at a time: a picture that nobody wants any more costs what is under
 // way, and its bands are thrown away.
 class Crew {
-  // `onBand(first, bytes)` for each band, `onEnd()` after the last one, `onFault()` once where workers do not work.
-  constructor(workers, {module, scene, width, height}, {onBand, onEnd, onFault}) {
+  // `onBand(first, bytes)` for each band, `onEnd()` after the last one, `onExposed(exposure)` after expose(),
+  // `onFault()` once where workers do not work.
+  constructor(workers, {module, scene, width, height}, {onBand, onEnd, onExposed, onFault}) {
     this.height = height;
-    this.on = {onBand, onEnd};
+    this.on = {onBand, onEnd, onExposed};
     this.job = 0;
     this.next = this.left = 0;
     this.thrownAway = 0;
@@ -68,10 +77,14 @@ class Crew {
       worker.postMessage({module, scene, width, height});
     }
   }
-  draw(camera, kind) {
+  // `view`: {camera, block, exposure}, what Orbit.camera(), Baker.look() and Look.expose() gave.
+  draw(view, kind) {
     ++this.job;
-    Object.assign(this, {camera, kind, next: 0, left: this.height});
+    Object.assign(this, {view, kind, next: 0, left: this.height});
     for (const worker of [...this.idle]) this.give(worker);
+  }
+  expose(view) {
+    this.draw(view, 'expose');
   }
   stop() {
     ++this.job;
@@ -79,14 +92,17 @@ class Crew {
   }
   give(worker) {
     if (this.left === 0 || this.next === this.height) return;
-    const rows = Math.min(BAND_ROWS[this.kind], this.height - this.next);
-    worker.postMessage({job: this.job, camera: this.camera, kind: this.kind, first: this.next, rows});
+    const rows = Math.min(BAND_ROWS[this.kind] ?? this.height, this.height - this.next);
+    worker.postMessage({job: this.job, view: this.view, kind: this.kind, first: this.next, rows});
     this.next += rows;
     this.idle.delete(worker);
   }
-  take(worker, {job, first, bytes}) {
+  take(worker, {job, first, bytes, exposure}) {
     this.idle.add(worker);
-    if (job === this.job) {
+    if (job === this.job && exposure !== undefined) {
+      this.left = 0;
+      this.on.onExposed(exposure);
+    } else if (job === this.job) {
       const rows = Math.min(BAND_ROWS[this.kind], this.height - first);
       this.left -= rows;
       this.on.onBand(first, bytes);
@@ -104,27 +120,31 @@ class Crew {
   }
 }
 
-// A Baker in a worker, so that the page lives on while a large file is read; end() stops it at once.
+// A Baker in a worker, so that the page lives on while a large file is read; end() stops it at once. Calls are answered
+// one after the other.
 class FarBaker {
   constructor(worker, module, files) {
     this.worker = worker;
-    this.here = () => new Baker(module, files);
+    this.here = null;  // a Baker of the page's own, where workers do not work
+    this.last = Promise.resolve();
     worker.postMessage({module, files});
+    this.hire = () => (this.here ??= new Baker(module, files));
+    for (const call of ['bake', 'smaller', 'look', 'stars', 'frame']) {
+      this[call] = (...words) => {
+        const answer = this.last.then(() => this.ask(call, words));
+        this.last = answer.catch(() => {});
+        return answer;
+      };
+    }
   }
-  ask(call, ...words) {
+  ask(call, words) {
+    if (this.here !== null) return this.here[call](...words);
     return new Promise((done, fail) => {
       const {worker} = this;
       worker.onmessage = ({data}) => (data.sentence === undefined ? done(data.made) : fail(new BakeError(data.sentence)));
-      // Where workers do not work.
-      worker.onerror = worker.onmessageerror = () => new Promise(() => done(this.here()[call](...words))).catch(fail);
+      worker.onerror = worker.onmessageerror = () => new Promise(() => done(this.hire()[call](...words))).catch(fail);
       worker.postMessage({call, words});
     });
-  }
-  bake(...words) {
-    return this.ask('bake', ...words);
-  }
-  smaller(...words) {
-    return this.ask('smaller', ...words);
   }
   end() {
     this.worker.terminate();
@@ -132,7 +152,7 @@ class FarBaker {
 }
 
 if (typeof module !== 'undefined') {
-  var {Look, BAND_ROWS} = require('./look.js');
-  var {Baker, BakeError} = require('./baker.js');
+  var {Look, BAND_ROWS, COARSE} = require('./look.js');
+  var {Baker, BakeError, VIEWS, writeCamera} = require('./baker.js');
   module.exports = {Crew, FarBaker, workerSource};
 }

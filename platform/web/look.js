@@ -1,9 +1,10 @@
-// A scene to look around in (viewer.cpp): an instance of scene.wasm with bytes of its own, in the page and in each of
+// A scene to look around in (tools/web/viewer.cpp): an instance of scene.wasm with bytes of its own, in the page and in each of
 // its workers.
 'use strict';
 
-// Rows of a band: what a worker draws before it hears that the view has moved.
-const BAND_ROWS = {lit: 4, fine: 1};
+// Rows of a band: what a worker draws before it hears that the view has moved. `coarse` has every fourth pixel.
+const BAND_ROWS = {coarse: 8, lit: 4, fine: 1};
+const COARSE = 4;
 
 class Look {
   constructor(module, baked, width, height) {
@@ -25,12 +26,13 @@ class Look {
   point(ofTarget) {
     return [0, 1, 2].map((axis) => this.x.own_camera(ofTarget, axis));
   }
-  // What a named view frames: the corners of what is solid, and the slope of the picture's upper edge, 0 for a parallel
-  // view, `span` voxels wide.
-  frame() {
-    const corner = (high) => [0, 1, 2].map((axis) => this.x.bounds(high, axis));
-    return {low: corner(false), high: corner(true), slope: Math.tan(this.x.fov() / 65536 * Math.PI / 360),
-      span: this.x.span() / 16384, aspect: this.stride / 3 / this.height};
+  isParallel() {
+    return this.x.is_parallel() !== 0;
+  }
+  // As options of `thimble render`; `zoom`: Orbit.camera().
+  lens(zoom) {
+    const raw = this.x.lens();
+    return this.isParallel() ? `--projection orthographic --span ${Math.floor(raw * zoom / 256) / 16384}` : `--fov ${raw / 65536}`;
   }
   // What a pixel of the picture shows, `point` in voxels; null for nothing.
   pick(x, y) {
@@ -41,16 +43,29 @@ class Look {
     return {point: numbers.slice(0, 3).map((q8) => q8 / 256), voxel: numbers.slice(3, 6), face, material, color, kind};
   }
   // False, and the view as it was, where there is no such camera (Orbit.camera()).
-  see({eye, target, zoom, own}) {
-    return this.x.look(...eye, ...target, zoom, own) !== 0;
+  see(camera) {
+    writeCamera(this.x, camera);
+    return this.x.see() !== 0;
   }
-  // Every `step`-th pixel of the whole picture, without light.
+  // How it looks from there: a block of Baker.look().
+  take(block) {
+    const at = this.x.look_room(block.length);
+    if (at === 0) throw new Error('there is no memory for its lights here');
+    new Uint8Array(this.x.memory.buffer).set(block, at);
+    if (this.x.take_look() === 0) throw new Error('its lights are damaged');
+  }
+  // Sees the exposure of the picture at rest from rows of it: 0 while there are more.
+  expose(first = 0, rows = this.height) {
+    return this.x.expose(first, rows);
+  }
+  // Every `step`-th pixel of the whole picture, as bright as its last exposure.
   fast(step) {
     this.x.draw(0, this.height, step, false);
   }
-  // A band with all of the light, 'fine' with four samples a pixel.
-  band(kind, first, rows) {
-    if (kind === 'lit') this.x.draw(first, rows, 1, true);
+  // A band with all of the light and that exposure, 'fine' with all samples.
+  band(kind, first, rows, exposure) {
+    this.x.set_exposure(exposure);
+    if (kind !== 'fine') this.x.draw(first, rows, kind === 'lit' ? 1 : COARSE, true);
     else for (let row = first; row < first + rows; ++row) this.x.draw_fine(row);
   }
   // Rows of the picture where they lie; the next call may move them.
@@ -68,5 +83,6 @@ function nameOf({voxel, face, material, color, kind}) {
 }
 
 if (typeof module !== 'undefined') {
-  module.exports = {Look, BAND_ROWS, nameOf};
+  var {writeCamera} = require('./baker.js');
+  module.exports = {Look, BAND_ROWS, COARSE, nameOf};
 }

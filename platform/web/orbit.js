@@ -5,10 +5,6 @@
 const DIGITS = 5;
 const written = (x) => Number(x.toFixed(DIGITS));
 const within = (x, low, high) => Math.max(low, Math.min(high, x));
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-// The named views, keys 1 to 6 (tools/scene/framing.cpp): the degrees that the eye goes round to the right, and up.
-const VIEWS = {1: [0, 0], 2: [180, 0], 3: [-90, 0], 4: [90, 0], 5: [0, 90], 6: [-45, 35.264389682754654]};
-const FILL = 0.9;  // of the picture, by a named view
 const FLIGHT = 0.7;  // distances a second
 
 class Orbit {
@@ -64,26 +60,10 @@ class Orbit {
     else this.place(this.target.map((x, i) => x + this.distance * away[i]), point);
     this.changed();
   }
-  // A named view of what lies between two corners (Look.frame()).
-  show([turn, tilt], {low, high, slope, span, aspect}) {
-    [this.yaw, this.pitch] = [turn - 90, tilt].map((degrees) => degrees * Math.PI / 180);
-    const {right, above, away} = this.axes();
-    const middle = low.map((x, i) => (x + high[i]) / 2);
-    const corners = Array.from({length: 8}, (_, n) => middle.map((x, i) => (n >> i & 1 ? high[i] - x : x - high[i])));
-    const most = (axis, open) => Math.max(...corners.map((corner) => dot(corner, axis) + open * dot(corner, away)));
-    // Where two planes through the eye that open so far touch the corners: along the axis, and away.
-    const touch = (axis, open) => {
-      const [above, below] = [most(axis, open), most(axis.map((x) => -x), open)];
-      return {along: (above - below) / 2, away: (above + below) / (2 * open)};
-    };
-    this.target = middle;
-    if (this.isParallel) {
-      this.distance = this.firstDistance * 2 * Math.max(most(right, 0), most(above, 0) * aspect) / FILL / span;
-    } else {
-      const [x, y] = [touch(right, slope * aspect * FILL), touch(above, slope * FILL)];
-      this.target = middle.map((at, i) => at + x.along * right[i] + y.along * above[i]);
-      this.distance = Math.max(x.away, y.away);
-    }
+  // A view of Baker.frame().
+  show({eye, target, zoom}) {
+    this.place(...[eye, target].map((point) => point.map((x) => x / 256)));
+    if (this.isParallel) this.distance = this.firstDistance * zoom / 256;
     this.changed();
   }
   // Keeps the target in the world or near it, and the eye where rays may start (tools/viewer/orbit.cpp).
@@ -121,5 +101,5 @@ class Orbit {
 }
 
 if (typeof module !== 'undefined') {
-  module.exports = {Orbit, VIEWS};
+  module.exports = {Orbit};
 }

@@ -20,8 +20,11 @@ const MODULE_OF = {demo: 'scene', water: 'plane', particles: 'plane'};
 const VIEW_BOARD = 'raspi0';  // its display and flash are those of "look around"
 const FRAME_MS = 1000 / 30;
 const SLICE_MS = 12;
+const TAP_MS = 300;  // shorter `s` saves
+const FIRST_EXPOSURE = 320;
 // To the right, up, forward, while held.
-const FLIGHTS = {w: [0, 0, 1], a: [-1, 0, 0], s: [0, 0, -1], d: [1, 0, 0], PageUp: [0, 1, 0], PageDown: [0, -1, 0]};
+const FLIGHTS = {w: [0, 0, 1], a: [-1, 0, 0], s: [0, 0, -1], d: [1, 0, 0], PageUp: [0, 1, 0], PageDown: [0, -1, 0],
+  ArrowUp: [0, 0, 1], ArrowLeft: [-1, 0, 0], ArrowDown: [0, 0, -1], ArrowRight: [1, 0, 0]};
 const $ = (id) => document.getElementById(id);
 const LIES = matchMedia('(orientation: landscape) and (max-height: 34rem)');  // page.css
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -38,7 +41,7 @@ let baked = null;
 let boards = [];
 let generation = 0;  // of what is shown: what belongs to an older one ends
 let nextFrame = 0;
-let farBaker = null;  // while it bakes
+let farBaker = null;  // while it bakes, and says how a scene looks
 let crewSize = Math.min(8, navigator.hardwareConcurrency || 1);  // workers, where more than one
 const modules = {};
 const cache = new Map();
@@ -115,7 +118,7 @@ async function bakeCurrent(board) {
   const entry = current();
   if (entry.scene === null) return null;
   const key = [entry.scene, board.name, state.depth, state.coarsen].join('|');
-  if (state.dropped === null && cache.has(key)) return cache.get(key);
+  if (!state.look && state.dropped === null && cache.has(key)) return cache.get(key);
   await busy(`Baking for ${board.name} ...`);
   const files = state.dropped?.files ??
     await Promise.all(entry.files.map(async (name) => ({name, bytes: await unpack(`file-${name}`)})));
@@ -123,15 +126,17 @@ async function bakeCurrent(board) {
   if (own !== generation) return null;
   const worker = startWorker();
   const baker = worker === null ? new Baker(code, files) : farBaker = new FarBaker(worker, code, files);
+  let stays = false;
   try {
     const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen});
     if (state.dropped === null) cache.set(key, made);
-    return made;
+    stays = state.look;
+    return {...made, baker};
   } catch (error) {
     if (/bytes too many$/.test(error.message) && !state.coarsen) await offerSmaller(baker, entry, board, error);
     throw error;
   } finally {
-    baker.end?.();
+    if (!stays) baker.end?.();
   }
 }
 async function offerSmaller(baker, entry, board, error) {
@@ -206,115 +211,11 @@ async function openMachine(own, made, board) {
   present(true);
 }
 
-async function openViewer(own, made, board) {
-  const code = await moduleOf('scene');
-  if (own !== generation) return;
-  const look = new Look(code, made.baked, board.width, board.height);
-  const side = 1 << look.x.level();
-  const view = orbit?.of === current() && orbit.side === side ? !orbit.isOwn && orbit.text() : state.view;
-  orbit = new Orbit(look.point(false), look.point(true), side, look.x.fov() === 0);
-  orbit.of = current();
-  if (view) orbit.take(view);
-  state.view = null;
-  const picture = new Display(board);
-  viewer = {look, board, picture, step: look.x.has_map() ? 1 : 4, phase: 'moved', row: 0, crew: null, flown: 0};
-  hireCrew(viewer, {module: code, scene: made.baked, width: board.width, height: board.height});
-  pointed = null;
-  prepareCanvas(board);
-  showKeys('look');
-  $('uart').textContent = '';
-}
-// Workers for what is drawn at rest; where there is one core, or no worker, the page draws it.
-function hireCrew(own, scene) {
-  const workers = Array.from({length: crewSize > 1 ? crewSize : 0}, startWorker);
-  if (workers.length === 0 || workers.includes(null)) return;
-  own.crew = new Crew(workers, scene, {
-    onBand: (first, bytes) => {
-      own.picture.bytes.set(bytes, first * own.picture.stride);
-      const [from, end] = own.picture.changed;
-      own.picture.changed = [Math.min(from, first), Math.max(end, first + bytes.length / own.picture.stride)];
-      own.row += bytes.length / own.picture.stride;
-    },
-    onEnd: () => nextPicture(own),
-    onFault: () => {
-      own.crew = null;
-      if (own.phase !== 'finished') own.phase = 'moved';
-    },
-  });
-}
 function closeAll() {
   viewer?.crew?.end();
   farBaker?.end();
+  flying.clear();
   machine = viewer = farBaker = null;
-}
-
-// ---- a scene to look around in: fast while it moves, then lit, then four samples a pixel
-
-function lookOn(now) {
-  const {look, board, crew} = viewer;
-  const began = performance.now();
-  // A frame that took long does not throw the camera across the scene.
-  const seconds = Math.min(now - viewer.flown, 100) / 1000;
-  viewer.flown = now;
-  for (const key of flying) moved(() => orbit.fly(...FLIGHTS[key].map((way) => way * seconds)));
-  if (viewer.phase === 'moved') {
-    const camera = orbit.camera();
-    if (!look.see(camera)) return;
-    viewer.camera = camera;
-    look.fast(viewer.step);
-    viewer.time = performance.now() - began;
-    // Every few pixels where that is what a frame has time for.
-    if (viewer.time > 40 && viewer.step < 8) viewer.step *= 2;
-    if (viewer.time < 8 && viewer.step > 1) viewer.step /= 2;
-    viewer.phase = 'waits';
-    viewer.since = now;
-    takeRows(0, board.height);
-    $('frame').textContent = `${viewer.time.toFixed(1)} ms${viewer.step > 1 ? `, 1:${viewer.step}` : ''}`;
-  } else if (viewer.phase === 'waits' && now - viewer.since > 120) {
-    nextPicture(viewer);
-  } else if (crew === null && (viewer.phase === 'lit' || viewer.phase === 'fine')) {
-    const first = viewer.row;
-    while (viewer.row < board.height && performance.now() - began < SLICE_MS) {
-      const rows = Math.min(BAND_ROWS[viewer.phase], board.height - viewer.row);
-      look.band(viewer.phase, viewer.row, rows);
-      viewer.row += rows;
-    }
-    takeRows(first, viewer.row);
-    if (viewer.row === board.height) nextPicture(viewer);
-  }
-  showViewer();
-}
-function nextPicture(own) {
-  own.phase = {waits: 'lit', lit: 'fine', fine: 'finished'}[own.phase];
-  own.row = 0;
-  if (own.phase !== 'finished') own.crew?.draw(own.camera, own.phase);
-}
-// From the instance that draws here.
-function takeRows(first, end) {
-  const {look, picture} = viewer;
-  picture.bytes.set(look.rows(first, end), first * picture.stride);
-  picture.changed = [Math.min(picture.changed[0], first), Math.max(picture.changed[1], end)];
-}
-function showViewer() {
-  const {look, board, picture, phase, row} = viewer;
-  const [first, end] = picture.changed;
-  if (end > first) {
-    put(picture, first, end);
-    picture.changed = [board.height, 0];
-    $('ram').textContent = `${number(look.x.memory.buffer.byteLength)} bytes`;
-    share('flash-meter', 'flash', baked.bytes + baked.code, board.flash);
-  }
-  if (phase === 'lit' || phase === 'fine') {
-    $('frame').textContent = `${phase === 'lit' ? 'lit' : '4 samples'} ${Math.floor(100 * row / board.height)} %`;
-  }
-  if (phase === 'finished') $('frame').textContent = 'finished';
-  document.documentElement.dataset.phase = phase;
-}
-function moved(change) {
-  change();
-  if (viewer === null) return;
-  viewer.phase = 'moved';
-  viewer.crew?.stop();  // what its workers are at is thrown away
 }
 
 // ---- the canvas
@@ -423,26 +324,34 @@ function tick(now) {
 
 const held = new Map();  // what holds it: the button's bit
 let tapped = 0;  // buttons that went down since the last frame
-const flying = new Set();
+const flying = new Map();  // what holds it: {name} in FLIGHTS
+let tappedS = -Infinity;  // when `s` went down alone
 let pointed = null;  // the pixel where the pointer was last
 const heldButtons = () => [...held.values()].reduce((all, bit) => all | bit, 0);
 function hold(by, name) {
   if (viewer !== null) {
-    const step = 0.08;
-    const turns = {left: [-step, 0], right: [step, 0], up: [0, step], down: [0, -step]}[name];
-    if (turns !== undefined) moved(() => orbit.turn(...turns));
+    const flight = `Arrow${name[0].toUpperCase()}${name.slice(1)}`;
+    if (flight in FLIGHTS) flying.set(by, {name: flight, flown: false});
     return;
   }
   held.set(by, BUTTONS[name]);
   tapped |= BUTTONS[name];
   if (machine !== null) machine.wanted = true;
 }
+function letGo(by) {
+  held.delete(by);
+  // A tap shorter than a frame counts for one.
+  const flight = flying.get(by);
+  if (flight?.flown === false) flight.ends = true;
+  else flying.delete(by);
+}
 function type(text) {
   if (viewer !== null) {
+    if (text === 'q') restart({look: false});
     if (text === '+') moved(() => orbit.approach(0.85));
     if (text === '-') moved(() => orbit.approach(1 / 0.85));
     if (text === '0') moved(() => orbit.reset());
-    if (text in VIEWS) moved(() => orbit.show(VIEWS[text], viewer.look.frame()));
+    if (text in VIEWS) showView(viewer, text);
     if (text === 'p') {
       const picked = viewer.look.pick(...pointed ?? [canvas.width >> 1, canvas.height >> 1]);
       say(picked === null ? 'There is nothing under the pointer.' : nameOf(picked));
@@ -456,7 +365,7 @@ function type(text) {
 // The key's name in FLIGHTS, whether Shift is held or not; of the keys that scroll, where the picture has the focus.
 function flightOf({key, target}) {
   const name = key.length === 1 ? key.toLowerCase() : key;
-  return viewer !== null && Object.hasOwn(FLIGHTS, name) && (key.length === 1 || target === canvas) ? name : undefined;
+  return viewer !== null && Object.hasOwn(FLIGHTS, name) && (!name.startsWith('Page') || target === canvas) ? name : undefined;
 }
 const KEY_BUTTONS = {ArrowUp: 'up', ArrowDown: 'down', ArrowLeft: 'left', ArrowRight: 'right', Enter: 'select', ' ': 'select'};
 addEventListener('keydown', (event) => {
@@ -469,20 +378,25 @@ addEventListener('keydown', (event) => {
   const own = event.target.closest?.('button, select, summary, input, pre');
   const name = KEY_BUTTONS[event.key];
   const flight = flightOf(event);
-  if (flight !== undefined && !own?.matches('select')) {
+  if (flight !== undefined && !own?.matches(flight.length === 1 ? 'select' : 'select, pre')) {
     event.preventDefault();
-    flying.add(flight);
+    if (!event.repeat) tappedS = flight === 's' && flying.size === 0 ? event.timeStamp : -Infinity;
+    if (!flying.has(flight)) flying.set(flight, {name: flight, flown: flight === 's'});
   } else if (name !== undefined) {
     if (own && (name === 'select' || own.matches('select, pre'))) return;
     event.preventDefault();
     hold(event.key, name);
+  } else if (event.key === 'Escape' && viewer !== null) {
+    type('q');
   } else if (event.key.length === 1 && !(own && own.matches('select'))) {
     type(event.key);
   }
 });
-addEventListener('keyup', ({key}) => {
-  held.delete(key);
-  flying.delete(key.length === 1 ? key.toLowerCase() : key);
+addEventListener('keyup', ({key, timeStamp}) => {
+  const name = key.length === 1 ? key.toLowerCase() : key;
+  if (name === 's' && timeStamp - tappedS <= TAP_MS && flying.has(name)) savePicture();
+  letGo(key);
+  letGo(name);
 });
 addEventListener('blur', () => {
   held.clear();
@@ -495,12 +409,12 @@ for (const button of document.querySelectorAll('[data-hold]')) {
     button.setPointerCapture(event.pointerId);
     hold(button, name);
   });
-  for (const end of ['pointerup', 'pointercancel']) button.addEventListener(end, () => held.delete(button));
+  for (const end of ['pointerup', 'pointercancel']) button.addEventListener(end, () => letGo(button));
   // Pressed by a key: for a moment.
   button.addEventListener('click', (event) => {
     if (event.detail !== 0) return;
     hold(button, name);
-    setTimeout(() => held.delete(button), 150);
+    setTimeout(() => letGo(button), 150);
   });
 }
 
@@ -642,9 +556,18 @@ function saveAs(name, blob) {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
-$('save').onclick = () => canvas.toBlob((blob) => {
-  saveAs(`thimble-${current().title.replace(/[^\w.-]+/g, '-').toLowerCase()}.png`, blob);
-});
+// Of Look around once it is finished, and with the command that makes the same one.
+function savePicture() {
+  if (viewer !== null) {
+    viewer.saves = viewer.phase !== 'finished';
+    say(viewer.saves ? 'It is saved once it is finished.' : `It is saved; so makes the same one: ${renderCommand()}`);
+    if (viewer.saves) return;
+  }
+  canvas.toBlob((blob) => {
+    saveAs(`thimble-${current().title.replace(/[^\w.-]+/g, '-').toLowerCase()}.png`, blob);
+  });
+}
+$('save').onclick = savePicture;
 $('link').onclick = async () => {
   // Not by location.hash: whoever presses the button sees this view already.
   history.replaceState(null, '', `#${fragment()}`);

@@ -46,8 +46,8 @@ TEST_CASE("look: colours -> a sun, shadows, occlusion, a gradient, a ground, fou
   CHECK_FALSE(has(look, Effect::kSky));
   CHECK(look.has_backdrop);
   CHECK(look.background.kind == BackgroundKind::kGradient);
-  CHECK(look.has_ground);
-  CHECK(look.ground_z == 4);
+  CHECK(look.ground.is_there);
+  CHECK(look.ground.z == 4);
   CHECK(look.across == 2);
   CHECK(look.palette[7] == Rgb8{10, 200, 30});
   CHECK((look.effects & Effect::kSmoothNormals) == 0);
@@ -64,7 +64,7 @@ TEST_CASE("look: from every side -> the sun shines on what faces the viewer") {
     const std::int64_t facing = std::int64_t{sun.x} * -forward.x + std::int64_t{sun.y} * -forward.y +
                                 std::int64_t{sun.z} * -forward.z;
     CHECK(facing > 0);
-    CHECK(look.toward_sun == sun);
+    CHECK(look.ground.toward_sun == sun);
   }
 }
 
@@ -74,7 +74,7 @@ TEST_CASE(
   const auto to_right = [](const VoxelBox& box, const Vec3i& forward) {
     SceneFacts facts = colored();
     facts.bounds = box;
-    const Vec3i sun = default_look(facts, {}, looking(forward), 800, 600).toward_sun;
+    const Vec3i sun = default_look(facts, {}, looking(forward), 800, 600).ground.toward_sun;
     return std::int64_t{sun.x} * forward.y - std::int64_t{sun.y} * forward.x;
   };
   const VoxelBox wide{{0, 0, 0}, {64, 8, 16}};
@@ -92,7 +92,7 @@ TEST_CASE(
   CHECK(to_right({}, from_left) < 0);
   SceneFacts facts = colored();
   facts.bounds = wide;
-  const Vec3i sun = default_look(facts, {}, looking(from_left), 800, 600).toward_sun;
+  const Vec3i sun = default_look(facts, {}, looking(from_left), 800, 600).ground.toward_sun;
   CHECK(-sun.y > std::abs(sun.x));  // it shines on the front
 }
 
@@ -129,12 +129,12 @@ TEST_CASE("look: lights, sky, occlusion, effects that the scene states -> kept a
   CHECK(has(look, Effect::kSky));
   CHECK_FALSE(has(look, Effect::kShadows));
   CHECK_FALSE(look.has_backdrop);
-  CHECK_FALSE(look.has_ground);
+  CHECK_FALSE(look.ground.is_there);
   LookWishes wishes;
   wishes.background = {BackgroundKind::kColor, {1, 2, 3}};
   wishes.ground = true;
   CHECK(look_at_front(facts, wishes).has_backdrop);
-  CHECK(look_at_front(facts, wishes).has_ground);
+  CHECK(look_at_front(facts, wishes).ground.is_there);
 }
 
 TEST_CASE("look: an ambient of its own, or no direct light -> no sun is added") {
@@ -180,21 +180,21 @@ TEST_CASE("tone: never falls, nothing is cut off, black stays black; exposures k
   for (const std::uint32_t exposure : {kLeastExposureQ8, 256U, kMostExposureQ8}) {
     const ToneTable table = tone_table(exposure);
     CHECK(table[0] == 0);
-    CHECK(std::is_sorted(table.begin(), table.end()));
+    CHECK(std::is_sorted(std::begin(table.of), std::end(table.of)));
     CHECK(table[255] < 255);
     CHECK(table[200] < table[255]);  // bright and brighter stay apart
   }
   CHECK(tone_table(256)[100] == 150);  // straight below the knee
-  std::array<std::uint32_t, 256> counts{};
+  GrayCounts counts;
   CHECK(exposure_q8(counts) == 256);
-  counts[0] = 1000;
+  counts.of[0] = 1000;
   CHECK(exposure_q8(counts) == kMostExposureQ8);
   counts = {};
-  counts[255] = 10;
+  counts.of[255] = 10;
   CHECK(exposure_q8(counts) == kLeastExposureQ8);
   counts = {};
-  counts[60] = 899;
-  counts[128] = 100;
-  counts[140] = 1;  // a tenth is as bright as 128
+  counts.of[60] = 899;
+  counts.of[128] = 100;
+  counts.of[140] = 1;  // a tenth is as bright as 128
   CHECK(exposure_q8(counts) == kExposedGray * 512 / 384);
 }

@@ -119,9 +119,9 @@ TEST_CASE("backdrop: light on the ground by vectors -> what the core finds, ray 
     Arena arena(memory.bytes());
     const auto streams = LitStreams::make(tree, &arena, effects, scene, 1);
     Look look;
-    look.has_ground = true;
-    look.toward_sun = {-300, -200, 500};
-    look.reach = 9;
+    look.ground.is_there = true;
+    look.ground.toward_sun = {-300, -200, 500};
+    look.ground.reach = 9;
     std::vector<Ray> rays;
     for (std::int32_t y = 0; y < 72; ++y) {
       for (std::int32_t x = 0; x < 96; ++x) {
@@ -130,7 +130,7 @@ TEST_CASE("backdrop: light on the ground by vectors -> what the core finds, ray 
     }
     // Under the model, within it, and far above what is seen.
     for (const std::int32_t ground_z : {tree.bounds().low.z, 7, 31}) {
-      look.ground_z = ground_z;
+      look.ground.z = ground_z;
       std::vector<std::uint8_t> core(rays.size());
       std::vector<std::uint8_t> vectors(rays.size());
       find_light_behind(tree, look, nullptr, {rays.data(), rays.size()}, core.data());

@@ -90,7 +90,7 @@ async function judgeAccess(browser) {
 
   await test('the help opens with the focus in it and gives it back', async () => {
     await browser.eval(`document.getElementById('help').focus()`);
-    await browser.key('Enter', 'Enter', '\r');
+    await browser.key('Enter', 'Enter', {text: '\r'});
     is('focus', await browser.eval('document.activeElement.closest("dialog")?.id'), 'dialog');
     await browser.key('Escape');
     is('focus after it', await browser.eval('document.activeElement.id'), 'help');
@@ -100,7 +100,7 @@ async function judgeAccess(browser) {
     for (const [key, code, text] of [['Enter', 'Enter', '\r'], [' ', 'Space', ' ']]) {
       await browser.eval(`document.querySelector('[data-hold="left"]').focus(); tapped = 0; held.clear();
         window.pressed = 0; { const old = held.set.bind(held); held.set = (by, bit) => { pressed |= bit; return old(by, bit); }; }`);
-      await browser.key(key, code, text);
+      await browser.key(key, code, {text});
       is(`${code} presses left`, await browser.eval('pressed'), 4);
       await browser.eval('delete held.set');
     }

@@ -98,10 +98,10 @@ class Chromium {
     const {x, y} = await this.middle(selector);
     await this.send('Input.dispatchMouseEvent', {type: 'mouseWheel', x, y, deltaX: 0, deltaY});
   }
-  async key(key, code = key, text = key.length === 1 ? key : undefined) {
+  async key(key, code = key, {held = 120, text = key.length === 1 ? key : undefined} = {}) {
     const windowsVirtualKeyCode = {ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13, PageUp: 33, PageDown: 34}[key];
     await this.send('Input.dispatchKeyEvent', {type: 'keyDown', key, code, text, windowsVirtualKeyCode});
-    await new Promise((done) => setTimeout(done, 120));
+    await new Promise((done) => setTimeout(done, held));
     await this.send('Input.dispatchKeyEvent', {type: 'keyUp', key, code, windowsVirtualKeyCode});
   }
   async tab() {

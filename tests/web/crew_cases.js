@@ -23,14 +23,19 @@ const differ = (a, b) => Buffer.compare(Buffer.from(a), Buffer.from(b)) !== 0;
 
 async function crews(modules, bake, scene, files) {
   const [width, height] = [61, 39];
-  const {baked} = bake(scene, files);
+  const {baked, baker} = bake(scene, files);
   const facts = {module: modules.scene, scene: baked, width, height};
   const here = new Look(modules.scene, baked, width, height);
   const orbit = new Orbit(here.point(false), here.point(true), 1 << here.x.level());
-  const views = [orbit.camera(), (orbit.turn(0.7, 0.2), orbit.camera()), (orbit.approach(0.6), orbit.camera())];
-  const alone = (camera, kind) => {
+  const views = [() => {}, () => orbit.turn(0.7, 0.2), () => orbit.approach(0.6)].map((move) => {
+    move();
+    const camera = orbit.camera();
+    return {camera, ...baker.look(camera, width, height, 320), exposure: 300};
+  });
+  const alone = ({camera, block, exposure}, kind) => {
     here.see(camera);
-    for (let row = 0; row < height; row += BAND_ROWS[kind]) here.band(kind, row, Math.min(BAND_ROWS[kind], height - row));
+    here.take(block);
+    for (let row = 0; row < height; row += BAND_ROWS[kind]) here.band(kind, row, Math.min(BAND_ROWS[kind], height - row), exposure);
     return here.rows(0, height).slice();
   };
   for (const size of [1, 3]) {
@@ -41,12 +46,17 @@ async function crews(modules, bake, scene, files) {
         onBand: (first, bytes) => picture.set(bytes, 3 * width * first),
         onEnd: () => ended(), onFault: () => ended(),
       });
-      for (const camera of views) {
-        for (const kind of ['lit', 'fine']) {
+      for (const view of views) {
+        for (const kind of ['coarse', 'lit', 'fine']) {
           picture.fill(1);
-          await new Promise((done) => { ended = done; crew.draw(camera, kind); });
-          is(`${kind}: bytes differ`, differ(picture, alone(camera, kind)), false);
+          await new Promise((done) => { ended = done; crew.draw(view, kind); });
+          is(`${kind}: bytes differ`, differ(picture, alone(view, kind)), false);
         }
+        const exposure = await new Promise((done) => { crew.on.onExposed = done; crew.expose(view); });
+        is('the exposure', exposure, here.expose());
+        let rowByRow = 0;
+        for (let row = 0; rowByRow === 0; ++row) rowByRow = here.expose(row, 1);
+        is('row by row', rowByRow, exposure);
       }
       crew.end();
     });
@@ -88,7 +98,13 @@ async function crews(modules, bake, scene, files) {
   });
   await test('bakes in a worker are those of the page, sentences too', async () => {
     const far = new FarBaker(hire(), modules.bake, []);
-    is('bytes differ', differ((await far.bake('spheres', {index: 0})).baked, bake('spheres', [], 0).baked), false);
+    const here_ = bake('spheres', [], 0);
+    const there = far.bake('spheres', {index: 0});
+    // Asked for while it bakes: answered one after the other.
+    const [look, frame] = [far.look(views[0].camera, 64, 48, 300), far.frame(2, 64, 48)];
+    is('bytes differ', differ((await there).baked, here_.baked), false);
+    is('looks differ', differ((await look).block, here_.baker.look(views[0].camera, 64, 48, 300).block), false);
+    is('the view', JSON.stringify(await frame), JSON.stringify(here_.baker.frame(2, 64, 48)));
     const said = await far.bake('nothing.vox', {index: 0}).catch((error) => error.message);
     let wanted = '';
     try {

@@ -7,7 +7,7 @@ const zlib = require('zlib');
 const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
 const {Look, nameOf} = require('../../platform/web/look.js');
-const {Orbit, VIEWS} = require('../../platform/web/orbit.js');
+const {Orbit} = require('../../platform/web/orbit.js');
 const {judgeCases} = require('./cases.js');
 const {crews} = require('./crew_cases.js');
 const made = require('./files.js');
@@ -136,8 +136,10 @@ async function main() {
   await bakes();
   await mistakes();
   await looks();
-  await crews(modules, (scene, files, index = boardOf('raspi0').index) => new Baker(modules.bake, files).bake(scene, {index}),
-    'room.scene', filesOf('tools/gallery/scenes/room.scene'));
+  await crews(modules, (scene, files, index = boardOf('raspi0').index) => {
+    const baker = new Baker(modules.bake, files);
+    return {...baker.bake(scene, {index}), baker};
+  }, 'room.scene', filesOf('tools/gallery/scenes/room.scene'));
   await end('modules under Node');
 }
 
@@ -185,27 +187,41 @@ async function bakes() {
   }
 }
 
-// A scene to look around in, from the scene's own view.
+// A scene to look around in, from the scene's own view; `file`: what the command calls it.
 function opened(scene, width, height) {
   const file = [scene, `tools/gallery/scenes/${scene}`].find((name) => fs.existsSync(name));
-  const {baked} = new Baker(modules.bake, file === undefined ? [] : filesOf(file)).bake(path.basename(scene), boardOf('raspi0'));
+  const baker = new Baker(modules.bake, file === undefined ? [] : filesOf(file, ...modelsOf(file)));
+  const {baked} = baker.bake(path.basename(scene), boardOf('raspi0'));
   const look = new Look(modules.scene, baked, width, height);
-  const orbit = new Orbit(look.point(false), look.point(true), 1 << look.x.level(), look.x.fov() === 0);
-  fs.writeFileSync(path.join(work, 'look.oct'), baked);
-  return {look, orbit};
+  const orbit = new Orbit(look.point(false), look.point(true), 1 << look.x.level(), look.isParallel());
+  return {look, orbit, baker, width, height, file: file ?? scene};
 }
-function drawn({look, orbit}, kind) {
-  holds('there is such a view', look.see(orbit.camera()));
-  look.band(kind, 0, look.height);
-  return Buffer.from(look.rows(0, look.height));
+// The models of a .scene that lie beside it.
+function modelsOf(file) {
+  if (!file.endsWith('.scene')) return [];
+  return [...fs.readFileSync(file, 'utf8').matchAll(/^model (\S+)/gm)].map(([, name]) => path.join(path.dirname(file), name));
 }
-// What the command makes of the same bytes, as RGB.
-function rendered(width, height, ...words) {
+// The picture at rest from where the orbit stands.
+function drawn({look, orbit, baker, width, height}, kind) {
+  const camera = orbit.camera();
+  holds('there is such a view', look.see(camera));
+  const {block, isStars} = baker.look(camera, width, height, 320);
+  if (isStars) return Buffer.from(baker.stars(width, height));
+  look.take(block);
+  look.band(kind, 0, height, look.expose());
+  return Buffer.from(look.rows(0, height));
+}
+// What the command makes of the same file, as RGB.
+function rendered({file, width, height}, ...words) {
   const out = path.join(work, 'look.ppm');
-  const told = command('render', path.join(work, 'look.oct'), '--size', `${width}x${height}`, '--effects', 'auto',
-    '-o', out, '--quiet', ...words);
+  const told = command('render', file, '--size', `${width}x${height}`, '-o', out, '--quiet', ...words);
   is(`what render says of ${words.join(' ')}`, told.stderr, '');
   return fs.readFileSync(out).subarray(-3 * width * height);
+}
+function lensOf({look, orbit}) {
+  const {eye, target, zoom} = orbit.camera();
+  const point = (q8) => q8.map((x) => x / 256).join();
+  return ['--eye', point(eye), '--target', point(target), ...look.lens(zoom).split(' ')];
 }
 function pixelsThatDiffer(a, b) {
   let count = 0;
@@ -213,35 +229,63 @@ function pixelsThatDiffer(a, b) {
   return count;
 }
 
-// What is shown at rest is what the command renders of the same bytes, with one sample a pixel, then with four.
+// What is shown at rest is what `thimble render` makes of the same file without a word, byte for byte.
 async function looks() {
   const [width, height] = [160, 120];
-  for (const scene of ['castle.vox', 'room.scene', 'waves.scene']) {
-    for (const [kind, samples] of [['lit', '1'], ['fine', '4']]) {
-      await test(`${scene} to look around in is lit as by the command, ${samples} samples`, () => {
-        const mine = drawn(opened(scene, width, height), kind);
-        holds('it shows something', new Set(mine).size > 50);
-        is('pixels that are others', pixelsThatDiffer(mine, rendered(width, height, '--samples', samples)), 0);
-      });
-    }
+  write('glass.scene', 'depth 5\ncamera eye 16 -30 24 target 16 16 10 fov 40\nsun toward 1 -2 3\nsky zenith 40 90 200\n' +
+    'fog color 200 200 210 density 0.01\nmaterial floor color 180 150 120\nmaterial gold metal color 220 180 60\n' +
+    'material clear glass color 230 250 240\nbox floor from 0 0 0 to 32 32 2\nball gold center 10 16 8 radius 6\n' +
+    'ball clear center 22 14 8 radius 6\n');
+  write('mesh.obj', 'v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 3\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 4 3 2 1\n');
+  write('parallel.scene', fs.readFileSync('tools/gallery/scenes/room.scene', 'utf8').replace(/ fov 62/, ' span 77'));
+  const scenes = ['castle.vox', 'room.scene', 'waves.scene', 'house.scene', 'fox.vox.gz', 'demo', 'points:2000', 'spheres',
+    path.join(work, 'glass.scene'), path.join(work, 'mesh.obj'), path.join(work, 'parallel.scene')];
+  for (const scene of scenes) {
+    await test(`${path.basename(scene)} to look around in is what the command renders, from its own view and another`, () => {
+      const shown = opened(scene, 96, 72);
+      const mine = drawn(shown, 'fine');
+      holds('it shows something', new Set(mine).size > 50);
+      is('pixels that are others', pixelsThatDiffer(mine, rendered(shown)), 0);
+      shown.orbit.turn(0.7, 0.15);
+      shown.orbit.approach(0.8);
+      is('pixels that are others, turned', pixelsThatDiffer(drawn(shown, 'fine'), rendered(shown, ...lensOf(shown))), 0);
+    });
   }
-  await test('a scene without light has the mean of four samples, too', () => {
-    const mine = drawn(opened('demo', width, height), 'fine');
-    const four = drawn(opened('demo', 2 * width, 2 * height), 'lit');
-    const mean = Buffer.alloc(mine.length);
-    for (let i = 0; i < mine.length; ++i) {
-      const at = 6 * Math.floor(i / 3) + i % 3 + 6 * width * Math.floor(i / (3 * width));
-      const sum = four[at] + four[at + 3] + four[at + 6 * width] + four[at + 6 * width + 3];
-      mean[i] = (sum + 2) >> 2;
+  await test('coarse pictures have blocks of four by four pixels, as bright as others', () => {
+    const shown = opened('castle.vox', width, height);
+    const [coarse, lit] = [drawn(shown, 'coarse'), drawn(shown, 'lit')];
+    let wrong = 0;
+    const stride = 3 * width;
+    const at = (px, py) => py * stride + 3 * px;
+    for (let y = 0; y < height; ++y) {
+      for (let x = 0; x < width; ++x) {
+        const [cx, cy] = [x - x % 4, y - y % 4];
+        wrong += coarse.compare(coarse, at(cx, cy), at(cx, cy) + 3, at(x, y), at(x, y) + 3) === 0 ? 0 : 1;
+      }
     }
-    is('pixels that are others', pixelsThatDiffer(mine, mean), 0);
+    is('pixels that are not those of their block', wrong, 0);
+    holds('they are about as bright', Math.abs(mean(coarse) - mean(lit)) < 4);
+    holds('and not the lit ones', pixelsThatDiffer(coarse, lit) > 1000);
+  });
+  await test('fast pictures are about as bright as the finished ones, and have what stands behind', () => {
+    for (const scene of ['castle.vox', 'waves.scene', 'fox.vox.gz']) {
+      const shown = opened(scene, width, height);
+      const fine = drawn(shown, 'fine');
+      shown.look.fast(1);
+      const fast = Buffer.from(shown.look.rows(0, height));
+      const far = Math.abs(mean(fast) - mean(fine));
+      holds(`${scene}: ${mean(fast).toFixed(0)} is near ${mean(fine).toFixed(0)}`, far < 40);
+      if (scene === 'castle.vox') is('the corner above', fast.readUIntBE(0, 3), fine.readUIntBE(0, 3));
+    }
   });
   for (const scene of ['castle.vox', 'room.scene']) {
     await test(`${scene}: what is under the pointer is what the command's ray hits`, () => {
-      const {look, orbit} = opened(scene, width, height);
+      const {look, orbit, baker} = opened(scene, width, height);
       look.see(orbit.camera());
       const csv = path.join(work, 'look_hits.csv');
-      rendered(width, height, '--hits', csv);
+      const oct = path.join(work, 'look.oct');
+      fs.writeFileSync(oct, baker.bake(scene, boardOf('raspi0')).baked);
+      rendered({file: oct, width, height}, '--effects', 'auto', '--hits', csv);
       const rows = fs.readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((row) => row.split(',').map(Number));
       let wrong = 0;
       let hits = 0;
@@ -281,40 +325,34 @@ async function looks() {
       holds('each has its own', look.pick(80, 60).material !== look.pick(50, 20).material);
     });
   }
-  // Of a room, which the command frames by the same corners. What stands behind is the board's, and black there.
-  for (const [key, name] of ['front', 'back', 'left', 'right', 'top', 'iso'].entries()) {
-    await test(`key ${key + 1} shows the room as --view ${name}`, () => {
-      const room = opened('room.scene', width, height);
-      room.orbit.show(VIEWS[key + 1], room.look.frame());
-      const first = drawn(room, 'lit');
-      const mine = Buffer.from(first);
-      const wanted = rendered(width, height, '--view', name, '--fov', String(room.look.x.fov() / 65536));
-      let shown = 0;
-      for (let i = 0; i < mine.length; i += 3) {
-        if (wanted.readUIntBE(i, 3) !== 0) ++shown;
-        else wanted.copy(mine, i, i, i + 3);
-      }
-      holds(`${shown} pixels show it`, shown > 8000);
-      // A mirror to the right shows some pixels of what stands behind.
-      holds('it is the command\'s', pixelsThatDiffer(mine, wanted) <= (name === 'right' ? 24 : 0));
-      room.orbit.take(room.orbit.text());
-      const linked = drawn(room, 'lit');
-      is('pixels that a link shows otherwise', pixelsThatDiffer(linked, first), 0);
-    });
-    await test(`key ${key + 1} frames a parallel view as --view ${name}`, () => {
-      write('parallel.scene', fs.readFileSync('tools/gallery/scenes/room.scene', 'utf8').replace(/ fov 62/, ' span 77'));
-      const room = opened(path.join(work, 'parallel.scene'), width, height);
-      room.orbit.show(VIEWS[key + 1], room.look.frame());
-      const shown = edgesOf(drawn(room, 'lit'), [146, 186, 222]);
-      const wanted = edgesOf(rendered(width, height, '--view', name, '--projection', 'orthographic'), [0, 0, 0]);
-      holds(`the edges ${shown} are ${wanted}, within a pixel`, shown.every((at, i) => Math.abs(at - wanted[i]) <= 1));
-    });
+  // From its own lens, framed by its hull. The orbit keeps five digits, the camera 1/256 voxel.
+  for (const scene of ['room.scene', 'castle.vox', path.join(work, 'parallel.scene')]) {
+    for (const [key, name] of ['front', 'back', 'left', 'right', 'top', 'iso'].entries()) {
+      await test(`key ${key + 1} shows ${path.basename(scene)} as --view ${name}`, () => {
+        const shown = opened(scene, 80, 60);
+        const frame = shown.baker.frame(key + 1, 80, 60);
+        shown.orbit.show(frame);
+        const {eye, target, zoom} = shown.orbit.camera();
+        const off = [...eye, ...target].map((x, i) => Math.abs(x - [...frame.eye, ...frame.target][i]));
+        if (!shown.look.isParallel()) is('1/256 voxels off', Math.max(...off) <= 1, true);
+        else is('how wide it is', Math.abs(zoom - frame.zoom) <= 1, true);
+        const own = shown.look.isParallel() ? ['--projection', 'orthographic'] : ['--fov', shown.look.lens(256).split(' ')[1]];
+        const wanted = rendered(shown, '--view', name, ...own);
+        const first = drawn(shown, 'fine');
+        const far = [...first].reduce((sum, x, i) => sum + Math.abs(x - wanted[i]), 0) / first.length;
+        holds(`the mean difference ${far.toFixed(2)} is small`, far < (shown.look.isParallel() ? 3 : 1.5));
+        const camera = JSON.stringify(shown.orbit.camera());
+        shown.orbit.take(shown.orbit.text());
+        is('the camera of a link', JSON.stringify(shown.orbit.camera()), camera);
+      });
+    }
   }
   await test('hands lead a view as on the desktop', () => {
-    const {look, orbit} = opened('castle.vox', width, height);
+    const {look, orbit, baker} = opened('castle.vox', width, height);
+    const show = (key) => orbit.show(baker.frame(key, width, height));
     const eye = () => orbit.camera().eye.map((q8) => q8 / 256);
     const near = (what, a, b) => holds(`${what}: ${a} is ${b}`, a.every((x, i) => Math.abs(x - b[i]) < 0.02));
-    orbit.show(VIEWS[1], look.frame());
+    show(1);
     const [x, y, z] = eye();
     const speed = 0.7 * orbit.distance;
     for (const [way, to] of [[[0, 0, 1], [0, speed, 0]], [[1, 0, 0], [speed, 0, 0]], [[0, 1, 0], [0, 0, speed]]]) {
@@ -335,25 +373,15 @@ async function looks() {
     for (const [kind, act] of [['away', () => orbit.approach(1e9)], ['sideways', () => orbit.move(1e9, 1e9)],
       ['onward', () => orbit.fly(0, 0, 1e9)]]) {
       for (const key of [1, 2, 3, 4, 5, 6]) {
-        orbit.show(VIEWS[key], look.frame());
+        show(key);
         act();
         holds(`far ${kind} from view ${key} there is a picture`, look.see(orbit.camera()));
       }
     }
   });
 }
-// The columns and rows between which a picture shows something.
-function edgesOf(picture, [r, g, b]) {
-  const edges = [Infinity, Infinity, -1, -1];
-  const [width, height] = [160, 120];
-  for (let y = 0; y < height; ++y) {
-    for (let x = 0; x < width; ++x) {
-      const at = 3 * (y * width + x);
-      if (picture[at] === r && picture[at + 1] === g && picture[at + 2] === b) continue;
-      edges.splice(0, 4, Math.min(edges[0], x), Math.min(edges[1], y), Math.max(edges[2], x), Math.max(edges[3], y));
-    }
-  }
-  return edges;
+function mean(picture) {
+  return picture.reduce((sum, x) => sum + x, 0) / picture.length;
 }
 
 function write(name, text) {

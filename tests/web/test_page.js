@@ -221,7 +221,8 @@ async function looks() {
 // The viewer's keys and gestures, as on the desktop.
 async function hands() {
   const view = () => browser.eval('({yaw: orbit.yaw, pitch: orbit.pitch, target: orbit.target, eye: orbit.camera().eye})');
-  const key = (name) => browser.key(name, name.length > 1 ? name : /\d/.test(name) ? `Digit${name}` : `Key${name.toUpperCase()}`);
+  const key = (name, held) => browser.key(name, name.length > 1 ? name : /\d/.test(name) ? `Digit${name}` : `Key${name.toUpperCase()}`,
+    held && {held});
   const rests = () => browser.until(`viewer.phase !== 'moved'`);
   // What the command's ray of each pixel hits, from the scene's own view.
   const oct = path.join(work, 'hands.oct');
@@ -234,16 +235,18 @@ async function hands() {
     for (const [name, yaw, pitch] of [['1', -90, 0], ['2', 90, 0], ['3', -180, 0], ['4', 0, 0], ['5', -90, 90], ['6', -135, 35.26]]) {
       await changes(`key ${name}`, () => key(name));
       const at = await view();
-      holds(`key ${name} looks from ${at.yaw}, ${at.pitch}`, Math.abs(at.yaw * 180 / Math.PI - yaw) < 0.01 && Math.abs(at.pitch * 180 / Math.PI - pitch) < 0.01);
+      const off = at.yaw - yaw * Math.PI / 180;
+      holds(`key ${name} looks from ${at.yaw}, ${at.pitch}`, Math.hypot(Math.cos(off) - 1, Math.sin(off)) < 2e-4 && Math.abs(at.pitch * 180 / Math.PI - pitch) < 0.01);
     }
     await changes('the button of a view', () => browser.click('[data-key="1"]'));
   });
-  await test('W A S D, Page Up and Page Down fly while held', async () => {
+  await test('W A S D, arrows, Page Up and Page Down fly while held', async () => {
     await key('1');  // along +y
     await browser.eval('canvas.focus()');
-    for (const [name, axis, sign] of [['w', 1, 1], ['s', 1, -1], ['a', 0, -1], ['D', 0, 1], ['PageUp', 2, 1], ['PageDown', 2, -1]]) {
+    for (const [name, axis, sign] of [['w', 1, 1], ['s', 1, -1], ['a', 0, -1], ['D', 0, 1], ['ArrowUp', 1, 1], ['ArrowDown', 1, -1],
+      ['ArrowLeft', 0, -1], ['ArrowRight', 0, 1], ['PageUp', 2, 1], ['PageDown', 2, -1]]) {
       const before = (await view()).target;
-      await changes(`key ${name}`, () => key(name));
+      await changes(`key ${name}`, () => key(name, name === 's' ? 500 : undefined));
       const after = (await view()).target;
       const way = after.map((x, i) => x - before[i]);
       holds(`key ${name} flies ${way}`, sign * way[axis] > 1 && way.every((x, i) => i === axis || Math.abs(x) < 0.01));
@@ -251,6 +254,43 @@ async function hands() {
       is('where it is let go', (await view()).target.join(), after.join());
     }
     is('the page has not scrolled', await browser.eval('scrollY'), await browser.eval('canvas.scrollIntoView({block: "center"}), scrollY'));
+  });
+  await test('the buttons of the board fly, too, by hand and by key', async () => {
+    const before = (await view()).target;
+    await changes('the button', () => browser.click('[data-hold="up"]'));
+    const after = (await view()).target;
+    holds(`it flies ${before} to ${after}`, after[1] > before[1]);
+    await browser.eval(`document.querySelector('[data-hold="left"]').focus()`);
+    await changes('the button by a key', () => browser.key('Enter', 'Enter', {text: '\r'}));
+    await pause(300);
+    const there = (await view()).target;
+    holds(`it flies ${after} to ${there}`, there[0] < after[0]);
+    await pause(100);
+    is('and stops', (await view()).target.join(), there.join());
+    await browser.eval('canvas.focus()');
+  });
+  await test('s saves the picture once it is finished, and says the command that makes the same one', async () => {
+    await key('0');
+    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work});
+    for (const [what, act] of [['from its own view', () => {}], ['from elsewhere', () => browser.drag('#canvas', 70, 25)]]) {
+      await act();
+      const file = path.join(work, 'thimble-castle.png');
+      fs.rmSync(file, {force: true});
+      const before = (await view()).target.join();
+      await key('s');
+      is('the view stays', (await view()).target.join(), before);
+      is('it says', await text('said'), 'It is saved once it is finished.');
+      await finish();
+      for (let i = 0; i < 100 && !fs.existsSync(file); ++i) await pause(50);
+      holds(`${what} it is saved`, fs.existsSync(file));
+      const [, command] = /^It is saved; so makes the same one: thimble (render castle\.vox .*) -o picture\.png$/.exec(await text('said')) ?? [];
+      holds('the command is said', command !== undefined);
+      const picture = path.join(work, 'said.ppm');
+      const told = spawnSync(thimble, [...command.replace('castle.vox', 'tools/gallery/scenes/castle.vox').split(' '), '-o', picture, '--quiet'], {encoding: 'utf8'});
+      is('the command', told.stderr, '');
+      const rgb = fs.readFileSync(picture).subarray(-3 * 640 * 480).toString('base64');
+      is(`the picture ${what}`, await browser.eval(`crc32(Uint8Array.from(atob('${rgb}'), (c) => c.charCodeAt(0)))`), await canvasCrc());
+    }
   });
   await test('right and Shift drags move, others turn', async () => {
     for (const hand of [{button: 'right'}, {shift: true}]) {
@@ -298,13 +338,37 @@ async function hands() {
     holds(`the middle shows ${middle}`, middle.every((at, i) => Math.abs(at - point[i]) < 1));
     await key('0');
   });
+  await test('Escape and q lead back to the board', async () => {
+    for (const name of ['Escape', 'q']) {
+      await key(name);
+      await browser.until('viewer === null && machine !== null');
+      await browser.click('#look');
+      await browser.until('viewer !== null');
+    }
+    shown = await browser.eval('generation');
+  });
+  await test('stars and their file are what the command draws', async () => {
+    const file = path.join(work, 'stars.xyz');
+    fs.writeFileSync(file, Array.from({length: 300}, (_, i) => [i * 7919 % 1009, i * 104729 % 1013, i * 1299709 % 1019].join(' ')).join('\n'));
+    await browser.drop([file]);
+    await began();
+    await finish();
+    holds('they are stars', await browser.eval('viewer.view.isStars'));
+    const picture = path.join(work, 'stars.ppm');
+    spawnSync(thimble, ['render', file, '--size', '640x480', '-o', picture, '--quiet']);
+    const rgb = fs.readFileSync(picture).subarray(-3 * 640 * 480).toString('base64');
+    is('the picture', await browser.eval(`crc32(Uint8Array.from(atob('${rgb}'), (c) => c.charCodeAt(0)))`), await canvasCrc());
+    await browser.eval(`restart({scene: 'castle', dropped: null})`);
+    await browser.until(`document.getElementById('said').textContent.startsWith('Castle')`);
+    shown = await browser.eval('generation');
+  });
   await test('the help names every key, and opens at its first', async () => {
     const named = await browser.eval(`[...document.querySelectorAll('dialog th')].map((cell) => cell.textContent).join('\\n')`);
     await browser.key('?', 'Slash');
     is('how far it is scrolled', await browser.eval(`document.getElementById('dialog').scrollTop`), 0);
     await browser.key('Escape');
-    const keys = await browser.eval(`[...APP_KEYS.look.map(([key]) => key), ...Object.keys(FLIGHTS), '?']`);
-    const shown = (name) => new RegExp(`(^|\\s)${{'+': '\\+', '-': '\u2212', '?': '\\?', PageUp: 'Page Up', PageDown: 'Page Down'}[name] ?? name}([\\s,]|$)`, 'im').test(named);
+    const keys = await browser.eval(`[...APP_KEYS.look.map(([key]) => key), ...Object.keys(FLIGHTS), '?', 'q', 'Esc', 's']`);
+    const shown = (name) => new RegExp(`(^|\\s)${{'+': '\\+', '-': '\u2212', '?': '\\?', PageUp: 'Page Up', PageDown: 'Page Down', ArrowUp: 'arrows', ArrowDown: 'arrows', ArrowLeft: 'arrows', ArrowRight: 'arrows'}[name] ?? name}([\\s,]|$)`, 'im').test(named);
     is('keys that it lacks', keys.filter((name) => !shown(name)).join(), '');
     for (const hand of ['drag', 'right or Shift drag', 'double click', 'wheel', 'pinch', 'two fingers']) holds(hand, named.includes(hand));
   });

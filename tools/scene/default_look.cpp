@@ -6,7 +6,6 @@
 
 #include "output/units.h"
 #include "readers/oct.h"
-#include "scene/backdrop.h"
 #include "scene/lit_setup.h"
 #include "scene/look_note.h"
 #include "scene/scene_source.h"
@@ -172,7 +171,7 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light,
   std::string text = facts.has_colors ? "its colours" : "clay";
   text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";
   text += ", effects " + effects_text(look.effects);
-  text += look.has_ground ? ", a ground" : ", no ground";
+  text += look.ground.is_there ? ", a ground" : ", no ground";
   if (look.at_edges) {
     return text + ", samples where edges are";
   }
@@ -252,9 +251,9 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
   if (is_clay(facts)) {
     use_clay(&look);
   }
-  look.reach = occlusion_reach(facts.bounds);
+  look.ground.reach = occlusion_reach(facts.bounds);
   if (lighting.rest.occlusion.rays == 0 && (off & Effect::kAmbientOcclusion) == 0) {
-    lighting.rest.occlusion = {kOcclusionRays, 200, look.reach};
+    lighting.rest.occlusion = {kOcclusionRays, 200, look.ground.reach};
   }
   // Where the core draws air or water the sky is its own as well.
   const EffectSet called = called_for(lighting, facts.used);
@@ -279,9 +278,9 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
     look.effects |= Effect::kRipples;
   }
   const bool has_sun = !lighting.lights.empty() && !lighting.lights[0].is_point;
-  look.toward_sun = has_sun ? Vec3i(lighting.lights[0].place) : Vec3i{0, 0, 1};
-  look.ground_z = facts.bounds.low.z;
-  look.has_ground = look.has_backdrop && wishes.ground.value_or(!own_light) && !facts.bounds.empty();
+  look.ground.toward_sun = has_sun ? Vec3i(lighting.lights[0].place) : Vec3i{0, 0, 1};
+  look.ground.z = facts.bounds.low.z;
+  look.ground.is_there = look.has_backdrop && wishes.ground.value_or(!own_light) && !facts.bounds.empty();
   look.kind = facts.forms_surface() ? LookKind::kLit : LookKind::kStars;
 
   const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);

@@ -20,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/behind.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
 #include "scene/scene_shape.h"
@@ -57,17 +58,6 @@ SceneFacts facts_expected(const SceneSource& source, const LitDescription& light
 /// Of what was built. For points it looks at up to 4,096 of them, spread evenly, and the places around.
 SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, const SceneShape& shape);
 
-enum class BackgroundKind : std::uint8_t {
-  kAuto,      ///< the scene's own sky, else the gradient
-  kGradient,  ///< a soft one, from top to bottom
-  kColor,
-  kNone,  ///< transparent
-};
-struct Background {
-  BackgroundKind kind = BackgroundKind::kAuto;
-  Rgb8 color;  ///< kColor
-};
-
 /// "none", "gradient" or six hex digits. False for anything else.
 bool parse_background(std::string_view text, Background* background);
 
@@ -97,10 +87,7 @@ struct Look {
   /// Whether the background stands behind the scene; otherwise the core draws air, water or sky there.
   bool has_backdrop = true;
   Background background;
-  bool has_ground = false;
-  std::int32_t ground_z = 0;  ///< voxels
-  Vec3i toward_sun;           ///< for the ground's shadow
-  std::uint16_t reach = 8;    ///< voxels within which the ground darkens under the model
+  Ground ground;
   int across = 1;
   bool at_edges = false;  ///< samples where edges are, on a camera of `across` times the pixels
   std::string text;       ///< what was chosen and why, a sentence

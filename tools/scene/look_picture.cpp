@@ -136,8 +136,7 @@ Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts
     std::uint8_t* to = samples.data + std::size_t{4} * static_cast<std::size_t>(first);
     for (std::int32_t x = 0; x < count; ++x, to += 4) {
       const std::uint8_t* color = colors.data + std::size_t{3} * static_cast<std::size_t>(x);
-      const Rgb8 behind = backdrop_color(canvas_.look->background, run.px + first + x, run.py,
-                                         whole.width_px(), whole.height_px());
+      const Rgb8 behind = backdrop_color(canvas_.look->background, run.py, whole.height_px());
       const Sample sample =
           sample_of({color[0], color[1], color[2]}, shares[static_cast<std::size_t>(x)], behind);
       std::copy(sample.begin(), sample.end(), to);
@@ -170,8 +169,7 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
       const SamplePlace& place = places.data[i];
       const std::uint8_t share = shares[i - first];
       const std::uint8_t* color = colors.data + 3 * i;
-      const Rgb8 behind =
-          backdrop_color(look.background, place.px, place.py, whole.width_px(), whole.height_px());
+      const Rgb8 behind = backdrop_color(look.background, place.py, whole.height_px());
       const Sample sample = sample_of({color[0], color[1], color[2]}, share, behind);
       std::copy(sample.begin(), sample.end(), samples.data + 4 * i);
     }
@@ -201,18 +199,14 @@ LookRows::Sample LookRows::sample_of(Rgb8 color, std::uint8_t share, Rgb8 behind
   if (share == kNothingBehind) {
     return {tone_[color.r], tone_[color.g], tone_[color.b], 255};
   }
-  const auto shaded = [share](std::uint32_t back) {
-    return static_cast<std::uint8_t>((back * share + kFullShare / 2) / kFullShare);
-  };
-  return {shaded(behind.r), shaded(behind.g), shaded(behind.b),
-          static_cast<std::uint8_t>((kFullShare - share) * 255U / kFullShare)};
+  const Rgb8 back = shaded(behind, share);
+  return {back.r, back.g, back.b, static_cast<std::uint8_t>((kFullShare - share) * 255U / kFullShare)};
 }
 
 // The mean of a pixel's samples.
 void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const {
   const int across = canvas_.look->across;
-  const Rgb8 behind =
-      backdrop_color(canvas_.look->background, x, y, image->width_px, camera_.height_px() / across);
+  const Rgb8 behind = backdrop_color(canvas_.look->background, y, camera_.height_px() / across);
   std::array<std::uint32_t, 4> sums{};
   for (int j = 0; j < across; ++j) {
     for (int i = 0; i < across; ++i) {
@@ -229,15 +223,14 @@ void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares
 }
 
 std::uint32_t measured_exposure(const LookCanvas& canvas) {
-  constexpr std::int32_t kMost = 96;
   if (canvas.look->kind == LookKind::kStars) {
     return 256;
   }
   const std::int32_t longest = std::max(canvas.fine.width_px(), canvas.fine.height_px());
-  const Camera coarse = canvas.fine.thinned((longest + kMost - 1) / kMost);
+  const Camera coarse = canvas.fine.thinned((longest + kExposurePx - 1) / kExposurePx);
   const LookRows rows(canvas, coarse, 256);
-  std::array<std::uint32_t, 256> counts{};
-  std::array<std::uint8_t, std::size_t{4} * kMost> work{};
+  GrayCounts counts;
+  std::array<std::uint8_t, std::size_t{4} * kExposurePx> work{};
   const auto width = static_cast<std::size_t>(coarse.width_px());
   for (std::int32_t y = 0; y < coarse.height_px(); ++y) {
     const Bytes colors(work.data(), 3 * width);
@@ -247,7 +240,7 @@ std::uint32_t measured_exposure(const LookCanvas& canvas) {
     }
     for (std::size_t x = 0; x < width; ++x) {
       if (shares[x] == kNothingBehind) {
-        ++counts[gray_of({colors[3 * x], colors[3 * x + 1], colors[3 * x + 2]})];
+        ++counts.of[gray_of({colors[3 * x], colors[3 * x + 1], colors[3 * x + 2]})];
       }
     }
   }

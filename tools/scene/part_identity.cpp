@@ -113,8 +113,8 @@ void add_look(const Look& look, int level, CrcSum* sum) {
   const Rgb8 behind = look.background.color;
   sum->add_all(look.kind, look.has_own_colors, look.has_backdrop, look.background.kind, behind.r, behind.g,
                behind.b);
-  sum->add_all(look.has_ground, look.ground_z, look.toward_sun.x, look.toward_sun.y, look.toward_sun.z,
-               look.reach, look.at_edges ? 0 : look.across);
+  sum->add_all(look.ground.is_there, look.ground.z, look.ground.toward_sun.x, look.ground.toward_sun.y,
+               look.ground.toward_sun.z, look.ground.reach, look.at_edges ? 0 : look.across);
 }
 
 }  // namespace thimble::tools

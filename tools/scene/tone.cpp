@@ -76,36 +76,4 @@ void expose_light(std::uint32_t exposure_q8, const UsedMaterials& used, LitDescr
   rest.fog.color = scale_rgb(rest.fog.color);
 }
 
-std::uint32_t exposure_q8(const std::array<std::uint32_t, 256>& counts) {
-  std::uint64_t total = 0;
-  for (const std::uint32_t count : counts) {
-    total += count;
-  }
-  if (total == 0) {
-    return 256;
-  }
-  std::uint64_t above = 0;
-  std::uint32_t gray = 255;
-  while (gray > 1) {
-    above += counts[gray];
-    if (10 * above >= total) {
-      break;
-    }
-    --gray;
-  }
-  return std::clamp(kExposedGray * 256 * 2 / (3 * gray), kLeastExposureQ8, kMostExposureQ8);
-}
-
-ToneTable tone_table(std::uint32_t exposure_q8) {
-  constexpr std::uint32_t kKnee = 200;
-  constexpr std::uint32_t kRest = 255 - kKnee;
-  ToneTable table{};
-  for (std::uint32_t value = 0; value < table.size(); ++value) {
-    const std::uint32_t bright = (value * exposure_q8 * 3 + 256) / 512;
-    const std::uint32_t over = bright > kKnee ? bright - kKnee : 0;
-    table[value] = static_cast<std::uint8_t>(bright - over + kRest * over / (over + kRest));
-  }
-  return table;
-}
-
 }  // namespace thimble::tools

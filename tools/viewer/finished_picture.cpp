@@ -8,38 +8,13 @@
 
 #include "scene/backdrop.h"
 #include "scene/lit_setup.h"
+#include "scene/quick_look.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/octree.h"
 #include "viewer/magnify.h"
 
 namespace thimble::tools::viewer {
 namespace {
-
-// What costs no rays of its own.
-constexpr EffectSet kQuick = Effect::kDirectLight | Effect::kEmission | Effect::kWater | Effect::kFog |
-                             Effect::kSky | Effect::kDepthCue;
-
-double mean(const PackedU16 (&channels)[3]) {
-  return (channels[0] + channels[1] + channels[2]) / 3.0;
-}
-
-// The light of a face in the open, for pictures without shadows: what comes from everywhere, the suns by their
-// angles, and a share for lamps, wherever they hang.
-void quick_light(const LitScene& scene, std::uint16_t (&face_light)[6]) {
-  constexpr double kLamps = 100;
-  for (int face = 0; face < 6; ++face) {
-    double light = (scene.ambient_q8[0] + scene.ambient_q8[1] + scene.ambient_q8[2]) / 3.0;
-    bool has_lamps = scene.lights.size == 0;
-    for (const Light& each : scene.lights) {
-      const Vec3i place = each.place;
-      const double length = std::hypot(static_cast<double>(place.x), place.y, place.z);
-      const double along = (face % 2 == 0 ? -1.0 : 1.0) * place[face / 2];
-      has_lamps = has_lamps || each.is_point;
-      light += each.is_point || length == 0 ? 0 : std::max(0.0, along / length) * mean(each.color_q8);
-    }
-    face_light[face] = static_cast<std::uint16_t>(std::min(256.0, light + (has_lamps ? kLamps : 0)));
-  }
-}
 
 void check(Status status) {
   if (status != Status::kOk) {
@@ -56,7 +31,7 @@ FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWis
   used_ = used_materials(scene_->tree());
   choose(wishes);
   lit_ = lit_scene_for(lighting_, used_, effects_);
-  quick_effects_ = effects_ & kQuick;
+  quick_effects_ = effects_ & kQuickEffects;
   quick_ = lit_scene_for(lighting_, used_, quick_effects_);
   empty_bytes_.resize(4096);
   Arena arena(Bytes(empty_bytes_.data(), empty_bytes_.size()));
@@ -150,25 +125,16 @@ void FinishedPicture::take_own_look() {
   }
   own_coarse_ = *own_;
   own_coarse_.across = 1;
-  // Shadows and corners, which are not in it, take an eighth of a model's light away, and nothing of a sky's.
-  quick_tone_ = tone_table(look_->exposure_.load() * (own_->has_backdrop ? 7U : 8U) / 8);
+  quick_tone_ = quick_tone(*own_, look_->exposure_.load());
   quick_shading_ = shading_;
   if (own_->kind == LookKind::kStars) {
     quick_shading_.mode = own_->has_own_colors ? ShadeMode::kColor : ShadeMode::kDepth;
     return;
   }
   quick_shading_.mode = ShadeMode::kColor;
-  quick_light(own_->lit_scene(), quick_shading_.face_light);
-  // A colour times a face's light, toned, without a pass over the picture: exact for the brightest face.
-  const unsigned most = std::max<unsigned>(
-      1, *std::max_element(std::begin(quick_shading_.face_light), std::end(quick_shading_.face_light)));
-  for (std::uint16_t& light : quick_shading_.face_light) {
-    light = static_cast<std::uint16_t>(256U * light / most);
-  }
-  const auto toned = [&](std::uint8_t channel) { return quick_tone_[channel * most / 256]; };
-  for (const Rgb8 color : own_->palette) {
-    quick_palette_.push_back({toned(color.r), toned(color.g), toned(color.b)});
-  }
+  const QuickLook quick = quick_look(*own_, quick_tone_);
+  std::copy(std::begin(quick.face_light), std::end(quick.face_light), std::begin(quick_shading_.face_light));
+  quick_palette_ = quick.palette;
   quick_shading_.palette = Span<const Rgb8>(quick_palette_.data(), quick_palette_.size());
 }
 
@@ -332,7 +298,7 @@ bool FinishedPicture::has_behind() const {
 void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const {
   const Camera thin = camera().thinned(step);
   const CompactTree& tree = look_->scene_->tree();
-  const EffectSet quick = own_ && own_->kind == LookKind::kStars ? Effect::kNone : effects() & kQuick;
+  const EffectSet quick = own_ && own_->kind == LookKind::kStars ? Effect::kNone : effects() & kQuickEffects;
   if (quick == Effect::kNone) {
     check(render_band(tree, thin, quick_shading_, row_of(thin, row, rgb)));
     return;
@@ -352,7 +318,7 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
   check(render_lit_band(quick, tree, thin, shading, scene, row_of(thin, row, rgb)));
   for (std::int32_t x = 0; own_ && x < thin.width_px(); ++x, rgb += 3) {
     const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kBehind;
-    const Rgb8 color = is_behind ? backdrop_color(own_->background, x, row, thin.width_px(), thin.height_px())
+    const Rgb8 color = is_behind ? backdrop_color(own_->background, row, thin.height_px())
                                  : Rgb8{quick_tone_[rgb[0]], quick_tone_[rgb[1]], quick_tone_[rgb[2]]};
     rgb[0] = color.r;
     rgb[1] = color.g;
@@ -364,7 +330,7 @@ void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* 
   const Camera thin = camera().thinned(step);
   if (own_ && own_->has_backdrop) {
     for (std::int32_t x = 0; x < thin.width_px(); ++x, rgb += 3) {
-      const Rgb8 color = backdrop_color(own_->background, x, row, thin.width_px(), thin.height_px());
+      const Rgb8 color = backdrop_color(own_->background, row, thin.height_px());
       rgb[0] = color.r;
       rgb[1] = color.g;
       rgb[2] = color.b;

@@ -137,7 +137,7 @@ class FinishedPicture {
   std::optional<Look> own_;  // the scene's own look from here
   Look own_coarse_;          // with one sample a pixel
   std::optional<WaterSurface> moving_water_;
-  ToneTable quick_tone_{};
+  ToneTable quick_tone_;
   std::vector<Rgb8> quick_palette_;  // toned, as bright as the brightest face
   mutable std::once_flag exposed_;
   mutable std::uint32_t exposure_ = 256;

@@ -13,6 +13,7 @@
 #include "scene/generators.h"
 #include "scene/scene_source.h"
 #include "web/files.h"
+#include "web/looks.h"
 
 namespace thimble::tools {
 namespace {
@@ -63,7 +64,7 @@ extern "C" {
   if (depth != 0) {
     arguments.depth = depth;
   }
-  const auto source = open_scene(arguments);
+  auto source = open_scene(arguments);
   ViewWishes view;
   view.side = NamedView::kBest;
   view.fov_degrees = kPictureFov;
@@ -83,6 +84,7 @@ extern "C" {
     throw InputError(too_large_text(limit, baked, options, source->level()));
   }
   tell(*source, board);
+  look_at_scene(std::move(source), baked.scene);
   return baked.bytes.size();
 }
 

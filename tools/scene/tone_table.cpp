@@ -1,0 +1,40 @@
+#include "scene/tone_table.h"
+
+namespace thimble::tools {
+
+uint32_t exposure_q8(const GrayCounts& counts) {
+  uint64_t total = 0;
+  for (const uint32_t count : counts.of) {
+    total += count;
+  }
+  if (total == 0) {
+    return 256;
+  }
+  uint64_t above = 0;
+  uint32_t gray = 255;
+  while (gray > 1) {
+    above += counts.of[gray];
+    if (10 * above >= total) {
+      break;
+    }
+    --gray;
+  }
+  const uint32_t exposure = kExposedGray * 256 * 2 / (3 * gray);
+  return exposure < kLeastExposureQ8  ? kLeastExposureQ8
+         : exposure > kMostExposureQ8 ? kMostExposureQ8
+                                      : exposure;
+}
+
+ToneTable tone_table(uint32_t exposure_q8) {
+  constexpr uint32_t kKnee = 200;
+  constexpr uint32_t kRest = 255 - kKnee;
+  ToneTable table;
+  for (uint32_t value = 0; value < 256; ++value) {
+    const uint32_t bright = (value * exposure_q8 * 3 + 256) / 512;
+    const uint32_t over = bright > kKnee ? bright - kKnee : 0;
+    table.of[value] = static_cast<uint8_t>(bright - over + kRest * over / (over + kRest));
+  }
+  return table;
+}
+
+}  // namespace thimble::tools

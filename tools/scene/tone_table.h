@@ -1,0 +1,40 @@
+/// @file tone_table.h
+/// A picture's exposure and its shoulder as a table, in integers and without anything of a system: the page draws
+/// by it, too. tone.h says how it belongs together.
+#ifndef THIMBLE_TOOLS_SCENE_TONE_TABLE_H
+#define THIMBLE_TOOLS_SCENE_TONE_TABLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/picture/pixel.h"
+
+namespace thimble::tools {
+
+/// Greys of a picture: how many pixels have each.
+struct GrayCounts {
+  uint32_t of[256] = {};
+};
+
+/// The brightest tenth of a picture is brought to this grey, within the limits of an exposure.
+inline constexpr uint32_t kExposedGray = 208;
+inline constexpr uint32_t kLeastExposureQ8 = 208;
+inline constexpr uint32_t kMostExposureQ8 = 416;
+/// A picture of at most so many pixels each way, of every so manyth, tells the exposure.
+inline constexpr int32_t kExposurePx = 96;
+
+/// How much to brighten a picture of these greys, drawn at two thirds: 256 is not at all. A picture of nothing is
+/// not.
+uint32_t exposure_q8(const GrayCounts& counts);
+
+/// What becomes of each value of a channel drawn at two thirds. Never falls; 0 stays 0.
+struct ToneTable {
+  uint8_t of[256] = {};
+  uint8_t operator[](size_t value) const { return of[value]; }
+  Rgb8 operator()(Rgb8 color) const { return {of[color.r], of[color.g], of[color.b]}; }
+};
+ToneTable tone_table(uint32_t exposure_q8);
+
+}  // namespace thimble::tools
+
+#endif

@@ -1,0 +1,401 @@
+// A scene to look around in: what the page calls from frame to frame. Everything is exported; nothing is
+// suspended.
+//
+// While the camera moves frames are fast: voxels by the brick map, or of every few pixels where there is none. At
+// rest the page asks for rows of the picture that `thimble render` draws of the scene (scene/look_picture.h), with
+// one sample a pixel, then with all. How the scene looks from a camera says bake.wasm (look_block.h).
+#include "apps/shown_scene.h"
+#include "scene/behind.h"
+#include "scene/tone_table.h"
+#include "thimble/base/memory.h"
+#include "thimble/light/baked_lighting.h"
+#include "thimble/light/render.h"
+#include "web/layout.h"
+#include "web/look_block.h"
+
+extern "C" uint8_t __heap_base;  // the linker's: the end of constants and variables
+
+namespace thimble::tools {
+namespace {
+
+constexpr size_t kPageBytes = 65536;
+constexpr int32_t kMostAcross = 2;  // samples of a pixel, each way
+constexpr size_t kPixelBytes = 3;
+constexpr Rgb8 kBehind{1, 0, 2};  // no surface's colour but by chance
+
+struct Viewer {
+  apps::ShownScene shown;
+  BakedLighting baked;  // of the scene; names what is picked
+  SceneCamera own;
+  SceneCamera at;
+  Camera camera;
+  Camera fine;  // kMostAcross times as many pixels each way
+  LookBlock look;
+  Bytes lighting_bytes;
+  BakedLighting lighting;  // of the look
+  ToneTable tone;
+  WebCamera seen;
+  int32_t width_px;
+  int32_t height_px;
+  uintptr_t next;  // the end of what is used
+  Bytes picture;   // rows without gaps
+  Bytes samples;   // of a row of the picture
+  Bytes shares;    // of light behind them
+};
+// Constant: what has a constructor is constructed anew by each call of an export.
+constinit Viewer viewer{};
+int32_t picked[10];
+
+uint8_t* at(uintptr_t address) {
+  return reinterpret_cast<uint8_t*>(address);
+}
+
+// Bytes behind all others, the memory grown to hold them; none where the browser has none.
+Bytes reserve(size_t bytes) {
+  const uintptr_t from = (viewer.next + 7) / 8 * 8;
+  const size_t pages = (from + bytes + kPageBytes - 1) / kPageBytes;
+  const size_t before = __builtin_wasm_memory_size(0);
+  if (pages > before && __builtin_wasm_memory_grow(0, pages - before) == SIZE_MAX) {
+    return {};
+  }
+  viewer.next = from + bytes;
+  return {at(from), bytes};
+}
+
+Bytes row_of_picture(int32_t y) {
+  const size_t stride = kPixelBytes * static_cast<size_t>(viewer.width_px);
+  return viewer.picture.subspan(stride * static_cast<size_t>(y), stride);
+}
+
+void put(Rgb8 color, uint8_t* to) {
+  to[0] = color.r;
+  to[1] = color.g;
+  to[2] = color.b;
+}
+
+Shading shading_of(const Camera& camera, Span<const Rgb8> palette) {
+  Shading shading;
+  shading.mode = ShadeMode::kColor;
+  shading.palette = palette;
+  const DepthRange range = depth_range(camera, viewer.shown.scene.tree().bounds());
+  shading.near_q8 = range.near_q8;
+  shading.far_q8 = range.far_q8;
+  return shading;
+}
+
+// Rows first .. first + rows - 1 of `camera`, as bake.wasm's quick look says.
+Status draw_quick(const Camera& camera, int32_t first, int32_t rows, Bytes pixels) {
+  const LookBlock& look = viewer.look;
+  const Band band{pixels, PixelFormat::kRgb888, 0, first, rows};
+  Shading shading = shading_of(camera, {look.quick_palette, look.colors});
+  shading.mode = look.quick_mode;
+  for (int face = 0; face < 6; ++face) {
+    shading.face_light[face] = look.quick_light[face];
+  }
+  if (look.quick_effects != Effect::kNone) {
+    shading.palette = {look.palette, look.colors};
+    const Status status = render_lit_band(look.quick_effects, viewer.shown.scene.tree(), camera, shading,
+                                          viewer.lighting.scene, band);
+    for (uint8_t& channel : pixels) {
+      channel = look.quick_tone[channel];
+    }
+    return status;
+  }
+  const bool shows_behind = look.has_backdrop && !look.is_stars;
+  if (shows_behind) {
+    shading.background = kBehind;
+  }
+  const Status status = apps::draw_scene(viewer.shown, camera, shading, band);
+  for (int32_t y = first; shows_behind && y < first + rows; ++y) {
+    const Rgb8 behind = backdrop_color(look.background, y, camera.height_px());
+    uint8_t* pixel =
+        pixels.data + kPixelBytes * static_cast<size_t>(camera.width_px()) * static_cast<size_t>(y - first);
+    for (int32_t x = 0; x < camera.width_px(); ++x, pixel += kPixelBytes) {
+      if (pixel[0] == kBehind.r && pixel[1] == kBehind.g && pixel[2] == kBehind.b) {
+        put(behind, pixel);
+      }
+    }
+  }
+  return status;
+}
+
+// Light and what is behind it for `rows` rows of a camera's rays, into `samples` and `shares`.
+Status trace_samples(const Camera& camera, int32_t first, int32_t rows) {
+  const LookBlock& look = viewer.look;
+  const CompactTree& tree = viewer.shown.scene.tree();
+  Shading shading = shading_of(camera, {look.palette, look.colors});
+  for (uint16_t& light : shading.face_light) {
+    light = static_cast<uint16_t>(2U * light / 3);
+  }
+  const size_t count = static_cast<size_t>(camera.width_px()) * static_cast<size_t>(rows);
+  const Band band{viewer.samples.subspan(0, kPixelBytes * count), PixelFormat::kRgb888, 0, first, rows};
+  const Status status = render_lit_band(look.effects, tree, camera, shading, viewer.lighting.scene, band);
+  uint8_t* share = viewer.shares.data;
+  for (int32_t y = first; y < first + rows; ++y) {
+    RowRays rays(camera, 0, y);
+    for (int32_t x = 0; x < camera.width_px(); ++x, rays.next(), ++share) {
+      if (!look.has_backdrop || !light_behind(tree, look.ground, rays.ray(), share)) {
+        *share = kNothingBehind;
+      }
+    }
+  }
+  return status;
+}
+
+// Pixel x of a row from `across` x `across` samples of `camera`, whose rows these are: the mean.
+Rgb8 finished(const Camera& camera, int32_t x, int32_t across, Rgb8 behind) {
+  uint32_t sums[3] = {};
+  for (int32_t j = 0; j < across; ++j) {
+    for (int32_t i = 0; i < across; ++i) {
+      const size_t sample = static_cast<size_t>(j * camera.width_px() + x * across + i);
+      const uint8_t* const color = viewer.samples.data + kPixelBytes * sample;
+      const uint8_t share = viewer.shares.data[sample];
+      const Rgb8 shown =
+          share == kNothingBehind ? viewer.tone({color[0], color[1], color[2]}) : shaded(behind, share);
+      sums[0] += shown.r;
+      sums[1] += shown.g;
+      sums[2] += shown.b;
+    }
+  }
+  const auto count = static_cast<uint32_t>(across * across);
+  const auto mean = [count](uint32_t sum) { return static_cast<uint8_t>((sum + count / 2) / count); };
+  return {mean(sums[0]), mean(sums[1]), mean(sums[2])};
+}
+
+int32_t samples_across() {
+  const bool has_fine = viewer.fine.width_px() == kMostAcross * viewer.width_px;
+  return viewer.look.across == kMostAcross && has_fine ? kMostAcross : 1;
+}
+
+// Row `y` of the picture that `camera` has, of `across` samples each way, to where it belongs.
+Status draw_lit(const Camera& camera, int32_t y, int32_t across, Bytes to) {
+  const Status status = trace_samples(camera, y * across, across);
+  const Rgb8 behind = backdrop_color(viewer.look.background, y, camera.height_px() / across);
+  for (int32_t x = 0; x < camera.width_px() / across; ++x) {
+    put(finished(camera, x, across, behind), to.data + kPixelBytes * static_cast<size_t>(x));
+  }
+  return status;
+}
+
+// Row `row` of every `step`-th pixel, stretched to `step` rows of the picture.
+void stretch(Bytes thin, int32_t y, int32_t step) {
+  for (int32_t line = y; line < y + step && line < viewer.height_px; ++line) {
+    const Bytes row = row_of_picture(line);
+    for (size_t x = 0; x < static_cast<size_t>(viewer.width_px); ++x) {
+      for (size_t i = 0; i < kPixelBytes; ++i) {
+        row.data[kPixelBytes * x + i] = thin.data[kPixelBytes * (x / static_cast<size_t>(step)) + i];
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thimble::tools
+
+extern "C" {
+
+// Room for a scene of so many bytes and a picture of that size; null where there is none. Once in a module's
+// life.
+[[clang::export_name("room")]] uint8_t* thimble_room(uint32_t scene_bytes, int32_t width_px,
+                                                     int32_t height_px) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  viewer.next = reinterpret_cast<uintptr_t>(&__heap_base);
+  viewer.width_px = width_px;
+  viewer.height_px = height_px;
+  const size_t width = static_cast<size_t>(width_px);
+  constexpr size_t kSamples = static_cast<size_t>(kMostAcross * kMostAcross);
+  const Bytes scene = reserve(scene_bytes);
+  viewer.picture = reserve(kPixelBytes * width * static_cast<size_t>(height_px));
+  viewer.samples = reserve(kPixelBytes * kSamples * width);
+  viewer.shares = reserve(kSamples * width);
+  web::layout.scene = scene;
+  const bool has_room =
+      !scene.empty() && !viewer.picture.empty() && !viewer.samples.empty() && !viewer.shares.empty();
+  return has_room ? scene.data : nullptr;
+}
+
+// Opens the scene that was put there: 0, or an English phrase that says what is wrong.
+[[clang::export_name("open")]] const char* thimble_open() {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const BakedScene& scene = viewer.shown.scene;
+  if (const char* wrong = apps::open_scene(&viewer.shown)) {
+    return wrong;
+  }
+  const ConstBytes lighting = scene.section(SectionKind::kLighting);
+  if (!lighting.empty() &&
+      BakedLighting::open(lighting, scene.tree().level(), &viewer.baked) != Status::kOk) {
+    return "the scene's lighting is damaged";
+  }
+  Arena none;
+  if (!scene.section(SectionKind::kBrickMap).empty()) {
+    apps::open_map(&viewer.shown, &none);
+  }
+  if (!scene.has_camera()) {
+    return "the scene has no camera";
+  }
+  viewer.own = scene.camera();
+  return nullptr;
+}
+
+[[clang::export_name("level")]] int thimble_level() {
+  return thimble::tools::viewer.shown.scene.tree().level();
+}
+[[clang::export_name("has_map")]] bool thimble_has_map() {
+  return thimble::tools::viewer.shown.has_map;
+}
+[[clang::export_name("picture")]] const uint8_t* thimble_picture() {
+  return thimble::tools::viewer.picture.data;
+}
+// The scene's own camera: component `axis` of its eye (`of_target` false) or target, in 1/256 voxel.
+[[clang::export_name("own_camera")]] int32_t thimble_own_camera(bool of_target, int axis) {
+  const thimble::SceneCamera& own = thimble::tools::viewer.shown.scene.camera();
+  const thimble::Vec3Q8& point = of_target ? own.target : own.eye;
+  return axis == 0 ? point.x.raw : axis == 1 ? point.y.raw : point.z.raw;
+}
+
+// The vertical angle of view, in 1/65536 degree, or the width of a parallel view in 1/16384 voxel.
+[[clang::export_name("lens")]] int32_t thimble_lens() {
+  const thimble::SceneCamera& own = thimble::tools::viewer.own;
+  return own.is_perspective ? own.fov_degrees.raw : own.span.raw;
+}
+[[clang::export_name("is_parallel")]] bool thimble_is_parallel() {
+  return !thimble::tools::viewer.own.is_perspective;
+}
+
+// What the ray of a pixel of the picture hits: the point in 1/256 voxel and the voxel, three numbers each; the
+// face as in Shading::face_light, -1 where the eye is in it; material, colour (red at bit 16), SurfaceKind.
+// Null for nothing.
+[[clang::export_name("pick")]] const int32_t* thimble_pick(int32_t x_px, int32_t y_px) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const Camera& camera = viewer.camera;
+  if (x_px < 0 || y_px < 0 || x_px >= camera.width_px() || y_px >= camera.height_px()) {
+    return nullptr;
+  }
+  const Ray ray = camera.ray(x_px, y_px);
+  Hit hit;
+  if (closest_hit(viewer.shown.scene.tree(), ray, &hit) != Status::kOk || hit.kind != HitKind::kHit) {
+    return nullptr;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    // The product is below 2^51 (camera.h, ray.h).
+    const int64_t along = int64_t{ray.direction[axis]} * hit.t_numerator * Q8::kOne / hit.t_denominator;
+    picked[axis] = ray.origin[axis].raw + static_cast<int32_t>(along);
+    picked[3 + axis] = hit.voxel[axis];
+  }
+  const Face face = face_of(hit, ray.direction);
+  const Span<const Rgb8> palette = viewer.shown.scene.palette();
+  const Rgb8 color = hit.material < palette.size ? palette[hit.material] : Rgb8{255, 255, 255};
+  const Span<const Surface>& surfaces = viewer.baked.scene.surfaces;
+  const SurfaceKind kind = hit.material < surfaces.size ? surfaces[hit.material].kind : SurfaceKind::kDiffuse;
+  picked[6] = hit.axis < 0 ? -1 : 2 * face.axis + (face.negative ? 0 : 1);
+  picked[7] = hit.material;
+  picked[8] = color.r << 16 | color.g << 8 | color.b;
+  picked[9] = static_cast<int32_t>(kind);
+  return picked;
+}
+
+// Where the camera of `see` is written.
+[[clang::export_name("camera")]] thimble::tools::WebCamera* thimble_camera() {
+  return &thimble::tools::viewer.seen;
+}
+// Looks from that camera. False, and the view as it was, where there is no such camera.
+[[clang::export_name("see")]] bool thimble_see() {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const SceneCamera at = viewer.seen.of(viewer.own);
+  const int level = viewer.shown.scene.tree().level();
+  Camera camera;
+  if (set_camera(at, viewer.width_px, viewer.height_px, level, &camera) != Status::kOk) {
+    return false;
+  }
+  viewer.camera = camera;
+  // Where the fine one cannot be had the samples are those of the coarse one.
+  if (set_camera(at, kMostAcross * viewer.width_px, kMostAcross * viewer.height_px, level, &viewer.fine) !=
+      Status::kOk) {
+    viewer.fine = Camera{};
+  }
+  return true;
+}
+
+// Room for a LookBlock and what belongs to it, of so many bytes; null where there is none.
+[[clang::export_name("look_room")]] uint8_t* thimble_look_room(uint32_t bytes) {
+  using namespace thimble::tools;
+  if (bytes > viewer.lighting_bytes.size) {
+    viewer.lighting_bytes = reserve(bytes);
+  }
+  return viewer.lighting_bytes.data;
+}
+// Looks so from now on. False where the block is none.
+[[clang::export_name("take_look")]] bool thimble_take_look() {
+  using namespace thimble;
+  using namespace thimble::tools;
+  viewer.look = *reinterpret_cast<const LookBlock*>(viewer.lighting_bytes.data);
+  viewer.lighting = {};
+  const ConstBytes section = viewer.lighting_bytes.subspan(sizeof(LookBlock), viewer.look.lighting_bytes);
+  return section.empty() ||
+         BakedLighting::open(section, viewer.shown.scene.tree().level(), &viewer.lighting) == Status::kOk;
+}
+
+// The exposure of the picture at rest (measured_exposure), from rows first .. first + rows - 1 of a thinned one; 0
+// while there are more rows. What is drawn at rest is drawn with it from then on.
+[[clang::export_name("expose")]] uint32_t thimble_expose(int32_t first, int32_t rows) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  static GrayCounts counts;
+  const Camera& all = samples_across() == 1 ? viewer.camera : viewer.fine;
+  const int32_t longest = all.width_px() > all.height_px() ? all.width_px() : all.height_px();
+  const Camera coarse = all.thinned((longest + kExposurePx - 1) / kExposurePx);
+  if (first == 0) {
+    counts = {};
+  }
+  for (int32_t y = first; y < first + rows && y < coarse.height_px(); ++y) {
+    if (trace_samples(coarse, y, 1) != Status::kOk) {
+      return 256;  // drawing will say so
+    }
+    for (size_t x = 0; x < static_cast<size_t>(coarse.width_px()); ++x) {
+      const uint8_t* const color = viewer.samples.data + kPixelBytes * x;
+      if (viewer.shares.data[x] == kNothingBehind) {
+        ++counts.of[gray_of({color[0], color[1], color[2]})];
+      }
+    }
+  }
+  return first + rows < coarse.height_px() ? 0 : exposure_q8(counts);
+}
+[[clang::export_name("set_exposure")]] void thimble_set_exposure(uint32_t exposure_q8) {
+  thimble::tools::viewer.tone = thimble::tools::tone_table(exposure_q8);
+}
+
+// Draws rows of every `step`-th pixel of every `step`-th row, stretched; `first` is a multiple of `step`. `lit`: as
+// at rest, with one sample.
+[[clang::export_name("draw")]] bool thimble_draw(int32_t first, int32_t rows, int32_t step, bool lit) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  if (step == 1 && !lit) {
+    const size_t stride = kPixelBytes * static_cast<size_t>(viewer.width_px);
+    const Bytes to =
+        viewer.picture.subspan(stride * static_cast<size_t>(first), stride * static_cast<size_t>(rows));
+    return draw_quick(viewer.camera, first, rows, to) == Status::kOk;
+  }
+  const Camera thin = viewer.camera.thinned(step);
+  const Bytes row = viewer.samples.subspan(0, kPixelBytes * static_cast<size_t>(thin.width_px()));
+  for (int32_t y = first; y < first + rows && y < viewer.height_px; y += step) {
+    const Status status = lit ? draw_lit(thin, y / step, 1, row) : draw_quick(thin, y / step, 1, row);
+    if (status != Status::kOk) {
+      return false;
+    }
+    stretch(row, y, step);
+  }
+  return true;
+}
+
+// Draws a row as at rest, with all samples.
+[[clang::export_name("draw_fine")]] bool thimble_draw_fine(int32_t y) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const int32_t across = samples_across();
+  return draw_lit(across == 1 ? viewer.camera : viewer.fine, y, across, row_of_picture(y)) == Status::kOk;
+}
+}
