@@ -50,17 +50,15 @@ function hireCrew(own, scene) {
 async function askLook(own) {
   const {camera, board} = own;
   own.asks = true;
-  let seen = null;
   try {
-    seen = await own.baker.look(camera, board.width, board.height, own.exposure);
-  } catch (error) {
+    const seen = await own.baker.look(camera, board.width, board.height, own.exposure);
+    if (own !== viewer || seen === null) return;
+    own.look.take(seen.block);
+    own.view = {camera, ...seen};
+    own.asks = false;
+  } catch (error) {  // then the picture stays the fast one
     if (own === viewer) say(`${current().title}: ${error.message}`, true);
-    return;
   }
-  own.asks = false;
-  if (own !== viewer || seen === null) return;
-  own.view = {camera, ...seen};
-  own.look.take(seen.block);
 }
 async function askStars(own) {
   const {view, board} = own;
