@@ -8,34 +8,33 @@
 namespace thimble::wide {
 namespace {
 
-// With so few boxes, leaving any out does not pay.
+// With so few boxes it does not pay to leave any out.
 constexpr uint32_t kFewBoxes = 64;
-// The work that pays for a look at one cell, when the choice may take a hundredth of the frame.
+// The choice may take a hundredth of the frame's time; so much work of the frame allows a look at one cell.
 constexpr float kWorkPerCell = 12000;
-// Costs in units of one test of a pixel in flat order, about 0.8 ns. They were fitted to the times of 1,199
-// views, to make the time that wrong choices cost as small as possible. In flat order: a box. In either
-// order: a test of a box that is drawn row by row. In blocks: a test where tables are looked up, a block
-// with a table (whose boxes cost nothing besides), a box of another block (only tests count for a large
-// one), and using blocks at all.
+// Costs in units of one test of a pixel in flat order, about 0.8 ns. They were fitted to the times of 1,199 views, so
+// that wrong choices cost as little time as possible. kBox: a box in flat order. kLargeTest: a test of a box that is
+// drawn row by row, in either order. The others hold for blocks: a test by a table, a block with a table (its boxes
+// cost nothing more), a box of another block (a large box costs only its tests), and using blocks at all.
 constexpr float kBox = 0.1F;
 constexpr float kLargeTest = 0.42F;
 constexpr float kTableTest = 0.67F;
 constexpr float kTableBlock = 62;
 constexpr float kBoxInBlock = 0.24F;
 constexpr float kBlocks = 110;
-// A pixel that is painted from a list with blocks, beyond one whose grey was found as its voxel was met. And
-// what a surface takes, in perspective, for the work that is expected of it; fitted to 140 views, to be no
-// slower than boxes rather than to be fastest.
+// kPaintedBlock: what painting a pixel from a list with blocks costs more than painting one whose grey was found when
+// its voxel was hit. kSurface: in perspective, the time that a surface takes per unit of its expected work; fitted to
+// 140 views, to be no slower than boxes rather than to be fastest.
 constexpr float kPaintedBlock = 0.8F;
 constexpr float kSurface = 1.75F;
-// Boxes of so many pixels are drawn row by row, in the mean of both orders (kernels/runs-inl.h).
+// Boxes of more than about so many pixels are drawn row by row: a mean of both orders (kernels/runs-inl.h).
 constexpr float kLargePx = 40;
-// The mean numbers of boxes of a block, and pixels of its side (limits in tile_drawer.cpp: kTableBoxes,
-// kBlockBoxes, kTablePx).
+// The mean number of boxes in a block, and the mean side of a block in pixels (tile_drawer.cpp has the limits:
+// kTableBoxes, kBlockBoxes, kTablePx).
 constexpr float kMeanTableBoxes = 800;
 constexpr float kMeanBlockBoxes = 120;
 constexpr float kMeanTablePx = 40;
-// Sides are halved until they are below a limit; in the mean they end at so much of it.
+// Sides are halved until they are below a limit; on average they end at this share of it.
 constexpr float kMeanOfMost = 0.7F;
 
 // Finds the logarithm of a normal number above 0 within a hundredth, in a few steps: enough for a guess.
@@ -60,9 +59,9 @@ float power_about(float base, float exponent) {
   return exp2_about(exponent * log2_about(base));
 }
 
-// Cuts the tree into cells, all a level at a time, and leaves out those out of sight. Lays the others front
-// to back on a raster over the part of the picture that they take, each as a haze as dense as the faces of
-// its boxes. Boxes and pixels are hidden as if all that stands before them were strewn at random.
+// Cuts the tree into cells, level by level, and drops those that are out of sight. Lays the others front to back on a
+// raster over the part of the picture that they take: each is a haze as dense as the faces of its boxes. It estimates
+// what is hidden as if all that stands in front were strewn at random.
 class Haze {
  public:
   Haze(const VoxelLists& lists, const WideFrame& frame, bool by_rows)
@@ -97,13 +96,13 @@ class Haze {
     int level;
     uint32_t corner[3];
     float x0, y0, x1, y1;  // in the picture
-    float side_px;         // the longer one, of all of the cell
-    float voxel_px;        // area of a voxel in its middle
-    float slack_px;        // tested besides
-    float share;           // of its rectangle that is in the picture
+    float side_px;         // the longer side of the whole cell
+    float voxel_px;        // area of a voxel in the cell's middle
+    float slack_px;        // pixels that are tested besides
+    float share;           // how much of the cell's rectangle is in the picture
   };
 
-  // Finds the cell's rectangle; false where it is out of sight.
+  // Finds the cell's rectangle; returns false where the cell is out of sight.
   bool place(Cell* cell) const {
     const float side = static_cast<float>(1 << cell->level);
     float x = frame_.u[3];
@@ -125,7 +124,7 @@ class Haze {
     const float per_depth = 1 / depth;
     x *= per_depth;
     y *= per_depth;
-    // How far a voxel reaches (frame.h), at that place and not at the worst of the picture.
+    // How far a voxel reaches (frame.h) at that place, not at the worst place of the picture.
     float half_x = 0;
     float half_y = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -151,7 +150,7 @@ class Haze {
   float boxes_of(const Cell& cell) const {
     return static_cast<float>(lists_.nodes()[cell.node].entries) * cell.share;
   }
-  // The area of the faces of its boxes, in pixels.
+  // The area of the faces of the cell's boxes, in pixels.
   float faces_of(const Cell& cell, float area) const { return cell.voxel_px * area * cell.share; }
 
   bool is_cut(const Cell& cell) const {
@@ -159,8 +158,7 @@ class Haze {
            lists_.nodes()[cell.node].entries > kFewBoxes;
   }
 
-  // Puts the children of the cell that are in sight behind the last cell, front to back. Returns how many it
-  // has.
+  // Appends the cell's children that are in sight, front to back. Returns how many children the cell has.
   int split(const Cell& cell) {
     const unsigned mask = lists_.children(cell.node);
     const uint32_t side = uint32_t{1} << (cell.level - 1);
@@ -199,7 +197,7 @@ class Haze {
     count_ = 1;
     for (int looked = 1;;) {
       int cuts = 0;
-      float work = 0;  // of what is in sight, as far as is known
+      float work = 0;  // what the cells in sight are known to take
       for (int i = 0; i < count_; ++i) {
         const Cell& cell = cells_[i];
         cuts += is_cut(cell) ? 1 : 0;
@@ -270,8 +268,8 @@ class Haze {
       }
       const float before = area > 0 ? open_area / area : 1;
       painted_px_ += rectangle * before * (1 - left);
-      // So much of what the cell's boxes would cover is still open when they are drawn. A block is left out
-      // when all of its pixels are covered.
+      // How much of what the cell's boxes would cover is still open when they are drawn. (A block is left out when all
+      // of its pixels are covered.)
       const float seen = fminf(density > 1e-6F ? before * (1 - left) / density : before, 1);
       const float entries = static_cast<float>(node.entries);
       // A block that is partly in the picture is looked at as a whole.
@@ -288,8 +286,7 @@ class Haze {
       float work = tests * seen;
       if (has_table) {
         work *= kTableTest;
-        // A cell of that size has so many blocks if each is cut like the cell: into eight, or into four on
-        // a surface.
+        // How many blocks a cell of that size has, if each is cut like the cell: into eight, or into four on a surface.
         const float across = fmaxf(cell.side_px / table_px_, 1);
         const float parts = static_cast<float>(__builtin_popcount(lists_.children(cell.node)));
         const float table_blocks = parts > 1 ? power_about(across, log2_about(parts)) : 1;
@@ -319,19 +316,18 @@ class Haze {
     }
   }
 
-  // Room for the children, at most eight for each of kMostCells / 4 cells, and at the end for the cells
-  // that are cut.
+  // Room for the children, at most eight for each of kMostCells / 4 cells, and behind them for the cells that are cut.
   static constexpr int kRoom = 4 * kMostCells;
   const VoxelLists& lists_;
   const WideFrame& frame_;
   bool by_rows_;
   int32_t eye_cell_[3];
-  float table_px_;  // mean side of blocks that are looked up in tables
+  float table_px_;  // mean side of blocks that are drawn by tables
   Cell cells_[kRoom];
   int count_ = 0;
-  float flat_ = 0;  // the work of either order
+  float flat_ = 0;  // work in the order of the list
   float blocks_ = 0;
-  float painted_px_ = 0;  // about
+  float painted_px_ = 0;  // estimated
   Outlook outlook_;
 };
 

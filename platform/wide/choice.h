@@ -1,5 +1,5 @@
 /// @file choice.h
-/// Guesses which order of drawing boxes takes less time, from a few cells of the tree.
+/// Guesses from a few cells of the tree which order of drawing its boxes takes less time.
 #ifndef THIMBLE_PLATFORM_WIDE_CHOICE_H
 #define THIMBLE_PLATFORM_WIDE_CHOICE_H
 
@@ -8,33 +8,33 @@
 
 namespace thimble::wide {
 
-/// Blocks whose single voxels take so few pixels a side are looked up in tables (kernels/pick-inl.h).
+/// Blocks whose voxels are at most so many pixels wide are drawn by tables (kernels/pick-inl.h).
 inline constexpr float kTableVoxelPx = 1.8F;
 
-/// But not blocks in which perspective moves a voxel by more pixels than this from where an affine map has
-/// it.
+/// A block is not drawn by a table where perspective moves a voxel by more pixels than this from where an affine
+/// map puts it.
 inline constexpr float kMostBentPx = 0.15F;
 
-/// What is to be expected of a frame.
+/// What drawing a frame is expected to take.
 struct Outlook {
   static constexpr int kParts = 32;
-  /// Whether boxes hide one another so much that blocks pay: these are drawn front to back, and left out
-  /// when all their pixels are covered.
+  /// Whether boxes hide one another so much that blocks pay. Blocks are drawn front to back, and left out when all
+  /// their pixels are covered.
   bool blocks_pay = false;
-  /// How the work is spread, about, over equal parts of the tile's rows, from the first down: in the order
-  /// of the list, and with blocks.
+  /// Roughly how much work equal parts of the tile's rows take, from the first row down: in the order of the list, and
+  /// with blocks.
   float flat[kParts] = {};
   float blocks[kParts] = {};
-  /// The work in the order that pays, in tests of a pixel, without painting; and how many pixels are painted.
+  /// The work in the order that pays, in tests of a pixel and without painting; and how many pixels get painted.
   float work = 0;
   float painted_px = 0;
 };
 
-/// Takes about a hundredth of the frame's time: it looks at 65 cells at most. `by_rows`: whether to find
-/// the work of the parts.
+/// Takes about a hundredth of the frame's time: it looks at 65 cells at most. `by_rows` says whether to find the work
+/// of the parts.
 Outlook outlook_of(const VoxelLists& lists, const WideFrame& frame, bool by_rows);
 
-/// Whether a list of boxes is drawn faster than that of the surface, of which these are the outlooks.
+/// Whether a list of boxes, with its outlook, is expected to be drawn faster than that of the surface, with its own.
 bool boxes_pay(const Outlook& boxes, const Outlook& surface, bool perspective);
 
 }  // namespace thimble::wide

@@ -6,7 +6,7 @@
 namespace thimble::wide {
 namespace {
 
-// Pictures are merged in so many rows at a time.
+// Pictures are merged so many rows at a time.
 constexpr int32_t kMergedRows = 32;
 
 }  // namespace

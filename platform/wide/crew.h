@@ -1,5 +1,5 @@
 /// @file crew.h
-/// The threads of one frame at work.
+/// Draws a frame with several threads.
 #ifndef THIMBLE_PLATFORM_WIDE_CREW_H
 #define THIMBLE_PLATFORM_WIDE_CREW_H
 
@@ -14,15 +14,15 @@ namespace thimble::wide {
 /// Draws and paints a frame, either tile by tile in one picture, or with a picture for each thread.
 class Crew {
  public:
-  /// `threads`: null for the calling one alone.
+  /// `threads`: null where the calling thread draws alone.
   Crew(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter, const Workspace& workspace)
       : threads_(threads), task_(task), painter_(painter), workspace_(workspace) {}
 
-  /// Every thread draws and paints tiles, then parts of others' tiles, until there are none. Returns how many
-  /// pixels hold anything. `splits`: how many parts changed hands.
+  /// Every thread draws and paints tiles, then parts of other threads' tiles, until none are left. Returns how many
+  /// pixels show something. `splits` gets how many parts changed hands.
   uint64_t draw_tiles(const Tiles& tiles, uint32_t* splits) const;
-  /// Every thread draws its share of the list in a picture of its own; then these are merged and painted.
-  /// Returns how many pixels hold anything.
+  /// Every thread draws its share of the list in a picture of its own; then the pictures are merged and painted.
+  /// Returns how many pixels show something.
   uint64_t draw_copies() const;
   /// What all threads counted.
   Counts counts() const;

@@ -24,11 +24,10 @@ uint64_t cube_value(const uint32_t (&corner)[3], uint32_t down) {
   return key << kEntryBits;
 }
 
-// Take planes of two axes a and b, and c, the box's centre less the origin. The ray passes the lower plane
-// of each axis before the upper one of the other exactly when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|).
-// Along an axis with d = 0 the ray must lie between the planes, or in the lower one. Where the two are
-// equal, the ray touches an edge. Centres are below 2^25
-// in 1/512 voxel, directions have 20 bits.
+// Let c be the box's centre less the origin, and d the direction. The ray passes the lower plane of axis a before the
+// upper plane of axis b, and that of b before that of a, exactly when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|). Where
+// both sides are equal, the ray touches an edge. Along an axis with d = 0 the ray must lie between the planes, or in
+// the lower one. Centres are below 2^25 in 1/512 voxel, directions have 20 bits.
 Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
                      uint32_t* down) {
   const int32_t level = level_of(entry);

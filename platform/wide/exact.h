@@ -13,7 +13,7 @@ namespace thimble::wide {
 
 struct WideFrame;
 
-/// Side of an entry (voxel_lists.h) as a power of two, and its x without the bits that tell it.
+/// The logarithm of an entry's side (voxel_lists.h), and its x without the bits that hold that.
 inline int32_t level_of(uint32_t entry) {
   const uint32_t side = entry >> 30;
   return static_cast<int32_t>(side < 3 ? side : 3 + (entry & 7U));
@@ -22,8 +22,8 @@ inline uint32_t x_of(uint32_t entry) {
   return (entry >> 30) < 3 ? entry & 1023U : entry & 1016U;
 }
 
-/// The Morton code of a box of 2^level voxels with lowest corner `corner` (below 1024), mirrored in the axes
-/// of `down` (a bit each).
+/// The Morton code of a box of 2^level voxels a side with lowest corner `corner` (below 1024), mirrored in the axes
+/// whose bits are set in `down`.
 uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down);
 
 /// The sum of a voxel's coordinates within its cube, mirrored in the axes of `down`: 0 .. 3 * 1023.
@@ -35,8 +35,7 @@ inline uint32_t mirrored_sum(uint32_t entry, uint32_t down) {
   return sum;
 }
 
-/// The key of a cube's corner (in voxels), as values of Depths::nearest hold it, mirrored in the axes of
-/// `down`.
+/// The key of a cube's corner (in voxels), placed as in Depths::nearest and mirrored in the axes of `down`.
 uint64_t cube_value(const uint32_t (&corner)[3], uint32_t down);
 
 enum class Meeting : uint8_t {
@@ -45,8 +44,8 @@ enum class Meeting : uint8_t {
   kHit,    ///< a positive length, at t >= 0
 };
 
-/// Decides how the ray meets the entry of the cube at `cube` (voxels). Unless it misses, `down` gets the axes
-/// along which the ray runs downwards, and `key` the entry's key mirrored in them.
+/// Decides how the ray meets the entry of the cube at `cube` (voxels). Unless the ray misses, `down` gets the axes
+/// along which it runs downwards, and `key` the entry's key mirrored in them.
 Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
                      uint32_t* down);
 /// The same for the ray of pixel (x, y).

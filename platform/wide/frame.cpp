@@ -12,7 +12,7 @@ namespace {
 constexpr double kRounding = 16.0 / (1 << 24);
 
 struct Row {
-  double of[4];  // the last is the constant
+  double of[4];  // by axis; the last is the constant
   double norm() const { return fabs(of[0]) + fabs(of[1]) + fabs(of[2]); }
 };
 
@@ -24,7 +24,7 @@ double dot(const Row& row, const double (&v)[3]) {
   return row.of[0] * v[0] + row.of[1] * v[1] + row.of[2] * v[2];
 }
 
-// |one - p * other|_1: how far a box of half side 1 reaches at column (or row) p, times the depth.
+// |one - p * other|_1, which is how far a box of half side 1 reaches at column (or row) p, times the depth.
 double reach(const Row& one, const Row& other, double p) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -83,7 +83,7 @@ Map store_exact(const Camera::Affine& affine, WideFrame* frame) {
   return map;
 }
 
-// Stores the map for rays in floats, as whole numbers and the rest.
+// Stores the map for rays in floats, as whole numbers and fractions.
 void store_floats(const Map& map, WideFrame* frame) {
   double whole = 0;
   double rest = 0;
@@ -106,8 +106,7 @@ void store_floats(const Map& map, WideFrame* frame) {
   frame->map_error = whole < (1 << 24) ? static_cast<float>(fmin(0.5, rest * 8 / (1 << 24) + 1e-6)) : 0.5F;
 }
 
-// The rows of the projection, and the greatest sum of magnitudes that goes into each for a point of the
-// world.
+// The rows of the projection, and for each the greatest sum of magnitudes that goes into it for a point of the world.
 struct Projection {
   Row u, v, w;
   double magnitude[3];
@@ -189,14 +188,13 @@ bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame) {
   frame->rounding_y = static_cast<float>(kRounding * (magnitude[1] + bottom * magnitude[2]));
   frame->half_w = static_cast<float>(frame->perspective ? w.norm() * 0.5 * 1.0001 : 0);
   frame->rounding_w = static_cast<float>(kRounding * magnitude[2]);
-  // The rays themselves are rounded by half a unit of the direction (or 1/512 voxel of the origin).
+  // Rays are rounded by up to half a unit of the direction (or 1/512 voxel of the origin).
   const double unit = frame->perspective ? 0.5 : 0.5 / 256;
   const double shrink = frame->perspective ? 1 - unit * w.norm() : 1;
   if (!(shrink > 0.5)) {
     return false;
   }
-  // A box's far side is (1 + h |W|_1 / W.c) times as far away as its centre, and its rays move by as much
-  // more.
+  // A box's far side is (1 + h |W|_1 / W.c) times as far away as its centre, and rays deviate as much more there.
   const double farther = 1 + (frame->perspective ? unit / shrink * w.norm() : 0);
   frame->reach_x = static_cast<float>(across * 0.5 * 1.0001 * farther);
   frame->reach_y = static_cast<float>(down * 0.5 * 1.0001 * farther);
@@ -205,8 +203,8 @@ bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame) {
   frame->spread_x = static_cast<float>(kRounding * right + 1e-4);
   frame->spread_y = static_cast<float>(kRounding * bottom + 1e-4);
   frame->per_direction = static_cast<float>(0.5 / shrink * 1.0001);
-  // |U - column W|_1 is at least the length of U's part across W; it must be that large for floats to keep it
-  // within a two-thousandth.
+  // |U - column W|_1 is at least the length of U's part across W. Floats keep it within a two-thousandth only if that
+  // length is so much larger than their error.
   const bool is_sound = frame->perspective && rounding_of(u, w, right) < 5e-4 * across_length(u, w) &&
                         rounding_of(v, w, bottom) < 5e-4 * across_length(v, w);
   frame->norm_w = is_sound ? static_cast<float>(w.norm() * 1.0001) : 1e30F;

@@ -55,8 +55,8 @@ uint8_t code_of(GrayScale::Code code, const Hit& hit, const Ray& ray, const Came
 uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Code code, int32_t x, int32_t y,
                      uint32_t entry, const uint32_t (&cube)[3]) {
   const Ray ray = camera.ray(x, y);
-  // The latest of the nearer planes, on a tie that of the lowest axis; one at or behind the origin is not
-  // entered through.
+  // The ray enters through the latest of the nearer planes, on a tie that of the lowest axis; it does not enter through
+  // a plane at or behind the origin.
   int64_t numerator = 0;
   int64_t speed = 1;
   Hit hit;

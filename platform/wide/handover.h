@@ -1,9 +1,9 @@
 /// @file handover.h
-/// Decides which of several threads draws what: tiles while there are any, then parts of what others still
-/// have.
+/// Decides which of several threads draws what: tiles while there are any, then parts of what other threads still
+/// have to draw.
 ///
-/// Nobody waits for a thread that has not come: whoever comes takes the next tile, a part, or goes. A thread
-/// waits only while another has something left, and that one needs no other to go on.
+/// Nobody waits for a thread that has not started: each thread takes the next tile or a part, or leaves. A thread
+/// waits only while another one is drawing, and a thread that draws waits for nobody.
 #ifndef THIMBLE_PLATFORM_WIDE_HANDOVER_H
 #define THIMBLE_PLATFORM_WIDE_HANDOVER_H
 
@@ -15,8 +15,8 @@
 
 namespace thimble::wide {
 
-/// Made for one frame. `Taker`: what a thread draws with. It has the members `std::atomic<bool> given` and
-/// `Taker* next_taker`, which only this class uses, and lives until the thread's last call has returned.
+/// Made for one frame. A `Taker` is what a thread draws with. It has the members `std::atomic<bool> given` and
+/// `Taker* next_taker`, which only this class uses, and must live until the thread's last call has returned.
 template <typename Taker>
 class Handover {
  public:
@@ -25,9 +25,8 @@ class Handover {
 
   explicit Handover(int tiles) : tiles_(tiles), unfinished_(tiles) {}
 
-  /// Returns the number of a tile that nobody else draws, from 0 up; kGiven when another thread has put a
-  /// part into `taker`; kNothing when all is drawn. Waits while others draw. Call finish() after each tile
-  /// and part.
+  /// Returns the number of a tile that nobody else draws, from 0 up; kGiven when another thread has put a part into
+  /// `taker`; kNothing when all is drawn. Waits while other threads draw. Call finish() after each tile and part.
   int next(Taker* taker) {
     const int tile = next_tile_.fetch_add(1, std::memory_order_relaxed);
     if (tile < tiles_) {
@@ -40,7 +39,7 @@ class Handover {
       waiting_.store(taker, std::memory_order_relaxed);
     }
     while (!taker->given.load(std::memory_order_acquire)) {
-      // Once it is 0 nobody can give anything, so it does no harm that this taker stays in the list.
+      // When nothing is unfinished nobody can give anything, so this taker may stay in the list.
       if (unfinished_.load(std::memory_order_acquire) == 0) {
         return kNothing;
       }
@@ -48,13 +47,13 @@ class Handover {
     }
     return kGiven;
   }
-  /// Says that the tile or part that next() returned is drawn, except what was given away.
+  /// Notes that the tile or part that next() returned is drawn, except what was given away.
   void finish() { unfinished_.fetch_sub(1, std::memory_order_acq_rel); }
 
-  /// Whether anybody waits. Costs next to nothing.
+  /// Whether a thread waits. Costs next to nothing.
   bool is_wanted() const { return waiting_.load(std::memory_order_relaxed) != nullptr; }
-  /// Takes out one that waits, for a thread that has something left: fill it and give() it. Null when
-  /// others were faster.
+  /// Takes a waiting taker off the list, for a thread that has something to give: fill the taker, then give() it.
+  /// Returns null when others were faster.
   Taker* take() {
     const std::lock_guard<std::mutex> lock(mutex_);
     Taker* const taker = waiting_.load(std::memory_order_relaxed);
@@ -76,7 +75,7 @@ class Handover {
   std::mutex mutex_;
   const int tiles_;
   std::atomic<int> next_tile_{0};
-  std::atomic<int> unfinished_;  ///< tiles and parts
+  std::atomic<int> unfinished_;  ///< tiles and parts that are not drawn yet
   uint32_t splits_ = 0;
 };
 

@@ -11,7 +11,7 @@
 namespace thimble::wide {
 namespace {
 
-// The pixel, as kernels number it.
+// The pixel's number, as kernels count.
 size_t place_of(const Depths& depths, int32_t x, int32_t y) {
   return 32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U);
 }
@@ -86,15 +86,15 @@ SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame) {
   const Camera& camera = *frame.camera;
   const VoxelBox& bounds = tree.bounds();
   if (!frame.perspective) {
-    // All rays begin on a plane, about: does that cut the box of what is solid?
-    double first = 0;  // of the box's corners, along the direction
+    // All rays begin close to a plane: does it cut the box around what is solid?
+    double first = 0;  // the first of the box's corners along the direction
     double size = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double step = camera.direction()[axis];
       size += fabs(step);
       first += step * 256 * (step < 0 ? bounds.high[axis] : bounds.low[axis]);
     }
-    double last = -HUGE_VAL;  // of where rays begin
+    double last = -HUGE_VAL;  // the last place at which rays begin
     const Tile& tile = frame.tile;
     for (int corner = 0; corner < 4; ++corner) {
       const Ray ray =
@@ -111,7 +111,7 @@ SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame) {
   int cells = 0;
   for (unsigned octant = 0; octant < 8; ++octant) {
     int32_t cell[3];
-    bool is_new = true;  // on an axis where the eye lies in no plane, there is one cell
+    bool is_new = true;  // along an axis on which the eye lies in no plane it touches only one cell
     for (unsigned axis = 0; axis < 3; ++axis) {
       const int32_t raw = camera.eye()[static_cast<int>(axis)].raw;
       const bool is_lower = (octant >> axis & 1U) != 0;
@@ -142,7 +142,7 @@ SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame) {
 
 void draw_plane_starts(const WideFrame& frame, const Depths& depths, int32_t y0, int32_t y1, Batch* batch) {
   const CompactTree& tree = *frame.hidden_in;
-  int32_t known[3] = {0, 0, 0};  // a cell, and what is known of the block of so many levels around it
+  int32_t known[3] = {0, 0, 0};  // a cell, and what is known of the block around it
   int level = -1;
   bool is_solid = false;
   for (int32_t y = y0; y < y1; ++y) {

@@ -1,22 +1,23 @@
 /// @file hidden.h
-/// Finds what lists of surfaces leave out: voxels with six solid neighbours, which rays hit all the same.
+/// Finds the hits on what lists of surfaces leave out: voxels with six solid neighbours. Rays can hit these all the
+/// same.
 ///
-/// Take the first voxel H that a ray hits, hidden. Either the ray begins in it; or it comes from a cell E that
-/// is not solid. Were E beside H, H would not be hidden. So the ray passes planes of two or three axes at
-/// once. Then some solid cell T, which differs from E in one or two of these axes, has a neighbour that is not
-/// solid, so it is listed; and the ray touches T in that one point, without hitting it. (Of two axes: both
-/// cells between E and H are beside H, so solid, and beside E. Of three: either one of the three cells beside
-/// E is solid, and listed; or none is, and those beside H are listed.)
+/// Let the first voxel that a ray hits, H, be hidden. Either the ray begins in H, or it comes from a cell E that is not
+/// solid. E is not beside H, else H would not be hidden; so the ray crosses planes of two or three axes at once to come
+/// from E to H. Then there is a solid cell T which differs from E in one or two of these axes and has a neighbour that
+/// is not solid. T is listed, and the ray touches T in that one point without hitting it. (With two axes, both cells
+/// between E and H are beside H, so solid, and beside E. With three, either one of the three cells beside E is solid,
+/// and listed; or none is, and the three beside H are listed.)
 ///
-/// A touch is a tie: of the cross products that decide whether a ray hits a box (exact.h) one is just as large
-/// as its bound, and none larger. Floats leave that to integers, always. So wherever integers find a tie, the
-/// core is asked for that pixel. The pixels at which T is tested include it: their bounds hold for closed
-/// boxes (frame.h). And where T is left out because its pixel is covered, what covers it is hit before H: in
-/// the order of the octree, what a ray hits behind H comes after T.
+/// A touch is a tie: of the cross products that decide whether a ray hits a box (exact.h) one equals its bound, and
+/// none is larger. Floats always leave a tie to integers, and wherever integers find one, the core is asked for that
+/// pixel. T is tested at that pixel, since its bounds hold for closed boxes (frame.h). Where T is not tested because
+/// the pixel is covered, what covers the pixel is hit before H: in the order of the octree, what a ray hits behind H
+/// comes after T.
 ///
-/// For the same reasons a voxel may be left out of a picture whose three neighbours on the sides that face the
-/// eye are solid: a ray that hits it first comes through an edge or corner, and T, which has a neighbour
-/// towards the eye that is not solid, is not left out.
+/// For the same reasons a picture may leave out a voxel whose three neighbours on the sides that face the eye are
+/// solid: a ray that hits that voxel first comes through an edge or a corner, and T, which has a neighbour towards
+/// the eye that is not solid, is not left out.
 #ifndef THIMBLE_PLATFORM_WIDE_HIDDEN_H
 #define THIMBLE_PLATFORM_WIDE_HIDDEN_H
 
@@ -26,8 +27,8 @@
 
 namespace thimble::wide {
 
-/// The ways (BlockNode) in which rays from the eye, in that voxel, may run to a cube of the world. For rays
-/// of a parallel camera the eye lies beyond all voxels.
+/// The ways (BlockNode) in which rays from the eye, which is in voxel `eye_cell`, may run to a cube of the world. A
+/// parallel camera's eye counts as beyond all voxels.
 inline unsigned ways_to(const int32_t (&eye_cell)[3], const uint32_t (&corner)[3], uint32_t side) {
   constexpr unsigned kUp[3] = {0x55, 0x33, 0x0F};
   unsigned ways = 0xFF;
@@ -39,11 +40,11 @@ inline unsigned ways_to(const int32_t (&eye_cell)[3], const uint32_t (&corner)[3
   return ways;
 }
 
-/// Writes what the core's ray hits at that pixel into the picture, if it hits anything; counts it.
+/// Traces the pixel's ray by the core, and writes what it hits, if anything, into the picture. Counts the pixel.
 void ask_core(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y, Batch* batch);
 
-/// The same for a ray that touches a listed voxel, of the batch's cube, with the key that it has in the
-/// picture: unless something nearer is there already. `down`: the axes along which the ray runs downwards.
+/// Does the same for a ray that touches a listed voxel of the batch's cube, unless the picture already holds something
+/// nearer than the voxel's `key`. `down` holds the axes along which the ray runs downwards.
 void ask_core_behind(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y, uint32_t entry,
                      uint32_t key, uint32_t down, Batch* batch);
 
@@ -56,13 +57,13 @@ struct SolidStarts {
   /// Solid voxels that a perspective camera's eye lies in or touches.
   uint32_t count = 0;
   Voxel voxels[8];
-  /// Whether all rays begin in these.
+  /// Whether all rays begin in these voxels.
   bool are_all = false;
   /// Whether some rays of a parallel camera may begin in solid voxels.
   bool on_plane = false;
 };
 
-/// Of a frame over lists of a surface.
+/// Finds these for a frame that is drawn from lists of a surface.
 SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame);
 
 /// Asks the core for the pixels of the rows y0 .. y1 - 1 whose rays begin in solid voxels.

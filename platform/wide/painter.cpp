@@ -7,7 +7,7 @@
 namespace thimble::wide {
 namespace {
 
-// Shades a hit on that face, with some ray that could make it.
+// Shades a hit on a face, with some ray that could hit it.
 Rgb8 color_of_face(unsigned face, uint8_t material, const Camera& camera, const Shading& shading) {
   Hit hit;
   hit.kind = HitKind::kHit;
@@ -46,7 +46,8 @@ TilePainter::TilePainter(const VoxelLists& lists, const Camera& camera, const Sh
 }
 
 const GrayScale* TilePainter::gray_scale() const {
-  // Where more than one pixel in twenty-five is tested again, finding all greys at the end takes less time.
+  // Above this margin more than one pixel in twenty-five is found again in integers; finding all greys at the end then
+  // takes less time.
   constexpr float kMostMargin = 0.02F;
   if (lists_.has_blocks() || lists_.tree().level() > kCubeLevel) {
     return nullptr;
@@ -57,13 +58,13 @@ const GrayScale* TilePainter::gray_scale() const {
   return is_apt ? &gray_scale_ : nullptr;
 }
 
-// Fills the rows of the tile. Where pixels share bytes they are or'ed into zeros, so covered ones must stay 0.
+// Fills the rows of the tile. Where pixels share bytes they are or'ed into zeros, so covered pixels must stay 0.
 void TilePainter::fill_background(const WideFrame& frame, const Depths& depths) const {
   const int32_t width = camera_.width_px();
   const size_t bytes = row_bytes(band_.format, width);
   const bool is_whole = bits_per_pixel(band_.format) % 8 == 0;
   if (background_ == Rgb8{} && stride_ == bytes && !has_pages(band_.format)) {
-    // Black is 0 in all formats. At once, since memset then does not read first what it is about to write.
+    // Black is 0 in all formats. One call for all rows: memset then does not read what it is about to write.
     memset(line(frame.tile.y0), 0, bytes * static_cast<size_t>(frame.tile.y1 - frame.tile.y0));
     return;
   }
@@ -89,7 +90,7 @@ void TilePainter::fill_background(const WideFrame& frame, const Depths& depths) 
   }
 }
 
-// With the format known, a pixel is two or three moves.
+// Stores pixels of a format known when this is compiled: two or three moves each.
 template <PixelFormat kFormat>
 void TilePainter::store_as(const Pixels& pixels, const Rgb8* colors) const {
   for (uint32_t i = 0; i < pixels.count; ++i) {
@@ -163,7 +164,7 @@ Rgb8 TilePainter::color_of_code(unsigned code) const {
                                                     : colors_[0][code - 1];
 }
 
-// Finds the bytes of codes. Says whether that is all that the format's pixels take.
+// Finds the bytes of codes. Returns whether a code alone decides a pixel's bytes in this format.
 bool TilePainter::find_bytes() {
   const PixelFormat format = band_.format;
   const bool is_gray = gray_scale_.code == GrayScale::Code::kGray;
@@ -199,13 +200,13 @@ uint64_t TilePainter::paint_codes(const WideFrame& frame, const Depths& depths) 
     }
     return hits;
   }
-  // Pixel by pixel, from a table: a branch on each would be mispredicted.
+  // A table gives each pixel's colour: a branch on its code would be mispredicted.
   Rgb8 colors[256];
   const unsigned codes_used = gray_scale_.code == GrayScale::Code::kGray ? 256U : 7U;
   for (unsigned code = 0; code < codes_used; ++code) {
     colors[code] = color_of_code(code);
   }
-  uint8_t stored[256];  // of formats of a byte
+  uint8_t stored[256];  // for formats of one byte a pixel
   const bool is_byte = bits_per_pixel(band_.format) == 8;
   for (unsigned code = 0; is_byte && code < 256; ++code) {
     store_pixel(stored + code, 0, 0, band_.format, colors[code]);

@@ -1,5 +1,5 @@
 /// @file painter.h
-/// Paints the pixels of a tile from their nearest boxes, as the core would shade them.
+/// Paints the pixels of a tile by their nearest boxes, as the core would shade them.
 #ifndef THIMBLE_PLATFORM_WIDE_PAINTER_H
 #define THIMBLE_PLATFORM_WIDE_PAINTER_H
 
@@ -9,19 +9,18 @@
 
 namespace thimble::wide {
 
-/// Made once a frame; holds what all its tiles are painted with.
+/// Made once a frame; holds what painting any of its tiles takes.
 class TilePainter {
  public:
   TilePainter(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band);
 
-  /// The scale for greys, or faces, that are found as voxels are hit (Depths); null where they are found at the
-  /// end.
+  /// The scale with which greys, or faces, are found as rays hit voxels (Depths); null where they are found at the end.
   const GrayScale* gray_scale() const;
 
-  /// Whether it paints pictures of which only parts were written (Depths::is_touched).
+  /// Whether this painter takes pictures of which only parts were written (Depths::is_touched).
   bool takes_sparse() const { return gray_scale() != nullptr && has_bytes_; }
 
-  /// Paints the rows of the frame's tile. Returns how many pixels hold anything.
+  /// Paints the rows of the frame's tile. Returns how many pixels show something.
   uint64_t paint_tile(const WideFrame& frame, const Depths& depths) const;
 
  private:
@@ -45,9 +44,9 @@ class TilePainter {
   size_t stride_;
   Rgb8 background_;
   GrayScale gray_scale_;
-  bool has_bytes_;  ///< whether codes are all that the format's pixels take; then `bytes_` says what they are
+  bool has_bytes_;  ///< whether a code alone decides a pixel's bytes; then `bytes_` says which
   CodeBytes bytes_{};
-  uint32_t material_count_ = 1;  ///< of those that look different; 1 where a voxel's own does not count
+  uint32_t material_count_ = 1;  ///< materials that look different; 1 where a voxel's material does not count
   Rgb8 colors_[256][6];          ///< by material and face, where faces are shown
 };
 

@@ -10,15 +10,15 @@ static_assert(kMaxPicturePx <= 1 << kPlaceBits);
 
 namespace {
 
-// From so many boxes on, in the order of the list, up to kMostCopies threads draw a picture each. Fewer are
+// From so many boxes on, drawn in the order of the list, up to kMostCopies threads draw a picture each. Fewer boxes are
 // drawn in the time that merging the pictures takes.
 constexpr size_t kCopyBoxes = 150000;
 
-// A picture of fewer boxes than it has pieces (Depths::is_touched) mostly holds nothing.
+// A picture that shows fewer boxes than it has pieces (Depths::is_touched) is mostly empty.
 bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, bool by_blocks, int threads,
                const TilePainter& painter) {
   const size_t words = strips_of(camera.width_px()) * static_cast<size_t>(band.rows);
-  // What the core is asked (hidden.h) is written without a look at pieces.
+  // Not with surfaces: the pixels that the core is asked for (hidden.h) are written without clearing their pieces.
   return threads == 1 && !by_blocks && !lists.is_surface() && painter.takes_sparse() &&
          words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
 }
@@ -53,7 +53,7 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 
 // How a frame is drawn.
 struct Plan {
-  bool has_boxes;  // whether the list of boxes is drawn that stands beside that of the surface
+  bool has_boxes;  // whether the list of boxes is drawn, not that of the surface
   Order order;
   bool copies;  // whether each thread draws a picture of its own
   Outlook outlook;

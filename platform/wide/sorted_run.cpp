@@ -13,7 +13,7 @@ struct Part {
   uint32_t corner[3];
 };
 
-// Which octant of a cube of 2^(level + 1) voxels holds the entry.
+// The octant of a cube of 2^(level + 1) voxels a side that holds the entry.
 unsigned octant_of(uint32_t entry, int32_t level) {
   return (x_of(entry) >> level & 1U) | (entry >> (10 + level) & 1U) << 1 | (entry >> (20 + level) & 1U) << 2;
 }
@@ -43,8 +43,8 @@ bool SortedRun::cull_and_sort(const WideFrame& frame, const Block& block, const 
   return true;
 }
 
-// In every block of the tree the entries of an octant stand together; so the octants are taken in the order
-// of their distance from the eye, down to single entries.
+// In every block of the tree the entries of an octant stand together. So this takes the octants in the order of their
+// distance from the eye, down to single entries.
 void SortedRun::sort(const Block& block, const int32_t (&eye_cell)[3], uint32_t count) {
   Part stack[7 * kCubeLevel + 8];
   int depth = 0;

@@ -7,13 +7,13 @@
 
 namespace thimble::wide {
 
-/// The entries of a run that cull_run() left, and the same from front to back.
+/// The entries of a run that cull_run() kept, and the same entries from front to back.
 class SortedRun {
  public:
   static constexpr uint32_t kMostBoxes = 512;
 
-  /// Culls the run of a block, which has at most kMostBoxes, and sorts what is left: afterwards the run reads
-  /// from here. Returns whether anything is left. `eye_cell`: the voxel that the eye is in.
+  /// Culls the run of a block, which has at most kMostBoxes boxes, and sorts those that are left; `run` then reads them
+  /// from here. Returns whether any are left. `eye_cell` is the voxel that the eye is in.
   bool cull_and_sort(const WideFrame& frame, const Block& block, const int32_t (&eye_cell)[3],
                      const Depths& depths, Batch* batch, Run* run);
 

@@ -25,7 +25,7 @@ struct Layers {
 };
 constexpr Layers kLayers;
 
-// The voxels whose neighbour above along an axis is solid, with `next` the word above.
+// The voxels of a word whose upper neighbour along an axis is solid; `next` is the word above.
 template <unsigned kAxis>
 uint64_t with_upper(uint64_t word, uint64_t next) {
   const uint64_t(&at)[4] = kLayers.of[kAxis];
@@ -34,7 +34,7 @@ uint64_t with_upper(uint64_t word, uint64_t next) {
   constexpr unsigned kAll = 9U << kAxis;  // from 3 back to 0
   return (word >> kOne & (at[0] | at[2])) | (word >> kTwo & at[1]) | (next << kAll & at[3]);
 }
-// The same below.
+// The voxels whose lower neighbour along an axis is solid; `before` is the word below.
 template <unsigned kAxis>
 uint64_t with_lower(uint64_t word, uint64_t before) {
   const uint64_t(&at)[4] = kLayers.of[kAxis];
@@ -61,7 +61,7 @@ uint64_t with_beside(uint64_t word, uint64_t other, unsigned side) {
   }
 }
 
-// For every mask of 2 x 2 x 2 voxels, how many of them have all three neighbours in it.
+// For every mask of 2 x 2 x 2 voxels: how many have all three neighbours in the mask.
 struct HiddenCounts {
   uint8_t of[256] = {};
   constexpr HiddenCounts() {
@@ -139,7 +139,7 @@ uint32_t SurfaceFinder::child_of(const Family& family, unsigned octant) const {
   return child >= tree_.node_count() ? kNothing : tree_.mask(child) == 0 ? kSolid : child;
 }
 
-// `first_child` may be anything that a damaged directory says.
+// A damaged directory may make `first_child` any number.
 uint64_t SurfaceFinder::word_from(unsigned mask, uint32_t first_child) const {
   uint64_t word = 0;
   if (uint64_t{first_child} + static_cast<unsigned>(__builtin_popcount(mask)) > tree_.node_count()) {
@@ -158,7 +158,7 @@ uint64_t SurfaceFinder::word_of(uint32_t cube) const {
   return family.is_solid ? ~uint64_t{0} : word_from(family.mask, family.first_child);
 }
 
-// Finds the words of a cube that lies at that side of another, as far as they face it.
+// Finds those words of a cube's neighbour at side `side` that touch the cube.
 void SurfaceFinder::find_words(const Family& family, unsigned side, Words* words) const {
   words->is_known = true;
   if (family.is_solid) {
@@ -170,7 +170,7 @@ void SurfaceFinder::find_words(const Family& family, unsigned side, Words* words
   if (family.mask == 0 || family.first_child >= tree_.node_count()) {
     return;
   }
-  // The nodes of level 1 below neighbouring nodes stand one after the other.
+  // Nodes that stand one after the other have children that do so, too.
   uint32_t child = family.first_child;
   uint32_t below = tree_.first_child(child);
   for (unsigned left = family.mask; left != 0 && child < tree_.node_count(); left &= left - 1, ++child) {
@@ -230,7 +230,7 @@ SurfaceFinder::Surface SurfaceFinder::surface_of_word(uint64_t word, const Cube&
 }
 
 SurfaceFinder::Surface SurfaceFinder::surface_between(uint64_t word, const uint64_t (&others)[6]) {
-  uint64_t below[3];  // voxels whose neighbour there is solid
+  uint64_t below[3];  // voxels whose neighbour on that side is solid
   uint64_t above[3];
   for (unsigned axis = 0; axis < 3; ++axis) {
     below[axis] = with_beside(word, others[2 * axis], 2 * axis);

@@ -1,10 +1,10 @@
 /// @file surface.h
 /// Finds the voxels of a compact tree that have a neighbour which is not solid, in Morton order.
 ///
-/// The tree is taken in words of 4 x 4 x 4 voxels, a bit each in Morton order. A word's hidden voxels follow
-/// from six shifts of it and of its neighbours, which are looked up only where the word itself leaves open
-/// whether a voxel is hidden. Solid blocks are cut only where one of their faces is not known to be covered,
-/// so the work goes by the surface, not by the volume.
+/// The tree is read in words of 4 x 4 x 4 voxels, a bit each in Morton order. Six shifts of a word and of its
+/// neighbours say which of its voxels are hidden; neighbours are looked up only where the word itself leaves that open.
+/// Solid blocks are cut only where one of their faces is not known to be covered, so the work grows with the surface,
+/// not with the volume.
 #ifndef THIMBLE_PLATFORM_WIDE_SURFACE_H
 #define THIMBLE_PLATFORM_WIDE_SURFACE_H
 
@@ -19,8 +19,8 @@ struct SurfaceWord {
   uint64_t listed;     ///< voxels with a neighbour that is not solid; at least one
   unsigned facing;     ///< see BlockNode
   uint32_t corner[3];  ///< lowest voxel
-  /// Of what the cube is made: the first of its nodes of level 1, and the number of the first voxel of these;
-  /// or, where `block` says so, one solid block, of that material.
+  /// What the cube is made of: its nodes of level 1, the first of them and the number of their first voxel; or, where
+  /// `block` says so, one solid block and its material.
   unsigned children;  ///< mask of these nodes
   uint32_t first_child;
   uint32_t first_voxel;
@@ -28,40 +28,40 @@ struct SurfaceWord {
   uint8_t material;
 };
 
-/// Whether the voxel is solid; false outside the world. Sets `level` to that of a block around it that is
-/// alike all through.
+/// Whether the voxel is solid; false outside the world. Sets `level` to that of a block around the voxel that is wholly
+/// solid or wholly empty.
 bool solid_at(const CompactTree& tree, const int32_t (&voxel)[3], int* level);
 
-/// At most so many voxels of the 2 x 2 x 2 whose mask this is have six solid neighbours: those with three
-/// beside them.
+/// The most voxels of a 2 x 2 x 2 cube with this mask that can have six solid neighbours: those whose three neighbours
+/// in the cube are solid.
 unsigned most_hidden(unsigned mask);
 
-/// What the walk below knows besides its sink.
+/// The part of SurfaceWalk (below) that does not depend on its sink.
 class SurfaceFinder {
  protected:
-  /// A cube of the world: nothing, solid through, or else the number of its node.
+  /// A cube of the world is one of these, or else the number of its node.
   static constexpr uint32_t kNothing = UINT32_MAX;
   static constexpr uint32_t kSolid = UINT32_MAX - 1;
-  /// A cube's children: a mask, and the number of the first of their nodes; of a solid one all are solid.
+  /// A cube's children: their mask, and the number of the first of their nodes. All children of a solid cube are solid.
   struct Family {
     bool is_solid;
     unsigned mask;
     uint32_t first_child;
   };
-  /// A cube, and those of its size beside it: below and above along x, y and z.
+  /// A cube, and its neighbours of the same size: below and above along x, y and z.
   struct Cube {
     int level;
     uint32_t corner[3];
     uint32_t beside[6];
   };
-  /// The same with the children of all.
+  /// A cube with its own children and those of its neighbours.
   struct OpenCube {
     int level;
     uint32_t corner[3];
     Family self;
     Family beside[6];
   };
-  /// What is listed of a word, and where it may be seen from (BlockNode).
+  /// The voxels of a word that are listed, and the ways from which they may be seen (BlockNode).
   struct Surface {
     uint64_t listed;
     unsigned facing;
@@ -82,24 +82,25 @@ class SurfaceFinder {
   void find_words(const Family& family, unsigned side, Words* words) const;
   Cube part_of(const OpenCube& cube, unsigned octant) const;
   OpenCube open(const Cube& cube, const Family& self) const;
-  /// The listed ones of `words[octant]`; `beside` are those of the cubes beside, looked up as they are wanted.
+  /// Finds the listed voxels of the cube's word in `octant`; `beside` holds the words of the neighbouring cubes, which
+  /// are looked up when they are needed.
   Surface surface_of(const Words& words, unsigned octant, const OpenCube& cube, Words (&beside)[6]) const;
-  /// Of a world of one word, or a solid one.
+  /// The same for a world of one word, and for a solid word.
   Surface surface_of_word(uint64_t word, const Cube& cube) const;
   static Surface surface_between(uint64_t word, const uint64_t (&others)[6]);
   static bool is_enclosed(const Cube& cube);
 
   const CompactTree& tree_;
-  uint32_t next_node_[kMaxLevel + 1];  ///< the next one of each level
-  uint32_t voxels_ = 0;                ///< of nodes of level 1 before this place
+  uint32_t next_node_[kMaxLevel + 1];  ///< the next node of each level
+  uint32_t voxels_ = 0;                ///< voxels in nodes of level 1 before this place
 };
 
-/// Walks the surface of a tree of level 2 or more that is not empty, whose masks add up level by level, and
-/// that was not coarsened. What a damaged directory says is not trusted further than that.
+/// Walks the surface of a tree of level 2 or more that is not empty and was not coarsened, and whose masks add up level
+/// by level. It trusts nothing else: the directory may be damaged.
 template <class Sink>
 class SurfaceWalk : SurfaceFinder {
  public:
-  /// `sink.add(const SurfaceWord&)` gets the words.
+  /// Each word is handed to `sink.add(const SurfaceWord&)`.
   SurfaceWalk(const CompactTree& tree, const uint32_t* level_begin, Sink* sink)
       : SurfaceFinder(tree, level_begin), sink_(sink) {}
 
@@ -108,7 +109,7 @@ class SurfaceWalk : SurfaceFinder {
   }
 
  private:
-  // Walks the next node of its level, which is that cube.
+  // Walks a cube; its node is the next one of its level.
   void enter(const Cube& cube) {
     const uint32_t node = next_node_[cube.level]++;
     const unsigned mask = tree_.mask(node);
@@ -162,7 +163,7 @@ class SurfaceWalk : SurfaceFinder {
     }
   }
 
-  // The word of a node of that mask, all its voxels listed.
+  // Makes the word of a node with this mask; all its voxels are listed.
   SurfaceWord take_word(unsigned mask, const uint32_t (&corner)[3]) {
     const uint32_t first_child = next_node_[1];
     const uint32_t first_voxel = voxels_;

@@ -5,8 +5,8 @@
 namespace thimble::wide {
 namespace {
 
-// The highest level at which the word's node is another one than that of the word before, or 1 more than the
-// world's level for the first word.
+// Finds the highest level at which a word lies in another node than the word before; for the first word 1 more than the
+// world's level.
 class NewNodes {
  public:
   explicit NewNodes(int world_level) : world_level_(world_level) {}
@@ -42,7 +42,7 @@ class Counter {
   SurfaceCount count(int world_level) const {
     SurfaceCount count;
     count.entries = entries_;
-    uint32_t nodes = 0;  // of a level: of all words that begin one there or above
+    uint32_t nodes = 0;  // nodes of a level: words that begin one at that level or above
     uint32_t begin = 0;
     for (int level = world_level; level >= 2; --level) {
       count.level_begin[level] = begin;
@@ -60,7 +60,7 @@ class Counter {
   uint32_t words_[kMaxLevel + 1] = {};
 };
 
-// The places of a word's voxels, as they stand in entries.
+// The coordinates of a word's voxels, packed as in entries.
 struct Places {
   uint32_t of[64] = {};
   constexpr Places() {
@@ -94,7 +94,7 @@ class Writer {
     }
   }
 
-  // Sets how many entries each node has: up to those of the next one of its level.
+  // Sets how many entries each node has: those before the first entry of the next node of its level.
   void finish(const SurfaceCount& count) const {
     for (int level = tree_.level(); level >= block_level_; --level) {
       uint32_t end = written_;
@@ -139,7 +139,7 @@ class Writer {
       }
       return;
     }
-    // The masks of the word's nodes of level 1, and with them the numbers of voxels, go on as octants do.
+    // The word's nodes of level 1, and with them the numbers of voxels, come in the order of the octants.
     uint32_t child = word.first_child;
     uint32_t voxel = tree_.node_count() + word.first_voxel;
     for (unsigned octant = 0; octant < 8; ++octant) {

@@ -1,5 +1,5 @@
 /// @file surface_list.h
-/// The list of a tree's surface: counted, then written; and what lists are made of.
+/// Counts, then writes, the list of a tree's surface; and says what lists are made of.
 #ifndef THIMBLE_PLATFORM_WIDE_SURFACE_LIST_H
 #define THIMBLE_PLATFORM_WIDE_SURFACE_LIST_H
 
@@ -10,7 +10,7 @@
 
 namespace thimble::wide {
 
-/// An entry of a box of 2^level voxels a side (voxel_lists.h).
+/// Packs the entry of a box of 2^level voxels a side (voxel_lists.h).
 inline uint32_t packed(const uint32_t (&corner)[3], int level) {
   const uint32_t within = (uint32_t{1} << kCubeLevel) - 1;
   const uint32_t x = corner[0] & within;
@@ -32,12 +32,12 @@ struct ListTo {
 /// How large the list of a surface is.
 struct SurfaceCount {
   uint64_t entries = 0;
-  /// Where each level's nodes begin, the root's first; so [level - 1] is how many there are of that level and
-  /// above. Levels below 2 have none.
+  /// Where each level's nodes begin, the root's first; so [level - 1] is the number of nodes of that level and above.
+  /// Levels below 2 have none.
   uint32_t level_begin[kMaxLevel + 2] = {};
 };
 
-/// Both for trees that SurfaceWalk takes (surface.h), with `level_begin` of the tree.
+/// Both functions take trees that SurfaceWalk takes (surface.h), and the tree's own `level_begin`.
 SurfaceCount count_surface(const CompactTree& tree, const uint32_t* level_begin);
 void write_surface(const CompactTree& tree, const uint32_t* level_begin, const SurfaceCount& count,
                    int block_level, const ListTo& to);

@@ -1,6 +1,6 @@
 /// @file threads.h
-/// The threads that draw. Keep them from frame to frame: a thread that has to be woken for each frame comes
-/// a tenth of a millisecond late, and one that drew the frame before is there at once.
+/// The threads that draw. Keep them from frame to frame: a thread that has to be woken for each frame starts a tenth of
+/// a millisecond late, and one that drew the frame before starts at once.
 #ifndef THIMBLE_PLATFORM_WIDE_THREADS_H
 #define THIMBLE_PLATFORM_WIDE_THREADS_H
 
@@ -25,7 +25,7 @@
 namespace thimble::wide {
 
 #ifdef THIMBLE_STD_THREADS
-/// The same by threads of the C++ library, made for each call: what ThreadSanitizer looks into.
+/// The same with threads of the C++ library, made for each call: ThreadSanitizer sees into these.
 class Threads {
  public:
   explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)) {}
@@ -51,11 +51,11 @@ class Threads {
   int count_;
 };
 #else
-/// Not to be copied. One frame at a time.
+/// Not to be copied; draws one frame at a time.
 class Threads {
  public:
-  /// `count` includes the calling thread; 1 .. kMaxThreads, else the nearest of these. More threads than
-  /// processors are made if asked for, but are no gain.
+  /// `count` includes the calling thread and is limited to 1 .. kMaxThreads. More threads than processors are made if
+  /// asked for, but gain nothing.
   explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)), arena_(count_) {
     if (count_ > oneapi::tbb::info::default_concurrency()) {
       allowed_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count_));
@@ -64,8 +64,8 @@ class Threads {
 
   int count() const { return count_; }
 
-  /// Calls run(0) .. run(tasks - 1), each once, the calling thread taking its part; returns when all have
-  /// returned. No task may wait for another to begin.
+  /// Calls run(0) .. run(tasks - 1), each once; the calling thread takes its part. Returns when all calls have
+  /// returned. No task may wait for another one to begin.
   template <typename Run>
   void each(int tasks, const Run& run) {
     arena_.execute([&] { oneapi::tbb::parallel_for(0, tasks, run); });

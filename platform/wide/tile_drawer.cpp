@@ -10,20 +10,21 @@
 namespace thimble::wide {
 namespace {
 
-// Runs of more boxes than this are cut up, in either order, so that blocks out of sight are not projected.
+// Blocks of more boxes than this are cut up (in flat order and in blocks), so that boxes out of sight are not
+// projected.
 constexpr uint32_t kFlatBoxes = 4096;
 constexpr uint32_t kBlockBoxes = 320;
-// Blocks of at most so many pixels a side are drawn whole: they hide too little for a cut to pay.
+// Blocks of at most so many pixels a side are drawn whole: too little of them is hidden for a cut to pay.
 constexpr int32_t kTinyPx = 16;
 constexpr uint32_t kTinyBoxes = 1024;
-// The limits of blocks that are looked up in tables.
+// The limits of blocks that are drawn by tables.
 constexpr uint32_t kTableBoxes = 1900;
 constexpr int32_t kTablePx = 56;
 constexpr float kMostBend = 0.24F;
-// Boxes of at least so many pixels a side, in the mean of their faces, are drawn one behind the other.
+// Boxes whose faces are on average so many pixels wide are sorted from front to back before they are drawn.
 constexpr float kSortedPx = 6.0F;
 constexpr float kSortedVoxelPx = 5.0F;    // where all are single voxels
-constexpr float kSortedSurfacePx = 8.0F;  // of a surface, in perspective: few lie behind one another
+constexpr float kSortedSurfacePx = 8.0F;  // for a surface in perspective: few boxes lie behind one another
 constexpr uint32_t kRunsPerShare = 2;
 constexpr uint32_t kMostLines = 64;
 // Tiles with fewer rows, or fewer remaining boxes, are not split.
@@ -76,7 +77,7 @@ void TileDrawer::start(int32_t y0, int32_t y1) {
   }
 }
 
-// Draws the voxels in which rays begin, before all others. Only for lists that may leave them out.
+// Draws the voxels in which rays begin, before all others. Only lists that may leave out these voxels need it.
 void TileDrawer::draw_starts() {
   if (starts_->on_plane) {
     draw_plane_starts(frame_, depths_, frame_.tile.y0, frame_.tile.y1, batch_);
@@ -135,14 +136,13 @@ void TileDrawer::draw() {
   finish(frame_, depths_, batch_);
 }
 
-// Whether any voxel of the block may be seen from where the eye is.
+// Whether the eye may see any voxel of the block.
 bool TileDrawer::faces_eye(const Block& block, const BlockNode& node) const {
   const uint32_t corner[3] = {block.corner[0], block.corner[1], block.corner[2]};
   return (lists_.facing(node) & ways_to(eye_cell_, corner, uint32_t{1} << block.level)) != 0;
 }
 
-// Whether all pixels of the block are known to be covered. Blocks with tables are looked up as they are
-// drawn, if they are small.
+// Whether all pixels of the block are known to be covered. Small blocks with tables look that up while they are drawn.
 bool TileDrawer::is_hidden(const Block& block, bool is_tabled) const {
   return by_blocks_ && (!is_tabled || width_of(block.place.where) > kTablePx) &&
          all_covered(depths_, block.place.where, full_);
@@ -171,8 +171,8 @@ bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mas
   return node.entries <= most && block.level <= kCubeLevel;
 }
 
-// Whether perspective bends the block so little that a table serves: it moves places by about `bend` of the
-// block's size, and the centre by the square of that.
+// Whether perspective bends the block so little that a table serves. It moves a voxel by about `bend` times the block's
+// size, and the centre by the square of that.
 bool TileDrawer::is_flat(const Block& block) const {
   const float bend = frame_.norm_w * static_cast<float>(1 << block.level) * 0.5F * block.place.per_depth;
   return !frame_.perspective ||
@@ -180,7 +180,7 @@ bool TileDrawer::is_flat(const Block& block) const {
           0.5F * static_cast<float>(width_of(block.place.where)) * bend * bend <= kMostBentPx);
 }
 
-// The side of a voxel of the block on the picture, about, in pixels.
+// Roughly how many pixels wide a voxel of the block is on the picture.
 float TileDrawer::voxel_px(const Block& block) const {
   return block.place.per_depth == 0 ? 1e9F : 2 * frame_.reach_x * block.place.per_depth;
 }
@@ -194,8 +194,8 @@ unsigned TileDrawer::nearest_octant(const Block& block) const {
   return octant;
 }
 
-// Whether the next run is one of ours. All threads come by the same runs in the same order. Each takes the
-// next free share when its last one is done, so every run is drawn once.
+// Whether the next run is one of ours. All threads pass the same runs in the same order; each takes the next free share
+// when it has drawn its last one, so every run is drawn once.
 bool TileDrawer::is_ours() {
   if (next_share_ == nullptr) {
     return true;
@@ -243,7 +243,8 @@ void TileDrawer::draw_oldest() {
   const Block& block = ahead_[ahead_first_];
   ahead_first_ = (ahead_first_ + 1) % kAhead;
   --ahead_count_;
-  // What lay before it may have been drawn since. Small ones are looked up as they are drawn.
+  // What lies before the block may have been drawn since it was enqueued. Small blocks look that up while they are
+  // drawn.
   if (by_blocks_ && width_of(block.place.where) > kTablePx &&
       all_covered(depths_, block.place.where, full_)) {
     return;
@@ -251,7 +252,7 @@ void TileDrawer::draw_oldest() {
   draw_block(block, lists_.nodes()[block.node]);
 }
 
-// The run of a block, as yet without entries.
+// Makes the run of a block, without entries yet.
 Run TileDrawer::run_of(const Block& block) const {
   Run run{};
   run.unit = !lists_.has_blocks();
@@ -288,7 +289,7 @@ void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
   draw_run(frame_, run, depths_, batch_);
 }
 
-// Draws a solid block of several cubes, which has an entry for each, in Morton order.
+// Draws a solid block of several cubes, which has an entry for each cube, in Morton order.
 void TileDrawer::draw_cubes(const Block& block, const BlockNode& node, Run* run) {
   run->behind = false;
   run->count = 1;
@@ -319,7 +320,7 @@ void TileDrawer::split() {
   if (taker == nullptr) {
     return;
   }
-  // What waits in the batch is drawn now: from here on the rows are the taker's.
+  // Draws what waits in the batch now: from here on the lower rows are the taker's.
   finish(frame_, depths_, batch_);
   std::rotate(ahead_, ahead_ + ahead_first_, ahead_ + kAhead);
   ahead_first_ = 0;
@@ -330,7 +331,7 @@ void TileDrawer::split() {
   Others::give(taker);
 }
 
-// Takes the blocks of `from`, which may be this drawer, as far as they are in our rows. Its ring begins at 0.
+// Takes those blocks of `from` (which may be this drawer) that reach our rows. The ring of `from` begins at 0.
 void TileDrawer::take_blocks(const TileDrawer& from) {
   const auto take = [&](const Block* blocks, uint32_t count, Block* to) {
     uint32_t taken = 0;
@@ -350,7 +351,7 @@ void TileDrawer::take_blocks(const TileDrawer& from) {
   ahead_first_ = 0;
 }
 
-// Finds the first row of a patch, but not the tile's first, with about half of the work above it.
+// Finds a row with about half of the work above it: the first row of a patch, but not of the tile.
 int32_t TileDrawer::middle_row() const {
   const int32_t origin = depths_.first_row;
   const float half = work_above(frame_.tile.y1) / 2;
@@ -358,7 +359,7 @@ int32_t TileDrawer::middle_row() const {
   int32_t high = (frame_.tile.y1 - origin - 1) / kPatchRows;
   while (low < high) {
     const int32_t middle = (low + high) / 2;
-    // Half a patch more: the cut that is nearest.
+    // Looks half a patch further down, so that it finds the nearest cut.
     if (work_above(origin + middle * kPatchRows + kPatchRows / 2) < half) {
       low = middle + 1;
     } else {
@@ -368,8 +369,7 @@ int32_t TileDrawer::middle_row() const {
   return origin + low * kPatchRows;
 }
 
-// Estimates how many of the remaining boxes lie above the row: a block has its boxes evenly in all of its
-// rows.
+// Estimates how many of the remaining boxes lie above the row, as if a block's boxes were spread evenly over its rows.
 float TileDrawer::work_above(int32_t y) const {
   float work = 0;
   const auto add = [&](const Block& block) {

@@ -14,34 +14,34 @@
 
 namespace thimble::wide {
 
-/// What one thread draws with: one tile after the other, or parts of them.
+/// Draws for one thread, one tile or part of a tile after the other.
 class TileDrawer {
  public:
   using Others = Handover<TileDrawer>;
 
-  /// What all threads of a frame draw alike.
+  /// What all threads of a frame share.
   struct Task {
     const VoxelLists& lists;
     const WideFrame& frame;
     bool by_blocks;
-    const SolidStarts* starts;  ///< null where lists leave nothing out
+    const SolidStarts* starts;  ///< null where the lists leave nothing out
   };
 
-  /// `full`: see all_covered(); may be null without blocks. `others`: null, or the threads that draw other
-  /// rows of the same depths and take some of ours when they have none left. `next_share`: null, or common to
-  /// several threads that share the runs of a list among them, each with depths of its own; not with blocks.
+  /// `full`: see all_covered(); may be null where blocks are not used. `others`: null, or the threads that draw other
+  /// rows of the same depths and take some of ours when they have none left. `next_share`: null, or shared by several
+  /// threads that divide the runs of a list among them, each with depths of its own; not with blocks.
   TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
              std::atomic<uint32_t>* next_share = nullptr);
 
-  /// Begins a tile: these rows of the picture.
+  /// Begins a tile of rows y0 .. y1 - 1 of the picture.
   void start(int32_t y0, int32_t y1);
-  /// Draws what was started or given, but for what is given away meanwhile. Afterwards the frame's tile is
-  /// what was drawn.
+  /// Draws the rows that were started or given, except those that it gives away meanwhile. Afterwards frame().tile is
+  /// the rows that were drawn.
   void draw();
 
   const WideFrame& frame() const { return frame_; }
 
-  // Of Handover.
+  // For Handover.
   std::atomic<bool> given{false};
   TileDrawer* next_taker = nullptr;
 
@@ -83,9 +83,9 @@ class TileDrawer {
   uint32_t share_;
   uint32_t run_ = 0;
   int32_t eye_cell_[3];
-  int depth_ = 0;  ///< of stack_
+  int depth_ = 0;  ///< blocks on stack_
   Block stack_[7 * kMaxLevel + 8];
-  Block ahead_[kAhead];  ///< blocks whose boxes are being fetched, a ring in the order of drawing
+  Block ahead_[kAhead];  ///< a ring of blocks whose boxes are being fetched, in the order of drawing
   uint32_t ahead_first_ = 0;
   uint32_t ahead_count_ = 0;
   SortedRun sorted_;

@@ -28,7 +28,7 @@ Tiles::Tiles(int32_t rows, int threads, const float (&work)[Outlook::kParts]) : 
     if (part < Outlook::kParts) {
       at += (wanted - done) / (work[part] + each);
     }
-    // Sums that are no numbers make one tile of what is left.
+    // If the sums are not numbers, one tile takes all rows that are left.
     at = at >= 0 && at < Outlook::kParts ? at : Outlook::kParts;
     const int32_t row = static_cast<int32_t>(at * static_cast<float>(rows) / Outlook::kParts);
     int32_t end = (row + kPatchRows / 2) / kPatchRows * kPatchRows;

@@ -8,10 +8,10 @@
 
 namespace thimble::wide {
 
-/// Tiles of about the same work. Few, since boxes on a seam are looked at on both sides.
+/// Tiles that take about the same work. They are few, since both sides of a seam look at the boxes on it.
 class Tiles {
  public:
-  /// `work`: of equal parts of the rows, from the first down.
+  /// `work` is what equal parts of the rows take, from the first down.
   Tiles(int32_t rows, int threads, const float (&work)[Outlook::kParts]);
 
   int count() const { return count_; }

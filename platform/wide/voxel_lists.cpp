@@ -7,27 +7,26 @@
 namespace thimble::wide {
 namespace {
 
-// Where each level of the tree begins, whose nodes stand one after the other, and how many boxes there are.
+// Where each level of the tree begins (its nodes stand one after the other), and how many boxes there are.
 struct Census {
   uint32_t level_begin[kMaxLevel + 2];  // by level; [0] is the number of nodes
   uint64_t boxes = 0;
-  uint64_t added = 0;      // by splitting blocks into voxels
+  uint64_t added = 0;      // boxes that splitting blocks into voxels would add
   uint64_t volume = 0;     // in voxels
-  uint64_t removable = 0;  // voxels that may be hidden: no more are
+  uint64_t removable = 0;  // at most so many voxels are hidden
   bool has_blocks = false;
-  bool splits = false;  // whether blocks are given as their voxels; then `boxes` counts these
+  bool splits = false;  // whether blocks are split into voxels; then `boxes` counts these
 };
 
-// Lists of single voxels are drawn faster. Blocks are split into voxels when that adds at most a box for so
-// many.
+// Lists of single voxels are drawn faster, so blocks are split into voxels where that adds at most one box to so many.
 constexpr uint64_t kBoxesPerAdded = 8;
-// And a surface is listed when more than one voxel in so many may be hidden.
+// A surface is listed where more than one voxel in so many may be hidden.
 constexpr uint64_t kVoxelsPerHidden = 4;
-// A list of boxes stands beside a surface when it has at most so many, or one for so many voxels of it.
+// A list of boxes stands beside a surface where it has at most so many boxes, or one for so many voxels of the surface.
 constexpr uint64_t kFewBoxesBeside = uint64_t{1} << 20;
 constexpr uint64_t kVoxelsPerBoxBeside = 4;
 
-// Solid blocks larger than a cube of entries are given as cubes.
+// Solid blocks larger than a cube of entries are listed as such cubes.
 uint32_t pieces_of(int level) {
   return level > kCubeLevel ? uint32_t{1} << (3 * (level - kCubeLevel)) : 1;
 }
@@ -64,7 +63,7 @@ bool count(const CompactTree& tree, Census* census) {
   return begin == tree.node_count() && census->boxes <= UINT32_MAX;
 }
 
-// Gives blocks as their voxels where that adds few, or where voxels are wanted.
+// Chooses to split blocks into voxels, where that adds few boxes or where voxels are wanted.
 void split_blocks(const CompactTree& tree, bool wants_voxels, Census* census) {
   const uint64_t voxels = census->boxes + census->added;
   const bool are_few = census->added <= census->boxes / kBoxesPerAdded && voxels <= UINT32_MAX;
@@ -76,13 +75,13 @@ void split_blocks(const CompactTree& tree, bool wants_voxels, Census* census) {
   }
 }
 
-// So many nodes cost little, whatever the boxes: a megabyte.
+// So many nodes cost little however many boxes there are: a megabyte.
 constexpr uint64_t kFreeNodes = 65536;
 
-// Chooses the lowest level, `least` or above, whose nodes, with all above them, are at most a sixteenth of the
-// boxes, or few. `level_begin[level - 1]`: how many nodes there are of that level and above.
+// Chooses the lowest level, `least` or above, whose nodes, with all nodes above them, are few, or at most a sixteenth
+// of the boxes. `level_begin[level - 1]` is the number of nodes of that level and above.
 int choose_block_level(int world_level, const uint32_t* level_begin, uint64_t boxes, int least) {
-  // A sixteenth suits the mean of a tree; one that is crowded in a corner wants more nodes.
+  // A sixteenth suits most trees; a tree that is crowded in a corner wants more nodes.
   const uint64_t quarter = boxes / 4 < kFreeNodes ? boxes / 4 : kFreeNodes;
   const uint64_t most = boxes / 16 > quarter ? boxes / 16 : quarter > 4096 ? quarter : 4096;
   int level = world_level < kCubeLevel ? world_level : kCubeLevel;
@@ -113,7 +112,7 @@ class ListWriter {
     enter(level);
     for (;;) {
       Visit& visit = visits_[level];
-      if (visit.mask != 0 && level > 0) {  // at level 0 there is none: nothing enters it with children
+      if (visit.mask != 0 && level > 0) {  // nodes of level 0 have no children
         const unsigned octant = static_cast<unsigned>(__builtin_ctz(visit.mask));
         visit.mask &= visit.mask - 1;
         --level;
@@ -143,13 +142,13 @@ class ListWriter {
  private:
   struct Visit {
     uint32_t node;
-    uint32_t mask;  // of the children that are not yet visited
+    uint32_t mask;  // the children that are not visited yet
   };
 
   // Begins the visit of the next node of this level, and writes the entries that are its own.
   void enter(int level) {
     Visit& visit = visits_[level];
-    // Nodes of one level come in the order in which they stand, so a number that counts up finds them.
+    // Nodes of one level are visited in the order in which they stand, so counting up finds them.
     visit.node = next_node_[level]++;
     visit.mask = tree_.mask(visit.node);
     const bool solid = visit.mask == 0;
@@ -210,7 +209,7 @@ class ListWriter {
   uint64_t face_area_ = 0;
 };
 
-// What is listed of a tree.
+// Which lists a tree gets.
 struct Plan {
   Census census;  // of the boxes
   SurfaceCount surface;
@@ -237,7 +236,7 @@ bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
   if (plan->has_surface) {
     plan->has_boxes =
         census.boxes <= kFewBoxesBeside || census.boxes <= plan->surface.entries / kVoxelsPerBoxBeside;
-    // Beside the surface, only blocks as blocks are of use.
+    // Beside a surface a list of boxes is of use only if it has blocks.
     plan->has_boxes = plan->has_boxes && census.has_blocks;
     plan->surface_level =
         choose_block_level(tree.level(), plan->surface.level_begin, plan->surface.entries, 2);

@@ -41,8 +41,8 @@ Depths Workspace::make_depths(const Layout& layout, Arena* arena) const {
   depths.covered =
       reinterpret_cast<uint32_t*>(arena->take(covered_words(layout.width_px, rows_) * sizeof(uint32_t)).data);
   depths.marks = layout.by_blocks || layout.gray_scale == nullptr;
-  // In the bytes of the marks, which sparse pictures have no use for: a byte and a number for each piece, where
-  // marks take 32.
+  // Sparse pictures do not use the marks, so their bytes hold a byte and a number for each piece, of 32 that its marks
+  // would take.
   depths.is_touched = nullptr;
   depths.touched = nullptr;
   if (layout.is_sparse) {

@@ -1,5 +1,5 @@
 /// @file workspace.h
-/// The workspace of one frame, laid out: pictures, patches and batches.
+/// Lays out the workspace of one frame: pictures, patches and batches.
 #ifndef THIMBLE_PLATFORM_WIDE_WORKSPACE_H
 #define THIMBLE_PLATFORM_WIDE_WORKSPACE_H
 
@@ -9,7 +9,7 @@
 
 namespace thimble::wide {
 
-/// The most threads that draw a picture of their own each. More pictures are more than caches hold.
+/// At most so many threads draw a picture of their own each: caches hold no more pictures.
 inline constexpr int kMostCopies = 4;
 
 class Workspace {
@@ -19,18 +19,18 @@ class Workspace {
     int32_t first_row;
     int32_t rows;
     int threads;
-    int copies;  ///< of the picture: 1 .. kMostCopies
+    int copies;  ///< how many pictures there are: 1 .. kMostCopies
     bool by_blocks;
     bool is_sparse;               ///< whether codes are cleared where they are written (Depths::is_touched)
     const GrayScale* gray_scale;  ///< null: without greys
     const Shading* shading;
   };
-  /// A smaller picture is never sparse: there is nothing to be had.
+  /// A picture of fewer words is never sparse, since there is nothing to gain.
   static constexpr size_t kLeastSparseWords = 64;
-  /// What a layout takes at most.
+  /// The most bytes that a layout takes.
   static size_t bytes(int32_t width_px, int32_t rows, int threads);
 
-  /// `memory` has room for bytes(). Batches are made empty; pictures and patches are to be cleared.
+  /// `memory` has room for bytes(). Batches are made empty; the caller clears pictures and patches.
   Workspace(Bytes memory, const Layout& layout);
 
   const Depths& depths(int copy) const { return depths_[copy]; }
@@ -38,10 +38,9 @@ class Workspace {
   /// See all_covered().
   uint8_t* full_patches() const { return full_patches_; }
 
-  /// Clears rows of a picture, from row `y` of the picture on.
+  /// Clears `rows` rows of a picture from row `y` on.
   void clear(const Depths& depths, int32_t y, int32_t rows) const;
-  /// Clears the patches of rows of the workspace; `first` counts from its first row and is a multiple of
-  /// kPatchRows.
+  /// Clears the patches of `rows` rows; `first` counts from the workspace's first row and is a multiple of kPatchRows.
   void clear_patches(int32_t first, int32_t rows) const;
 
  private:

@@ -1,13 +1,13 @@
-// Frames by bricks: from voxel to voxel through the 64-bit bricks of a map, plane by plane along the axis on
-// which the rays of a tile move fastest. src/picture/README.md derives what is used here.
+// Draws frames by bricks: rays go from voxel to voxel through the 64-bit bricks of a map, plane by plane along the axis
+// on which the rays of a tile move fastest. src/picture/README.md derives what is used here.
 #include "thimble/picture/brick_render.h"
 
 #include "../base/bits.h"
 #include "../base/wide_arithmetic.h"
 #include "band.h"
 
-// Whatever the rest is compiled for, this file is for speed, with the headers that follow. (gcc has these on
-// a function's or a file's wish; the second saves one instruction in a hundred.)
+// Compiles this file and the headers that follow for speed, whatever the rest is compiled for. ("rename-registers"
+// saves one instruction in a hundred.)
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O2", "rename-registers")
 #endif
@@ -25,8 +25,8 @@ bool is_halfword(PixelFormat format) {
          (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
          (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565);
 }
-// Of the formats behind kRgb888: whether pixels share bytes. (A page is a tile's height, so it may be cleared for
-// each of its rows before the first tile is drawn.)
+// Whether pixels share bytes, among the formats behind kRgb888. (A page is as high as a tile, so clearing it once for
+// each of its rows harms nothing: no tile is drawn yet.)
 bool shares_bytes(PixelFormat format) {
   return kHasPanelFormats && format > PixelFormat::kBgr565 && format != PixelFormat::kRgb332;
 }
@@ -38,8 +38,8 @@ bool draws_fast(const BrickMap& map, const Camera& camera) {
       camera.direction_bits() > kMaxBrickDirectionBits) {
     return false;
   }
-  // The products of distances, measured from up to kOutsideCells beyond the world, and directions; two are
-  // added.
+  // Two products of a distance and a direction are added; distances are measured from up to kOutsideCells beyond the
+  // world.
   uint32_t distances = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t from_low = camera.eye()[axis].raw;
@@ -100,7 +100,7 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;
     const int32_t y1 = tile_end < end ? tile_end : end;
-    // Pixels of less than a byte are put into what is there, where no quad stores whole bytes.
+    // Where no quad stores whole bytes, pixels of less than a byte are put into bytes that must be 0.
     const bool cleared = band.format == PixelFormat::kMono1 ||
                          (band.format == PixelFormat::kGray4 && width % kQuadAcrossPx != 0) ||
                          shares_bytes(band.format);

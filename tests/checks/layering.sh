@@ -6,6 +6,8 @@
 #   drivers          of panels: rooms up to the picture; no room sees them
 #   src/c            all rooms but drivers, and thimble/thimble_c.h, which only it sees
 #   tools, platform  no header of src
+#   tools            files and pictures (output, readers), then scene and particles, then viewer, web and instruments, then
+#                    commands: a folder sees itself and those before it
 #   platform         nothing of the tests but "portable/..." in the applications that run them on boards
 #   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
 #   tests/reference  nothing of the product: neither the core's nor the tools' headers
@@ -89,6 +91,17 @@ complain "what lies in a folder host is for the host's own renderer, platform/wi
   "$(includes tools platform | grep -E '"thimble/[a-z0-9_/]*host/' | grep -v '^platform/wide/' || true)"
 complain "a public header for callers includes none of a folder host" \
   "$(includes include | grep -v '^include/thimble/[a-z]*/host/' | grep -E '"[a-z0-9_./]*host/' || true)"
+for room in output readers scene particles instruments viewer web; do
+  case $room in
+    output | readers) below="output|readers" ;;
+    scene | particles) below="output|readers" ;;
+    instruments) below="output|readers|scene|particles" ;;
+    *) below="output|readers|scene" ;;
+  esac
+  complain "tools/$room sees only itself and, of the other folders of tools, $below" \
+    "$(includes "tools/$room" | grep -E '"(output|readers|scene|particles|instruments|viewer|web|commands)/' |
+      grep -vE "\"($room|$below)/" || true)"
+done
 complain "tools and platform see public headers only, never src" \
   "$(includes tools platform | grep -E '["/]src/' || true)"
 tests_on_boards='^platform/apps/(selftest|golden|formats|lit|worlds|bricks|map_light|cases)\.(cpp|h):'

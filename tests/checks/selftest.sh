@@ -188,6 +188,11 @@ add include/thimble/base/sum.h '#include "host/more.h"'
 catches layering 'for callers includes none of a folder host'
 add tools/tool.cpp '#include "../src/base/sum.h"'
 catches layering 'never src'
+mkdir -p "$tree/tools/commands" "$tree/tools/instruments"
+add tools/commands/stats.cpp '#include "instruments/study.h"'
+passes layering
+add tools/instruments/study.h '#include "commands/stats.h"'
+catches layering 'tools/instruments sees only itself'
 add platform/port.cpp '#include "../src/base/sum.h"'
 catches layering 'never src'
 add platform/port.cpp '#include "portable/case.h"'

@@ -4,12 +4,15 @@
     mutate.py ROOT OUT --thirty                  thirty of that sample's rooms JUDGED, by a hash of the bytes of src
     mutate.py ROOT OUT --thirty --draw TEXT      the thirty that src would have if its hash were TEXT
     mutate.py ROOT OUT --judged                  all of the sample of which the thirty are
+    mutate.py ROOT OUT ... --faults faults.csv   besides these, the faults that the file's rows name
 
 OUT/mutants.json says what was chosen; OUT/part_0.cpp and so on are the core that has it: the whole of it, since a
 function of a header is compiled into what includes it, in whichever room that stands.
 """
 import argparse
+import csv
 import json
+import os.path
 import pathlib
 import re
 import subprocess
@@ -66,12 +69,19 @@ def write(path, text):
         path.write_text(text)
 
 
-def write_tree(out, sources, chosen):
+def write_tree(out, sources, parts, chosen):
     by_file = {}
     for mutant in chosen:
         by_file.setdefault(mutant.file, []).append(mutant)
-    for file, source in sources.items():
-        write(out / file, rendered(source, by_file[file]) if file in by_file else source.decode())
+    texts = {file: rendered(source, by_file[file]) if file in by_file else source.decode()
+             for file, source in sources.items()}
+    for file, text in texts.items():
+        write(out / file, text)
+    # A build tool knows the parts alone: they change with what they include.
+    state = sites.digest(*texts.values())
+    files = [file for file in sources if file.endswith(".cpp")]
+    for number, part in enumerate(parts):
+        write(out / part, f"// {state}\n" + "".join(f'#include "{out / f}"\n' for f in files[number::PARTS]))
 
 
 def refused(root, out, parts, chosen):
@@ -89,6 +99,35 @@ def refused(root, out, parts, chosen):
     return drop
 
 
+def included(sources, file):
+    """The files of src that a file includes, itself among them."""
+    found, waiting = set(), [file]
+    while waiting:
+        name = waiting.pop()
+        if name in sources and name not in found:
+            found.add(name)
+            waiting += [os.path.normpath(os.path.join(os.path.dirname(name), other))
+                        for other in re.findall(r'^#include "(.+)"', sources[name].decode(), re.M)]
+    return found
+
+
+def faults(root, sources, path, known):
+    """The places that the rows of a file name, in their order; and what is to be said of rows that name none."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))[1:]
+    wanted = {row[0] for row in rows} - {m.file for m in known}
+    whole = {file: included(sources, file) for file in sources if file.endswith(".cpp")}
+    parsed = {next((source for source in whole if file in whole[source]), None) for file in wanted} - {None}
+    places = {m.key: m for m in sites.find(root, sources, sorted(parsed))[0] + known}
+    chosen, missing = [], []
+    for number, row in enumerate(rows, 2):
+        if tuple(row[:5]) in places:
+            chosen.append(places[tuple(row[:5])])
+        else:
+            missing.append(f"{path.name}:{number}: {row[0]}: {row[1]} has no such place any more: {row[3]} in {row[2]}")
+    return chosen, missing
+
+
 def main():
     options = argparse.ArgumentParser()
     options.add_argument("root")
@@ -98,6 +137,7 @@ def main():
     options.add_argument("--thirty", action="store_true")
     options.add_argument("--judged", action="store_true")
     options.add_argument("--draw", default="")
+    options.add_argument("--faults", type=pathlib.Path)
     given = options.parse_args()
     root, out = pathlib.Path(given.root).resolve(), pathlib.Path(given.out).resolve()
     out.mkdir(parents=True, exist_ok=True)
@@ -115,25 +155,28 @@ def main():
         mutants, fixed = sites.find(root, sources, files)
         total = len(mutants)
         chosen = sites.sample(mutants, max(1, total // given.count), given.seed)
+    seeded, missing = faults(root, sources, given.faults, mutants) if given.faults else ([], [])
+    drawn = [m for m in chosen if m not in seeded]
+    chosen = seeded + drawn
     for number, mutant in enumerate(chosen, 1):
         mutant.number = number
     parts = [f"part_{part}.cpp" for part in range(PARTS)]
-    for number, part in enumerate(parts):
-        write(out / part, "".join(f'#include "{out / f}"\n' for f in files[number::PARTS]))
     dropped = 0
     while True:
-        write_tree(out, sources, chosen)
+        write_tree(out, sources, parts, chosen)
         drop = refused(root, out, parts, chosen)
         if not drop:
             break
         dropped += len(drop)
         chosen = [m for m in chosen if m not in drop]
+    missing += [f"{given.faults.name}: the compiler refuses {m.key}" for m in seeded if m not in chosen]
     if given.thirty:
-        chosen = chosen[:30]
-        write_tree(out, sources, chosen)
+        chosen = [m for m in chosen if m in seeded] + [m for m in chosen if m in drawn][:30]
+        write_tree(out, sources, parts, chosen)
     (out / "mutants.json").write_text(json.dumps({
-        "places": total, "compiled_away": fixed, "refused": dropped, "seed": given.seed,
-        "mutants": [{"number": m.number, "room": m.room, "kind": m.kind, "line": m.line, "key": m.key} for m in chosen]}))
+        "places": total, "compiled_away": fixed, "refused": dropped, "seed": given.seed, "missing": missing,
+        "mutants": [{"number": m.number, "room": m.room, "kind": m.kind, "line": m.line, "key": m.key,
+                     "is_fault": m in seeded} for m in chosen]}))
 
 
 main()

@@ -1,9 +1,11 @@
 """Tries every mutant that mutate.py chose: runs the tests that come by its place, the fastest first, until one fails.
 
-    run.py PROGRAM WORK [--check] [--only TEXT]
+    run.py PROGRAM WORK [--check] [--only TEXT] [--faults]
 
 WORK holds mutants.json; WORK/results.csv is written. What survives and is not in equivalent.csv is printed. With
---check the exit status is 1 when less than 97 per cent are killed, equivalent ones left out.
+--check the exit status is 1 when less than 97 per cent are killed, equivalent ones left out. With --faults it tries
+the faults of faults.csv instead, writes WORK/faults.csv, and the exit status is 1 unless each of them is there and
+is killed.
 """
 import argparse
 import csv
@@ -190,10 +192,11 @@ def main():
     options.add_argument("--check", action="store_true")
     options.add_argument("--quick", action="store_true")
     options.add_argument("--only", default="")
+    options.add_argument("--faults", action="store_true")
     given = options.parse_args()
     chosen = json.loads((given.work / "mutants.json").read_text())
-    known = equivalents()
-    mutants = [m for m in chosen["mutants"] if given.only in m["key"][0]]
+    known = {} if given.faults else equivalents()
+    mutants = [m for m in chosen["mutants"] if given.only in m["key"][0] and m["is_fault"] == given.faults]
     runners = [Runner(given.program) for _ in range(2)]
     stat = os.stat(given.program)
     for old in list(given.work.glob("cover-*")) + list(given.work.glob("tried-*")):
@@ -206,8 +209,6 @@ def main():
     if kept.is_file():
         tried = {one["number"]: one for one in map(json.loads, kept.read_text().splitlines())}
     tests = all_tests(given.program, runners[0].groups, given.quick)
-    rooms = {m["room"] for m in mutants}
-    near = [t for t in tests if t[0] == "p" or t[2:].split("/")[0] in rooms]
     for mutant in mutants:
         mutant.update(tried.get(mutant["number"], {"result": "", "tests": 0, "done": []}))
         if tuple(mutant["key"]) in known:
@@ -223,9 +224,11 @@ def main():
             try_one(runner, mutant, cover)
             note(mutant)
 
-        # The tests of the mutants' own rooms, then the others.
-        for some in (near, tests):
+        # The portable cases, which are quick; the tests of the rooms of what survives; then the others.
+        for turn in range(3):
             waiting = [m for m in mutants if m["result"] in ("", "survived")]
+            rooms = {m["room"] for m in waiting}
+            some = [t for t in tests if turn == 2 or t[0] == "p" or (turn == 1 and t[2:].split("/")[0] in rooms)]
             if waiting:
                 cover.add(runners, some)
                 in_two(runners, waiting, attempt, "mutants")
@@ -234,7 +237,7 @@ def main():
         runner.close()
     if any(not m["result"] for m in mutants):
         raise SystemExit("mutants: the program that runs the tests ended before its time")
-    with open(given.work / "results.csv", "w", newline="") as file:
+    with open(given.work / ("faults.csv" if given.faults else "results.csv"), "w", newline="") as file:
         rows = csv.writer(file)
         rows.writerow(("number", "file", "line", "function", "text", "change", "of_these", "kind", "result", "ms", "tests", "by"))
         for m in mutants:
@@ -248,6 +251,13 @@ def main():
     row = table(mutants)
     print(f"{chosen['places']} changes could be made, {chosen['compiled_away']} more are computed by compilers, "
           f"{chosen['refused']} were refused by one; seed {chosen['seed']}")
+    if given.faults:
+        for text in chosen["missing"]:
+            print(text)
+        if chosen["missing"] or row["survived"]:
+            raise SystemExit("mutants: each fault of tests/mutants/faults.csv has to be there and to be killed: mend its "
+                             "row, or add a test")
+        return
     judged = row["killed"] + row["survived"]
     if given.check and 100 * row["killed"] < WANTED * judged and row["survived"] > 1:
         raise SystemExit(f"mutants: fewer than {WANTED} per cent are killed: test what survives, or put it into "

@@ -5,7 +5,6 @@
 
 #include "commands/arguments.h"
 #include "output/suggestion.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -72,31 +71,25 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
   add_normals(app, choice);
 }
 
-void EffectOptions::add_to(CLI::App& app, const std::string& more) {
+void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more) {
   add_text_option(
       app, "--effects", "auto|none|all|LIST",
-      [this](const std::string& text) {
-        given = true;
-        return take_effects(text, &choice);
+      [wishes](const std::string& text) {
+        wishes->given = true;
+        return take_effects(text, &wishes->choice);
       },
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
       "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
           spaced_names() + more)
       .default_str("auto")
       .offers(offered());
-  add_normals(app, &choice);
+  add_normals(app, &wishes->choice);
   add_whole_option(
       app, "--bounces", "N", 0, kMaxBounces,
-      [this](std::int64_t number) { bounces = static_cast<std::uint8_t>(number); },
+      [wishes](std::int64_t number) { wishes->bounces = static_cast<std::uint8_t>(number); },
       "rays that follow one another from a pixel by mirrors, glass and water, 0 to " +
           std::to_string(kMaxBounces) + " (default: the scene's own, else " +
           std::to_string(kDefaultBounces) + ")");
-}
-
-LitDescription EffectOptions::lighting(const SceneSource& source) const {
-  LitDescription lit = source.lighting();
-  lit.rest.bounces = bounces.value_or(lit.rest.bounces);
-  return lit;
 }
 
 }  // namespace thimble::tools

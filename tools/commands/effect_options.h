@@ -3,8 +3,6 @@
 #ifndef THIMBLE_TOOLS_COMMANDS_EFFECT_OPTIONS_H
 #define THIMBLE_TOOLS_COMMANDS_EFFECT_OPTIONS_H
 
-#include <cstdint>
-#include <optional>
 #include <string>
 
 #include "scene/lit_description.h"
@@ -15,22 +13,8 @@ class App;
 
 namespace thimble::tools {
 
-class SceneSource;
-
-struct EffectOptions {
-  EffectChoice choice;
-  bool given = false;  ///< --effects
-  std::optional<std::uint8_t> bounces;
-
-  /// `more` ends the help of --effects.
-  void add_to(CLI::App& app, const std::string& more = {});
-  /// Whether effects were asked for by name.
-  bool named() const {
-    return (!choice.automatic && choice.effects != Effect::kNone) || choice.smooth == true;
-  }
-  /// The scene's lighting with --bounces for its own.
-  LitDescription lighting(const SceneSource& source) const;
-};
+/// `more` ends the help of --effects.
+void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more = {});
 
 /// --effects (auto, none, all or a list) and --normals alone.
 /// `names_default`: the help ends with "(default: auto)".

@@ -5,6 +5,7 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "commands/effect_options.h"
 #include "commands/report_files.h"
 #include "commands/scene_options.h"
 #include "commands/view_options.h"
@@ -177,7 +178,7 @@ void add_effects(CLI::App& app) {
       "with it less those of the frame without it, bytes of RAM and of flash. What the scene does not call "
       "for costs 0. Direct light is judged between two frames without shadows, which need it.");
   command->scene.add_scene(*sub);
-  command->study.effects.add_to(*sub);
+  add_effect_options(*sub, &command->study.effects);
   add_view(*sub, &command->study.view);
   add_whole_option(
       *sub, "--frames", "N", 1, 99,

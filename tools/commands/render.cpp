@@ -121,7 +121,7 @@ struct Light {
 
 Light light_of(const RenderCommand& command, const SceneSource& source) {
   Light light;
-  light.lighting = command.effects.lighting(source);
+  light.lighting = command.effects.lighting(source.lighting());
   light.choice = effect_choice(command);
   light.effects = expected_effects(source, light.lighting, light.choice, &light.used);
   light.lighting.expect_glow();
@@ -554,9 +554,9 @@ void add_render(CLI::App& app) {
           kHitColumns + ", as trace writes them");
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
-  command->effects.add_to(*sub,
-                          "; what calls for none is drawn by --shade; --structure compact and --engine auto "
-                          "only");
+  add_effect_options(*sub, &command->effects,
+                     "; what calls for none is drawn by --shade; --structure compact and --engine auto "
+                     "only");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
   add_paragraph_below(*sub, kDefaultLookText);

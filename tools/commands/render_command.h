@@ -25,7 +25,7 @@ struct RenderCommand {
   EngineOptions engine;
   ViewWishes view;
   Quality quality;
-  EffectOptions effects;
+  EffectWishes effects;
   LookWishes look;
   bool wishes_look = false;  ///< --background or --ground
   bool verbose = false;

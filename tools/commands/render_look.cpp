@@ -29,7 +29,7 @@ class LookStudio {
   LookStudio(const RenderCommand& command, const SceneSource& source)
       : command_(command),
         source_(source),
-        lighting_(command.effects.lighting(source)),
+        lighting_(command.effects.lighting(source.lighting())),
         wishes_(command.look),
         built_(build()),
         shape_(shape_of(built_)),

@@ -1,8 +1,5 @@
 #include "commands/stats.h"
 
-#include <array>
-#include <cstdio>
-
 #include <nlohmann/json.hpp>
 
 #include "scene/lit_setup.h"
@@ -20,12 +17,6 @@ Stats::Stats(const std::string& scene_name, const SceneSource& source, const Bui
       high_water_bytes(built.high_water_bytes()),
       solid_added(built.solid_added()),
       build_seconds(built.build_seconds()) {}
-
-std::string crc_text(std::uint32_t crc) {
-  std::array<char, 9> text{};
-  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(crc));
-  return text.data();
-}
 
 std::string stats_text(const Stats& stats) {
   nlohmann::ordered_json json;

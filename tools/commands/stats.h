@@ -52,9 +52,6 @@ struct Stats {
   Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);
 };
 
-/// A CRC-32 as 8 hex digits.
-std::string crc_text(std::uint32_t crc);
-
 /// All of them as one JSON object with the members' names.
 std::string stats_text(const Stats& stats);
 

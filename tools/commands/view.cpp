@@ -19,7 +19,7 @@ namespace {
 struct ViewCommand {
   SceneOptions scene;
   viewer::ViewerOptions viewer;
-  EffectOptions effects;
+  EffectWishes effects;
   ShadeMode shade = ShadeMode::kDepth;
   int bench_frames = 0;
   int across = 2;  ///< --samples, where it is given
@@ -72,7 +72,7 @@ void add_view_command(CLI::App& app) {
       .default_str("auto");
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
-  command->effects.add_to(*sub);
+  add_effect_options(*sub, &command->effects);
   add_samples(*sub, &command->across, "in the picture at rest", 2);
   also_check(*sub, [sub, command] {
     if (is_given(*sub, "--samples")) {

@@ -64,7 +64,7 @@ class EffectsStudio {
   EffectsStudio(const SceneSource& source, const BuiltScene& built, const EffectsOptions& options,
                 std::string* note)
       : built_(built),
-        lit_(options.effects.lighting(source)),
+        lit_(options.effects.lighting(source.lighting())),
         used_(used_materials(built.compact())),
         framing_(frame_scene(options.view, source, built.level(), built.bounds())),
         camera_(framing_.camera) {

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <string>
 
-#include "commands/effect_options.h"
 #include "scene/framing.h"
+#include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "thimble/light/render.h"
 
@@ -20,7 +20,7 @@ namespace thimble::tools {
 
 struct EffectsOptions {
   ViewWishes view;
-  EffectOptions effects;
+  EffectWishes effects;
   int frames = 5;  ///< of each set of effects, by turns; at least 1
 };
 

@@ -45,6 +45,12 @@ std::string shortest(double number) {
   return error == std::errc{} ? std::string(text.data(), end) : std::string();
 }
 
+std::string crc_text(std::uint32_t crc) {
+  std::array<char, 9> text{};
+  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(crc));
+  return text.data();
+}
+
 std::string printable(std::string_view text) {
   std::string out;
   for (const char letter : text) {

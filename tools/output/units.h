@@ -20,6 +20,9 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text);
 /// A double with the fewest digits up to 17 significant ones that read back as the same double.
 std::string shortest(double number);
 
+/// A CRC-32 as 8 hex digits.
+std::string crc_text(std::uint32_t crc);
+
 /// `text` for a sentence on a terminal: control characters, line feeds too, as \xNN, so that a file's name
 /// can neither break the sentence nor steer the terminal. UTF-8 stays as it is.
 std::string printable(std::string_view text);

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands/stats.h"
 #include "output/units.h"
 
 namespace thimble::tools {

@@ -163,6 +163,11 @@ EffectSet called_for(const LitDescription& lit, const UsedMaterials& used) {
   return (set & Effect::kDirectLight) != 0 ? set : set & ~Effect::kShadows;
 }
 
+LitDescription EffectWishes::lighting(LitDescription lit) const {
+  lit.rest.bounces = bounces.value_or(lit.rest.bounces);
+  return lit;
+}
+
 std::optional<EffectChoice> parse_effects(std::string_view text) {
   EffectChoice choice;
   choice.is_given = true;

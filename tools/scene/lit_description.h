@@ -104,6 +104,19 @@ struct EffectChoice {
   std::optional<bool> smooth{};       ///< --normals: with Effect::kSmoothNormals, or without
   bool is_given = false;  ///< somebody said so; "auto" then adds nothing to what the scene calls for
 };
+/// What --effects, --normals and --bounces say.
+struct EffectWishes {
+  EffectChoice choice;
+  bool given = false;  ///< --effects
+  std::optional<std::uint8_t> bounces;
+
+  /// Whether effects were asked for by name.
+  bool named() const {
+    return (!choice.automatic && choice.effects != Effect::kNone) || choice.smooth == true;
+  }
+  /// A scene's lighting with --bounces for its own.
+  LitDescription lighting(LitDescription lit) const;
+};
 /// "auto", "none", "all" or names of effects with commas between them, "ao" for ambient-occlusion; nothing for
 /// anything else. "all" is what the scene calls for and what every scene can have: direct light, shadows,
 /// occlusion, glow that lights its neighbours, and smooth normals.

@@ -53,7 +53,7 @@ struct Ball {
   Surface surface;  ///< diffuse, metal or of kEmit
 };
 
-/// Whether the ray spends a positive length in the ball; where it enters it, and of its boxes which (may be null).
+/// Whether the ray spends a positive length in the ball; `hit` gets where it enters, `entered` (may be null) which box.
 bool enter_ball(const Ray& ray, const Ball& ball, BoxHit* hit, BoxQ8* entered = nullptr);
 
 /// The balls of a picture.
@@ -74,7 +74,7 @@ struct BallFrame : Frame {
   BoxQ8 entered;              ///< then its box
 };
 
-/// The ball that is entered first, before `end` (null: anywhere): `met`, `entered`, and where.
+/// Finds the ball that the ray enters first, before `end` (null: anywhere): sets `met`, `entered` and `hit`.
 bool meet_ball(BallFrame& frame, const Ray& ray, const RayPoint* end, BoxHit* hit);
 
 // The parts of detail/pixel.h that ask.
@@ -99,9 +99,9 @@ Status check_balls(const DrawnBalls& drawn, int level);
 
 }  // namespace lit
 
-/// As `render_lit_band` of render.h, with balls; with Effect::kNone, where nothing is lit, without them.
-/// Errors, with nothing drawn: those of `render_lit_band`; kOutOfRange for more than kMaxDrawnBalls balls or one that is
-/// not where a ray may start; kBadArgument for a side that is no multiple of 4.
+/// As `render_lit_band` of render.h, with balls; with Effect::kNone, where nothing is lit, without them. Errors, with
+/// nothing drawn: those of `render_lit_band`; kOutOfRange for more than kMaxDrawnBalls balls or one that is not where
+/// a ray may start; kBadArgument for a side that is no multiple of 4.
 template <EffectSet kEffects>
 [[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const DrawnBalls& drawn,
                                                      const Camera& camera, const Shading& shading,

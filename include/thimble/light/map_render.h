@@ -1,11 +1,11 @@
 /// @file map_render.h
 /// The pictures of render.h for chips that draw frames: a compact tree with a brick map beside it.
 ///
-/// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band. Where
-/// the light of a pixel is a function of the face that it shows, of the lights that reach it and of what occludes it (a
-/// set that `is_flat`, at most kMaxFlatSuns distant lights, a camera that `draws_fast`, no limit of visits), all rays go
-/// through the map; everything else is drawn by the tree. An image has the first way only when its set allows it, and
-/// lamps there only when it says that it has any.
+/// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band.
+/// Where the light of a pixel is a function of the face that it shows, of the lights that reach it and of what
+/// occludes it (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera that `draws_fast`, no limit of
+/// visits), all rays go through the map; everything else is drawn by the tree. An image has the first way only when
+/// its set allows it, and lamps there only when it says that it has any.
 ///
 /// Cost of the fast way: platform/README.md, "Light on a chip". Stack: tests/budgets/stack.csv.
 #ifndef THIMBLE_LIGHT_MAP_RENDER_H
@@ -23,8 +23,8 @@
 
 namespace thimble {
 
-/// From where nothing is in the way to a distant light: a bit a brick of the map, so that most shadow rays end after a few
-/// voxels. The bits' bytes and the map's outlive it.
+/// The bricks of a map from which nothing is in the way to a distant light, a bit each, so that most shadow rays end
+/// after a few voxels. The bytes of the bits and of the map outlive it.
 ///
 ///     SunBricks sun;
 ///     const Bytes bytes = arena.take(SunBricks::bytes(map));
@@ -36,16 +36,16 @@ class SunBricks {
   /// Bytes that `make` takes: a bit a brick of the map's box, 512 for a full world of 64.
   static size_t bytes(const BrickMap& map);
 
-  /// Nothing proven yet, which is never wrong: `towards` is as `Light::place` of a distant light. Errors, `*sun` as it
-  /// was: kOutOfMemory; kBadArgument for no direction or no map.
+  /// Makes bits of which none is proven yet, which is never wrong. `towards` is as `Light::place` of a distant light.
+  /// Errors, `*sun` as it was: kOutOfMemory; kBadArgument for no direction or no map.
   static Status make(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun);
 
-  /// Proves for up to `bricks` more whether anything solid lies behind them towards the light: all at once, or a few at a
-  /// time for a light that moves. Whether any are left. Cost: some ten instructions for each brick that lies behind
-  /// another, up to the first that is not empty; some millions in a world of 64.
+  /// Proves for up to `bricks` more bricks whether anything solid lies behind them towards the light: for all at
+  /// once, or for a few at a time where a light moves. Returns whether any are left. Cost: some ten instructions for
+  /// each brick that lies behind another, up to the first that is not empty; some millions in a world of 64.
   bool prove(uint32_t bricks = UINT32_MAX);
 
-  /// Whether it is of this map, which has not been opened anew, and of a distant light there.
+  /// Whether these bits are those of this map, which has not been opened anew, and of a distant light there.
   bool belongs_to(const BrickMap& map, const Vec3i& towards) const {
     return bits_ != nullptr && directory_ == map.directory() && towards_ == towards;
   }
@@ -80,8 +80,8 @@ inline constexpr EffectSet kLamps = Effect::kEmitterLight;
 
 /// Whether the fast way takes the frame, whose set `is_flat`.
 bool draws_flat(const Frame& frame, const BrickMap& map);
-/// Draws the band where `draws_flat`. `suns` is of the distant lights, in their order; may be empty. What does not belong to
-/// its light is not looked at.
+/// Draws the band where `draws_flat`. `suns` has what is proven of the distant lights, in their order; it may be empty.
+/// An entry that does not belong to its light is not looked at.
 template <EffectSet kSet>
 Status draw_flat(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts);
@@ -142,8 +142,8 @@ Status draw_flat<0x120F>(const Frame& frame, const BrickMap& map, Span<const Sun
 
 /// As `render_lit_band` (render.h) with `map`, which belongs to `tree`. `suns` (may be empty) has what is proven of
 /// each distant light of the scene, in their order. `kHasLamps`: lamps go through the map, too; without it a scene with
-/// any is drawn by the tree. Of the counters those of nodes stay as they are for rays that read none, and rays to lamps
-/// and of occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach.
+/// any is drawn by the tree. The counters of nodes stay as they are for rays that read none, and rays to lamps and of
+/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach.
 /// Errors, with nothing drawn: those of render.h, and kDamaged when the map is another tree's.
 template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight) != 0>
 [[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const BrickMap& map,

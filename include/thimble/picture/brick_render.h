@@ -3,24 +3,24 @@
 /// with a brick map beside it.
 ///
 /// The pixels are those of `render_band` for the tree, bit for bit, whatever the camera, shading, format and
-/// band: what the fast way does not take is drawn by the other, ray by ray or as a whole. Nothing is kept
+/// band: `render_band` draws what the fast way does not take, single rays or whole frames. Nothing is kept
 /// between bands, so bands may be drawn in any order and side by side.
 ///
 /// The fast way takes perspective cameras whose products of distances and directions fit in 32 bits
 /// (`draws_fast`): in a world of 64 pictures of up to 1,200 pixels a side from within it, of up to 300 seen
-/// from two world sizes away. Cheapest are bands of many rows that start at a multiple of kBrickTilePx, in
+/// from two world sizes away. Bands of many rows that start at a multiple of kBrickTilePx are cheapest, in
 /// pictures whose width is a multiple of 16. kDepth costs a division a pixel, and is drawn ray by ray.
 ///
-/// Where a face covers several pixels a tile is drawn face by face, else ray by ray; each tile decides.
+/// A tile is drawn face by face where faces cover several pixels, else ray by ray.
 ///
 /// Cost on a Cortex-M3: some 360 instructions a pixel of 128 x 64 pixels, 172 of 320 x 240, 96 of 640 x 480;
 /// 1.7 to 1.9 times that on a Cortex-M0 (src/picture/README.md, "Frames on a chip"). Stack: 6 KiB
 /// (tests/budgets/stack.csv), most of it half-planes, colours and the state of a tile. Code: about 48 KB.
 ///
-/// What the core is compiled with (a board: BOARD_FRAMES) chooses what an image has:
+/// Options with which the core is compiled (of a board: BOARD_FRAMES) choose what an image has:
 ///   THIMBLE_SMALL_FRAMES   no tile is drawn face by face, directions have up to 12 bits (pictures of 160 x
 ///                          128): 3 KiB of stack and 9 KB of code less. Every file that includes this one
-///                          sees the same.
+///                          must be compiled with the same options.
 ///   THIMBLE_SWEEP_SLOTS    16 (the default), 8 or 4: each halving takes 0.9 KiB of stack away, then 0.4
 #ifndef THIMBLE_PICTURE_BRICK_RENDER_H
 #define THIMBLE_PICTURE_BRICK_RENDER_H
@@ -41,7 +41,7 @@ inline constexpr int kMaxBrickDirectionBits = 12;
 #else
 inline constexpr int kMaxBrickDirectionBits = 15;
 #endif
-/// Rows of a tile: its rays start where the first of them may meet something.
+/// Rows of a tile. The rays of a tile start where the first of them may meet something.
 inline constexpr int32_t kBrickTilePx = 8;
 
 /// Whether frames of that camera take the fast way.

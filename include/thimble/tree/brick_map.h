@@ -1,15 +1,15 @@
 /// @file brick_map.h
 /// A table beside a compact tree that says at once what is solid around a point, for frames on small chips.
 ///
-/// The tree is cut into bricks of 4 x 4 x 4 voxels. A directory over the bricks of the occupied box names for
-/// each one its 64 bits, or brick 0, which is empty. So a ray goes from voxel to voxel and never down the
-/// tree; the tree is asked only for the material of what was hit, and only in bricks that show more than one.
+/// The tree is cut into bricks of 4 x 4 x 4 voxels. A directory over the bricks of the occupied box names the 64 bits
+/// of each, or brick 0, which is empty. So a ray goes from voxel to voxel and never down the
+/// tree; the tree is asked only for the material of what was hit, and only in bricks that show more than one material.
 ///
 /// Like the tree, a map is bytes: position-independent, little-endian, baked into flash or built at start in
 /// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout,
 /// src/picture/README.md, "Frames on a chip", the reasons.
 ///
-/// What it does not do: change with the tree (build it anew), or serve worlds beyond level 8.
+/// A map does not change with its tree (build it anew), and does not serve worlds beyond level 8.
 #ifndef THIMBLE_TREE_BRICK_MAP_H
 #define THIMBLE_TREE_BRICK_MAP_H
 
@@ -38,7 +38,7 @@ constexpr size_t brick_map_bytes(uint32_t cells, uint32_t bricks, uint32_t mixed
 }
 
 /// Bytes in which the map of any world of 2^level can be built, whatever is in it. A world of 64 with a model
-/// in it seldom needs a fifth.
+/// in it seldom needs a fifth of them.
 constexpr size_t most_brick_map_bytes(int level) {
   const uint32_t cells = uint32_t{1} << (3 * (level - 2));
   const uint32_t bricks = cells < kMaxBricks ? cells + 1 : kMaxBricks;
@@ -68,7 +68,7 @@ class BrickMap {
   /// 1 KiB.
   static Status make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size = nullptr);
 
-  /// Whether it was made from that tree, by its checksum.
+  /// Whether the map was made from that tree, as its checksum says.
   bool belongs_to(const CompactTree& tree) const;
 
   int level() const { return level_; }

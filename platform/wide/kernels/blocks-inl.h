@@ -1,5 +1,5 @@
 /// @file blocks-inl.h
-/// Finds the children of blocks that may be seen.
+/// Finds which children of a block may be seen.
 #if defined(THIMBLE_WIDE_KERNELS_BLOCKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_BLOCKS_INL_H_
 #undef THIMBLE_WIDE_KERNELS_BLOCKS_INL_H_
@@ -21,7 +21,7 @@ struct Extent {
   hn::Vec<D> y;
 };
 
-// Finds it for boxes of `side` voxels with centres at (column, row).
+// Finds the extent of boxes of `side` voxels with centres at (column, row).
 template <bool kPerspective, class D>
 HWY_INLINE Extent<D> extent(D d, const WideFrame& frame, hn::Vec<D> side, hn::Vec<D> column, hn::Vec<D> row,
                             hn::Vec<D> per_depth) {

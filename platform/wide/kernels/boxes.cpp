@@ -1,4 +1,4 @@
-// From runs of boxes to the nearest box of each pixel.
+// Draws runs of boxes into a picture of the nearest box of each pixel.
 #include "wide/kernels.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -16,14 +16,14 @@ namespace {
 
 using Codes = hn::CappedTag<uint8_t, 32>;
 
-// The bytes of pixels whose codes are greys: the same three times, or in 16 bits.
+// One byte of pixels whose codes are greys: the grey itself, or its half of a 16-bit colour.
 template <size_t kSize>
 HWY_INLINE hn::Vec<Codes> gray_byte(const CodeBytes& bytes, int place, hn::Vec<Codes> gray) {
   const Codes d;
   if (kSize != 2) {
     return gray;
   }
-  // Red and blue have the same five bits, so both orders of colours have the same bytes.
+  // A grey's red and blue have the same five bits, so RGB and BGR give the same bytes.
   const auto low =
       hn::Or(hn::And(hn::ShiftLeft<3>(gray), hn::Set(d, uint8_t{0xE0})), hn::ShiftRight<3>(gray));
   const auto high = hn::Or(hn::And(gray, hn::Set(d, uint8_t{0xF8})), hn::ShiftRight<5>(gray));
@@ -39,8 +39,8 @@ HWY_INLINE hn::Vec<Codes> byte_of(const uint8_t (&table)[16], hn::Vec<Codes> cod
 #endif
 }
 
-// Stores the pixels of 32 codes. Without a branch a pixel: nobody can predict where a cloud has holes. Returns
-// how many hold anything.
+// Stores the pixels of 32 codes, without a branch for each: nobody can predict where a cloud has holes. Returns how
+// many show something.
 template <size_t kSize, bool kGray>
 HWY_INLINE size_t put_strip(const uint8_t* codes, const CodeBytes& bytes, uint8_t* to) {
   const Codes d;
@@ -68,14 +68,14 @@ HWY_INLINE size_t put_strip(const uint8_t* codes, const CodeBytes& bytes, uint8_
   return count;
 }
 
-// The same of the last `pixels` of a row that are no more than 32.
+// Does the same for the last pixels of a row, which may be fewer than 32.
 template <size_t kSize, bool kGray>
 HWY_INLINE size_t put_some(const uint8_t* codes, size_t pixels, const CodeBytes& bytes, uint8_t* to) {
   if (pixels >= 32) {
     return put_strip<kSize, kGray>(codes, bytes, to);
   }
   HWY_ALIGN uint8_t last[32 * kSize];
-  const size_t count = put_strip<kSize, kGray>(codes, bytes, last);  // behind the picture there are none
+  const size_t count = put_strip<kSize, kGray>(codes, bytes, last);  // codes right of the picture are 0
   __builtin_memcpy(to, last, kSize * pixels);
   return count;
 }

@@ -1,5 +1,5 @@
 /// @file covered-inl.h
-/// Reads the finished picture: which pixels are covered and what they hold; and merges two pictures.
+/// Reads the finished picture: which pixels are covered, and what they hold. Merges two pictures.
 #if defined(THIMBLE_WIDE_KERNELS_COVERED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_COVERED_INL_H_
 #undef THIMBLE_WIDE_KERNELS_COVERED_INL_H_
@@ -14,8 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Stores the numbers of the set bits of a word, each plus `first`, in `to`, which has room for 48. Returns
-// how many.
+// Stores the numbers of a word's set bits, each plus `first`, in `to`, which has room for 48. Returns how many bits are
+// set.
 HWY_INLINE uint32_t store_bits(uint32_t word, uint32_t first, uint32_t* to) {
   const U32 d;
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
@@ -26,7 +26,7 @@ HWY_INLINE uint32_t store_bits(uint32_t word, uint32_t first, uint32_t* to) {
     }
     return count;
   }
-  // Without a branch for each bit: their number cannot be predicted.
+  // No branch for each bit: how many are set cannot be predicted.
   uint8_t bytes[8] = {};
   __builtin_memcpy(bytes, &word, sizeof(word));
   for (uint32_t part = 0; part < 32; part += lanes) {

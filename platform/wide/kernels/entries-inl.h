@@ -80,9 +80,9 @@ void find_corners(const Pixels& pixels, Corners* corners) {
   }
 }
 
-// The planes through which rays enter the boxes that they hit: of the nearer planes of the axes the one that
-// is passed last, on a tie that of the lowest axis. Times are compared as fractions, num_a |d_b| > num_b
-// |d_a|, in integers below 2^44.
+// The planes through which rays enter the boxes that they hit: of the three axes' nearer planes the one that the ray
+// passes last, on a tie that of the lowest axis. Times are compared as fractions, num_a |d_b| > num_b |d_a|, in
+// integers below 2^44.
 struct Entries {
   hn::Vec<F64> axis;       // -1: the ray starts inside
   hn::Vec<F64> numerator;  // t = numerator / (256 * speed)
@@ -128,9 +128,9 @@ HWY_INLINE Entries entries_of(const WideFrame& frame, const Pixels& pixels, cons
   if (!pixels.any_levels) {
     return found;
   }
-  // The core says through which face of a voxel a ray enters, also in a solid block. Where the ray passes
-  // from one voxel to the next along a lower axis just as it enters the block, it enters the voxel through
-  // that face too, and the lowest axis counts.
+  // The core names the face of the voxel by which a ray enters, also in a solid block. Where the ray passes from one
+  // voxel to the next along a lower axis just as it enters the block, it enters the voxel by that axis' face, too, and
+  // the lowest axis counts.
   const auto is_voxel = hn::Gt(hn::PromoteTo(d, hn::LoadU(d32, pixels.voxels + at)), zero);
   const auto block_axis = found.axis;
   const auto block_numerator = found.numerator;

@@ -36,14 +36,14 @@ HWY_NOINLINE void find_grays_exactly(const WideFrame& frame, const Pixels& pixel
   }
 }
 
-// Finds again, exactly, the greys of the pixels with these numbers.
+// Finds the greys of the pixels with these numbers again, exactly.
 template <bool kPerspective>
 void find_unclear_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale,
                         const uint32_t* numbers, uint32_t count, uint8_t* gray) {
   Pixels few;
   few.count = count;
   few.any_levels = pixels.any_levels;
-  for (uint32_t i = 0; i < count + hn::Lanes(F32()); ++i) {  // and a vector behind them, of no meaning
+  for (uint32_t i = 0; i < count + hn::Lanes(F32()); ++i) {  // the vector behind them means nothing
     const uint32_t from = numbers[i < count ? i : 0];
     few.x[i] = pixels.x[from];
     few.y[i] = pixels.y[from];
@@ -59,8 +59,8 @@ void find_unclear_grays(const WideFrame& frame, const Pixels& pixels, const Gray
   }
 }
 
-// Finds in floats where the rays of a vector of pixels enter their boxes. Distances are integers below 2^24.
-// Adds to `unclear` where floats do not tell.
+// Finds in floats where the rays of a vector of pixels enter their boxes. Distances are integers below 2^24. Adds to
+// `unclear` the lanes that floats do not decide.
 template <bool kPerspective>
 HWY_INLINE EntryPlane entry_planes(const WideFrame& frame, const Pixels& pixels, const Corners& corners,
                                    size_t at, hn::Mask<F32>* unclear) {
@@ -77,8 +77,7 @@ HWY_INLINE EntryPlane entry_planes(const WideFrame& frame, const Pixels& pixels,
     *unclear = hn::Or(*unclear, hn::Gt(side, hn::Set(d, 1.0F)));
   }
   const auto size = hn::Mul(side, hn::Set(d, 256.0F));
-  const auto last =
-      hn::Sub(hn::Set(d, 4096.0F), side);  // of a world of 4096 voxels, in which corners are mirrored
+  const auto last = hn::Sub(hn::Set(d, 4096.0F), side);  // corners are mirrored in a world of 4096 voxels
   EntryPlane plane;
   auto off = zero;
 #pragma GCC unroll 3
@@ -95,14 +94,14 @@ HWY_INLINE EntryPlane entry_planes(const WideFrame& frame, const Pixels& pixels,
     const auto low = hn::MulSub(corner, hn::Set(d, 256.0F), origin);
     const auto speed = hn::Abs(direction);
     const auto distance = hn::IfThenElse(downward, hn::Neg(hn::Add(low, size)), low);
-    // A ray that stands still along an axis passes none of its planes.
+    // A ray that does not move along an axis passes none of its planes.
     plane.take_later(axis, hn::IfThenElseZero(hn::Gt(speed, zero), distance), speed, unclear);
   }
   *unclear = hn::Or(*unclear, rounding_is_unclear(frame, off));
   return plane;
 }
 
-// Finds greys in floats where they can tell, and the others exactly.
+// Finds greys in floats where these decide, and the other greys exactly.
 template <bool kPerspective>
 void find_grays_of(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
   const F32 d;
@@ -146,7 +145,7 @@ void find_grays_of(const WideFrame& frame, const Pixels& pixels, const GrayScale
 }
 
 void find_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
-  uint32_t blocks = 0;  // which are never clear in floats
+  uint32_t blocks = 0;  // pixels that show blocks, which floats never decide
   for (uint32_t i = 0; pixels.any_levels && i < pixels.count; ++i) {
     blocks += pixels.level[i] > 0 ? 1 : 0;
   }
@@ -169,7 +168,7 @@ void find_faces_of(const WideFrame& frame, const Pixels& pixels, uint8_t* face) 
   find_corners(pixels, &corners);
   for (size_t at = 0; at < pixels.count; at += lanes) {
     const Entries found = entries_of<kPerspective>(frame, pixels, corners, at);
-    // From inside: the face opposed to the largest component, the lowest axis on a tie.
+    // A ray that starts inside has the face opposed to its largest component, on a tie that of the lowest axis.
     auto largest = hn::Abs(found.direction[0]);
     auto inside_axis = zero;
     for (int axis = 1; axis < 3; ++axis) {

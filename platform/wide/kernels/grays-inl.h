@@ -1,5 +1,5 @@
 /// @file grays-inl.h
-/// Greys of boxes that are hit, in floats where their error bound proves the grey, and exactly in doubles.
+/// Finds the greys of boxes that are hit: in floats where their error bound proves the grey, else exactly, in doubles.
 #if defined(THIMBLE_WIDE_KERNELS_GRAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_GRAYS_INL_H_
 #undef THIMBLE_WIDE_KERNELS_GRAYS_INL_H_
@@ -14,9 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Finds floor(dividend / speed) for integer speeds 1 .. 2^20: exactly below 2^22, and within 2^-22 of itself
-// above. The quotient of floats is within 2^-23 of itself, so off by one at most; the remainder says which
-// way.
+// Finds floor(dividend / speed) for integer speeds 1 .. 2^20: exactly where it is below 2^22, else within 2^-22 of
+// itself. The quotient of floats is within 2^-23 of itself, so off by one at most; the remainder says which way.
 HWY_INLINE hn::Vec<F32> ratios_of(const GrayScale& scale, hn::Vec<F32> speed) {
   const F32 d;
   const auto one = hn::Set(d, 1.0F);
@@ -39,9 +38,9 @@ HWY_INLINE hn::Vec<F32> ratios_of(const GrayScale& scale, hn::Vec<F32> speed) {
   return hn::Add(hn::Sub(quotient, hn::IfThenElseZero(is_above, one)), hn::IfThenElseZero(is_below, one));
 }
 
-// Finds greys from numerator * ratio = `product`, in units of `unit` / 256 voxel. Adds to `unclear` where
-// floats do not tell them (GrayScale). At the near and far planes themselves greys do not jump; between them
-// they change where the fall passes a whole number.
+// Finds greys from numerator * ratio = `product`, in units of `unit` / 256 voxel. Adds to `unclear` the lanes whose
+// grey floats do not decide (GrayScale). Greys do not jump at the near and far planes themselves; between these they
+// change where the fall passes a whole number.
 HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> product, float unit,
                                         hn::Mask<F32>* unclear) {
   const F32 d;
@@ -54,18 +53,18 @@ HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> pro
   return small_number(hn::Sub(hn::Set(d, 255.0F), hn::Floor(clamped)));
 }
 
-// The plane through which each ray enters its box: of the nearer planes the one that it passes last. It is
-// passed at numerator / speed.
+// The plane through which each ray enters its box: of the nearer planes the one that it passes last, at numerator /
+// speed.
 struct EntryPlane {
   hn::Vec<F32> numerator;
   hn::Vec<F32> speed;
 
   HWY_INLINE EntryPlane() : numerator(hn::Zero(F32())), speed(hn::Set(F32(), 1.0F)) {}
 
-  // Takes the plane of `axis` where it is passed later than those of the axes before it, and says where. One
-  // at or behind the origin (`distance` 0 or less) is not entered through. Products of a distance (below
-  // 2^25) and a direction are compared; adds to `unclear` where they differ by less than four times what
-  // their roundings can make.
+  // Takes the plane of `axis` in the lanes whose rays pass it later than the planes taken before; returns these
+  // lanes. No ray enters through a plane at or behind the origin (`distance` 0 or less). Compares products of a
+  // distance (below 2^25) and a direction; adds to `unclear` the lanes in which two differ by less than four times
+  // their rounding.
   HWY_INLINE hn::Mask<F32> take_later(int axis, hn::Vec<F32> distance, hn::Vec<F32> size,
                                       hn::Mask<F32>* unclear) {
     const F32 d;
@@ -83,7 +82,7 @@ struct EntryPlane {
   }
 };
 
-// Finds the greys of single voxels that are hit. Adds to `unclear` where floats do not tell them.
+// Finds the greys of single voxels that are hit. Adds to `unclear` the lanes that floats do not decide.
 template <bool kPerspective>
 HWY_INLINE hn::Vec<U32> grays_of(const WideFrame& frame, const GrayScale& scale, const Aims& aims,
                                  hn::Mask<F32>* unclear) {
@@ -108,8 +107,8 @@ HWY_INLINE hn::Vec<U32> grays_of(const WideFrame& frame, const GrayScale& scale,
   return grays_in_floats(scale, hn::Mul(plane.numerator, ratio), 0.5F, unclear);
 }
 
-// Finds the faces, plus 1, through which single voxels are entered. Adds to `unclear` where floats do not tell
-// them. From inside: the face opposed to the direction's largest component, the lowest axis on a tie.
+// Finds the faces, plus 1, through which rays enter single voxels. Adds to `unclear` the lanes that floats do not
+// decide. A ray that starts inside has the face opposed to its largest component, on a tie that of the lowest axis.
 template <bool kPerspective>
 HWY_INLINE hn::Vec<U32> faces_of(const WideFrame& frame, const Aims& aims, hn::Mask<F32>* unclear) {
   const F32 d;
@@ -137,7 +136,7 @@ HWY_INLINE hn::Vec<U32> faces_of(const WideFrame& frame, const Aims& aims, hn::M
   return hn::IfThenElse(hn::Eq(code, hn::Zero(du)), inside_code, code);
 }
 
-// What is kept of a voxel that is hit.
+// What a pixel keeps of the voxel that it shows.
 enum class Keep : uint8_t { kNumbers, kGrays, kFaces };
 
 template <bool kPerspective, Keep kKeep>
@@ -147,11 +146,10 @@ HWY_INLINE hn::Vec<U32> codes_of(const WideFrame& frame, const GrayScale& scale,
                                : grays_of<kPerspective>(frame, scale, aims, unclear);
 }
 
-// Finds the greys of t = numerator / (256 * speed) with the core's three roundings (src/picture/shading.cpp).
-// The ratio of integers below 2^32 is exact after Floor: one that is no integer lies farther from the next
-// integer than a double's last bit. The product has up to 55 bits and is taken in two parts. The last
-// quotient has a half added to its dividend, so it is no integer, and lies off the next one by more than the
-// inverse divisor's error.
+// Finds the greys of t = numerator / (256 * speed) with the core's three roundings (src/picture/shading.cpp). Floor
+// makes a ratio of integers below 2^32 exact: a ratio that is no integer lies farther from the next integer than a
+// double's last bit. The product has up to 55 bits and is computed in two parts. The last quotient has a half added to
+// its dividend, so it is no integer, and differs from the nearest one by more than the inverse divisor's error.
 HWY_INLINE hn::Vec<HalfI32> grays_in_doubles(const GrayScale& scale, hn::Vec<F64> numerator,
                                              hn::Vec<F64> speed) {
   const F64 d;
@@ -167,7 +165,7 @@ HWY_INLINE hn::Vec<HalfI32> grays_in_doubles(const GrayScale& scale, hn::Vec<F64
   const auto a = hn::Mul(numerator, high);
   const auto b = hn::Mul(numerator, low);
   const auto b_high = hn::Floor(hn::Mul(b, hn::Set(d, 1.0 / 65536)));
-  const auto whole = hn::Add(a, b_high);  // of 2^16, below 2^40
+  const auto whole = hn::Add(a, b_high);  // in units of 2^16, below 2^40
   hn::Vec<F64> depth;
   if (scale.shift + 8 >= 16) {
     depth = hn::Floor(hn::Mul(whole, hn::Set(d, scale.scale * 65536)));

@@ -1,5 +1,5 @@
 /// @file hits-inl.h
-/// Writes hits into the picture where they are nearer than what is there.
+/// Writes hits into the picture where they are nearer than what it holds.
 #if defined(THIMBLE_WIDE_KERNELS_HITS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_HITS_INL_H_
 #undef THIMBLE_WIDE_KERNELS_HITS_INL_H_
@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// What Depths::nearest holds of an entry of the batch's cube.
+// The value in Depths::nearest of an entry of the batch's cube.
 inline uint64_t value_of(const Batch& batch, uint32_t key, uint32_t down, uint32_t number) {
   return batch.cube_value[down] | uint64_t{key} << kEntryBits | number;
 }
@@ -28,7 +28,7 @@ HWY_INLINE void touch(const Depths& depths, size_t piece) {
   }
 }
 
-// Clears what a box of these pixels may write to.
+// Clears the pieces that hold any of these pixels.
 inline void touch_all(const Depths& depths, const Rectangle& where) {
   for (int32_t left = where.x0 & -32; left < where.x1; left += 32) {
     const size_t last = depths.word(left, where.y1 - 1) / kPieceWords;
@@ -41,7 +41,7 @@ inline void touch_all(const Depths& depths, const Rectangle& where) {
 // Writes the hits of the batch into the picture.
 template <bool kGray, bool kMarks>
 HWY_INLINE void write_hits_of(const Depths& depths, Batch* batch) {
-  // In locals: for the compiler, a byte that is written might change the pointers.
+  // Pointers are copied to locals: the compiler must assume that a byte that is written changes the members.
   const size_t hits = batch->hits;
   uint32_t* const all_covered = depths.covered;
   uint64_t* const all_nearest = depths.nearest;
@@ -57,7 +57,7 @@ HWY_INLINE void write_hits_of(const Depths& depths, Batch* batch) {
     const uint32_t pixel = batch->pixel[i];
     const uint32_t ahead = batch->pixel[i + kAhead];
     const uint32_t bit = uint32_t{1} << (pixel & 31U);
-    // Without a branch: where nothing is there yet, what is read is made the greatest number.
+    // No branch: where the picture holds nothing yet, what is read is made the greatest number.
     if (kGray) {
       __builtin_prefetch(all_sums + ahead, 1);
       __builtin_prefetch(all_grays + ahead, 1);

@@ -1,5 +1,5 @@
 /// @file judge-inl.h
-/// Whether rays meet boxes, in floats where their error bound proves the answer.
+/// Decides whether rays meet boxes, in floats where their error bound proves the answer.
 #if defined(THIMBLE_WIDE_KERNELS_JUDGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_JUDGE_INL_H_
 #undef THIMBLE_WIDE_KERNELS_JUDGE_INL_H_
@@ -14,16 +14,16 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Some rays, and the centres of boxes as seen from their origins: integers, and exact.
+// Some rays, and the centres of boxes less the rays' origins: exact integers.
 struct Aims {
   hn::Vec<F32> direction[3];
   hn::Vec<F32> center[3];  // in 1/512 voxel
-  hn::Mask<F32> unclear;   // where floats do not tell the direction
+  hn::Mask<F32> unclear;   // lanes whose direction floats do not decide
 };
 
-// Evaluates one component of the camera's affine map at the pixels (x, y), rounded to the nearest integer as
-// the camera rounds it. That is exact where the float lies farther from a half than the map's error; `off` is
-// raised to the distance from the nearest integer, for rounding_is_unclear.
+// Evaluates one component of the camera's affine map at the pixels (x, y), rounded to the nearest integer as the camera
+// rounds it. The result is exact where the float lies farther from a half than the map's error. Raises `off` to the
+// distance from the nearest integer, for rounding_is_unclear.
 HWY_INLINE hn::Vec<F32> varying_of(const WideFrame& frame, int axis, hn::Vec<F32> x, hn::Vec<F32> y,
                                    hn::Vec<F32>* off) {
   const F32 d;
@@ -40,7 +40,7 @@ HWY_INLINE hn::Mask<F32> rounding_is_unclear(const WideFrame& frame, hn::Vec<F32
   return hn::Gt(off, hn::Set(F32(), 0.5F - frame.map_error));
 }
 
-// Directions have at most 20 bits and centres stay below 2^24, so both are exact where they are clear.
+// Finds directions, which have at most 20 bits, and centres, which stay below 2^24: both are exact where clear.
 //
 // `low`: lowest corners within the cube, in voxels; `half`: half sides in 1/512 voxel; `origin`: the cube's
 // corner less the eye, in 1/512 voxel.
@@ -71,15 +71,14 @@ HWY_INLINE hn::Vec<F32> ahead_of(hn::Vec<F32> center, hn::Vec<F32> direction) {
   return hn::Xor(center, hn::And(direction, hn::Set(d, -0.0F)));
 }
 
-// What floats say of some rays and boxes whose directions are clear. `hit` means nothing where `unclear` is
-// set.
+// What floats decide about rays whose directions are clear, and boxes. `hit` means nothing where `unclear` is set.
 struct Verdict {
   hn::Mask<F32> hit;
   hn::Mask<F32> unclear;
 };
 
-// A ray hits a box where none of three cross products exceeds its bound; so the product decides that exceeds
-// its bound by most, or comes closest to it.
+// A ray hits a box where none of three cross products exceeds its bound. So one product decides: the one that exceeds
+// its bound by most or, where none does, comes closest to it.
 //
 // The bound is exact: half * (|d_a| + |d_b|) is an integer below 2^21 times a power of two. The product
 // c_a d_b - c_b d_a, by Kahan's method with fused products, is within 2 units in its last place (C.-P.
@@ -92,7 +91,7 @@ HWY_INLINE Verdict judge(const WideFrame& frame, const Aims& aims, hn::Vec<F32> 
   const auto zero = hn::Zero(d);
   const auto& center = aims.center;
   const auto& direction = aims.direction;
-  // All rays of an orthographic camera may stand still along an axis; of a perspective camera only some do.
+  // An orthographic camera's rays may all have a component of 0; of a perspective camera's only some have.
   hn::Vec<F32> size[3];
   bool still[3] = {false, false, false};
 #pragma GCC unroll 3
@@ -100,7 +99,7 @@ HWY_INLINE Verdict judge(const WideFrame& frame, const Aims& aims, hn::Vec<F32> 
     size[axis] = hn::Abs(direction[axis]);
     still[axis] = !kPerspective && frame.direction[axis] == 0;
   }
-  auto excess = hn::Set(d, -1e30F);  // of the product that exceeds its bound by most
+  auto excess = hn::Set(d, -1e30F);  // by how much the deciding product exceeds its bound
   auto magnitude = hn::Mul(half, hn::Add(hn::Add(size[0], size[1]), size[2]));
   constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 #pragma GCC unroll 3
@@ -125,7 +124,7 @@ HWY_INLINE Verdict judge(const WideFrame& frame, const Aims& aims, hn::Vec<F32> 
   const auto margin = hn::Mul(magnitude, hn::Set(d, 1.0F / (1 << 21)));
   auto unclear = hn::Le(hn::Abs(excess), margin);
   auto hit = hn::Lt(excess, zero);
-  // The box lies ahead when its farther plane does, on every axis.
+  // The box lies ahead when its farther plane lies ahead on every axis.
   const auto minus_half = hn::Neg(half);
   auto least_ahead = half;
 #pragma GCC unroll 3

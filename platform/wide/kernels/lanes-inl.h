@@ -1,5 +1,5 @@
 /// @file lanes-inl.h
-/// Vectors of numbers and what all kernels do with them.
+/// Vectors of numbers, and functions on them that all kernels use.
 #if defined(THIMBLE_WIDE_KERNELS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_LANES_INL_H_
 #undef THIMBLE_WIDE_KERNELS_LANES_INL_H_
@@ -79,8 +79,7 @@ HWY_INLINE hn::Vec<D> affine(const float (&row)[4], const Points<D>& points, hn:
                     hn::MulAdd(hn::Set(d, row[1]), points.y, hn::MulAdd(hn::Set(d, row[2]), points.z, last)));
 }
 
-// Loads the first `count` numbers, and zeros behind them. Does not read on: what follows may be another
-// thread's.
+// Loads the first `count` numbers, and zeros behind them. Reads no further: what follows may belong to another thread.
 HWY_INLINE hn::Vec<U32> load_some(const uint32_t* from, int32_t count) {
   const U32 d;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
@@ -117,8 +116,7 @@ inline hn::Vec<U32> gathered10(hn::Vec<U32> v) {
   return hn::And(hn::Or(v, hn::ShiftRight<16>(v)), hn::Set(d, 0x3FFU));
 }
 
-// Finds the sides of boxes as powers of two (level_of), and their x without the bits that tell the side
-// (x_of).
+// Finds the logarithms of boxes' sides (level_of), and their x without the bits that hold the side (x_of).
 template <class D>
 inline void unpack_side(D d, hn::Vec<D> entry, bool unit, hn::Vec<D>* level, hn::Vec<D>* x) {
   *x = hn::And(entry, hn::Set(d, 1023U));
@@ -132,7 +130,7 @@ inline void unpack_side(D d, hn::Vec<D> entry, bool unit, hn::Vec<D>* level, hn:
   }
 }
 
-// Converts whole numbers 0 .. 65535. Cheaper than ConvertTo, which also handles floats that no integer holds.
+// Converts whole numbers 0 .. 65535. Cheaper than ConvertTo, which also handles floats beyond any integer.
 HWY_INLINE hn::Vec<U32> small_number(hn::Vec<F32> value) {
   const F32 d;
   const U32 du;

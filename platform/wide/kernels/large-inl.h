@@ -19,12 +19,12 @@ namespace {
 
 // The test of one vector of pixels of a row.
 struct RowTest {
-  uint32_t* word;  // of coverage, which holds the pixels from bit `shift` on
+  uint32_t* word;  // word of coverage, which holds the pixels from bit `shift` on
   uint32_t shift;
-  size_t first;           // where the first pixel is in Depths::nearest
-  uint32_t hits;          // a bit a pixel: those that floats say are hit
-  bool same;              // whether their rays all run the same way; mostly they do
-  uint32_t down;          // then which way, else anything
+  size_t first;           // the first pixel's index in Depths::nearest
+  uint32_t hits;          // a bit a pixel: floats say that its ray hits
+  bool same;              // whether all rays have the same signs, as they mostly do
+  uint32_t down;          // where `same`: the axes along which they run downwards
   uint32_t axis_down[3];  // the hits whose rays run downwards along an axis
 
   HWY_INLINE void set_directions(const Aims& aims) {
@@ -49,7 +49,7 @@ class LargeBox {
   HWY_INLINE LargeBox(uint32_t entry, uint32_t number, const Depths& depths, Batch* batch)
       : depths_(depths), batch_(batch), entry_(entry), number_(number) {}
 
-  // Tests pixels in integers that floats could not tell: those of the row from column `x` on in `unclear`.
+  // Tests in integers the pixels that floats could not decide: those in `unclear`, counted from column `x` of the row.
   HWY_INLINE void put_unclear(const WideFrame& frame, int32_t x, int32_t y, uint32_t unclear,
                               const RowTest& test) {
     for (; unclear != 0; unclear &= unclear - 1) {
@@ -72,7 +72,7 @@ class LargeBox {
     }
   }
 
-  // Writes hits with their greys, where sums of mirrored coordinates decide which voxel is nearer.
+  // Writes hits with their greys; sums of mirrored coordinates decide which voxel is nearer.
   HWY_INLINE void put_grays(const RowTest& test, const uint8_t* grays) {
     HWY_ALIGN uint32_t sums[64];
     if (test.same) {
@@ -102,7 +102,7 @@ class LargeBox {
     }
   }
 
-  // Writes hits where values of Depths::nearest decide.
+  // Writes hits; values of Depths::nearest decide which box is nearer.
   HWY_INLINE void put_values(const RowTest& test) {
     const U64 d64;
     const int32_t lanes = static_cast<int32_t>(hn::Lanes(F32()));
@@ -133,7 +133,7 @@ class LargeBox {
     const uint32_t corner[3] = {x_of(entry_), entry_ >> 10 & kWithin, entry_ >> 20 & kWithin};
     return value_of(*batch_, mirrored_key(corner, level_of(entry_), down), down, number_);
   }
-  // Sets value_, which mostly is the last one's.
+  // Sets value_, unless it is the last pixel's, as it mostly is.
   HWY_INLINE void find_value(uint32_t down) {
     if (down != known_down_) {
       known_down_ = down;
@@ -141,7 +141,7 @@ class LargeBox {
     }
   }
 
-  // Writes the pixel of one lane where the value is less than what is there.
+  // Writes the pixel of one lane if the value is less than the one in the picture.
   HWY_INLINE void put(const RowTest& test, uint32_t lane, uint64_t value, uint8_t gray) const {
     const uint32_t bit = uint32_t{1} << (test.shift + lane);
     const size_t at = test.first + lane;
@@ -162,12 +162,12 @@ class LargeBox {
   Batch* batch_;
   uint32_t entry_;
   uint32_t number_;
-  uint32_t known_down_ = 8;  // of value_; none yet
+  uint32_t known_down_ = 8;  // the way that value_ belongs to; 8: none yet
   uint64_t value_ = 0;
 };
 
-// Draws a box that covers many pixels along the rows of its rectangle, a vector of pixels at a time.
-// `reject`: skips covered pixels.
+// Draws a box that covers many pixels along the rows of its rectangle, a vector of pixels at a time. With `reject` it
+// skips covered pixels.
 template <bool kPerspective, Keep kKeep>
 HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t number,
                                 const Rectangle& where, bool reject, const Depths& depths, Batch* batch) {
@@ -242,8 +242,8 @@ void draw_large(const WideFrame& frame, uint32_t entry, uint32_t number, const R
   }
 }
 
-// Tells whether a box that crosses the eye's plane may be seen through the tile: not when it lies wholly
-// outside one of the tile's four sides. In doubles: few boxes come here.
+// Returns whether a box that crosses the eye's plane may be seen through the tile: not when it lies wholly outside one
+// of the tile's four sides. Computes in doubles, since few boxes come here.
 bool crosses_tile(const WideFrame& frame, const double (&center)[3], double side) {
   const double slack_x = static_cast<double>(frame.slack_x) + 1;
   const double slack_y = static_cast<double>(frame.slack_y) + 1;
@@ -270,7 +270,7 @@ bool crosses_tile(const WideFrame& frame, const double (&center)[3], double side
   return true;
 }
 
-// Draws the boxes of a vector that are in `mask`: large ones, and ones that cross the eye's plane.
+// Draws the boxes of a vector that are in `mask`: large boxes, and boxes that cross the eye's plane.
 template <bool kPerspective>
 HWY_NOINLINE void draw_large_of(const WideFrame& frame, const Run& run, uint32_t at, const Projected& boxes,
                                 hn::Mask<F32> mask, bool reject_all, bool* written, const Depths& depths,

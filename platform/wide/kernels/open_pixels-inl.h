@@ -15,8 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Tells which of the pixels (x .. x + 31, y) are open, a bit each. Bits right of the picture and lanes
-// outside `mask` mean nothing; these look at `own_row`, since other rows may be another thread's.
+// Returns which of the pixels (x .. x + 31, y) are open, a bit each. Bits right of the picture and lanes outside `mask`
+// mean nothing; such lanes read `own_row`, since other rows may belong to another thread.
 HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y,
                                 int32_t own_row) {
   const U32 d;
@@ -35,9 +35,8 @@ HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Ve
   return hn::Not(hn::Or(hn::Shr(covered, column), from_beside));
 }
 
-// The open pixels of a run's rectangle. A small one, of at most 32 by 32 pixels, is copied when this is made,
-// and looked up in registers (AVX-512) or in the copy instead of all over the picture. For a larger one the
-// picture is read.
+// The open pixels of a run's rectangle. A small rectangle, of at most 32 by 32 pixels, is copied when this is made, and
+// looked up in registers (AVX-512) or in the copy, not all over the picture. For a larger one the picture is read.
 class OpenPixels {
  public:
   // `reach`: 0, 2, 4 or 8, for near().
@@ -51,7 +50,7 @@ class OpenPixels {
     y0_ = static_cast<uint32_t>(where.y0);
     const size_t first = depths.word(where.x0, where.y0);
     const uint32_t* const left = depths.covered + first;
-    // Where the rectangle lies in one strip, its words are read twice.
+    // Where the rectangle lies in one strip, the right words are the left ones again.
     const bool is_cut = (x0_ & 31U) + static_cast<uint32_t>(where.x1 - where.x0) > 32;
     const uint32_t* const right = is_cut ? left + depths.rows : left;
     const int32_t rows = where.y1 - where.y0;
@@ -64,7 +63,7 @@ class OpenPixels {
       columns |= rows_[row];
       open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
     }
-    // Joins each pixel with those right of and below it, twice as many each time.
+    // Joins each pixel with its neighbours to the right and below, twice as many each time.
     for (uint32_t width = 1; width < reach; width *= 2) {
       const uint32_t* from = width == 1 ? rows_ : near_;
       for (int32_t row = 0; row < rows; ++row) {
@@ -80,18 +79,18 @@ class OpenPixels {
   }
 
   bool is_small() const { return small_; }
-  // Holds all open pixels of a small rectangle; empty when there is none.
+  // A rectangle that holds all open pixels of a small rectangle; empty when none is open.
   const Rectangle& bounds() const { return bounds_; }
 
-  // What open_at() says now, or, for a small rectangle, said when this was made.
+  // Returns what open_at() returns now or, for a small rectangle, returned when this was made.
   HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
     if (small_) {
       return look_up(rows_, x, y);
     }
     return open_at(depths_, mask, x, y, first_row_);
   }
-  // Tells in the lowest bit whether any of the `reach` by `reach` pixels from (x, y) on is open. Only for a
-  // small rectangle.
+  // Says in the lowest bit whether any of the `reach` by `reach` pixels from (x, y) on is open. Only for a small
+  // rectangle.
   HWY_INLINE hn::Vec<U32> near(hn::Vec<U32> x, hn::Vec<U32> y) const { return look_up(near_, x, y); }
 
  private:
@@ -136,8 +135,8 @@ HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
 class OpenTable {
  public:
   static constexpr int32_t kMargin = 3;
-  // The most pixels of a side, with one more row and column behind the last. Up to kNarrowPx a row takes one
-  // word, else two.
+  // The most pixels of a side, with one more row and column behind the last. A row of up to kNarrowPx takes one word, a
+  // wider one two.
   static constexpr int32_t kMostPx = 60 - kMargin - 1;
   static constexpr int32_t kNarrowPx = 32 - kMargin - 1;
 
@@ -152,10 +151,10 @@ class OpenTable {
   }
 
   bool none() const { return none_; }
-  // The number of rows: 16, 32 or 64; of columns 32 or, with 64 rows, 64.
+  // The number of rows: 16, 32 or 64. There are 32 columns or, with 64 rows, 64.
   int rows() const { return rows_; }
-  // Tells in the lowest bit whether column `x` of row `y` modulo kRows is open, and in the next bit whether
-  // column x + 1 is. x: 0 .. 31, or 63 with 64 rows.
+  // Says in the lowest bit whether column `x` of row `y` modulo kRows is open, and in the next bit whether column x + 1
+  // is. x: 0 .. 31, or 63 with 64 rows.
   template <int kRows>
   HWY_INLINE hn::Vec<U32> at(hn::Vec<U32> x, hn::Vec<U32> y) const {
     const U32 d;
@@ -171,18 +170,18 @@ class OpenTable {
     const auto index = hn::Add(hn::And(y, hn::Set(d, 63U)), right);
     const auto row = hn::GatherIndex(d, words_, hn::BitCast(I32(), index));
 #endif
-    // The last columns lie beyond all pixels; each is read as the last one that is stored.
+    // The last columns lie beyond all pixels and are not stored; each is read as the last stored one.
     return hn::Shr(row, hn::Min(shift, hn::Set(d, 31U)));
   }
 
  private:
-  // Wide tables have two words a row. The second, kRight words behind the first, repeats the first one's last
-  // columns, so that every pixel and its neighbour stand in one word.
+  // Wide tables have two words a row. The second word, kRight words behind the first, repeats the first word's last
+  // columns, so that each pixel stands in one word with its right neighbour.
   static constexpr int32_t kRightColumn = 28;
   static constexpr uint32_t kRight = 128;
 
-  // Stores the open pixels from column `first` of the rectangle on, `shift` bits up. Returns whether there
-  // are none.
+  // Stores the open pixels from column `first` of the rectangle on, shifted up by `shift` bits. Returns whether none is
+  // open.
   bool fill(int32_t first, uint32_t* words, int shift) {
     const U32 d;
     const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
@@ -225,8 +224,7 @@ class OpenTable {
     if (kRows == 16) {
       return hn::Vec<U32>{_mm512_permutexvar_epi32(row.raw, hn::Load(d, words).raw)};
     }
-    // Highway 1.0 has no name for a look-up in two vectors. The instruction reads the lowest five bits of a
-    // row.
+    // Highway 1.0 has no function that looks up in two vectors. The instruction reads the lowest five bits of a row.
     const auto of_32 = [&](const uint32_t* part) {
       return hn::Vec<U32>{
           _mm512_permutex2var_epi32(hn::Load(d, part).raw, row.raw, hn::Load(d, part + 16).raw)};

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Appends the pairs of the lanes in `mask`. With kGray without the entries' numbers, which greys do not need.
+// Appends the pairs of the lanes in `mask`; with kGray, without the entries' numbers, which greys do not need.
 template <bool kGray = false>
 HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> number, hn::Vec<U32> place,
                        Pairs* pairs) {
@@ -38,7 +38,7 @@ inline void origin_of(const WideFrame& frame, const Batch& batch, float (&origin
   }
 }
 
-// Tests in integers what floats could not tell.
+// Tests in integers the pairs that floats could not decide.
 void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
   Pairs& pairs = batch->unclear;
   batch->counts.exact += pairs.count;
@@ -144,7 +144,7 @@ HWY_INLINE void append_hits(hn::Mask<F32> hit, const Unpacked<kUnit>& pairs, con
   batch->hits += hn::CountTrue(du, chosen);
 }
 
-// Remembers which lanes of each vector of pairs floats could not tell. They are put aside after all vectors
+// Remembers which lanes of each vector of pairs floats could not decide. These pairs are put aside after all vectors
 // have been tested: a branch in each vector would be mispredicted now and then, just where much waits for it.
 class Unclear {
  public:
@@ -170,8 +170,8 @@ class Unclear {
   uint32_t lanes_[Pairs::kSize];
 };
 
-// Keeps only the pairs that were hit, and those whose rays are not clear: the search for greys, which comes
-// next, finds these unclear again. Only with greys.
+// Keeps only the pairs that were hit and those that are unclear; the search for greys, which comes next, finds the
+// latter unclear again. Only with greys.
 template <bool kPerspective>
 HWY_NOINLINE void drop_missed(const WideFrame& frame, const float (&origin)[3], const Depths& depths,
                               bool* written, Batch* batch) {
@@ -202,12 +202,11 @@ HWY_NOINLINE void drop_missed(const WideFrame& frame, const float (&origin)[3], 
   pairs->count = count;
 }
 
-// Tests the pairs that wait in floats where these can tell, and puts aside the rest. Sets `written` when
-// something was written into the picture.
+// Tests the waiting pairs in floats, and puts aside those that floats do not decide. Sets `written` when something was
+// written into the picture.
 //
-// A perspective camera first drops the pairs that were not hit, so that greys are found only for those that
-// were. A parallel camera's rays hit nearly all of theirs, and its greys take no division: there one pass
-// does both.
+// For a perspective camera the pairs that were not hit are dropped first, so that greys are found only for hits. A
+// parallel camera's rays hit nearly all of their boxes, and its greys take no division: there one pass does both.
 template <bool kPerspective, bool kUnit, Keep kKeep>
 HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
   constexpr bool kGray = kKeep != Keep::kNumbers;

@@ -1,5 +1,5 @@
 /// @file pick-inl.h
-/// Picks from blocks of small voxels, behind all that is drawn, those with open pixels.
+/// Picks the voxels that have open pixels, from blocks of small voxels that lie behind all that is drawn.
 #if defined(THIMBLE_WIDE_KERNELS_PICK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_PICK_INL_H_
 #undef THIMBLE_WIDE_KERNELS_PICK_INL_H_
@@ -15,25 +15,23 @@ namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
 // An approximate map of a block's single voxels to the picture, without divisions. A voxel at v in the cube
-// covers columns from low = (x.v + x[3]) (s.v + s[3]) + low_x to low + wide_x, and rows alike. Steps along y
-// are for 1024 of v, as it stands in an entry. An orthographic map has no s, and x[3] is part of low_x.
+// covers columns from low = (x.v + x[3]) (s.v + s[3]) + low_x to low + wide_x, and rows alike. The steps along y are
+// divided by 1024, since an entry holds v's y times 1024. An orthographic map has no s, and x[3] is part of low_x.
 struct Linear {
-  bool is_sound;  // false: the block is so near that there is no such map
+  bool is_sound;  // false: the block is too near for such a map
   float x[4], y[4], s[4];
   double low_x, low_y;
   float wide_x, wide_y;
 };
 
-// Finds the map of a block. With m the block's centre, e = c - m, g = (U - column(m) W) / W.m and q = W.e /
-// W.m,
+// Finds the map of a block. Let m be the block's centre, e = c - m, g = (U - column(m) W) / W.m and q = W.e / W.m. Then
 //
 //     column(c) = column(m) + g.e / (1 + q) = column(m) + g.e (1 - q) + g.e q^2 / (1 + q)
 //
-// for |e| <= h on every axis. The last term is at most |g|_1 h q0^2 / (1 - q0) with q0 = |W|_1 h / W.m. It is
-// added to the extent, which itself is that of frame.h with |U - column(c) W|_1 <= W.m |g|_1 + |column(c) -
-// column(m)| |W|_1.
+// for |e| <= h on every axis. The last term is at most |g|_1 h q0^2 / (1 - q0) with q0 = |W|_1 h / W.m. It is added to
+// the extent, which is that of frame.h with |U - column(c) W|_1 <= W.m |g|_1 + |column(c) - column(m)| |W|_1.
 //
-// Here too there are no divisions: 1 / (1 - q) <= 1 + q + 4/3 q^2 for q <= 1/4.
+// This takes no divisions either: 1 / (1 - q) <= 1 + q + 4/3 q^2 for q <= 1/4.
 template <bool kPerspective>
 HWY_INLINE void find_linear(const WideFrame& frame, const uint32_t (&block)[3], uint32_t side,
                             const Place& place, Linear* linear) {
@@ -82,7 +80,7 @@ HWY_INLINE void find_linear(const WideFrame& frame, const uint32_t (&block)[3], 
       half = (sum + (1.25F * all + curve) * frame.norm_w) * factor + rounding * per_least + spread + curve +
              all * rounding_s;
     }
-    // The map rounds four sums and products of at most 1024 times the steps.
+    // The map rounds four sums and products, each at most 1024 times the steps.
     half += steps * (1024.0F / (1 << 21));
     to[1] *= 1.0F / 1024;
     to[3] = -corner;
@@ -110,7 +108,7 @@ struct PickPlaces {
   hn::Vec<U32> first;        // the table's first pixel
 
   HWY_INLINE PickPlaces(const Linear& map, const Rectangle& where) : linear(map) {
-    // So much more than FixedPoint::kBase that cutting rounds up.
+    // Exceeds FixedPoint::kBase by so much that cutting off rounds up.
     constexpr double kBase = FixedPoint::kBase + 1 - 1.0 / FixedPoint::kOne - static_cast<double>(kError);
     const auto base_of = [](double low, int32_t first_px) {  // counted as in the table
       return hn::Set(F32(), static_cast<float>(low - (first_px - OpenTable::kMargin) + kBase));
@@ -122,8 +120,8 @@ struct PickPlaces {
     };
     least_x = least(linear.wide_x);
     least_y = least(linear.wide_y);
-    // The margin may lie outside the picture. Boxes with more pixels keep x and y modulo 2^14 each: the
-    // pixels that are open are in the picture.
+    // The margin may lie outside the picture. Boxes of several pixels keep x and y modulo 2^14 each, which suffices
+    // since open pixels are in the picture.
     const uint32_t x = static_cast<uint32_t>(where.x0 - OpenTable::kMargin);
     const uint32_t y = static_cast<uint32_t>(where.y0 - OpenTable::kMargin);
     first = hn::Set(U32(), kOne ? (y << 16) + x : (y << 16 | (x & 0xFFFFU)) & kPlacePixels);
@@ -148,13 +146,13 @@ struct PickPlaces {
     }
   }
 
-  // Finds which of four pixels are open of those that each box might cover; as they stand in Picked::place.
-  // `open`: of the first row; `part_x`, `part_y`: the fractions.
+  // Finds which of the four pixels that each box might cover are open, as bits of Picked::place. `open` holds those
+  // of the first row; `part_x` and `part_y` are the fractions.
   HWY_INLINE hn::Vec<U32> open_of_four(const OpenTable& table, hn::Vec<U32> at_x, hn::Vec<U32> at_y,
                                        hn::Vec<I32> part_x, hn::Vec<I32> part_y, hn::Vec<U32> open) const {
     const I32 di;
     const U32 du;
-    // The row behind the last one is the first, of the margin.
+    // The row behind the last one wraps to the first, which is of the margin.
     const auto below = table.template at<kRows>(at_x, hn::Add(at_y, hn::Set(du, 1U)));
     const auto has_more = hn::RebindMask(du, hn::Gt(part_y, hn::Set(di, least_y + FixedPoint::kOne)));
     const auto has_wider = hn::RebindMask(du, hn::Gt(part_x, hn::Set(di, least_x + FixedPoint::kOne)));
@@ -165,9 +163,9 @@ struct PickPlaces {
   }
 };
 
-// Picks boxes from number `at` on until none is left or there is no more room. Returns where it stopped. With
-// kOne no box covers more than one pixel, and the pairs wait for their test at once; else no box covers more
-// than two in a row or column. Greys need no numbers of entries.
+// Picks boxes from number `at` on until none is left or the room is full. Returns the number at which it stopped.
+// With kOne no box covers more than one pixel, and it appends pairs at once; else no box covers more than two pixels
+// in a row or column. Greys need no numbers of entries.
 template <bool kPerspective, bool kOne, bool kGray, int kRows>
 HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const OpenTable& table, uint32_t at,
                                 Batch* batch) {
@@ -182,7 +180,7 @@ HWY_NOINLINE uint32_t pick_some(const Run& run, const Linear& linear, const Open
   const PickPlaces<kPerspective, kOne, kRows> of(linear, run.place.where);
   constexpr int kFraction = FixedPoint::kFraction;
   const auto fraction = hn::Set(du, FixedPoint::kOne - 1U);
-  // A box beyond the table, at the edge of the tile, gets some place in it: perhaps a pair too many.
+  // A box beyond the table, at the edge of the tile, gets some place in the table: that may add a useless pair.
   const auto last_column = hn::Set(du, kRows < 64 ? 31U : 63U);
   const auto place_rows = hn::Set(du, (kRows - 1U) << 16);
   const uint32_t* ahead = batch->ahead;
@@ -239,8 +237,8 @@ HWY_INLINE uint32_t pick_in(const Run& run, const Linear& linear, const OpenTabl
   }
 }
 
-// Pairs a block of small single voxels, behind all that is in the picture, with those of their pixels that
-// are open. Returns false, with nothing done, where the block is not one for this.
+// Pairs the voxels of a block with those of their pixels that are open: small single voxels, behind all that is in the
+// picture. Returns false, with nothing done, for other blocks.
 template <bool kPerspective>
 bool pick_boxes(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const Rectangle& where = run.place.where;
@@ -258,7 +256,7 @@ bool pick_boxes(const WideFrame& frame, const Run& run, const Depths& depths, Ba
     return false;
   }
   bool written = false;
-  // What waits is drawn first, so that its pixels are known to be covered.
+  // Draws what waits first, so that its pixels are known to be covered.
   if (batch->boxes.count != 0 || batch->picked.count + batch->waiting.count >= kMostBoxesWaiting) {
     test_boxes<kPerspective, true>(frame, depths, &written, batch);
   }

@@ -1,4 +1,4 @@
-// From the nearest box of each pixel to its grey or face; and what is done once a block or picture.
+// Finds the grey or face of each pixel from its nearest box; and holds what is done once for a block or a picture.
 #include "wide/kernels.h"
 
 #undef HWY_TARGET_INCLUDE

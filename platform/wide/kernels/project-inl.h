@@ -14,8 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// How far boxes reach from the pixels of their centres: the bound of frame.h for the part of the tile in
-// which the run may be seen.
+// How far boxes reach from the pixels of their centres: the bound of frame.h, for the part of the tile in which the run
+// may be seen.
 struct Reach {
   float x, y;
   float slack_x, slack_y;
@@ -44,8 +44,7 @@ struct Reach {
   }
 };
 
-// A vector of boxes on the picture: each might cover the pixels low_x .. low_x + wide_x, low_y .. low_y +
-// wide_y.
+// A vector of boxes on the picture: each might cover the pixels low_x .. low_x + wide_x, low_y .. low_y + wide_y.
 struct Projected {
   hn::Vec<U32> entry;
   hn::Vec<F32> low_x, low_y;
@@ -77,7 +76,7 @@ HWY_INLINE Projected project(const WideFrame& frame, const Run& run, const Recta
   hn::Vec<U32> level;
   hn::Vec<U32> entry_x;
   unpack_side(du, entry, kUnit, &level, &entry_x);
-  Points<F32> center;  // less half a voxel where all boxes are single voxels: enter_cube
+  Points<F32> center;  // half a voxel less where all boxes are single voxels: enter_cube adds it
   center.x = hn::ConvertTo(d, hn::BitCast(di, entry_x));
   center.y = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<10>(entry), within)));
   center.z = hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<20>(entry), within)));

@@ -1,5 +1,5 @@
 /// @file queue-inl.h
-/// The queue of boxes: they wait to be paired with their pixels, and the pairs for their test.
+/// The queues: boxes wait to be paired with their pixels, and pairs wait for their test.
 #if defined(THIMBLE_WIDE_KERNELS_QUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_KERNELS_QUEUE_INL_H_
 #undef THIMBLE_WIDE_KERNELS_QUEUE_INL_H_
@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Pairs some boxes with each of their pixels. Leaves out the covered ones as long as nothing was written into
-// the picture meanwhile (`written`).
+// Pairs some boxes with each of their pixels. Leaves out covered pixels as long as nothing was written into the picture
+// meanwhile (`written`).
 template <bool kPerspective, bool kUnit>
 HWY_INLINE void pair_vector(const WideFrame& frame, const Depths& depths, hn::Mask<F32> live,
                             hn::Vec<U32> entry, hn::Vec<U32> number, hn::Vec<U32> place, hn::Vec<U32> wide_x,
@@ -113,26 +113,26 @@ HWY_NOINLINE void pair_boxes(const WideFrame& frame, const Depths& depths, bool*
   batch->all_behind = true;
 }
 
-// Boxes of at most so many pixels a side are paired; larger ones are drawn row by row. In sorted runs smaller
-// ones are too: it pays that they cover their pixels at once.
+// Boxes of at most so many pixels a side are paired; larger ones are drawn row by row. In sorted runs smaller boxes are
+// drawn so, too: it pays that they cover their pixels at once.
 constexpr float kMostQueued = 8;
 constexpr float kMostQueuedSorted = 3;
-// When so many boxes wait, they are drawn before the next run is looked up.
+// When so many boxes wait, they are drawn before the next run looks up open pixels.
 constexpr size_t kMostBoxesWaiting = 128;
 
-// Places on the picture as fixed-point numbers: a float that has kBase added to it ends in 12 bits of
-// fraction, and above them 10 bits of the whole number.
+// Places on the picture as fixed-point numbers: a float to which kBase is added ends in 10 bits of the whole number and
+// 12 bits of fraction.
 struct FixedPoint {
   static constexpr int kFraction = 12;
   static constexpr int32_t kOne = 1 << kFraction;
   static constexpr double kBase = 3072;
   static constexpr int32_t kFirst = 0x45400000 >> kFraction;  // the whole number of the float 3072
-  // What is added is within that of what it should be, as long as all is below 4096.
+  // A sum is within this of its exact value, as long as it is below 4096.
   static constexpr float kRounding = 1.0F / (1 << (kFraction + 1));
 };
 
-// Calls `fill`, with `first` and `second` as constants, for boxes 0 .. count - 1 of a run: it takes the
-// number of the next one and returns where it stopped for want of room, which `make_room` then makes.
+// Calls `fill`, with `first` and `second` as constants, for boxes 0 .. count - 1 of a run. `fill` gets the number of
+// the next box and returns the number at which it ran out of room; `make_room` then makes room.
 template <class Fill, class MakeRoom>
 HWY_INLINE void in_rooms(uint32_t count, bool first, bool second, const Fill& fill,
                          const MakeRoom& make_room) {
@@ -150,7 +150,7 @@ HWY_INLINE void in_rooms(uint32_t count, bool first, bool second, const Fill& fi
   }
 }
 
-// Pairs and tests everything that waits. Unclear pairs may be left.
+// Pairs and tests all that waits. Unclear pairs may be left.
 template <bool kPerspective, bool kUnit>
 HWY_INLINE void test_boxes(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
   pair_boxes<kPerspective, kUnit>(frame, depths, written, batch);
@@ -169,7 +169,7 @@ HWY_INLINE void append_boxes(hn::Mask<U32> mask, hn::Vec<U32> entry, hn::Vec<U32
   boxes->count += hn::CountTrue(d, mask);
 }
 
-// Readies the batch for the run's cube: draws what waits of another cube first.
+// Readies the batch for the run's cube; first draws what waits of another cube.
 template <bool kPerspective, bool kUnit>
 void enter_cube(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   if (batch->corner[0] == run.corner[0] && batch->corner[1] == run.corner[1] &&

@@ -19,8 +19,8 @@ namespace {
 // Draws a run in no order. Boxes with no open pixel are dropped first; the others wait in the batch until
 // there are enough to fill vectors.
 //
-// As long as whole runs wait, all that is in the picture when they are paired lies before them, so that
-// covered pixels can be left out. Where part of a run was drawn already, `all_behind` is cleared.
+// As long as only whole runs wait, all that is in the picture when they are paired lies before them, so covered pixels
+// can be left out. Where part of a run was drawn already, `all_behind` is cleared.
 template <bool kPerspective, bool kUnit>
 void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const F32 d;
@@ -36,7 +36,7 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
   Boxes& queue = batch->boxes;
   bool written = false;
   if (run.behind) {
-    // What waits is drawn first, so that its pixels are known to be covered.
+    // Draws what waits first, so that its pixels are known to be covered.
     if (queue.count >= kMostBoxesWaiting || batch->picked.count != 0) {
       test_boxes<kPerspective, kUnit>(frame, depths, &written, batch);
     }
@@ -76,7 +76,7 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
     }
     const auto place = hn::Or(hn::ShiftLeft<16>(y), x);
     if (kUnit && !run.behind) {
-      // A box of one pixel is a pair as it is.
+      // A box of one pixel is already a pair.
       Pairs& waiting = batch->waiting;
       append(hn::And(seen, hn::Lt(widest, hn::Set(d, 1.0F))), boxes.entry, hn::Iota(du, run.first + at),
              place, &waiting);
@@ -88,7 +88,7 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
         continue;
       }
     }
-    // Without a branch on whether any is left: that would be mispredicted in every third vector.
+    // No branch on whether any box is left: it would be mispredicted in every third vector.
     append_boxes(hn::RebindMask(du, seen), boxes.entry, hn::Iota(du, run.first + at), place,
                  small_number(boxes.wide_x), small_number(boxes.wide_y), &queue);
     batch->all_behind = batch->all_behind && run.behind && !cut;
@@ -99,7 +99,7 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
   }
 }
 
-// Draws a run from front to back: what is in the picture lies in front of all that follows.
+// Draws a run from front to back: all that is in the picture lies in front of what follows.
 template <bool kPerspective, bool kUnit>
 void draw_sorted_of(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const F32 d;
@@ -125,7 +125,7 @@ void draw_sorted_of(const WideFrame& frame, const Run& run, const Depths& depths
     if (kPerspective) {
       large = hn::Or(large, boxes.crossing);
     }
-    if (!hn::AllFalse(d, large)) {  // then all boxes are drawn in their order
+    if (!hn::AllFalse(d, large)) {  // then all boxes of the vector are drawn one by one, in order
       draw_large_of<kPerspective>(frame, run, at, boxes, hn::Or(large, boxes.seen), true, &written, depths,
                                   batch);
       continue;
@@ -158,8 +158,7 @@ void draw_sorted_of(const WideFrame& frame, const Run& run, const Depths& depths
   }
 }
 
-// Finds which boxes of the run may be seen at open pixels: their entries and numbers, in the order of the
-// run.
+// Finds which boxes of the run may be seen at open pixels, in the order of the run: their entries and numbers.
 template <bool kPerspective, bool kUnit>
 uint32_t cull_run_of(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch,
                      uint32_t* entries, uint32_t* numbers) {
@@ -178,7 +177,7 @@ uint32_t cull_run_of(const WideFrame& frame, const Run& run, const Depths& depth
   uint32_t count = 0;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
     const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
-    // Wider or taller boxes are kept without a look.
+    // Keeps wider or taller boxes without looking at pixels.
     const auto most = hn::Set(d, 24.0F);
     auto chosen = hn::And(boxes.seen, hn::Or(hn::Gt(boxes.wide_x, most), hn::Gt(boxes.wide_y, most)));
     if (kPerspective) {

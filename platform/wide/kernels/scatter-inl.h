@@ -15,20 +15,20 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// A map of the single voxels of a block that lies wholly before the eye to the picture. On each axis of the
-// picture, with a = (row of the projection).v + `from`, a voxel covers pixels from a / depth + low to (a +
-// across) / depth + high, counted from the block's first.
+// Maps the single voxels of a block that lies wholly in front of the eye to the picture. On each axis of the picture,
+// with a = (row of the projection).v + `from`, a voxel covers the pixels from a / depth + low to
+// (a + across) / depth + high, counted from the block's first pixel.
 struct Scatter {
   float from_x, from_y;
   float across_x, across_y;
   float low_x, low_y, high_x, high_y;
-  int32_t last_x, last_y;  // of the block's pixels
+  int32_t last_x, last_y;  // the block's last pixels
   float across, besides;
 
-  // The sum and its constant are each rounded. Constants of more than 4096 are less exact, as columns of so
-  // many are: Reach covers that.
+  // The sum and its constant are each rounded. Constants above 4096 are less exact, as such columns are; Reach covers
+  // that.
   static constexpr double kError = 2 * static_cast<double>(FixedPoint::kRounding);
-  static constexpr int32_t kMostPx = 1000;  // of the block, so that all sums are below 4096
+  static constexpr int32_t kMostPx = 1000;  // pixels of a block's side: so all sums are below 4096
 
   Scatter(const WideFrame& frame, const Run& run, const Batch& batch) {
     const Rectangle& where = run.place.where;
@@ -39,7 +39,7 @@ struct Scatter {
     from_y = static_cast<float>(static_cast<double>(batch.constant[1]) - half_y);
     across_x = static_cast<float>(2 * half_x);
     across_y = static_cast<float>(2 * half_y);
-    // What is added makes cutting round the first pixel up and the last one down.
+    // Adds so much that cutting off rounds the first pixel up and the last one down.
     const auto low = [](float slack, int32_t first) {
       return static_cast<float>(FixedPoint::kBase + 1 - 1.0 / FixedPoint::kOne - kError -
                                 static_cast<double>(slack) - first);
@@ -58,11 +58,11 @@ struct Scatter {
     besides = 2 * slack + static_cast<float>(4 * kError) + 0.001F;
   }
 
-  // The most that a box measures on the picture, at that depth and beyond.
+  // The most pixels that a box measures at this depth or farther away.
   float widest(float per_depth) const { return across * per_depth + besides; }
 };
 
-// Scatters boxes from number `at` on until none is left or there is no more room. Returns where it stopped.
+// Scatters boxes from number `at` on until none is left or the room is full. Returns the number at which it stopped.
 // With kMany boxes may cover several pixels.
 template <bool kPerspective, bool kMany, bool kGray>
 HWY_NOINLINE uint32_t scatter_some(const WideFrame& frame, const Run& run, const Scatter& scatter,
@@ -91,7 +91,7 @@ HWY_NOINLINE uint32_t scatter_some(const WideFrame& frame, const Run& run, const
     }
     const auto from_x = affine(frame.u, voxel, hn::Set(d, scatter.from_x));
     const auto from_y = affine(frame.v, voxel, hn::Set(d, scatter.from_y));
-    // A place beside the block's pixels comes out as some number on that side of them.
+    // A place beside the block's pixels becomes some number on the same side of them.
     const auto whole = [&](hn::Vec<F32> a, float last) {
       const auto sum = hn::BitCast(di, hn::MulAdd(a, per_depth, hn::Set(d, last)));
       return hn::Sub(hn::ShiftRight<FixedPoint::kFraction>(sum), hn::Set(di, FixedPoint::kFirst));
@@ -121,8 +121,8 @@ HWY_NOINLINE uint32_t scatter_some(const WideFrame& frame, const Run& run, const
   return at;
 }
 
-// Draws a block of single voxels in no order that does not reach the eye's plane. Returns false, with nothing
-// done, where it is not such a block.
+// Draws, in no order, a block of single voxels that does not reach the eye's plane. Returns false, with nothing done,
+// for other blocks.
 template <bool kPerspective>
 bool scatter_boxes(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const Rectangle& where = run.place.where;

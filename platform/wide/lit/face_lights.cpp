@@ -9,12 +9,12 @@
 namespace thimble::wide {
 namespace {
 
-constexpr uint32_t kOpen = 1U << 12;  // of occlusion: nothing is in the way
+constexpr uint32_t kOpen = 1U << 12;  // occlusion: nothing is in the way
 
 // The calls of ray_map.h refuse no ray here: each begins on a face of the world, and its direction has at most 15 bits
 // and is not 0. So their statuses are not looked at.
 
-// What the material that a ray to a light enters first does to it. Nothing, or beyond the lamp: 0.
+// What the material that a ray to a light enters first does to the ray; 0 where it enters nothing before the light.
 enum ShadowClass : uint8_t { kBlocks = 1, kGoesOn = 2, kSpares = 3 };
 
 uint32_t rays_around(EffectSet effects, const LitScene& scene) {
@@ -160,7 +160,7 @@ void FaceLights::occlude() {
   frame_.counts.hits[kKind] += hits;
 }
 
-// Which faces' rays may begin in water: those in the box of its columns, or on it.
+// Notes which faces' rays may begin in water: those of faces in, or on, the box around the columns of water.
 void FaceLights::note_water() {
   const WaterSurface& water = frame_.scene.water;
   const int32_t sizes[3] = {water.width * Q8::kOne, water.depth * Q8::kOne, water.highest_q8};
@@ -196,7 +196,7 @@ void FaceLights::sort_by_face() {
   std::copy_n(next, kInside, face_ends_);
 }
 
-// The rays to a lamp that brings light; the number of them.
+// Makes the rays to a lamp from the faces to which it brings light; returns how many.
 uint32_t FaceLights::aim_at_lamp(const Light& light) {
   if (light.reach == 0) {
     return 0;
@@ -254,7 +254,7 @@ void FaceLights::find_shadows(const Light& light, uint32_t asking) {
   }
 }
 
-// A ray to a light as the core keeps it.
+// Makes of a ray to a light what the core keeps of it.
 lit::LightRay FaceLights::ray_of(const Light& light, uint32_t number) const {
   lit::LightRay ray;
   ray.ray = parts_.rays[number];
@@ -264,7 +264,7 @@ lit::LightRay FaceLights::ray_of(const Light& light, uint32_t number) const {
   return ray;
 }
 
-// Answers what rays through something clear have asked.
+// Answers the questions of rays that go through something clear.
 void FaceLights::answer() {
   lit::Asked& closest = parts_.questions[static_cast<int>(lit::Question::kClosest)];
   (void)first_hit(map_, {closest.rays, closest.count}, {parts_.hits, closest.count});
@@ -287,8 +287,8 @@ void FaceLights::answer() {
   closest.count = before.count = on.count = 0;
 }
 
-// Follows the rays of which something clear is the first that they enter, stretch by stretch, by the core's own
-// function. What a ray begins in it enters first.
+// Follows the rays that enter something clear first, stretch by stretch, by the core's own function. (A ray enters
+// first what it begins in.)
 void FaceLights::go_through(const Light& light, uint32_t asking) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < asking; ++i) {
@@ -299,7 +299,7 @@ void FaceLights::go_through(const Light& light, uint32_t asking) {
       parts_.under_way[count++] = i;
     }
   }
-  // It ends: a ray has a bounded number of stretches.
+  // The loop ends, since a ray has a bounded number of stretches.
   for (uint32_t known = 0; count != 0; known = 1) {
     uint32_t left = 0;
     for (uint32_t n = 0; n < count; ++n) {
@@ -326,7 +326,7 @@ void FaceLights::filter_by_water(const Light& light, uint32_t number) {
   std::copy_n(ray.brightness, 3, parts_.bright[number].c);
 }
 
-// Adds what the rays to a light bring, where nothing is in the way.
+// Adds the light that the rays to a light bring, where nothing is in the way.
 void FaceLights::add_arriving(const Light& light, uint32_t asking) {
   if (asking == 0) {
     return;

@@ -1,6 +1,6 @@
 /// @file face_lights.h
-/// The light on many faces at once: ambient light, occlusion, suns and lamps, with shadows, also through what
-/// is clear and under water. What lit::face_color says of one of them, for all but slopes.
+/// Finds the light on many faces at once: ambient light, occlusion, suns and lamps, with shadows, also through what
+/// is clear and under water. It is what lit::face_color finds for one face; slopes are not handled here.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
 #define THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
 
@@ -16,18 +16,18 @@ namespace thimble::wide {
 /// A lit point of a face.
 struct LitFace {
   Vec3Q8 at;
-  uint32_t pixel;  ///< the caller's
+  uint32_t pixel;  ///< for the caller's use
   uint8_t face;  ///< 2 * axis, and 1 more where it looks to larger coordinates; 6 more: the ray began inside
-  uint8_t material;  ///< of use to OpaqueStream alone
+  uint8_t material;  ///< only OpaqueStream uses it
 };
 
-/// How much of everything there is for so many faces.
+/// How large the arrays for so many faces are.
 struct FaceLightsShape {
   FaceLightsShape(EffectSet effects, const LitScene& scene, uint32_t face_count);
 
   uint32_t faces;
-  uint32_t around;   ///< rays of occlusion a face
-  bool has_lamps;    ///< lights that are points
+  uint32_t around;   ///< rays of occlusion for each face
+  bool has_lamps;    ///< some lights are points
   bool has_through;  ///< shadows through what is clear
   bool has_water;    ///< shadows under water
 };
@@ -37,19 +37,19 @@ struct FaceLightsParts {
 
   LitFace* faces;
   lit::Color* light;   ///< by face
-  Ray* rays;           ///< of a light, or of occlusion
-  uint32_t* asking;    ///< the faces that they come from
-  uint8_t* any;        ///< what they meet: 0, or a class of face_lights.cpp
-  RayPoint* points;    ///< where lamps are on them; where rays of occlusion enter something
-  lit::Color* bright;  ///< what they bring, if nothing is in the way
-  // Of lamps: faces that look one way side by side.
+  Ray* rays;           ///< rays to a light, or of occlusion
+  uint32_t* asking;    ///< the faces that the rays come from
+  uint8_t* any;        ///< what the rays meet: 0, or a class of face_lights.cpp
+  RayPoint* points;    ///< where on the rays the lamp is; where rays of occlusion enter something
+  lit::Color* bright;  ///< the light that the rays bring if nothing is in the way
+  // For lamps: faces that look the same way stand side by side.
   uint32_t* order;
   int32_t* at[3];
   int32_t* direction[3];
   int32_t* numerator;
   int32_t* brightness[3];
   uint8_t* in_water;  ///< by face: its rays may begin in water
-  // Of what is clear.
+  // For shadows through what is clear.
   uint32_t* under_way;
   lit::LightRay* through;
   lit::LightWay* ways;
@@ -61,24 +61,24 @@ struct FaceLightsParts {
 
 class FaceLights {
  public:
-  static constexpr uint32_t kInside = 6;  ///< the first of the faces of what a ray begins in
+  static constexpr uint32_t kInside = 6;  ///< the first face number of voxels in which a ray begins
   static constexpr uint32_t kSides = 12;
 
   FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker);
-  // Its frame that asks points to its other one.
+  // asking_ points to once_.
   FaceLights(const FaceLights&) = delete;
   FaceLights& operator=(const FaceLights&) = delete;
 
-  /// To be filled by the caller; then `shine` finds the light of so many of them.
+  /// The caller fills these; then `shine` finds the light of the first `count`.
   LitFace* faces() const { return parts_.faces; }
   void shine(uint32_t count);
   const lit::Color* light() const { return parts_.light; }
   LitCounts counts() const;
 
  private:
-  // What is the same for all faces that look one way.
+  // What all faces share that look the same way.
   struct Side {
-    lit::Spot spot;  // with its face alone
+    lit::Spot spot;  // only its face is set
     lit::Color ambient;
   };
 
@@ -97,7 +97,7 @@ class FaceLights {
 
   lit::Frame frame_;
   lit::Frame once_;         // counts the stretches of rays through what is clear
-  lit::AskedFrame asking_;  // its own counts are nobody's
+  lit::AskedFrame asking_;  // nobody reads its counts
   lit::KnownRay known_;
   const RayMap& map_;
   FaceLightsShape shape_;

@@ -1,5 +1,5 @@
 /// @file kernels.h
-/// The loops of lit pictures that are compiled for several instruction sets, as those of wide/kernels.h.
+/// The loops of lit pictures. They are compiled for several instruction sets, as those of wide/kernels.h.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_KERNELS_H
 #define THIMBLE_PLATFORM_WIDE_LIT_KERNELS_H
 
@@ -8,35 +8,35 @@
 
 namespace thimble::wide {
 
-/// So many numbers behind the last are read, and written.
+/// So many numbers behind the last one may be read and written.
 inline constexpr size_t kMostLightLanes = 8;
 
-/// Of rays of these directions, none zero, the share in 1/4096 that lit::sky_color mixes into the horizon: of
-/// the zenith where z is not below 0, else of the ground.
+/// Finds for rays of these directions, none of them zero, the share in 1/4096 that lit::sky_color mixes into the
+/// horizon's colour: of the zenith's where z is not below 0, else of the ground's.
 void find_sky_shares(const int32_t* x, const int32_t* y, const int32_t* z, size_t count, int32_t* shares);
 
-/// A lamp, and points on faces that look one way. Of three axes the faces' own comes first.
+/// A lamp, and points on faces that look the same way. Of three axes the faces' own comes first.
 struct LampRays {
   int32_t place[3];       ///< the lamp's, in 1/256 voxel
-  const int32_t* at[3];   ///< the points', likewise
+  const int32_t* at[3];   ///< the points', in 1/256 voxel
   bool is_negative;       ///< the faces look to smaller coordinates
   uint16_t reach;         ///< the lamp's, not 0
   uint16_t color_q8[3];   ///< the lamp's
   int32_t* direction[3];  ///< gets the rays' directions
   int32_t* numerator;     ///< gets 256 times the t of the lamp on each
-  /// Get what arrives if nothing is in the way: 0, 0, 0 where the face is turned away.
+  /// Gets the light that arrives if nothing is in the way: 0, 0, 0 where the face is turned away.
   int32_t* brightness[3];
 };
 
-/// lit::light_ray, for many points. Of a brightness that is 0 the rest means nothing.
+/// Does as lit::light_ray for many points. Where a brightness is 0 the other results mean nothing.
 void aim_at(const LampRays& lamp, size_t count);
 
-/// Of columns of a slope's window (slope_table.h), the gradient at a point as lit::surface_normal adds it up:
-/// `point` and what comes are along the columns, along their rows, and across; in 1/64 voxel of the window.
-/// Across the columns the point is in the window's sixth or seventh voxel.
+/// Finds the gradient at a point as lit::surface_normal adds it up, from the columns of a slope's window
+/// (slope_table.h). `point` and `gradient` are along the columns, along their rows, and across; in 1/64 voxel of the
+/// window. Across the columns the point is in the window's sixth or seventh voxel.
 void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradient);
 
-/// Lanes of the words that `turn_words` turns.
+/// How many lanes of words `turn_words` turns.
 inline constexpr size_t kTurnLanes = 16;
 
 /// Turns 16 words of 16 bits in each lane: bit j of word k and bit k of word j change places.

@@ -10,12 +10,11 @@
 namespace thimble::wide {
 namespace {
 
-// Enough rays for vectors to be full most of the time, few enough for a second-level cache.
+// So many rays keep vectors full most of the time, and fit a second-level cache.
 constexpr uint32_t kSlots = 1024;
 constexpr uint32_t kLeastSlots = 64;
 
-// Either kind of stream fits in what was asked for, so that a workspace serves all sets of effects within
-// one.
+// Either kind of stream fits into these bytes, so a workspace for a set of effects serves all sets within it.
 size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
   return std::max(StreamShape(effects, scene, slots).bytes(), OpaqueShape(effects, scene, slots).bytes());
 }
@@ -23,7 +22,7 @@ size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
 template <class Stream, class Shape>
 Status draw_by(const lit::Frame& frame, const RayMap& map, PixelFlow* flow, Bytes workspace, Threads* threads,
                LitCounts* counts) {
-  // As many threads as there is room for; then as many pixels at once.
+  // As many threads as there is room for; then as many pixels at once as there is room for.
   size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
   workers = std::min(workers, workspace.size / least_lit_workspace_bytes(frame.effects, frame.scene));
   if (workers == 0) {

@@ -18,8 +18,8 @@ lit::Color color_of(const Rgb8& color) {
   return {{color.r * lit::kLevel, color.g * lit::kLevel, color.b * lit::kLevel}};
 }
 
-// Whole part of a quotient of integers, of which the dividend is below 2^52 and the divisor below 2^21: a
-// double is off by less than what tells it from the next whole number.
+// The whole part of a quotient of integers; the dividend is below 2^52 and the divisor below 2^21, so a double is off
+// by less than what separates the quotient from the next whole number.
 int64_t whole_quotient(int64_t dividend, int64_t divisor) {
   return static_cast<int64_t>(static_cast<double>(dividend) / static_cast<double>(divisor));
 }
@@ -56,7 +56,7 @@ void OpaqueParts::lay_out(const OpaqueShape& shape, Taker* taker) {
 
 namespace {
 
-// Where the parts begin, and what their arrays are taken from after them.
+// Finds where the parts begin; returns what their arrays are taken from.
 Taker laid_out(const OpaqueShape& shape, Bytes bytes, OpaqueParts* parts) {
   Taker taker(Taker::aligned(bytes.data));
   parts->lay_out(shape, &taker);
@@ -89,7 +89,7 @@ LitCounts OpaqueStream::counts() const {
   return all;
 }
 
-// lit::spot_of, for what is met through one face alone.
+// Does as lit::spot_of for voxels that a ray enters through one face only.
 LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
   const Ray& ray = parts_.rays[pixel];
   const Hit& hit = parts_.hits[pixel];
@@ -108,13 +108,13 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
       const int other = axis + turn < 3 ? axis + turn : axis + turn - 3;
       const int64_t direction = ray.direction[other];
       const int32_t low = hit.voxel[other] * Q8::kOne;
-      // From the lower plane, times the speed.
+      // The offset from the lower plane, times the speed.
       const int64_t offset = (ray.origin[other].raw - low) * speed + way * direction;
       const int64_t steps = whole_quotient(offset, speed);
       face.at[other] = Q8::from_raw(
           low + static_cast<int32_t>(std::clamp(steps, int64_t{0}, static_cast<int64_t>(side) - 1)));
-      // It enters through a second face where it comes to that plane at the same t: at an offset of 0, or of
-      // the side.
+      // The ray enters through a second face where it comes to that face's plane at the same t: at an offset of 0, or
+      // of the side.
       is_plain = is_plain && (direction == 0 || offset != (direction > 0 ? 0 : side * speed));
     }
   }
@@ -132,7 +132,7 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
   return face;
 }
 
-// lit::sky_color, or the background, of the rays that met nothing.
+// Gives the rays that met nothing lit::sky_color, or the background.
 void OpaqueStream::show_sky(uint32_t count) {
   if ((frame_.effects & Effect::kSky) == 0) {
     for (uint32_t i = 0; i < count; ++i) {
@@ -140,7 +140,7 @@ void OpaqueStream::show_sky(uint32_t count) {
     }
     return;
   }
-  // Behind the last one too; any direction but zero.
+  // Lanes behind the last ray get some direction, which must not be zero.
   for (uint32_t i = 0; i < count + kMostLightLanes; ++i) {
     const Vec3i direction = i < count ? parts_.rays[parts_.beyond[i]].direction : Vec3i{1, 0, 0};
     for (int axis = 0; axis < 3; ++axis) {
@@ -180,7 +180,7 @@ void OpaqueStream::find_faces(uint32_t count) {
   frame_.counts.node_visits[kPrimary] += visits;
 }
 
-// lit::lit_color and lit::add_emission.
+// Does as lit::lit_color and lit::add_emission.
 void OpaqueStream::paint() {
   for (uint32_t i = 0; i < face_count_; ++i) {
     const LitFace& face = lights_.faces()[i];
@@ -196,7 +196,7 @@ void OpaqueStream::paint() {
   }
 }
 
-// Finds the colours of so many rays.
+// Finds the colours of the first `count` rays.
 void OpaqueStream::light_up(uint32_t count) {
   (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
   find_faces(count);

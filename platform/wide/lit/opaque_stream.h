@@ -2,8 +2,8 @@
 /// One thread's share of a lit picture in which each ray of a pixel ends where it first meets something:
 /// nothing is clear, nothing mirrors, and there is no water, slope, fog, depth cue, edge or ripple.
 ///
-/// Most pictures are such. Nothing is asked twice, so nothing of a pixel is kept but its place: the pixels of
-/// a share go through one short loop after another, and their rays through the map in between.
+/// Most pictures are like this. No pixel asks twice, so only its place is kept: the pixels of a share go through one
+/// short loop after another, and their rays through the map in between.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_OPAQUE_STREAM_H
 #define THIMBLE_PLATFORM_WIDE_LIT_OPAQUE_STREAM_H
 
@@ -20,26 +20,26 @@
 
 namespace thimble::wide {
 
-/// Whether pictures with these effects are drawn so.
+/// Whether this stream draws pictures with these effects.
 bool is_opaque(EffectSet effects);
 
-/// How much of everything a stream holds.
+/// How large a stream's arrays are.
 struct OpaqueShape {
   OpaqueShape(EffectSet effects, const LitScene& scene, uint32_t slot_count);
 
   size_t bytes() const;
 
-  uint32_t slots;  ///< pixels at once
+  uint32_t slots;  ///< pixels that are drawn at once
   FaceLightsShape lights;
 };
 
 struct OpaqueParts {
   void lay_out(const OpaqueShape& shape, Taker* taker);
 
-  Ray* rays;  ///< of pixels
+  Ray* rays;  ///< the pixels' rays
   Hit* hits;
   uint32_t* beyond;    ///< the pixels that met nothing
-  int32_t* sky[4];     ///< directions by component; shares of the sky
+  int32_t* sky[4];     ///< components of their directions; then shares of the sky
   PixelSlot* places;   ///< by pixel
   lit::Color* colors;  ///< by pixel
 };
@@ -49,7 +49,7 @@ class OpaqueStream {
   /// `bytes` has shape.bytes(), at any address.
   OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes);
 
-  /// Draws what it takes from the flow, until that ends.
+  /// Draws pixels that it takes from the flow, until the flow ends.
   void draw(PixelFlow* flow);
   LitCounts counts() const;
 

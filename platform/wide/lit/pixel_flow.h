@@ -1,5 +1,5 @@
 /// @file pixel_flow.h
-/// The pixels that threads draw together, from which each takes the next as long as there are any.
+/// The pixels that threads draw together: each thread takes the next ones as long as there are any.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_PIXEL_FLOW_H
 #define THIMBLE_PLATFORM_WIDE_LIT_PIXEL_FLOW_H
 
@@ -14,7 +14,7 @@
 
 namespace thimble::wide {
 
-/// The rows of a band, or places of a camera. For any number of threads.
+/// The rows of a band, or places on a camera's picture, for any number of threads.
 class PixelFlow {
  public:
   PixelFlow(const lit::Frame& frame, const Band& band, size_t stride)
@@ -23,13 +23,13 @@ class PixelFlow {
         stride_(stride),
         width_(frame.camera.width_px()),
         count_(static_cast<size_t>(band.rows)) {
-    // Some pixels a time, and whole bytes.
+    // A thread takes some kTogether pixels at a time, and whole bytes.
     const auto rows = static_cast<size_t>(kTogether / std::max(width_, 1));
     const auto multiple = static_cast<size_t>(band_row_multiple(band.format));
     together_ = std::max<size_t>(rows / multiple, 1) * multiple;
     is_whole_ = bits_per_pixel(band.format) % 8 == 0;
   }
-  /// Three bytes each.
+  /// `rgb` gets three bytes for each place.
   PixelFlow(const lit::Frame& frame, Span<const PixelPlace> places, Bytes rgb)
       : frame_(frame),
         places_(places.data),
@@ -48,15 +48,15 @@ class PixelFlow {
   const lit::Frame& frame_;
   const PixelPlace* places_ = nullptr;
   Band band_;
-  size_t stride_ = 3;  // from a row to the next one; from a place to the next one
+  size_t stride_ = 3;  // bytes from a row, or a place, to the next one
   int32_t width_;
   size_t count_;     // rows, or places
-  size_t together_;  // of them at a time
+  size_t together_;  // how many of them a thread takes at a time
   bool is_whole_;    // each pixel has bytes of its own
   std::atomic<size_t> next_{0};
 };
 
-/// Where a pixel is stored: of the band, or the number of a place as its row.
+/// Where a pixel is stored. In place of a row of the band `row` may be the number of a place.
 struct PixelSlot {
   int32_t x;
   int32_t row;
@@ -67,8 +67,8 @@ class PixelReader {
  public:
   explicit PixelReader(PixelFlow* flow) : flow_(*flow), rays_(flow->frame_.camera, 0, 0) {}
 
-  /// Takes the next pixel; false: there is none left. Rows are taken from their beginning, and what shares
-  /// bytes by one thread.
+  /// Takes the next pixel; returns false when none is left. One thread takes a whole row, and all rows that share
+  /// bytes.
   bool next(Ray* ray, PixelSlot* at) {
     if (x_ == flow_.width_ || at_ == end_) {
       if (!begin_row()) {

@@ -36,7 +36,7 @@ int turned(int place, bool upwards) {
   return upwards ? place : kSide - 1 - place;
 }
 
-// From rows along x to columns along an axis.
+// Turns rows along x into columns along an axis.
 void turn_to(int axis, bool upwards, const uint16_t (*rows)[kSide], ColumnBits* columns) {
   if (axis == 0) {
     for (int z = 0; z < kSide; ++z) {
@@ -60,7 +60,7 @@ void turn_to(int axis, bool upwards, const uint16_t (*rows)[kSide], ColumnBits* 
   }
 }
 
-// And back.
+// Turns columns along an axis into rows along x.
 void turn_from(int axis, bool upwards, const ColumnBits& columns, uint16_t (*rows)[kSide]) {
   if (axis == 0) {
     for (int z = 0; z < kSide; ++z) {
@@ -84,13 +84,12 @@ void turn_from(int axis, bool upwards, const ColumnBits& columns, uint16_t (*row
   }
 }
 
-// The order in which the surface is followed, ring by ring and the corners of a ring last; and from which
-// three columns the next one's height is expected: that of the first and of the second, less that of the
-// third.
+// The order in which the surface is followed: ring by ring, the corners of a ring last. Three columns say which height
+// the next column is expected to have: that of the first plus that of the second, less that of the third.
 struct Step {
   int8_t u;
   int8_t v;
-  uint8_t at;  // places in an array of heights
+  uint8_t at;  // the column's place in the array of heights, then those of the three
   uint8_t plus[2];
   uint8_t minus;
 };
@@ -135,9 +134,9 @@ constexpr std::array<Step, kSteps> all_steps() {
 }
 constexpr std::array<Step, kSteps> kOrder = all_steps();
 
-// The core's Columns (src/light/slope.cpp) on words: a loop over voxels there is a count of bits here. Nothing branches on
-// what is solid, which nobody can predict. Heights are -kColumns .. kColumns, middle_w is 4 .. 7: a place above the
-// window's lower end is -1 at the least, so words are looked at with a bit more below them.
+// The core's Columns (src/light/slope.cpp) on words: a loop over voxels there is a count of bits here. Nothing
+// branches on what is solid, which nobody can predict. Heights are -kColumns .. kColumns, middle_w is 4 .. 7: a place
+// above the window's lower end is -1 at the least, so words are looked at with a bit more below them.
 struct Columns {
   ColumnBits* bits;
   int middle_w;
@@ -158,7 +157,7 @@ struct Columns {
         side_v(side_v_of(along)) {}
 
   int height(int u, int v) const { return heights[place_of(u, v)]; }
-  // Where a column ends, from a height near by.
+  // Finds the height at which a column ends, from an expected height.
   int measure(unsigned word, int height) const {
     const unsigned wide = word << 1;
     const auto place = static_cast<unsigned>(middle_w + height + 1);
@@ -169,7 +168,7 @@ struct Columns {
     return down + ((up - down) & is_solid);
   }
   unsigned filled_to(int height) const { return ((1U << (middle_w + height + 1)) - 1) & kAll; }
-  // The column, solid below its top where it is a shell.
+  // Makes a column solid below its top where it is a shell.
   unsigned thickened(unsigned word, int top) const {
     const auto place = static_cast<unsigned>(middle_w + top + 1);
     const unsigned down = (1U << place) - 1;
@@ -177,8 +176,8 @@ struct Columns {
     const unsigned is_thin = (~word & shell) != 0 ? 1U : 0U;
     return word | (down & (0U - ((word << 1 >> place) & is_thin & 1U)));
   }
-  // Follows the surface; with kCuts, where it leaves its course it is taken to go on as before. Whether the column
-  // beside the middle, in direction `out`, was cut off.
+  // Follows the surface; with kCuts, a surface that leaves its course is taken to go on as before. Returns whether the
+  // column beside the middle, in direction `out`, was cut off.
   template <bool kCuts>
   bool follow(const Vec3i& out) {
     uint16_t* const middle = &bits->at[middle_v][middle_u];
@@ -195,7 +194,7 @@ struct Columns {
                                     -kColumns, kColumns);
       const auto at_u = static_cast<unsigned>(middle_u + step.u);
       const auto at_v = static_cast<unsigned>(middle_v + step.v);
-      // Nothing is solid beside the window, and what is made solid there is forgotten.
+      // Columns beside the window are empty, and what is made solid in them is dropped.
       uint16_t nothing = 0;
       uint16_t* const column = at_u < kSide && at_v < kSide ? &bits->at[at_v][at_u] : &nothing;
       const unsigned word = *column;
@@ -213,7 +212,7 @@ struct Columns {
     has_edge = edges != 0;
     return wall != 0;
   }
-  // Whether all end where the middle one does.
+  // Whether all columns end at the height of the middle one.
   bool are_level() const {
     return std::all_of(heights, heights + kAcross * kAcross,
                        [this](int8_t one) { return one == heights[place_of(0, 0)]; });
@@ -229,7 +228,7 @@ Vec3i middle_of(const Vec3i& voxel, const Face& face) {
   return middle;
 }
 
-// In the order of the axes.
+// Finds the gradient at a point, in the order of the axes.
 Vec3i gradient_along(int axis, bool upwards, const ColumnBits& columns, const Vec3i& point) {
   const int32_t turned_point[3] = {upwards ? point[axis] : kSide * lit::kSlopeUnit - point[axis],
                                    point[side_u_of(axis)], point[side_v_of(axis)]};
@@ -242,7 +241,7 @@ Vec3i gradient_along(int axis, bool upwards, const ColumnBits& columns, const Ve
   return gradient;
 }
 
-// Follows the surface of a face along an axis.
+// Follows a face's surface along an axis.
 void follow(int along, bool upwards, const Face& face, KnownSlope* known) {
   if (along == face.axis) {
     known->cut = known->columns;
@@ -265,7 +264,7 @@ uint8_t number_of(int axis, bool upwards) {
   return static_cast<uint8_t>(2 * axis + (upwards ? 1 : 0));
 }
 
-// Numbers that lie far apart for places that lie side by side.
+// Mixes a place into a number; neighbouring places get numbers that lie far apart.
 uint32_t mixed(const Vec3i& place, uint32_t rest) {
   uint32_t mix = static_cast<uint32_t>(place.x) * 0x9E3779B1U + static_cast<uint32_t>(place.y) * 0x85EBCA77U +
                  static_cast<uint32_t>(place.z) * 0xC2B2AE3DU + rest * 0x27D4EB2FU;
@@ -311,7 +310,8 @@ KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t inde
   if ((known.columns.at[columns.middle_v][columns.middle_u] & behind) != behind) {
     columns.follow<false>({});
     if (!columns.has_edge) {
-      // Followed again along the face's axis it takes the same course, and nothing is left to make solid.
+      // Following the surface along the face's axis again would take the same course, and has nothing left to make
+      // solid.
       known.course = number;
       known.keeps_face = columns.are_level();
       known.is_cut = false;

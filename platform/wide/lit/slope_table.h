@@ -1,10 +1,10 @@
 /// @file slope_table.h
-/// Slopes of surfaces, for a thread: the core's lit::surface_normal, number by number, with what the points
-/// of a face share kept from one to the next.
+/// Finds slopes of surfaces for one thread: the core's lit::surface_normal, number by number. What the points of a face
+/// share is kept from one point to the next.
 ///
-/// All but the gradient depends on the voxel, its face and the body alone: the window, made solid where it is
-/// a shell, and the window with the surface's edges cut off, for the way in which it was followed last. Each
-/// face has one place in the table, and shares it with others: there stands the one that was asked about
+/// Only the gradient depends on the point. The voxel, its face and the body alone decide the window, made solid where
+/// it is a shell, and the window with the surface's edges cut off, for the way in which it was followed last. Each
+/// face has one place in the table, which it shares with other faces; the place holds the face that was asked about
 /// last.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_SLOPE_TABLE_H
 #define THIMBLE_PLATFORM_WIDE_LIT_SLOPE_TABLE_H
@@ -17,8 +17,8 @@
 
 namespace thimble::wide {
 
-/// The bits of a window along an axis, upwards or downwards: bit w of a column is the voxel w steps from the
-/// window's lower end, or from its upper one. By the other two axes, the higher one first.
+/// The bits of a window along an axis, upwards or downwards: bit w of a column is the voxel w steps from the window's
+/// lower end, or from its upper end. The indices are the other two axes, the higher one first.
 struct ColumnBits {
   uint16_t at[lit::kSlopeSide][lit::kSlopeSide];
 };
@@ -27,22 +27,22 @@ struct ColumnBits {
 struct KnownSlope {
   static constexpr uint8_t kNone = 0xFF;
 
-  Vec3i voxel;              ///< that has the points
-  uint32_t visits = 0;      ///< that its window took
-  uint16_t index_q12 = 0;   ///< of the body
+  Vec3i voxel;              ///< the voxel that has the face
+  uint32_t visits = 0;      ///< visits that reading its window took
+  uint16_t index_q12 = 0;   ///< the body's index
   uint8_t face = kNone;     ///< 2 * axis, and 1 more where it looks to larger coordinates
-  uint8_t course = kNone;   ///< the same of the way in which the surface was followed last
-  bool keeps_face = false;  ///< there the normal is the face's own
-  bool is_cut = false;      ///< there `cut` is other than `columns`
+  uint8_t course = kNone;   ///< the way in which the surface was followed last, numbered like `face`
+  bool keeps_face = false;  ///< on that course the normal is the face's own
+  bool is_cut = false;      ///< on that course `cut` differs from `columns`
   ColumnBits columns;       ///< along the face's axis, outwards
   ColumnBits cut;           ///< along the course
 };
 
-/// A window as it was read: the same for eight voxels.
+/// A window as it was read, which eight voxels share.
 struct KnownWindow {
   lit::SlopeWindow window;
-  uint32_t visits = 0;     ///< that it took
-  uint16_t index_q12 = 0;  ///< of the body
+  uint32_t visits = 0;     ///< visits that reading it took
+  uint16_t index_q12 = 0;  ///< the body's index
   bool is_known = false;
 };
 
@@ -53,8 +53,8 @@ class SlopeTable {
   SlopeTable(const lit::Frame& frame, KnownSlope* places, KnownWindow* windows, uint32_t count)
       : frame_(&frame), places_(places), windows_(windows), count_(count) {}
 
-  /// As lit::surface_normal. What is known already adds the visits that it took, so that counts do not depend
-  /// on what was asked before, nor on which thread was asked.
+  /// Does as lit::surface_normal. A known slope adds the visits that it once took, so that counts do not depend on what
+  /// was asked before, nor on which thread was asked.
   Vec3i normal(const Vec3Q8& at, const Face& face, uint16_t index_q12, uint32_t* visits);
 
  private:

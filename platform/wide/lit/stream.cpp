@@ -8,7 +8,7 @@
 namespace thimble::wide {
 namespace {
 
-// Faces whose slopes are kept, for each pixel under way: those of some rows.
+// So many faces' slopes are kept for each pixel under way: together those of some rows.
 constexpr uint32_t kSlopesASlot = 2;
 
 }  // namespace
@@ -58,7 +58,7 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
   if ((effects & Effect::kSmoothNormals) == 0) {
     return;
   }
-  // What the light on slopes takes.
+  // The rest is for the light on slopes.
   answers = static_cast<uint32_t>(lit::most_answers(effects, scene));
   lights = static_cast<uint32_t>(scene.lights.size);
   const bool shadows = (effects & Effect::kShadows) != 0;
@@ -73,7 +73,7 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
   most[static_cast<int>(lit::Question::kBefore)] = slots * lamps;
   most[static_cast<int>(lit::Question::kNear)] = slots * around;
   most[static_cast<int>(lit::Question::kAround)] = most_slopes * around;
-  // A step of its own way, or one of each light's.
+  // A ray asks for a step of its own way, or for one towards each light.
   most[static_cast<int>(lit::Question::kOn)] = clear ? slots * std::max(1U, suns + lamps) : 0;
 }
 
@@ -88,7 +88,7 @@ size_t StreamShape::bytes() const {
 
 namespace {
 
-// Where the parts begin, and what their arrays are taken from after them.
+// Finds where the parts begin; returns what their arrays are taken from.
 Taker laid_out(const StreamShape& shape, Bytes bytes, StreamParts* parts) {
   Taker taker(Taker::aligned(bytes.data));
   parts->lay_out(shape, &taker);
@@ -147,7 +147,7 @@ void Stream::begin_ray(uint32_t number) {
   slot.ray.has_spot = false;
   slot.ray.has_lights = false;
   const Ray& ray = parts_.pending[size_t{number} * shape_.pending + slot.pending - 1].ray;
-  // What it will ask first, without going there; and what it begins in, which the map knows sooner than the
+  // Finds what the ray will ask first, without asking yet; and what it begins in, which the map tells faster than the
   // tree.
   begin_step(number, &frame_);
   (void)frame_.look();
@@ -166,7 +166,7 @@ void Stream::begin_ray(uint32_t number) {
 bool Stream::follow(uint32_t number) {
   StreamSlot& slot = parts_.slots[number];
   lit::PendingRay* const pending = parts_.pending + size_t{number} * shape_.pending;
-  // The last one first, as the core does.
+  // Takes the last ray first, as the core does.
   size_t count = slot.pending - 1;
   lit::Color sum;
   begin_step(number, &frame_);
@@ -192,7 +192,7 @@ bool Stream::follow(uint32_t number) {
 
 bool Stream::shine(uint32_t number) {
   StreamSlot& slot = parts_.slots[number];
-  // What is counted while it asks is counted again with the answers.
+  // What a step counts while it asks, it counts again with the answers: so asking_ takes the first counts.
   lit::AskedFrame& frame = slot.known == 0 ? asking_ : frame_;
   const bool may_wait = is_clear_ && slot.known != 0;
   const LitCounts counts = may_wait ? frame_.counts : LitCounts();
@@ -225,7 +225,7 @@ void Stream::show_face(uint32_t number) {
   ray.has_spot = false;
 }
 
-// lit::face_color of the faces that were met since the last time.
+// Lights the faces that were met since the last call, as lit::face_color does.
 void Stream::light_faces() {
   lights_.shine(face_count_);
   lit::Spot spot;
@@ -292,7 +292,7 @@ void Stream::answer() {
   for (uint32_t i = 0; i < before.count; ++i) {
     put(before.answer[i], parts_.hits[i]);
   }
-  // What is clear hides nothing; where nothing is, the material does not matter.
+  // What is clear hides nothing. Where nothing is clear, materials do not matter.
   const Occlusion& occlusion = frame_.scene.occlusion;
   const auto find_within = [&](const lit::Asked& near, const RayPoint& end) {
     (void)first_hit_within(map_, {near.rays, near.count}, end, {parts_.hits, near.count}, is_clear_);
@@ -314,7 +314,7 @@ void Stream::answer() {
   for (uint32_t i = 0; i < any.count; ++i) {
     lit::Answer& answer = parts_.answers[any.answer[i]];
     answer.hit.kind = parts_.any[i] != 0 ? HitKind::kHit : HitKind::kMiss;
-    answer.hit.visits = 0;  // which it does not tell
+    answer.hit.visits = 0;  // the call does not count these
   }
   for (lit::Asked& one : parts_.questions) {
     one.count = 0;
@@ -336,7 +336,7 @@ void Stream::draw(PixelFlow* flow) {
     ++waiting;
   }
   answer();
-  // It ends: each turn gives every ray that waits an answer more, and a pixel has a bounded number of rays.
+  // The loop ends: each turn gives every waiting ray one more answer, and a pixel has a bounded number of rays.
   while (waiting != 0) {
     uint32_t left = 0;
     uint32_t done = 0;

@@ -1,5 +1,5 @@
 /// @file stream.h
-/// One thread's share of a lit picture: pixels under way, and the rays that they wait for.
+/// Draws one thread's share of a lit picture: keeps pixels under way, and the rays that they wait for.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_STREAM_H
 #define THIMBLE_PLATFORM_WIDE_LIT_STREAM_H
 
@@ -16,19 +16,19 @@
 
 namespace thimble::wide {
 
-/// How much of everything a stream holds.
+/// How large a stream's arrays are.
 struct StreamShape {
   StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot_count);
 
   size_t bytes() const;
 
   uint32_t slots;                  ///< pixels under way at once
-  uint32_t pending;                ///< rays of one of them that wait to be followed
-  uint32_t answers;                ///< to a step of one ray
-  uint32_t lights;                 ///< of the scene, that slopes ask about
+  uint32_t pending;                ///< rays of one pixel that wait to be followed
+  uint32_t answers;                ///< answers that one step of a ray takes
+  uint32_t lights;                 ///< lights of the scene that slopes ask about
   uint32_t most[lit::kQuestions];  ///< questions of each kind at once
   FaceLightsShape of_faces;
-  uint32_t most_slopes;   ///< that are wanted at once
+  uint32_t most_slopes;   ///< slopes that are wanted at once
   uint32_t known_slopes;  ///< faces whose slopes are kept
 };
 
@@ -36,12 +36,12 @@ struct StreamShape {
 struct StreamSlot {
   PixelSlot at;
   lit::Color sum;
-  lit::KnownRay ray;   ///< the last one of `pending`; or, when it shines, one that is not among them any more
+  lit::KnownRay ray;   ///< the last pending ray; when it shines it is no longer among the pending ones
   size_t pending = 0;  ///< rays that wait to be followed
-  uint32_t known = 0;  ///< answers of the step that the ray takes
+  uint32_t known = 0;  ///< answers that are known to the ray's present step
 };
 
-/// Of a face that is to be lit, what its pixel gets of the light.
+/// How much of the light on a face its pixel gets.
 struct ShownFace {
   lit::Weight weight;
   Surface surface;
@@ -63,7 +63,7 @@ struct StreamParts {
   Hit* hits;
   MediumExit* exits;
   ShownFace* shown;
-  uint32_t* done;  ///< slots whose pixels wait for light alone
+  uint32_t* done;  ///< slots whose pixels wait only for light
 };
 
 class Stream {
@@ -71,18 +71,18 @@ class Stream {
   /// `bytes` has shape.bytes(), at any address.
   Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes);
 
-  /// Draws what it takes from the flow, until that ends. Pixels that are done make room for others, so that
-  /// as many as there are slots are under way.
+  /// Draws pixels that it takes from the flow, until the flow ends. Pixels that are done make room for others, so that
+  /// every slot has a pixel under way.
   void draw(PixelFlow* flow);
   LitCounts counts() const;
 
  private:
-  // Begins the next pixel in a slot; false: there is none.
+  // Begins the next pixel in a slot; returns false when none is left.
   bool begin(uint32_t slot, PixelReader* pixels);
   // Begins the last of a pixel's pending rays.
   void begin_ray(uint32_t number);
   void begin_step(uint32_t number, lit::AskedFrame* frame);
-  // Takes a pixel's steps; each returns false when the pixel waits for answers. `shine` is for slopes; faces
+  // These take a pixel's steps, and return false when the pixel waits for answers. `shine` is for slopes; other faces
   // are only noted, and lit all together.
   bool go_on(uint32_t number);
   bool follow(uint32_t number);
@@ -93,8 +93,8 @@ class Stream {
   void answer_slopes();
 
   lit::AskedFrame frame_;
-  lit::AskedFrame asking_;  // its counts are nobody's
-  lit::Frame once_;         // counts what the other two take once
+  lit::AskedFrame asking_;  // nobody reads its counts
+  lit::Frame once_;         // counts once what the other two frames do
   const RayMap& map_;
   StreamShape shape_;
   lit::Steps steps_;

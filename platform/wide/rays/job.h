@@ -1,5 +1,5 @@
 /// @file job.h
-/// What one call of ray_map.h asks of the vectors, and what they ask of plain code for a single ray.
+/// What one call of ray_map.h asks of the vectors, and what these ask of plain code for a single ray.
 #ifndef THIMBLE_PLATFORM_WIDE_RAYS_JOB_H
 #define THIMBLE_PLATFORM_WIDE_RAYS_JOB_H
 
@@ -17,18 +17,18 @@ struct Job {
   const RayMap* map;
   const Ray* rays;
   size_t count;
-  const RayPoint* points;  ///< with a bound
+  const RayPoint* points;  ///< only with a bound
   Bound bound;
-  // One of the four is wanted; all say "a miss" before the call.
+  // One of these is wanted and not null; before the call all its elements say "a miss".
   uint8_t* any;
   Hit* hits;
   RayPoint* entries = nullptr;
   bool names = true;            ///< whether hits want materials
-  size_t point_step = 1;        ///< from a ray's point to the next one's; 0: one for all
+  size_t point_step = 1;        ///< from a ray's point to the next ray's; 0: all rays share one
   Status status = Status::kOk;  ///< the first error
   MediumExit* exits = nullptr;
-  const uint16_t* in = nullptr;  ///< with `exits`
-  /// By material: with `any`, what it gets; with `entries`, 0 where the voxel counts as a miss.
+  const uint16_t* in = nullptr;  ///< only with `exits`
+  /// By material: with `any`, the value that `any` gets; with `entries`, 0 where the voxel counts as a miss.
   const uint8_t* classes = nullptr;
 };
 
@@ -38,11 +38,11 @@ void trace_in_vectors(Job* job);
 /// Traces one ray by the core.
 void trace_by_core(Job* job, size_t ray);
 
-/// What ray number `ray` met in voxel `cell` of the map's world, mirrored along its negative components, after
-/// `visits` steps.
+/// Stores the hit of ray number `ray`, after `visits` steps. `cell` is the voxel of the map's world, mirrored along the
+/// ray's negative components.
 void put_hit(Job* job, size_t ray, const Vec3i& cell, uint32_t visits);
 
-/// Takes note that a ray of `exits` met nothing.
+/// Notes that a ray of `exits` met nothing.
 void put_no_exit(Job* job, size_t ray, uint32_t visits);
 
 /// Whether t = numerator / denominator lies before the point.

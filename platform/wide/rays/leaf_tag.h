@@ -1,5 +1,5 @@
 /// @file leaf_tag.h
-/// The materials of a leaf's voxels, in a word: where the tree keeps them, so that nobody walks down to them.
+/// Says in a word where the tree keeps the materials of a leaf's voxels, so that nobody walks down the tree for them.
 #ifndef THIMBLE_PLATFORM_WIDE_RAYS_LEAF_TAG_H
 #define THIMBLE_PLATFORM_WIDE_RAYS_LEAF_TAG_H
 
@@ -7,8 +7,8 @@
 
 namespace thimble::wide {
 
-/// A leaf is eight cells of 2^3 voxels, numbered as octants. The tree keeps a byte for each voxel of a cell,
-/// and one for a cell that is solid through in one material.
+/// A leaf is eight cells of 2^3 voxels, numbered as octants. The tree keeps a byte for each voxel of a cell, or one
+/// byte for a cell that is solid through in one material.
 struct LeafTag {
   uint32_t first_voxel = 0;  ///< the tree's number of the first voxel that has a byte of its own
   uint8_t plain = 0;         ///< a bit for each cell whose voxels have `material`
@@ -28,8 +28,8 @@ struct LeafTag {
   }
 };
 
-/// Second word of a brick that is solid through in one material; of others it is a node's number, or all
-/// ones.
+/// The second word, without its material, of a brick that is solid through in one material. In other bricks that word
+/// is a node's number, or all ones.
 inline constexpr uint64_t kSolidBrick = uint64_t{1} << 63;
 constexpr bool is_solid_brick(uint64_t second) {
   return second >> 8 == kSolidBrick >> 8;
@@ -37,8 +37,8 @@ constexpr bool is_solid_brick(uint64_t second) {
 
 /// The voxels of a leaf, by the bits of its mask.
 struct LeafOrder {
-  uint64_t before[64] = {};  ///< those whose bytes come before a voxel's
-  uint64_t cells[256] = {};  ///< those of a set of cells
+  uint64_t before[64] = {};  ///< by voxel: the voxels whose bytes come before its byte
+  uint64_t cells[256] = {};  ///< by set of cells: their voxels
   constexpr LeafOrder() {
     for (unsigned voxel = 0; voxel < 64; ++voxel) {
       for (unsigned other = 0; other < 64; ++other) {
@@ -54,7 +54,7 @@ struct LeafOrder {
   static constexpr unsigned cell_of(unsigned voxel) {
     return (voxel >> 1 & 1U) | (voxel >> 2 & 2U) | (voxel >> 3 & 4U);
   }
-  /// In the order of the tree: Morton's.
+  /// A voxel's place in the order of the tree, which is Morton's.
   static constexpr unsigned place(unsigned voxel) {
     return cell_of(voxel) << 3 | (voxel & 1U) | (voxel >> 1 & 2U) | (voxel >> 2 & 4U);
   }

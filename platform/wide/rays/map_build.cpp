@@ -1,5 +1,4 @@
-// The map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes
-// reach.
+// Makes the map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes reach.
 #include <algorithm>
 
 #include "wide/rays/leaf_tag.h"
@@ -12,15 +11,15 @@ namespace {
 constexpr uint32_t kMaxReach = 15;
 constexpr uint64_t kMaterials = 256;
 
-// False for a tree whose masks do not add up.
+// Measures a map. Returns false for a tree whose masks do not add up.
 bool measure(const CompactTree& tree, MapShape* shape) {
   uint64_t begin = 0;
   uint64_t end = tree.empty() ? 0 : 1;
   shape->top = uint64_t{1} << (3 * (map_level(tree) - kBrickLevel));
-  uint64_t bricks = 1;  // one that is solid through, which all such cubes share
+  uint64_t bricks = 1;  // the brick that is solid through, which all such cubes share
   uint64_t leaves = kLeaves;
   uint64_t blocks = 0;
-  uint64_t solid_cubes = 0;  // or larger ones
+  uint64_t solid_cubes = 0;  // solid blocks of a cube's size or larger
   for (int level = tree.level(); level >= 1; --level) {
     shape->level_begin[level] = static_cast<uint32_t>(begin);
     shape->block_begin[level] = static_cast<uint32_t>(blocks);
@@ -51,14 +50,15 @@ bool measure(const CompactTree& tree, MapShape* shape) {
   }
   if (has_tags(tree)) {
     const uint64_t of_materials = std::min(solid_cubes, kMaterials);
-    leaves = 2 * leaves + kLeaves * of_materials;  // a tag each, but in bricks that are solid through
+    leaves =
+        2 * leaves + kLeaves * of_materials;  // each leaf has a tag, except in bricks that are solid through
     bricks += of_materials;
   }
   shape->words = leaves + bricks * (has_nodes(tree) ? 2 : 1);
   return begin == tree.node_count();
 }
 
-// All numberings, and a word more.
+// The words of all numberings, and one more.
 uint64_t top_words(const MapShape& shape, const MediaShape& media) {
   return shape.top * (1 + media.layers) + 1;
 }
@@ -94,7 +94,7 @@ class MapWriter : TreeWalk {
   uint64_t words() const { return next_word_; }
 
  private:
-  // A node of the brick's level or above.
+  // Enters a node of the brick's level or above.
   void enter(int level, const Corner& corner) {
     if (level == kBrickLevel && tree_.mask(next_node_[level]) != 0) {
       write_brick(next_node_[level], level, corner);
@@ -108,7 +108,7 @@ class MapWriter : TreeWalk {
   // The material of the next solid block of a level.
   uint8_t next_material(int level) { return tree_.material_of_block(next_block_[level]++); }
 
-  // Where the brick is that is solid through in a material.
+  // Returns where the brick begins that is solid through in a material; writes it first if need be.
   uint32_t solid_brick(uint8_t material) {
     if (solid_[material] == 0) {
       std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
@@ -131,7 +131,7 @@ class MapWriter : TreeWalk {
     }
   }
 
-  // The brick whose node, or what there is of it in a smaller world, is `node`.
+  // Writes the brick of `node`, which in a world smaller than a brick is the root.
   void write_brick(uint32_t node, int level, const Corner& corner) {
     std::fill(brick_, brick_ + kLeaves, 0);
     std::fill(tags_, tags_ + kLeaves, Collected());
@@ -162,9 +162,9 @@ class MapWriter : TreeWalk {
   // What is known of a leaf's materials.
   struct Collected {
     LeafTag tag;
-    bool has_voxels = false;  // with bytes of their own
-    bool has_first = false;   // and a material
-    bool is_plain = true;     // all have that
+    bool has_voxels = false;  // whether there are voxels with bytes of their own
+    bool has_first = false;   // whether the material of one voxel is known
+    bool is_plain = true;     // whether all voxels have that material
     uint8_t material = 0;
 
     void take(uint8_t of_voxel) {
@@ -180,7 +180,7 @@ class MapWriter : TreeWalk {
     }
   };
 
-  // Cells of a leaf that are solid through in one material.
+  // Tags the cells of a leaf that are solid through in one material.
   void tag_cells(const Corner& leaf, unsigned cells, uint8_t material) {
     Collected& to = tags_[bit_of(leaf, kLeafLevel)];
     LeafTag& tag = to.tag;
@@ -237,13 +237,13 @@ class MapWriter : TreeWalk {
   uint32_t next_word_ = 0;
   uint32_t next_voxel_;
   uint32_t next_block_[kMaxLevel + 1];
-  uint32_t solid_[kMaterials] = {};  // bricks; 0: not yet
+  uint32_t solid_[kMaterials] = {};  // by material: where its solid brick begins; 0: not written yet
   uint64_t brick_[kLeaves];
   Collected tags_[kLeaves];
 };
 
-// Writes how far the empty cubes reach along one octant after the other. One of side k + 1 is a cube and
-// those of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell bricks, comes
+// Writes how far the empty cubes reach along one octant after the other. An empty cube of side k + 1 is an empty cell,
+// and the empty cubes of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell bricks, comes
 // last.
 class Reaches {
  public:
@@ -259,7 +259,7 @@ class Reaches {
   static constexpr size_t kMostSide = size_t{1} << (kMaxLevel - kBrickLevel);
   using Row = uint32_t[kMostSide];
 
-  // Lowers `reach` to those of a row.
+  // Lowers `reach` to the reaches of a row of cubes.
   void lower(const uint32_t* row, unsigned octant, Row& reach) const {
     for (size_t x = 0; x < side_; ++x) {
       const uint32_t cube = row[x];
@@ -290,7 +290,7 @@ class Reaches {
     }
   }
 
-  // `reach` is that of the three rows ahead.
+  // Writes a row of cubes; `reach` is the least of the three rows ahead.
   void write_row(uint32_t* cubes, unsigned octant, const Row& reach) const {
     const unsigned shift = 4 * octant;
     uint32_t ahead = kMaxReach;  // of the cube ahead in the row, and of the three beside that

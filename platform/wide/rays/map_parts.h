@@ -1,6 +1,5 @@
 /// @file map_parts.h
-/// What the two halves of making a map share: the cubes and leaves of its numbering, and the walk down the
-/// tree.
+/// What map_build.cpp and media_build.cpp share: the cubes and leaves of a map's numbering, and the walk down the tree.
 #ifndef THIMBLE_PLATFORM_WIDE_RAYS_MAP_PARTS_H
 #define THIMBLE_PLATFORM_WIDE_RAYS_MAP_PARTS_H
 
@@ -17,7 +16,7 @@ inline constexpr uint32_t kEmptyCube = 0x11111111U;  // before it is known how f
 inline constexpr uint64_t kMostWords = uint64_t{1}
                                        << 28;  // of bricks, so that a cube says where its own begins
 
-/// How much the map takes, and where each level of the tree begins.
+/// How large a map is, and where each level of the tree begins.
 struct MapShape {
   uint32_t level_begin[kMaxLevel + 1];
   uint32_t block_begin[kMaxLevel + 1];  // the number of the first solid block of each level
@@ -37,18 +36,18 @@ inline Corner child_corner(const Corner& corner, unsigned octant, int level) {
           corner.z + ((octant & 4U) != 0 ? half : 0)};
 }
 
-// A cell within a cube of 4^3 of them.
+// The number of a cell in its cube of 4^3 cells.
 inline unsigned bit_of(const Corner& corner, int level) {
   return ((corner.x >> level) & 3U) | ((corner.y >> level) & 3U) << 2 | ((corner.z >> level) & 3U) << 4;
 }
 
-// The eight voxels of a node of level 1 as the bits of a leaf whose first voxel is theirs.
+// Spreads the mask of a node of level 1 to the bits of a leaf, of which the node has the first voxel.
 inline uint64_t spread(unsigned mask) {
   return uint64_t{mask & 3U} | uint64_t{(mask >> 2) & 3U} << 4 | uint64_t{(mask >> 4) & 3U} << 16 |
          uint64_t{(mask >> 6) & 3U} << 20;
 }
 
-/// A walk down the tree in depth: in each level it meets the nodes in the order in which they stand.
+/// Walks the tree depth first, which meets the nodes of each level in the order in which they stand.
 class TreeWalk {
  public:
   TreeWalk(const CompactTree& tree, const MapShape& shape) : tree_(tree) {
@@ -72,14 +71,14 @@ class TreeWalk {
   uint32_t next_node_[kMaxLevel + 1];
 };
 
-/// The media of a map: for each a numbering of cubes of its own, in which everything but the medium is solid.
+/// The media of a map. Each has a numbering of cubes of its own, in which everything but the medium is solid.
 struct MediaShape {
   uint8_t layers = 0;
-  uint8_t materials[kMostMedia];  // of the layers from the first on
+  uint8_t materials[kMostMedia];  // the layers' materials, in order
   uint64_t words = 0;             // of their bricks
 };
 
-/// Those of `materials` that the tree holds, as many as there may be layers.
+/// Finds which of `materials` the tree holds, as many as there may be layers.
 MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials);
 
 /// Writes the cubes of all layers, one layer after the other, at `top`, and their bricks from word
@@ -90,7 +89,7 @@ void write_media(const CompactTree& tree, const MapShape& shape, const MediaShap
 inline bool has_nodes(const CompactTree& tree) {
   return tree.many_materials() || tree.merged();
 }
-/// Whether bricks say where the materials of their voxels are.
+/// Whether bricks say where the tree keeps the materials of their voxels.
 inline bool has_tags(const CompactTree& tree) {
   return tree.many_materials() && !tree.merged();
 }

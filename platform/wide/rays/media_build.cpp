@@ -1,5 +1,5 @@
-// The layers of a map: for a material that rays go through, where it is not. A cube that it fills is empty
-// there, one that holds nothing of it is solid.
+// Makes the layers of a map. The layer of a material that rays go through says where that material is not: a cube that
+// it fills is empty there, a cube that holds nothing of it is solid.
 #include <algorithm>
 
 #include "wide/rays/map_parts.h"
@@ -7,7 +7,7 @@
 namespace thimble::wide {
 namespace {
 
-// Meets the solid voxels of media: `taker` gets what it wants to know.
+// Walks the tree and hands the solid voxels of media to `taker`.
 template <class Taker>
 class MediaWalk : TreeWalk {
  public:
@@ -73,7 +73,7 @@ class MediaWalk : TreeWalk {
   uint32_t next_voxel_;
 };
 
-// Which materials there are.
+// Collects which materials the tree holds.
 struct UsedMaterials {
   bool of[256] = {};
   void take_leaf(const Corner& /*corner*/, uint64_t /*voxels*/, uint8_t material) { of[material] = true; }
@@ -81,7 +81,7 @@ struct UsedMaterials {
   void take_cube(const Corner& /*corner*/) {}
 };
 
-// Writes cubes and bricks; without a place to write only counts words.
+// Writes cubes and bricks; without a place to write it only counts words.
 class LayerWriter {
  public:
   LayerWriter(const MediaShape& media, int bits, bool has_nodes, uint32_t* top, uint64_t* bricks,
@@ -188,7 +188,7 @@ MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<co
   walk_media(tree, shape, &used);
   for (size_t i = 0; i < materials.size && media.layers < kMostMedia; ++i) {
     if (used.of[materials.data[i]]) {
-      used.of[materials.data[i]] = false;  // once
+      used.of[materials.data[i]] = false;  // each material gets one layer
       media.materials[media.layers++] = materials.data[i];
     }
   }
@@ -196,7 +196,7 @@ MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<co
   if (media.layers != 0) {
     walk_media(tree, shape, &counter);
   }
-  // What a brick begins with is written before it is known to be empty.
+  // A brick's first words are written before it is known to be empty.
   media.words = counter.words() + 2;
   return media;
 }
@@ -206,7 +206,7 @@ void write_media(const CompactTree& tree, const MapShape& shape, const MediaShap
   if (media.layers == 0) {
     return;
   }
-  std::fill(top, top + shape.top * media.layers, 0U);  // the first brick: solid
+  std::fill(top, top + shape.top * media.layers, 0U);  // 0 is the first brick, which is solid
   LayerWriter writer(media, map_level(tree) - kBrickLevel, has_nodes(tree), top, bricks, next_word);
   walk_media(tree, shape, &writer);
 }

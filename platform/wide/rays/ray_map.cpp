@@ -1,4 +1,4 @@
-// The calls, and what they need ray by ray: the core's answers, and the face, t and material of a voxel.
+// The calls of ray_map.h, and what they need for single rays: the core's answers, and a voxel's face, t and material.
 #include "wide/rays/ray_map.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ unsigned octant_of(const Vec3i& voxel, int level) {
          (static_cast<unsigned>(voxel.y) >> level & 1U) << 1 |
          (static_cast<unsigned>(voxel.z) >> level & 1U) << 2;
 }
-// The child of `level` that a voxel of the node is in. The tree's masks add up, or there were no map.
+// The child of `level` that a voxel of the node is in. The tree's masks add up, else there would be no map.
 uint32_t child_of(const CompactTree& tree, uint32_t node, const Vec3i& voxel, int level) {
   const unsigned before = tree.mask(node) & ((1U << octant_of(voxel, level)) - 1);
   return tree.first_child(node) + static_cast<uint32_t>(__builtin_popcount(before));
@@ -43,12 +43,12 @@ Status run(Job* job) {
   return job->status;
 }
 
-// What the map says of the leaf that a voxel is in.
+// What the map says about a voxel's leaf.
 struct Leaf {
   uint64_t voxels = 0;
-  const uint64_t* tag = nullptr;  // with tags; null in a brick that is solid through
-  uint64_t second = 0;            // word of the brick
-  unsigned voxel = 0;             // its bit
+  const uint64_t* tag = nullptr;  // only with tags; null in a brick that is solid through
+  uint64_t second = 0;            // the brick's second word
+  unsigned voxel = 0;             // the voxel's bit
 
   bool holds() const { return (voxels >> voxel & 1U) != 0; }
 };
@@ -83,7 +83,7 @@ Leaf leaf_at(const MapCells& cells, const Vec3i& voxel) {
   return leaf;
 }
 
-// The material of a solid voxel, where bricks have tags; false: the tree is to be asked.
+// Looks up the material of a solid voxel where bricks have tags. Returns false where only the tree knows it.
 bool look_up(const CompactTree& tree, const Leaf& leaf, uint8_t* material) {
   if (leaf.tag == nullptr) {
     *material = static_cast<uint8_t>(leaf.second);
@@ -101,8 +101,7 @@ bool look_up(const CompactTree& tree, const Leaf& leaf, uint8_t* material) {
   return (tag.other >> cell & 1U) == 0;
 }
 
-// The node of 2^3 voxels that a voxel is in, or the larger one that is solid through; without the part of the
-// way that the map knows.
+// The node of 2^3 voxels that a voxel is in, or the larger node that is solid through.
 struct Parent {
   uint32_t node;
   int level;
@@ -122,7 +121,7 @@ Parent parent_of(const RayMap& map, const Vec3i& voxel) {
   return parent;
 }
 
-// The solid block that holds a voxel: itself, or one that coarsening made.
+// The solid block that holds a voxel: the voxel itself, or a block that coarsening made.
 struct Block {
   Vec3i corner;
   int level;
@@ -152,8 +151,8 @@ Block block_at(const RayMap& map, const Vec3i& voxel) {
   return block;
 }
 
-// The face by which a ray enters a block, and its t: the lower plane that it crosses last, of several the one
-// of the lowest axis. Compares products of 23 and 20 bits.
+// Finds the face by which a ray enters a block, and its t: that of the lower plane that the ray crosses last, on a tie
+// that of the lowest axis. Compares products of 23 and 20 bits.
 void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   int64_t last = 0;
   int64_t speed = 1;
@@ -175,7 +174,7 @@ void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   hit->t_denominator = axis < 0 ? 1 : static_cast<int32_t>(speed * Q8::kOne);
 }
 
-// What is told of a hit without its voxel.
+// Stores what a job wants of a hit without its voxel.
 void put_class(Job* job, size_t ray, const Hit& hit) {
   if (hit.kind != HitKind::kHit) {
     return;
@@ -245,7 +244,7 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
     return;
   }
   if (job->hits == nullptr) {
-    find_face(ray, voxel, 1, &hit);  // of a merged block it is entered at the same t
+    find_face(ray, voxel, 1, &hit);  // a merged block is entered at the same t
   } else if (!job->names && !job->map->tree().merged()) {
     hit.voxel = voxel;
     hit.material = job->map->tree().uniform_material();
@@ -277,7 +276,7 @@ void put_no_exit(Job* job, size_t ray, uint32_t visits) {
   if (job->in[ray] == kInAir) {
     job->exits[ray].hit.visits = visits;
   } else {
-    trace_by_core(job, ray);  // it leaves the world out of the medium
+    trace_by_core(job, ray);  // the ray leaves the medium where it leaves the world
   }
 }
 

@@ -1,4 +1,4 @@
-// Lit frames by bricks: which of them there are, and those of distant lights alone.
+// Chooses the lit frames by bricks of a set, and holds those of distant lights alone.
 #include "flat_frame.h"
 
 namespace thimble::lit {

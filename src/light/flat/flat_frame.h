@@ -1,7 +1,7 @@
-// Lit frames by bricks, where the light of a pixel is that of the face and of the distant lights that reach it: rays
-// of the camera and to the lights through the map, colours looked up. Where a set has occlusion or lamps, each point
-// gathers its light by rays of its own (gather.h). ../README.md derives what is used. Internal to src/, one source of a
-// few sets each includes it.
+// Draws lit frames by bricks: a pixel's light is that of its face and of the distant lights that reach it. Rays of the
+// camera and to the lights go through the map; colours are looked up. Where a set has occlusion or lamps, each point
+// gathers its light by rays of its own (gather.h). ../README.md derives what is used. Internal to src/; each source of
+// this folder includes it for a few sets.
 #ifndef THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
 #define THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
 
@@ -24,7 +24,7 @@ namespace {
 
 using namespace bricks;
 
-// How a format's pixels are made of a colour.
+// How a colour becomes a format's pixel.
 enum class Storing : uint8_t { kGrays, kHalfwords, kBytes, kAny };
 
 Storing storing_of(PixelFormat format) {
@@ -39,7 +39,7 @@ Storing storing_of(PixelFormat format) {
                                                                            : Storing::kAny;
 }
 
-// From what rest of a channel on, of kWhite, the next step is stored, by a pixel's place in the dither.
+// By a pixel's place in the dither: the least rest of a channel, out of kWhite, at which the next step is stored.
 struct Thresholds {
   uint16_t at[64];
 };
@@ -53,15 +53,15 @@ constexpr Thresholds thresholds() {
 constexpr Thresholds kDither = thresholds();
 constexpr uint32_t kNoDither = kWhite - 64 * kWhite / 128;
 
-// A colour as it is stored. kGrays: the step below, and what is left, of kWhite. kHalfwords: the pixel of the steps
-// below, and what is left of each channel. kBytes: the pixel. kAny: the colour itself.
+// A colour as it is stored. kGrays: the step below it, and the rest, out of kWhite. kHalfwords: the pixel of the steps
+// below it, and each channel's rest. kBytes: the pixel. kAny: the colour itself.
 struct FlatInk {
   uint32_t low;
   uint16_t rest[3];
   uint16_t key;
 };
 
-// Where most points have a light of their own few colours are kept.
+// Few colours are kept where most points have a light of their own.
 template <EffectSet kSet>
 constexpr uint32_t kInks = kGathersLight<kSet> ? 8 : 32;
 constexpr uint32_t kFaces = 64;
@@ -75,14 +75,14 @@ uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
   return band.pixels.data + stride * row_place(band.format, y - band.first_row);
 }
 
-// How far a band is drawn: the tile that is next, and the pixels of the one before it that only the tree knows.
+// How far a band is drawn: the next tile, and the pixels of the tile before it that only the tree can tell.
 struct FlatProgress {
   int32_t x;
   int32_t y;
   uint32_t asked[kAskedWords];
 };
 
-// What is drawn with; a Sink of SightPainter.
+// Draws what SightPainter finds: it is a sink of that.
 template <EffectSet kSet>
 class FlatSink : Gathering<kSet> {
  public:
@@ -179,7 +179,7 @@ class FlatSink : Gathering<kSet> {
     }
   }
 
-  // All pixels of a face.
+  // Draws the pixels of a tile that show a face.
   void face(const SeenPixels& seen, SeenFace& face) {
     const unsigned side = seen.course.face[face.point.axis];
     unsigned lights = lights_of_[side];
@@ -226,7 +226,7 @@ class FlatSink : Gathering<kSet> {
     asked_[pixel >> 5] |= 1U << (pixel & 31U);
   }
 
-  // Hands over the pixels of a tile that only the tree knows; whether there are any.
+  // Hands over the pixels of a tile that only the tree can tell; returns whether there are any.
   bool take_asked(uint32_t (*asked)[kAskedWords]) {
     uint32_t any = 0;
     for (int i = 0; i < kAskedWords; ++i) {
@@ -271,7 +271,7 @@ class FlatSink : Gathering<kSet> {
     }
   }
 
-  // Asks the points of a face one by one which of the lights that are `open` reach them.
+  // Draws the points of a face one by one; the lights in `open` may reach some of them and not others.
   [[gnu::noinline]] void store_points(const SeenPixels& seen, SeenFace& face, uint8_t material,
                                       unsigned lights, unsigned open) {
     const unsigned side = seen.course.face[face.point.axis];
@@ -299,7 +299,7 @@ class FlatSink : Gathering<kSet> {
     });
   }
 
-  // Stores a point that gathers its light; `reach`: the suns that it has.
+  // Stores a point that gathers its light; the suns of `reach` shine on it.
   [[gnu::noinline]] void show_gathered(int32_t x, int32_t y, const FacePoint& point, uint8_t material,
                                        unsigned side, unsigned reach) {
     Spot spot;
@@ -319,7 +319,7 @@ class FlatSink : Gathering<kSet> {
     store(x, y, ink);
   }
 
-  // 25 bits of a face's key: its place in the table and the upper 19 of them, beside the material.
+  // A face's key has 25 bits: its place in the table says 6 of them, the entry keeps the upper 19 beside the material.
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
     const uint32_t key = voxel << 3 | face;
     uint32_t& seen = seen_[(key ^ key >> 6) % kFaces];
@@ -342,7 +342,7 @@ class FlatSink : Gathering<kSet> {
     make_ink(face_color(material, face, lights), ink);
   }
 
-  // What a face of a material shows in these of the lights.
+  // The colour of a face of a material in the light of `lights`.
   Color face_color(uint8_t material, unsigned face, unsigned lights) const {
     Spot spot;
     spot.face = {static_cast<int>(face >> 1), (face & 1U) == 0};
@@ -420,7 +420,7 @@ class FlatSink : Gathering<kSet> {
     store_color(line, x, y, limit, ink);
   }
 
-  // The same for a mask of a tile's pixels.
+  // Stores an ink in the pixels of a tile that a mask selects.
   [[gnu::noinline]] void store(const TilePlace& place, const Pixels& pixels, const FlatInk& ink) {
     if (storing_ == Storing::kBytes) {
       const TilePlace bytes{line_of(place.y), stride_, place.x, place.y, place.across, place.down};
@@ -472,7 +472,7 @@ class FlatSink : Gathering<kSet> {
     return has_format(PixelFormat::kRgb565Be) && band_.format == PixelFormat::kRgb565Be;
   }
 
-  // Not inlined: formats whose pixels are seldom drawn one by one.
+  // Not inlined, since pixels of these formats are seldom drawn one by one.
   [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, uint32_t limit,
                                      const FlatInk& ink) const {
     if (storing_ == Storing::kHalfwords) {
@@ -490,7 +490,7 @@ class FlatSink : Gathering<kSet> {
   const Band& band_;
   size_t stride_;
   Storing storing_;
-  bool counts_;       // rays of faces that are drawn as a whole are counted
+  bool counts_;       // counts the rays of faces that are drawn as a whole, too
   bool is_whole_;     // halfwords may be stored as such
   uint8_t shift_[3];  // of a halfword's channels
   uint8_t lights_of_[6];
@@ -511,8 +511,8 @@ bool shares_bytes(PixelFormat format) {
   return format == PixelFormat::kMono1 || format == PixelFormat::kGray4 || format > PixelFormat::kRgb888;
 }
 
-// Draws tiles up to one with pixels that only the tree knows. Not inlined: what it keeps is gone from the stack when
-// the tree is asked.
+// Draws tiles up to the first with pixels that only the tree can tell. Not inlined, so that its frame has left the
+// stack when the tree is asked.
 template <EffectSet kSet>
 [[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, FlatProgress* progress,
@@ -541,7 +541,7 @@ template <EffectSet kSet>
   }
 }
 
-// Draws what was asked, of the tile at (x, y).
+// Draws the pixels that were asked for in the tile at (x, y).
 template <EffectSet kSet>
 [[gnu::noinline]] void draw_asked(const Frame& of, const Band& band, size_t stride, int32_t x, int32_t y,
                                   const FlatProgress& progress, LitCounts* counts) {

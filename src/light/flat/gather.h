@@ -1,5 +1,5 @@
-// Light that each point gathers by rays of its own through the map: occlusion, and lamps with their shadows. Internal
-// to src/.
+// Gathers the light of a point by rays of its own through the map: occlusion, and lamps with their shadows. Internal to
+// src/.
 #ifndef THIMBLE_SRC_LIGHT_FLAT_GATHER_H
 #define THIMBLE_SRC_LIGHT_FLAT_GATHER_H
 
@@ -32,14 +32,14 @@ class Gathering<kSet, true> {
     from_.set_map(map);
     const Occlusion& occlusion = frame.scene.occlusion;
     rays_ = kOccludes && occlusion.reach != 0 ? occlusion_rays(occlusion) : 0;
-    // A box of 256 voxels a side ends within 512 along any direction of the pattern.
+    // Along any direction of the pattern a ray leaves a box of 256 voxels a side within 512.
     const uint32_t reach = occlusion.reach < 512 ? occlusion.reach : 512;
     reach_q12_ = ((reach << 20) + kOcclusionLength - 1) / kOcclusionLength;
   }
-  // What sun `number` gives a face that it reaches.
+  // Sets what sun `number` gives a face that it reaches.
   void set_sun(size_t number, unsigned face, const LightRay& ray) { add_light(ray, &suns_[face][number]); }
 
-  // The light of a face that nothing hides but for the suns that do not reach it, without lamps.
+  // The light of a face, without lamps, where nothing is hidden but the suns that are not in `lights`.
   void light_of_face(const Frame& frame, const Spot& spot, unsigned lights, Color* light) const {
     ambient_light(frame, spot, light);
     if (rays_ != 0) {
@@ -48,7 +48,7 @@ class Gathering<kSet, true> {
     add_suns(spot, lights, light);
   }
 
-  // Gathers the light of a point; `spot` has its face. False when it is that of its face.
+  // Gathers the light of a point; `at` holds its face. Returns false when the point has just the light of its face.
   bool gather(const Frame& frame, const BrickMap& map, const FacePoint& point, unsigned lights, Spot* at,
               Color* light) {
     Spot& spot = *at;
@@ -95,8 +95,8 @@ class Gathering<kSet, true> {
     }
   }
 
-  // How much of what is around the point is open. The pattern has four quadrants by turns, and in each all directions
-  // have the same signs.
+  // How much of the point's surroundings is open. The pattern's directions take four quadrants in turn; within one of
+  // them all have the same signs.
   uint32_t open_of(const Occlusion& occlusion, const Face& face) {
     const int along_x = face.axis == 2 ? 0 : face.axis + 1;
     const int along_y = face.axis == 0 ? 2 : face.axis - 1;
@@ -127,7 +127,7 @@ class Gathering<kSet, true> {
     return open;
   }
 
-  // Adds the lamps that reach a point; whether any does.
+  // Adds the light of the lamps that reach a point; returns whether any does.
   bool add_lamps(const Frame& frame, const BrickMap& map, Spot* spot, Color* light) {
     for (int i = 0; i < 3; ++i) {
       spot->at[i] = Q8::from_raw(from_.place(i));

@@ -1,4 +1,4 @@
-// All rays of a tile at once: which way they go, and the first slab of voxels in which one of them may meet
+// Treats all rays of a tile at once: which way they go, and the first slab of voxels in which one of them may meet
 // something. Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
 #define THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
@@ -10,8 +10,8 @@
 namespace thimble::bricks {
 namespace {
 
-// Directions of a tile are found with so many bits behind the point. On the picture they have 15 before it; a
-// tile that reaches beyond the picture does so by less than the picture, either way: below 2^(15 + 3 + 12).
+// A tile's directions are found with so many bits behind the point. On the picture they have 15 before it. A tile
+// reaches beyond the picture by less than the picture's size, either way, so they stay below 2^(15 + 3 + 12).
 constexpr int kFanBits = 12;
 
 // The directions of a tile: for each axis the least and the greatest, and what the rays have in common.
@@ -20,7 +20,7 @@ struct Fan {
   Vec3i high;
   int c = 0;              // the fastest axis
   unsigned mirrored = 0;  // bit a: most rays go down on axis a
-  unsigned mixed = 0;     // bit a: not all of them go the same way
+  unsigned mixed = 0;     // bit a: not all rays have the same sign on axis a
 
   // Directions lie from value + least to value + greatest (`margins_of`).
   Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
@@ -49,9 +49,9 @@ struct Fan {
   bool usable() const { return (mixed >> c & 1U) == 0 && low[c] != 0; }
 };
 
-// Finds what the rounded directions of a tile lie between, as numbers of kFanBits bits behind the point, to be
-// added to its first pixel's affine function in the same form. The sum is cut off afterwards; one unit either
-// way makes up for what was cut off before.
+// Finds the bounds of a tile's rounded directions: what is to be added to its first pixel's affine function, both with
+// kFanBits bits behind the point. The sum is cut off afterwards; one unit either way makes up for what was cut off
+// before.
 void margins_of(const Camera& camera, int32_t across_px, int32_t down_px, Vec3i* low, Vec3i* high) {
   const Camera::Affine& affine = camera.affine();
   across_px = across_px < camera.width_px() ? across_px : camera.width_px();
@@ -61,21 +61,20 @@ void margins_of(const Camera& camera, int32_t across_px, int32_t down_px, Vec3i*
     const int64_t down = wide_multiple(affine.step_y[axis], down_px - 1);
     const int64_t least = (across < 0 ? across : 0) + (down < 0 ? down : 0);
     const int64_t greatest = (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
-    // Halves go away from zero: half a unit below may be rounded down.
+    // Halves are rounded away from zero, so half a unit below may be rounded down.
     (*low)[axis] = static_cast<int32_t>(least >> (32 - kFanBits)) + (1 << (kFanBits - 1)) - 1;
     (*high)[axis] = static_cast<int32_t>(greatest >> (32 - kFanBits)) + (1 << (kFanBits - 1)) + 2;
   }
 }
 
-// Slopes of a beam are in 1/1024, so positions in 1/2^18 voxel.
+// A beam's slopes are in 1/1024; times distances in 1/256 voxel they give positions in 1/2^18 voxel.
 constexpr int kSlopeBits = 10;
 constexpr int kCellShift = kSlopeBits + 8;
 constexpr int kBrickShift = kCellShift + 2;
-// A beam may be so many bricks wide; one that is wider ends there, which is early but right.
+// A beam may be so many bricks wide. The search stops where it is wider: rays then start early, which is right.
 constexpr int32_t kBeamBricks = 4;
 
-// Where all rays of a fan are on one axis within a slab of voxels, from low to high in the box's own
-// coordinates.
+// The interval of one axis that all rays of a fan stay in within a slab of voxels, in the box's own coordinates.
 struct Shadow {
   int32_t low;
   int32_t high;
@@ -94,8 +93,8 @@ struct Shadow {
     return first < 0 ? 0 : first;
   }
   int32_t last_brick(int32_t voxels) const { return (high + (voxels - 1) * high_more) >> kBrickShift; }
-  // The cells of this slab as bits, from cell `base` on. The last is below 4 * kBeamBricks; both ends may be
-  // negative.
+  // The cells of this slab as bits, from cell `base` on. The last cell is below base + 4 * kBeamBricks; both ends may
+  // be negative.
   uint32_t cells_from(int32_t base) const {
     const int32_t from = (low >> kCellShift) - base;
     const int32_t to = (high >> kCellShift) - base;
@@ -104,8 +103,8 @@ struct Shadow {
   }
 };
 
-// The fan along c: its slowest and fastest ray, the distance from the origin to the first slab's plane, which
-// may lie behind it, and the same not below 0.
+// The fan along c: its slowest and fastest ray, the distance from the origin to the first slab's plane (negative where
+// that lies behind it), and the same distance, but not below 0.
 struct AlongC {
   int32_t low;
   int32_t high;
@@ -113,7 +112,8 @@ struct AlongC {
   int32_t ahead;
 };
 
-// The first slab may begin behind the origin: then the bounds start from whichever is wider.
+// Finds a fan's shadow on one axis. Where the first slab begins behind the origin, each bound starts from the plane or
+// from the origin, whichever is wider.
 [[gnu::always_inline]] inline Shadow shadow_of(const BrickFrame& frame, const Fan& fan, const AlongC& c,
                                                int axis) {
   const int32_t low = fan.low[axis] * (1 << kSlopeBits);
@@ -135,20 +135,19 @@ struct AlongC {
                 high_more};
 }
 
-// Four bits as rows or as halfwords: bit y becomes bit 4 y, bit z all of halfword z.
+// kRows moves bit y of four to bit 4 y; kHalves makes bit z of two all of halfword z.
 constexpr uint16_t kRows[16] = {0x0000, 0x0001, 0x0010, 0x0011, 0x0100, 0x0101, 0x0110, 0x0111,
                                 0x1000, 0x1001, 0x1010, 0x1011, 0x1100, 0x1101, 0x1110, 0x1111};
 constexpr uint32_t kHalves[4] = {0, 0xFFFFU, 0xFFFF0000U, 0xFFFFFFFFU};
 
-// A brick in the way of a beam, and where its cells begin, counted from those of the beam's first brick.
+// A brick in the way of a beam, and where its cells begin, counted from the beam's first cell.
 struct NearBrick {
   const uint8_t* bits;
   int32_t a;
   int32_t b;
 };
 
-// Whether something is solid in the brick's layer `own` on c, among the cells that are set in `in_a` and
-// `in_b`.
+// Whether the brick's layer `own` on c has a solid voxel among the cells that are set in `in_a` and `in_b`.
 template <int kC>
 [[gnu::always_inline]] inline bool any_solid(const uint8_t* bits, uint32_t own, uint32_t in_a,
                                              uint32_t in_b) {
@@ -160,8 +159,8 @@ template <int kC>
   return ((rows | rows >> 16) & wanted) != 0;
 }
 
-// Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of
-// slabs when there is none. `course` is the fan's; it learns whether rays may wait outside of the box there.
+// Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs when
+// there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab.
 template <int kC>
 [[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
   constexpr int kA = kOtherA<kC>;
@@ -191,7 +190,7 @@ template <int kC>
   const int32_t stride_b = frame.stride[kB];
   const uint8_t* directory = course.directory;
   while (slab < slabs) {
-    // What of the slab of bricks is left, and the bricks that the rays may pass through there.
+    // How many slabs of this layer of bricks are left, and which of its bricks the rays may pass.
     const int32_t voxels = 4 - (slab & 3);
     const int32_t from_a = a.first_brick(voxels);
     const int32_t from_b = b.first_brick(voxels);
@@ -202,7 +201,7 @@ template <int kC>
     }
     to_a = to_a > last_a ? last_a : to_a;
     to_b = to_b > last_b ? last_b : to_b;
-    // Those of them that are not empty.
+    // Keeps the bricks that are not empty.
     NearBrick bricks[kBeamBricks * kBeamBricks];
     NearBrick* bricks_end = bricks;
     const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
@@ -222,7 +221,6 @@ template <int kC>
       slab += voxels;
       continue;
     }
-    // Voxel by voxel.
     const int32_t base_a = 4 * from_a;
     const int32_t base_b = 4 * from_b;
     for (const int32_t end = slab + voxels; slab < end; ++slab, a.advance(1), b.advance(1)) {

@@ -1,16 +1,16 @@
-// One ray, from voxel to voxel through the bricks, plane by plane along its fastest axis. Internal to src/.
+// Traces one ray from voxel to voxel through the bricks, plane by plane along its fastest axis. Internal to src/.
 //
 // Everything is mirrored as in crossings.h, so that no direction has a negative component, and relative to
 // the map's box: planes and cells are counted from the side at which the rays come in. Axis c is the one that
 // a tile's rays move fastest on, a and b are the others. Between two planes of c a ray crosses few planes of
-// a and b. For each of the two it keeps its position on the plane of c that is reached next:
+// a and b. For a and for b it keeps its position on the next plane of c:
 //
 //   rest_a = P_a - (cell_a + 1) * den       P_a = o_a * d_c + s_c * d_a, the position times den = 256 * d_c
 //
-// A rest is negative as long as the ray is still in its cell there; adding 256 * d_a goes on to the next
-// plane of c. When it becomes positive the ray crosses a plane of a before that plane of c, at 0 together
-// with it. Which of a and b comes first when both do: rest_a * d_b against rest_b * d_a, since rest / d is
-// the time that is left.
+// A rest is negative while the ray is still in its cell at that plane; adding 256 * d_a goes on to the next plane of c.
+// When rest_a is positive the ray crosses a plane of a before that plane of c; when it is 0 it crosses both together.
+// When both rests are positive, comparing rest_a * d_b with rest_b * d_a says which plane comes first, since rest / d
+// is the time that is left.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
 #define THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
 
@@ -25,15 +25,14 @@ namespace {
 
 // Answers that are not inks.
 constexpr int32_t kMissed = -1;
-constexpr int32_t kAsk = -2;  // only closest_hit knows
+constexpr int32_t kAsk = -2;  // only closest_hit of the tree can tell
 // No answer yet.
 constexpr int32_t kGoOn = 0;
-// A hit, where no ink was asked for.
+// There is a hit, and no ink was asked for.
 constexpr int32_t kShadowed = 1;
 
-// Divides for a core without a divider: dividend / divisor, both below 2^31. It starts from the last
-// quotient, from which that of a neighbouring ray is a step or two away. `most` times the divisor is below
-// 2^31.
+// Divides on a core without a divider: dividend / divisor, both below 2^31. It starts from the last quotient, since
+// that of a neighbouring ray is a step or two away. `most` times the divisor is below 2^31.
 uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t most, uint32_t* last) {
   uint32_t result = *last;
   int32_t rest = static_cast<int32_t>(dividend - result * divisor);
@@ -52,18 +51,18 @@ uint32_t quotient(uint32_t dividend, uint32_t divisor, uint32_t most, uint32_t* 
       break;
     }
   }
-  // Kept small, so that the next product stays below 2^31.
+  // `most` is a mask: it keeps the next product below 2^31.
   *last = result & most;
   return result;
 }
 
-// Up to 12 bits of direction the products of rests and directions have 32 (8 + 12 + 12).
+// With up to 12 direction bits products of rests and directions have at most 32 bits (8 + 12 + 12).
 constexpr bool kHasWideProducts = kMaxBrickDirectionBits > 12;
 
-// The sign of rest_a * d_b - rest_b * d_a: which plane comes first. Rests are below 2^23, directions below
-// 2^15. Where products may have more than 31 bits, both rests are divided by 256 first: that is wrong by less
-// than 2^15, and where it leaves the sign open, the difference is below 2^24, so that its lower 32 bits are
-// all of it. (64-bit products take 1 per cent more on a Cortex-M3, and a call each on a Cortex-M0.)
+// Returns a number with the sign of rest_a * d_b - rest_b * d_a, which says which plane comes first. Rests are below
+// 2^23, directions below 2^15. Where products may have more than 31 bits, both rests are divided by 256 first. That
+// result is wrong by less than 2^15; where it leaves the sign open, the exact difference is below 2^24, so its lower
+// 32 bits are all of it. (64-bit products take 1 per cent more on a Cortex-M3, and a call each on a Cortex-M0.)
 template <class OneCourse>
 [[gnu::always_inline]] inline int32_t order_of(const OneCourse& course, uint32_t rest_a, uint32_t d_b,
                                                uint32_t rest_b, uint32_t d_a) {
@@ -83,19 +82,19 @@ constexpr bool is_positive(uint32_t value) {
   return static_cast<int32_t>(value) > 0;
 }
 
-// Signs that are not known when this is compiled: those of the course.
+// In place of signs: they are read from the course at run time.
 constexpr unsigned kAnySigns = 8;
 
-// A ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored. Everything is inlined into
-// `trace_one`, where the members become registers. What is asked of a ray is the course's (sight.h and near.h have others).
+// A ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored. Everything is inlined into `trace_one`, where
+// the members become registers. The course says what the ray is asked for (sight.h, shadow.h and near.h have others).
 template <int kC, unsigned kMirrored, class OneCourse = Course>
 class BrickRay {
  public:
   [[gnu::always_inline]] BrickRay(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c)
       : course_(course), d_a_(d_a), d_b_(d_b), d_c_(d_c), den_(d_c << 8) {}
 
-  // Lets a ray begin in a voxel of brick `number` in the box, the first one in which it spends a length: `left`, `cell`
-  // and `place` are its own, the rests those of the plane of c before it.
+  // Lets the ray begin in a voxel of brick `number`, the first one in which it spends a length. `left`, `cell` and
+  // `place` are that voxel's; the rests are those on the plane of c before the point.
   [[gnu::always_inline]] void begin(uint32_t number, uint32_t left, int32_t cell, uint32_t place,
                                     uint32_t rest_a, uint32_t rest_b) {
     left_ = left;
@@ -106,11 +105,11 @@ class BrickRay {
     rest_b_ = rest_b;
     axis_ = kC;
   }
-  // Lets it end when it has crossed so many planes of c and comes to one more.
+  // Lets the ray end at the first plane of c after it has crossed so many.
   [[gnu::always_inline]] void end_after(uint32_t planes) { planes_ = planes; }
 
-  // Returns the ink of what the ray hits, kMissed or kAsk; without inks kShadowed in place of one. A ray from a
-  // face is to be begun first.
+  // Returns the ink of what the ray hits (kShadowed where no ink is wanted), kMissed or kAsk. A ray from a face needs
+  // `begin` first.
   [[gnu::always_inline]] int32_t trace() {
     const int32_t started = start();
     if (started != kGoOn) {
@@ -221,8 +220,7 @@ class BrickRay {
   static constexpr int kA = kOtherA<kC>;
   static constexpr int kB = kOtherB<kC>;
   static constexpr bool kFromFace = OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear;
-  // Whether layers of empty bricks are gone through at once. Cores without a divider are those with little flash, and
-  // have not the code.
+  // Whether rays pass layers of empty bricks at once. Cores without a divider have little flash, and leave this out.
   static constexpr bool skips_layers() {
     if constexpr (OneCourse::kAim == Aim::kNear) {
       return OneCourse::kRunsFar && kDivides;
@@ -230,11 +228,10 @@ class BrickRay {
       return false;
     }
   }
-  static constexpr uint32_t kFarPlanes =
-      8;  // ends of rays, and rays of occlusion, are sooner there voxel by voxel
+  static constexpr uint32_t kFarPlanes = 8;  // with fewer planes to go, voxel by voxel is quicker
   static constexpr bool mirrored(int axis) { return (kMirrored >> axis & 1U) != 0; }
   static constexpr uint32_t flip(int axis) { return mirrored(axis) ? 3U : 0U; }
-  // The voxel of a brick, in place, behind which the next brick comes; and what a step adds.
+  // The last voxel of a brick on an axis, shifted to its place; and what a step adds.
   template <int kAxis>
   [[gnu::always_inline]] uint32_t last() const {
     if constexpr (kMirrored == kAnySigns) {
@@ -262,7 +259,7 @@ class BrickRay {
     }
   }
 
-  // When the ray meets the next planes of a and b: to be compared, and nothing else.
+  // Two numbers that compare as the times at which the ray meets the next planes of a and b.
   [[gnu::always_inline]] auto times() const {
     THIMBLE_NOTE(Range::kBrickTime, Exact(rest_a_) * Exact(d_b_));
     THIMBLE_NOTE(Range::kBrickTime, Exact(rest_b_) * Exact(d_a_));
@@ -273,7 +270,7 @@ class BrickRay {
     }
   }
 
-  // What `quotient` may start from.
+  // The greatest quotient that `quotient` may start from.
   [[gnu::always_inline]] uint32_t most_cells() const { return kHasWideProducts ? course_.most_cells : 1023; }
 
   // Finds the cell that the ray starts in.
@@ -292,7 +289,7 @@ class BrickRay {
                    Exact(course_.origin[kB]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_b_));
       const uint32_t cell_a = kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), near_cell() + 0);
       const uint32_t cell_b = kDivides ? at_b / den_ : quotient(at_b, den_, most_cells(), near_cell() + 1);
-      // Where one is negative the ray starts far outside, and its quotient means nothing.
+      // Where at_a or at_b is negative the ray starts far outside, and the quotient means nothing.
       if (seldom((cell_a | cell_b | (at_a | at_b) >> 21) >= 1024)) {
         return is_negative(at_a | at_b) ? kAsk : kMissed;
       }
@@ -313,14 +310,14 @@ class BrickRay {
     }
   }
 
-  // The halfword of brick `number` that lies where at_ lies in its brick.
+  // The halfword of brick `number` at the same place as at_ in its brick.
   [[gnu::always_inline]] const uint8_t* brick_at(uint32_t number) const {
     return course_.bricks + 8 * number + row_of(at_);
   }
   [[gnu::always_inline]] bool solid() const { return (half_at(at_, 0) >> shift_ & 1U) != 0; }
 
-  // Finds the brick that the ray has come into. False when nothing solid is in it or behind, which is known for rays of
-  // shadow; where nothing is behind it, the next one is not entered (kInside).
+  // Finds the brick that the ray has entered. For rays of shadow it is known where nothing behind a brick is solid:
+  // there it returns false if the brick is empty, and else sets kInside, so that the ray ends with this brick.
   [[gnu::always_inline]] bool find_brick() {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
       const uint32_t number = half_at(course_.directory, cell_);
@@ -337,15 +334,16 @@ class BrickRay {
     return true;
   }
 
-  // Whether the ray is in a brick with nothing in it: all of these are the first.
+  // Whether the ray is in an empty brick: the directory gives all of them number 0.
   [[gnu::always_inline]] bool is_empty() const { return static_cast<size_t>(at_ - course_.bricks) < 8; }
 
-  // Whether the plane of c is one between layers: several planes that are crossed together may be in one brick.
+  // Whether the plane of c that was crossed last lies between two layers of bricks. (A ray that crosses planes of
+  // several axes together enters a brick anew, though it may be in the middle of a layer.)
   [[gnu::always_inline]] bool comes_from_layer() const {
     const uint32_t own = kC == 2 ? row_of(at_) : shift_ & kField<kC>;
     return own == (last<kC>() ^ kField<kC>);
   }
-  // Goes on through empty bricks, where it has just come to one. False when it ends there.
+  // Goes on through empty bricks if the ray has just entered one. Returns false when the ray ends there.
   [[gnu::always_inline]] bool skip_air() {
     if constexpr (skips_layers()) {
       return planes_ < kFarPlanes || axis_ != kC || !is_empty() || !comes_from_layer() || skip_empty();
@@ -353,7 +351,7 @@ class BrickRay {
       return true;
     }
   }
-  // The same, from a plane of c between two layers of bricks.
+  // Goes on from a plane of c between two layers of bricks.
   [[gnu::always_inline]] bool skip_empty() {
     LayerPlace at{{rest_a_, rest_b_}, left_, cell_, planes_, row_of(at_) << 3 | shift_, 0};
     if (!skip_layers(course_, kC, &at)) {
@@ -369,12 +367,12 @@ class BrickRay {
     return true;
   }
 
-  // Says of the voxel that is hit what was asked, where that is no ink.
+  // Answers what was asked about the voxel that is hit, where that is no ink.
   [[gnu::always_inline]] int32_t answer() {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
       return kShadowed;
     } else {
-      // Of a hit that is near its t is asked, whichever faces are entered there.
+      // Aim::kNear asks only for t, which is the same for all faces entered there.
       if constexpr (OneCourse::kAim == Aim::kSight) {
         if (!name_axis()) {
           return kAsk;
@@ -385,8 +383,7 @@ class BrickRay {
     }
   }
 
-  // Enters a brick where it is not as usual: the ray has left the box, or waits outside of it, or starts
-  // here.
+  // Enters a brick in the unusual cases: the ray waits outside of the box, or starts here.
   [[gnu::always_inline]] bool begin_brick() {
     if constexpr (kFromFace) {
       return false;
@@ -395,7 +392,7 @@ class BrickRay {
         rest_a_ -= course_.behind * d_a_;
         rest_b_ -= course_.behind * d_b_;
       }
-      // 512 - bricks is the near side: below it the ray waits.
+      // A count of 512 - bricks is the box's near side; below it the ray is still outside and waits.
       const Vec3i& side = course_.frame->side;
       uint32_t number = 0;
       if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
@@ -412,7 +409,7 @@ class BrickRay {
     }
   }
 
-  // Goes to the next voxel on an axis; returns whether that is in the next brick.
+  // Goes to the next voxel on an axis; returns whether it lies in the next brick.
   template <int kAxis>
   [[gnu::always_inline]] bool step() {
     const uint32_t own = kAxis == 2 ? row_of(at_) : shift_ & kField<kAxis>;
@@ -443,11 +440,11 @@ class BrickRay {
     }
   }
 
-  // Crosses planes that the ray reaches at the same time: it spends none between them. False when closest_hit
-  // must say what it hits, or when the ray ends here.
+  // Crosses the planes that the ray reaches at the same time; it spends no time in the voxels between them. Returns
+  // false when closest_hit must say what the ray hits, or when the ray ends here.
   [[gnu::always_inline]] bool cross_together() {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
-      left_ &= ~kInside;  // it may stay in its brick, and that is looked at anew
+      left_ &= ~kInside;  // the ray may stay in its brick, which is then found again
     }
     if (rest_a_ == 0 || rest_b_ == 0) {  // with the plane of c
       if (ends()) {
@@ -471,14 +468,14 @@ class BrickRay {
     step<kB>();
     axis_ = kA;
     if constexpr (kFromFace) {
-      return true;  // a hit is one, whatever it hits
+      return true;  // these rays ask only whether and when they hit
     } else {
       return course_.exact_ties;
     }
   }
 
-  // Names the face of the hit: a voxel entered by a plane of c may be entered by others at the same t, and
-  // then the lowest axis counts. False when closest_hit must.
+  // Names the face of the hit: a voxel entered by a plane of c may be entered by others at the same t, and then the
+  // lowest axis counts. Returns false when only closest_hit can name it.
   [[gnu::always_inline]] bool name_axis() {
     if (seldom(axis_ == kC && (rest_a_ == 0U - den_ || rest_b_ == 0U - den_))) {
       const bool a = rest_a_ == 0U - den_ && d_a_ != 0;
@@ -521,7 +518,7 @@ class BrickRay {
   uint32_t shift_;     // the voxel's place: x and y
   const uint8_t* at_;  // and z: its halfword
   int axis_;           // of the plane that was crossed last
-  uint32_t planes_;    // of c that are left (Aim::kNear)
+  uint32_t planes_;    // planes of c that the ray may still cross (Aim::kNear)
 };
 
 template <int kC, unsigned kMirrored>
@@ -529,7 +526,7 @@ template <int kC, unsigned kMirrored>
   return BrickRay<kC, kMirrored>(course, d_a, d_b, d_c).trace();
 }
 
-// Traces one ray through the tree: what the bricks leave open.
+// Traces through the tree a ray that the bricks leave open.
 [[maybe_unused]] int32_t ask(const BrickFrame& frame, int32_t x, int32_t y, RenderCounts* counts) {
   const Ray ray = frame.camera.ray(x, y);
   Hit hit;
@@ -543,7 +540,7 @@ template <int kC, unsigned kMirrored>
   return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
 }
 
-// The axes that a course mirrors, as a type: what is compiled once for each.
+// The axes that a course mirrors, as a type, so that code is compiled once for each.
 template <unsigned kAxes>
 struct Mirrored {
   static constexpr unsigned kMirrored = kAxes;

@@ -1,4 +1,4 @@
-// What rays of one frame have in common, and what those of one direction's signs and fastest axis have.
+// What the rays of one frame share, and what those share whose directions have the same signs and fastest axis.
 // Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_COURSE_H
 #define THIMBLE_SRC_PICTURE_BRICKS_COURSE_H
@@ -15,8 +15,8 @@ namespace {
 
 struct Inks;
 
-// What a ray is asked: the ink of what it hits, the hit, whether there is one; or, from a point on a face as for a
-// shadow, the hit where it is not far.
+// What a ray is asked for: the ink of what it hits, the hit, whether there is a hit; or, for rays from a face, the hit
+// if it is near.
 enum class Aim : uint8_t { kInk, kSight, kShadow, kNear };
 
 // What all pixels of a band share.
@@ -26,53 +26,54 @@ struct BrickFrame {
   const Camera& camera;
   const Shading& shading;
   PixelFormat format;
-  bool halfwords;  // pixels are halfwords, and lie where halfwords may be stored
+  bool halfwords;  // pixels are halfwords, and aligned as such
   uint32_t background;
   Vec3i side;    // of the box, in bricks
   Vec3i stride;  // of the directory, in bytes
   Vec3i eye;     // from the box's lowest corner, in 1/256 voxel
-  // Added to a tile's first direction these give the least and the greatest of the whole tile, see `Fan`.
+  // Added to the first direction of a tile (or quad), these give the least and the greatest of all of it: see `Fan`.
   Vec3i tile_low;
   Vec3i tile_high;
   Vec3i quad_low;
   Vec3i quad_high;
 };
 
-// What all rays share whose directions have the same signs and the same fastest axis. Where they start
-// changes from tile to tile.
+// What all rays share whose directions have the same signs and the same fastest axis. Where they start changes from
+// tile to tile.
 struct Course {
   static constexpr Aim kAim = Aim::kInk;
   const BrickFrame* frame;
   Inks* inks;
-  int32_t origin[3];  // mirrored; on a and b kOutsideQ8 beyond
+  int32_t origin[3];  // the eye, mirrored; on a and b kOutsideQ8 more
   const uint8_t* directory;
   const uint8_t* bricks;
-  int32_t stride[3];      // of the directory, in bytes
-  int32_t next_brick[3];  // the same again, so that the compiler does not keep it in a register throughout
-  uint32_t flip[3];       // 3 where mirrored
+  int32_t stride[3];  // of the directory, in bytes
+  int32_t
+      next_brick[3];  // equals `stride`; a second copy, so that the compiler does not hold it in a register
+  uint32_t flip[3];   // 3 where mirrored
   uint32_t face[3];
-  int32_t base;        // offset in the directory, in bytes, of slab 0
-  uint32_t base_left;  // counts of bricks of slab 0
+  int32_t base;        // offset of slab 0 in the directory, in bytes
+  uint32_t base_left;  // counts of bricks in slab 0
   int c;               // the fastest axis
   unsigned mirrored;   // bit a: axis a is mirrored
-  bool exact_ties;     // a voxel entered through an edge is what is hit, not a part of a merged block
+  bool exact_ties;     // a voxel entered through an edge is itself the hit: it is no part of a merged block
   // Where the rays start.
   uint32_t waiting;  // kWaiting where they may start outside of the box
-  uint32_t plane;    // distance from the origin, in 1/256 voxel
+  uint32_t plane;    // distance from the origin to the first plane of c, in 1/256 voxel; not below 0
   uint32_t behind;   // distance back to the plane of c before the origin, where that lies between two planes
-  uint32_t first;    // the voxel on c, in place
-  int32_t start;     // offset in the directory, without a and b
-  uint32_t left;     // counts of bricks, without a and b
+  uint32_t first;    // the first voxel on c, shifted to its place
+  int32_t start;     // offset in the directory, to which that of a and b is added
+  uint32_t left;     // counts of bricks, to which those of a and b are added
   // The camera's affine function, mirrored.
   Camera::Vec3Q32 step_x;
   Camera::Vec3Q32 step_y;
-  // What is read seldom.
+  // Read seldom, so last.
   int axis[3];          // a, b and c
-  uint32_t most_cells;  // times a direction in 1/256 this is below 2^31
-  bool wide;            // the products of directions and rests take more than 31 bits
+  uint32_t most_cells;  // so many cells times a direction times 256 stay below 2^31
+  bool wide;            // products of directions and rests take more than 31 bits
 };
 
-// Sets all but where the rays start.
+// Sets all members but those that say where the rays start.
 void set_course(Course& course, unsigned mirrored, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
@@ -104,7 +105,7 @@ void set_course(Course& course, unsigned mirrored, int c) {
   }
 }
 
-// Lets the rays start in the slab of voxels `slab` along c.
+// Lets the rays start in slab `slab` of voxels along c.
 void set_start(Course& course, int32_t slab) {
   const int32_t distance = slab * Q8::kOne - course.origin[course.c];
   course.plane = distance > 0 ? static_cast<uint32_t>(distance) : 0;

@@ -1,5 +1,5 @@
-// The faces of a brick that rays can enter, turned so that all rays go up on its axes a, b and c. Internal to
-// src/.
+// Finds the faces of a brick by which rays can enter, turned so that all rays go up on its axes a, b and c.
+// Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_EXPOSED_H
 #define THIMBLE_SRC_PICTURE_BRICKS_EXPOSED_H
 
@@ -8,7 +8,7 @@
 namespace thimble::bricks {
 namespace {
 
-// 64 voxels; bit a + 4 b + 16 c once turned.
+// The 64 voxels of a brick; bit a + 4 b + 16 c once they are turned.
 struct Cells {
   uint32_t low;
   uint32_t high;
@@ -24,7 +24,7 @@ struct Exposed {
 constexpr uint32_t swap_bits(uint32_t word, int shift, uint32_t mask) {
   return (word >> shift & mask) | (word & mask) << shift;
 }
-// Swaps those under `mask` with those `shift` above them, and leaves the others.
+// The same, but keeps the bits that neither mask takes.
 constexpr uint32_t exchange(uint32_t word, int shift, uint32_t mask) {
   const uint32_t differ = (word ^ word >> shift) & mask;
   return word ^ differ ^ differ << shift;
@@ -60,7 +60,7 @@ Cells turned(Cells cells, unsigned mirrored, int c) {
     cells.low = exchange(exchange(cells.low, 3, 0x0A0A0A0AU), 6, 0x00CC00CCU);
     cells.high = exchange(exchange(cells.high, 3, 0x0A0A0A0AU), 6, 0x00CC00CCU);
   }
-  // The two upper places change places: nibbles of a row with those of a column.
+  // The two upper coordinates change places: nibbles of a row with those of a column.
   cells.low = exchange(cells.low, 12, 0x0000F0F0U);
   cells.high = exchange(cells.high, 12, 0x0000F0F0U);
   const uint32_t differ = (cells.low >> 8 ^ cells.high) & 0x00FF00FFU;
@@ -74,7 +74,7 @@ Cells cells_of(const Course& course, int32_t place) {
   return {word_at(course.bricks, brick), word_at(course.bricks, brick + 4)};
 }
 
-// What of `own` has nothing of itself or of the brick before it (`before`) in front on `axis`.
+// The voxels of `own` that have no voxel in front of them on `axis`, in their own brick or in the one before.
 Cells uncovered_on(int axis, bool mirrored, const Cells& own, const Cells& before) {
   if (axis == 2) {
     return mirrored ? Cells{own.low & ~(own.low >> 16 | own.high << 16),
@@ -93,8 +93,7 @@ Cells uncovered_on(int axis, bool mirrored, const Cells& own, const Cells& befor
           own.high & ~((own.high << shift & ~first) | (before.high >> 3 * shift & first))};
 }
 
-// Finds the faces of the brick at `place` in the directory, the `bricks`-th of the box along each of a, b and
-// c.
+// Finds the exposed faces of the brick at `place` in the directory, the box's brick number `bricks` along a, b and c.
 [[gnu::noinline]] void find_exposed(const Course& course, int32_t place, const int32_t (&bricks)[3],
                                     Exposed* exposed) {
   const Cells own = cells_of(course, place);

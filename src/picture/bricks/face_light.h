@@ -1,10 +1,10 @@
-// Whether a whole face is lit by a distant light, or dark, proven at once; and by what its points are shadowed where
-// neither is. Internal to src/.
+// Proves at once that a distant light reaches all of a face or none of it; where neither holds, lists the voxels that
+// shadow its points. Internal to src/.
 //
-// All rays from the face lie, in each slab of voxels along the light's fastest axis c, between two planes of a and
-// two of b. If nothing solid is in that window of any slab the face is lit all over; if all of the window is solid
-// in one slab that all rays cross from plane to plane, it is dark all over. Else a point of it is dark where its ray
-// meets one of the voxels in the windows, each of which is a matter of three products.
+// In each slab of voxels along the light's fastest axis c all rays from the face lie in a window: between two planes
+// of a and two of b. If the windows of all slabs are empty, the face is lit all over. If the window of a slab that
+// all rays cross from plane to plane is all solid, the face is dark all over. Else a point is dark where its ray
+// meets one of the solid voxels in the windows; three products tell for each voxel.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_FACE_LIGHT_H
 #define THIMBLE_SRC_PICTURE_BRICKS_FACE_LIGHT_H
 
@@ -18,17 +18,17 @@ namespace {
 
 enum class FaceLight : uint8_t { kLit, kDark, kMixed };
 
-// The voxels that may hide a light from points of a face, by a, b and c, mirrored. Where there are more than these, or
-// the light runs along an axis, points are asked ray by ray.
+// The voxels that may hide a light from points of a face, by a, b and c, mirrored. Where there are more than kMost, or
+// a component of the light's direction is 0, each point traces its own ray.
 struct Blockers {
   static constexpr uint32_t kMost = 12;
   uint32_t count;
   uint8_t cell[kMost][3];
 };
 
-// The rays of a face, which go up on all axes. In a slab they are on a and b from the first to the last voxel of a
-// window; rays that start on a plane of c start on that one, the others begin within a slab, so that the last of
-// them come from its far plane.
+// The rays of a face, mirrored so that they go up on all axes. In a slab they pass the voxels of a window on a and b.
+// The rays of a face across c start on a plane of c; those of other faces start within a slab, the last of them at
+// its far plane.
 class FaceBeam {
  public:
   FaceBeam(const ShadowCourse& course, const FacePoint& face, Blockers* blockers)
@@ -55,7 +55,7 @@ class FaceBeam {
 
   FaceLight find() {
     while (slab_ <= last_[2]) {
-      // The bricks of the layer that the rays come into.
+      // The bricks of this layer that the rays pass.
       const int32_t more = 3 - (slab_ & 3);
       int32_t to[2];
       for (int k = 0; k < 2; ++k) {
@@ -104,14 +104,14 @@ class FaceBeam {
 
   FaceLight result() const { return some_ ? FaceLight::kMixed : FaceLight::kLit; }
 
-  // Goes through the slabs of a layer, in bricks of which some are not empty, the first of them at `row` in the
-  // directory. Whether all rays end there.
+  // Looks at the slabs of a layer whose bricks are not all empty; the first brick is at `row` in the directory.
+  // Returns whether all rays end in this layer.
   bool look(int32_t row, const int32_t (&to)[2]) {
     // The windows, counted from the first brick: bits of a, and rows of b.
     uint32_t across[4];
     uint32_t down[4];
-    uint32_t all = 0;      // a bit a slab: whether all rays cross it, within the box
-    uint32_t met[4] = {};  // how much of a window is solid
+    uint32_t all = 0;      // bit i: all rays cross slab i from plane to plane, within the box
+    uint32_t met[4] = {};  // how many voxels of each window are solid
     const int32_t first = slab_ & 3;
     const int32_t base_a = 4 * from_[0];
     const int32_t base_b = 4 * from_[1];
@@ -191,14 +191,14 @@ class FaceBeam {
   int32_t from_[2];  // bricks
 };
 
-// `face`: as a point of it. The light is in front of it. `blockers` are of use where it is mixed.
+// `face` is given by one of its points; the light is in front of it. `blockers` counts only where the answer is kMixed.
 [[gnu::noinline]] FaceLight light_of_face(const ShadowCourse& course, const FacePoint& face,
                                           Blockers* blockers) {
   return FaceBeam(course, face, blockers).find();
 }
 
-// Whether the light does not reach a point: its ray spends a length in a voxel when it has come into it on each axis
-// before it leaves it on another one, (low_i - p_i) / d_i < (high_j - p_j) / d_j.
+// Whether one of the blockers hides the light from a point. A ray spends a length in a voxel if it enters it on each
+// axis i before it leaves it on each other axis j: (low_i - p_i) / d_i < (high_j - p_j) / d_j.
 bool is_blocked(const ShadowCourse& course, const Blockers& blockers, const FacePoint& point) {
   uint32_t at[3];
   uint32_t d[3];
@@ -209,7 +209,7 @@ bool is_blocked(const ShadowCourse& course, const Blockers& blockers, const Face
     at[k] = static_cast<uint32_t>(course.goes_down(axis) ? course.cells[axis] * 256 - own : own);
     d[k] = course.d[axis];
   }
-  // The windows keep these differences below 2^27, whatever is cut off above.
+  // The windows keep `ahead` below 2^27, so the bits that its products lose above bit 31 do not matter.
   const auto overlap = [](uint32_t x_i, uint32_t d_i, uint32_t x_j, uint32_t d_j) {
     const auto ahead = static_cast<int32_t>(x_i * d_j - x_j * d_i);
     return ahead < static_cast<int32_t>(d_i << 8) && -ahead < static_cast<int32_t>(d_j << 8);

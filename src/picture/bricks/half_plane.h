@@ -32,36 +32,36 @@ struct TileRays {
   int32_t step_x[3];
   int32_t step_y[3];
   int fraction_bits;
-  int32_t unit;   // (s_i + s_j) times this bounds what rounding does to f
-  int32_t reach;  // bounds rest + x * step_x + y * step_y, below 2^15
+  int32_t unit;   // rounding changes f by at most (s_i + s_j) times this
+  int32_t reach;  // |rest + x * step_x + y * step_y| is at most this, which is below 2^15
 };
 
-// F positive: certain; F positive or open: possible. The others are certainly negative.
+// The pixels at which f is certainly positive, and those at which it is not certainly negative.
 struct HalfPlane {
   uint32_t key;
   Pixels certain;
   Pixels possible;
 };
 
-// Distances are cut to this many bits where an affine function is computed from them.
+// Before F is computed from distances they are cut to this many bits.
 constexpr int kDistanceBits = 13;
 
-// The same as `walk_edge` with three divisions instead of loops, for edges that are not far from upright:
-// where they cross the rows, in 1/2^kCrossingBits pixel. False for others. `fx` is positive.
+// `divide_edge` does as `walk_edge` with three divisions instead of loops: it finds where an edge crosses the rows,
+// in 1/2^kCrossingBits pixel. It returns false for edges that are far from upright. `fx` is positive.
 //
-// A quotient is wrong by 1 unit for being cut off, likewise what is divided, and by 2^-13 of itself as the
-// divisor keeps 14 bits: at most 24 units, with |crossing| <= 33 pixels in the first row and |slope| <= 5.
+// Cutting off costs a quotient 1 unit, and its dividend likewise; the divisor keeps 14 bits, which costs 2^-13 of the
+// quotient. That is at most 24 units, with |crossing| <= 33 pixels in the first row and |slope| <= 5.
 constexpr int kCrossingBits = 11;
 constexpr int32_t kCrossingSlack = 24;
 
-// The pixels of a row from a crossing on. Places up to 31, so that one instruction may find them.
+// The pixels of a row from a crossing on. The place is limited to 31, so that one shift finds them.
 [[gnu::always_inline]] inline uint32_t row_from(int32_t crossing) {
   const int32_t place = crossing >> kCrossingBits;
   const int32_t positive = place < 0 ? 0 : place;
   return 0xFFFFU << (positive > 31 ? 31 : positive);
 }
 
-// Sets the rows of two masks, or what they leave.
+// Sets the rows of two masks; with kFlip, of their complements.
 template <bool kFlip>
 [[gnu::always_inline]] inline void fill_rows(int32_t at, int32_t slope, int32_t back, Pixels* first,
                                              Pixels* second) {
@@ -90,7 +90,7 @@ bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, Ha
   };
   int32_t at = quotient(ahead);
   const int32_t slope = quotient(fy);
-  // From the first certain pixel back to what is added to round the first possible one up.
+  // How far the first possible pixel's crossing lies before that of the first certain one, slack included.
   const int32_t back = quotient(2 * bound) + 2 * kCrossingSlack + 1;
   at += kCrossingSlack + (1 << kCrossingBits);
   if (flip) {
@@ -101,10 +101,10 @@ bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, Ha
   return true;
 }
 
-// Walks along an edge: `f` (F times 2^fraction_bits, scaled) at the tile's first pixel, its steps, and the
-// bound. Exactly the pixels above `bound` become certain, those from -bound on possible.
+// Walks along an edge. `f` is F times 2^fraction_bits, scaled, at the tile's first pixel; `fx` and `fy` are its steps.
+// Exactly the pixels above `bound` become certain, those from -bound on possible.
 void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plane) {
-  // As if F grew to the right, and in the order of rows in which it grows.
+  // Turns F so that it grows to the right, and visits the rows in the order in which it grows.
   const bool flip = fx < 0;
   if (flip) {
     f = -f;
@@ -125,7 +125,7 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
     possible += kTileDownPx - 1;
     step = -1;
   }
-  // The pixels from `first` on are certain; `at` is F of the one before, less the bound.
+  // The pixels from `first` on are certain; `at` is F of the pixel before `first`, less the bound.
   int32_t first = kTileAcrossPx;
   int32_t at = f + (kTileAcrossPx - 1) * fx - bound;
   for (int row = 0; row < kTileDownPx; ++row) {
@@ -152,8 +152,8 @@ void set_all(HalfPlane* plane, uint32_t word) {
   }
 }
 
-// Finds where the plane of axis i (0 a, 1 b, 2 c) at distance `s_i` is met before that of j at `s_j`. Planes
-// behind the eye, or at it, were met before all others.
+// Finds the pixels that meet the plane of axis i (0 a, 1 b, 2 c) at distance `s_i` before that of axis j at `s_j`.
+// Planes at or behind the eye count as met before all others.
 [[gnu::noinline]] void find_half_plane(const TileRays& rays, int i, int j, int32_t s_i, int32_t s_j,
                                        HalfPlane* plane) {
   if (s_i <= 0 || s_j <= 0) {

@@ -1,4 +1,4 @@
-// Inks: colours as the format of a frame stores them, and those that were looked up lately. Internal to src/.
+// Inks are colours as a frame's format stores them; those that were looked up lately are kept. Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_INKS_H
 #define THIMBLE_SRC_PICTURE_BRICKS_INKS_H
 
@@ -118,7 +118,7 @@ uint32_t ink_of(PixelFormat format, Rgb8 color) {
   }
 }
 
-// Makes the hit of a face of `material` and the ray that hits it, as far as `shade` looks at them.
+// Makes the hit of a face of `material`, and sets of its ray what `shade` reads.
 Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   Hit hit;
   hit.kind = HitKind::kHit;
@@ -128,8 +128,8 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   return hit;
 }
 
-// Shades by distance: `voxel` of the brick that `left` counts, entered on `axis`, along which the ray's
-// direction has this component.
+// Shades a voxel by its distance: `voxel` of the brick that `left` counts, entered on `axis`; `direction` is the ray's
+// component on that axis.
 [[gnu::noinline, maybe_unused]] int32_t depth_ink(const Course& course, int axis, uint32_t left,
                                                   uint32_t voxel, uint32_t direction) {
   const int32_t bricks = static_cast<int32_t>(count_of(left, axis)) - (512 - course.frame->side[axis]);
@@ -144,7 +144,7 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
   return static_cast<int32_t>(ink_of(frame.format, shade(hit, ray, frame.camera, frame.shading)));
 }
 
-// Shades a face of a material, as an entry of `Inks::material`.
+// Shades a face of a material; returns an entry of `Inks::material`.
 [[gnu::noinline]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
   const BrickFrame& frame = *course.frame;
   Ray ray;
@@ -153,8 +153,8 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
                                                                                   << 24;
 }
 
-// Finds the ink of a face that is not among those seen lately, and keeps it: of `voxel` (64 times the brick's
-// number and the voxel's bit), entered on `axis`.
+// Finds and keeps the ink of a face that was not seen lately: of `voxel` (64 times the brick's number, plus the voxel's
+// bit), entered on `axis`.
 [[gnu::noinline, maybe_unused]] int32_t look_up(const Course& course, uint32_t voxel, int axis) {
   const BrickFrame& frame = *course.frame;
   const uint8_t material = frame.map.material(frame.tree, voxel >> 6, voxel & 63U);

@@ -1,4 +1,4 @@
-// The way of a ray through the air, by layers of empty bricks. Internal to src/.
+// Takes a ray through empty bricks a layer at a time. Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_LAYERS_H
 #define THIMBLE_SRC_PICTURE_BRICKS_LAYERS_H
 
@@ -7,33 +7,33 @@
 namespace thimble::bricks {
 namespace {
 
-// Where a ray has come into a layer of bricks along its fastest axis c: what BrickRay keeps of it.
+// Where a ray has entered a layer of bricks along its fastest axis c, in the numbers that BrickRay keeps.
 struct LayerPlace {
   uint32_t rest[2];  // on a and b, to the planes of the voxel
   uint32_t left;
   int32_t cell;
-  uint32_t planes;  // of c, that it may still cross
+  uint32_t planes;  // planes of c that the ray may still cross
   uint32_t place;   // of the voxel: two bits an axis
   uint32_t number;  // of the brick
 };
 
-// What half_at says, inlined where code is compiled for size, too.
+// half_at, inlined even where code is compiled for size.
 [[gnu::always_inline]] inline uint32_t brick_number(const uint8_t* directory, int32_t place) {
   return *static_cast<const Half*>(static_cast<const void*>(directory + place));
 }
 
-// At -O2 its loops are unrolled: twice the code, and no time.
+// At -O2 gcc unrolls the loops, which doubles the code and saves no time.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC optimize("Os")
 #endif
 
-// Goes on from a brick with nothing in it for as long as all bricks are empty that the ray can come to before the next
-// layer: its own, and where it leaves that on a or b (or both, in either order) the ones beside. False when it ends, or
-// leaves the box, before it comes to another.
+// Takes a ray on from an empty brick, layer by layer, while all bricks are empty that it can enter before the next
+// layer: its own and, where it leaves that on a or b (or both, in either order), the ones beside. Returns false when
+// the ray ends or leaves the box before it reaches a brick that is not empty.
 //
-// In between the rests are those of the bricks' planes: below 2^26, with what is added. Not inlined, since there are
-// three kinds of rays.
+// Meanwhile the rests refer to the planes of bricks, not of voxels: they stay below 2^26, with what is added. The
+// function is not inlined, since three kinds of rays would each have a copy.
 template <class OneCourse>
 [[gnu::noinline]] bool skip_layers(const OneCourse& course, int c, LayerPlace* at) {
   const int axis[2] = {c == 0 ? 1 : 0, c == 2 ? 1 : 2};
@@ -91,7 +91,7 @@ template <class OneCourse>
     rest[1] = next_b - (leaves_b ? den << 2 : 0);
     number = brick_number(course.directory, cell);
   } while (number == 0);
-  // The voxel on the layer's first plane, which the rests belong to again.
+  // Back to planes of voxels: finds the voxel on the layer's first plane.
   uint32_t place = (last(c) ^ 3U) << 2 * c;
   for (int k = 0; k < 2; ++k) {
     uint32_t ahead = 0;

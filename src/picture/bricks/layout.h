@@ -20,9 +20,9 @@ constexpr int kOtherB = kC == 2 ? 1 : 2;
 constexpr int32_t kOutsideCells = 64;
 constexpr int32_t kOutsideQ8 = kOutsideCells * Q8::kOne;
 
-// Bricks are counted in one word, ten bits an axis: each field is 512 - (bricks from here to the far side).
-// Bit 9 of a field is set when the ray has left the box. Bit 31 is set while the ray may not have come into
-// the box, bit 30 while it is in the slab of voxels that it starts in.
+// One word counts the bricks that are left on three axes, ten bits each: 512 - (bricks from here to the far side).
+// Bit 9 of a field is set once the ray has left the box, bit 31 while it may not have entered the box yet, bit 30
+// while it is in the slab of voxels that it starts in.
 constexpr uint32_t kLeft = uint32_t{1} << 9 | uint32_t{1} << 19 | uint32_t{1} << 29;
 constexpr uint32_t kWaiting = uint32_t{1} << 31;
 constexpr uint32_t kInside = uint32_t{1} << 30;

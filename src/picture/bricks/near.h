@@ -1,5 +1,5 @@
-// Rays from a point on a face into any direction, for as far as that is asked: to a lamp, or as far as occlusion
-// reaches. Internal to src/.
+// Rays from a point on a face into any direction that end at a given distance: at a lamp, or where occlusion ends.
+// Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_NEAR_H
 #define THIMBLE_SRC_PICTURE_BRICKS_NEAR_H
 
@@ -8,24 +8,24 @@
 namespace thimble::bricks {
 namespace {
 
-// `kFar`: some of the rays run far through the air, to lamps.
-// A ray: what BrickRay reads of a course, its direction, mirrored, and where it begins.
+// A ray: what BrickRay reads of a course, its direction, mirrored, and where it begins. kFar says that some of the rays
+// run far through the air, to lamps.
 template <bool kFar>
 struct NearRay {
   static constexpr Aim kAim = Aim::kNear;
   static constexpr bool kRunsFar = kFar;
-  static constexpr bool wide = true;  // the comparison serves directions of few bits, too
+  static constexpr bool wide = true;  // the wide comparison is right for directions of few bits, too
   const uint8_t* directory;
   const uint8_t* bricks;
   int32_t next_brick[3];
   uint32_t last[3];
   int32_t one_step[3];
   uint32_t d[3];
-  uint32_t within[3];  // the voxel, mirrored, in 1/256
+  uint32_t within[3];  // where in its voxel the ray begins, mirrored, in 1/256
   uint32_t left;       // counts of bricks
   int32_t cell;        // offset in the directory
   uint32_t place;      // of the voxel
-  uint32_t planes;     // of c, that it may cross
+  uint32_t planes;     // planes of c that the ray may cross
   mutable Landing landing;
 };
 
@@ -37,7 +37,7 @@ template <int kC, bool kFar>
   const uint32_t d_b = from.d[kB];
   const uint32_t d_c = from.d[kC];
   BrickRay<kC, kAnySigns, NearRay<kFar>> ray(from, d_a, d_b, d_c);
-  // Back to the plane of c before it, and on from there.
+  // The rests on the plane of c before the point.
   const uint32_t rest_a = from.within[kA] * d_c - from.within[kC] * d_a - (d_c << 8);
   const uint32_t rest_b = from.within[kB] * d_c - from.within[kC] * d_b - (d_c << 8);
   ray.begin(half_at(from.directory, from.cell), from.left, from.cell, from.place, rest_a, rest_b);
@@ -47,8 +47,9 @@ template <int kC, bool kFar>
 
 // What a ray from a point meets.
 struct NearHit {
-  int axis;        // of a face by which it is entered
-  uint32_t way;    // to there along the axis, in 1/256 voxel; 0 where the ray begins in something solid
+  int axis;  // of a face by which the ray enters the voxel
+  uint32_t
+      way;  // how far that face is along the axis, in 1/256 voxel; 0 where the ray begins in something solid
   uint32_t voxel;  // as Landing's
 };
 
@@ -77,11 +78,11 @@ class NearPoint {
     }
     at_[point.axis] = 256 * (point.voxel[point.axis] + (point.faces_up ? 1 : 0));
   }
-  // Where it is in the world, in 1/256 voxel.
+  // The point's coordinate in the world, in 1/256 voxel.
   int32_t place(int axis) const { return low_[axis] + at_[axis]; }
 
-  // Sets the signs of the rays that follow: bit a, axis a is mirrored. False when they leave the box at once. They leave
-  // the face.
+  // Sets the signs of the rays that follow, which leave the face: bit a is set where axis a is mirrored. Returns false
+  // when they leave the box at once.
   bool begin(unsigned mirrored) {
     if (mirrored != mirrored_) {
       set_signs(mirrored);
@@ -108,8 +109,8 @@ class NearPoint {
     return true;
   }
 
-  // The hit of a ray of direction `d`, mirrored, nearer than `reach` along its fastest axis `c` (1/256 voxel, not 0);
-  // others may be found, too.
+  // Finds what the ray of direction `d`, mirrored, hits nearer than `reach` along its fastest axis `c` (in 1/256 voxel,
+  // not 0). It may also find a hit somewhat beyond.
   [[gnu::always_inline]] bool trace(const uint32_t (&d)[3], int c, uint32_t reach, NearHit* hit) {
     ray_.d[0] = d[0];
     ray_.d[1] = d[1];
@@ -148,16 +149,16 @@ class NearPoint {
     return true;
   }
   bool is_mirrored(int axis) const { return (mirrored_ >> axis & 1U) != 0; }
-  // From the box's side at which the rays come in, in 1/256 voxel.
+  // The point's distance from the side of the box at which the rays come in, in 1/256 voxel.
   int32_t own_place(int axis) const { return is_mirrored(axis) ? size_[axis] - at_[axis] : at_[axis]; }
 
-  // Of the box, in 1/256 voxel.
+  // The box, in 1/256 voxel.
   int32_t low_[3];
   int32_t size_[3];
   int32_t stride_[3];  // of the directory, in bytes
   int32_t at_[3];      // in the box, in 1/256 voxel
   unsigned mirrored_;
-  // Of the brick that all rays of these signs come from: counts of bricks, the place in the directory.
+  // The box's corner brick at which rays of these signs come in: counts of bricks, and its place in the directory.
   uint32_t near_left_;
   int32_t near_cell_;
   NearRay<kFar> ray_;

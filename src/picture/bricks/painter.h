@@ -1,5 +1,5 @@
-// Paints a band tile by tile: each tile looks along its beam, each quad of a tile traces its rays from there.
-// Internal to src/.
+// Paints a band tile by tile: it follows each tile's beam to the first slab that is not empty, and from there traces
+// the rays of the tile's quads. Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_PAINTER_H
 #define THIMBLE_SRC_PICTURE_BRICKS_PAINTER_H
 
@@ -24,8 +24,8 @@ int32_t trace_along(const Course& course, const Vec3i& d) {
                          : trace_by_signs<2>(course, x, y, z);
 }
 
-// Traces a quad with rays of one course. The mirrored affine function `from` (and a half) is positive all
-// over it, so rounding is cutting off. Returns a negative number when any answer is no ink.
+// Traces a quad with rays of one course. `from`, the mirrored affine function and a half, is positive all over the
+// quad, so rounding is cutting off. Returns a negative number when any answer is no ink.
 template <int kC, unsigned kMirrored>
 [[gnu::noinline]] int32_t trace_quad(const Course& course, const Camera::Vec3Q32& from, int32_t across,
                                      int32_t down, int32_t* inks) {
@@ -144,7 +144,7 @@ class BrickPainter {
   }
 
  private:
-  // Draws a tile face by face, as far as that pays. False when nothing was drawn; else quads may be left. These
+  // Draws a tile face by face, as far as that pays. Returns false when nothing was drawn; else quads may be left, which
   // are to be drawn from `slab` on.
   [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
                                     int32_t* slab) {
@@ -172,7 +172,6 @@ class BrickPainter {
     return true;
   }
 
-  // Makes the course one of these signs and this fastest axis.
   void use(unsigned mirrored, int c) {
     if (mirrored != course_.mirrored || c != course_.c) {
       set_course(course_, mirrored, c);
@@ -212,8 +211,8 @@ class BrickPainter {
     store(quad, inks);
   }
 
-  // Traces a quad whose rays do not all go the same way, so each takes a course of its own; `c` is the
-  // fastest axis, or -1 when there is none, which leaves all to `answer`.
+  // Traces a quad whose rays have different signs, so that each takes its own course; `c` is the fastest axis, or -1
+  // when there is none, which leaves all rays to `answer`.
   [[gnu::noinline]] void trace_mixed(const Camera::Vec3Q32& value, int c, int32_t slab, int32_t across,
                                      int32_t down, int32_t* inks) {
     const Camera::Affine& affine = frame_.camera.affine();
@@ -245,7 +244,7 @@ class BrickPainter {
   uint8_t* line_of(int32_t y) const {
     return first_line_ + stride_ * row_place(frame_.format, y - first_row_);
   }
-  // From row to row of a tile: a page is as high as a tile, so all of its rows lie in the same bytes.
+  // Bytes from row to row of a tile: a page is as high as a tile, so all rows of a tile share their bytes.
   size_t row_stride() const { return has_pages(frame_.format) ? 0 : stride_; }
 
   void store(const Tile& quad, const int32_t* inks) {
@@ -277,8 +276,8 @@ class BrickPainter {
     }
   }
 
-  // Turns the answers that are no inks into inks: asks the tree where only it knows, and takes the background
-  // for what is missed.
+  // Turns the answers that are no inks into inks: asks the tree where only it can tell, and takes the background where
+  // nothing is hit.
   [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
     for (int32_t y = quad.y0; y < quad.y1; ++y) {
       for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {

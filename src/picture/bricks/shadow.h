@@ -7,19 +7,20 @@
 namespace thimble::bricks {
 namespace {
 
-// Rays of one direction, from wherever: what BrickRay reads of a course, and the way to start.
+// Rays of one direction from any point: what BrickRay reads of a course, and what starting a ray takes.
 struct ShadowCourse {
   static constexpr Aim kAim = Aim::kShadow;
   const uint8_t* directory;
   const uint8_t* bricks;
-  const uint8_t* behind_bits;  // a bit a brick of the directory: nothing solid behind it (or null)
+  const uint8_t*
+      behind_bits;  // one bit for each brick of the directory: nothing behind it is solid (or null)
   int32_t next_brick[3];
   uint32_t last[3];
   int32_t one_step[3];
   uint32_t d[3];       // the direction, mirrored
   int32_t cells[3];    // sides of the box
-  uint32_t near_left;  // counts of bricks, were it in the box's lowest
-  int32_t near_place;  // in the directory, of the brick that all rays come from
+  uint32_t near_left;  // counts of bricks for a ray in the box's lowest brick
+  int32_t near_place;  // offset in the directory of the corner brick that all rays come from
   // d / d[c], rounded down and up, in 1/2^16.
   int32_t low_slope[3];
   int32_t high_slope[3];
@@ -69,8 +70,8 @@ struct ShadowCourse {
   }
 };
 
-// A point on a face of a voxel: on each axis the voxel, from the box's lowest corner, and how far in it, in 1/256.
-// Across the face it is on the voxel's plane.
+// A point on a face of a voxel: on each axis the voxel, counted from the box's lowest corner, and how far the point is
+// in it, in 1/256. On `axis` the point lies on the face's plane, whatever `within` says.
 struct FacePoint {
   int32_t voxel[3];
   int32_t within[3];
@@ -87,14 +88,14 @@ template <int kC>
   const uint32_t d_b = course.d[kB];
   const uint32_t d_c = course.d[kC];
   BrickRay<kC, kAnySigns, ShadowCourse> ray(course, d_a, d_b, d_c);
-  // Back to the plane of c before it, and on from there.
+  // The rests on the plane of c before the point.
   const uint32_t rest_a = within[kA] * d_c - within[kC] * d_a - (d_c << 8);
   const uint32_t rest_b = within[kB] * d_c - within[kC] * d_b - (d_c << 8);
   ray.begin(number, left, cell, place, rest_a, rest_b);
   return ray.trace();
 }
 
-// Whether the ray from a point on a face, which it leaves, meets something solid: `any_hit` of the tree.
+// Whether the ray that leaves a face at a point meets something solid, as `any_hit` says for the tree.
 bool is_shadowed(const ShadowCourse& course, const FacePoint& point) {
   uint32_t within[3];
   uint32_t left = course.near_left;

@@ -1,8 +1,8 @@
-// Rays that are asked for their hits, not for inks: those of the camera, and those that go on from where these end
-// towards a light. Internal to src/.
+// Traces the camera's rays for their hits, not for inks; from these hits other rays go on towards lights. Internal to
+// src/.
 //
-// The walk is BrickRay's; the signs are looked up, so that there are three copies of it each and not 24. What a ray
-// hits through an edge is left to the tree: there it is a question which face counts, and whose.
+// BrickRay walks with signs that it looks up, so that there are three copies of it and not 24. What a ray hits through
+// an edge is left to the tree, which knows which face counts and of which voxel.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
 #define THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
 
@@ -16,8 +16,8 @@
 namespace thimble::bricks {
 namespace {
 
-// Where a ray of the camera ends: 64 times the brick's number and the voxel's bit, counts of bricks, the place in the
-// directory, the axis of the face.
+// Where a ray of the camera ends: 64 times the brick's number plus the voxel's bit, the counts of bricks, the offset in
+// the directory, the axis of the face.
 struct Landing {
   uint32_t voxel;
   uint32_t left;
@@ -28,8 +28,8 @@ struct Landing {
 // A course whose signs are data.
 struct SightCourse : Course {
   static constexpr Aim kAim = Aim::kSight;
-  uint32_t last[3];     // the voxel of a brick, in place, behind which the next brick comes
-  int32_t one_step[3];  // what is added to the place of a voxel
+  uint32_t last[3];     // the last voxel of a brick, shifted to its place
+  int32_t one_step[3];  // what a step adds to a voxel's place
   mutable Landing landing;
   mutable uint32_t near_cell[2];
 
@@ -41,8 +41,8 @@ struct SightCourse : Course {
   }
 };
 
-// Finds where the ray of direction `d` (mirrored) has landed, as `start_on_face` does: what is across a ray is rounded
-// down, in the world's own direction.
+// Finds the point at which the ray of direction `d` (mirrored) has landed, as `start_on_face` does: coordinates across
+// the face are rounded down, in the world's own direction.
 template <int kAxis>
 [[gnu::always_inline]] inline void find_within(const SightCourse& course, const int32_t (&way)[3],
                                                const Vec3<uint32_t>& d, FacePoint* point) {
@@ -90,7 +90,7 @@ template <int kC>
   return BrickRay<kC, kAnySigns, SightCourse>(course, d_a, d_b, d_c).trace();
 }
 
-// Traces the ray of a pixel, which has the direction `d`, mirrored, and tells what it meets.
+// Traces the ray of a pixel, of direction `d`, mirrored, and tells the sink what it meets.
 template <class Sink>
 [[gnu::always_inline]] inline void see(Sink& sink, const SightCourse& course, int32_t x, int32_t y,
                                        const Vec3<uint32_t>& d) {
@@ -106,15 +106,15 @@ template <class Sink>
   }
 }
 
-// A face that a sweep has found: its voxel (as Landing's), how far its near planes are from the eye, the axis of the
-// face, and the voxel's place in the box. `within` is any point.
+// A face that a sweep has found: its voxel (as Landing's), the distances from the eye to the voxel's near planes, the
+// face's axis, and the voxel's place in the box. `point.within` is not set.
 struct SeenFace {
   uint32_t voxel;
   int32_t way[3];
   FacePoint point;
 };
 
-// Finds where the ray of direction `d` meets it.
+// Finds where the ray of direction `d` meets the face.
 void find_point(const SightCourse& course, const Vec3<uint32_t>& d, SeenFace* face) {
   switch (face->point.axis) {
     case 0:
@@ -133,7 +133,7 @@ struct SeenPixels {
   const TilePlace& place;
   const Pixels& pixels;
 
-  // The direction of one, mirrored.
+  // The direction of one of the pixels, mirrored.
   Vec3<uint32_t> direction(uint32_t pixel) const {
     uint32_t turned[3];
     find_direction(course, value, pixel, turned);
@@ -148,7 +148,7 @@ struct SeenPixels {
   }
 };
 
-// What a sweep does with its pixels where no inks are wanted.
+// Hands what a sweep finds to a sink, where no inks are wanted.
 template <class Sink>
 struct SightPaint {
   Sweep& sweep_;
@@ -179,16 +179,16 @@ struct SightPaint {
   }
 };
 
-// Goes through the tiles of one band, and says of each pixel what its ray meets:
+// Goes through the tiles of one band, and tells the sink what each pixel's ray meets:
 //
-//   miss(x, y)            nothing
-//   ask(x, y)             what only the tree knows
-//   hit(x, y, course, d)  `course.landing`, by the ray of direction d, mirrored
+//   miss(x, y)            it meets nothing
+//   ask(x, y)             only the tree can tell
+//   hit(x, y, course, d)  the ray of direction d, mirrored, meets `course.landing`
 //
 // and where tiles are swept (with `sweep`)
 //
-//   face(pixels, face)    all of them show that face
-//   miss(place, pixels)   all of them show nothing
+//   face(pixels, face)    all of these pixels show that face
+//   miss(place, pixels)   all of these pixels show nothing
 template <class Sink>
 class SightPainter {
  public:
@@ -261,7 +261,7 @@ class SightPainter {
   }
 
  private:
-  // As BrickPainter's.
+  // Does as BrickPainter::sweep_tile.
   [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
                                     int32_t* slab) {
     Sweep& sweep = *sweep_;
@@ -323,7 +323,7 @@ class SightPainter {
       trace_mixed(quad, value, fan.c, slab);
       return;
     }
-    // Mirrored and with a half the affine function is positive all over the quad, so rounding is cutting off.
+    // Mirrored, and with a half added, the affine function is positive all over the quad, so rounding is cutting off.
     Vec3<uint64_t> row;
     for (int axis = 0; axis < 3; ++axis) {
       row[axis] = static_cast<uint64_t>((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) +
@@ -349,7 +349,7 @@ class SightPainter {
     see(sink_, course_, x, y, d);
   }
 
-  // Traces a quad whose rays do not all go the same way, so each takes a course of its own.
+  // Traces a quad whose rays have different signs, so that each takes its own course.
   [[gnu::noinline]] void trace_mixed(const Tile& quad, const Camera::Vec3Q32& value, int c, int32_t slab) {
     const Camera::Affine& affine = frame_.camera.affine();
     Camera::Vec3Q32 row = value;
@@ -382,7 +382,7 @@ class SightPainter {
   SightCourse course_;
 };
 
-// What the rays of a band have in common; no inks are wanted.
+// Makes what the rays of a band share, where no inks are wanted.
 BrickFrame sight_frame(const CompactTree& tree, const BrickMap& map, const Camera& camera,
                        const Shading& shading, PixelFormat format) {
   BrickFrame frame{tree, map, camera, shading, format, false, 0, {}, {}, {}, {}, {}, {}, {}};

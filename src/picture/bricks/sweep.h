@@ -1,5 +1,5 @@
-// Draws a tile face by face, from the eye away: for pictures in which a face covers several pixels. Internal
-// to src/; README.md derives it.
+// Draws a tile face by face, nearest faces first: for pictures in which a face covers several pixels. Internal to src/;
+// src/picture/README.md derives it.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
 #define THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
 
@@ -10,7 +10,7 @@
 #include "half_plane.h"
 #include "tile_store.h"
 
-// Half-planes of a tile that are kept: three times so many, 4, 8 or 16.
+// How many half-planes of a tile are kept in each of the three families: 4, 8 or 16; 0 leaves the sweep out.
 #ifdef THIMBLE_SMALL_FRAMES
 #define THIMBLE_SWEEP_SLOTS 0
 #elif !defined(THIMBLE_SWEEP_SLOTS)
@@ -22,13 +22,13 @@ namespace {
 
 constexpr int kSlots = THIMBLE_SWEEP_SLOTS;
 constexpr uint32_t kNoKey = UINT32_MAX;
-// Bricks whose faces are kept.
+// How many bricks' faces are kept.
 constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
-// A tile goes over to rays where more voxels of a slab lie under its shadow.
+// Where more voxels of a slab lie under a tile's shadow, the rest of the tile is drawn by rays.
 constexpr int32_t kMostCells = 28;
 
-// Where the rays of a tile are on a or b, in 1/2^kCellShift voxel, mirrored: from `low` at the near plane of a
-// slab to `high` at its far one.
+// The interval that a tile's rays take on a or b within a slab, in 1/2^kCellShift voxel, mirrored: from `low` at the
+// slab's near plane to `high` at its far one.
 struct Reach {
   int32_t low;
   int32_t high;
@@ -36,20 +36,21 @@ struct Reach {
   int32_t high_step;
 };
 
-// What the sweep keeps from tile to tile of a band, and while it draws one.
+// What the sweep keeps while it draws a tile, and from tile to tile of a band.
 struct Sweep {
   TileRays rays;
-  Pixels left;  // not drawn yet
+  Pixels left;  // pixels that are not drawn yet
   HalfPlane plane[3 * kSlots + (kSlots == 0 ? 1 : 0)];
   Exposed exposed[kExposedKept];
-  unsigned course;    // whose bricks these are: its axis c and signs, or kNoKey
+  unsigned course;    // the course (axis c and signs) whose bricks are kept, or kNoKey
   int32_t origin[3];  // of the rays, on a, b and c
-  int32_t base;       // offset in the directory of the first brick
+  int32_t base;       // the first brick's offset in the directory
   int32_t side[3];
   int32_t stride[3];
   uint32_t misses;
   RenderCounts* counts;
-  int32_t step_x[3];  // of directions, with rays.fraction_bits, by the world's axes
+  int32_t
+      step_x[3];  // a direction's change from pixel to pixel, with rays.fraction_bits, by the world's axes
   int32_t step_y[3];
 
   void forget_bricks() {
@@ -68,7 +69,7 @@ struct Sweep {
       left.word[i] = (2 * i < down ? row : 0) | (2 * i + 1 < down ? row << 16 : 0);
     }
   }
-  // Whether the quad whose first pixel is (x, y) in the tile is left as a whole.
+  // Whether no pixel is drawn yet of the quad whose first pixel is (x, y) in the tile.
   bool has_quad(int32_t x, int32_t y) const { return (left.word[y >> 1] >> x & 1U) != 0; }
   bool done() const { return (left.word[0] | left.word[1] | left.word[2] | left.word[3]) == 0; }
 };
@@ -97,7 +98,7 @@ int32_t distance_of(const Sweep& sweep, int k, int32_t plane) {
   return kept;
 }
 
-// A pixel's exact direction on a, b and c; it has the course's signs.
+// Finds a pixel's exact direction on a, b and c; the pixel's ray has the course's signs.
 void find_direction(const Course& course, const Camera::Vec3Q32& value, uint32_t pixel, uint32_t (&d)[3]) {
   const int32_t x = static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
   const int32_t y = static_cast<int32_t>(pixel / kTileAcrossPx);
@@ -110,7 +111,7 @@ void find_direction(const Course& course, const Camera::Vec3Q32& value, uint32_t
   }
 }
 
-// Where a ray meets a face: 1 inside, -1 outside, 0 on an edge of it.
+// Returns where a ray meets the plane of a face: 1 inside of the face, -1 outside, 0 on one of its edges.
 int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uint32_t (&d)[3]) {
   const int32_t s_k = distance_of(sweep, k, cell[k]);
   int result = 1;
@@ -138,7 +139,8 @@ int32_t trace_turned(const Course& course, const uint32_t (&d)[3]) {
                          : trace_by_signs<2>(course, d[0], d[1], d[2]);
 }
 
-// Finds how a band's directions are counted. False where a tile's are too far apart for that.
+// Chooses how many bits behind the point a band's directions have. Returns false where those of a tile differ too much
+// for the least number of bits.
 bool set_steps(const Camera& camera, Sweep* sweep) {
   const Camera::Affine& affine = camera.affine();
   int64_t most = 0;
@@ -150,7 +152,7 @@ bool set_steps(const Camera& camera, Sweep* sweep) {
   }
   constexpr int kMostBits = 12;
   constexpr int kLeastBits = 4;
-  const int32_t whole = static_cast<int32_t>(most >> 32) + 2;  // the rest, and what was cut off
+  const int32_t whole = static_cast<int32_t>(most >> 32) + 2;  // 2: for `rest`, and for what was cut off
   int bits = kMostBits;
   while (bits >= kLeastBits && whole >= (1 << 15 >> bits)) {
     --bits;
@@ -170,7 +172,7 @@ bool set_steps(const Camera& camera, Sweep* sweep) {
   return true;
 }
 
-// Takes up a course.
+// Sets the sweep to a course.
 void set_sweep_course(const Course& course, Sweep* sweep) {
   const unsigned id = course.mirrored << 2 | static_cast<unsigned>(course.c);
   if (sweep->course == id) {
@@ -191,7 +193,7 @@ void set_sweep_course(const Course& course, Sweep* sweep) {
   }
 }
 
-// Takes up a tile whose first pixel has the directions `value`, `across` by `down` pixels.
+// Sets the sweep to a tile of `across` by `down` pixels whose first pixel has the direction `value`.
 void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across, int32_t down,
               Sweep* sweep) {
   TileRays& rays = sweep->rays;
@@ -212,12 +214,12 @@ constexpr HalfPlane kNoPixels = {kNoKey, {{0, 0, 0, 0}}, {{0, 0, 0, 0}}};
 
 // A brick under the shadow of a tile.
 struct SweptBrick {
-  int32_t place;  // in the directory
+  int32_t place;  // its offset in the directory
   int32_t a;
   int32_t b;
 };
 
-// The voxel of a cell on a, b and c: 64 times the number of the brick at `place`, and its bit.
+// Names the voxel of a cell on a, b and c: 64 times the number of the brick at `place`, plus the voxel's bit.
 [[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
                                                 const int32_t (&cell)[3]) {
   uint32_t voxel = half_at(course.directory, place) << 6;
@@ -228,7 +230,7 @@ struct SweptBrick {
   return voxel;
 }
 
-// What a sweep does with the pixels of a face, and with those of rays: their inks are stored.
+// Stores the inks of what a sweep finds: of a face's pixels, and of single rays.
 struct InkPaint {
   Sweep& sweep_;
   Course& course_;
@@ -245,11 +247,10 @@ struct InkPaint {
     store_pixels(place_, pixels, *course_.frame, ink_of_face(place, cell, k));
   }
 
-  // The pixel of a ray of direction `d`, traced from where the course starts.
+  // Draws the pixel whose ray has direction `d`, traced from where the course starts.
   void paint_ray(uint32_t pixel, const uint32_t (&d)[3]) { draw_ray(pixel, trace_turned(course_, d)); }
 
  private:
-  // Draws one pixel as its ray answered.
   void draw_ray(uint32_t pixel, int32_t ink) {
     const int32_t x = place_.x + static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
     const int32_t down = static_cast<int32_t>(pixel / kTileAcrossPx);
@@ -281,11 +282,11 @@ class TileSweep : private Paint {
  public:
   explicit TileSweep(const Paint& paint) : Paint(paint) {}
 
-  // Whether anything was met that is worth drawing.
+  // Whether the sweep has come to a brick that is not empty, and has drawn there.
   bool begun() const { return begun_; }
 
-  // Draws what the rays meet from `slab` on. Returns the slab from which on the pixels that are left are to
-  // be drawn by rays, or the number of slabs when they miss everything.
+  // Draws what the rays meet from `slab` on. Returns the slab at which rays take over the pixels that are left, or the
+  // number of slabs when those pixels miss everything.
   int32_t run(const Fan& fan, int32_t slab) {
     const int32_t slabs = 4 * sweep_.side[2];
     if (!set_reach(fan, slab)) {
@@ -365,7 +366,7 @@ class TileSweep : private Paint {
   bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
     const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
     if (least[2] < 1) {
-      return false;  // rays that hardly go on along c, in pictures of rays of few bits
+      return false;  // some rays hardly advance along c: their directions have few bits
     }
     for (int k = 0; k < 2; ++k) {
       if (greatest[k] > 2 * least[2]) {
@@ -381,7 +382,8 @@ class TileSweep : private Paint {
     return true;
   }
 
-  // Draws the shadow in to the pixels that are left, where these are many fewer than before; false where not.
+  // Narrows the shadow to the pixels that are left. Returns false where that is not done: the rectangle around these
+  // pixels has lost less than a quarter.
   bool narrow(int32_t slab) {
     const Pixels& left = sweep_.left;
     uint32_t columns = 0;
@@ -420,7 +422,7 @@ class TileSweep : private Paint {
     return set_reach(low, high, slab);
   }
 
-  // Finds the bricks of a layer that are not empty, from the eye away.
+  // Finds the bricks of a layer that are not empty, the nearest first.
   SweptBrick* find_bricks(int32_t layer, const int32_t (&from)[2], const int32_t (&to)[2],
                           SweptBrick* bricks) const {
     const int32_t stride_a = sweep_.stride[0];
@@ -439,8 +441,8 @@ class TileSweep : private Paint {
 
   // Draws bricks of one layer from its slab `slab` on.
   void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick, const SweptBrick* end) {
-    // The shadow's voxels, from the first brick's on. All rays have come into the first of them before the
-    // slab begins, so none enters it there by a plane of a or of b: `entered` is without it.
+    // The shadow's voxels as bits, from the first brick on. All rays have entered the lowest of them before the slab
+    // begins, so none enters it by a plane of a or of b: `entered` leaves it out.
     uint32_t cells[2][4];
     uint32_t entered[2][4];
     const int32_t first_slab = slab & 3;
@@ -523,7 +525,7 @@ class TileSweep : private Paint {
     }
   }
 
-  // Draws the face of `cell` on axis k: the pixels that meet two planes (`yes`) and not yet two others.
+  // Draws the face of `cell` on axis k: the pixels that have met two planes (`yes`) and not yet two others (`no`).
   void draw_face(int32_t place, const int32_t (&cell)[3], int k, const HalfPlane& yes0, const HalfPlane& yes1,
                  const HalfPlane& no0, const HalfPlane& no1) {
     Pixels possible;
@@ -553,7 +555,7 @@ class TileSweep : private Paint {
     }
   }
 
-  // Asks the rays of open pixels themselves.
+  // Decides open pixels by their exact rays.
   [[gnu::noinline]] void decide(const int32_t (&cell)[3], int k, const Pixels& open, Pixels* mine) {
     for (uint32_t i = 0; i < kTileWords; ++i) {
       for (uint32_t word = open.word[i]; word != 0; word &= word - 1) {
@@ -572,12 +574,12 @@ class TileSweep : private Paint {
   }
 
  public:
-  // Draws what is left by rays, from where the course starts, but for quads of which all is left.
+  // Draws the pixels that are left by rays, from where the course starts; leaves quads of which nothing is drawn yet.
   void draw_parts_of_quads() {
     uint32_t quads = 0;
     for (uint32_t i = 0; i < kTileWords; ++i) {
       if ((i & 1U) == 0) {
-        // Bits 0, 4, 8 and 12: the quads that are whole in these four rows.
+        // Bits 0, 4, 8 and 12: the quads of which nothing is drawn yet in these four rows.
         quads = sweep_.left.word[i] & sweep_.left.word[i + 1];
         quads &= quads >> 16;
         quads &= quads >> 1;
@@ -597,8 +599,8 @@ class TileSweep : private Paint {
   using Paint::place_;
   using Paint::sweep_;
   using Paint::value_;
-  Reach reach_[2] = {};  // at the slab that is next
-  // The rectangle that the shadow is drawn in to: so many columns, and pairs of rows.
+  Reach reach_[2] = {};  // in the next slab
+  // The rectangle that the shadow was last narrowed to: so many columns, and pairs of rows.
   int32_t columns_ = kTileAcrossPx;
   int32_t words_ = kTileWords;
   bool begun_ = false;
@@ -607,7 +609,7 @@ class TileSweep : private Paint {
   int32_t last_[2][4] = {};
 };
 
-// Whether something solid touches the eye: then rays may begin in it or on its surface.
+// Whether a solid voxel touches the eye: then rays may begin in it or on its surface.
 bool touches_solid(const BrickFrame& frame) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     int32_t offset = 0;

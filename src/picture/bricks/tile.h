@@ -9,7 +9,7 @@
 namespace thimble::bricks {
 namespace {
 
-// Tiles are so large.
+// A tile's size; at the edges of a picture or a band tiles are smaller.
 constexpr int32_t kTileAcrossPx = 16;
 constexpr int32_t kTileDownPx = 8;
 
@@ -21,10 +21,10 @@ struct Tile {
   int32_t y1;
 };
 
-// Up to these bits the product of a rest and a direction has at most 31: 8 + 11 + 11 is below.
+// With up to so many direction bits the product of a rest and a direction takes at most 31: 8 + 11 + 11 is 30.
 constexpr int kNarrowDirectionBits = 11;
 
-// Quads are the smallest tiles.
+// Quads divide a tile; each finds a start depth for its own rays.
 constexpr int32_t kQuadAcrossPx = 4;
 constexpr int32_t kQuadDownPx = 4;
 constexpr int32_t kQuadPixels = kQuadAcrossPx * kQuadDownPx;

@@ -1,4 +1,4 @@
-// Stores one colour in those pixels of a tile that are set in a mask. Internal to src/.
+// Stores one ink in the pixels of a tile that a mask selects. Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_TILE_STORE_H
 #define THIMBLE_SRC_PICTURE_BRICKS_TILE_STORE_H
 
@@ -93,7 +93,7 @@ template <class Pixel>
   }
 }
 
-// Stores pixels of any format; those of less than a byte were cleared before.
+// Stores pixels of any format; pixels of less than a byte have been cleared.
 [[gnu::noinline]] void store_any(const TilePlace& place, const Pixels& pixels, PixelFormat format,
                                  uint32_t ink) {
   uint8_t* line = place.line;

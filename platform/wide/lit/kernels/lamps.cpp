@@ -1,4 +1,4 @@
-// Rays from points of faces to a lamp, and what it gives there: lit::light_ray, in lanes.
+// Finds rays from points of faces to a lamp, and the light that it gives there: lit::light_ray, in lanes.
 #include "wide/lit/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,25 +22,25 @@ static_assert(hn::MaxLanes(F64()) <= kMostLightLanes);
 HWY_INLINE VF number(double value) {
   return hn::Set(F64(), value);
 }
-// To the nearest, of what is not below 0; halves go up.
+// Rounds a number that is not below 0 to the nearest integer; halves go up.
 HWY_INLINE VF rounded(VF value, VF scale) {
   return hn::Floor(hn::MulAdd(value, scale, number(0.5)));
 }
 
-// What of a way to the lamp its length and direction are found from.
+// What the length and direction of a way to the lamp are found from.
 struct LampWay {
-  VF size[3];    // of the direction, 15 bits
-  VF stretched;  // a power of two by which its largest component comes to 2^14 .. 2^15 - 1
-  VF numerator;  // a power of two by which it comes to the lamp
+  VF size[3];    // the direction's components without signs, 15 bits
+  VF stretched;  // a power of two that takes the largest component to 2^14 .. 2^15 - 1
+  VF numerator;  // a power of two: so many times the direction reaches the lamp
 };
 
-// ray_towards. `size`: of the way, below 2^25.
+// Does as ray_towards. `size` holds the way's components without signs, below 2^25.
 HWY_INLINE LampWay shorten_way(const VF (&size)[3]) {
   const F64 d;
   const U64 du;
   const VF one = number(1.0);
   const VF largest = hn::Max(size[0], hn::Max(size[1], size[2]));
-  // 2^14 over the largest power of two in it. Of no way at all it is no number that means anything.
+  // 2^14 over the largest power of two in the largest component. For a way of length 0 it means nothing.
   const auto power = hn::And(hn::BitCast(du, largest), hn::Set(du, uint64_t{0x7FF} << 52));
   const VF to_15_bits = hn::BitCast(d, hn::Sub(hn::Set(du, (uint64_t{2 * 1023 + 14}) << 52), power));
   VF scale = hn::Min(to_15_bits, one);

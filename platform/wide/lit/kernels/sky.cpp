@@ -1,4 +1,4 @@
-// How high above the horizon rays go: lit::sky_color's share of the zenith or the ground, in lanes.
+// Finds how high above the horizon rays go: lit::sky_color's share of the zenith or the ground, in lanes.
 #include "wide/lit/kernels.h"
 
 #undef HWY_TARGET_INCLUDE

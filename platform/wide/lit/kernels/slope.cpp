@@ -1,5 +1,5 @@
-// The slope of a surface in lanes (slope_table.h): what R^2 - d^2 adds up to over the voxels of a window, and
-// windows turned from one axis to another.
+// Finds the slope of a surface in lanes (slope_table.h): sums R^2 - d^2 over the voxels of a window, and turns windows
+// from one axis to another.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "wide/lit/kernels/slope.cpp"
 #include <hwy/foreach_target.h>
@@ -21,8 +21,8 @@ constexpr int kSide = lit::kSlopeSide;
 constexpr int kReach = lit::kSlopeColumns;
 constexpr int32_t kUnit = lit::kSlopeUnit;
 
-// Columns to each side that may have a voxel within reach, so many rows before the point's: the voxel's
-// centre is at least so many less a half away from it both ways.
+// By the distance of a row from the point's: how many columns to each side may have a voxel within reach. A voxel's
+// centre is at least so many less a half away from the point along either axis.
 constexpr int kHalves[2 * kReach + 1] = {3, 4, 5, 5, 5, 5, 5, 5, 5, 4, 3};
 static_assert(lit::kSlopeReachHalves == 11);
 

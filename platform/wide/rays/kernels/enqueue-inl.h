@@ -1,5 +1,5 @@
 /// @file enqueue-inl.h
-/// From rays as they are given to columns of the queue: mirrored, clipped to what is occupied, biased.
+/// Turns rays as they are given into columns of the queue: mirrored, clipped to the occupied box, biased.
 #if defined(THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_
 #undef THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_
@@ -13,15 +13,15 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// t is off by 2^-52 of itself at most, and two planes' t differ by 2^-43: a factor on the end that moves it
-// before every crossing at that t, and after all others; and one that moves a bound of any fraction behind
-// all below it.
+// A t is off by at most 2^-52 of itself, and the t of two planes differ by at least 2^-43 of it. So kJustBefore moves
+// an end before every crossing at that t but not before earlier ones; kJustAfter moves a bound, which may be any
+// fraction, behind all crossings below it.
 constexpr double kJustBefore = 1.0 - 0x1p-46;
 constexpr double kJustAfter = 1.0 + 0x1p-46;
-// Numerators of a plane's t.
+// The greatest numerator of a plane's t.
 constexpr double kMostNumerator = 8388608.0;
 
-// A group of new rays, a lane each.
+// A group of new rays, one in each lane.
 struct NewRays {
   VF origin[3];  // biased
   VF direction[3];
@@ -31,12 +31,12 @@ struct NewRays {
   VU top_flip;
   VU cell_flip;
   VU octant;
-  MF taken;   // by the vectors
-  MF in_air;  // of rays that leave something
-  MF inside;  // they come to the box of what is occupied
+  MF taken;   // rays that the vectors take
+  MF in_air;  // rays of `exits` that are in nothing solid
+  MF inside;  // rays that come to the occupied box
 };
 
-// Where the numbers of each lane's ray, or point, begin; lanes beyond the last one repeat it.
+// Where the numbers of each lane's ray, or point, begin; lanes behind the last ray repeat it.
 struct Rows {
   const int32_t* of[kLanes];
   Rows(const int32_t* first, size_t stride, size_t count) {
@@ -64,8 +64,8 @@ HWY_INLINE VF load_column(const Rows& rows, size_t column) {
 }
 
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-// Where the numbers of a column are in a row of records of `kStep` numbers each: in two vectors, and in what
-// that gave and a third.
+// Where a column's numbers are among records of `kStep` numbers each: `first` picks from two vectors, `second` from the
+// result and a third vector.
 template <uint32_t kStep>
 struct ColumnTable {
   alignas(64) uint32_t first[kStep][16];
@@ -84,7 +84,7 @@ alignas(64) constexpr ColumnTable<6> kRayColumns;
 alignas(64) constexpr ColumnTable<2> kPointColumns;
 #endif
 
-// The six numbers of up to kLanes rays, a ray a lane.
+// The six numbers of up to kLanes rays, one ray in each lane.
 struct RayColumns {
   VF of[6];
   RayColumns(const Ray* rays, size_t count) {
@@ -142,8 +142,8 @@ struct PointColumns {
   }
 };
 
-// Rays that leave something look through the layer of what they are in, all over the world. What has none,
-// and those that are not in the world where they begin, are the core's.
+// Lets rays that leave something look through the layer of their medium, all over the world. The core traces rays whose
+// medium has no layer, and rays that begin outside of the world.
 HWY_INLINE void add_layers(const Job& job, size_t first, size_t count, NewRays* rays) {
   const U64 du;
   const F64 d;
@@ -164,7 +164,7 @@ HWY_INLINE void add_layers(const Job& job, size_t first, size_t count, NewRays* 
   rays->top_flip = hn::Xor(rays->top_flip, hn::Load(du, layers));
 }
 
-// One axis: the mirrored origin and direction, and the planes of the occupied box.
+// Adds one axis: the mirrored origin and direction, and the planes of the occupied box.
 HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewRays* rays, VF* low,
                          VF* high) {
   const F64 d;
@@ -199,7 +199,7 @@ HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewR
   rays->octant = hn::Or(rays->octant, flip(uint64_t{4} << axis));
 }
 
-// Where rays begin or end besides.
+// Adds the points at which rays begin or end.
 HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* rays) {
   static_assert(sizeof(RayPoint) == 8 && offsetof(RayPoint, t_denominator) == 4);
   const F64 d;
@@ -211,7 +211,7 @@ HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* r
     rays->end = hn::Min(rays->end, hn::Mul(t, hn::Set(d, kJustAfter)));
     return;
   }
-  // 256 times a component, of which the core takes the whole part.
+  // The denominator is 256 times a component, of which the core takes the whole part.
   const VF divisor = hn::Floor(hn::Mul(denominator, hn::Set(d, 1.0 / 256)));
   const VF zero = hn::Zero(d);
   const MF at_start = hn::Or(hn::Le(numerator, zero), hn::Le(divisor, zero));
@@ -221,7 +221,7 @@ HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* r
     rays->taken = hn::And(rays->taken, hn::Or(rays->in_air, hn::Ge(from, rays->begin)));
   }
   rays->begin = hn::Max(rays->begin, from);
-  // The point of a plane of one of the three axes: of others the proof does not tell.
+  // The proof holds only for points on a plane of one of the three axes.
   const MF of_plane =
       hn::Or(hn::Eq(divisor, rays->direction[0]),
              hn::Or(hn::Eq(divisor, rays->direction[1]), hn::Eq(divisor, rays->direction[2])));
@@ -265,8 +265,8 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&pl
   return rays;
 }
 
-// Puts up to kLanes rays, from number `first` on, into the queue; those that never come to anything are left
-// out, and those that are beyond the limits are traced by the core.
+// Puts up to kLanes rays, from number `first` on, into the queue. Leaves out rays that never come to anything; the core
+// traces those that are beyond the limits.
 HWY_INLINE void enqueue(Job* job, size_t first, size_t count, Queue* queue) {
   const F64 d;
   const U64 du;
@@ -302,7 +302,7 @@ HWY_INLINE void enqueue(Job* job, size_t first, size_t count, Queue* queue) {
   queue->count += static_cast<size_t>(__builtin_popcount(bits));
 }
 
-// Fills the queue from the job's rays, of which `*next` is the first not taken yet.
+// Fills the queue from the job's rays; `*next` is the first ray that is not taken yet.
 inline void fill_queue(Job* job, size_t* next, Queue* queue) {
   const size_t left = queue->count - queue->next;  // less than a vector
   for (size_t column = 0; column < kDoubles; ++column) {

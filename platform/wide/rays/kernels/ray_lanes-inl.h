@@ -1,5 +1,5 @@
 /// @file ray_lanes-inl.h
-/// The state of rays on their way, a lane each, and the queue that lanes are filled from.
+/// The state of rays under way, one in each lane, and the queue from which lanes are filled.
 #if defined(THIMBLE_WIDE_RAYS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RAYS_LANES_INL_H_
 #undef THIMBLE_WIDE_RAYS_LANES_INL_H_
@@ -31,9 +31,9 @@ using MU = hn::Mask<U64>;
 
 constexpr size_t kLanes = hn::MaxLanes(F64());
 
-// A coordinate c of the mirrored world, 0 <= c < 2^20, stands as the double 2^20 + c. Its bits are then a
-// fixed-point number: 32 of fraction, and the cell above them. A sum is rounded to these 32, which puts what is
-// whole but for an error back where it belongs (../README.md).
+// A coordinate c of the mirrored world, 0 <= c < 2^20, is held as the double 2^20 + c. Its bits are then a fixed-point
+// number: 32 bits of fraction, and above them the cell. A sum is rounded to these 32 bits, which makes a number that is
+// whole but for an error whole again (../README.md).
 constexpr double kBias = 1048576.0;
 constexpr int kFraction = 32;
 // In place of 1/0: planes that are never crossed.
@@ -41,7 +41,7 @@ constexpr double kNever = 0x1p60;
 
 // The numbers of a ray. Doubles first, then words.
 enum Column : size_t {
-  kOriginX,  // biased, mirrored
+  kOriginX,  // mirrored and biased
   kOriginY,
   kOriginZ,
   kDirectionX,  // >= 0
@@ -50,18 +50,18 @@ enum Column : size_t {
   kInverseX,
   kInverseY,
   kInverseZ,
-  kPlaceX,  // where the ray is: biased
+  kPlaceX,  // where the ray is, biased
   kPlaceY,
   kPlaceZ,
-  kEnd,  // t from which on there is nothing
+  kEnd,  // the t from which on nothing counts
   kDoubles,
-  kTopFlip = kDoubles,  // to the index of a cube: what turns it into the unmirrored one
-  kCellFlip,            // to that of a leaf or voxel, in the low 6 bits; the ray's number from bit 32 on
+  kTopFlip = kDoubles,  // xor with a mirrored cube's index gives the unmirrored one
+  kCellFlip,            // low 6 bits: the same for a leaf or voxel; from bit 32 on: the ray's number
   kOctant,              // 4 times the octant
   kColumns,
 };
 
-// Rays on their way.
+// Rays under way.
 struct Lanes {
   alignas(64) double doubles[kDoubles][kLanes];
   alignas(64) uint64_t words[kColumns - kDoubles][kLanes];
@@ -69,7 +69,7 @@ struct Lanes {
   uint32_t alive;  // a bit a lane
 };
 
-// Rays that wait, from `next` to `count`.
+// Rays that wait: those from `next` to `count`.
 struct Queue {
   static constexpr size_t kSize = 128;
   static constexpr size_t kRoom = kSize + 8;
@@ -87,7 +87,7 @@ HWY_INLINE uint32_t lane_bits(D d, hn::Mask<D> mask) {
 }
 
 #if HWY_TARGET == HWY_AVX2
-// Where each half of a double goes when the lanes of a mask move to the front, and back from there.
+// Where the halves of doubles go when the lanes of a mask move to the front, and when they move back.
 struct MoveTable {
   uint32_t pack[16][8];
   uint32_t spread[16][8];

@@ -1,4 +1,4 @@
-// Rays through the map, a lane each. ../README.md derives why doubles find every cell.
+// Traces rays through the map, one in each lane. ../README.md derives why doubles find every cell.
 #include "wide/rays/job.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,5 +1,5 @@
 /// @file walk-inl.h
-/// The walk itself: from empty box to empty box.
+/// Walks rays through the map from empty box to empty box.
 #if defined(THIMBLE_WIDE_RAYS_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RAYS_WALK_INL_H_
 #undef THIMBLE_WIDE_RAYS_WALK_INL_H_
@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// The cells of a cube of 4^3 that a ray can still come to, its own among them: by octant and cell, and what
-// each axis has to say by its direction (4: down) and coordinate.
+// The cells of a cube of 4^3 cells that a ray can still come to, its own among them, by octant and cell. `on_axis` has
+// the part of each axis, by direction (4: down) and coordinate.
 struct AheadTable {
   alignas(64) uint64_t on_axis[3][8];
   uint64_t of[8 * 64];
@@ -44,15 +44,15 @@ constexpr int kVoxel = kFraction;
 constexpr int kLeaf = kFraction + 2;
 constexpr int kCube = kFraction + 4;
 
-// What is the same for all steps.
+// What all steps share.
 struct View {
   const uint32_t* top;
   const uint64_t* bricks;
   uint64_t header;  // words of a brick before its leaves
-  int bits;         // of the index of a cube, an axis
+  int bits;         // bits of a cube's index on each axis
 };
 
-// The words load(0), load(1), ... as lanes. Gathers of x86 take several times as many micro-operations.
+// Makes lanes of the words load(0), load(1), ... A gather of x86 takes several times as many micro-operations.
 template <class Load>
 HWY_INLINE VU load_lanes(const Load& load) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
@@ -69,7 +69,7 @@ HWY_INLINE VU load_lanes(const Load& load) {
 #endif
 }
 
-// from[index], and from[0] where the mask is not set.
+// Loads from[index], or from[0] where the mask is not set.
 HWY_INLINE VU gather(const uint64_t* from, VU index, MU mask) {
   const U64 d;
   alignas(64) uint64_t at[kLanes];
@@ -78,7 +78,7 @@ HWY_INLINE VU gather(const uint64_t* from, VU index, MU mask) {
                             load_lanes([&](size_t lane) { return static_cast<long long>(from[at[lane]]); }));
 }
 
-// from[index] in the low half of each lane.
+// Loads from[index] into the low half of each lane.
 HWY_INLINE VU gather_low(const uint32_t* from, VU index) {
   const U64 d;
   alignas(64) uint64_t at[kLanes];
@@ -86,7 +86,7 @@ HWY_INLINE VU gather_low(const uint32_t* from, VU index) {
   return load_lanes([&](size_t lane) { return static_cast<long long>(from[at[lane]]); });
 }
 
-// The cell of 2^level voxels in its cube of 4^3.
+// The number of a cell of 2^level voxels in its cube of 4^3 cells.
 template <int kLevel>
 HWY_INLINE VU cell_index(const VU (&place)[3], VU flip) {
   const U64 d;
@@ -116,16 +116,16 @@ HWY_INLINE VU cells_ahead(VU cell, VU octant) {
 #endif
 }
 
-// What a group of lanes finds where they are, in three steps, each of which waits for words from memory: all
-// groups take one before the next.
+// What a group of lanes finds at their places. That takes three steps, each of which waits for words from memory, so
+// all groups take one step before any takes the next.
 struct Sight {
   VU place[3];
-  VU word;  // of the cube
+  VU word;  // the cube's word
   MU is_brick;
-  VU brick;   // where it begins
-  VU mask;    // of its leaves
-  VU unit;    // of the leaves: 4 voxels, or 16 where no other leaf is left in the brick
-  VU voxels;  // of the leaf
+  VU brick;   // where the brick begins
+  VU mask;    // the brick's leaves
+  VU unit;    // the unit of a step: 4 voxels, or 16 where no other leaf of the brick lies ahead
+  VU voxels;  // the leaf's voxels
 };
 
 HWY_INLINE void see_cube(const View& view, const Lanes& lanes, Sight* sight) {
@@ -157,8 +157,8 @@ HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
   const VU mask = sight->mask;
   const VU leaf = cell_index<2>(sight->place, hn::Load(d, lanes.words[kCellFlip - kDoubles]));
   const VU leaf_bit = hn::Shl(one, leaf);
-  const MU in_leaf = hn::TestBit(mask, leaf_bit);  // the mask of what is no brick is 0
-  // Leaves stand in the order of their bits. Scalar counts: few instruction sets count bits in vectors.
+  const MU in_leaf = hn::TestBit(mask, leaf_bit);  // an empty cube's mask is 0
+  // Leaves stand in the order of their bits. Bits are counted lane by lane: few instruction sets do it in vectors.
   alignas(64) uint64_t at[kLanes];
   alignas(64) uint64_t before[kLanes];
   hn::Store(hn::IfThenElseZero(in_leaf, hn::Add(sight->brick, hn::Set(d, view.header))), d, at);
@@ -169,13 +169,13 @@ HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
                                        return static_cast<long long>(view.bricks[at[lane] + leaves]);
                                      }));
   const VU ahead = hn::And(mask, cells_ahead(leaf, hn::Load(d, lanes.words[kOctant - kDoubles])));
-  // Whether no leaf is left but the one that the ray is in, which may have nothing ahead either.
+  // Whether no other leaf lies ahead than the one that the ray is in (which may be empty ahead, too).
   const MU is_last = hn::Eq(hn::AndNot(leaf_bit, ahead), hn::Zero(d));
   sight->unit = hn::IfThenElse(is_last, hn::Set(d, uint64_t{1} << kCube), hn::Set(d, uint64_t{1} << kLeaf));
 }
 
-// The empty box ahead of each lane: a coordinate in units of `grain` is that of its lower corner, and its
-// side. `solid`: there is none, since the voxel is solid.
+// The empty box ahead of each lane: its lower corner is the place rounded down to `grain`; `side` is its side. `solid`:
+// the voxel is solid, so there is no box.
 struct Box {
   VU grain;
   VU side;
@@ -196,7 +196,7 @@ HWY_INLINE Box see_voxel(const Lanes& lanes, const Sight& sight) {
   return box;
 }
 
-// The t at which a ray leaves the box on one axis.
+// Finds the t at which a ray leaves the box on one axis.
 HWY_INLINE VF leaves_at(const Lanes& lanes, size_t axis, VU place, const Box& box) {
   const F64 d;
   const U64 du;
@@ -238,7 +238,7 @@ HWY_INLINE void put_misses(Job* job, const Lanes& lanes, uint32_t misses) {
   }
 }
 
-// Takes each lane one box on. Lanes that are done give their answers.
+// Takes each lane on by one box. Lanes that are done store their answers.
 HWY_INLINE void advance(Job* job, const Sight& sight, Lanes* lanes) {
   const F64 d;
   const U64 du;
@@ -261,10 +261,10 @@ HWY_INLINE void advance(Job* job, const Sight& sight, Lanes* lanes) {
   }
 }
 
-// So many lanes come to rest before they are filled again.
+// So many lanes of a group may be idle before they are filled again.
 constexpr int kMostIdle = kLanes < 8 ? 1 : 2;
 
-// Groups of lanes on their way at a time.
+// How many groups of lanes are under way at a time.
 constexpr size_t kGroups = kLanes < 4 ? 4 : 32 / kLanes;
 
 void trace_job(Job* job) {
