@@ -116,15 +116,24 @@ void TilePainter::store_colors(const Pixels& pixels, const Rgb8* colors) const {
   }
 }
 
-void TilePainter::find_colors(const WideFrame& frame, const Pixels& pixels, Rgb8* colors) const {
-  uint8_t codes[kMostPixels + 64];
-  if (shading_.mode == ShadeMode::kDepth) {
-    find_grays(frame, pixels, gray_scale_, codes);
+void TilePainter::paint_grays(const WideFrame& frame, const Pixels& pixels) const {
+  uint8_t grays[kMostPixels + 64];
+  find_grays(frame, pixels, gray_scale_, grays);
+  if (band_.format == PixelFormat::kGray8) {
     for (uint32_t i = 0; i < pixels.count; ++i) {
-      colors[i] = {codes[i], codes[i], codes[i]};
+      line(pixels.y[i])[pixels.x[i]] = grays[i];
     }
     return;
   }
+  Rgb8 colors[kMostPixels];
+  for (uint32_t i = 0; i < pixels.count; ++i) {
+    colors[i] = {grays[i], grays[i], grays[i]};
+  }
+  store_colors(pixels, colors);
+}
+
+void TilePainter::find_colors(const WideFrame& frame, const Pixels& pixels, Rgb8* colors) const {
+  uint8_t codes[kMostPixels + 64];
   find_faces(frame, pixels, codes);
   const uint32_t most = material_count_ - 1;
   const uint8_t* const materials = material_count_ == 1 ? nullptr : lists_.materials().data;
@@ -135,7 +144,6 @@ void TilePainter::find_colors(const WideFrame& frame, const Pixels& pixels, Rgb8
 }
 
 void TilePainter::paint(const WideFrame& frame, const Depths& depths, Pixels* pixels) const {
-  Rgb8 colors[kMostPixels];
   unpack(depths, pixels);
   if (lists_.has_blocks()) {
     for (uint32_t i = 0; i < pixels->count; ++i) {
@@ -144,6 +152,11 @@ void TilePainter::paint(const WideFrame& frame, const Depths& depths, Pixels* pi
       pixels->voxels[i] = pixels->level[i] > 0 && !is_block ? 1 : 0;
     }
   }
+  if (shading_.mode == ShadeMode::kDepth) {
+    paint_grays(frame, *pixels);
+    return;
+  }
+  Rgb8 colors[kMostPixels];
   if (shading_.mode == ShadeMode::kMono) {
     for (uint32_t i = 0; i < pixels->count; ++i) {
       colors[i] = {255, 255, 255};

@@ -31,6 +31,7 @@ class TilePainter {
   template <PixelFormat kFormat>
   void store_as(const Pixels& pixels, const Rgb8* colors) const;
   void store_colors(const Pixels& pixels, const Rgb8* colors) const;
+  void paint_grays(const WideFrame& frame, const Pixels& pixels) const;
   void find_colors(const WideFrame& frame, const Pixels& pixels, Rgb8* colors) const;
   void paint(const WideFrame& frame, const Depths& depths, Pixels* pixels) const;
   uint8_t* line(int32_t y) const {

@@ -23,8 +23,11 @@ constexpr int32_t kTablePx = 56;
 constexpr float kMostBend = 0.24F;
 // Boxes whose faces are on average so many pixels wide are sorted from front to back before they are drawn.
 constexpr float kSortedPx = 6.0F;
-constexpr float kSortedVoxelPx = 5.0F;    // where all are single voxels
-constexpr float kSortedSurfacePx = 8.0F;  // for a surface in perspective: few boxes lie behind one another
+constexpr float kSortedVoxelPx = 8.0F;  // where all are single voxels
+// And smaller voxels where their faces would cover the block so many times: a hull of one layer gains nothing.
+constexpr float kSortedDeepPx = 5.0F;
+constexpr float kDeepInPerspective = 3.0F;
+constexpr float kDeepInParallel = 1.0F;
 constexpr uint32_t kRunsPerShare = 2;
 constexpr uint32_t kMostLines = 64;
 // Tiles with fewer rows, or fewer remaining boxes, are not split.
@@ -268,6 +271,20 @@ Run TileDrawer::run_of(const Block& block) const {
   return run;
 }
 
+bool TileDrawer::is_worth_sorting(const Block& block, const BlockNode& node) const {
+  const float side_px = voxel_px(block);
+  const float face_px = side_px * side_px * static_cast<float>(lists_.face_area(node));
+  const auto are_as_large = [&](float px) { return face_px >= px * px * static_cast<float>(node.entries); };
+  if (lists_.has_blocks()) {
+    return are_as_large(kSortedPx);
+  }
+  const Rectangle& where = block.place.where;
+  const auto area = static_cast<float>((where.x1 - where.x0) * (where.y1 - where.y0));
+  return are_as_large(kSortedVoxelPx) ||
+         (are_as_large(kSortedDeepPx) &&
+          face_px >= area * (frame_.perspective ? kDeepInPerspective : kDeepInParallel));
+}
+
 void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
   Run run = run_of(block);
   run.entries = lists_.entries().data + node.first_entry;
@@ -277,12 +294,7 @@ void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
     draw_cubes(block, node, &run);
     return;
   }
-  const float face_px = run.voxel_px * run.voxel_px * static_cast<float>(lists_.face_area(node));
-  const float sorted_px = !run.unit                                   ? kSortedPx
-                          : lists_.is_surface() && frame_.perspective ? kSortedSurfacePx
-                                                                      : kSortedVoxelPx;
-  const bool is_large = face_px >= sorted_px * sorted_px * static_cast<float>(node.entries);
-  if (by_blocks_ && run.count > 1 && run.count <= SortedRun::kMostBoxes && is_large &&
+  if (by_blocks_ && run.count > 1 && run.count <= SortedRun::kMostBoxes && is_worth_sorting(block, node) &&
       !sorted_.cull_and_sort(frame_, block, eye_cell_, depths_, batch_, &run)) {
     return;
   }

@@ -54,6 +54,8 @@ class TileDrawer {
   bool has_table(const Block& block) const;
   bool is_flat(const Block& block) const;
   float voxel_px(const Block& block) const;
+  // Whether the boxes of a block are drawn from front to back.
+  bool is_worth_sorting(const Block& block, const BlockNode& node) const;
   unsigned nearest_octant(const Block& block) const;
   bool is_ours();
 

@@ -210,6 +210,23 @@ TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is
   CHECK(viewing.err().empty());
 }
 
+TEST_CASE("view: samples at edges -> s prints that option, and what it saves is what its command renders") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing viewing(folder, {"view", "spheres,depth=5", "--size", "120x90", "--samples", "auto"});
+  REQUIRE(point_into(display));
+  REQUIRE(display.xdotool("mousedown 1 mousemove 78 66 mousemove 90 66 mouseup 1 key s"));
+  REQUIRE(viewing.prints("-o spheres-depth-5.png"));
+  const std::string saved = line_with(viewing.out(), "-o spheres-depth-5.png");
+  CHECK(saved.find(" --samples auto -o ") != std::string::npos);
+  check_same_picture(folder, saved);
+  REQUIRE(display.xdotool("key q"));
+  CHECK(viewing.wait() == 0);
+}
+
 TEST_CASE("view: shift drag, flight and a double click -> the eye goes where they say") {
   const VirtualDisplay display("1000x800x24");
   if (!can_test(display)) {
@@ -516,7 +533,7 @@ TEST_CASE("view: scenes that cannot be, options that contradict -> a sentence an
   check_refused({folder.write("empty.vox", "")}, 1, {"empty.vox"});
   check_refused({"points:x"}, 1, {"points"});
   check_refused({"view"}, 2, {"SCENE"});
-  check_refused({"view", "spheres", "--samples", "65"}, 2, {"--samples", "1 to 64"});
+  check_refused({"view", "spheres", "--samples", "65"}, 2, {"--samples", "auto", "1 to 64"});
   check_refused({"view", "spheres", "--display", "tv"}, 2, {"auto, window or terminal"});
   check_refused({"view", "spheres", "--shade", "depth", "--effects", "shadows"}, 2, {"--effects"});
   check_refused({"spheres", "--wheel"}, 2, {"thimble view"});

@@ -9,7 +9,9 @@
 #include <thread>
 #include <vector>
 
+#include "support/run_command.h"
 #include "thimble/light/scene.h"
+#include "thimble/picture/edge_samples.h"
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
 #include "viewer/magnify.h"
@@ -131,6 +133,65 @@ TEST_CASE("refinement: coarse to fine -> ends at the rows of the finished pictur
   }
   CHECK(cancelled.has_ended());
   CHECK_FALSE(cancelled.is_finished());
+}
+
+TEST_CASE(
+    "finished picture: samples at edges -> row by row, the bytes of render with the words of the look") {
+  struct Wish {
+    std::string scene;
+    bool has_effects;
+    std::optional<ShadeMode> shade;
+    bool has_edges;
+  };
+  for (const Wish& wish :
+       {Wish{"castle", false, {}, true}, Wish{"glass", false, {}, true},
+        Wish{"spheres,depth=5", true, {}, true}, Wish{"spheres,depth=5", false, ShadeMode::kNormal, true},
+        Wish{"points:2000,depth=6", false, {}, false}}) {
+    CAPTURE(wish.scene);
+    CAPTURE(wish.has_effects);
+    viewer::LookWishes wishes;
+    wishes.across = kEdgeGrid;
+    wishes.at_edges = true;
+    wishes.shade = wish.shade;
+    wishes.shade_word = "normal";
+    if (wish.has_effects) {
+      wishes.effects =
+          EffectChoice{false, Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion};
+      wishes.effects_word = "direct-light,shadows,ambient-occlusion";
+    }
+    const auto look = std::make_shared<const FinishedLook>(scene_of(wish.scene), wishes);
+    std::vector<std::string> words{"render", wish.scene, "--size", "97x61", "--quiet", "-o"};
+    const tests::TemporaryFolder folder;
+    words.push_back(folder.path("a.ppm"));
+    words.insert(words.end(), look->words().begin(), look->words().end());
+    CHECK(std::find(words.begin(), words.end(), "auto") != words.end());
+    const tests::CommandResult rendered = tests::run_command(words);
+    CAPTURE(rendered.describe());
+    REQUIRE(rendered.status == 0);
+    const std::string text = tests::read_text(folder.path("a.ppm"));
+    const std::vector<std::uint8_t> wanted(text.end() - 3 * 97 * 61, text.end());
+    ViewWishes view = view_of(97, 61);
+    view.side = NamedView::kBest;
+    view.fov_degrees = kPictureFov;
+    for (const int threads : {1, 2}) {
+      const FinishedPicture picture(look, view);
+      CHECK(picture.at_edges() == wish.has_edges);
+      wide::Threads some(threads);
+      std::vector<std::uint8_t> rgb;
+      std::int32_t rows = 0;
+      bool is_same = true;
+      CHECK(picture.draw(0, &some, &rgb, [&](std::int32_t now) {
+        const auto shown = rgb.begin() + std::ptrdiff_t{3} * 97 * now;
+        is_same = is_same && now >= rows && std::equal(rgb.begin(), shown, wanted.begin());
+        rows = now;
+        return true;
+      }));
+      CHECK(is_same);
+      CHECK(rows == 61);
+      CHECK(rgb == wanted);
+      CHECK_FALSE(picture.draw(0, &some, &rgb, [](std::int32_t) { return false; }));
+    }
+  }
 }
 
 TEST_CASE("fast frames: after a finished picture -> as bright as it, in the mean") {

@@ -23,6 +23,7 @@ struct ViewCommand {
   ShadeMode shade = ShadeMode::kDepth;
   int bench_frames = 0;
   int across = 2;  ///< --samples, where it is given
+  bool at_edges = false;
 };
 
 void run(const ViewCommand& command) {
@@ -73,10 +74,11 @@ void add_view_command(CLI::App& app) {
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
   add_effect_options(*sub, &command->effects);
-  add_samples(*sub, &command->across, "in the picture at rest", 2);
+  add_samples(*sub, &command->across, &command->at_edges, "in the picture at rest", 2);
   also_check(*sub, [sub, command] {
     if (is_given(*sub, "--samples")) {
       command->viewer.look.across = command->across;
+      command->viewer.look.at_edges = command->at_edges;
     }
   });
   add_threads(*sub, &options.threads, "threads that read and draw");

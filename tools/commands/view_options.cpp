@@ -185,30 +185,25 @@ void add_direction_bits(CLI::App& app, int* bits) {
       "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
-void add_samples(CLI::App& app, int* across, const std::string& of_what, int usual_across) {
-  add_whole_option(
-      app, "--samples", "N", 1, kMostSamples, [across](std::int64_t number) { take_samples(number, across); },
-      samples_help(of_what))
+void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what, int usual_across) {
+  add_text_option(
+      app, "--samples", "auto|N",
+      [across, at_edges](const std::string& text) -> std::string {
+        *at_edges = CLI::detail::to_lower(text) == "auto";
+        const auto number = parse_whole(text, 1, kMostSamples);
+        if (!*at_edges && !number) {
+          return "is neither auto nor a whole number from 1 to " + std::to_string(kMostSamples);
+        }
+        take_samples(number.value_or(kEdgeGrid * kEdgeGrid), across);
+        return {};
+      },
+      samples_help(of_what) + "; auto: one, and 2 or 4 more where the picture of one has edges")
       .default_str(std::to_string(usual_across * usual_across));
   note_samples(app, across);
 }
 
 void add_quality(CLI::App& app, Quality* quality) {
-  add_text_option(
-      app, "--samples", "auto|N",
-      [quality](const std::string& text) -> std::string {
-        quality->at_edges = CLI::detail::to_lower(text) == "auto";
-        const auto number = parse_whole(text, 1, kMostSamples);
-        if (!quality->at_edges && !number) {
-          return "is neither auto nor a whole number from 1 to " + std::to_string(kMostSamples);
-        }
-        take_samples(number.value_or(kEdgeGrid * kEdgeGrid), &quality->across);
-        return {};
-      },
-      samples_help("on a regular grid in it, averaged") +
-          "; auto: one, and 2 or 4 more where the picture of one has edges")
-      .default_str("1");
-  note_samples(app, &quality->across);
+  add_samples(app, &quality->across, &quality->at_edges, "on a regular grid in it, averaged", 1);
   also_check(app, [&app, quality] { quality->is_sampled = is_given(app, "--samples"); });
   add_text_option(
       app, "--cutoff", "PX",

@@ -31,10 +31,10 @@ void add_direction_bits(CLI::App& app, int* bits);
 /// Without --size the picture is as large as the board's; `board` may be null.
 void use_display(const platform::BoardFacts* board, ViewWishes* view);
 
-/// --samples alone: squares up to 64; another number is taken as the next of them, and said so. `across` gets
+/// --samples: auto, or squares up to 64; another number is taken as the next of them, and said so. `across` gets
 /// the square's side, which is `usual_across` by default; `of_what` says in the help how they lie.
-void add_samples(CLI::App& app, int* across, const std::string& of_what, int usual_across);
-/// --samples, which may be auto here, --cutoff and --max-depth.
+void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what, int usual_across);
+/// --samples, --cutoff and --max-depth.
 void add_quality(CLI::App& app, Quality* quality);
 
 /// --shade. `given` (may be null) gets its word where it is given.

@@ -56,6 +56,7 @@ void FinishedLook::choose(const LookWishes& wishes) {
   if (!wishes.effects && !wishes.shade) {
     own_ = facts_of(*scene_->source, lighting_, shape_);
     own_wishes_.across = wishes.across.value_or(0);
+    own_wishes_.at_edges = wishes.at_edges;
     own_wishes_.smooth = wishes.smooth;
   }
   if (wishes.smooth) {
@@ -67,9 +68,10 @@ void FinishedLook::choose(const LookWishes& wishes) {
     words_.insert(words_.end(), {"--bounces", std::to_string(*wishes.bounces)});
   }
   across_ = own_ ? 1 : wishes.across.value_or(2);
+  at_edges_ = !own_ && wishes.at_edges;
   if (!own_ || wishes.across) {
     const int across = wishes.across.value_or(2);
-    words_.insert(words_.end(), {"--samples", std::to_string(across * across)});
+    words_.insert(words_.end(), {"--samples", wishes.at_edges ? "auto" : std::to_string(across * across)});
   }
 }
 
@@ -122,6 +124,7 @@ void FinishedPicture::take_own_look() {
       set_camera(framing_.kept, width_px() * across, height_px() * across, camera().level(), &fine_) !=
           Status::kOk) {
     own_->across = 1;  // such a camera has no rays between the pixels'
+    own_->at_edges = false;
   }
   own_coarse_ = *own_;
   own_coarse_.across = 1;
@@ -153,6 +156,7 @@ Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView 
 namespace {
 
 constexpr std::int32_t kRowsAThread = 2;
+constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
 
 Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
   return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
@@ -160,35 +164,39 @@ Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
 
 }  // namespace
 
+Status FinishedPicture::draw_band(const Camera& camera, const Band& band) const {
+  const CompactTree& tree = look_->scene_->tree();
+  return look_->effects_ == Effect::kNone
+             ? render_band(tree, camera, shading_, band)
+             : render_lit_band(look_->effects_, tree, camera, shading_, look_->lit_, band);
+}
+
 // Of the picture of every `step`-th pixel, 0: of the finished one.
 void FinishedPicture::draw_row(int step, std::int32_t y, std::uint8_t* rgb) const {
-  const CompactTree& tree = look_->scene_->tree();
-  const auto draw_band = [&](const Camera& camera, const Band& band) {
-    check(look_->effects_ == Effect::kNone
-              ? render_band(tree, camera, shading_, band)
-              : render_lit_band(look_->effects_, tree, camera, shading_, look_->lit_, band));
-  };
   const int many = across();
   if (step != 0 || many == 1) {
     const Camera thin = camera().thinned(std::max(step, 1));
-    draw_band(thin, row_of(thin, y, rgb));
+    check(draw_band(thin, row_of(thin, y, rgb)));
     return;
   }
   thread_local std::vector<std::uint8_t> samples;
   samples.resize(samples_bytes(width_px(), many));
   const Bytes fine(samples.data(), samples.size());
-  draw_band(fine_, {fine, PixelFormat::kRgb888, 0, y * many, many});
+  check(draw_band(fine_, {fine, PixelFormat::kRgb888, 0, y * many, many}));
   check(average_samples(fine, many, width_px(), y, PixelFormat::kRgb888,
                         Bytes(rgb, row_bytes(PixelFormat::kRgb888, width_px()))));
 }
 
 bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                            const GoesOn& goes_on) const {
-  if (own_ && own_->kind == LookKind::kLit) {
+  if (own_ && own_->kind == LookKind::kLit && (step != 0 || !own_->at_edges)) {
     return draw_own(step, threads, rgb, goes_on);
   }
   if (own_ && step == 0) {
-    return draw_stars(threads->count(), rgb, goes_on);
+    return paint_own(threads->count(), rgb, goes_on);
+  }
+  if (step == 0 && at_edges()) {
+    return draw_at_edges(threads->count(), rgb, goes_on);
   }
   const int every = std::max(step, 1);
   const std::int32_t rows = thinned_px(height_px(), every);
@@ -207,6 +215,42 @@ bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::ui
   return true;
 }
 
+bool FinishedPicture::draw_at_edges(int threads, std::vector<std::uint8_t>* rgb,
+                                    const GoesOn& goes_on) const {
+  constexpr int kChannels = 3;
+  const std::int32_t width = width_px();
+  const std::int32_t height = height_px();
+  rgb->resize(row_bytes(PixelFormat::kRgb888, width) * static_cast<std::size_t>(height));
+  const auto draw = [&](const SampleRun& run, Bytes samples, std::size_t /*worker*/) {
+    return draw_band(run.camera, {samples, PixelFormat::kRgb888, 0, run.row, 1});
+  };
+  const auto finish = [&](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
+    std::uint8_t* pixel =
+        rgb->data() + kChannels * (static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
+                                   static_cast<std::size_t>(px));
+    std::transform(sums, sums + kChannels, pixel,
+                   [count](std::uint32_t sum) { return mean_of_samples(sum, count); });
+  };
+  EdgeRows rows(camera(), fine_, kChannels, threads, {draw, finish});
+  const std::int32_t chunk = kEdgeRowsAThread * threads;
+  std::vector<std::uint8_t> work(EdgeRows::work_bytes(kChannels, width, chunk, threads));
+  for (std::int32_t first = 0; first < height; first += chunk) {
+    const std::int32_t count = std::min(chunk, height - first);
+    check(rows.draw(first, count, Bytes(work.data(), work.size())));
+    if (!goes_on(first + count)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void FinishedPicture::expose(const LookCanvas& finished) const {
+  std::call_once(exposed_, [&] {
+    exposure_ = measured_exposure(finished);
+    look_->exposure_.store(exposure_);
+  });
+}
+
 bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                                const GoesOn& goes_on) const {
   const bool is_final = step == 0;
@@ -217,10 +261,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
     canvas.look = &own_coarse_;
     canvas.fine = drawn;
   }
-  std::call_once(exposed_, [&] {
-    exposure_ = measured_exposure(finished);
-    look_->exposure_.store(exposure_);
-  });
+  expose(finished);
   const std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::try_to_lock);
   if (lock.owns_lock()) {
     canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
@@ -257,22 +298,34 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   return true;
 }
 
-bool FinishedPicture::draw_stars(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const {
+// The whole picture of the scene's own look at once: stars, or samples where edges are.
+bool FinishedPicture::paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const {
   struct Ended {};
-  std::vector<std::uint8_t> work(look_work_bytes(width_px(), 1) * static_cast<std::size_t>(height_px()));
-  const LookCanvas canvas{&look_->scene_->tree(),          &*own_, &framing_, fine_,
-                          Bytes(work.data(), work.size()), threads};
-  rgb->resize(3 * static_cast<std::size_t>(width_px()) * static_cast<std::size_t>(height_px()));
+  const bool has_rows = at_edges();  // which are finished one after the other
+  std::vector<std::uint8_t> work(has_rows ? look_edge_bytes(width_px(), kEdgeRowsAThread * threads, threads)
+                                          : look_work_bytes(width_px(), 1) *
+                                                static_cast<std::size_t>(height_px()));
+  LookCanvas canvas{&look_->scene_->tree(),          &*own_, &framing_, fine_,
+                    Bytes(work.data(), work.size()), threads};
+  std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::defer_lock);
+  if (has_rows) {
+    expose(canvas);
+    if (lock.try_lock()) {
+      canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads);
+    }
+  }
+  const std::size_t line = 3 * static_cast<std::size_t>(width_px());
+  rgb->resize(line * static_cast<std::size_t>(height_px()));
   Painting painting;
+  const auto show = [&](double done) {
+    const auto rows = has_rows ? static_cast<std::int32_t>(std::lround(done * height_px())) : 0;
+    std::copy_n(painting.image.pixels.data(), line * static_cast<std::size_t>(rows), rgb->data());
+    if (!goes_on(rows)) {
+      throw Ended();
+    }
+  };
   try {
-    check(paint_look(
-        canvas, 256,
-        [&](double /*done*/) {
-          if (!goes_on(0)) {
-            throw Ended();
-          }
-        },
-        &painting));
+    check(paint_look(canvas, has_rows ? exposure_ : 256, show, &painting));
   } catch (const Ended&) {
     return false;
   }

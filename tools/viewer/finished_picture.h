@@ -38,6 +38,7 @@ struct LookWishes {
   std::optional<std::uint8_t> bounces;  ///< --bounces
   std::optional<bool> smooth;           ///< --normals
   std::optional<int> across;            ///< --samples are its square
+  bool at_edges = false;                ///< --samples auto; `across` is then kEdgeGrid
 };
 
 /// What a scene's pictures have in common, whatever the camera.
@@ -69,6 +70,7 @@ class FinishedLook {
   LitScene quick_;
   ShadeMode mode_ = ShadeMode::kDepth;
   int across_ = 1;
+  bool at_edges_ = false;
   std::vector<std::uint8_t> empty_bytes_;
   CompactTree empty_;  // a world with nothing in it
   std::vector<std::string> words_;
@@ -99,6 +101,10 @@ class FinishedPicture {
   std::int32_t height_px() const { return camera().height_px(); }
   /// Samples a pixel are its square.
   int across() const { return !own_ ? look_->across_ : own_->kind == LookKind::kStars ? 1 : own_->across; }
+  /// Whether there are samples where edges are instead (scene/edge_rows.h); `across` is then kEdgeGrid.
+  bool at_edges() const {
+    return !own_ ? look_->at_edges_ : own_->kind != LookKind::kStars && own_->at_edges;
+  }
 
   /// Draws into `rgb`, which gets the size that it takes: `step` 0 the finished picture, else every `step`-th
   /// pixel with one sample and all of the light. `goes_on` is told now and then how many rows from the top
@@ -123,10 +129,13 @@ class FinishedPicture {
 
  private:
   void take_own_look();
+  Status draw_band(const Camera& camera, const Band& band) const;
   void draw_row(int step, std::int32_t y, std::uint8_t* rgb) const;
   bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                 const GoesOn& goes_on) const;
-  bool draw_stars(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
+  bool draw_at_edges(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
+  void expose(const LookCanvas& finished) const;
+  bool paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
   EffectSet effects() const { return own_ ? own_->effects : look_->effects_; }
 
   std::shared_ptr<const FinishedLook> look_;

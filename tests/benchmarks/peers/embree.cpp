@@ -1,14 +1,14 @@
 // Embree 3: packets of 4 x 4 rays over unit boxes, which are geometry of our own with a test for 16 rays.
 #include "benchmarks/peers/peer.h"
 
-#if THIMBLE_HAVE_EMBREE
+#ifdef THIMBLE_HAVE_EMBREE
 #include <embree3/rtcore.h>
 
 #include <stdexcept>
 #endif
 
 namespace thimble::benchmarks {
-#if THIMBLE_HAVE_EMBREE
+#ifdef THIMBLE_HAVE_EMBREE
 namespace {
 
 void bounds_of(const RTCBoundsFunctionArguments* given) {

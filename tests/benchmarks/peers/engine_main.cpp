@@ -4,6 +4,8 @@
 //   thimble_engine_table                          all rows, some minutes
 //   thimble_engine_table --filter cluster         those with the word in world or camera
 //   thimble_engine_table --most 1000000 --csv F   clouds of at most so many points; for machines
+//   thimble_engine_table FILE...                  these instead, at two depths (or that behind an @), six views
+//   thimble_engine_table --world city:10 --save F the world alone, as a file that any thimble reads
 //
 // A frame is 800 x 600 pixels with depth shading, processor time on one thread, all by turns, the median of
 // the frames. The core draws once where that takes longer than 0.2 s. Every picture is compared with the
@@ -17,6 +19,7 @@
 
 #include "benchmarks/peers/contest.h"
 #include "support/trial_worlds.h"
+#include "thimble/bake/baked_scene.h"
 #include "wide/renderer.h"
 
 namespace thimble::benchmarks {
@@ -139,6 +142,10 @@ class Table {
       std::vector<std::uint8_t>(kWidthPx* kHeightPx)};
 };
 
+std::string short_name(const std::string& world) {
+  return world.substr(world.rfind('/') + 1);
+}
+
 // The views of large and of real worlds, of which there are many.
 bool is_one_of_six(const std::string& view) {
   for (const char* name : {"outside", "near", "grazing", "along", "parallel", "parallel oblique"}) {
@@ -147,6 +154,13 @@ bool is_one_of_six(const std::string& view) {
     }
   }
   return false;
+}
+
+// A file at two depths, unless it names its own.
+std::vector<std::string> at_two_depths(const std::string& file) {
+  return short_name(file).find('@') != std::string::npos
+             ? std::vector<std::string>{file}
+             : std::vector<std::string>{file + "@8", file + "@10"};
 }
 
 // Worlds that are drawn in six views.
@@ -164,9 +178,8 @@ std::vector<std::string> large_world_names(std::uint64_t most_points) {
          {"mesh/armadillo.off", "mesh/bunny00.off", "mesh/camel.off", "mesh/ChineseDragon-10kv.off",
           "mesh/elephant.off", "mesh/fandisk.off", "mesh/lion-head.off", "mesh/triceratops.off",
           "mesh/npm_snowden.obj", "mesh/trimesh_Duck.glb", "cloud/hippo1.ply", "cloud/kitten.xyz"}) {
-      for (const char* depth : {"@8", "@10"}) {
-        names.push_back(std::string(data) + "/" + file + depth);
-      }
+      const std::vector<std::string> both = at_two_depths(std::string(data) + "/" + file);
+      names.insert(names.end(), both.begin(), both.end());
     }
   }
   return names;
@@ -200,10 +213,6 @@ std::vector<std::string> world_names(std::uint64_t most_points) {
     }
   }
   return names;
-}
-
-std::string short_name(const std::string& world) {
-  return world.substr(world.rfind('/') + 1);
 }
 
 void print(const Row& row) {
@@ -279,6 +288,18 @@ std::string csv_text(const std::vector<Row>& rows) {
   return text;
 }
 
+// As a baked scene.
+void save(const CompactTree& tree, const std::string& path) {
+  BakedParts parts;
+  parts.tree = {tree.bytes(), tree.size_bytes()};
+  std::vector<std::uint8_t> bytes(baked_bytes(parts));
+  BakedScene scene;
+  if (BakedScene::make(parts, Bytes(bytes.data(), bytes.size()), &scene) != Status::kOk) {
+    throw std::runtime_error("the world cannot be baked");
+  }
+  write_text(path, std::string(bytes.begin(), bytes.end()));
+}
+
 int run(int count, char** words) {
   CLI::App app("The wide renderer's choice of an engine, judged by time");
   int frames = 5;
@@ -286,19 +307,30 @@ int run(int count, char** words) {
   std::string filter;
   std::string csv_path;
   std::vector<std::string> worlds;
+  std::vector<std::string> files;
+  std::string save_path;
+  app.add_option("FILES", files, "files instead, at depths 8 and 10 or that behind an @, six views each");
   app.add_option("--frames", frames, "frames of each engine and view; the median counts")
       ->check(CLI::Range(1, 1000));
   app.add_option("--most", most_points, "points of the largest cloud");
   app.add_option("--filter", filter, "only rows that hold this text in `world camera`");
   app.add_option("--world", worlds, "these worlds (tests/support/trial_worlds.h) or scenes instead");
   app.add_option("--csv", csv_path, "write the rows there too");
+  app.add_option("--save", save_path, "write the tree of the one --world there (.oct), and draw nothing");
   CLI11_PARSE(app, count, words);
 
   Table table;
   std::vector<Row> rows;
   print_head();
-  const std::vector<std::string> large = large_world_names(most_points);
-  if (worlds.empty()) {
+  std::vector<std::string> large = large_world_names(most_points);
+  if (!files.empty()) {
+    large.clear();
+    for (const std::string& file : files) {
+      const std::vector<std::string> both = at_two_depths(file);
+      large.insert(large.end(), both.begin(), both.end());
+    }
+    worlds = large;
+  } else if (worlds.empty()) {
     worlds = world_names(most_points);
     worlds.insert(worlds.end(), large.begin(), large.end());
   }
@@ -313,6 +345,10 @@ int run(int count, char** words) {
       continue;
     }
     const tests::TrialWorld world(name);
+    if (!save_path.empty()) {
+      save(world.tree(), save_path);
+      return 0;
+    }
     std::printf("%s: %zu entries%s%s, %.1f MB and %.3f s; boxes alone %zu, %.1f MB and %.3f s\n",
                 short_name(name).c_str(), world.lists().entries().size,
                 world.lists().is_surface() ? " of the surface" : "",

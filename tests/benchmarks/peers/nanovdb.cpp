@@ -3,14 +3,14 @@
 // beyond where nodes of another size begin, in double precision.
 #include "benchmarks/peers/peer.h"
 
-#if THIMBLE_HAVE_NANOVDB
+#ifdef THIMBLE_HAVE_NANOVDB
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/HDDA.h>
 #include <nanovdb/util/Ray.h>
 #endif
 
 namespace thimble::benchmarks {
-#if THIMBLE_HAVE_NANOVDB
+#ifdef THIMBLE_HAVE_NANOVDB
 namespace {
 
 // Its builder makes no grids of bits alone; values of 4 bits are the least, and only the bits are looked at.
