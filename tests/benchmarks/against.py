@@ -12,15 +12,18 @@ BEFORE need not know AFTER's worlds: it gets them as files. THIMBLE_DATA names t
     threads  AFTER's lit pictures with one thread and with two, by the clock; wants a machine that does nothing else
 """
 import argparse
+import atexit
 import csv
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 
 DATA = os.environ.get("THIMBLE_DATA", "")
 WORK = tempfile.mkdtemp()
+atexit.register(shutil.rmtree, WORK)
 SIX = ["outside", "near", "grazing", "along", "parallel", "parallel oblique"]
 DRAGON = DATA + "/mesh/dragon_vrip_res2.ply.gz"
 SOLID = [f"filled:{DRAGON}@10", "terrain:10", "globe:9", "city:10", "city:9"]
