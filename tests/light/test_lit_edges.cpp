@@ -332,6 +332,8 @@ TEST_CASE("lit edges: a cloud at the world's side, left by less than a unit of p
     LitCounts counts;
     CHECK(unlike(world.draw(Effect::kMedia | water, &counts), world.shading.background, 0) == 0);
     CHECK(counts.hits[0] == 1);
+    // Into the cloud, and out of it where it is still in the world.
+    CHECK(counts.rays[static_cast<int>(LitRayKind::kMediaRay)] == (water == Effect::kNone ? 2 : 1));
   }
 }
 
