@@ -226,6 +226,34 @@ TEST_CASE("lit edges: black metal seen straight on, or hardly a mirror -> what i
   }
 }
 
+// Facets bend a ray by 20 / 2^14 up or down for each step of roughness; two of the four go down. Bent back from the
+// face it is sent on, bent into the face's own plane not.
+TEST_CASE("lit edges: rough metal that mirrors exactly along its face -> what goes along it is lost") {
+  for (const int roughness : {99, 100, 101}) {
+    CAPTURE(roughness);
+    Slab slab;
+    slab.surfaces[1] = surface(SurfaceKind::kMetal, {255, 255, 255});
+    slab.surfaces[1].roughness = static_cast<std::uint8_t>(roughness);
+    slab.finish();
+    OrthographicView view;
+    view.eye = {Q8::saturate(0), Q8::saturate(16), Q8::saturate(6)};
+    view.forward = {10000, 0, -1230};
+    view.span = Q14::saturate(1);
+    view.width_px = 8;
+    view.height_px = 6;
+    view.direction_bits = 15;
+    REQUIRE(slab.camera.set(view, 5) == Status::kOk);
+    REQUIRE(unit_q14(slab.camera.ray(0, 0).direction).z == -20 * 100);
+    slab.shading.background = {200, 120, 40};
+    LitCounts counts;
+    const std::vector<Rgb8> picture = slab.draw(Effect::kMirror, &counts);
+    const int sent = roughness == 100 ? 2 : 4;
+    CHECK(counts.rays[static_cast<int>(LitRayKind::kMirrorRay)] == static_cast<unsigned>(sent) * 8 * 6);
+    const auto share = [sent](int channel) { return static_cast<std::uint8_t>(channel * sent / 4); };
+    CHECK(unlike(picture, {share(200), share(120), share(40)}, 1) == 0);
+  }
+}
+
 TEST_CASE("lit edges: an eye inside metal -> its own colour everywhere, as inside anything solid") {
   std::vector<Rgb8> pictures[2];
   for (int metal = 0; metal < 2; ++metal) {
@@ -275,6 +303,37 @@ TEST_CASE("lit edges: clear glass in clear glass, flat or smooth -> the backgrou
       // Each of the rays that a pixel sends may lose what is too faint to follow.
       CHECK(unlike(picture, kGround, 12) == 0);
     }
+  }
+}
+
+// The ray comes into the cloud 0.16 / 256 voxel from the world's side and goes towards it: it leaves the world before it
+// leaves the voxel. Where there is water it begins anew on the face, rounded down: on the world's side.
+TEST_CASE("lit edges: a cloud at the world's side, left by less than a unit of place -> the background") {
+  LitWorld world;
+  world.box({0, 0, 0}, {32, 32, 10}, 1);
+  world.voxel({0, 16, 10}, 2);
+  world.surfaces[1] = surface(SurfaceKind::kDiffuse, {255, 0, 0});
+  world.surfaces[2] = surface(SurfaceKind::kMedia, {255, 255, 255});
+  world.surfaces[2].density_q8 = 0;
+  set_ambient(&world.scene, 256);
+  world.finish();
+  world.shading.background = {90, 160, 230};
+  REQUIRE(world.camera.set(PerspectiveView{LitWorld::point({15, 16 * 256 + 128, 30 * 256}),
+                                           {-100, 0, -32767},
+                                           {},
+                                           Q16::saturate(1),
+                                           1,
+                                           1,
+                                           15},
+                           5) == Status::kOk);
+  REQUIRE(world.camera.ray(0, 0).direction == Vec3i{-100, 0, -32767});
+  for (const EffectSet water : {Effect::kNone, Effect::kWater}) {
+    CAPTURE(water);
+    LitCounts counts;
+    CHECK(unlike(world.draw(Effect::kMedia | water, &counts), world.shading.background, 0) == 0);
+    CHECK(counts.hits[0] == 1);
+    // Into the cloud, and out of it where it is still in the world.
+    CHECK(counts.rays[static_cast<int>(LitRayKind::kMediaRay)] == (water == Effect::kNone ? 2 : 1));
   }
 }
 

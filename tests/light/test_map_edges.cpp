@@ -42,7 +42,7 @@ struct House : LitWorld {
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
 
 template <EffectSet kSet>
-void compare(const House& world, const BrickMap& map, Span<const SunBricks> suns, PixelFormat format,
+void compare(const LitWorld& world, const BrickMap& map, Span<const SunBricks> suns, PixelFormat format,
              bool dither, bool counted, std::size_t offset) {
   const Camera& camera = world.camera;
   const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
@@ -116,7 +116,97 @@ TEST_CASE(
       compare<kSun>(world, map, {&sun, 1}, format, true, counted, 0);
       compare<Effect::kDirectLight>(world, map, {}, format, true, counted, 0);
       compare<kSun | Effect::kEmission | Effect::kSky>(world, map, {&sun, 1}, format, true, counted, 0);
+      compare<kSun | Effect::kEmission>(world, map, {&sun, 1}, format, true, counted, 0);
+      compare<kSun | Effect::kSky>(world, map, {&sun, 1}, format, true, counted, 0);
     }
+  }
+}
+
+// The middle row's points lie on a plane between voxels, in which the light of a level sun runs.
+TEST_CASE("lit frames by the map: large faces under a sun without x, y or z -> the tree's bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  world.look({-6 * 256 + 3, -9 * 256 + 17, 6 * 256}, {16 * 256, 16 * 256, 6 * 256}, 40, 240, 177);
+  for (const Vec3i& direction :
+       {Vec3i{0, -9, 16}, Vec3i{-5, 0, 16}, Vec3i{-5, -9, 0}, Vec3i{-1, -9, 0}, Vec3i{-9, -5, 0}}) {
+    CAPTURE(direction.x);
+    world.lights[0].place = direction;
+    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+  }
+}
+
+// The picture's middle column runs through the edges of boxes, which only the tree can name.
+TEST_CASE("lit frames by the map: rays through edges, counted or not -> the tree's bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  world.look({-6 * 256, -6 * 256, 8 * 256}, {16 * 256, 16 * 256, 8 * 256}, 46, 53, 37);
+  for (const bool counted : {false, true}) {
+    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, counted, 0);
+    compare<Effect::kDirectLight>(world, map, {}, PixelFormat::kRgb888, true, counted, 0);
+  }
+}
+
+// Rays that come to the first solid slab more than 64 voxels beside the map's box.
+TEST_CASE("lit frames by the map: rays that start far outside, along each axis -> the tree's bytes") {
+  for (int turn = 0; turn < 3; ++turn) {
+    CAPTURE(turn);
+    const auto turned = [turn](const Vec3i& v) {
+      Vec3i result;
+      for (int axis = 0; axis < 3; ++axis) {
+        result[(axis + turn) % 3] = v[axis];
+      }
+      return result;
+    };
+    LitWorld world(7);
+    for (const Vec3i& voxel : {Vec3i{30, 102, 55}, Vec3i{0, 0, 0}, Vec3i{127, 123, 127}}) {
+      world.voxel(turned(voxel), 1);
+    }
+    world.surfaces[1] = surface(SurfaceKind::kDiffuse, {210, 190, 150});
+    world.scene.has_shadows = true;
+    world.lights = {sun({-5, -9, 16})};
+    world.finish();
+    REQUIRE(world.camera.set(
+                PerspectiveView{LitWorld::point(turned({32640, 48145, 15488})), turned({-397, 18, -388}),
+                                turned({-459, -673, -407}), Q16::saturate(120), 3, 4, 14},
+                7) == Status::kOk);
+    HeapBytes room(most_brick_map_bytes(7));
+    BrickMap map;
+    REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+  }
+}
+
+// Neighbours that go opposite ways along the axis on which they are fastest, so a quad has no such axis.
+TEST_CASE(
+    "lit frames by the map: rays of wide views in a few pixels, from within a house -> the tree's bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  const struct {
+    Vec3i forward;
+    int fov;
+    int width;
+    int height;
+  } kViews[] = {{{-3, 3, -1}, 111, 2, 1},
+                {{0, 788, 910}, 56, 7, 1},
+                {{985, 3, 177}, 55, 14, 1},
+                {{-902, 2, 668}, 96, 23, 3}};
+  for (const auto& view : kViews) {
+    CAPTURE(view.width);
+    REQUIRE(world.camera.set(PerspectiveView{LitWorld::point({2176, 2320, 1552}),
+                                             view.forward,
+                                             {},
+                                             Q16::saturate(view.fov),
+                                             view.width,
+                                             view.height,
+                                             8},
+                             5) == Status::kOk);
+    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
   }
 }
 

@@ -198,6 +198,25 @@ TEST_CASE("a staircase: the gradient of its definition, and its slope within a t
   }
 }
 
+// A floor of 4 voxels, open below, under a ceiling one voxel higher: what is solid above the point weighs as much as what
+// is below, so the gradient is what two holes leave of it, below 2^19 in the units in which it is added up.
+TEST_CASE("between a floor and a ceiling that balance: the gradient of its definition, small as it is") {
+  const Body slot([](int x, int y, int z) {
+    const bool hole = (x == 29 && y == 29 && z == 27) || (x == 37 && y == 29 && z == 30);
+    return ((z >= 27 && z < 31) || z >= 32) && !hole;
+  });
+  const Vec3Q8 at = LitWorld::point({8288, 8293, 31 * 256});
+  const Vec3i normal = slot.normal_at(at, {2, false});
+  const Real3 gradient = slot.gradient(at);
+  constexpr double kUnits = 64.0 * 64 * 64;
+  for (const double part : {gradient.x, gradient.y, gradient.z}) {
+    CHECK(std::abs(part) * kUnits > 0);
+    CHECK(std::abs(part) * kUnits < 1 << 19);
+  }
+  CHECK(std::abs(static_cast<int>(length_of(normal)) - kUnitQ14) <= kUnitLengthError);
+  CHECK(degrees_between(normal, gradient) < 0.02);
+}
+
 TEST_CASE("a ball: within 6 degrees of the true normals from radius 6 on, 2.5 in the mean square") {
   for (const double radius : {6.0, 7.3, 10.0, 14.5, 20.0, 28.0}) {
     for (const double middle : {32.0, 32.25, 31.5}) {

@@ -215,6 +215,60 @@ TEST_CASE("brick sweep: a face whose half plane just holds all pixels of a cell 
                ShadeMode::kNormal, 48);
 }
 
+// From pixel to pixel the edges of a pillar 32 voxels away change what tells their sides apart by 2^25 and more: as much
+// as distances of 13 bits and steps of 11 come to.
+TEST_CASE(
+    "brick sweep: a pillar seen along a diagonal by the coarsest pixels of its scale -> the tree's bytes") {
+  std::vector<Vec3i> pillar;
+  for (int z = 0; z < 64; ++z) {
+    pillar.push_back({31, 31, z});
+  }
+  const ChipScene scene = make_chip_scene(6, pillar);
+  for (const int side : {1, -1}) {
+    check_bricks(scene, {eye_at(128, 128, 8320), {1, 1, 0}, {0, 0, side}, Q16::saturate(6), 360, 32, 14},
+                 ShadeMode::kNormal, 32);
+  }
+}
+
+// A tile covers so little of a face that its edges are uniform before they are looked at.
+TEST_CASE("brick sweep: a wall close by in a picture of 6,000 rows -> the tree's bytes") {
+  std::vector<Vec3i> wall;
+  for (int y = 20; y < 44; ++y) {
+    for (int z = 20; z < 44; ++z) {
+      wall.push_back({32, y, z});
+    }
+  }
+  const ChipScene scene = make_chip_scene(6, wall);
+  for (const Vec3i& forward : {Vec3i{5, 4, 1}, Vec3i{5, -4, 1}, Vec3i{5, 1, -4}}) {
+    check_bricks(
+        scene,
+        {eye_at(30 * 256 + 40, 31 * 256 + 90, 32 * 256 + 70), forward, {}, Q16::saturate(30), 16, 6000, 14},
+        ShadeMode::kNormal, 6000);
+  }
+}
+
+// The widest view that there is of one row: directions grow along the axis on which the rays run, 510 a tile, and hardly
+// across it. Distances lose six bits, more than directions have behind the point.
+TEST_CASE("brick sweep: voxels 512 and more away at the end of the widest row -> the tree's bytes") {
+  std::vector<Vec3i> voxels;
+  for (int x = 100; x < 108; ++x) {
+    voxels.push_back({x, 250, 128});
+    voxels.push_back({x, 254 - x % 2, 128});
+  }
+  const ChipScene scene = make_chip_scene(8, voxels);
+  for (const int x : {100, 101, 102, 104}) {
+    check_bricks(scene,
+                 {eye_at(x * 256 + 77, -280 * 256, 128 * 256 + 128),
+                  {1, 0, 0},
+                  {0, 0, 1},
+                  Q16::saturate(120),
+                  238,
+                  1,
+                  12},
+                 ShadeMode::kNormal, 1);
+  }
+}
+
 TEST_CASE("brick sweep: pictures of every size that displays have take the fast way from inside the world") {
   std::mt19937_64 random(3);
   const ChipScene scene = make_chip_scene(random, ChipWorld::kHills, 6);

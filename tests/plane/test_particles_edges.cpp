@@ -81,6 +81,27 @@ TEST_CASE("particles edges: walls in worlds of no cells, or by a brush of none -
   }
 }
 
+// One ball grazes another of its size, so fast and along a line so near to the tangent that the impulse, a few units,
+// rounded on each axis, would be work along the way: 2^32 units of energy and more. It is left out.
+TEST_CASE(
+    "particles edges: a graze at 585 cells a step, restitution just below 1 -> met, nothing exchanged") {
+  ParticleConfig config = weightless(1500, 64, 2);
+  config.most_diameter = 16;
+  config.restitution_q16 = 65535;
+  OwnedWorld owned(config);
+  std::uint32_t still = 99;
+  REQUIRE(owned.world.spawn(600 << 16, 24 << 16, 0, 0, 16, &still) == Status::kOk);
+  std::uint32_t fast = 99;
+  REQUIRE(owned.world.spawn(518 << 16, 40 << 16, 38339110, -233696, 16, &fast) == Status::kOk);
+  owned.world.step();
+  CHECK(owned.world.counters().ball_hits == 1);
+  CHECK(owned.world.counters().wall_hits == 0);
+  CHECK(owned.ball(fast).vx_q16 == 38339110);
+  CHECK(owned.ball(fast).vy_q16 == -233696);
+  CHECK(owned.ball(still).vx_q16 == 0);
+  CHECK(owned.ball(still).vy_q16 == 0);
+}
+
 // Marsaglia's generator of 32 bits stays 0 for ever once it is 0; the one seed that would make it so begins
 // it with 1.
 TEST_CASE("particles edges: the seed whose mixture is 0 -> the numbers that follow 1") {
