@@ -30,6 +30,8 @@ constexpr int32_t kAsk = -2;  // only closest_hit knows
 constexpr int32_t kGoOn = 0;
 // A hit, where no ink was asked for.
 constexpr int32_t kShadowed = 1;
+// In place of an axis: two planes were crossed together.
+constexpr int kEdge = 3;
 
 // Divides for a core without a divider: dividend / divisor, both below 2^31. It starts from the last
 // quotient, from which that of a neighbouring ray is a step or two away. `most` times the divisor is below
@@ -220,11 +222,13 @@ class BrickRay {
 
   static constexpr int kA = kOtherA<kC>;
   static constexpr int kB = kOtherB<kC>;
-  static constexpr bool kFromFace = OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear;
+  static constexpr bool kMirrors = OneCourse::kAim == Aim::kMirror;
+  static constexpr bool kFromFace =
+      OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear || kMirrors;
   // Whether layers of empty bricks are gone through at once. Cores without a divider are those with little flash, and
   // have not the code.
   static constexpr bool skips_layers() {
-    if constexpr (OneCourse::kAim == Aim::kNear) {
+    if constexpr (OneCourse::kAim == Aim::kNear || kMirrors) {
       return OneCourse::kRunsFar && kDivides;
     } else {
       return false;
@@ -375,8 +379,8 @@ class BrickRay {
       return kShadowed;
     } else {
       // Of a hit that is near its t is asked, whichever faces are entered there.
-      if constexpr (OneCourse::kAim == Aim::kSight) {
-        if (!name_axis()) {
+      if constexpr (OneCourse::kAim == Aim::kSight || kMirrors) {
+        if ((kMirrors && axis_ == kEdge) || !name_axis()) {
           return kAsk;
         }
       }
@@ -469,7 +473,7 @@ class BrickRay {
     rest_b_ -= den_;
     step<kA>();
     step<kB>();
-    axis_ = kA;
+    axis_ = kMirrors ? kEdge : kA;
     if constexpr (kFromFace) {
       return true;  // a hit is one, whatever it hits
     } else {
@@ -521,7 +525,7 @@ class BrickRay {
   uint32_t shift_;     // the voxel's place: x and y
   const uint8_t* at_;  // and z: its halfword
   int axis_;           // of the plane that was crossed last
-  uint32_t planes_;    // of c that are left (Aim::kNear)
+  uint32_t planes_;    // of c that are left (Aim::kNear, Aim::kMirror)
 };
 
 template <int kC, unsigned kMirrored>

@@ -16,8 +16,8 @@ namespace {
 struct Inks;
 
 // What a ray is asked: the ink of what it hits, the hit, whether there is one; or, from a point on a face as for a
-// shadow, the hit where it is not far.
-enum class Aim : uint8_t { kInk, kSight, kShadow, kNear };
+// shadow, the hit where it is not far, or what a mirror shows.
+enum class Aim : uint8_t { kInk, kSight, kShadow, kNear, kMirror };
 
 // What all pixels of a band share.
 struct BrickFrame {
