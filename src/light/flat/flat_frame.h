@@ -64,7 +64,9 @@ struct FlatInk {
 
 // Where most points have a light of their own few colours are kept.
 template <EffectSet kSet>
-constexpr uint32_t kInks = kGathersLight<kSet> ? 8 : 32;
+constexpr uint32_t kInks = kGathersLight<kSet> ? 8
+                           : kMirrors<kSet>    ? 16
+                                               : 32;
 constexpr uint32_t kFaces = 64;
 constexpr uint16_t kNoKey = UINT16_MAX;
 constexpr uint32_t kNoFace = UINT32_MAX;
@@ -116,9 +118,6 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet>> {
   void set_lights(Span<const SunBricks> suns) {
     if constexpr (kKeepsSuns) {
       this->begin(frame_, map_);
-    }
-    if constexpr (kMirrors<kSet>) {
-      this->begin_mirrors(map_);
     }
     Spot spot;
     for (unsigned face = 0; face < 6; ++face) {

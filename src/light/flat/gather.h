@@ -18,18 +18,14 @@ constexpr bool kGathersLight = (kSet & (Effect::kAmbientOcclusion | kLamps)) != 
 template <EffectSet kSet>
 constexpr bool kMirrors = (kSet & Effect::kMirror) != 0;
 
-// A point that sends no rays.
-struct NoPoint {
-  void set_map(const BrickMap& /*map*/) {}
-  void set(const FacePoint& /*point*/) {}
-};
-template <EffectSet kSet, bool = kGathersLight<kSet>>
+// What rays leave from.
+template <EffectSet kSet, bool = kMirrors<kSet>>
 struct PointOf {
-  using Type = NearPoint<NearRay<(kSet & kLamps) != 0>>;
+  using Type = NearPoint<(kSet & kLamps) != 0>;
 };
 template <EffectSet kSet>
-struct PointOf<kSet, false> {
-  using Type = NoPoint;
+struct PointOf<kSet, true> {
+  using Type = MirrorPoint<(kSet & kLamps) != 0>;
 };
 
 // A set that gathers nothing keeps nothing.
@@ -76,7 +72,9 @@ class Gathering<kSet, true> {
   bool gather(const Frame& frame, const BrickMap& map, const FacePoint& point, unsigned lights, Spot* at,
               Color* light) {
     Spot& spot = *at;
-    from_.set(point);
+    if constexpr (kGathersLight<kSet>) {
+      from_.set(point);
+    }
     bool own = false;
     ambient_light(frame, spot, light);
     if constexpr (kOccludes) {
@@ -101,6 +99,7 @@ class Gathering<kSet, true> {
     counts->rays[kOcclusion] += counted_.occlusion_rays;
     counts->hits[kOcclusion] += counted_.occlusion_hits;
   }
+  typename PointOf<kSet>::Type& from() { return from_; }
   const Counted& counted() const { return counted_; }
   void set_counted(const Counted& counted) { counted_ = counted; }
 

@@ -25,8 +25,6 @@ class Mirroring {};
 template <EffectSet kSet, class Sink>
 class Mirroring<kSet, Sink, true> {
  public:
-  void begin_mirrors(const BrickMap& map) { from_.set_map(map); }
-
   // Adds what a point of a metal shows of itself and what it mirrors to a ray of the camera. False where only the tree
   // knows.
   bool add_mirrored(const Frame& frame, const FacePoint& point, uint8_t material, const Vec3i& arriving,
@@ -63,12 +61,18 @@ class Mirroring<kSet, Sink, true> {
       channel = static_cast<uint16_t>(channel / kRoughnessRays);
     }
     for (int i = 0; is_seen(mirrored) && i < kRoughnessRays; ++i) {
-      const Vec3i one = spread(direction, metal, point.axis, !point.faces_up, i);
+      const Vec3i one = facet(direction, metal, point, i);
       if (leaves_face(one, point.axis, !point.faces_up) && !follow(frame, point, one, mirrored, sum)) {
         return false;
       }
     }
     return true;
+  }
+
+  // Not inlined: what it takes of the stack is gone when the ray is followed.
+  [[gnu::noinline]] static Vec3i facet(const Vec3i& mirrored, const Surface& metal, const FacePoint& point,
+                                       int number) {
+    return spread(mirrored, metal, point.axis, !point.faces_up, number);
   }
 
   // Goes from metal to metal. A ray that comes by one goes on as one, so that none waits.
@@ -78,7 +82,7 @@ class Mirroring<kSet, Sink, true> {
     for (uint8_t bounces = 1;; ++bounces) {
       ++rays_;
       uint32_t voxel = 0;
-      const int32_t answer = from_.go_on(direction, &voxel, &point);
+      const int32_t answer = sink().from().go_on(direction, &voxel, &point);
       if (answer == kAsk) {
         return false;
       }
@@ -109,7 +113,6 @@ class Mirroring<kSet, Sink, true> {
     }
   }
 
-  MirrorPoint from_;
   uint32_t rays_ = 0;
   uint32_t hits_ = 0;
 };

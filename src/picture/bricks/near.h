@@ -10,9 +10,9 @@ namespace {
 
 // `kFar`: some of the rays run far through the air, to lamps.
 // A ray: what BrickRay reads of a course, its direction, mirrored, and where it begins.
-template <bool kFar, Aim kWhat = Aim::kNear>
+template <bool kFar>
 struct NearRay {
-  static constexpr Aim kAim = kWhat;
+  static constexpr Aim kAim = Aim::kNear;
   static constexpr bool kRunsFar = kFar;
   static constexpr bool wide = true;  // the comparison serves directions of few bits, too
   static constexpr bool exact_ties = false;
@@ -30,7 +30,12 @@ struct NearRay {
   mutable Landing landing;
 };
 
-using MirrorRay = NearRay<true, Aim::kMirror>;
+// The same for what a mirror shows.
+template <bool kFar>
+struct MirrorRay : NearRay<kFar> {
+  static constexpr Aim kAim = Aim::kMirror;
+  static constexpr bool kRunsFar = true;
+};
 
 // Whether a ray meets something; for a mirror what it meets, as BrickRay says.
 template <int kC, class OneRay>
@@ -61,7 +66,7 @@ struct NearHit {
 };
 
 // A point on a face, from which rays leave.
-template <class OneRay>
+template <bool kFar, class OneRay = NearRay<kFar>>
 class NearPoint {
  public:
   [[gnu::cold, gnu::noinline]] void set_map(const BrickMap& map) {
@@ -123,7 +128,8 @@ class NearPoint {
     ray_.d[1] = d[1];
     ray_.d[2] = d[2];
     ray_.planes = (reach + ray_.within[c] - 1) >> 8;
-    return (c == 0 ? near_along<0>(ray_) : c == 1 ? near_along<1>(ray_) : near_along<2>(ray_)) && find(hit);
+    const NearRay<kFar>& ray = ray_;
+    return (c == 0 ? near_along<0>(ray) : c == 1 ? near_along<1>(ray) : near_along<2>(ray)) && find(hit);
   }
 
  protected:
@@ -172,14 +178,15 @@ class NearPoint {
   OneRay ray_;
 };
 
-// A point on a metal, from which rays go to what it mirrors.
-class MirrorPoint : public NearPoint<MirrorRay> {
+// A point on a face that may be a metal's, from which rays go to what it mirrors, too.
+template <bool kFar>
+class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
  public:
   // Traces a ray of any direction that leaves the face: kMissed; kAsk, where only the tree knows what is hit, since the
   // ray enters that through an edge, or begins in it; else goes on to the point that it hits, of `voxel` (as Landing's).
   int32_t go_on(const Vec3i& direction, uint32_t* voxel, FacePoint* point) {
-    set(*point);
-    MirrorRay& ray = this->ray();
+    this->set(*point);
+    MirrorRay<kFar>& ray = this->ray();
     unsigned mirrored = 0;
     int c = 0;
     for (int i = 0; i < 3; ++i) {
@@ -187,7 +194,7 @@ class MirrorPoint : public NearPoint<MirrorRay> {
       mirrored |= direction[i] < 0 ? 1U << i : 0U;
       c = ray.d[i] > ray.d[c] ? i : c;
     }
-    if (!begin(mirrored)) {
+    if (!this->begin(mirrored)) {
       return kMissed;
     }
     ray.planes = UINT32_MAX;
@@ -202,18 +209,18 @@ class MirrorPoint : public NearPoint<MirrorRay> {
  private:
   // As that of rays of the camera. False where the ray begins in the voxel.
   bool find_point(FacePoint* point) {
-    const MirrorRay& ray = this->ray();
+    const MirrorRay<kFar>& ray = this->ray();
     struct {
       uint32_t flip[3];
     } signs;
     int32_t way[3];
     for (int i = 0; i < 3; ++i) {
-      signs.flip[i] = is_mirrored(i) ? 3 : 0;
-      const int32_t side = bricks_on(i);
+      signs.flip[i] = this->is_mirrored(i) ? 3 : 0;
+      const int32_t side = this->bricks_on(i);
       const int32_t brick = static_cast<int32_t>(count_of(ray.landing.left, i)) - (512 - side);
       const auto place = static_cast<int32_t>(ray.landing.voxel >> 2 * i & 3U);
-      point->voxel[i] = 4 * (is_mirrored(i) ? side - 1 - brick : brick) + place;
-      way[i] = (4 * brick + (is_mirrored(i) ? 3 - place : place)) * Q8::kOne - own_place(i);
+      point->voxel[i] = 4 * (this->is_mirrored(i) ? side - 1 - brick : brick) + place;
+      way[i] = (4 * brick + (this->is_mirrored(i) ? 3 - place : place)) * Q8::kOne - this->own_place(i);
     }
     const int axis = ray.landing.axis;
     if (way[axis] <= 0) {
