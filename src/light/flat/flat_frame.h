@@ -85,10 +85,10 @@ struct FlatProgress {
   uint32_t asked[kAskedWords];
 };
 
-// What is drawn with; a Sink of SightPainter.
-template <EffectSet kSet>
-class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet>> {
-  friend class Mirroring<kSet, FlatSink<kSet>>;
+// What is drawn with; a Sink of SightPainter. Whether metals mirror is in its name, by which stacks are told apart.
+template <EffectSet kSet, bool kMirrored>
+class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
+  friend class Mirroring<kSet, FlatSink<kSet, kMirrored>>;
 
  public:
   FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
@@ -151,7 +151,7 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet>> {
   void hit(int32_t x, int32_t y, const SightCourse& course, const Vec3<uint32_t>& d) {
     const unsigned face = course.face[course.landing.axis];
     unsigned lights = lights_of_[face];
-    if constexpr (kMirrors<kSet>) {
+    if constexpr (kMirrored) {
       const uint8_t material = material_of(course.landing.voxel, face);
       if (mirrors(material)) {
         FacePoint point;
@@ -188,7 +188,7 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet>> {
   // All pixels of a face.
   void face(const SeenPixels& seen, SeenFace& face) {
     const unsigned side = seen.course.face[face.point.axis];
-    if constexpr (kMirrors<kSet>) {
+    if constexpr (kMirrored) {
       const uint8_t material = material_of(face.voxel, side);
       if (mirrors(material)) {
         for_each(seen.pixels, [&](uint32_t pixel) {
@@ -266,7 +266,7 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet>> {
     if constexpr (kKeepsSuns) {
       this->add_counts(counts);
     }
-    if constexpr (kMirrors<kSet>) {
+    if constexpr (kMirrored) {
       this->add_mirror_counts(counts);
     }
   }
@@ -600,17 +600,17 @@ bool shares_bytes(PixelFormat format) {
 
 // Draws tiles up to one with pixels that only the tree knows. Not inlined: what it keeps is gone from the stack when
 // the tree is asked.
-template <EffectSet kSet>
+template <EffectSet kSet, bool kMirrored>
 [[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, FlatProgress* progress,
                                   LitCounts* counts) {
-  FlatSink<kSet> sink(frame, map, band, stride, counts != nullptr);
+  FlatSink<kSet, kMirrored> sink(frame, map, band, stride, counts != nullptr);
   sink.set_lights(suns);
   const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
   sweep.course = kNoKey;
   const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
-  SightPainter<FlatSink<kSet>> painter(sights, swept ? &sweep : nullptr, sink);
+  SightPainter<FlatSink<kSet, kMirrored>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();
   const int32_t end = band.first_row + band.rows;
   for (bool open = false; progress->y < end && !open;) {
@@ -662,7 +662,7 @@ Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks>
   }
   FlatProgress progress{0, band.first_row, {}};
   while (progress.y < end) {
-    draw_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+    draw_tiles<kSet, kMirrors<kSet>>(frame, map, suns, band, stride, &progress, counts);
     if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
       continue;
     }
