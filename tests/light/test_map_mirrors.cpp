@@ -11,6 +11,7 @@
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/map_render.h"
+#include "thimble/light/optics.h"
 #include "thimble/tree/brick_map.h"
 
 namespace thimble::testing::map_mirrors {
@@ -56,6 +57,7 @@ template <EffectSet kSet = kMirrored>
 LitCounts compare(const MirrorWorld& world, PixelFormat format = PixelFormat::kRgb888,
                   std::size_t offset = 0) {
   const Camera& camera = world.camera;
+  REQUIRE(draws_fast(world.map, camera));
   const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
   std::vector<std::uint8_t> fast(size + offset, 0x5A);
   std::vector<std::uint8_t> right(size + offset, 0x5A);
@@ -227,10 +229,34 @@ TEST_CASE("mirrors by the map: the crease of a mirror and a wall, closely seen -
       eye[along_y ? 0 : 1] = corner[along_y ? 0 : 1] + ((along_y ? left : near) ? 300 : -300);
       eye.z = 9 * 256 + 40 + turn;
     }
-    world.look(eye, corner, 1, 64, 64);
+    world.look(eye, corner, turn % 3 == 0 ? 3 : 9, 64, 64);
     in_crease += compare(world).node_visits[kMirrorRay] != 0 ? 1 : 0;
   }
   CHECK(in_crease > 10);
+}
+
+// A rough metal bends what it mirrors by 20 units of roughness along its face's axis, here into the face's plane.
+TEST_CASE(
+    "mirrors by the map: a ray of a rough metal that runs within its face -> is not sent, as by the tree") {
+  std::mt19937_64 random(20261128);
+  int within = 0;
+  for (int turn = 0; turn < 600; ++turn) {
+    CAPTURE(turn);
+    MirrorWorld world;
+    world.box({0, 0, 0}, {32, 32, 8}, kRough);
+    world.box({0, 0, 8}, {6, 32, 20}, kStone);
+    world.map_it();
+    const Vec3i eye{16 * 256 + 5, 16 * 256 + 11, 10 * 256};
+    const Vec3i target{pick_int(random, 8, 24) * 256, pick_int(random, 8, 24) * 256, 8 * 256};
+    world.look(eye, target, 4, 3, 3);
+    const int down = -unit_q14(world.camera.ray(1, 1).direction).z;
+    if (down % 20 == 0 && down > 0 && down / 20 <= 255) {
+      world.surfaces[kRough].roughness = static_cast<std::uint8_t>(down / 20);
+      compare(world);
+      ++within;
+    }
+  }
+  CHECK(within > 5);
 }
 
 TEST_CASE("mirrors by the map: the eye in something solid, on a mirror and behind it -> the tree's picture") {
