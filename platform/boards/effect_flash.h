@@ -36,7 +36,7 @@ inline constexpr EffectFlash kEffectFlash[] = {
     {Effect::kShadows, 464},
     {Effect::kAmbientOcclusion, 584},
     {Effect::kEmission, 84},
-    {Effect::kMirror, 1832},
+    {Effect::kMirror, 1816},
     {Effect::kGlass, 15944},
     {Effect::kMedia, 11236},
     {Effect::kWater, 11288},
@@ -51,7 +51,7 @@ inline constexpr EffectFlash kEffectFlash[] = {
 // clang-format on
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
-inline constexpr uint32_t kAllEffectsFlashBytes = 40176;
+inline constexpr uint32_t kAllEffectsFlashBytes = 40160;
 
 }  // namespace thimble
 

@@ -43,6 +43,38 @@ Status draw_flat_set(const Frame& frame, const BrickMap& map, Span<const SunBric
       return draw_flat<0x120B>(frame, map, suns, band, counts);
     case 0x120F:
       return draw_flat<0x120F>(frame, map, suns, band, counts);
+    case 0x013:
+      return draw_flat<0x013>(frame, map, suns, band, counts);
+    case 0x01B:
+      return draw_flat<0x01B>(frame, map, suns, band, counts);
+    case 0x213:
+      return draw_flat<0x213>(frame, map, suns, band, counts);
+    case 0x21B:
+      return draw_flat<0x21B>(frame, map, suns, band, counts);
+    case 0x017:
+      return draw_flat<0x017>(frame, map, suns, band, counts);
+    case 0x01F:
+      return draw_flat<0x01F>(frame, map, suns, band, counts);
+    case 0x217:
+      return draw_flat<0x217>(frame, map, suns, band, counts);
+    case 0x21F:
+      return draw_flat<0x21F>(frame, map, suns, band, counts);
+    case 0x1013:
+      return draw_flat<0x1013>(frame, map, suns, band, counts);
+    case 0x101B:
+      return draw_flat<0x101B>(frame, map, suns, band, counts);
+    case 0x1213:
+      return draw_flat<0x1213>(frame, map, suns, band, counts);
+    case 0x121B:
+      return draw_flat<0x121B>(frame, map, suns, band, counts);
+    case 0x1017:
+      return draw_flat<0x1017>(frame, map, suns, band, counts);
+    case 0x101F:
+      return draw_flat<0x101F>(frame, map, suns, band, counts);
+    case 0x1217:
+      return draw_flat<0x1217>(frame, map, suns, band, counts);
+    case 0x121F:
+      return draw_flat<0x121F>(frame, map, suns, band, counts);
     default:
       return Status::kBadArgument;
   }

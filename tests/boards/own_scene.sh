@@ -1,8 +1,8 @@
 #!/bin/sh
 # Scenes of one's own as firmware: own_scene.sh BOARD. A scene text is baked into a header; the image made from it has
 # the effects that this calls for and no others, keeps its stack, and draws the simulator's pictures. On lm3s6965evb:
-# glass, a mirror and a sun, dark edges for its few greys, by the tree; on microbit a lamp, a sun and occlusion, by the
-# brick map. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
+# glass, a mirror and a sun, dark edges for its few greys, by the tree, and the mirror and the sun by the brick map; on
+# microbit a lamp, a sun and occlusion, by the brick map. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
@@ -81,6 +81,20 @@ TEXT
   say "baked for no effects the image holds none"
 }
 
+# The set 19 of map_render.h.
+mirror() {
+  grep -v bottle "$work/own.scene" >"$work/own_mirror.scene"
+  effects=direct-light,shadows,mirror
+  "$thimble" bake "$work/own_mirror.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
+  build 'demo;bench' "$work/own.h"
+  holds 'draw_flat<19u' || fail "mirrors do not go through the map"
+  [ "$(grep -o 'thimble::lit::draw_flat<[0-9]*u' "$work/own.symbols" | sort -u | wc -l)" = 1 ] || fail "the image holds other sets than its own"
+  run demo
+  of_demo=$said
+  draws_as_the_simulator "$work/own_mirror.scene" --effects $effects
+  say "a mirror and the sun by the map; $of_demo"
+}
+
 # The sets of map_render.h: 4103 is sun, shadows, occlusion and lamps, 7 the same without lamps.
 lamp() {
   cat >"$work/own.scene" <<'TEXT'
@@ -115,7 +129,10 @@ TEXT
 }
 
 case $board in
-  lm3s6965evb) glass_and_mirror ;;
+  lm3s6965evb)
+    glass_and_mirror
+    mirror
+    ;;
   microbit) lamp ;;
   *) fail "there is no scene for it" ;;
 esac

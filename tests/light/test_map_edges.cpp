@@ -218,6 +218,8 @@ TEST_CASE(
   BrickMap map;
   REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
   world.scene.occlusion = {6, 160, 8};
+  world.surfaces[4].kind = SurfaceKind::kMetal;
+  world.surfaces[4].mirror = 190;
   const auto draw = [&](EffectSet effects, const BrickMap& by, std::vector<std::uint8_t>* bytes,
                         LitCounts* counts) {
     bytes->assign(band_bytes(PixelFormat::kRgb888, 53, 37), 0x5A);
@@ -225,7 +227,7 @@ TEST_CASE(
                            {{bytes->data(), bytes->size()}, PixelFormat::kRgb888, 0, 0, 37}, counts, {});
   };
   constexpr EffectSet kBeside[] = {Effect::kAmbientOcclusion, Effect::kEmission, Effect::kSky,
-                                   Effect::kMirror};
+                                   Effect::kMirror, Effect::kFog};
   int fast = 0;
   for (const bool lamps : {false, true}) {
     if (lamps) {
@@ -234,9 +236,9 @@ TEST_CASE(
       REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
     }
     std::vector<EffectSet> sets{Effect::kDirectLight};
-    for (unsigned bits = 0; bits < 16; ++bits) {
+    for (unsigned bits = 0; bits < 32; ++bits) {
       sets.push_back(kSun);
-      for (unsigned i = 0; i < 4; ++i) {
+      for (unsigned i = 0; i < 5; ++i) {
         sets.back() |= (bits >> i & 1U) != 0 ? kBeside[i] : Effect::kNone;
       }
     }
@@ -256,13 +258,16 @@ TEST_CASE(
       CHECK(same);
       constexpr auto kShadow = static_cast<int>(LitRayKind::kShadow);
       CHECK(by_map.rays[kShadow] == by_tree.rays[kShadow]);
+      constexpr auto kMirrored = static_cast<int>(LitRayKind::kMirrorRay);
+      CHECK(by_map.rays[kMirrored] == by_tree.rays[kMirrored]);
+      CHECK((by_map.rays[kMirrored] != 0) == ((effects & Effect::kMirror) != 0));
       fast += by_map.node_visits[0] < by_tree.node_visits[0] ? 1 : 0;
     }
     std::vector<std::uint8_t> bytes;
     CHECK(draw(kSun, BrickMap(), &bytes, nullptr) == Status::kDamaged);
   }
-  // The tree draws those with a mirror, and lamps without shadows.
-  CHECK(fast == 9 + 8);
+  // The tree draws those with fog, and lamps without shadows.
+  CHECK(fast == 17 + 16);
 }
 
 TEST_CASE(

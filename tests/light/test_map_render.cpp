@@ -78,6 +78,23 @@ constexpr LitWay kLitWays[] = {
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kSky>(),
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky>(),
     lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror>(),
+    lit_way<kSun | Effect::kMirror | Effect::kEmission>(),
+    lit_way<kSun | Effect::kMirror | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kEmission | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight>(),
+    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight | Effect::kEmission>(),
+    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmission>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kSky>(),
+    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission |
+            Effect::kSky>(),
     lit_way<Effect::kDirectLight>(),
     lit_way<Effect::kEmission>(),
     lit_way<Effect::kNone>(),
@@ -180,6 +197,8 @@ std::vector<Surface> hard_surfaces(std::mt19937_64& random) {
                       static_cast<std::uint8_t>(random())};
     surface.kind = static_cast<SurfaceKind>(pick_int(random, 0, 4));
     surface.emission_q8 = static_cast<std::uint16_t>(pick_int(random, 0, 2000));
+    surface.mirror = static_cast<std::uint8_t>(pick_int(random, 0, 1) == 0 ? 255 : random());
+    surface.roughness = static_cast<std::uint8_t>(pick_int(random, 0, 2) == 0 ? random() : 0);
   }
   return surfaces;
 }
@@ -212,10 +231,12 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
   std::uint64_t sunny = 0;
   std::uint64_t by_lamps = 0;
   std::uint64_t occluded = 0;
+  std::uint64_t mirrored = 0;
   // Few pictures may be all of one kind: it goes on until each kind had its share.
   const auto is_enough = [&] {
     return pixels >= wanted_pixels && fast > wanted_pixels / 12 && by_lamps > wanted_pixels / 20 &&
-           occluded > wanted_pixels / 20 && shadows > wanted_pixels / 20 && sunny > wanted_pixels / 40;
+           occluded > wanted_pixels / 20 && mirrored > wanted_pixels / 40 && shadows > wanted_pixels / 20 &&
+           sunny > wanted_pixels / 40;
   };
   for (unsigned turn = 0; !is_enough() && pixels < 10 * wanted_pixels; ++turn) {
     const std::uint64_t seed = random();
@@ -236,6 +257,12 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
       light.lights = {lights.lights.data(), lights.lights.size()};
       light.occlusion = hard_occlusion(own);
       light.fog.density_q16 = 300;
+      light.bounces = static_cast<std::uint8_t>(pick_int(own, 0, kMaxBounces));
+      // Some of a metal that mirrors next to all light have nothing of their own to show, and ask for none.
+      const bool shows_all = (way.effects & Effect::kMirror) == 0 ||
+                             std::none_of(surfaces.begin(), surfaces.end(), [](const Surface& one) {
+                               return one.kind == SurfaceKind::kMetal && one.mirror > 253;
+                             });
       LitOptions options;
       options.dither = pick_int(own, 0, 3) != 0;
       options.max_visits = pick_int(own, 0, 9) == 0 ? 20 : UINT32_MAX;
@@ -257,10 +284,13 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
       REQUIRE(got == wanted);  // the gaps between rows too
       for (int kind = 0; kind < kLitRayKinds; ++kind) {
         CAPTURE(kind);
-        REQUIRE(counts.rays[kind] == counts_wanted.rays[kind]);
+        const bool is_of_light = static_cast<LitRayKind>(kind) == LitRayKind::kOcclusion ||
+                                 static_cast<LitRayKind>(kind) == LitRayKind::kShadow;
+        REQUIRE(counts.rays[kind] <= counts_wanted.rays[kind]);
+        REQUIRE(((is_of_light && !shows_all) || counts.rays[kind] == counts_wanted.rays[kind]));
         // Rays to lamps and of occlusion end there by the map.
         const bool ends = static_cast<LitRayKind>(kind) == LitRayKind::kOcclusion ||
-                          (static_cast<LitRayKind>(kind) == LitRayKind::kShadow && has_lamps);
+                          (is_of_light && (has_lamps || !shows_all));
         REQUIRE(counts.hits[kind] <= counts_wanted.hits[kind]);
         REQUIRE((ends || counts.hits[kind] == counts_wanted.hits[kind]));
       }
@@ -276,6 +306,10 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
       occluded += counts.node_visits[kOcclusion] < counts_wanted.node_visits[kOcclusion] / 4
                       ? counts.hits[kOcclusion]
                       : 0;
+      constexpr int kMirrorRay = static_cast<int>(LitRayKind::kMirrorRay);
+      mirrored += counts.node_visits[kMirrorRay] < counts_wanted.node_visits[kMirrorRay] / 4
+                      ? counts.rays[kMirrorRay]
+                      : 0;
       shadows += counts.hits[kShadow];
       sunny += counts.rays[kShadow] - counts.hits[kShadow];
     }
@@ -283,6 +317,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
   CAPTURE(fast);
   CAPTURE(by_lamps);
   CAPTURE(occluded);
+  CAPTURE(mirrored);
   CAPTURE(shadows);
   CAPTURE(sunny);
   CHECK(is_enough());

@@ -1,4 +1,4 @@
-// Lit frames by the map of bricks are those of the tree, byte for byte: the sun, lamps, occlusion.
+// Lit frames by the map of bricks are those of the tree, byte for byte: the sun, lamps, occlusion, mirrors.
 #include "portable/brick_world.h"
 #include "portable/groups.h"
 #include "portable/scene.h"
@@ -18,9 +18,15 @@ constexpr Surface surface(const Rgb8& albedo, SurfaceKind kind = SurfaceKind::kD
   result.kind = kind;
   return result;
 }
-constexpr Surface kSurfaces[] = {surface({9, 9, 9}),       surface({200, 180, 140}),
-                                 surface({190, 60, 50}),   surface({60, 120, 210}, SurfaceKind::kEmit),
-                                 surface({250, 250, 120}), surface({90, 160, 70})};
+constexpr Surface metal(const Rgb8& albedo, uint8_t roughness) {
+  Surface result = surface(albedo, SurfaceKind::kMetal);
+  result.mirror = 200;
+  result.roughness = roughness;
+  return result;
+}
+constexpr Surface kSurfaces[] = {surface({9, 9, 9}),         surface({200, 180, 140}),
+                                 metal({190, 60, 50}, 0),    surface({60, 120, 210}, SurfaceKind::kEmit),
+                                 metal({250, 250, 120}, 90), surface({90, 160, 70})};
 // Two suns, and two lamps: in the open, and in what shines.
 constexpr Light kLights[] = {
     {false, PackedVec3i{-5, -9, 16}, {230, 220, 200}, 0},
@@ -46,28 +52,35 @@ static_assert(kArenaBytes <= kLitArenaBytes);
 constexpr PixelFormat kFormats[] = {PixelFormat::kRgb565, PixelFormat::kGray4, PixelFormat::kRgb888,
                                     PixelFormat::kMono1};
 
+// Not inlined, so that what one way keeps does not stand on the stack beside what the other does.
+template <EffectSet kSet>
+[[gnu::noinline]] Status draw_by_tree(const Check& check, State* state) {
+  return render_lit_band<kSet>(check.world.compact, check.camera, check.shading, state->scene, check.band,
+                               &state->by_tree);
+}
+template <EffectSet kSet, bool kLamps>
+[[gnu::noinline]] Status draw_by_map(const Check& check, State* state) {
+  // What is proven of the first sun alone, and only where there are shadows.
+  const Span<const SunBricks> suns{&state->sun, (kSet & Effect::kShadows) != 0 ? 1U : 0U};
+  return render_lit_band<kSet, kLamps>(check.world.compact, state->map, check.camera, check.shading,
+                                       state->scene, suns, check.band, &state->by_map);
+}
+
 // A picture in bands, by the map and by the tree.
 template <EffectSet kSet, bool kLamps>
 [[gnu::noinline]] bool draw(Check& check, State* state, Bytes rows_bytes, Bytes wanted_bytes,
                             PixelFormat format) {
   const int32_t fits = static_cast<int32_t>(kRowsBytes / row_bytes(format, kWidth));
   const int32_t most = fits < 8 ? fits : 8;
-  // What is proven of the first sun alone, and only where there are shadows.
-  const Span<const SunBricks> suns{&state->sun, (kSet & Effect::kShadows) != 0 ? 1U : 0U};
   for (int32_t y = 0; y < kHeight; y += most) {
     const int32_t rows = kHeight - y < most ? kHeight - y : most;
     set_band(check, wanted_bytes, format, y, rows);
     const Bytes wanted = check.band.pixels;
-    if (!check.equal(render_lit_band<kSet>(check.world.compact, check.camera, check.shading, state->scene,
-                                           check.band, &state->by_tree),
-                     Status::kOk, THIMBLE_WHAT("by the tree"))) {
+    if (!check.equal(draw_by_tree<kSet>(check, state), Status::kOk, THIMBLE_WHAT("by the tree"))) {
       return false;
     }
     set_band(check, rows_bytes, format, y, rows);
-    const Status status =
-        render_lit_band<kSet, kLamps>(check.world.compact, state->map, check.camera, check.shading,
-                                      state->scene, suns, check.band, &state->by_map);
-    if (!check.equal(status, Status::kOk, THIMBLE_WHAT("by the map")) ||
+    if (!check.equal(draw_by_map<kSet, kLamps>(check, state), Status::kOk, THIMBLE_WHAT("by the map")) ||
         !check.equal(ConstBytes(check.band.pixels), ConstBytes(wanted), THIMBLE_WHAT("pixels"))) {
       return false;
     }
@@ -112,6 +125,8 @@ void light(Check& check, int index) {
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
 constexpr EffectSet kOpen = kSun | Effect::kEmission | Effect::kSky;
 constexpr EffectSet kAll = kOpen | Effect::kAmbientOcclusion;
+constexpr EffectSet kMirrored = kOpen | Effect::kMirror;
+constexpr EffectSet kAllMirrored = kAll | Effect::kMirror;
 constexpr Case kCases[] = {
     {"direct light by the map -> the tree's picture", kArenaBytes, light<Effect::kDirectLight, false>,
      kBefore},
@@ -125,6 +140,12 @@ constexpr Case kCases[] = {
      kInside},
     {"lamps and occlusion from far away -> the tree's picture", kArenaBytes, light<kAll, true>, kFarAway},
     {"lamps and occlusion, a parallel camera -> the tree draws", kArenaBytes, light<kAll, true>, kParallel},
+    {"metals, smooth and rough, that mirror -> the tree's picture", kArenaBytes, light<kMirrored, false>,
+     kBefore},
+    {"metals from inside the world -> the tree's picture", kArenaBytes, light<kMirrored, false>, kInside},
+    {"metals, lamps and occlusion -> the tree's picture", kArenaBytes, light<kAllMirrored, true>, kBefore},
+    {"metals, lamps and occlusion from far away -> the tree's picture", kArenaBytes,
+     light<kAllMirrored, true>, kFarAway},
 };
 
 }  // namespace

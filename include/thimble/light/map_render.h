@@ -3,9 +3,9 @@
 ///
 /// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band.
 /// Where the light of a pixel is a function of the face that it shows, of the lights that reach it and of what
-/// occludes it (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera that `draws_fast`, no limit of
-/// visits), all rays go through the map; everything else is drawn by the tree. An image has the first way only when
-/// its set allows it, and lamps there only when it says that it has any.
+/// occludes it, or a sum of such by way of mirrors (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera
+/// that `draws_fast`, no limit of visits), all rays go through the map; everything else is drawn by the tree. An image
+/// has the first way only when its set allows it, and lamps there only when it says that it has any.
 ///
 /// Cost of the fast way: platform/README.md, "Light on a chip". Stack: tests/budgets/stack.csv.
 #ifndef THIMBLE_LIGHT_MAP_RENDER_H
@@ -63,12 +63,12 @@ class SunBricks {
   uint32_t cells_ = 0;
 };
 
-/// Whether a set has the fast way: direct light alone, or with shadows and any of occlusion, emission and sky.
+/// Whether a set has the fast way: direct light alone, or with shadows and any of occlusion, emission, mirrors and sky.
 constexpr bool is_flat(EffectSet effects) {
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+  constexpr EffectSet kMore = Effect::kAmbientOcclusion | Effect::kEmission | Effect::kMirror | Effect::kSky;
   effects &= ~Effect::kEmitterLight;
-  return effects == Effect::kDirectLight ||
-         (effects & ~(Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky)) == kSun;
+  return effects == Effect::kDirectLight || (effects & ~kMore) == kSun;
 }
 /// Distant lights that the fast way takes.
 inline constexpr size_t kMaxFlatSuns = 2;
@@ -137,13 +137,62 @@ Status draw_flat<0x120B>(const Frame& frame, const BrickMap& map, Span<const Sun
 template <>
 Status draw_flat<0x120F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                          const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x013>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x01B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x213>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x21B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x017>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x01F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x217>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x21F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                        LitCounts* counts);
+template <>
+Status draw_flat<0x1013>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x101B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x1213>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x121B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x1017>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x101F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x1217>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
+template <>
+Status draw_flat<0x121F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                         const Band& band, LitCounts* counts);
 
 }  // namespace lit
 
 /// As `render_lit_band` (render.h) with `map`, which belongs to `tree`. `suns` (may be empty) has what is proven of
 /// each distant light of the scene, in their order. `kHasLamps`: lamps go through the map, too; without it a scene with
-/// any is drawn by the tree. The counters of nodes stay as they are for rays that read none, and rays to lamps and of
-/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach.
+/// any is drawn by the tree. The counters of nodes stay as they are for rays that read none; rays to lamps and of
+/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach; no ray waits; and a metal all
+/// of whose light is mirrored sends no rays to lights and none of occlusion.
 /// Errors, with nothing drawn: those of render.h, and kDamaged when the map is another tree's.
 template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight) != 0>
 [[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const BrickMap& map,

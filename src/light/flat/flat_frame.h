@@ -18,6 +18,7 @@
 #include "../../picture/bricks/face_light.h"
 #include "../../picture/bricks/sight.h"
 #include "gather.h"
+#include "mirrored.h"
 
 namespace thimble::lit {
 namespace {
@@ -63,7 +64,9 @@ struct FlatInk {
 
 // Few colours are kept where most points have a light of their own.
 template <EffectSet kSet>
-constexpr uint32_t kInks = kGathersLight<kSet> ? 8 : 32;
+constexpr uint32_t kInks = kGathersLight<kSet> ? 8
+                           : kMirrors<kSet>    ? 16
+                                               : 32;
 constexpr uint32_t kFaces = 64;
 constexpr uint16_t kNoKey = UINT16_MAX;
 constexpr uint32_t kNoFace = UINT32_MAX;
@@ -82,9 +85,12 @@ struct FlatProgress {
   uint32_t asked[kAskedWords];
 };
 
-// Draws what SightPainter finds: it is a sink of that.
-template <EffectSet kSet>
-class FlatSink : Gathering<kSet> {
+// Draws what SightPainter finds: it is a sink of that. Whether metals mirror is in its name, by which stacks are told
+// apart.
+template <EffectSet kSet, bool kMirrored>
+class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
+  friend class Mirroring<kSet, FlatSink<kSet, kMirrored>>;
+
  public:
   FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
       : frame_(frame),
@@ -111,7 +117,7 @@ class FlatSink : Gathering<kSet> {
   }
 
   void set_lights(Span<const SunBricks> suns) {
-    if constexpr (kGathers) {
+    if constexpr (kKeepsSuns) {
       this->begin(frame_, map_);
     }
     Spot spot;
@@ -131,7 +137,7 @@ class FlatSink : Gathering<kSet> {
         LightRay ray;
         if (light_ray(light, spot, &ray)) {
           lights_of_[face] = static_cast<uint8_t>(lights_of_[face] | 1U << i);
-          if constexpr (kGathers) {
+          if constexpr (kKeepsSuns) {
             this->set_sun(i, face, ray);
           }
           if constexpr (kHasShadows) {
@@ -146,19 +152,20 @@ class FlatSink : Gathering<kSet> {
   void hit(int32_t x, int32_t y, const SightCourse& course, const Vec3<uint32_t>& d) {
     const unsigned face = course.face[course.landing.axis];
     unsigned lights = lights_of_[face];
+    if constexpr (kMirrored) {
+      const uint8_t material = material_of(course.landing.voxel, face);
+      if (mirrors(material)) {
+        FacePoint point;
+        find_point(course, d, &point);
+        show_mirrored(x, y, course, d, point, material);
+        return;
+      }
+    }
     if constexpr (kHasShadows) {
       if (kGathers || lights != 0) {
         FacePoint point;
         find_point(course, d, &point);
-        for (size_t i = 0; i < kMaxFlatSuns; ++i) {
-          if ((lights >> i & 1U) != 0) {
-            ++shadow_rays_;
-            if (is_shadowed(suns_[i], point)) {
-              lights &= ~(1U << i);
-              ++shadows_;
-            }
-          }
-        }
+        lights = suns_at(point, lights);
         if constexpr (kGathers) {
           ++hits_;
           show_gathered(x, y, point, material_of(course.landing.voxel, face), face, lights);
@@ -182,6 +189,19 @@ class FlatSink : Gathering<kSet> {
   // Draws the pixels of a tile that show a face.
   void face(const SeenPixels& seen, SeenFace& face) {
     const unsigned side = seen.course.face[face.point.axis];
+    if constexpr (kMirrored) {
+      const uint8_t material = material_of(face.voxel, side);
+      if (mirrors(material)) {
+        for_each(seen.pixels, [&](uint32_t pixel) {
+          const Vec3<uint32_t> d = seen.direction(pixel);
+          find_point(seen.course, d, &face);
+          show_mirrored(seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+                        seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx), seen.course, d,
+                        face.point, material);
+        });
+        return;
+      }
+    }
     unsigned lights = lights_of_[side];
     unsigned open = 0;  // lights that may reach a part of it
     if constexpr (kHasShadows) {
@@ -244,8 +264,11 @@ class FlatSink : Gathering<kSet> {
     counts->hits[kPrimary] += hits_;
     counts->rays[kShadow] += shadow_rays_;
     counts->hits[kShadow] += shadows_;
-    if constexpr (kGathers) {
+    if constexpr (kKeepsSuns) {
       this->add_counts(counts);
+    }
+    if constexpr (kMirrored) {
+      this->add_mirror_counts(counts);
     }
   }
   uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
@@ -253,7 +276,8 @@ class FlatSink : Gathering<kSet> {
  private:
   static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
   static constexpr bool kHasLamps = (kSet & kLamps) != 0;
-  static constexpr bool kGathers = Gathering<kSet>::kGathers;
+  static constexpr bool kGathers = kGathersLight<kSet>;
+  static constexpr bool kKeepsSuns = Gathering<kSet>::kKeepsSuns;
 
   static uint32_t count_of(const Pixels& pixels) {
     uint32_t count = 0;
@@ -269,6 +293,20 @@ class FlatSink : Gathering<kSet> {
         call(32 * i + bits::lowest_bit(word));
       }
     }
+  }
+
+  // The suns of `lights` that reach a point, ray by ray.
+  [[gnu::always_inline]] unsigned suns_at(const FacePoint& point, unsigned lights) {
+    for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+      if ((lights >> i & 1U) != 0) {
+        ++shadow_rays_;
+        if (is_shadowed(suns_[i], point)) {
+          lights &= ~(1U << i);
+          ++shadows_;
+        }
+      }
+    }
+    return lights;
   }
 
   // Draws the points of a face one by one; the lights in `open` may reach some of them and not others.
@@ -319,6 +357,53 @@ class FlatSink : Gathering<kSet> {
     store(x, y, ink);
   }
 
+  bool mirrors(uint8_t material) const {
+    const Span<const Surface>& surfaces = frame_.scene.surfaces;
+    return material < surfaces.size && is_mirror(surfaces[material]) && frame_.scene.bounces != 0;
+  }
+
+  // Stores a point of a metal, which the ray of direction `d` meets.
+  [[gnu::noinline]] void show_mirrored(int32_t x, int32_t y, const SightCourse& course,
+                                       const Vec3<uint32_t>& d, const FacePoint& point, uint8_t material) {
+    Vec3i arriving;
+    for (int i = 0; i < 3; ++i) {
+      const auto size = static_cast<int32_t>(d[i]);
+      arriving[i] = course.flip[i] != 0 ? -size : size;
+    }
+    const auto counted = this->counted();
+    const uint32_t shadow_rays = shadow_rays_;
+    const uint32_t shadows = shadows_;
+    Color sum;
+    if (!this->add_mirrored(frame_, point, material, arriving, &sum)) {
+      this->set_counted(counted);
+      shadow_rays_ = shadow_rays;
+      shadows_ = shadows;
+      ask(x, y);
+      return;
+    }
+    ++hits_;
+    FlatInk ink;
+    make_ink(sum, &ink);
+    store(x, y, ink);
+  }
+
+  // For Mirroring.
+  [[gnu::noinline]] Color point_color(const FacePoint& point, const Surface& surface) {
+    Spot spot;
+    spot.face = face_of(point);
+    Color light;
+    this->gather(frame_, map_, point, suns_at(point, lights_of_[side_of(point)]), &spot, &light);
+    spot.surface = surface;
+    return shown_by(spot, light);
+  }
+  Color beyond(const Vec3i& direction) const {
+    if constexpr ((kSet & Effect::kSky) == 0) {
+      return background(frame_);
+    } else {
+      return sky_color(frame_, direction);
+    }
+  }
+
   // A face's key has 25 bits: its place in the table says 6 of them, the entry keeps the upper 19 beside the material.
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
     const uint32_t key = voxel << 3 | face;
@@ -348,11 +433,14 @@ class FlatSink : Gathering<kSet> {
     spot.face = {static_cast<int>(face >> 1), (face & 1U) == 0};
     spot.surface = surface_of(frame_, material);
     Color light;
-    if constexpr (kGathers) {
+    if constexpr (kKeepsSuns) {
       this->light_of_face(frame_, spot, lights, &light);
     } else {
       add_lights(spot, lights, &light);
     }
+    return shown_by(spot, light);
+  }
+  [[gnu::always_inline]] static Color shown_by(const Spot& spot, const Color& light) {
     Color color = lit_color(spot, light);
     if constexpr ((kSet & Effect::kEmission) != 0) {
       add_emission(spot, &color);
@@ -513,17 +601,17 @@ bool shares_bytes(PixelFormat format) {
 
 // Draws tiles up to the first with pixels that only the tree can tell. Not inlined, so that its frame has left the
 // stack when the tree is asked.
-template <EffectSet kSet>
+template <EffectSet kSet, bool kMirrored>
 [[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, FlatProgress* progress,
                                   LitCounts* counts) {
-  FlatSink<kSet> sink(frame, map, band, stride, counts != nullptr);
+  FlatSink<kSet, kMirrored> sink(frame, map, band, stride, counts != nullptr);
   sink.set_lights(suns);
   const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
   sweep.course = kNoKey;
   const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
-  SightPainter<FlatSink<kSet>> painter(sights, swept ? &sweep : nullptr, sink);
+  SightPainter<FlatSink<kSet, kMirrored>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();
   const int32_t end = band.first_row + band.rows;
   for (bool open = false; progress->y < end && !open;) {
@@ -575,7 +663,7 @@ Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks>
   }
   FlatProgress progress{0, band.first_row, {}};
   while (progress.y < end) {
-    draw_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+    draw_tiles<kSet, kMirrors<kSet>>(frame, map, suns, band, stride, &progress, counts);
     if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
       continue;
     }

@@ -15,18 +15,38 @@ using namespace bricks;
 
 template <EffectSet kSet>
 constexpr bool kGathersLight = (kSet & (Effect::kAmbientOcclusion | kLamps)) != 0;
+template <EffectSet kSet>
+constexpr bool kMirrors = (kSet & Effect::kMirror) != 0;
 
-// A set that gathers nothing keeps nothing.
-template <EffectSet kSet, bool = kGathersLight<kSet>>
-class Gathering {
- public:
-  static constexpr bool kGathers = false;
+// What rays leave from.
+template <EffectSet kSet, bool = kMirrors<kSet>>
+struct PointOf {
+  using Type = NearPoint<(kSet & kLamps) != 0>;
+};
+template <EffectSet kSet>
+struct PointOf<kSet, true> {
+  using Type = MirrorPoint<(kSet & kLamps) != 0>;
 };
 
+// A set that gathers nothing keeps nothing.
+template <EffectSet kSet, bool = kGathersLight<kSet> || kMirrors<kSet>>
+class Gathering {
+ public:
+  static constexpr bool kKeepsSuns = false;
+};
+
+// Where metals mirror the light of a point is asked without a face, and what the suns give is kept for that alone.
 template <EffectSet kSet>
 class Gathering<kSet, true> {
  public:
-  static constexpr bool kGathers = true;
+  static constexpr bool kKeepsSuns = true;
+  // Rays to lamps and of occlusion, and those of them that meet something.
+  struct Counted {
+    uint32_t lamp_rays = 0;
+    uint32_t lamp_hits = 0;
+    uint32_t occlusion_rays = 0;
+    uint32_t occlusion_hits = 0;
+  };
 
   void begin(const Frame& frame, const BrickMap& map) {
     from_.set_map(map);
@@ -52,7 +72,9 @@ class Gathering<kSet, true> {
   bool gather(const Frame& frame, const BrickMap& map, const FacePoint& point, unsigned lights, Spot* at,
               Color* light) {
     Spot& spot = *at;
-    from_.set(point);
+    if constexpr (kGathersLight<kSet>) {
+      from_.set(point);
+    }
     bool own = false;
     ambient_light(frame, spot, light);
     if constexpr (kOccludes) {
@@ -72,11 +94,14 @@ class Gathering<kSet, true> {
   void add_counts(LitCounts* counts) const {
     constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
     constexpr int kOcclusion = static_cast<int>(LitRayKind::kOcclusion);
-    counts->rays[kShadow] += lamp_rays_;
-    counts->hits[kShadow] += lamp_hits_;
-    counts->rays[kOcclusion] += occlusion_rays_;
-    counts->hits[kOcclusion] += occlusion_hits_;
+    counts->rays[kShadow] += counted_.lamp_rays;
+    counts->hits[kShadow] += counted_.lamp_hits;
+    counts->rays[kOcclusion] += counted_.occlusion_rays;
+    counts->hits[kOcclusion] += counted_.occlusion_hits;
   }
+  typename PointOf<kSet>::Type& from() { return from_; }
+  const Counted& counted() const { return counted_; }
+  void set_counted(const Counted& counted) { counted_ = counted; }
 
  private:
   static constexpr bool kOccludes = (kSet & Effect::kAmbientOcclusion) != 0;
@@ -117,13 +142,13 @@ class Gathering<kSet, true> {
         NearHit hit;
         if (in_box && from_.trace(d, c, (d[c] * reach_q12_ >> 12) + 1, &hit)) {
           open += share_of_way(occlusion, hit.way, d[hit.axis]);
-          ++occlusion_hits_;
+          ++counted_.occlusion_hits;
         } else {
           open += kOpenShare;
         }
       }
     }
-    occlusion_rays_ += static_cast<uint32_t>(rays_);
+    counted_.occlusion_rays += static_cast<uint32_t>(rays_);
     return open;
   }
 
@@ -151,14 +176,14 @@ class Gathering<kSet, true> {
       mirrored |= ray.ray.direction[axis] < 0 ? 1U << axis : 0U;
       c = d[axis] > d[c] ? axis : c;
     }
-    ++lamp_rays_;
+    ++counted_.lamp_rays;
     // The lamp is at t = numerator / 256, where the ray has gone numerator * d along an axis.
     const auto lamp_at = static_cast<uint32_t>(ray.place.t_numerator);
     NearHit hit;
     if (!from_.begin(mirrored) || !from_.trace(d, c, lamp_at * d[c], &hit)) {
       return true;
     }
-    ++lamp_hits_;
+    ++counted_.lamp_hits;
     if (hit.way >= lamp_at * d[hit.axis]) {
       return true;
     }
@@ -169,15 +194,12 @@ class Gathering<kSet, true> {
     return false;
   }
 
-  NearPoint<kHasLamps> from_;
+  typename PointOf<kSet>::Type from_;
   LightRay ray_;            // to a lamp
   int rays_ = 0;            // of occlusion, a point
   uint32_t reach_q12_ = 0;  // of occlusion: 1/256 voxel for each unit of a direction, in 1/2^12
   Color suns_[6][kMaxFlatSuns];
-  uint32_t lamp_rays_ = 0;
-  uint32_t lamp_hits_ = 0;
-  uint32_t occlusion_rays_ = 0;
-  uint32_t occlusion_hits_ = 0;
+  Counted counted_;
 };
 
 }  // namespace

@@ -30,6 +30,8 @@ constexpr int32_t kAsk = -2;  // only closest_hit of the tree can tell
 constexpr int32_t kGoOn = 0;
 // There is a hit, and no ink was asked for.
 constexpr int32_t kShadowed = 1;
+// In place of an axis: two planes were crossed together.
+constexpr int kEdge = 3;
 
 // Divides on a core without a divider: dividend / divisor, both below 2^31. It starts from the last quotient, since
 // that of a neighbouring ray is a step or two away. `most` times the divisor is below 2^31.
@@ -219,10 +221,12 @@ class BrickRay {
 
   static constexpr int kA = kOtherA<kC>;
   static constexpr int kB = kOtherB<kC>;
-  static constexpr bool kFromFace = OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear;
+  static constexpr bool kMirrors = OneCourse::kAim == Aim::kMirror;
+  static constexpr bool kFromFace =
+      OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear || kMirrors;
   // Whether rays pass layers of empty bricks at once. Cores without a divider have little flash, and leave this out.
   static constexpr bool skips_layers() {
-    if constexpr (OneCourse::kAim == Aim::kNear) {
+    if constexpr (OneCourse::kAim == Aim::kNear || kMirrors) {
       return OneCourse::kRunsFar && kDivides;
     } else {
       return false;
@@ -373,8 +377,8 @@ class BrickRay {
       return kShadowed;
     } else {
       // Aim::kNear asks only for t, which is the same for all faces entered there.
-      if constexpr (OneCourse::kAim == Aim::kSight) {
-        if (!name_axis()) {
+      if constexpr (OneCourse::kAim == Aim::kSight || kMirrors) {
+        if ((kMirrors && axis_ == kEdge) || !name_axis()) {
           return kAsk;
         }
       }
@@ -466,7 +470,7 @@ class BrickRay {
     rest_b_ -= den_;
     step<kA>();
     step<kB>();
-    axis_ = kA;
+    axis_ = kMirrors ? kEdge : kA;
     if constexpr (kFromFace) {
       return true;  // these rays ask only whether and when they hit
     } else {
@@ -518,7 +522,7 @@ class BrickRay {
   uint32_t shift_;     // the voxel's place: x and y
   const uint8_t* at_;  // and z: its halfword
   int axis_;           // of the plane that was crossed last
-  uint32_t planes_;    // planes of c that the ray may still cross (Aim::kNear)
+  uint32_t planes_;    // planes of c that the ray may still cross (Aim::kNear, Aim::kMirror)
 };
 
 template <int kC, unsigned kMirrored>

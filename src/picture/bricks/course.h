@@ -16,8 +16,8 @@ namespace {
 struct Inks;
 
 // What a ray is asked for: the ink of what it hits, the hit, whether there is a hit; or, for rays from a face, the hit
-// if it is near.
-enum class Aim : uint8_t { kInk, kSight, kShadow, kNear };
+// if it is near, or the hit that a mirror shows.
+enum class Aim : uint8_t { kInk, kSight, kShadow, kNear, kMirror };
 
 // What all pixels of a band share.
 struct BrickFrame {

@@ -1,5 +1,5 @@
-// Rays from a point on a face into any direction that end at a given distance: at a lamp, or where occlusion ends.
-// Internal to src/.
+// Rays from a point on a face into any direction: those that end at a given distance, at a lamp or where occlusion ends,
+// and those that show what a mirror shows. Internal to src/.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_NEAR_H
 #define THIMBLE_SRC_PICTURE_BRICKS_NEAR_H
 
@@ -15,6 +15,7 @@ struct NearRay {
   static constexpr Aim kAim = Aim::kNear;
   static constexpr bool kRunsFar = kFar;
   static constexpr bool wide = true;  // the wide comparison is right for directions of few bits, too
+  static constexpr bool exact_ties = false;
   const uint8_t* directory;
   const uint8_t* bricks;
   int32_t next_brick[3];
@@ -29,20 +30,32 @@ struct NearRay {
   mutable Landing landing;
 };
 
-template <int kC, bool kFar>
-[[gnu::noinline]] bool near_along(const NearRay<kFar>& from) {
+// The same for what a mirror shows.
+template <bool kFar>
+struct MirrorRay : NearRay<kFar> {
+  static constexpr Aim kAim = Aim::kMirror;
+  static constexpr bool kRunsFar = true;
+};
+
+// Whether a ray meets something; for a mirror what it meets, as BrickRay says.
+template <int kC, class OneRay>
+[[gnu::noinline]] auto near_along(const OneRay& from) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
   const uint32_t d_a = from.d[kA];
   const uint32_t d_b = from.d[kB];
   const uint32_t d_c = from.d[kC];
-  BrickRay<kC, kAnySigns, NearRay<kFar>> ray(from, d_a, d_b, d_c);
+  BrickRay<kC, kAnySigns, OneRay> ray(from, d_a, d_b, d_c);
   // The rests on the plane of c before the point.
   const uint32_t rest_a = from.within[kA] * d_c - from.within[kC] * d_a - (d_c << 8);
   const uint32_t rest_b = from.within[kB] * d_c - from.within[kC] * d_b - (d_c << 8);
   ray.begin(half_at(from.directory, from.cell), from.left, from.cell, from.place, rest_a, rest_b);
   ray.end_after(from.planes);
-  return ray.trace() != kMissed;
+  if constexpr (OneRay::kAim == Aim::kMirror) {
+    return ray.trace();
+  } else {
+    return ray.trace() != kMissed;
+  }
 }
 
 // What a ray from a point meets.
@@ -54,7 +67,7 @@ struct NearHit {
 };
 
 // A point on a face, from which rays leave.
-template <bool kFar>
+template <bool kFar, class OneRay = NearRay<kFar>>
 class NearPoint {
  public:
   [[gnu::cold, gnu::noinline]] void set_map(const BrickMap& map) {
@@ -116,11 +129,16 @@ class NearPoint {
     ray_.d[1] = d[1];
     ray_.d[2] = d[2];
     ray_.planes = (reach + ray_.within[c] - 1) >> 8;
-    return (c == 0   ? near_along<0, kFar>(ray_)
-            : c == 1 ? near_along<1, kFar>(ray_)
-                     : near_along<2, kFar>(ray_)) &&
-           find(hit);
+    const NearRay<kFar>& ray = ray_;
+    return (c == 0 ? near_along<0>(ray) : c == 1 ? near_along<1>(ray) : near_along<2>(ray)) && find(hit);
   }
+
+ protected:
+  bool is_mirrored(int axis) const { return (mirrored_ >> axis & 1U) != 0; }
+  // The distance of the point from the side of the box at which the rays come in, in 1/256 voxel.
+  int32_t own_place(int axis) const { return is_mirrored(axis) ? size_[axis] - at_[axis] : at_[axis]; }
+  int32_t bricks_on(int axis) const { return size_[axis] >> 10; }
+  OneRay& ray() { return ray_; }
 
  private:
   [[gnu::noinline]] void set_signs(unsigned mirrored) {
@@ -148,9 +166,6 @@ class NearPoint {
     hit->voxel = landing.voxel;
     return true;
   }
-  bool is_mirrored(int axis) const { return (mirrored_ >> axis & 1U) != 0; }
-  // The point's distance from the side of the box at which the rays come in, in 1/256 voxel.
-  int32_t own_place(int axis) const { return is_mirrored(axis) ? size_[axis] - at_[axis] : at_[axis]; }
 
   // The box, in 1/256 voxel.
   int32_t low_[3];
@@ -161,7 +176,66 @@ class NearPoint {
   // The box's corner brick at which rays of these signs come in: counts of bricks, and its place in the directory.
   uint32_t near_left_;
   int32_t near_cell_;
-  NearRay<kFar> ray_;
+  OneRay ray_;
+};
+
+// A point on a face that may be a metal's, from which rays go to what it mirrors, too.
+template <bool kFar>
+class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
+ public:
+  // Traces a ray of any direction that leaves the face: kMissed; kAsk, where only the tree knows what is hit, since the
+  // ray enters that through an edge, or begins in it; else goes on to the point that it hits, of `voxel` (as Landing's).
+  int32_t go_on(const Vec3i& direction, uint32_t* voxel, FacePoint* point) {
+    this->set(*point);
+    MirrorRay<kFar>& ray = this->ray();
+    unsigned mirrored = 0;
+    int c = 0;
+    for (int i = 0; i < 3; ++i) {
+      ray.d[i] = static_cast<uint32_t>(direction[i] < 0 ? -direction[i] : direction[i]);
+      mirrored |= direction[i] < 0 ? 1U << i : 0U;
+      c = ray.d[i] > ray.d[c] ? i : c;
+    }
+    if (!this->begin(mirrored)) {
+      return kMissed;
+    }
+    ray.planes = UINT32_MAX;
+    const int32_t answer = c == 0 ? near_along<0>(ray) : c == 1 ? near_along<1>(ray) : near_along<2>(ray);
+    if (answer != kShadowed) {
+      return answer;
+    }
+    *voxel = ray.landing.voxel;
+    return find_point(point) ? answer : kAsk;
+  }
+
+ private:
+  // As that of rays of the camera. False where the ray begins in the voxel.
+  bool find_point(FacePoint* point) {
+    const MirrorRay<kFar>& ray = this->ray();
+    struct {
+      uint32_t flip[3];
+    } signs;
+    int32_t way[3];
+    for (int i = 0; i < 3; ++i) {
+      signs.flip[i] = this->is_mirrored(i) ? 3 : 0;
+      const int32_t side = this->bricks_on(i);
+      const int32_t brick = static_cast<int32_t>(count_of(ray.landing.left, i)) - (512 - side);
+      const auto place = static_cast<int32_t>(ray.landing.voxel >> 2 * i & 3U);
+      point->voxel[i] = 4 * (this->is_mirrored(i) ? side - 1 - brick : brick) + place;
+      way[i] = (4 * brick + (this->is_mirrored(i) ? 3 - place : place)) * Q8::kOne - this->own_place(i);
+    }
+    const int axis = ray.landing.axis;
+    if (way[axis] <= 0) {
+      return false;
+    }
+    if (axis == 0) {
+      find_within<0>(signs, way, ray.d, point);
+    } else if (axis == 1) {
+      find_within<1>(signs, way, ray.d, point);
+    } else {
+      find_within<2>(signs, way, ray.d, point);
+    }
+    return true;
+  }
 };
 
 }  // namespace

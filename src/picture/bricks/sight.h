@@ -43,9 +43,9 @@ struct SightCourse : Course {
 
 // Finds the point at which the ray of direction `d` (mirrored) has landed, as `start_on_face` does: coordinates across
 // the face are rounded down, in the world's own direction.
-template <int kAxis>
-[[gnu::always_inline]] inline void find_within(const SightCourse& course, const int32_t (&way)[3],
-                                               const Vec3<uint32_t>& d, FacePoint* point) {
+template <int kAxis, class OneCourse, class Direction>
+[[gnu::always_inline]] inline void find_within(const OneCourse& course, const int32_t (&way)[3],
+                                               const Direction& d, FacePoint* point) {
   const uint32_t speed = d[kAxis];
   for (int i = 0; i < 3; ++i) {
     if (i == kAxis) {

@@ -1,0 +1,314 @@
+// What metals mirror, by the brick map: the tree's bytes and rays, wherever a ray comes through an edge, begins in a
+// crease, or goes from mirror to mirror.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/lit_world.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
+#include "thimble/light/map_render.h"
+#include "thimble/light/optics.h"
+#include "thimble/tree/brick_map.h"
+
+namespace thimble::testing::map_mirrors {
+namespace {
+
+using tests::HeapBytes;
+using tests::pick_int;
+
+constexpr EffectSet kMirrored = Effect::kDirectLight | Effect::kShadows | Effect::kMirror;
+constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
+constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+constexpr int kMirrorRay = static_cast<int>(LitRayKind::kMirrorRay);
+constexpr std::uint8_t kMetal = 1;
+constexpr std::uint8_t kStone = 2;
+constexpr std::uint8_t kRough = 3;
+
+struct MirrorWorld : LitWorld {
+  explicit MirrorWorld(int level = 5) : LitWorld(level) {
+    surfaces[kMetal] = surface(SurfaceKind::kMetal, {230, 190, 120});
+    surfaces[kMetal].mirror = 200;
+    surfaces[kStone] = surface(SurfaceKind::kDiffuse, {90, 160, 210});
+    surfaces[kRough] = surfaces[kMetal];
+    surfaces[kRough].roughness = 255;
+    surfaces[4] = surface(SurfaceKind::kDiffuse, {200, 60, 30});
+    scene.has_shadows = true;
+    shading.background = {30, 60, 90};
+    lights = {sun({-5, -9, 16})};
+  }
+  void map_it() {
+    finish();
+    room.resize(most_brick_map_bytes(tree.level()) / 8 + 1);
+    REQUIRE(BrickMap::make(tree,
+                           {static_cast<std::uint8_t*>(static_cast<void*>(room.data())), 8 * room.size()},
+                           &map) == Status::kOk);
+  }
+
+  std::vector<std::uint64_t> room;
+  BrickMap map;
+};
+
+/// Both pictures are the same; what the map's took. Where all metals show something of their own the rays are the tree's.
+template <EffectSet kSet = kMirrored>
+LitCounts compare(const MirrorWorld& world, PixelFormat format = PixelFormat::kRgb888,
+                  std::size_t offset = 0) {
+  const Camera& camera = world.camera;
+  REQUIRE(draws_fast(world.map, camera));
+  const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
+  std::vector<std::uint8_t> fast(size + offset, 0x5A);
+  std::vector<std::uint8_t> right(size + offset, 0x5A);
+  LitCounts counts;
+  LitCounts wanted;
+  REQUIRE(render_lit_band<kSet>(world.tree, world.map, camera, world.shading, world.scene, {},
+                                {{fast.data() + offset, size}, format, 0, 0, camera.height_px()},
+                                &counts) == Status::kOk);
+  REQUIRE(render_lit_band<kSet>(world.tree, camera, world.shading, world.scene,
+                                {{right.data() + offset, size}, format, 0, 0, camera.height_px()},
+                                &wanted) == Status::kOk);
+  REQUIRE(fast == right);
+  REQUIRE(counts.rays[kPrimary] == wanted.rays[kPrimary]);
+  REQUIRE(counts.rays[kMirrorRay] == wanted.rays[kMirrorRay]);
+  REQUIRE(counts.hits[kMirrorRay] == wanted.hits[kMirrorRay]);
+  if (world.surfaces[kMetal].mirror != 255) {
+    REQUIRE(counts.rays[kShadow] == wanted.rays[kShadow]);
+    REQUIRE(counts.hits[kShadow] == wanted.hits[kShadow]);
+  }
+  return counts;
+}
+
+TEST_CASE(
+    "mirrors by the map: two that face each other, by as many bounces as there may be -> the tree's "
+    "picture") {
+  for (const int share : {255, 254, 200, 12, 0}) {
+    MirrorWorld world;
+    world.surfaces[kMetal].mirror = static_cast<std::uint8_t>(share);
+    world.box({0, 0, 0}, {32, 32, 2}, kStone);
+    world.box({4, 0, 2}, {6, 32, 24}, kMetal);
+    world.box({20, 0, 2}, {23, 32, 24}, kMetal);
+    world.box({11, 9, 2}, {13, 12, 9}, 4);
+    world.map_it();
+    world.look({9 * 256 + 31, 2 * 256 + 77, 12 * 256 + 5}, {20 * 256, 14 * 256, 8 * 256}, 70);
+    std::uint64_t before = 0;
+    for (std::uint8_t bounces = 0; bounces <= kMaxBounces; ++bounces) {
+      CAPTURE(share);
+      CAPTURE(bounces);
+      world.scene.bounces = bounces;
+      const LitCounts counts = compare(world);
+      const std::uint64_t rays = counts.rays[kMirrorRay];
+      CHECK((rays != 0) == (share != 0 && bounces != 0));
+      if (share > 100 && bounces != 0) {
+        CHECK(rays > before);
+      }
+      before = rays;
+      CHECK(counts.node_visits[kMirrorRay] < 200);
+    }
+  }
+}
+
+TEST_CASE("mirrors by the map: all light mirrored -> nothing is asked of the metal's own") {
+  MirrorWorld world;
+  world.surfaces[kMetal].mirror = 255;
+  world.box({0, 0, 0}, {32, 32, 2}, kMetal);
+  world.map_it();
+  world.look({16 * 256 + 31, 2 * 256 + 77, 22 * 256 + 5}, {16 * 256, 14 * 256, 2 * 256}, 30);
+  const LitCounts counts = compare(world);
+  CHECK(counts.rays[kMirrorRay] > 1000);
+  CHECK(counts.rays[kShadow] == 0);
+}
+
+TEST_CASE("mirrors by the map: no surface, no bounce, no share -> none, and the tree's picture") {
+  MirrorWorld world;
+  world.box({0, 0, 0}, {32, 32, 2}, kMetal);
+  world.box({4, 8, 2}, {9, 20, 12}, 15);
+  world.map_it();
+  world.look({16 * 256 + 31, -2 * 256 + 77, 22 * 256 + 5}, {16 * 256, 14 * 256, 2 * 256}, 50);
+  CHECK(compare(world).rays[kMirrorRay] != 0);
+  world.scene.bounces = 0;
+  CHECK(compare(world).rays[kMirrorRay] == 0);
+  world.scene.bounces = 1;
+  world.surfaces[kMetal].mirror = 0;
+  CHECK(compare(world).rays[kMirrorRay] == 0);
+  world.surfaces[kMetal].mirror = 9;
+  world.scene.surfaces = {world.surfaces.data(), 1};
+  CHECK(compare(world).rays[kMirrorRay] == 0);
+}
+
+// The middle pixel's ray meets a mirror in the middle of a face, or on a half or a quarter of it, and goes on along a
+// lattice direction: through edges and corners, past voxels that touch its way or stand in it.
+TEST_CASE("mirrors by the map: reflected rays through edges and corners -> the tree's picture") {
+  std::mt19937_64 random(20261127);
+  constexpr int kPicture = 3;
+  int asked = 0;
+  int passed = 0;
+  int seen = 0;
+  for (int turn = 0; turn < 4000; ++turn) {
+    CAPTURE(turn);
+    const int axis = turn % 3;
+    const bool high = turn / 3 % 2 != 0;
+    const int plane = high ? 28 : 4;  // of the mirror
+    MirrorWorld world;
+    Vec3i from{};
+    Vec3i to{32, 32, 32};
+    from[axis] = high ? plane : plane - 1;
+    to[axis] = from[axis] + 1;
+    world.box(from, to, turn % 7 == 0 ? kRough : kMetal);
+    // Where the reflected ray begins, in 1/4 voxel, and how it goes.
+    Vec3i start{};
+    Vec3i step{};
+    for (int i = 0; i < 3; ++i) {
+      step[i] = pick_int(random, -3, 3);
+      start[i] = 4 * pick_int(random, 10, 22) + pick_int(random, 0, 3);
+    }
+    start[axis] = 4 * plane;
+    step[axis] = (high ? -1 : 1) * pick_int(random, 1, 4);
+    // A straight way is common enough elsewhere; a third of these have two ways of one size.
+    const int other = (axis + 1) % 3;
+    if (turn % 3 == 0) {
+      step[other] = turn % 2 == 0 ? step[axis] : -step[axis];
+      start[other] = 4 * pick_int(random, 10, 22) + (turn % 4 < 2 ? 0 : 2);
+    }
+    for (int i = pick_int(random, 1, 8); i > 0; --i) {
+      // A place on the way where it crosses a plane along the mirror's axis, or half way between, and what lies there.
+      const int along = pick_int(random, 1, 20);
+      Vec3i at{};
+      bool fits = true;
+      for (int k = 0; k < 3; ++k) {
+        const int place = start[k] * 4 + step[k] * along * 16 / std::max(1, std::abs(step[axis])) / 2;
+        at[k] = (place >> 4) - pick_int(random, 0, 1);
+        fits = fits && at[k] >= 0 && at[k] < 32;
+      }
+      fits = fits && (high ? at[axis] < plane : at[axis] >= plane);
+      if (fits) {
+        world.voxel(at, pick_int(random, 0, 4) == 0 ? kMetal : pick_int(random, 0, 1) == 0 ? kStone : 4);
+      }
+    }
+    world.map_it();
+    Vec3i eye{};
+    for (int i = 0; i < 3; ++i) {
+      eye[i] = 64 * start[i] - 256 * 2 * (i == axis ? -step[i] : step[i]);
+    }
+    Vec3i forward = step;
+    forward[axis] = -forward[axis];
+    REQUIRE(world.camera.set(
+                PerspectiveView{LitWorld::point(eye), forward, {}, Q16::saturate(4), kPicture, kPicture, 0},
+                5) == Status::kOk);
+    const LitCounts counts = turn % 2 == 0 ? compare(world) : compare<kMirrored | Effect::kSky>(world);
+    seen += counts.rays[kMirrorRay] != 0 ? 1 : 0;
+    asked += counts.node_visits[kMirrorRay] != 0 ? 1 : 0;
+    passed += counts.node_visits[kMirrorRay] == 0 && counts.hits[kMirrorRay] != 0 ? 1 : 0;
+  }
+  CAPTURE(seen);
+  CAPTURE(asked);
+  CAPTURE(passed);
+  CHECK(seen > 2000);
+  CHECK(asked > 200);
+  CHECK(passed > 500);
+}
+
+// A ray that goes on towards the wall from within 1/256 voxel of it begins in it; its fastest axis runs across the crease
+// or along it.
+TEST_CASE("mirrors by the map: the crease of a mirror and a wall, closely seen -> the tree's picture") {
+  int in_crease = 0;
+  for (int turn = 0; turn < 24; ++turn) {
+    CAPTURE(turn);
+    const bool left = turn % 2 == 0;
+    const bool near = turn % 4 < 2;
+    MirrorWorld world;
+    world.box({0, 0, 0}, {32, 32, 8}, kMetal);
+    world.box({left ? 0 : 20, 0, 8}, {left ? 12 : 32, 32, 20}, turn % 5 == 0 ? kMetal : kStone);
+    world.box({0, near ? 0 : 20, 8}, {32, near ? 12 : 32, 20}, kStone);
+    world.map_it();
+    const Vec3i corner{(left ? 12 : 20) * 256, (near ? 12 : 20) * 256, 8 * 256};
+    Vec3i eye{16 * 256 + 5 * turn, 16 * 256 + 11, 13 * 256 + turn};
+    if (turn >= 8) {
+      const bool along_y = turn < 16;
+      eye[along_y ? 0 : 1] = corner[along_y ? 0 : 1] + ((along_y ? left : near) ? 300 : -300);
+      eye.z = 9 * 256 + 40 + turn;
+    }
+    world.look(eye, corner, turn % 3 == 0 ? 3 : 9, 64, 64);
+    in_crease += compare(world).node_visits[kMirrorRay] != 0 ? 1 : 0;
+  }
+  CHECK(in_crease > 10);
+}
+
+// A rough metal bends what it mirrors by 20 units of roughness along its face's axis, here into the face's plane.
+TEST_CASE(
+    "mirrors by the map: a ray of a rough metal that runs within its face -> is not sent, as by the tree") {
+  std::mt19937_64 random(20261128);
+  int within = 0;
+  for (int turn = 0; turn < 600; ++turn) {
+    CAPTURE(turn);
+    MirrorWorld world;
+    world.box({0, 0, 0}, {32, 32, 8}, kRough);
+    world.box({0, 0, 8}, {6, 32, 20}, kStone);
+    world.map_it();
+    const Vec3i eye{16 * 256 + 5, 16 * 256 + 11, 10 * 256};
+    const Vec3i target{pick_int(random, 8, 24) * 256, pick_int(random, 8, 24) * 256, 8 * 256};
+    world.look(eye, target, 4, 3, 3);
+    const int down = -unit_q14(world.camera.ray(1, 1).direction).z;
+    if (down % 20 == 0 && down > 0 && down / 20 <= 255) {
+      world.surfaces[kRough].roughness = static_cast<std::uint8_t>(down / 20);
+      compare(world);
+      ++within;
+    }
+  }
+  CHECK(within > 5);
+}
+
+TEST_CASE("mirrors by the map: the eye in something solid, on a mirror and behind it -> the tree's picture") {
+  MirrorWorld world;
+  world.box({0, 0, 0}, {32, 32, 8}, kMetal);
+  world.box({10, 10, 8}, {20, 20, 14}, kRough);
+  world.box({4, 4, 8}, {6, 28, 30}, kStone);
+  world.map_it();
+  for (const Vec3i& eye : {Vec3i{15 * 256, 15 * 256, 12 * 256}, Vec3i{15 * 256, 15 * 256, 14 * 256},
+                           Vec3i{8 * 256, 16 * 256, 8 * 256}, Vec3i{8 * 256 + 9, 16 * 256 + 3, 8 * 256 - 1},
+                           Vec3i{16 * 256, 16 * 256, -3 * 256}, Vec3i{-40 * 256, 9 * 256 + 1, 60 * 256}}) {
+    for (const Vec3i& target : {Vec3i{5 * 256, 16 * 256 + 1, 10 * 256}, Vec3i{16 * 256, 15 * 256, 8 * 256}}) {
+      world.look(eye, target, 80);
+      compare(world);
+    }
+  }
+}
+
+TEST_CASE(
+    "mirrors by the map: every format and set, faces of many pixels, rough metals -> the tree's bytes") {
+  MirrorWorld world;
+  world.box({0, 0, 0}, {32, 32, 2}, kMetal);
+  world.box({6, 6, 2}, {8, 26, 14}, kStone);
+  world.box({6, 24, 2}, {26, 26, 10}, kRough);
+  world.box({16, 10, 2}, {20, 14, 20}, 4);
+  world.voxel({24, 8, 5}, 5);
+  world.surfaces[5] = surface(SurfaceKind::kEmit, {90, 220, 120});
+  world.lights.push_back(lamp({14 * 256, 5 * 256, 12 * 256}, 700));
+  world.scene.occlusion = {8, 200, 6};
+  world.map_it();
+  constexpr EffectSet kAll = kMirrored | Effect::kEmission | Effect::kSky;
+  for (const int width : {53, 200}) {
+    world.look({-6 * 256 + 3, -9 * 256 + 17, 18 * 256}, {16 * 256, 16 * 256, 4 * 256}, 44, width,
+               width * 3 / 4);
+    for (int number = 0; number < kPixelFormats; ++number) {
+      CAPTURE(number);
+      const auto format = static_cast<PixelFormat>(number);
+      for (const std::size_t offset : {0U, 1U}) {
+        world.scene.lights = {world.lights.data(), 1};
+        compare(world, format, offset);
+        compare<kAll>(world, format, offset);
+        compare<kAll | Effect::kAmbientOcclusion>(world, format, offset);
+        world.scene.lights = {world.lights.data(), 2};
+        compare<kMirrored | Effect::kEmitterLight>(world, format, offset);
+        compare<kAll | Effect::kAmbientOcclusion | Effect::kEmitterLight>(world, format, offset);
+        if (width == 200) {
+          break;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thimble::testing::map_mirrors
