@@ -41,11 +41,15 @@ bool line_touches(const Ray& ray, const VoxelBox& box) {
 
 TEST_CASE("wide: columns of a row that can show a box -> no other ray touches it, nearly all of theirs do") {
   std::mt19937_64 random(81);
+  std::int64_t wrong = 0;
   std::int64_t beside = 0;
   std::int64_t touching = 0;
   std::int64_t idle = 0;
+  WideScene scene;
   for (int trial = 0; trial < 400;) {
-    const WideScene scene = random_scene(random);
+    if (trial % 8 == 0) {
+      scene = random_scene(random);
+    }
     FrameCase frame;
     if (!random_frame(random, scene, &frame)) {
       continue;
@@ -67,13 +71,14 @@ TEST_CASE("wide: columns of a row that can show a box -> no other ray touches it
       for (std::int32_t x = 0; x < frame.camera.width_px(); ++x) {
         const bool touches = line_touches(frame.camera.ray(x, row), box);
         const bool can = columns.first <= x && x < columns.end;
-        REQUIRE((can || !touches));
+        wrong += touches && !can ? 1 : 0;
         beside += can ? 0 : 1;
         touching += touches ? 1 : 0;
         idle += can && !touches ? 1 : 0;
       }
     }
   }
+  CHECK(wrong == 0);
   CAPTURE(beside);
   CAPTURE(touching);
   CHECK(beside > 100000);
