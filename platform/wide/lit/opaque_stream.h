@@ -15,6 +15,7 @@
 #include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
 #include "wide/lit/pixel_flow.h"
+#include "wide/lit/row_spans.h"
 #include "wide/lit/taker.h"
 #include "wide/rays/ray_map.h"
 
@@ -62,13 +63,18 @@ class OpaqueStream {
   void light_up(uint32_t count);
   void find_faces(uint32_t count);
   LitFace face_of_hit(uint32_t pixel);
+  bool begin_row(PixelReader* pixels);
+  void show_sky_of_row(const PixelReader& pixels, int32_t first, int32_t end);
   void show_sky(uint32_t count);
+  template <class Give>
+  void each_sky_color(uint32_t count, const Give& give);
   void paint();
 
   lit::Frame frame_;
   const RayMap& map_;
   OpaqueShape shape_;
   OpaqueParts parts_;
+  RowSpans spans_;
   Taker taker_;
   FaceLights lights_;
   uint32_t face_count_ = 0;

@@ -70,39 +70,16 @@ class PixelReader {
   /// Takes the next pixel; returns false when none is left. One thread takes a whole row, and all rows that share
   /// bytes.
   bool next(Ray* ray, PixelSlot* at) {
-    if (x_ == flow_.width_ || at_ == end_) {
-      if (!begin_row()) {
-        return false;
-      }
+    if (row_is_done() && !begin_row()) {
+      return false;
     }
-    *at = {x_++, static_cast<int32_t>(at_)};
-    if (flow_.places_ != nullptr) {
-      const PixelPlace& place = flow_.places_[at_];
-      *ray = flow_.frame_.camera.ray(place.x, place.y);
-    } else {
-      *ray = rays_.ray();
-      rays_.next();
-    }
+    take(ray, at);
     return true;
   }
 
-  /// Stores a pixel that was taken.
-  void store(const PixelSlot& at, const lit::Color& color) const {
-    uint8_t* const line = line_of(at.row);
-    if (flow_.band_.format == PixelFormat::kRgb888 &&
-        std::max({color.c[0], color.c[1], color.c[2]}) <= lit::kWhite) {
-      for (int c = 0; c < 3; ++c) {
-        line[3 * at.x + c] = static_cast<uint8_t>((color.c[c] + lit::kLevel / 2) / lit::kLevel);
-      }
-    } else {
-      lit::store(flow_.frame_, flow_.band_, line, at.x, flow_.band_.first_row + at.row, color);
-    }
-  }
-
- private:
-  uint8_t* line_of(int32_t row) const {
-    return flow_.band_.pixels.data + flow_.stride_ * row_place(flow_.band_.format, row);
-  }
+  /// Whether the row, or place, has no pixel left.
+  bool row_is_done() const { return x_ == end_x_; }
+  /// Begins the next one; false: there is none left.
   bool begin_row() {
     if (at_ != end_) {
       ++at_;
@@ -111,12 +88,14 @@ class PixelReader {
       at_ = flow_.next_.fetch_add(flow_.together_);
       if (at_ >= flow_.count_) {
         end_ = at_;
+        end_x_ = x_;
         return false;
       }
       end_ = std::min(at_ + flow_.together_, flow_.count_);
     }
     x_ = 0;
-    if (flow_.places_ == nullptr) {
+    end_x_ = flow_.width_;
+    if (is_row()) {
       const auto row = static_cast<int32_t>(at_);
       rays_ = RowRays(flow_.frame_.camera, 0, flow_.band_.first_row + row);
       if (!flow_.is_whole_ && begins_bytes(flow_.band_.format, row)) {
@@ -125,12 +104,60 @@ class PixelReader {
     }
     return true;
   }
+  /// Whether it is a row; which of the band, and of the camera.
+  bool is_row() const { return flow_.places_ == nullptr; }
+  int32_t row() const { return static_cast<int32_t>(at_); }
+  int32_t camera_row() const { return flow_.band_.first_row + row(); }
+  /// Leaves only columns `first` to `end` - 1 of a row that was begun to be taken.
+  void narrow(int32_t first, int32_t end) {
+    x_ = first;
+    end_x_ = end;
+    rays_ = RowRays(flow_.frame_.camera, first, camera_row());
+  }
+  /// Takes the next pixel of a row that is not done.
+  void take(Ray* ray, PixelSlot* at) {
+    *at = {x_++, static_cast<int32_t>(at_)};
+    if (is_row()) {
+      *ray = rays_.ray();
+      rays_.next();
+    } else {
+      const PixelPlace& place = flow_.places_[at_];
+      *ray = flow_.frame_.camera.ray(place.x, place.y);
+    }
+  }
+
+  /// Stores a pixel that was taken.
+  void store(const PixelSlot& at, const lit::Color& color) const {
+    uint8_t* const rgb = rgb_of(at);
+    if (rgb != nullptr && std::max({color.c[0], color.c[1], color.c[2]}) <= lit::kWhite) {
+      store_rgb(color, rgb);
+    } else {
+      lit::store(flow_.frame_, flow_.band_, line_of(at.row), at.x, flow_.band_.first_row + at.row, color);
+    }
+  }
+  /// A pixel's three bytes, from which its row's go on; null in other formats. What `store_rgb` puts there is
+  /// not above kWhite.
+  uint8_t* rgb_of(const PixelSlot& at) const {
+    return flow_.band_.format == PixelFormat::kRgb888 ? line_of(at.row) + 3 * at.x : nullptr;
+  }
+  static void store_rgb(const lit::Color& color, uint8_t* rgb) {
+    const auto byte = [](uint32_t c) { return static_cast<uint8_t>((c + lit::kLevel / 2) / lit::kLevel); };
+    rgb[0] = byte(color.c[0]);
+    rgb[1] = byte(color.c[1]);
+    rgb[2] = byte(color.c[2]);
+  }
+
+ private:
+  uint8_t* line_of(int32_t row) const {
+    return flow_.band_.pixels.data + flow_.stride_ * row_place(flow_.band_.format, row);
+  }
 
   PixelFlow& flow_;
   RowRays rays_;
   size_t at_ = 0;  // the row, or place
   size_t end_ = 0;
   int32_t x_ = 0;
+  int32_t end_x_ = 0;
 };
 
 }  // namespace thimble::wide

@@ -59,6 +59,26 @@ void find_sky_shares(const int32_t* x, const int32_t* y, const int32_t* z, size_
   }
 }
 
+// Camera::rounded, of numbers a step apart.
+void round_along_row(int64_t first, int64_t step, size_t count, int32_t* rounded) {
+  const hn::RebindToSigned<F64> d;
+  const U64 du;
+  const I32 di;
+  alignas(64) int64_t values[hn::MaxLanes(d)];
+  for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+    values[lane] = first + static_cast<int64_t>(lane) * step;
+  }
+  auto value = hn::Load(d, values);
+  const auto on = hn::Set(d, static_cast<int64_t>(hn::Lanes(d)) * step);
+  const auto half = hn::Set(d, int64_t{1} << 31);
+  for (size_t at = 0; at < count; at += hn::Lanes(d)) {
+    const auto sum = hn::Add(hn::Add(value, half), hn::BroadcastSignBit(value));
+    const auto high = hn::TruncateTo(hn::RebindToUnsigned<I32>(), hn::ShiftRight<32>(hn::BitCast(du, sum)));
+    hn::StoreU(hn::BitCast(di, high), di, rounded + at);
+    value = hn::Add(value, on);
+  }
+}
+
 }  // namespace
 }  // namespace thimble::wide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -67,9 +87,14 @@ HWY_AFTER_NAMESPACE();
 namespace thimble::wide {
 
 HWY_EXPORT(find_sky_shares);
+HWY_EXPORT(round_along_row);
 
 void find_sky_shares(const int32_t* x, const int32_t* y, const int32_t* z, size_t count, int32_t* shares) {
   HWY_DYNAMIC_DISPATCH(find_sky_shares)(x, y, z, count, shares);
+}
+
+void round_along_row(int64_t first, int64_t step, size_t count, int32_t* rounded) {
+  HWY_DYNAMIC_DISPATCH(round_along_row)(first, step, count, rounded);
 }
 
 }  // namespace thimble::wide

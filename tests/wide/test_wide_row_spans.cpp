@@ -1,0 +1,110 @@
+// Rows of a picture: the columns that can show a box, and a ray's component from column to column.
+#include <doctest/doctest.h>
+
+#include <random>
+#include <vector>
+
+#include "support/wide_cases.h"
+#include "wide/lit/kernels.h"
+#include "wide/lit/row_spans.h"
+
+namespace thimble::tests {
+namespace {
+
+// Whether the line of a ray touches a box, its faces and edges included.
+bool line_touches(const Ray& ray, const VoxelBox& box) {
+  std::int64_t begin[3];
+  std::int64_t end[3];
+  std::int64_t speed[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t low = std::int64_t{box.low[axis]} * 256 - ray.origin[axis].raw;
+    const std::int64_t high = std::int64_t{box.high[axis]} * 256 - ray.origin[axis].raw;
+    const bool down = ray.direction[axis] < 0;
+    begin[axis] = down ? -high : low;
+    end[axis] = down ? -low : high;
+    speed[axis] = down ? -std::int64_t{ray.direction[axis]} : ray.direction[axis];
+    if (speed[axis] == 0 && (low > 0 || high < 0)) {
+      return false;
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      if (speed[a] != 0 && speed[b] != 0 && begin[a] * speed[b] > end[b] * speed[a]) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("wide: columns of a row that can show a box -> no other ray touches it, nearly all of theirs do") {
+  std::mt19937_64 random(81);
+  std::int64_t wrong = 0;
+  std::int64_t beside = 0;
+  std::int64_t touching = 0;
+  std::int64_t idle = 0;
+  WideScene scene;
+  for (int trial = 0; trial < 400;) {
+    if (trial % 8 == 0) {
+      scene = random_scene(random);
+    }
+    FrameCase frame;
+    if (!random_frame(random, scene, &frame)) {
+      continue;
+    }
+    ++trial;
+    CAPTURE(trial);
+    VoxelBox box = scene.tree.bounds();
+    if (pick(random, 0, 1) == 0) {
+      box.low = random_voxel(random, 0, std::int64_t{1} << scene.level);
+      const Vec3i size = random_voxel(random, 0, std::int64_t{1} << pick(random, 0, scene.level));
+      box.high = {box.low.x + size.x, box.low.y + size.y, box.low.z + size.z};
+    }
+    const wide::RowSpans spans(frame.camera, box);
+    for (std::int32_t row = 0; row < frame.camera.height_px(); ++row) {
+      const wide::RowSpans::Columns columns = spans.of_row(row);
+      REQUIRE(0 <= columns.first);
+      REQUIRE(columns.first <= columns.end);
+      REQUIRE(columns.end <= frame.camera.width_px());
+      for (std::int32_t x = 0; x < frame.camera.width_px(); ++x) {
+        const bool touches = line_touches(frame.camera.ray(x, row), box);
+        const bool can = columns.first <= x && x < columns.end;
+        wrong += touches && !can ? 1 : 0;
+        beside += can ? 0 : 1;
+        touching += touches ? 1 : 0;
+        idle += can && !touches ? 1 : 0;
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CAPTURE(beside);
+  CAPTURE(touching);
+  CHECK(beside > 100000);
+  CHECK(touching > 50000);
+  CHECK(idle < touching / 20);
+}
+
+TEST_CASE("wide: a component along a row in lanes -> the camera's, halves away from zero") {
+  const BestInstructionSet after;
+  std::mt19937_64 random(82);
+  for (int trial = 0; trial < 2000; ++trial) {
+    use_random_instruction_set(random);
+    // Often halves, on both sides of zero.
+    const int fraction = static_cast<int>(pick(random, 0, 1) == 0 ? 31 : pick(random, 0, 31));
+    const std::int64_t most = std::int64_t{1} << pick(random, 1, 20);
+    const std::int64_t first = pick(random, -most, most) << fraction;
+    const std::int64_t step = pick(random, -most, most) << fraction >> 6;
+    const auto count = static_cast<std::size_t>(pick(random, 1, 100));
+    std::vector<std::int32_t> rounded(count + wide::kMostLightLanes);
+    wide::round_along_row(first, step, count, rounded.data());
+    CAPTURE(first);
+    CAPTURE(step);
+    for (std::size_t i = 0; i < count; ++i) {
+      REQUIRE(rounded[i] == Camera::rounded(first + static_cast<std::int64_t>(i) * step));
+    }
+  }
+}
+
+}  // namespace thimble::tests
