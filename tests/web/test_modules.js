@@ -234,8 +234,8 @@ async function looks() {
   const [width, height] = [160, 120];
   write('glass.scene', 'depth 5\ncamera eye 16 -30 24 target 16 16 10 fov 40\nsun toward 1 -2 3\nsky zenith 40 90 200\n' +
     'fog color 200 200 210 density 0.01\nmaterial floor color 180 150 120\nmaterial gold metal color 220 180 60\n' +
-    'material clear glass color 230 250 240\nbox floor from 0 0 0 to 32 32 2\nball gold center 10 16 8 radius 6\n' +
-    'ball clear center 22 14 8 radius 6\n');
+    'material clear glass color 230 250 240\nbox floor from 0 0 0 to 32 32 2\nball gold at 10 16 8 radius 6\n' +
+    'ball clear at 22 14 8 radius 6\n');
   write('mesh.obj', 'v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 3\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 4 3 2 1\n');
   write('parallel.scene', fs.readFileSync('tools/gallery/scenes/room.scene', 'utf8').replace(/ fov 62/, ' span 77'));
   const scenes = ['castle.vox', 'room.scene', 'waves.scene', 'house.scene', 'fox.vox.gz', 'demo', 'points:2000', 'spheres',

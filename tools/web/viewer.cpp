@@ -3,7 +3,7 @@
 //
 // While the camera moves frames are fast: voxels by the brick map, or of every few pixels where there is none. At
 // rest the page asks for rows of the picture that `thimble render` draws of the scene (scene/look_picture.h), with
-// one sample a pixel, then with all. How the scene looks from a camera says bake.wasm (look_block.h).
+// one sample a pixel, then with all. bake.wasm says how the scene looks from a camera (look_block.h).
 #include "apps/shown_scene.h"
 #include "scene/behind.h"
 #include "scene/tone_table.h"
@@ -27,7 +27,6 @@ struct Viewer {
   apps::ShownScene shown;
   BakedLighting baked;  // of the scene; names what is picked
   SceneCamera own;
-  SceneCamera at;
   Camera camera;
   Camera fine;  // kMostAcross times as many pixels each way
   LookBlock look;
@@ -177,7 +176,7 @@ Status draw_lit(const Camera& camera, int32_t y, int32_t across, Bytes to) {
   return status;
 }
 
-// Row `row` of every `step`-th pixel, stretched to `step` rows of the picture.
+// Stretches a row of every `step`-th pixel to `step` rows of the picture, from row `y` on.
 void stretch(Bytes thin, int32_t y, int32_t step) {
   for (int32_t line = y; line < y + step && line < viewer.height_px; ++line) {
     const Bytes row = row_of_picture(line);
