@@ -53,7 +53,7 @@ async function askLook(own) {
   try {
     const seen = await own.baker.look(camera, board.width, board.height, own.exposure);
     if (own !== viewer || seen === null) return;
-    own.look.take(seen.block);
+    own.look.take(seen.block, camera !== own.camera);
     own.view = {camera, ...seen};
     own.asks = false;
   } catch (error) {  // then the picture stays the fast one

@@ -47,12 +47,12 @@ class Look {
     writeCamera(this.x, camera);
     return this.x.see() !== 0;
   }
-  // How it looks from there: a block of Baker.look().
-  take(block) {
+  // How it looks from there: a block of Baker.look(). `movedOn`: of an earlier view.
+  take(block, movedOn = false) {
     const at = this.x.look_room(block.length);
     if (at === 0) throw new Error('there is no memory for its lights here');
     new Uint8Array(this.x.memory.buffer).set(block, at);
-    if (this.x.take_look() === 0) throw new Error('its lights are damaged');
+    if (this.x.take_look(movedOn) === 0) throw new Error('its lights are damaged');
   }
   // Sees the exposure of the picture at rest from rows of it: 0 while there are more.
   expose(first = 0, rows = this.height) {

@@ -251,6 +251,12 @@ async function looks() {
       is('pixels that are others, turned', pixelsThatDiffer(drawn(shown, 'fine'), rendered(shown, ...lensOf(shown))), 0);
     });
   }
+  await test('a view as large as the page, whose direction 1/256 voxel says too coarsely, is what the command renders', () => {
+    const shown = opened('castle.vox', 640, 480);
+    shown.orbit.turn(0.5, 0.1);
+    shown.orbit.approach(0.9);
+    is('pixels that are others', pixelsThatDiffer(drawn(shown, 'fine'), rendered(shown, ...lensOf(shown))), 0);
+  });
   await test('coarse pictures have blocks of four by four pixels, as bright as others', () => {
     const shown = opened('castle.vox', width, height);
     const [coarse, lit] = [drawn(shown, 'coarse'), drawn(shown, 'lit')];

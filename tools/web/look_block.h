@@ -15,6 +15,7 @@
 namespace thimble::tools {
 
 struct LookBlock {
+  SceneCamera camera;  ///< as the command frames it, to the last bit of a ray
   uint32_t lighting_bytes = 0;
   EffectSet effects = Effect::kNone;        ///< at rest
   EffectSet quick_effects = Effect::kNone;  ///< while the camera moves; none: voxels in quick colours

@@ -46,8 +46,36 @@ void put_colors(const std::vector<Rgb8>& colors, Rgb8 (&to)[256]) {
   std::copy(colors.begin(), colors.end(), to);
 }
 
+// A view with the lens of `camera` in a picture of that size.
+ViewWishes wishes_of(const SceneCamera& camera, std::int32_t width_px, std::int32_t height_px) {
+  ViewWishes wishes;
+  wishes.placed = true;
+  wishes.orthographic = !camera.is_perspective;
+  wishes.fov_degrees =
+      camera.is_perspective ? static_cast<double>(camera.fov_degrees.raw) / Q16::kOne : kPictureFov;
+  wishes.width_px = width_px;
+  wishes.height_px = height_px;
+  return wishes;
+}
+
+// What --eye, --target and the lens say of it.
+ViewWishes placed_wishes(const SceneCamera& camera, std::int32_t width_px, std::int32_t height_px) {
+  const auto real = [](const Vec3Q8& point) {
+    return Real3{static_cast<double>(point.x.raw) / Q8::kOne, static_cast<double>(point.y.raw) / Q8::kOne,
+                 static_cast<double>(point.z.raw) / Q8::kOne};
+  };
+  ViewWishes wishes = wishes_of(camera, width_px, height_px);
+  wishes.eye = real(camera.eye);
+  wishes.target = real(camera.target);
+  if (wishes.orthographic) {
+    wishes.span = static_cast<double>(camera.span.raw) / Q14::kOne;
+  }
+  return wishes;
+}
+
 LookBlock block_of(std::uint32_t exposure_q8) {
   LookBlock block;
+  block.camera = framing.kept;
   block.is_stars = look.kind == LookKind::kStars;
   block.effects = block.is_stars ? Effect::kNone : look.effects;
   block.quick_effects = look.has_backdrop ? Effect::kNone : look.effects & kQuickEffects;
@@ -99,6 +127,9 @@ extern "C" {
   if (set_camera(framing.kept, width_px, height_px, scene.tree().level(), &framing.camera) != Status::kOk) {
     return nullptr;
   }
+  if (web_camera.is_own == 0) {
+    framing = frame_scene(placed_wishes(framing.kept, width_px, height_px), *source, scene_shape());
+  }
   look = default_look(scene_facts(), {}, framing, width_px, height_px);
   LookBlock block = block_of(exposure_q8);
   const std::vector<std::uint8_t> lighting =
@@ -145,14 +176,8 @@ extern "C" {
   using namespace thimble;
   using namespace thimble::tools;
   const SceneCamera& own = scene.camera();
-  ViewWishes wishes;
-  wishes.placed = true;
+  ViewWishes wishes = wishes_of(own, width_px, height_px);
   wishes.side = static_cast<NamedView>(side);
-  wishes.orthographic = !own.is_perspective;
-  wishes.fov_degrees =
-      own.is_perspective ? static_cast<double>(own.fov_degrees.raw) / Q16::kOne : kPictureFov;
-  wishes.width_px = width_px;
-  wishes.height_px = height_px;
   const SceneCamera kept = frame_shape(wishes, scene_shape()).kept;
   for (int axis = 0; axis < 3; ++axis) {
     framed[axis] = kept.eye[axis].raw;

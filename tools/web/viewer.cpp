@@ -176,6 +176,22 @@ Status draw_lit(const Camera& camera, int32_t y, int32_t across, Bytes to) {
   return status;
 }
 
+// False, and the view as it was, where there is no such camera.
+bool look_from(const SceneCamera& at) {
+  const int level = viewer.shown.scene.tree().level();
+  Camera camera;
+  if (set_camera(at, viewer.width_px, viewer.height_px, level, &camera) != Status::kOk) {
+    return false;
+  }
+  viewer.camera = camera;
+  // Where the fine one cannot be had the samples are those of the coarse one.
+  if (set_camera(at, kMostAcross * viewer.width_px, kMostAcross * viewer.height_px, level, &viewer.fine) !=
+      Status::kOk) {
+    viewer.fine = Camera{};
+  }
+  return true;
+}
+
 // Stretches a row of every `step`-th pixel to `step` rows of the picture, from row `y` on.
 void stretch(Bytes thin, int32_t y, int32_t step) {
   for (int32_t line = y; line < y + step && line < viewer.height_px; ++line) {
@@ -304,19 +320,7 @@ extern "C" {
 [[clang::export_name("see")]] bool thimble_see() {
   using namespace thimble;
   using namespace thimble::tools;
-  const SceneCamera at = viewer.seen.of(viewer.own);
-  const int level = viewer.shown.scene.tree().level();
-  Camera camera;
-  if (set_camera(at, viewer.width_px, viewer.height_px, level, &camera) != Status::kOk) {
-    return false;
-  }
-  viewer.camera = camera;
-  // Where the fine one cannot be had the samples are those of the coarse one.
-  if (set_camera(at, kMostAcross * viewer.width_px, kMostAcross * viewer.height_px, level, &viewer.fine) !=
-      Status::kOk) {
-    viewer.fine = Camera{};
-  }
-  return true;
+  return look_from(viewer.seen.of(viewer.own));
 }
 
 // Room for a LookBlock and what belongs to it, of so many bytes; null where there is none.
@@ -327,13 +331,16 @@ extern "C" {
   }
   return viewer.lighting_bytes.data;
 }
-// Looks so from now on. False where the block is none.
-[[clang::export_name("take_look")]] bool thimble_take_look() {
+// Looks so from now on, and from the block's own camera, unless the view has moved on. False where the block is none.
+[[clang::export_name("take_look")]] bool thimble_take_look(bool moved_on) {
   using namespace thimble;
   using namespace thimble::tools;
   viewer.look = *reinterpret_cast<const LookBlock*>(viewer.lighting_bytes.data);
   viewer.lighting = {};
   const ConstBytes section = viewer.lighting_bytes.subspan(sizeof(LookBlock), viewer.look.lighting_bytes);
+  if (!moved_on && !look_from(viewer.look.camera)) {
+    return false;
+  }
   return section.empty() ||
          BakedLighting::open(section, viewer.shown.scene.tree().level(), &viewer.lighting) == Status::kOk;
 }
