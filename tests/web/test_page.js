@@ -681,7 +681,7 @@ async function telephone() {
     await browser.touch('touchMove', [{x: x + 30, y, id: 1}]);
     await browser.turnTo(640, 360);
     await browser.touch('touchCancel', []);
-    is('fingers that are left', await browser.eval('pointers.size'), 0);
+    await browser.until('pointers.size === 0');  // no finger is left
     const before = await browser.eval('orbit.text()');
     await pause(200);
     is('the view stands still', await browser.eval('orbit.text()'), before);
