@@ -6,9 +6,9 @@
 #include "../base/wide_arithmetic.h"
 #include "band.h"
 
-// Compiles this file and the headers that follow for speed, whatever the rest is compiled for. ("rename-registers"
+// Compiles this file and the headers that follow for speed, whatever the rest is optimised for. ("rename-registers"
 // saves one instruction in a hundred.)
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
 #pragma GCC optimize("O2", "rename-registers")
 #endif
 

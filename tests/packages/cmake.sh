@@ -5,7 +5,7 @@ name=cmake
 . tests/packages/common.sh
 need cmake ninja
 archive=$(cd "$PACKAGES" && pwd)/thimble-$VERSION.tar.gz
-logged cmake -S tests/packages/cmake -B "$WORK/fetch" -G Ninja -DARCHIVE="$archive"
+logged cmake -S tests/packages/cmake -B "$WORK/fetch" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DARCHIVE="$archive"
 logged cmake --build "$WORK/fetch" -- -j1
 same_ball "$WORK/fetch/ball"
 no_drivers "$WORK/fetch/ball"

@@ -11,10 +11,11 @@ for compiler in g++ clang++; do
     say "skipped for $compiler: it is not installed"
     continue
   }
-  logged $compiler -std=c++17 -O1 $warnings -I"$WORK" "$WORK/thimble/thimble.cpp" platform/examples/ball/main.cpp -o "$WORK/ball"
+  logged $compiler -std=c++17 -O1 $warnings -I"$WORK" -c "$WORK/thimble/thimble.cpp" -o "$WORK/thimble.o"
+  logged $compiler -std=c++17 -O1 $warnings -I"$WORK" "$WORK/thimble.o" platform/examples/ball/main.cpp -o "$WORK/ball"
   same_ball "$WORK/ball"
   no_drivers "$WORK/ball"
-  logged $compiler -std=c++17 -O1 $warnings -I"$WORK" "$WORK/thimble/thimble.cpp" "$WORK/thimble/drivers/"*.cpp \
+  logged $compiler -std=c++17 -O1 $warnings -I"$WORK" "$WORK/thimble.o" "$WORK/thimble/drivers/"*.cpp \
     tests/packages/panels.cpp -o "$WORK/panels"
   same_panels "$WORK/panels"
   logged $compiler -std=gnu++17 -fsyntax-only $warnings -I"$WORK" "$WORK/thimble/thimble.cpp" "$WORK/thimble/drivers/"*.cpp
@@ -27,9 +28,10 @@ if [ -f "$WORK/thimble/thimble_c.h" ]; then
 fi
 if command -v arm-none-eabi-g++ >/dev/null 2>&1; then
   bare arm
-  logged arm-none-eabi-g++ -std=gnu++17 $arm_options -I"$WORK" "$WORK/thimble/thimble.cpp" platform/examples/ball/main.cpp \
+  logged arm-none-eabi-g++ -std=gnu++17 $arm_options -I"$WORK" -c "$WORK/thimble/thimble.cpp" -o "$WORK/thimble.o"
+  logged arm-none-eabi-g++ -std=gnu++17 $arm_options -I"$WORK" "$WORK/thimble.o" platform/examples/ball/main.cpp \
     $bare_link -lgcc -o "$WORK/ball.elf"
-  logged arm-none-eabi-g++ -std=gnu++17 $arm_options -I"$WORK" "$WORK/thimble/thimble.cpp" "$WORK/thimble/drivers/"*.cpp \
+  logged arm-none-eabi-g++ -std=gnu++17 $arm_options -I"$WORK" "$WORK/thimble.o" "$WORK/thimble/drivers/"*.cpp \
     tests/packages/panels.cpp $bare_link -lgcc -o "$WORK/panels.elf"
   if command -v qemu-system-arm >/dev/null 2>&1; then
     same_ball in_qemu arm "$WORK/ball.elf"

@@ -11,7 +11,7 @@
 #include "thimble/light/map_render.h"
 
 // As in brick_render.cpp.
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
 #pragma GCC optimize("O2", "rename-registers")
 #endif
 
