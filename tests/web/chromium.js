@@ -5,6 +5,8 @@ const fs = require('fs');
 const os = require('os');
 const path = require('path');
 
+const codeOf = (key) => (key === ' ' ? 'Space' : key.length > 1 ? key : /\d/.test(key) ? `Digit${key}` : `Key${key.toUpperCase()}`);
+
 class Chromium {
   static async open(url, {width = 1280, height = 900, mobile = false, media = []} = {}) {
     const browser = new Chromium();
@@ -56,10 +58,32 @@ class Chromium {
   async until(expression, seconds = 20) {
     for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
       if (await this.eval(expression).catch(() => false)) return;
-      await new Promise((done) => setTimeout(done, 50));
+      await new Promise((done) => setTimeout(done, 20));
     }
     throw new Error(`${expression} did not come true within ${seconds} s; the page says: ` +
       await this.eval('document.getElementById("said").textContent').catch(() => 'nothing'));
+  }
+  // What an element of the page says.
+  text(id) {
+    return this.eval(`document.getElementById('${id}').textContent`);
+  }
+  // The CRC-32 of what the canvas shows, as RGB.
+  canvasCrc() {
+    return this.eval(`(() => {
+      const {width, height} = canvas;
+      const rgba = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+      const rgb = new Uint8Array(3 * width * height);
+      for (let from = 0, to = 0; to < rgb.length; ++from) if (from % 4 !== 3) rgb[to++] = rgba[from];
+      return crc32(rgb); })()`);
+  }
+  async changes(what, act) {
+    const before = await this.canvasCrc();
+    await act();
+    for (let i = 0; i < 100; ++i) {
+      if (await this.canvasCrc() !== before) return;
+      await new Promise((done) => setTimeout(done, 20));
+    }
+    throw new Error(`${what} does not change the picture`);
   }
   async shot(file) {
     const {data} = await this.send('Page.captureScreenshot', {format: 'png'});
@@ -98,7 +122,7 @@ class Chromium {
     const {x, y} = await this.middle(selector);
     await this.send('Input.dispatchMouseEvent', {type: 'mouseWheel', x, y, deltaX: 0, deltaY});
   }
-  async key(key, code = key, {held = 120, text = key.length === 1 ? key : undefined} = {}) {
+  async key(key, code = codeOf(key), {held = /^(Arrow|Page|[wasd]$)/i.test(key) ? 120 : 20, text = key.length === 1 ? key : undefined} = {}) {
     const windowsVirtualKeyCode = {ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13, PageUp: 33, PageDown: 34}[key];
     await this.send('Input.dispatchKeyEvent', {type: 'keyDown', key, code, text, windowsVirtualKeyCode});
     await new Promise((done) => setTimeout(done, held));
