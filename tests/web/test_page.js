@@ -50,6 +50,7 @@ function sim(scene, board, app, frames, keys) {
 
 // Holds the board's picture, which is that of the simulator after so many frames.
 async function showsItsFrame(scene, board) {
+  await browser.until('machine.frames > 0');
   await browser.eval('state.paused = true');
   await browser.until(`machine.state === 'frame'`);
   const count = await browser.eval('machine.frames');
@@ -576,7 +577,7 @@ async function drops() {
 }
 
 // Every size is turned over while the scene is shown.
-const SCREENS = [[360, 640], [412, 915], [768, 1024]];
+const SCREENS = [[360, 640], [412, 915], [768, 1024]].flatMap((upright) => [upright, [...upright].reverse()]);
 async function telephone() {
   browser = await Chromium.open(`${url}#scene=castle&board=raspi0&look=1`, {width: 360, height: 640, mobile: true});
   shown = 0;
@@ -584,34 +585,36 @@ async function telephone() {
   await fromAfar();
   await finish();
   const wanted = await canvasCrc();
-  for (const upright of SCREENS) {
-    for (const [width, height] of [upright, [...upright].reverse()]) {
-      await test(`on a screen of ${width} x ${height}`, async () => {
-        await browser.turnTo(width, height);
-        is('width of the page', await browser.eval('document.documentElement.scrollWidth'), width);
-        is('the picture is the same', await canvasCrc(), wanted);
-        const box = await browser.middle('#canvas');
-        holds(`the canvas has its proportions: ${box.width} x ${box.height}`, Math.abs(box.width / box.height - 640 / 480) < 0.01);
-        holds('the canvas fits on the screen', box.width <= width && box.height <= height && box.height >= height / 4);
-        await browser.eval('scrollTo(0, 0)');
-        holds('all of it is on the first screen', await browser.eval(
-          `(({top, bottom}) => top >= 0 && bottom <= innerHeight)(canvas.getBoundingClientRect())`));
-        if (width < height) holds('it uses the width', box.width >= 0.75 * Math.min(width, 640));
-        const hidden = await browser.eval(`[...document.querySelectorAll('button, select, summary')].filter((element) => {
-          if (element.closest('dialog') || element.hidden || element.disabled) return false;
-          element.scrollIntoView({block: 'center'});
-          const box = element.getBoundingClientRect();
-          const seen = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-          return box.width < 24 || box.height < 24 || (seen !== element && !element.contains(seen));
-        }).map((element) => element.id || element.textContent)`);
-        is('what a finger does not reach', hidden.join(), '');
-        await browser.eval('scrollTo(0, 0)');
-        await browser.shot(path.join(work, `screen_${width}x${height}.png`));
-        await turnsByFingers();
-        await fromAfar();
-        await finish();
-      });
-    }
+  for (const [width, height] of SCREENS) {
+    await test(`on a screen of ${width} x ${height}`, async () => {
+      await browser.turnTo(width, height);
+      is('width of the page', await browser.eval('document.documentElement.scrollWidth'), width);
+      is('the picture is the same', await canvasCrc(), wanted);
+      const box = await browser.middle('#canvas');
+      holds(`the canvas has its proportions: ${box.width} x ${box.height}`, Math.abs(box.width / box.height - 640 / 480) < 0.01);
+      holds('the canvas fits on the screen', box.width <= width && box.height <= height && box.height >= height / 4);
+      await browser.eval('scrollTo(0, 0)');
+      holds('all of it is on the first screen', await browser.eval(
+        `(({top, bottom}) => top >= 0 && bottom <= innerHeight)(canvas.getBoundingClientRect())`));
+      if (width < height) holds('it uses the width', box.width >= 0.75 * Math.min(width, 640));
+      const hidden = await browser.eval(`[...document.querySelectorAll('button, select, summary')].filter((element) => {
+        if (element.closest('dialog') || element.hidden || element.disabled) return false;
+        element.scrollIntoView({block: 'center'});
+        const box = element.getBoundingClientRect();
+        const seen = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+        return box.width < 24 || box.height < 24 || (seen !== element && !element.contains(seen));
+      }).map((element) => element.id || element.textContent)`);
+      is('what a finger does not reach', hidden.join(), '');
+      await browser.eval('scrollTo(0, 0)');
+      await browser.shot(path.join(work, `screen_${width}x${height}.png`));
+    });
+  }
+  for (const [width, height] of SCREENS) {
+    await test(`fingers on a screen of ${width} x ${height}`, async () => {
+      await browser.turnTo(width, height);
+      await turnsByFingers();
+      await fromAfar();
+    });
   }
   await test('a double tap looks at what is there, a button names it', async () => {
     await changes('its own view', () => browser.eval('orbit.reset(); moved(() => {})'));
