@@ -10,8 +10,8 @@
 #include "scene/moving_pool.h"
 #include "scene/tone_table.h"
 #include "thimble/base/memory.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 #include "web/layout.h"
 #include "web/look_block.h"
 
