@@ -7,35 +7,49 @@ const path = require('path');
 
 const codeOf = (key) => (key === ' ' ? 'Space' : key.length > 1 ? key : /\d/.test(key) ? `Digit${key}` : `Key${key.toUpperCase()}`);
 
+// The browser, which runs until quit().
+let program = null;
+function start() {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'thimble-web-'));
+  const child = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe',
+    `--user-data-dir=${folder}`, '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
+    '--hide-scrollbars', 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+  const own = {folder, process: child, pages: new Map(), waiting: new Map(), next: 0};
+  let rest = '';
+  child.stdio[4].on('data', (data) => {
+    rest += data;
+    for (let end = rest.indexOf('\0'); end >= 0; end = rest.indexOf('\0')) {
+      const message = JSON.parse(rest.slice(0, end));
+      rest = rest.slice(end + 1);
+      if (message.id !== undefined) {
+        const {done, fail} = own.waiting.get(message.id);
+        own.waiting.delete(message.id);
+        message.error ? fail(new Error(message.error.message)) : done(message.result);
+      } else {
+        own.pages.get(message.sessionId)?.events.push(message);
+      }
+    }
+  });
+  return own;
+}
+function send(method, params = {}, sessionId = undefined) {
+  const id = ++program.next;
+  program.process.stdio[3].write(JSON.stringify({id, method, params, sessionId}) + '\0');
+  return new Promise((done, fail) => program.waiting.set(id, {done, fail}));
+}
+
+// A page of it, which shares nothing with others, and has the focus as if it were alone.
 class Chromium {
   static async open(url, {width = 1280, height = 900, mobile = false, media = []} = {}) {
+    program ??= start();
     const browser = new Chromium();
-    browser.folder = fs.mkdtempSync(path.join(os.tmpdir(), 'thimble-web-'));
-    browser.process = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe',
-      `--user-data-dir=${browser.folder}`, '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
-      '--hide-scrollbars', 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
-    browser.next = 0;
-    browser.waiting = new Map();
     browser.events = [];
-    let rest = '';
-    browser.process.stdio[4].on('data', (data) => {
-      rest += data;
-      for (let end = rest.indexOf('\0'); end >= 0; end = rest.indexOf('\0')) {
-        const message = JSON.parse(rest.slice(0, end));
-        rest = rest.slice(end + 1);
-        if (message.id !== undefined) {
-          const {done, fail} = browser.waiting.get(message.id);
-          browser.waiting.delete(message.id);
-          message.error ? fail(new Error(message.error.message)) : done(message.result);
-        } else {
-          browser.events.push(message);
-        }
-      }
-    });
-    const {targetInfos} = await browser.send('Target.getTargets');
-    const page = targetInfos.find((target) => target.type === 'page');
-    browser.session = (await browser.send('Target.attachToTarget', {targetId: page.targetId, flatten: true})).sessionId;
+    browser.context = await send('Target.createBrowserContext');
+    const {targetId} = await send('Target.createTarget', {url: 'about:blank', newWindow: true, ...browser.context});
+    browser.session = (await send('Target.attachToTarget', {targetId, flatten: true})).sessionId;
+    program.pages.set(browser.session, browser);
     for (const domain of ['Page', 'Runtime', 'Network', 'Log']) await browser.send(`${domain}.enable`);
+    await browser.send('Emulation.setFocusEmulationEnabled', {enabled: true});
     await browser.send('Emulation.setDeviceMetricsOverride',
       {width, height, deviceScaleFactor: mobile ? 2 : 1, mobile});
     if (mobile) await browser.send('Emulation.setTouchEmulationEnabled', {enabled: true, maxTouchPoints: 5});
@@ -44,9 +58,10 @@ class Chromium {
     return browser;
   }
   send(method, params = {}) {
-    const id = ++this.next;
-    this.process.stdio[3].write(JSON.stringify({id, method, params, sessionId: this.session}) + '\0');
-    return new Promise((done, fail) => this.waiting.set(id, {done, fail}));
+    return send(method, params, this.session);
+  }
+  saveIn(downloadPath) {
+    return send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath, ...this.context});
   }
   async eval(expression) {
     const {result, exceptionDetails} = await this.send('Runtime.evaluate',
@@ -148,12 +163,18 @@ class Chromium {
     for (const type of ['dragEnter', 'dragOver', 'drop']) await this.send('Input.dispatchDragEvent', {type, x, y, data});
   }
   async close() {
-    const ended = new Promise((done) => this.process.on('exit', done));
-    this.session = undefined;
-    this.send('Browser.close').catch(() => {});
-    setTimeout(() => this.process.kill('SIGKILL'), 3000).unref();
+    program.pages.delete(this.session);
+    await send('Target.disposeBrowserContext', this.context);
+  }
+  static async quit() {
+    const ended = new Promise((done) => program.process.on('exit', done));
+    send('Browser.close').catch(() => {});
+    setTimeout(() => program.process.kill('SIGKILL'), 3000).unref();
     await ended;
-    fs.rmSync(this.folder, {recursive: true, force: true, maxRetries: 5});
+    fs.rmSync(program.folder, {recursive: true, force: true, maxRetries: 5});
+  }
+  static kill() {
+    program?.process.kill('SIGKILL');
   }
 }
 

@@ -37,7 +37,7 @@ function vox(side, frames) {
     const voxels = [];
     for (let i = 0; i < side ** 3; ++i) {
       const [x, y, z] = [i % side, Math.floor(i / side) % side, Math.floor(i / side / side)];
-      if (z === 0 || is(x, y + frame * side / 4, z)) voxels.push(x, y, z, z === 0 ? 97 : 21);
+      if (z === 0 || is(x, y + frame * side / 8, z)) voxels.push(x, y, z, z === 0 ? 97 : 21);
     }
     return [chunk('SIZE', Buffer.concat([u32(side), u32(side), u32(side)])),
       chunk('XYZI', Buffer.concat([u32(voxels.length / 4), Buffer.from(voxels)]))];

@@ -22,7 +22,7 @@ async function isWhatIsSaid(browser, thimble, what, file) {
 // By what test_page.js drives the page with.
 async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
   const film = path.resolve(work, 'film.vox');
-  fs.writeFileSync(film, made.vox(16, 3));
+  fs.writeFileSync(film, made.vox(16, 5));
   const frame = () => browser.eval('state.frame');
   const pressed = () => browser.eval(`document.querySelector('[data-key=" "]').getAttribute('aria-pressed')`);
   const goesOn = async () => browser.until(`state.frame !== ${await frame()}`);
@@ -34,6 +34,7 @@ async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
     await fromAfar();
     await browser.click('[data-key="-"]');
     is('what has the focus after a button of the mouse', await browser.eval('document.activeElement.id'), 'canvas');
+    await browser.until('state.frame === 1');
     await browser.key(' ');
     is('the button is pressed', await pressed(), 'false');
     const shown = await frame();
@@ -65,6 +66,8 @@ async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
     await browser.key(' ');
     is('the button is pressed', await pressed(), 'false');
     await browser.until('Math.abs(orbit.yaw - Math.PI / 2) < 0.001');
+    await browser.eval(`type('0')`);
+    is('its own view is that of the frame', await browser.eval('orbit.camera().eye.join()'), await browser.eval('viewer.look.point(false).join()'));
     const before = await browser.eval('orbit.target[2]');
     await browser.key('PageUp');
     holds('it flies up', await browser.eval('orbit.target[2]') > before + 1);
@@ -85,12 +88,18 @@ async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
     await browser.eval('canvas.focus()');
     await browser.changes('rain', () => browser.key(' '));
     await browser.changes('more of it', () => {});
+    await browser.eval('viewer.nextAt = Infinity');
+    await new Promise((done) => setTimeout(done, 300));
+    is('what a late frame finds', await browser.eval('viewer.phase'), 'waits');
+    await browser.eval('viewer.nextAt = 0');
     is('the button is pressed', await pressed(), 'true');
     await browser.key('s');
     await browser.until(`document.getElementById('said').textContent.startsWith('It is saved; ')`, 60);
     await browser.changes('what goes on', () => {});
     await browser.key(' ');
     await finish();
+    const fast = `(viewer.look.fast(4), crc32(viewer.look.rows(0, 480)))`;
+    is('what moves from there', await browser.eval(fast), await browser.eval(`viewer.look.rain(false), ${fast}`));
     await isWhatIsSaid(browser, thimble, 'of water', 'tools/gallery/scenes/waves.scene');
   });
   await test('where nothing plays there is no button, and space says so', async () => {

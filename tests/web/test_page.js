@@ -259,7 +259,7 @@ async function hands() {
   });
   await test('s saves the picture once it is finished, and says the command that makes the same one', async () => {
     await key('0');
-    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work});
+    await browser.saveIn(work);
     for (const what of ['from its own view', 'from elsewhere']) {
       if (what === 'from elsewhere') {
         await fromAfar();
@@ -395,7 +395,7 @@ async function links() {
     browser = other;
   });
   await test('the picture that is saved is the one that is shown', async () => {
-    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work});
+    await browser.saveIn(work);
     const file = path.join(work, 'thimble-castle.png');
     fs.rmSync(file, {force: true});
     const wanted = await canvasCrc();
@@ -786,8 +786,8 @@ async function calm() {
   await browser.close();
 }
 
-(only === undefined ? desktop().then(telephone).then(served).then(calm).then(cases) : {telephone, served, calm, cases}[only]()).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? desktop().then(telephone).then(served).then(calm).then(cases) : {telephone, served, calm, cases}[only]()).then(() => Chromium.quit()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
-  browser?.process.kill('SIGKILL');
+  Chromium.kill();
   process.exit(1);
 });
