@@ -19,11 +19,13 @@ async function openViewer(own, made, board) {
   if (seen === null) throw new Error('there is no such view of it');
   look.take(seen.block);
   viewer = {look, board, picture, baker: made.baker, step: look.x.has_map() ? 1 : 4, phase: 'moved', row: 0, crew: null,
-    flown: 0, camera, view: {camera, ...seen}, exposure: FIRST_EXPOSURE, asks: false, saves: false};
+    flown: 0, camera, view: {camera, ...seen}, exposure: FIRST_EXPOSURE, asks: false, saves: false,
+    frames: made.frames, next: null, nextAt: 0, plays: made.frames > 1 && state.frame === null && !calm};
   hireCrew(viewer, {module: code, scene: made.baked, width: board.width, height: board.height});
   pointed = null;
   prepareCanvas(board);
-  showKeys('look');
+  showKeys('look', isFilm() ? [[' ', 'Play']] : look.x.has_water() ? [[' ', 'Rain']] : []);
+  showPlays();
   $('uart').textContent = '';
 }
 // Workers for what is drawn at rest; where there is one core, or no worker, the page draws it.
@@ -49,13 +51,15 @@ function hireCrew(own, scene) {
 // How the scene looks from the camera, which the sun follows: one question at a time, the last camera's in the end.
 async function askLook(own) {
   const {camera, board} = own;
+  const {frame} = state;
   own.asks = true;
   try {
     const seen = await own.baker.look(camera, board.width, board.height, own.exposure);
     if (own !== viewer || seen === null) return;
+    own.asks = false;
+    if (frame !== state.frame) return;
     own.look.take(seen.block, camera !== own.camera);
     own.view = {camera, ...seen};
-    own.asks = false;
   } catch (error) {  // then the picture stays the fast one
     if (own === viewer) say(`${current().title}: ${error.message}`, true);
   }
@@ -70,7 +74,6 @@ async function askStars(own) {
 }
 function lookOn(now) {
   const {look, board, crew} = viewer;
-  const began = performance.now();
   // A frame that took long does not throw the camera across the scene.
   const seconds = Math.min(now - viewer.flown, 100) / 1000;
   viewer.flown = now;
@@ -80,26 +83,23 @@ function lookOn(now) {
     flight.flown = true;
     if (flight.ends) flying.delete(by);
   }
+  const hasPlayed = isPlaying() && play(now);
+  const asks = !viewer.asks && !(isPlaying() && isFilm());  // each frame brings its own look
   if (viewer.phase === 'moved') {
     const camera = orbit.camera();
     if (!look.see(camera)) return;
     viewer.camera = camera;
-    if (!viewer.asks) askLook(viewer);
-    look.fast(viewer.step);
-    viewer.time = performance.now() - began;
-    // Every few pixels where that is what a frame has time for.
-    if (viewer.time > 40) viewer.step = Math.min(8, viewer.step * (viewer.time > 160 ? 4 : 2));
-    if (viewer.time < 8 && viewer.step > 1) viewer.step /= 2;
-    viewer.phase = 'waits';
-    viewer.since = now;
-    takeRows(0, board.height);
-    $('frame').textContent = `${viewer.time.toFixed(1)} ms${viewer.step > 1 ? `, 1:${viewer.step}` : ''}`;
+    if (asks) askLook(viewer);
+    drawFast(now);
+  } else if (hasPlayed) {
+    drawFast(now);
   } else if (viewer.phase === 'waits' && viewer.view.camera !== viewer.camera) {
-    if (!viewer.asks) askLook(viewer);
-  } else if (viewer.phase === 'waits' && now - viewer.since > 120) {
+    if (asks) askLook(viewer);
+  } else if (viewer.phase === 'waits' && !isPlaying() && now - viewer.since > 120) {
     nextPicture(viewer);
   } else if (crew === null && viewer.phase in PHASES) {
     const first = viewer.row;
+    const began = performance.now();
     while (viewer.row < board.height && performance.now() - began < SLICE_MS) {
       if (viewer.phase === 'expose') {
         const exposure = look.expose(viewer.row++, 1);
@@ -115,6 +115,81 @@ function lookOn(now) {
   }
   showViewer();
 }
+function drawFast(now) {
+  const began = performance.now();
+  viewer.look.fast(viewer.step);
+  const time = performance.now() - began;
+  // Every few pixels where that is what a frame has time for.
+  if (time > 40) viewer.step = Math.min(8, viewer.step * (time > 160 ? 4 : 2));
+  if (time < 8 && viewer.step > 1) viewer.step /= 2;
+  viewer.phase = 'waits';
+  viewer.since = now;
+  takeRows(0, viewer.board.height);
+  $('frame').textContent = `${time.toFixed(1)} ms${viewer.step > 1 ? `, 1:${viewer.step}` : ''}`;
+}
+
+// ---- what moves by itself (tools/viewer/viewer.cpp): frames of an animation, rain
+
+const isFilm = () => viewer.frames > 1;
+const isPlaying = () => viewer.plays && !viewer.saves;  // a picture that is to be saved is finished first
+function playOrStop() {
+  if (!isFilm() && !viewer.look.x.has_water()) {
+    say('Nothing here plays: it has neither frames nor water.');
+    return;
+  }
+  viewer.plays = !viewer.plays;
+  viewer.nextAt = 0;
+  if (!viewer.plays) viewer.look.rain(false);
+  moved(() => {});
+  showPlays();
+}
+function showPlays() {
+  $('keys').querySelector('[data-key=" "]')?.setAttribute('aria-pressed', String(viewer.plays));
+}
+// The next frame, where it is time for it. One of an animation is read while the one before is shown.
+function play(now) {
+  if (isFilm() && viewer.next === null) readFrame(viewer);
+  if (now < viewer.nextAt || (isFilm() && !viewer.next?.made)) return false;
+  viewer.nextAt = Math.max(viewer.nextAt + (isFilm() ? FILM_MS : FRAME_MS), now);
+  if (!isFilm()) return viewer.look.rain(true);
+  try {
+    showFrame(viewer.next);
+  } catch (error) {
+    stopFilm(error);
+  }
+  return false;
+}
+async function readFrame(own) {
+  const {board, exposure} = own;
+  const next = own.next = {frame: ((state.frame ?? 0) + 1) % own.frames, camera: orbit.camera(), made: null};
+  const {depth, coarsen} = state;
+  try {
+    next.made = await own.baker.bakeAhead(current().scene, board, {depth, coarsen, frame: next.frame},
+      [next.camera, board.width, board.height, exposure]);
+  } catch (error) {
+    if (own === viewer) stopFilm(error);
+  }
+}
+function showFrame({frame, camera, made: {seen, ...made}}) {
+  viewer.next = null;
+  viewer.baker.turn();
+  viewer.look.open(made.baked);
+  viewer.look.take(seen.block, true);
+  viewer.crew?.show(made.baked);
+  viewer.view = {camera, ...seen};
+  baked = made;
+  state.frame = frame;
+  orbit.changed();  // its camera stays that of the frame before
+  orbit.own = {eye: viewer.look.point(false), target: viewer.look.point(true)};
+  moved(() => {});
+}
+function stopFilm(error) {
+  viewer.next = null;
+  viewer.plays = false;
+  say(`${current().title} stops: ${error.message}`, true);
+  showPlays();
+}
+
 // What is drawn at rest, one after the other, and what is said meanwhile.
 const PHASES = {expose: 'measures its light', coarse: 'coarse', lit: 'lit', fine: 'all samples'};
 function nextPicture(own) {
@@ -165,5 +240,6 @@ function renderCommand() {
   const point = (q8) => q8.map((x) => x / 256).join();
   const own = camera.own ? '' : ` --eye ${point(camera.eye)} --target ${point(camera.target)} ${look.lens(camera.zoom)}`;
   return `thimble render ${word(state.dropped?.title ?? current().scene)}${state.depth ? ` --depth ${state.depth}` : ''}` +
+    `${state.frame === null ? '' : ` --frame ${state.frame}`}` +
     ` --size ${board.width}x${board.height}${own} -o picture.png`;
 }

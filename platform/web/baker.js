@@ -1,5 +1,5 @@
-// The command's readers, bake, framing and looks (tools/web). An instance bakes one scene and knows how that looks; an
-// error in a file ends it with a sentence.
+// The command's readers, bake, framing and looks (tools/web). An instance bakes a scene and knows how that looks; an error
+// in a file ends it with a sentence.
 'use strict';
 
 class BakeError extends Error {}
@@ -36,29 +36,46 @@ class Baker {
     }
     const x = new WebAssembly.Instance(this.module, imports).exports;
     x._initialize();
+    for (const file of this.files) x.add_file(this.put(x, file.name), this.put(x, file.bytes), file.bytes.length);
     return x;
   }
+  // Bytes, or a name, where the instance finds them.
+  put(x, what) {
+    const bytes = typeof what === 'string' ? new TextEncoder().encode(what + '\0') : what;
+    const at = x.room(bytes.length);
+    new Uint8Array(x.memory.buffer).set(bytes, at);
+    return at;
+  }
 
-  // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen.
+  // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen, frame.
   bake(scene, board, options = {}) {
-    this.x = null;  // of a scene that could not be baked there is no look
-    const x = this.instance();
-    const put = (bytes) => {
-      const at = x.room(bytes.length);
-      new Uint8Array(x.memory.buffer).set(bytes, at);
-      return at;
-    };
-    const name = (text) => put(new TextEncoder().encode(text + '\0'));
+    this.x = this.beside = null;  // of a scene that could not be baked there is no look
+    const [x, made] = this.bakeIn(null, scene, board, options);
+    this.x = x;
+    return made;
+  }
+  // Bakes another frame beside, and says with `seen` how it looks from look()'s `view`; after turn() look() is of it.
+  bakeAhead(scene, board, options, view) {
+    const {beside} = this;
+    this.beside = null;
+    const [x, made] = this.bakeIn(beside, scene, board, options);
+    this.beside = x;
+    return {...made, seen: this.lookIn(x, ...view)};
+  }
+  turn() {
+    [this.x, this.beside] = [this.beside, this.x];
+  }
+  // In a new instance where there is none.
+  bakeIn(given, scene, board, options) {
     try {
-      for (const file of this.files) x.add_file(name(file.name), put(file.bytes), file.bytes.length);
-      const size = x.bake(name(scene), board.index, options.depth ?? 0, options.coarsen ?? false);
+      const x = given ?? this.instance();
+      const size = x.bake(this.put(x, scene), board.index, options.depth ?? 0, options.coarsen ?? false, options.frame ?? -1);
       const at = x.baked();
       const memory = new Uint8Array(x.memory.buffer);
       const facts = x.facts();
       const end = memory.indexOf(0, facts);
       const found = JSON.parse(new TextDecoder().decode(memory.slice(facts, end)));
-      this.x = x;
-      return {...found, baked: memory.slice(at, at + size)};
+      return [x, {...found, baked: memory.slice(at, at + size)}];
     } catch (error) {
       if (error instanceof BakeError) throw error;
       throw new BakeError(/memory|out of bounds/.test(error.message) ?
@@ -68,8 +85,10 @@ class Baker {
 
   // How the scene that was baked looks from a camera (Orbit.camera()), for Look.take(), and whether it is stars; null
   // where there is no such camera. `exposure`: that of the last finished picture.
-  look(camera, width, height, exposure) {
-    const {x} = this;
+  look(...view) {
+    return this.lookIn(this.x, ...view);
+  }
+  lookIn(x, camera, width, height, exposure) {
     writeCamera(x, camera);
     const at = x.look(width, height, exposure);
     if (at === 0) return null;

@@ -9,7 +9,8 @@ function serve(self) {
   let job = -1;
   self.onmessage = ({data}) => {
     if (data.scene) {
-      look = new Look(data.module, data.scene, data.width, data.height);
+      if (look === null) look = new Look(data.module, data.scene, data.width, data.height);
+      else look.open(data.scene);
     } else if (data.files) {
       baker = new Baker(data.module, data.files);
     } else if (data.call) {
@@ -59,6 +60,7 @@ class Crew {
   // `onFault()` once where workers do not work.
   constructor(workers, {module, scene, width, height}, {onBand, onEnd, onExposed, onFault}) {
     this.height = height;
+    this.scene = scene;
     this.on = {onBand, onEnd, onExposed};
     this.job = 0;
     this.next = this.left = 0;
@@ -75,6 +77,7 @@ class Crew {
         onFault();
       };
       worker.postMessage({module, scene, width, height});
+      worker.has = scene;
     }
   }
   // `view`: {camera, block, exposure}, what Orbit.camera(), Baker.look() and Look.expose() gave.
@@ -90,8 +93,14 @@ class Crew {
     ++this.job;
     this.next = this.left = 0;
   }
+  // Another scene from the next picture on.
+  show(scene) {
+    this.stop();
+    this.scene = scene;
+  }
   give(worker) {
     if (this.left === 0 || this.next === this.height) return;
+    if (worker.has !== this.scene) worker.postMessage({scene: worker.has = this.scene});
     const rows = Math.min(BAND_ROWS[this.kind] ?? this.height, this.height - this.next);
     worker.postMessage({job: this.job, view: this.view, kind: this.kind, first: this.next, rows});
     this.next += rows;
@@ -129,7 +138,7 @@ class FarBaker {
     this.last = Promise.resolve();
     worker.postMessage({module, files});
     this.hire = () => (this.here ??= new Baker(module, files));
-    for (const call of ['bake', 'smaller', 'look', 'stars', 'frame']) {
+    for (const call of ['bake', 'bakeAhead', 'turn', 'smaller', 'look', 'stars', 'frame']) {
       this[call] = (...words) => {
         const answer = this.last.then(() => this.ask(call, words));
         this.last = answer.catch(() => {});

@@ -11,9 +11,12 @@ class Look {
     this.x = new WebAssembly.Instance(module, {env: {
       flush() {}, running: () => 0, buttons: () => 0, read: () => -1, write() {}, microseconds: () => 0,
     }}).exports;
-    this.stride = 3 * width;
-    this.height = height;
-    const at = this.x.room(baked.length, width, height);
+    Object.assign(this, {width, height, stride: 3 * width});
+    this.open(baked);
+  }
+  // Another scene in place of the one before; it needs a look of its own.
+  open(baked) {
+    const at = this.x.room(baked.length, this.width, this.height);
     if (at === 0) throw new Error('there is no memory for it here');
     new Uint8Array(this.x.memory.buffer).set(baked, at);
     const wrong = this.x.open();
@@ -57,6 +60,10 @@ class Look {
   // Sees the exposure of the picture at rest from rows of it: 0 while there are more.
   expose(first = 0, rows = this.height) {
     return this.x.expose(first, rows);
+  }
+  // The next frame of rain, for fast(); `falls` false: the scene's own water again.
+  rain(falls) {
+    return this.x.rain(falls) !== 0;
   }
   // Every `step`-th pixel of the whole picture, as bright as its last exposure.
   fast(step) {

@@ -19,6 +19,7 @@ const APP_KEYS = {
 const MODULE_OF = {demo: 'scene', water: 'plane', particles: 'plane'};
 const VIEW_BOARD = 'raspi0';  // its display and flash are those of "look around"
 const FRAME_MS = 1000 / 30;
+const FILM_MS = 100;
 const SLICE_MS = 12;
 const TAP_MS = 300;  // shorter `s` saves
 const FIRST_EXPOSURE = 320;
@@ -31,6 +32,7 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 const state = {
   scene: 'valley', look: false, board: 'lm3s6965evb', paused: calm, depth: 0, coarsen: false,
+  frame: null,  // of an animation, in Look around; null: from the first on
   dropped: null,  // {title, scene, files: [{name, bytes}]}
   wanted: null,  // what a link asks for whose file stayed elsewhere
 };
@@ -128,7 +130,7 @@ async function bakeCurrent(board) {
   const baker = worker === null ? new Baker(code, files) : farBaker = new FarBaker(worker, code, files);
   let stays = false;
   try {
-    const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen});
+    const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen, frame: state.frame});
     if (state.dropped === null) cache.set(key, made);
     stays = state.look;
     return {...made, baker};
@@ -151,6 +153,7 @@ async function offerSmaller(baker, entry, board, error) {
   error.offers = offers;
 }
 
+const AFRESH = {depth: 0, coarsen: false, frame: null};
 function restart(changes) {
   Object.assign(state, changes);
   return start();
@@ -347,7 +350,8 @@ function letGo(by) {
 }
 function type(text) {
   if (viewer !== null) {
-    if (text === 'q') restart({look: false});
+    if (text === 'q') restart({look: false, frame: null});
+    if (text === ' ') playOrStop();
     if (text === '+') moved(() => orbit.approach(0.85));
     if (text === '-') moved(() => orbit.approach(1 / 0.85));
     if (text === '0') moved(() => orbit.reset());
@@ -362,10 +366,10 @@ function type(text) {
   }
 }
 
-// The key's name in FLIGHTS, whether Shift is held or not; of the keys that scroll, where the picture has the focus.
-function flightOf({key, target}) {
+// The key's name in FLIGHTS, whether Shift is held or not.
+function flightOf({key}) {
   const name = key.length === 1 ? key.toLowerCase() : key;
-  return viewer !== null && Object.hasOwn(FLIGHTS, name) && (!name.startsWith('Page') || target === canvas) ? name : undefined;
+  return viewer !== null && Object.hasOwn(FLIGHTS, name) ? name : undefined;
 }
 const KEY_BUTTONS = {ArrowUp: 'up', ArrowDown: 'down', ArrowLeft: 'left', ArrowRight: 'right', Enter: 'select', ' ': 'select'};
 addEventListener('keydown', (event) => {
@@ -385,12 +389,17 @@ addEventListener('keydown', (event) => {
   } else if (name !== undefined) {
     if (own && (name === 'select' || own.matches('select, pre'))) return;
     event.preventDefault();
-    hold(event.key, name);
+    if (viewer === null || event.key !== ' ') hold(event.key, name);
+    else if (!event.repeat) type(' ');
   } else if (event.key === 'Escape' && viewer !== null) {
     type('q');
   } else if (event.key.length === 1 && !(own && own.matches('select'))) {
     type(event.key);
   }
+});
+// Who looks around by a mouse has pressed a button with it, and means the picture by the next key.
+addEventListener('click', ({pointerType, target}) => {
+  if (state.look && pointerType === 'mouse' && target.closest?.('button')) canvas.focus({preventScroll: true});
 });
 addEventListener('keyup', ({key, timeStamp}) => {
   const name = key.length === 1 ? key.toLowerCase() : key;
@@ -523,7 +532,7 @@ async function take(list) {
   const main = files.find((file) => /\.scene(\.gz)?$/i.test(file.name)) ??
     files.find((file) => !/\.(mtl|png|jpe?g|bin)$/i.test(file.name)) ?? files[0];
   // `./`: a file, whatever generator has that name.
-  Object.assign(state, {dropped: {title: main.name, scene: `./${main.name}`, files}, depth: 0, coarsen: false});
+  Object.assign(state, {dropped: {title: main.name, scene: `./${main.name}`, files}, ...AFRESH});
   if (state.wanted?.file === main.name) grant(state.wanted);
   state.wanted = null;
   await start();
@@ -587,7 +596,7 @@ $('pause').onclick = () => {
 function showPause() {
   $('pause').setAttribute('aria-pressed', String(state.paused));
 }
-$('board').onchange = () => restart({board: $('board').value, depth: 0, coarsen: false});
+$('board').onchange = () => restart({board: $('board').value, ...AFRESH});
 
 function choice(name, title, checked, run) {
   const button = document.createElement('button');
@@ -601,14 +610,14 @@ function showChoices(board) {
   const focused = document.activeElement?.id;
   const buttons = Object.entries(SCENES).map(([name, {title}]) => choice(name, title,
     state.dropped === null && state.scene === name, () => restart({
-      scene: name, dropped: null, depth: 0, coarsen: false, look: state.look && SCENES[name].scene !== null})));
+      scene: name, dropped: null, ...AFRESH, look: state.look && SCENES[name].scene !== null})));
   if (state.dropped !== null) buttons.push(choice('dropped', state.dropped.title, true, () => {}));
   const look = document.createElement('button');
   look.id = 'look';
   look.textContent = 'Look around';
   look.setAttribute('aria-pressed', String(state.look));
   look.disabled = current().scene === null;
-  look.onclick = () => restart({look: !state.look, depth: 0, coarsen: false});
+  look.onclick = () => restart({look: !state.look, ...AFRESH});
   $('scenes').replaceChildren(...buttons, look);
   if (focused) $(focused)?.focus({preventScroll: true});
   $('board').value = state.board;
@@ -617,12 +626,12 @@ function showChoices(board) {
   showPause();
   fit();
 }
-function showKeys(app) {
-  $('keys').replaceChildren(...APP_KEYS[app].map(([key, title]) => {
+function showKeys(app, more = []) {
+  $('keys').replaceChildren(...[...more, ...APP_KEYS[app]].map(([key, title]) => {
     const button = document.createElement('button');
     button.textContent = title;
     button.dataset.key = key;
-    button.title = `key ${key}`;
+    button.title = `key ${key === ' ' ? 'space' : key}`;
     button.onclick = () => type(key);
     return button;
   }));
@@ -635,6 +644,7 @@ function fragment() {
   view.set('board', state.board);
   if (state.depth !== 0) view.set('depth', state.depth);
   if (state.coarsen) view.set('merge', '1');
+  if (viewer !== null && isFilm()) view.set('frame', state.frame ?? 0);
   if (state.look) view.set('look', orbit === null || orbit.isOwn ? '1' : orbit.text());
   return view;
 }
@@ -643,15 +653,17 @@ function readFragment() {
   const view = new URLSearchParams(location.hash.slice(1));
   if (Object.hasOwn(SCENES, view.get('scene') ?? '')) state.scene = view.get('scene');
   if (boards.some((board) => board.name === view.get('board'))) state.board = view.get('board');
-  const wishes = {look: null, depth: 0, coarsen: view.get('merge') === '1'};
+  const wishes = {look: null, ...AFRESH, coarsen: view.get('merge') === '1'};
   if (/^([1-9]|1[0-2])$/.test(view.get('depth') ?? '')) wishes.depth = Number(view.get('depth'));
+  if (/^\d{1,9}$/.test(view.get('frame') ?? '')) wishes.frame = Number(view.get('frame'));
   wishes.look = view.get('look');
   state.wanted = view.has('file') ? {...wishes, file: view.get('file').slice(0, 100)} : null;
-  Object.assign(state, {dropped: null, depth: 0, coarsen: false, look: false, view: null});
+  Object.assign(state, {dropped: null, ...AFRESH, look: false, view: null});
   if (state.wanted === null) grant(wishes);
 }
-function grant({look, depth, coarsen}) {
-  Object.assign(state, {depth, coarsen, look: look !== null && current().scene !== null, view: look});
+function grant({look, depth, coarsen, frame}) {
+  const isLook = look !== null && current().scene !== null;
+  Object.assign(state, {depth, coarsen, look: isLook, view: look, frame: isLook && state.dropped !== null ? frame : null});
 }
 addEventListener('hashchange', () => {
   readFragment();

@@ -9,13 +9,14 @@
 #include <thread>
 #include <vector>
 
+#include "scene/host_memory.h"
+#include "scene/magnify.h"
+#include "scene/moving_pool.h"
 #include "support/run_command.h"
 #include "thimble/light/scene.h"
 #include "thimble/picture/render.h"
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
-#include "viewer/magnify.h"
-#include "viewer/moving_pool.h"
 #include "viewer/pace.h"
 #include "viewer/picking.h"
 #include "viewer/refinement.h"
@@ -87,7 +88,8 @@ TEST_CASE("magnify: every pixel that was drawn stays, those between lie between,
       byte = static_cast<std::uint8_t>(random());
     }
     std::vector<std::uint8_t> full(static_cast<std::size_t>(3 * width * height));
-    magnify(small.data(), step, width, height, full.data());
+    std::vector<std::uint16_t> work(magnify_work(width));
+    magnify_rows(small.data(), step, width, height, 0, rows, work.data(), full.data());
     for (std::int32_t y = 0; y < rows; ++y) {
       for (std::int32_t x = 0; x < 3 * columns; ++x) {
         CHECK(full[static_cast<std::size_t>(3 * width * y * step + 3 * (x / 3) * step + x % 3)] ==
@@ -96,7 +98,7 @@ TEST_CASE("magnify: every pixel that was drawn stays, those between lie between,
     }
     for (const int value : {0, 1, 128, 255}) {
       small.assign(small.size(), static_cast<std::uint8_t>(value));
-      magnify(small.data(), step, width, height, full.data());
+      magnify_rows(small.data(), step, width, height, 0, rows, work.data(), full.data());
       CHECK(full == std::vector<std::uint8_t>(full.size(), static_cast<std::uint8_t>(value)));
     }
   }
@@ -272,8 +274,10 @@ TEST_CASE(
     return rgb;
   };
   const std::vector<std::uint8_t> at_rest = drawn();
-  MovingPool pool(scene->tree(), *picture.water());
-  MovingPool again(scene->tree(), *picture.water());
+  const HostMemory memory(MovingPool::bytes(*picture.water()));
+  const HostMemory other(MovingPool::bytes(*picture.water()));
+  MovingPool pool(scene->tree(), *picture.water(), memory.bytes());
+  MovingPool again(scene->tree(), *picture.water(), other.bytes());
   std::vector<std::uint8_t> before = at_rest;
   for (std::uint32_t frame = 0; frame <= MovingPool::kDropFrames; ++frame) {
     CAPTURE(frame);

@@ -43,7 +43,7 @@ async function main() {
     console.error(`bench: no board has a display of ${size.replace(',', ' x ')}`);
     process.exitCode = 1;
   }
-  await browser.close();
+  await Chromium.quit();
 }
 main().catch((error) => {
   console.error(`bench: ${error.message}`);

@@ -5,35 +5,51 @@ const fs = require('fs');
 const os = require('os');
 const path = require('path');
 
+const codeOf = (key) => (key === ' ' ? 'Space' : key.length > 1 ? key : /\d/.test(key) ? `Digit${key}` : `Key${key.toUpperCase()}`);
+
+// The browser, which runs until quit().
+let program = null;
+function start() {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'thimble-web-'));
+  const child = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe',
+    `--user-data-dir=${folder}`, '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
+    '--hide-scrollbars', 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+  const own = {folder, process: child, pages: new Map(), waiting: new Map(), next: 0};
+  let rest = '';
+  child.stdio[4].on('data', (data) => {
+    rest += data;
+    for (let end = rest.indexOf('\0'); end >= 0; end = rest.indexOf('\0')) {
+      const message = JSON.parse(rest.slice(0, end));
+      rest = rest.slice(end + 1);
+      if (message.id !== undefined) {
+        const {done, fail} = own.waiting.get(message.id);
+        own.waiting.delete(message.id);
+        message.error ? fail(new Error(message.error.message)) : done(message.result);
+      } else {
+        own.pages.get(message.sessionId)?.events.push(message);
+      }
+    }
+  });
+  return own;
+}
+function send(method, params = {}, sessionId = undefined) {
+  const id = ++program.next;
+  program.process.stdio[3].write(JSON.stringify({id, method, params, sessionId}) + '\0');
+  return new Promise((done, fail) => program.waiting.set(id, {done, fail}));
+}
+
+// A page of it, which shares nothing with others, and has the focus as if it were alone.
 class Chromium {
   static async open(url, {width = 1280, height = 900, mobile = false, media = []} = {}) {
+    program ??= start();
     const browser = new Chromium();
-    browser.folder = fs.mkdtempSync(path.join(os.tmpdir(), 'thimble-web-'));
-    browser.process = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe',
-      `--user-data-dir=${browser.folder}`, '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
-      '--hide-scrollbars', 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
-    browser.next = 0;
-    browser.waiting = new Map();
     browser.events = [];
-    let rest = '';
-    browser.process.stdio[4].on('data', (data) => {
-      rest += data;
-      for (let end = rest.indexOf('\0'); end >= 0; end = rest.indexOf('\0')) {
-        const message = JSON.parse(rest.slice(0, end));
-        rest = rest.slice(end + 1);
-        if (message.id !== undefined) {
-          const {done, fail} = browser.waiting.get(message.id);
-          browser.waiting.delete(message.id);
-          message.error ? fail(new Error(message.error.message)) : done(message.result);
-        } else {
-          browser.events.push(message);
-        }
-      }
-    });
-    const {targetInfos} = await browser.send('Target.getTargets');
-    const page = targetInfos.find((target) => target.type === 'page');
-    browser.session = (await browser.send('Target.attachToTarget', {targetId: page.targetId, flatten: true})).sessionId;
+    browser.context = await send('Target.createBrowserContext');
+    const {targetId} = await send('Target.createTarget', {url: 'about:blank', newWindow: true, ...browser.context});
+    browser.session = (await send('Target.attachToTarget', {targetId, flatten: true})).sessionId;
+    program.pages.set(browser.session, browser);
     for (const domain of ['Page', 'Runtime', 'Network', 'Log']) await browser.send(`${domain}.enable`);
+    await browser.send('Emulation.setFocusEmulationEnabled', {enabled: true});
     await browser.send('Emulation.setDeviceMetricsOverride',
       {width, height, deviceScaleFactor: mobile ? 2 : 1, mobile});
     if (mobile) await browser.send('Emulation.setTouchEmulationEnabled', {enabled: true, maxTouchPoints: 5});
@@ -42,9 +58,10 @@ class Chromium {
     return browser;
   }
   send(method, params = {}) {
-    const id = ++this.next;
-    this.process.stdio[3].write(JSON.stringify({id, method, params, sessionId: this.session}) + '\0');
-    return new Promise((done, fail) => this.waiting.set(id, {done, fail}));
+    return send(method, params, this.session);
+  }
+  saveIn(downloadPath) {
+    return send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath, ...this.context});
   }
   async eval(expression) {
     const {result, exceptionDetails} = await this.send('Runtime.evaluate',
@@ -56,10 +73,32 @@ class Chromium {
   async until(expression, seconds = 20) {
     for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
       if (await this.eval(expression).catch(() => false)) return;
-      await new Promise((done) => setTimeout(done, 50));
+      await new Promise((done) => setTimeout(done, 20));
     }
     throw new Error(`${expression} did not come true within ${seconds} s; the page says: ` +
       await this.eval('document.getElementById("said").textContent').catch(() => 'nothing'));
+  }
+  // What an element of the page says.
+  text(id) {
+    return this.eval(`document.getElementById('${id}').textContent`);
+  }
+  // The CRC-32 of what the canvas shows, as RGB.
+  canvasCrc() {
+    return this.eval(`(() => {
+      const {width, height} = canvas;
+      const rgba = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+      const rgb = new Uint8Array(3 * width * height);
+      for (let from = 0, to = 0; to < rgb.length; ++from) if (from % 4 !== 3) rgb[to++] = rgba[from];
+      return crc32(rgb); })()`);
+  }
+  async changes(what, act) {
+    const before = await this.canvasCrc();
+    await act();
+    for (let i = 0; i < 100; ++i) {
+      if (await this.canvasCrc() !== before) return;
+      await new Promise((done) => setTimeout(done, 20));
+    }
+    throw new Error(`${what} does not change the picture`);
   }
   async shot(file) {
     const {data} = await this.send('Page.captureScreenshot', {format: 'png'});
@@ -98,7 +137,7 @@ class Chromium {
     const {x, y} = await this.middle(selector);
     await this.send('Input.dispatchMouseEvent', {type: 'mouseWheel', x, y, deltaX: 0, deltaY});
   }
-  async key(key, code = key, {held = 120, text = key.length === 1 ? key : undefined} = {}) {
+  async key(key, code = codeOf(key), {held = /^(Arrow|Page|[wasd]$)/i.test(key) ? 120 : 20, text = key.length === 1 ? key : undefined} = {}) {
     const windowsVirtualKeyCode = {ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Escape: 27, Enter: 13, PageUp: 33, PageDown: 34}[key];
     await this.send('Input.dispatchKeyEvent', {type: 'keyDown', key, code, text, windowsVirtualKeyCode});
     await new Promise((done) => setTimeout(done, held));
@@ -124,12 +163,18 @@ class Chromium {
     for (const type of ['dragEnter', 'dragOver', 'drop']) await this.send('Input.dispatchDragEvent', {type, x, y, data});
   }
   async close() {
-    const ended = new Promise((done) => this.process.on('exit', done));
-    this.session = undefined;
-    this.send('Browser.close').catch(() => {});
-    setTimeout(() => this.process.kill('SIGKILL'), 3000).unref();
+    program.pages.delete(this.session);
+    await send('Target.disposeBrowserContext', this.context);
+  }
+  static async quit() {
+    const ended = new Promise((done) => program.process.on('exit', done));
+    send('Browser.close').catch(() => {});
+    setTimeout(() => program.process.kill('SIGKILL'), 3000).unref();
     await ended;
-    fs.rmSync(this.folder, {recursive: true, force: true, maxRetries: 5});
+    fs.rmSync(program.folder, {recursive: true, force: true, maxRetries: 5});
+  }
+  static kill() {
+    program?.process.kill('SIGKILL');
   }
 }
 

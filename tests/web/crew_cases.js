@@ -85,6 +85,23 @@ async function crews(modules, bake, scene, files) {
     is('bands after stop', bands, 0);
     crew.end();
   });
+  await test('another scene in place of the one before: workers draw it from the next picture on', async () => {
+    const other = bake('spheres', []);
+    const picture = new Uint8Array(3 * width * height);
+    let ended = () => {};
+    const crew = new Crew([hire(), hire()], facts, {
+      onBand: (first, bytes) => picture.set(bytes, 3 * width * first), onEnd: () => ended(), onFault: () => ended(),
+    });
+    const seen = {camera: views[1].camera, ...other.baker.look(views[1].camera, width, height, 320), exposure: 300};
+    crew.draw(views[0], 'fine');
+    for (const [scene, view] of [[other.baked, seen], [baked, views[1]]]) {
+      crew.show(scene);
+      await new Promise((done) => { ended = done; crew.draw(view, 'lit'); });
+      here.open(scene);
+      is('bytes differ', differ(picture, alone(view, 'lit')), false);
+    }
+    crew.end();
+  });
   await test('a worker that fails is told once, and the page draws on its own', async () => {
     let faults = 0;
     const workers = [hire(), hire()];

@@ -29,6 +29,21 @@ function npz(side) {
   return Buffer.concat([local, entry, Buffer.from('PK\x05\x06'), u16(0), u16(0), u16(1), u16(1), u32(entry.length),
     u32(local.length), u16(0)]);
 }
+// MagicaVoxel: a ball that comes nearer from frame to frame, over a floor.
+function vox(side, frames) {
+  const chunk = (id, bytes, children = Buffer.alloc(0)) => Buffer.concat([Buffer.from(id), u32(bytes.length), u32(children.length), bytes, children]);
+  const is = inBall(side);
+  const models = Array.from({length: frames}, (_, frame) => {
+    const voxels = [];
+    for (let i = 0; i < side ** 3; ++i) {
+      const [x, y, z] = [i % side, Math.floor(i / side) % side, Math.floor(i / side / side)];
+      if (z === 0 || is(x, y + frame * side / 8, z)) voxels.push(x, y, z, z === 0 ? 97 : 21);
+    }
+    return [chunk('SIZE', Buffer.concat([u32(side), u32(side), u32(side)])),
+      chunk('XYZI', Buffer.concat([u32(voxels.length / 4), Buffer.from(voxels)]))];
+  });
+  return Buffer.concat([Buffer.from('VOX '), u32(150), chunk('MAIN', Buffer.alloc(0), Buffer.concat(models.flat()))]);
+}
 // Minetest: numbers, chances, turns of all nodes.
 function mts(side) {
   const names = ['air', 'default:stone'].map((name) => Buffer.concat([u16be(name.length), Buffer.from(name)]));
@@ -47,4 +62,4 @@ function schematic(side) {
     named(7, 'Data', array(blocks.map(() => 0))), Buffer.from([0])]))]));
 }
 
-module.exports = {npy, npz, mts, schematic};
+module.exports = {npy, npz, mts, schematic, vox};

@@ -136,6 +136,7 @@ async function main() {
   await bakes();
   await mistakes();
   await looks();
+  await plays();
   await crews(modules, (scene, files, index = boardOf('raspi0').index) => {
     const baker = new Baker(modules.bake, files);
     return {...baker.bake(scene, {index}), baker};
@@ -384,6 +385,85 @@ async function looks() {
         holds(`far ${kind} from view ${key} there is a picture`, look.see(orbit.camera()));
       }
     }
+  });
+}
+// What moves by itself: frames of an animation are the command's; rain leaves what is finished as it is.
+async function plays() {
+  const [width, height] = [96, 72];
+  await test('frames of an animation, read ahead of their turn, are what the command bakes and renders', () => {
+    const file = path.join(work, 'film.vox');
+    fs.writeFileSync(file, made.vox(16, 3));
+    const baker = new Baker(modules.bake, filesOf(file));
+    const board = boardOf('raspi0');
+    const first = baker.bake('film.vox', board);
+    is('frames', first.frames, 3);
+    const taken = baker.x.memory.buffer.byteLength;
+    const look = new Look(modules.scene, first.baked, width, height);
+    const held = new Orbit(look.point(false), look.point(true), 1 << look.x.level());
+    const shown = {look, baker, width, height, file, orbit: held};
+    is('pixels of the first', pixelsThatDiffer(drawn(shown, 'fine'), rendered(shown)), 0);
+    held.turn(0.3, 0.1);
+    const before = drawn(shown, 'fine');
+    for (const frame of [1, 2, 0]) {
+      const words = ['--frame', String(frame)];
+      const next = baker.bakeAhead('film.vox', board, {frame}, [held.camera(), width, height, 320]);
+      is('the frame before it is turn', pixelsThatDiffer(drawn(shown, 'fine'), shown.last ?? before), 0);
+      const out = path.join(work, 'wanted.oct');
+      command('bake', file, '--board', 'raspi0', '-o', out, '--quiet', ...words);
+      holds(`frame ${frame} is baked as by the command`, fs.readFileSync(out).equals(Buffer.from(next.baked)));
+      baker.turn();
+      look.open(next.baked);
+      look.take(next.seen.block);
+      look.band('fine', 0, height, look.expose());
+      shown.last = Buffer.from(look.rows(0, height));
+      is(`pixels of frame ${frame}`, pixelsThatDiffer(shown.last, rendered(shown, ...words, ...lensOf(shown))), 0);
+      const own = {...shown, orbit: new Orbit(look.point(false), look.point(true), 1 << look.x.level())};
+      is(`pixels of frame ${frame} from its own view`, pixelsThatDiffer(drawn(own, 'fine'), rendered(own, ...words)), 0);
+    }
+    let said = '';
+    try {
+      baker.bakeAhead('film.vox', board, {frame: 3}, []);
+    } catch (error) {
+      said = error.message;
+    }
+    is('beyond the last', said, 'there is no frame 3; the file has frames 0 to 2');
+    baker.bakeAhead('film.vox', board, {frame: 2}, [held.camera(), width, height, 320]);
+    baker.turn();
+    is('others come after it', baker.frame(1, width, height).eye.length, 3);
+    baker.bakeAhead('film.vox', board, {frame: 1}, [held.camera(), width, height, 320]);
+    baker.bakeAhead('film.vox', board, {frame: 0}, [held.camera(), width, height, 320]);
+    holds('memory is taken once', baker.beside.memory.buffer.byteLength < 1.1 * taken);
+  });
+  write('pond.scene', 'depth 4\ncamera eye 8 -14 16 target 8 8 2 fov 40\nwater level 3 floor 0 from 0 0 to 16 16 color 120 180 200\n' +
+    'material stone color 120 110 100\nbox stone from 6 6 0 to 10 10 5\n');
+  for (const scene of ['waves.scene', path.join(work, 'pond.scene')]) {
+    await test(`rain on ${path.basename(scene)}: the same in every run, and nothing of it in what is finished`, () => {
+      const [shown, again] = [opened(scene, width, height), opened(scene, width, height)];
+      const finished = drawn(shown, 'fine');
+      is('pixels that are others', pixelsThatDiffer(finished, rendered(shown)), 0);
+      drawn(again, 'lit');
+      const fast = ({look}) => {
+        look.fast(1);
+        return Buffer.from(look.rows(0, height));
+      };
+      const still = fast(shown);
+      let last = still;
+      for (let frame = 0; frame < 16; ++frame) {
+        holds('it rains', shown.look.rain(true) && again.look.rain(true));
+        const now = fast(shown);
+        is(`frame ${frame} of another run`, pixelsThatDiffer(now, fast(again)), 0);
+        if (frame > 2) holds(`frame ${frame} is another`, pixelsThatDiffer(now, last) > 0);
+        last = now;
+      }
+      is('finished in the rain', pixelsThatDiffer(drawn(shown, 'fine'), finished), 0);
+      holds('it is laid to rest', shown.look.rain(false));
+      is('at rest', pixelsThatDiffer(fast(shown), still), 0);
+    });
+  }
+  await test('where no water is no rain falls', () => {
+    const shown = opened('castle.vox', width, height);
+    drawn(shown, 'coarse');
+    is('it', [shown.look.rain(true), shown.look.x.has_water()].join(), 'false,0');
   });
 }
 function mean(picture) {

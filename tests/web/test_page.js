@@ -9,6 +9,8 @@ const {Chromium} = require('./chromium.js');
 const {test, is, holds, end} = require('./check.js');
 const {judgeCases} = require('./cases.js');
 const {judgeAccess} = require('./access.js');
+const {isWhatIsSaid, judgePlays} = require('./play_cases.js');
+const made = require('./files.js');
 
 const [, , page, thimble, only] = process.argv;
 const url = `file://${path.resolve(page)}`;
@@ -22,21 +24,14 @@ async function began() {
   await browser.until(`Number(document.documentElement.dataset.ready) >= ${shown}`, 30);
   shown = await browser.eval('Number(document.documentElement.dataset.ready)');
 }
-const text = (id) => browser.eval(`document.getElementById('${id}').textContent`);
-// The CRC-32 of what the canvas shows, as RGB.
-const canvasCrc = () => browser.eval(`(() => {
-  const {width, height} = canvas;
-  const rgba = canvas.getContext('2d').getImageData(0, 0, width, height).data;
-  return crc32(rgba.filter((_, i) => i % 4 !== 3));
-})()`);
-async function changes(what, act) {
-  const before = await canvasCrc();
-  await act();
-  for (let i = 0; i < 40; ++i) {
-    if (await canvasCrc() !== before) return;
-    await pause(50);
-  }
-  throw new Error(`${what} does not change the picture`);
+const text = (id) => browser.text(id);
+const canvasCrc = () => browser.canvasCrc();
+const changes = (what, act) => browser.changes(what, act);
+// The view of Look around, and what is shown of it: a picture that is refined changes by itself.
+async function moves(what, act) {
+  const before = await browser.eval('orbit.text()');
+  await changes(what, act);
+  await browser.until(`orbit.text() !== '${before}'`, 5);
 }
 async function choose(board) {
   await browser.eval(`(() => { const list = document.getElementById('board'); list.value = '${board}';
@@ -53,19 +48,14 @@ function sim(scene, board, app, frames, keys) {
   return JSON.parse(fs.readFileSync(stats, 'utf8')).frame_crc32;
 }
 
-// The first frames of the simulator. To be found before the page draws them: the demonstration turns meanwhile.
-function firstFrames(scene, board) {
-  const frames = new Set();
-  for (let count = 1; count <= 60; ++count) frames.add(sim(scene, board, 'demo', count));
-  return frames;
-}
-async function showsAFrame(frames) {
-  let shown = await canvasCrc();
-  for (let i = 0; i < 400 && !frames.has(shown); ++i) {
-    await pause(i % 7);
-    shown = await canvasCrc();
-  }
-  holds(`CRC ${shown} of the canvas is that of a frame`, frames.has(shown));
+// Holds the board's picture, which is that of the simulator after so many frames.
+async function showsItsFrame(scene, board) {
+  await browser.until('machine.frames > 0');
+  await browser.eval('state.paused = true');
+  await browser.until(`machine.state === 'frame'`);
+  const count = await browser.eval('machine.frames');
+  is(`frame ${count} on the canvas`, await canvasCrc(), sim(scene, board, 'demo', count));
+  await browser.eval('state.paused = false');
 }
 
 async function desktop() {
@@ -80,11 +70,9 @@ async function desktop() {
     await changes('time', () => pause(100));
   });
   await test('the canvas shows a frame of the simulator', async () => {
-    // A scene with light stands still, drawn once fast and once lit.
-    const frames = firstFrames('tools/gallery/scenes/castle.vox', 'lm3s6965evb');
     await browser.click('#scene-castle');
     await began();
-    await showsAFrame(frames);
+    await showsItsFrame('tools/gallery/scenes/castle.vox', 'lm3s6965evb');
   });
   await test('arrow keys and the row of buttons steer', async () => {
     await changes('an arrow key', () => browser.key('ArrowLeft'));
@@ -102,9 +90,8 @@ async function desktop() {
     await changes('going on', () => browser.click('#pause'));
   });
   await test('another board has its own display, RAM and picture', async () => {
-    const frames = firstFrames('tools/gallery/scenes/castle.vox', 'mps2-an500');
     await choose('mps2-an500');
-    await showsAFrame(frames);
+    await showsItsFrame('tools/gallery/scenes/castle.vox', 'mps2-an500');
     is('width', await browser.eval('canvas.width'), 320);
     await browser.until(`/ of 4,186,112$/.test(document.getElementById('ram').textContent)`);
     await choose('lm3s6965evb');
@@ -127,7 +114,6 @@ async function desktop() {
   await test('a lit room', async () => {
     await browser.click('#scene-room');
     await began();
-    await changes('light', () => pause(300)).catch(() => {});
     holds('it is shown', (await text('said')).startsWith('Lit room: 379,726 voxels'));
   });
   await looks();
@@ -145,14 +131,15 @@ async function desktop() {
   await browser.close();
 }
 
+const camera = () => browser.eval('JSON.stringify(orbit.camera())');
 async function looks() {
   await test('look around: dragged, turned by the wheel, lit at rest', async () => {
     await browser.click('#scene-castle');
     await began();
     await browser.click('#look');
     await began();
-    await browser.until(`document.documentElement.dataset.phase === 'finished'`, 60);
-    const finished = await canvasCrc();
+    await browser.until(`viewer.phase === 'fine'`, 60);  // s saves the finished one below
+    const own = await camera();
     const cores = await browser.eval('crewSize');
     is('workers', await browser.eval('viewer.crew?.workers.length ?? 0'), cores > 1 ? cores : 0);
     await changes('a drag', () => browser.drag('#canvas', 120, 40));
@@ -162,12 +149,13 @@ async function looks() {
     const link = await browser.eval('location.hash');
     holds(`the link ${link} holds the view`, /look=[-\d.]+(%2C[-\d.]+){5}/.test(link));
     await browser.key('0', 'Digit0');
-    await browser.until(`document.documentElement.dataset.phase === 'finished'`, 60);
-    is('back at the scene\'s own view', await canvasCrc(), finished);
+    is('back at the scene\'s own view', await camera(), own);
     await browser.click('#look');
     await began();
   });
   await hands();
+  await judgePlays(browser, thimble, {work, began, fromAfar, finish});
+  shown = await browser.eval('generation');
   await test('one thread and workers finish the same picture', async () => {
     const pictures = [];
     await fromAfar();
@@ -219,11 +207,10 @@ async function looks() {
     browser.events = browser.events.filter((event) => !/Refused to create a worker|data:text/.test(JSON.stringify(event)));
   });
 }
+const key = (name, held) => browser.key(name, undefined, held && {held});
 // The viewer's keys and gestures, as on the desktop.
 async function hands() {
   const view = () => browser.eval('({yaw: orbit.yaw, pitch: orbit.pitch, target: orbit.target, eye: orbit.camera().eye})');
-  const key = (name, held) => browser.key(name, name.length > 1 ? name : /\d/.test(name) ? `Digit${name}` : `Key${name.toUpperCase()}`,
-    held && {held});
   const rests = () => browser.until(`viewer.phase !== 'moved'`);
   // What the command's ray of each pixel hits, from the scene's own view.
   const oct = path.join(work, 'hands.oct');
@@ -234,12 +221,12 @@ async function hands() {
   await browser.eval(`restart({scene: 'castle', look: true})`);
   await test('keys 1 to 6 are the named views', async () => {
     for (const [name, yaw, pitch] of [['1', -90, 0], ['2', 90, 0], ['3', -180, 0], ['4', 0, 0], ['5', -90, 90], ['6', -135, 35.26]]) {
-      await changes(`key ${name}`, () => key(name));
+      await moves(`key ${name}`, () => key(name));
       const at = await view();
       const off = at.yaw - yaw * Math.PI / 180;
       holds(`key ${name} looks from ${at.yaw}, ${at.pitch}`, Math.hypot(Math.cos(off) - 1, Math.sin(off)) < 2e-4 && Math.abs(at.pitch * 180 / Math.PI - pitch) < 0.01);
     }
-    await changes('the button of a view', () => browser.click('[data-key="1"]'));
+    await moves('the button of a view', () => browser.click('[data-key="1"]'));
   });
   await test('W A S D, arrows, Page Up and Page Down fly while held', async () => {
     await key('1');  // along +y
@@ -247,22 +234,22 @@ async function hands() {
     for (const [name, axis, sign] of [['w', 1, 1], ['s', 1, -1], ['a', 0, -1], ['D', 0, 1], ['ArrowUp', 1, 1], ['ArrowDown', 1, -1],
       ['ArrowLeft', 0, -1], ['ArrowRight', 0, 1], ['PageUp', 2, 1], ['PageDown', 2, -1]]) {
       const before = (await view()).target;
-      await changes(`key ${name}`, () => key(name, name === 's' ? 500 : undefined));
+      await moves(`key ${name}`, () => key(name, name === 's' ? 500 : undefined));
       const after = (await view()).target;
       const way = after.map((x, i) => x - before[i]);
       holds(`key ${name} flies ${way}`, sign * way[axis] > 1 && way.every((x, i) => i === axis || Math.abs(x) < 0.01));
-      await pause(100);
+      await pause(50);
       is('where it is let go', (await view()).target.join(), after.join());
     }
     is('the page has not scrolled', await browser.eval('scrollY'), await browser.eval('canvas.scrollIntoView({block: "center"}), scrollY'));
   });
   await test('the buttons of the board fly, too, by hand and by key', async () => {
     const before = (await view()).target;
-    await changes('the button', () => browser.click('[data-hold="up"]'));
+    await moves('the button', () => browser.click('[data-hold="up"]'));
     const after = (await view()).target;
     holds(`it flies ${before} to ${after}`, after[1] > before[1]);
     await browser.eval(`document.querySelector('[data-hold="left"]').focus()`);
-    await changes('the button by a key', () => browser.key('Enter', 'Enter', {text: '\r'}));
+    await moves('the button by a key', () => browser.key('Enter', 'Enter', {text: '\r'}));
     await pause(300);
     const there = (await view()).target;
     holds(`it flies ${after} to ${there}`, there[0] < after[0]);
@@ -272,9 +259,12 @@ async function hands() {
   });
   await test('s saves the picture once it is finished, and says the command that makes the same one', async () => {
     await key('0');
-    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work});
-    for (const [what, act] of [['from its own view', () => {}], ['from elsewhere', () => browser.drag('#canvas', 70, 25)]]) {
-      await act();
+    await browser.saveIn(work);
+    for (const what of ['from its own view', 'from elsewhere']) {
+      if (what === 'from elsewhere') {
+        await fromAfar();
+        await browser.drag('#canvas', 70, 25);
+      }
       const file = path.join(work, 'thimble-castle.png');
       fs.rmSync(file, {force: true});
       const before = (await view()).target.join();
@@ -284,20 +274,14 @@ async function hands() {
       await finish();
       for (let i = 0; i < 100 && !fs.existsSync(file); ++i) await pause(50);
       holds(`${what} it is saved`, fs.existsSync(file));
-      const [, command] = /^It is saved; so makes the same one: thimble (render castle\.vox .*) -o picture\.png$/.exec(await text('said')) ?? [];
-      holds('the command is said', command !== undefined);
-      const picture = path.join(work, 'said.ppm');
-      const told = spawnSync(thimble, [...command.replace('castle.vox', 'tools/gallery/scenes/castle.vox').split(' '), '-o', picture, '--quiet'], {encoding: 'utf8'});
-      is('the command', told.stderr, '');
-      const rgb = fs.readFileSync(picture).subarray(-3 * 640 * 480).toString('base64');
-      is(`the picture ${what}`, await browser.eval(`crc32(Uint8Array.from(atob('${rgb}'), (c) => c.charCodeAt(0)))`), await canvasCrc());
+      await isWhatIsSaid(browser, thimble, what, 'tools/gallery/scenes/castle.vox');
     }
   });
   await test('right and Shift drags move, others turn', async () => {
     for (const hand of [{button: 'right'}, {shift: true}]) {
       await key('1');
       const before = await view();
-      await changes(`a drag by ${JSON.stringify(hand)}`, () => browser.drag('#canvas', 60, 30, hand));
+      await moves(`a drag by ${JSON.stringify(hand)}`, () => browser.drag('#canvas', 60, 30, hand));
       const after = await view();
       is('the direction', [after.yaw, after.pitch].join(), [before.yaw, before.pitch].join());
       holds('the picture follows the pointer', after.target[0] < before.target[0] - 1 && after.target[2] > before.target[2] + 1);
@@ -330,7 +314,7 @@ async function hands() {
     const before = await view();
     await browser.point(x + 0.08 * width, y + 0.1 * height);
     const point = await browser.eval('viewer.look.pick(...pointed).point');
-    await changes('a double click', () => browser.doubleClick(x + 0.08 * width, y + 0.1 * height));
+    await moves('a double click', () => browser.doubleClick(x + 0.08 * width, y + 0.1 * height));
     const after = await view();
     holds(`it looks at ${after.target}, which is ${point}`, after.target.every((at, i) => Math.abs(at - point[i]) < 0.01));
     holds('it stands where it stood', after.eye.every((at, i) => Math.abs(at - before.eye[i]) <= 2));
@@ -368,15 +352,16 @@ async function hands() {
     await browser.key('?', 'Slash');
     is('how far it is scrolled', await browser.eval(`document.getElementById('dialog').scrollTop`), 0);
     await browser.key('Escape');
-    const keys = await browser.eval(`[...APP_KEYS.look.map(([key]) => key), ...Object.keys(FLIGHTS), '?', 'q', 'Esc', 's']`);
-    const shown = (name) => new RegExp(`(^|\\s)${{'+': '\\+', '-': '\u2212', '?': '\\?', PageUp: 'Page Up', PageDown: 'Page Down', ArrowUp: 'arrows', ArrowDown: 'arrows', ArrowLeft: 'arrows', ArrowRight: 'arrows'}[name] ?? name}([\\s,]|$)`, 'im').test(named);
+    const keys = await browser.eval(`[...APP_KEYS.look.map(([key]) => key), ...Object.keys(FLIGHTS), ' ', '?', 'q', 'Esc', 's']`);
+    const shown = (name) => new RegExp(`(^|\\s)${{' ': 'Space', '+': '\\+', '-': '\u2212', '?': '\\?', PageUp: 'Page Up', PageDown: 'Page Down', ArrowUp: 'arrows', ArrowDown: 'arrows', ArrowLeft: 'arrows', ArrowRight: 'arrows'}[name] ?? name}([\\s,]|$)`, 'im').test(named);
     is('keys that it lacks', keys.filter((name) => !shown(name)).join(), '');
     for (const hand of ['drag', 'right or Shift drag', 'double click', 'wheel', 'pinch', 'two fingers']) holds(hand, named.includes(hand));
   });
 }
 // Where most of the picture is what stands behind: its finished picture comes soon.
 async function fromAfar() {
-  await browser.eval('orbit.reset(); orbit.approach(3); moved(() => {})');
+  await browser.until('viewer !== null');
+  await browser.eval('orbit.reset(); orbit.approach(6); moved(() => {})');
 }
 // Until all samples are drawn.
 async function finish() {
@@ -391,6 +376,7 @@ async function links() {
     await choose('mps2-an500');
     await browser.click('#look');
     await began();
+    await fromAfar();
     await browser.drag('#canvas', 90, -30);
     await browser.drag('#canvas', -31, 57);
     await browser.wheel('#canvas', -120);
@@ -409,7 +395,7 @@ async function links() {
     browser = other;
   });
   await test('the picture that is saved is the one that is shown', async () => {
-    await browser.send('Browser.setDownloadBehavior', {behavior: 'allow', downloadPath: work});
+    await browser.saveIn(work);
     const file = path.join(work, 'thimble-castle.png');
     fs.rmSync(file, {force: true});
     const wanted = await canvasCrc();
@@ -424,9 +410,9 @@ async function links() {
   });
   await test('a link whose file stayed elsewhere asks for it, and then shows its view', async () => {
     const file = path.resolve('tools/gallery/scenes/fox.vox.gz');
-    const frames = firstFrames(file, 'lm3s6965evb');
     await browser.drop([file]);
     await began();
+    await fromAfar();
     await browser.drag('#canvas', 60, 10);
     await finish();
     const wanted = await canvasCrc();
@@ -449,9 +435,9 @@ async function links() {
   await test('a broken link shows what of it means something', async () => {
     for (const hash of ['#', '#scene=__proto__&board=toString&look=1', '#look=NaN,1e9,,x,-,0', '#scene=castle&look=1,2,3,4,5,1e400',
       '#scene=particles&look=1', '#%E0%A4%A&board=&depth=99&merge=2', '#file=&look=', `#file=${'x'.repeat(9000)}`]) {
+      const before = await browser.eval('generation');
       await browser.eval(`location.hash = ${JSON.stringify(hash)}`);
-      await pause(100);
-      await browser.until(`document.getElementById('busy').hidden && (machine !== null || viewer !== null)`, 30);
+      await browser.until(`generation !== ${before} && document.getElementById('busy').hidden && (machine !== null || viewer !== null)`, 30);
       const said = await text('said');
       holds(`${hash}: "${said.slice(0, 80)}" is no fault`, /^(Valley|Castle|LM3S|This link shows)|Stellaris|voxels|\.$/.test(said) &&
         await browser.eval(`!document.getElementById('said').classList.contains('wrong')`));
@@ -463,11 +449,10 @@ async function links() {
 async function drops() {
   await test('a dropped file is baked and shown', async () => {
     const file = path.resolve('tools/gallery/scenes/fox.vox.gz');
-    const frames = firstFrames(file, 'lm3s6965evb');
     await browser.drop([file]);
     await began();
     holds('it says so', (await text('said')).startsWith('fox.vox.gz: '));
-    await showsAFrame(frames);
+    await showsItsFrame(file, 'lm3s6965evb');
   });
   await test('a scene dropped with its model, and baked bytes', async () => {
     await choose('raspi0');
@@ -575,9 +560,11 @@ async function drops() {
     await browser.until(`viewer.phase === 'lit' || viewer.phase === 'fine'`);
     await browser.drop([castle]);
     await began();
+    await fromAfar();
     await finish();
     const wanted = await canvasCrc();
     await browser.eval('restart({scene: "castle", dropped: null})');
+    await fromAfar();
     await finish();
     is('the picture is that of the demonstration', await canvasCrc(), wanted);
     await browser.click('#look');
@@ -590,7 +577,7 @@ async function drops() {
 }
 
 // Every size is turned over while the scene is shown.
-const SCREENS = [[360, 640], [412, 915], [768, 1024]];
+const SCREENS = [[360, 640], [412, 915], [768, 1024]].flatMap((upright) => [upright, [...upright].reverse()]);
 async function telephone() {
   browser = await Chromium.open(`${url}#scene=castle&board=raspi0&look=1`, {width: 360, height: 640, mobile: true});
   shown = 0;
@@ -598,34 +585,36 @@ async function telephone() {
   await fromAfar();
   await finish();
   const wanted = await canvasCrc();
-  for (const upright of SCREENS) {
-    for (const [width, height] of [upright, [...upright].reverse()]) {
-      await test(`on a screen of ${width} x ${height}`, async () => {
-        await browser.turnTo(width, height);
-        is('width of the page', await browser.eval('document.documentElement.scrollWidth'), width);
-        is('the picture is the same', await canvasCrc(), wanted);
-        const box = await browser.middle('#canvas');
-        holds(`the canvas has its proportions: ${box.width} x ${box.height}`, Math.abs(box.width / box.height - 640 / 480) < 0.01);
-        holds('the canvas fits on the screen', box.width <= width && box.height <= height && box.height >= height / 4);
-        await browser.eval('scrollTo(0, 0)');
-        holds('all of it is on the first screen', await browser.eval(
-          `(({top, bottom}) => top >= 0 && bottom <= innerHeight)(canvas.getBoundingClientRect())`));
-        if (width < height) holds('it uses the width', box.width >= 0.75 * Math.min(width, 640));
-        const hidden = await browser.eval(`[...document.querySelectorAll('button, select, summary')].filter((element) => {
-          if (element.closest('dialog') || element.hidden || element.disabled) return false;
-          element.scrollIntoView({block: 'center'});
-          const box = element.getBoundingClientRect();
-          const seen = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-          return box.width < 24 || box.height < 24 || (seen !== element && !element.contains(seen));
-        }).map((element) => element.id || element.textContent)`);
-        is('what a finger does not reach', hidden.join(), '');
-        await browser.eval('scrollTo(0, 0)');
-        await browser.shot(path.join(work, `screen_${width}x${height}.png`));
-        await turnsByFingers();
-        await fromAfar();
-        await finish();
-      });
-    }
+  for (const [width, height] of SCREENS) {
+    await test(`on a screen of ${width} x ${height}`, async () => {
+      await browser.turnTo(width, height);
+      is('width of the page', await browser.eval('document.documentElement.scrollWidth'), width);
+      is('the picture is the same', await canvasCrc(), wanted);
+      const box = await browser.middle('#canvas');
+      holds(`the canvas has its proportions: ${box.width} x ${box.height}`, Math.abs(box.width / box.height - 640 / 480) < 0.01);
+      holds('the canvas fits on the screen', box.width <= width && box.height <= height && box.height >= height / 4);
+      await browser.eval('scrollTo(0, 0)');
+      holds('all of it is on the first screen', await browser.eval(
+        `(({top, bottom}) => top >= 0 && bottom <= innerHeight)(canvas.getBoundingClientRect())`));
+      if (width < height) holds('it uses the width', box.width >= 0.75 * Math.min(width, 640));
+      const hidden = await browser.eval(`[...document.querySelectorAll('button, select, summary')].filter((element) => {
+        if (element.closest('dialog') || element.hidden || element.disabled) return false;
+        element.scrollIntoView({block: 'center'});
+        const box = element.getBoundingClientRect();
+        const seen = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+        return box.width < 24 || box.height < 24 || (seen !== element && !element.contains(seen));
+      }).map((element) => element.id || element.textContent)`);
+      is('what a finger does not reach', hidden.join(), '');
+      await browser.eval('scrollTo(0, 0)');
+      await browser.shot(path.join(work, `screen_${width}x${height}.png`));
+    });
+  }
+  for (const [width, height] of SCREENS) {
+    await test(`fingers on a screen of ${width} x ${height}`, async () => {
+      await browser.turnTo(width, height);
+      await turnsByFingers();
+      await fromAfar();
+    });
   }
   await test('a double tap looks at what is there, a button names it', async () => {
     await changes('its own view', () => browser.eval('orbit.reset(); moved(() => {})'));
@@ -671,8 +660,17 @@ async function telephone() {
       await browser.touch('touchStart', [{x: sea.x, y: sea.y + 20, id: 1}]);
       await browser.touch('touchEnd', []);
     });
+  });
+  await test('a finger makes it rain, and lets it stop', async () => {
+    await browser.eval(`restart({scene: 'water', look: true})`);
+    for (const rains of [true, false]) {
+      const {x, y} = await browser.middle('[data-key=" "]');
+      await browser.touch('touchStart', [{x, y, id: 1}]);
+      await browser.touch('touchEnd', []);
+      await browser.until(`viewer.plays === ${rains}`);
+    }
     await browser.eval(`restart({scene: 'castle', board: 'raspi0', look: true})`);
-    await finish();
+    await browser.until('viewer !== null');
   });
   await test('turned over with a finger on it', async () => {
     await browser.turnTo(360, 640);
@@ -735,7 +733,7 @@ async function served() {
         response.end(fs.readFileSync(page));
       });
       await new Promise((done) => server.listen(0, '127.0.0.1', done));
-      browser = await Chromium.open(`http://127.0.0.1:${server.address().port}/#scene=castle&look=1`);
+      browser = await Chromium.open(`http://127.0.0.1:${server.address().port}/#scene=castle&look=-1.2,0.4,500,64,64,30`);
       await browser.until(`document.documentElement.dataset.ready === '1'`, 60);
       is('isolated', await browser.eval('crossOriginIsolated'), isolated);
       await browser.eval('crewSize = 2; restart({})');
@@ -771,11 +769,25 @@ async function calm() {
     is('what moves by style', await browser.eval('document.getAnimations().length'), 0);
     await changes('who asks', () => browser.click('#pause'));
   });
+  await test('who wants less motion asks for frames, too', async () => {
+    const film = path.resolve(work, 'film.vox');
+    fs.writeFileSync(film, made.vox(16, 3));
+    await browser.click('#scene-castle');
+    await began();
+    await browser.click('#look');
+    await began();
+    await browser.drop([film]);
+    await began();
+    await pause(400);
+    is('the frame', await browser.eval('state.frame'), null);
+    await browser.click('[data-key=" "]');
+    await browser.until('state.frame === 2');
+  });
   await browser.close();
 }
 
-(only === undefined ? desktop().then(telephone).then(served).then(calm).then(cases) : {telephone, served, calm, cases}[only]()).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? desktop().then(telephone).then(served).then(calm).then(cases) : {telephone, served, calm, cases}[only]()).then(() => Chromium.quit()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
-  browser?.process.kill('SIGKILL');
+  Chromium.kill();
   process.exit(1);
 });

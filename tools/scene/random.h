@@ -7,34 +7,32 @@
 #ifndef THIMBLE_TOOLS_SCENE_RANDOM_H
 #define THIMBLE_TOOLS_SCENE_RANDOM_H
 
-#include <cstdint>
+#include <stdint.h>
 
 namespace thimble::tools {
 
 class SplitMix64 {
  public:
-  explicit constexpr SplitMix64(std::uint64_t seed) : state_(seed) {}
+  explicit constexpr SplitMix64(uint64_t seed) : state_(seed) {}
 
   /// 64 random bits.
-  constexpr std::uint64_t next() {
+  constexpr uint64_t next() {
     state_ += 0x9E3779B97F4A7C15U;
-    std::uint64_t mixed = state_;
+    uint64_t mixed = state_;
     mixed = (mixed ^ mixed >> 30) * 0xBF58476D1CE4E5B9U;
     mixed = (mixed ^ mixed >> 27) * 0x94D049BB133111EBU;
     return mixed ^ mixed >> 31;
   }
   /// A whole number 0 .. bound - 1, bound 1 .. 2^32: the product's upper half. The bias is below
   /// bound / 2^32.
-  constexpr std::uint32_t below(std::uint64_t bound) {
-    return static_cast<std::uint32_t>((next() >> 32) * bound >> 32);
-  }
+  constexpr uint32_t below(uint64_t bound) { return static_cast<uint32_t>((next() >> 32) * bound >> 32); }
   /// A whole number low .. high, both included.
-  constexpr std::int32_t between(std::int32_t low, std::int32_t high) {
-    return low + static_cast<std::int32_t>(below(static_cast<std::uint64_t>(high - low) + 1));
+  constexpr int32_t between(int32_t low, int32_t high) {
+    return low + static_cast<int32_t>(below(static_cast<uint64_t>(high - low) + 1));
   }
 
  private:
-  std::uint64_t state_;
+  uint64_t state_;
 };
 
 }  // namespace thimble::tools

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "viewer/magnify.h"
+#include "scene/magnify.h"
 
 namespace thimble::tools::viewer {
 namespace {
@@ -51,7 +51,9 @@ void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>*
     const std::int32_t first = std::min(rows, part * i);
     const std::int32_t end = std::min(rows, first + part);
     if (first < end) {
-      magnify_rows(small_.data(), step, picture.width_px(), picture.height_px(), first, end, rgb->data());
+      std::vector<std::uint16_t> work(magnify_work(picture.width_px()));
+      magnify_rows(small_.data(), step, picture.width_px(), picture.height_px(), first, end, work.data(),
+                   rgb->data());
     }
   });
   last_step_ = step;

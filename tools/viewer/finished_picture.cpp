@@ -8,10 +8,10 @@
 
 #include "scene/backdrop.h"
 #include "scene/lit_setup.h"
+#include "scene/magnify.h"
 #include "scene/quick_look.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/octree.h"
-#include "viewer/magnify.h"
 
 namespace thimble::tools::viewer {
 namespace {

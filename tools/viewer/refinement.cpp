@@ -6,7 +6,7 @@
 #include <exception>
 #include <mutex>
 
-#include "viewer/magnify.h"
+#include "scene/magnify.h"
 #include "wide/threads.h"
 
 namespace thimble::tools::viewer {
@@ -47,7 +47,8 @@ bool Refinement::State::draw_coarse(int every) {
   const std::int32_t width = picture->width_px();
   const std::int32_t height = picture->height_px();
   std::vector<std::uint8_t> full(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  magnify(small.data(), every, width, height, full.data());
+  std::vector<std::uint16_t> work(magnify_work(width));
+  magnify_rows(small.data(), every, width, height, 0, thinned_px(height, every), work.data(), full.data());
   const std::scoped_lock lock(mutex);
   rgb.swap(full);
   step = every;

@@ -12,10 +12,11 @@
 
 #include "output/output_file.h"
 #include "output/units.h"
+#include "scene/host_memory.h"
+#include "scene/moving_pool.h"
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
 #include "viewer/file_watch.h"
-#include "viewer/moving_pool.h"
 #include "viewer/picking.h"
 #include "viewer/refinement.h"
 #include "viewer/saving.h"
@@ -117,6 +118,7 @@ class Viewer {
   bool plays_ = false;
   double next_frame_at_ = 0;
   std::unique_ptr<SceneReading> next_frame_;  // of an animation, the one after `options_.scene.frame`
+  HostMemory pool_memory_;
   std::unique_ptr<MovingPool> pool_;
 
   bool ended_ = false;
@@ -365,7 +367,11 @@ void Viewer::play_or_stop() {
   next_frame_at_ = now();
   if (!has_frames) {
     // What is drawn to the end, and saved, is the scene's own water.
-    pool_ = plays_ ? std::make_unique<MovingPool>(scene_->tree(), *water) : nullptr;
+    pool_.reset();
+    if (plays_) {
+      pool_memory_ = HostMemory(MovingPool::bytes(*water));
+      pool_ = std::make_unique<MovingPool>(scene_->tree(), *water, pool_memory_.bytes());
+    }
   }
   changed_ = true;
 }

@@ -116,10 +116,20 @@ HostMemory::HostMemory(std::size_t size) : size_(size) {
   }
 }
 
-// Pages of a WebAssembly memory take none of the machine's until they are written, but they are never given
-// back.
+// The largest that is free again. Pages of a WebAssembly memory take none of the machine's until they are written, but they
+// are never given back: the next frame of an animation is built where the one before was.
+namespace {
+Bytes kept_memory;
+}  // namespace
+
 HostMemory HostMemory::largest() {
   HostMemory memory;
+  if (!kept_memory.empty()) {
+    memory.data_ = kept_memory.data;
+    memory.size_ = kept_memory.size;
+    kept_memory = {};
+    return memory;
+  }
   for (std::size_t size = std::size_t{512} << 20; size >= std::size_t{1} << 20; size /= 2) {
     memory.data_ = static_cast<std::uint8_t*>(std::malloc(size));
     if (memory.data_ != nullptr) {
@@ -131,6 +141,10 @@ HostMemory HostMemory::largest() {
 }
 
 HostMemory::~HostMemory() {
+  if (size_ > kept_memory.size) {
+    std::swap(data_, kept_memory.data);
+    kept_memory.size = size_;
+  }
   std::free(data_);
 }
 

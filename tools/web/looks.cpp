@@ -78,7 +78,8 @@ LookBlock block_of(std::uint32_t exposure_q8) {
   block.camera = framing.kept;
   block.is_stars = look.kind == LookKind::kStars;
   block.effects = block.is_stars ? Effect::kNone : look.effects;
-  block.quick_effects = look.has_backdrop ? Effect::kNone : look.effects & kQuickEffects;
+  const bool has_water = (look.effects & Effect::kWater) != 0;  // which no voxels show
+  block.quick_effects = look.has_backdrop && !has_water ? Effect::kNone : look.effects & kQuickEffects;
   block.quick_tone = quick_tone(look, exposure_q8);
   block.across = look.across;
   block.colors = static_cast<std::uint32_t>(look.palette.size());

@@ -30,7 +30,7 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
   facts = "{\"level\":" + std::to_string(tree.level()) + number_field("voxels", tree.voxel_count()) +
           number_field("bytes", baked.bytes.size()) + number_field("added", tree.solid_added()) +
           number_field("effects", baked.effects) + number_field("points", source.points()) +
-          number_field("code", code_flash_bytes(baked.effects)) +
+          number_field("frames", source.frames()) + number_field("code", code_flash_bytes(baked.effects)) +
           number_field("ram", drawing_ram_bytes(board, baked.effects)) +
           number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
           source.kind() + "\"}";
@@ -52,10 +52,10 @@ extern "C" {
   thimble::tools::add_file(name, {bytes, size});
 }
 
-// Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own. How many bytes
-// it takes.
+// Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own; `frame` below 0: the first.
+// How many bytes it takes.
 [[clang::export_name("bake")]] std::size_t thimble_bake(const char* scene, std::uint32_t index, int depth,
-                                                        bool coarsen) {
+                                                        bool coarsen, std::int32_t frame) {
   using namespace thimble;
   using namespace thimble::tools;
   const platform::BoardFacts& board = platform::boards()[index];
@@ -63,6 +63,9 @@ extern "C" {
   arguments.scene = scene;
   if (depth != 0) {
     arguments.depth = depth;
+  }
+  if (frame >= 0) {
+    arguments.frame = static_cast<std::uint32_t>(frame);
   }
   auto source = open_scene(arguments);
   ViewWishes view;

@@ -6,6 +6,8 @@
 // one sample a pixel, then with all. bake.wasm says how the scene looks from a camera (look_block.h).
 #include "apps/shown_scene.h"
 #include "scene/behind.h"
+#include "scene/magnify.h"
+#include "scene/moving_pool.h"
 #include "scene/tone_table.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
@@ -33,11 +35,15 @@ struct Viewer {
   Bytes lighting_bytes;
   BakedLighting lighting;  // of the look
   ToneTable tone;
+  MovingPool pool;
+  Bytes pool_bytes;  // of the pool
+  bool rains;
   WebCamera seen;
   int32_t width_px;
   int32_t height_px;
   uintptr_t next;  // the end of what is used
   Bytes picture;   // rows without gaps
+  Bytes small;     // of every few pixels
   Bytes samples;   // of a row of the picture
   Bytes shares;    // of light behind them
 };
@@ -91,31 +97,52 @@ Status draw_quick(const Camera& camera, int32_t first, int32_t rows, Bytes pixel
   for (int face = 0; face < 6; ++face) {
     shading.face_light[face] = look.quick_light[face];
   }
-  if (look.quick_effects != Effect::kNone) {
-    shading.palette = {look.palette, look.colors};
-    const Status status = render_lit_band(look.quick_effects, viewer.shown.scene.tree(), camera, shading,
-                                          viewer.lighting.scene, band);
-    for (uint8_t& channel : pixels) {
-      channel = look.quick_tone[channel];
-    }
-    return status;
-  }
   const bool shows_behind = look.has_backdrop && !look.is_stars;
   if (shows_behind) {
     shading.background = kBehind;
   }
-  const Status status = apps::draw_scene(viewer.shown, camera, shading, band);
-  for (int32_t y = first; shows_behind && y < first + rows; ++y) {
+  const bool is_lit = look.quick_effects != Effect::kNone;
+  Status status = Status::kOk;
+  if (is_lit) {
+    shading.palette = {look.palette, look.colors};
+    LitScene scene = viewer.lighting.scene;
+    if (viewer.rains) {
+      scene.water = viewer.pool.surface();
+    }
+    status = render_lit_band(look.quick_effects, viewer.shown.scene.tree(), camera, shading, scene, band);
+  } else {
+    status = apps::draw_scene(viewer.shown, camera, shading, band);
+  }
+  uint8_t* pixel = pixels.data;
+  for (int32_t y = first; (is_lit || shows_behind) && y < first + rows; ++y) {
     const Rgb8 behind = backdrop_color(look.background, y, camera.height_px());
-    uint8_t* pixel =
-        pixels.data + kPixelBytes * static_cast<size_t>(camera.width_px()) * static_cast<size_t>(y - first);
     for (int32_t x = 0; x < camera.width_px(); ++x, pixel += kPixelBytes) {
-      if (pixel[0] == kBehind.r && pixel[1] == kBehind.g && pixel[2] == kBehind.b) {
+      if (shows_behind && pixel[0] == kBehind.r && pixel[1] == kBehind.g && pixel[2] == kBehind.b) {
         put(behind, pixel);
+      } else if (is_lit) {
+        put({look.quick_tone[pixel[0]], look.quick_tone[pixel[1]], look.quick_tone[pixel[2]]}, pixel);
       }
     }
   }
   return status;
+}
+
+// The whole picture from every `step`-th pixel, those between mixed; `step` above 1.
+bool draw_thin(const Camera& thin, int32_t step) {
+  const size_t row = kPixelBytes * static_cast<size_t>(thin.width_px());
+  if (viewer.small.empty()) {
+    viewer.small = reserve(viewer.picture.size / 2);
+  }
+  for (int32_t y = 0; y < thin.height_px(); ++y) {
+    const Bytes to = viewer.small.subspan(row * static_cast<size_t>(y), row);
+    if (to.empty() || draw_quick(thin, y, 1, to) != Status::kOk) {
+      return false;
+    }
+  }
+  // The samples of a row are as many bytes as the work.
+  magnify_rows(viewer.small.data, step, viewer.width_px, viewer.height_px, 0, thin.height_px(),
+               reinterpret_cast<uint16_t*>(viewer.samples.data), viewer.picture.data);
+  return true;
 }
 
 // Light and what is behind it for `rows` rows of a camera's rays, into `samples` and `shares`.
@@ -209,12 +236,12 @@ void stretch(Bytes thin, int32_t y, int32_t step) {
 
 extern "C" {
 
-// Room for a scene of so many bytes and a picture of that size; null where there is none. Once in a module's
-// life.
+// Room for a scene of so many bytes and a picture of that size; null where there is none. What was there is gone.
 [[clang::export_name("room")]] uint8_t* thimble_room(uint32_t scene_bytes, int32_t width_px,
                                                      int32_t height_px) {
   using namespace thimble;
   using namespace thimble::tools;
+  viewer = {};
   viewer.next = reinterpret_cast<uintptr_t>(&__heap_base);
   viewer.width_px = width_px;
   viewer.height_px = height_px;
@@ -345,6 +372,30 @@ extern "C" {
          BakedLighting::open(section, viewer.shown.scene.tree().level(), &viewer.lighting) == Status::kOk;
 }
 
+// The next frame of rain on the water, or, where none falls, the scene's own water again. False where there is no water,
+// or no memory for it.
+[[clang::export_name("rain")]] bool thimble_rain(bool falls) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const WaterSurface& rest = viewer.lighting.scene.water;
+  if ((viewer.look.effects & Effect::kWater) == 0 || !falls) {
+    viewer.rains = false;
+    return !falls;
+  }
+  if (!viewer.rains) {
+    if (viewer.pool_bytes.empty()) {
+      viewer.pool_bytes = reserve(MovingPool::bytes(rest));
+    }
+    viewer.pool = MovingPool(viewer.shown.scene.tree(), rest, viewer.pool_bytes);
+    viewer.rains = !viewer.pool_bytes.empty();
+  }
+  viewer.pool.step();
+  return viewer.rains;
+}
+[[clang::export_name("has_water")]] bool thimble_has_water() {
+  return (thimble::tools::viewer.look.effects & thimble::Effect::kWater) != 0;
+}
+
 // The exposure of the picture at rest (measured_exposure), from rows first .. first + rows - 1 of a thinned one; 0
 // while there are more rows. What is drawn at rest is drawn with it from then on.
 [[clang::export_name("expose")]] uint32_t thimble_expose(int32_t first, int32_t rows) {
@@ -375,7 +426,7 @@ extern "C" {
 }
 
 // Draws rows of every `step`-th pixel of every `step`-th row, stretched; `first` is a multiple of `step`. `lit`: as
-// at rest, with one sample.
+// at rest, with one sample. Else all rows, with mixtures in between.
 [[clang::export_name("draw")]] bool thimble_draw(int32_t first, int32_t rows, int32_t step, bool lit) {
   using namespace thimble;
   using namespace thimble::tools;
@@ -386,10 +437,12 @@ extern "C" {
     return draw_quick(viewer.camera, first, rows, to) == Status::kOk;
   }
   const Camera thin = viewer.camera.thinned(step);
+  if (!lit) {
+    return draw_thin(thin, step);
+  }
   const Bytes row = viewer.samples.subspan(0, kPixelBytes * static_cast<size_t>(thin.width_px()));
   for (int32_t y = first; y < first + rows && y < viewer.height_px; y += step) {
-    const Status status = lit ? draw_lit(thin, y / step, 1, row) : draw_quick(thin, y / step, 1, row);
-    if (status != Status::kOk) {
+    if (draw_lit(thin, y / step, 1, row) != Status::kOk) {
       return false;
     }
     stretch(row, y, step);
