@@ -147,24 +147,35 @@ Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts
 
 Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
                              Bytes samples, LitCounts* counts) const {
-  const Status status =
-      canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places, colors, counts);
-  if (status != Status::kOk) {
-    return status;
-  }
+  LitStreams* const streams = canvas_.streams;
   const Look& look = *canvas_.look;
+  if (streams != nullptr) {
+    const Status status =
+        streams->render_pixels(look.effects, camera, shading_, scene_, places, colors, counts);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
   const Camera& whole = canvas_.framing->camera;
   constexpr std::size_t kAtOnce = 256;
   const auto tasks = static_cast<std::int32_t>((places.size + kAtOnce - 1) / kAtOnce);
-  return for_rows(tasks, canvas_.streams->threads(), [&](std::int32_t task, std::size_t /*thread*/) {
+  const int threads = streams != nullptr ? streams->threads() : canvas_.threads;
+  return for_rows(tasks, threads, [&](std::int32_t task, std::size_t /*thread*/) {
     const std::size_t first = kAtOnce * static_cast<std::size_t>(task);
     const std::size_t count = std::min(kAtOnce, places.size - first);
+    for (std::size_t i = first; streams == nullptr && i < first + count; ++i) {
+      const Status status = trace_colors(camera.window(places.data[i].x, places.data[i].y, 1, 1), 0, 1,
+                                         colors.subspan(3 * i, 3), nullptr);
+      if (status != Status::kOk) {
+        return status;
+      }
+    }
     std::array<Ray, kAtOnce> rays;
     std::array<std::uint8_t, kAtOnce> shares;
     for (std::size_t i = 0; i < count; ++i) {
       rays[i] = camera.ray(places.data[first + i].x, places.data[first + i].y);
     }
-    find_light_behind(*canvas_.tree, look, canvas_.streams, {rays.data(), count}, shares.data());
+    find_light_behind(*canvas_.tree, look, streams, {rays.data(), count}, shares.data());
     for (std::size_t i = first; i < first + count; ++i) {
       const SamplePlace& place = places.data[i];
       const std::uint8_t share = shares[i - first];

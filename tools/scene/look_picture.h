@@ -60,7 +60,8 @@ class LookRows {
   /// What an edge painter draws: samples with their tone and what is behind them, red, green, blue and cover,
   /// a byte each.
   Status draw_run(const SampleRun& run, Bytes samples, LitCounts* counts) const;
-  /// The same of single pixels of a camera, by `canvas.streams`, which there is. `colors` has three bytes for each.
+  /// The same of single pixels of a camera, by `canvas.streams` and its threads, or ray by ray. `colors` has three bytes
+  /// for each; without streams nothing is counted.
   Status draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors, Bytes samples,
                      LitCounts* counts) const;
   /// The pixel of such samples' sums.
