@@ -156,7 +156,7 @@ namespace {
 constexpr std::int32_t kRowsAThread = 2;
 // Many rows are drawn together, as long as a key need not wait for them.
 constexpr std::chrono::milliseconds kChunkTime{40};
-constexpr std::int32_t kMostRowsAThread = 16;
+constexpr std::int32_t kMostRowsAThread = 8;
 constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
 
 Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
