@@ -32,7 +32,7 @@ function(thimble_choose_formats)
 endfunction()
 
 function(thimble_choose_frames)
-  # Pictures of up to 160 x 128 do without what larger ones take (brick_render.h).
+  # Pictures of up to 160 x 128 do without what larger ones take (picture/render.h).
   if("${BOARD_FRAMES}" STREQUAL "small")
     target_compile_definitions(thimble PUBLIC THIMBLE_SMALL_FRAMES)
   elseif(NOT "${BOARD_FRAMES}" MATCHES "^(large)?$")

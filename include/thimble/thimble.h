@@ -10,7 +10,7 @@
 ///
 /// and one for what you want besides: base/memory.h (how memory is handed over, and what `open`, `make` and
 /// `set` mean everywhere), picture/shading.h (colours), bake/baked_scene.h (a scene from a file or flash),
-/// trace/trace.h (a single ray). Not included here, since programs that draw no more than that need none of
+/// trace/ray.h (a single ray). Not included here, since programs that draw no more than that need none of
 /// it: light/ (lights, shadows, glass, water), plane/ (the bit field and the balls), and the tree's other
 /// forms.
 #ifndef THIMBLE_THIMBLE_H
@@ -22,7 +22,7 @@
 #include "picture/camera.h"
 #include "picture/render.h"
 #include "picture/shading.h"
-#include "trace/trace.h"
+#include "trace/ray.h"
 #include "tree/compact_tree.h"
 #include "tree/octree.h"
 

@@ -23,10 +23,9 @@
 #include "apps/shown_scene.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/base/crc32.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::apps {
 namespace {

@@ -1,6 +1,6 @@
 #include "dda_baseline.h"
 
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::apps {
 namespace {

@@ -27,7 +27,6 @@
 #include "apps/spheres.h"
 #include "apps/text.h"
 #include "port.h"
-#include "thimble/base/crc32.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/octree.h"

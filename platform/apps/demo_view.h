@@ -21,7 +21,7 @@
 #include "thimble/bake/baked_scene.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/shading.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::apps {
 

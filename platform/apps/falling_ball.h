@@ -1,13 +1,13 @@
 /// @file falling_ball.h
 /// Balls that fall through the air of a scene, in integers, without being part of its tree, which is in flash
-/// (thimble/light/balls.h says how they are drawn).
+/// (thimble/light/render.h says how they are drawn).
 #ifndef THIMBLE_PLATFORM_APPS_FALLING_BALL_H
 #define THIMBLE_PLATFORM_APPS_FALLING_BALL_H
 
 #include <stdint.h>
 
 #include "thimble/base/vec.h"
-#include "thimble/light/balls.h"
+#include "thimble/light/render.h"
 
 namespace thimble::apps {
 

@@ -7,7 +7,7 @@
 #include "port.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/octree.h"
 

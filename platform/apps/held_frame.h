@@ -17,7 +17,7 @@
 #include "port.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::apps {
 

@@ -11,8 +11,8 @@
 #include "thimble/base/status.h"
 #include "thimble/light/scene.h"
 #include "thimble/light/water.h"
+#include "thimble/trace/ray.h"
 #include "thimble/trace/secondary_ray.h"
-#include "thimble/trace/trace.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::apps {

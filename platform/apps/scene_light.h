@@ -12,9 +12,9 @@
 #include "apps/shown_scene.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/map_render.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::apps {
 

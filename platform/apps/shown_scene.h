@@ -10,7 +10,6 @@
 #include "port.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
 

@@ -30,9 +30,8 @@
 #include "apps/text.h"
 #include "port.h"
 #include "thimble/base/memory.h"
-#include "thimble/light/baked_lighting.h"
-#include "thimble/light/balls.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::apps {
 namespace {

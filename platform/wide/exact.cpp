@@ -1,7 +1,7 @@
 #include "wide/exact.h"
 
 #include "thimble/picture/camera.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 #include "wide/kernels.h"
 
 namespace thimble::wide {

@@ -4,7 +4,7 @@
 
 #include "thimble/picture/camera.h"
 #include "thimble/picture/shading.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "wide/exact.h"
 #include "wide/surface.h"
 

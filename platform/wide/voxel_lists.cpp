@@ -1,6 +1,6 @@
 #include "wide/voxel_lists.h"
 
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 #include "wide/surface.h"
 #include "wide/surface_list.h"
 

@@ -4,7 +4,7 @@
 
 #include "../base/bits.h"
 #include "../base/fault.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 #include "bits.h"
 

@@ -1,6 +1,6 @@
 #include "picture.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::c_face {
 

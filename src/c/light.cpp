@@ -1,6 +1,6 @@
 #include "kinds.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::c_face {
 

@@ -2,8 +2,8 @@
 // is compiled: with THIMBLE_C_EFFECTS=SET it holds the renderer for that set, without, those of all.
 #include "picture.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::c_face {
 namespace {

@@ -6,7 +6,7 @@
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::c_face {
 

@@ -1,4 +1,4 @@
-#include "thimble/drivers/page_panel.h"
+#include "thimble/drivers/panel.h"
 
 namespace thimble::drivers {
 namespace {

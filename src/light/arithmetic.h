@@ -7,7 +7,7 @@
 #include "../base/integers.h"
 #include "../base/wide_arithmetic.h"
 #include "thimble/light/detail/pixel.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 
 namespace thimble::lit {
 

@@ -1,14 +1,14 @@
 // What the parts of a lit picture ask the tree, for each kind of frame: one that asks at once, one with
-// balls beside the tree (balls.h), and one that is told the answers (asked.h). Internal to src/.
+// balls beside the tree (render.h), and one that is told the answers (asked.h). Internal to src/.
 #ifndef THIMBLE_SRC_LIGHT_ASKING_H
 #define THIMBLE_SRC_LIGHT_ASKING_H
 
 #include "arithmetic.h"
-#include "thimble/light/balls.h"
 #include "thimble/light/detail/pixel.h"
 #include "thimble/light/host/asked.h"
 #include "thimble/light/host/slope.h"
-#include "thimble/trace/trace.h"
+#include "thimble/light/render.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::lit {
 

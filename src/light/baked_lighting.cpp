@@ -1,6 +1,6 @@
 // The section of a baked scene that says what light does: checking, opening, writing. src/FORMAT.md is the
 // specification; the offsets below are its constants.
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 #include "../base/bits.h"
 #include "../base/fault.h"

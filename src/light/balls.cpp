@@ -1,5 +1,5 @@
 // Balls that are not in the tree: what a ray meets once they are looked at too.
-#include "thimble/light/balls.h"
+#include "thimble/light/render.h"
 
 #include "arithmetic.h"
 #include "asking.h"

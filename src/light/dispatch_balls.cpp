@@ -1,6 +1,6 @@
 // The same 32 renderers as in dispatch.cpp, with balls.
 #include "dispatch.h"
-#include "thimble/light/balls.h"
+#include "thimble/light/render.h"
 
 namespace thimble {
 

@@ -4,7 +4,7 @@
 
 #include "arithmetic.h"
 #include "thimble/light/detail/pixel.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 
 namespace thimble::lit {
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "thimble/light/detail/pixel.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 
 namespace thimble::lit {
 

@@ -1,6 +1,6 @@
 // Directions and light in integers. Every product has its bound beside it; optics.h states what the results
 // are good for.
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 
 #include "../base/bits.h"
 #include "../base/integers.h"

@@ -4,8 +4,8 @@
 
 #include "../base/bits.h"
 #include "../base/integers.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/host/slope_window.h"
-#include "thimble/light/optics.h"
 
 namespace thimble::lit {
 namespace {

@@ -1,8 +1,8 @@
 // Which bricks have nothing behind them towards a distant light: all bricks that a ray from somewhere in one can pass
 // through, layer by layer along the axis on which the light's rays move fastest.
 #include "../base/bits.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"
-#include "thimble/light/optics.h"
 
 namespace thimble {
 

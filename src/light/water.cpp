@@ -5,7 +5,7 @@
 #include "../base/bits.h"
 #include "../base/integers.h"
 #include "../base/wide_arithmetic.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble {
 namespace {

@@ -1,4 +1,4 @@
-#include "thimble/picture/edge_samples.h"
+#include "thimble/picture/render.h"
 
 namespace thimble {
 namespace {

@@ -2,7 +2,7 @@
 #include "thimble/plane/particles.h"
 
 #include "particles_parts.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "crossings.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble {
 
@@ -66,7 +66,7 @@ class PathCache {
   PathCache() {}
 };
 
-// As the public functions (trace.h), with a cache that stays with the structure.
+// As the public functions (ray.h), with a cache that stays with the structure.
 Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
                    PathCache* cache);
 Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,

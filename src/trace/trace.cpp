@@ -1,6 +1,6 @@
 // Traces a ray through each of the structures. The loop for all trees is in descent.h, the arithmetic in
 // crossings.h; what differs between the trees is behind the small adaptors below.
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 #include "../base/bits.h"
 #include "crossings.h"

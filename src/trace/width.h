@@ -3,7 +3,7 @@
 #define THIMBLE_SRC_TRACE_WIDTH_H
 
 #include "thimble/base/status.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble {
 

@@ -2,9 +2,8 @@
 // the shape, once into a writer. Sorted keys are read twice in all: all levels are written side by side.
 #include "../base/bits.h"
 #include "compact_header.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/tree/compact_tree.h"
-#include "thimble/tree/morton.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble {

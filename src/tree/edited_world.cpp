@@ -6,7 +6,7 @@
 #include "../base/bits.h"
 #include "brick_parts.h"
 #include "compact_header.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble {
 namespace {

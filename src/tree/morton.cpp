@@ -1,4 +1,4 @@
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble {
 namespace {

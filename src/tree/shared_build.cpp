@@ -3,7 +3,7 @@
 // so that every link leads backwards.
 #include "../base/bits.h"
 #include "shared_header.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/tree/shared_tree.h"
 
 namespace thimble {

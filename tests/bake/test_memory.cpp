@@ -13,7 +13,6 @@
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/compact_tree.h"
-#include "thimble/tree/morton.h"
 #include "thimble/tree/octree.h"
 
 namespace {

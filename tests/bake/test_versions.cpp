@@ -12,7 +12,7 @@
 #include "support/baked_damage.h"
 #include "support/run_command.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/shared_tree.h"
 

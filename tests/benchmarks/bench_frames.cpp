@@ -26,7 +26,7 @@
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::benchmarks {
 namespace {

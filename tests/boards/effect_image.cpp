@@ -11,13 +11,12 @@
 #include "apps/text.h"
 #include "port.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/base/crc32.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
 #ifndef THIMBLE_IMAGE_PLAIN
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 #endif
 
 namespace thimble {

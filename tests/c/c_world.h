@@ -11,7 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 #include "thimble/thimble_c.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"

@@ -2,7 +2,7 @@
 // bytes. Compiled, not run, for each width (tests/checks/c_header.sh).
 #include "src/c/kinds.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 #include "thimble/picture/anytime.h"
 #include "thimble/plane/particles.h"
 #include "thimble/tree/brick_map.h"

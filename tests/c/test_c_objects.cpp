@@ -10,7 +10,7 @@
 #include "c/c_world.h"
 #include "c/face.h"
 #include "support/allocation_trap.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/plane/particles.h"
 
 namespace {

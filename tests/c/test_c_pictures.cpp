@@ -9,7 +9,7 @@
 #include "c/c_world.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
 #include "thimble/trace/secondary_ray.h"
 
 // thimble_scene_render_lit, compiled for one set (tests/CMakeLists.txt).

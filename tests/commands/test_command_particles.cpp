@@ -55,15 +55,15 @@ std::string crc_of(const Words& words) {
   return stats_of(words).at("state_crc32");
 }
 
-struct Ball {
+struct BallState {
   long id, x, y, vx, vy, radius, asleep;
 };
 
-std::vector<Ball> read_state(const std::string& path) {
+std::vector<BallState> read_state(const std::string& path) {
   const Words lines = lines_of(read_text(path));
   REQUIRE(!lines.empty());
   CHECK(lines[0] == "id,x_q16,y_q16,vx_q16,vy_q16,radius_q16,asleep");
-  std::vector<Ball> balls;
+  std::vector<BallState> balls;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const Words columns = split(lines[i]);
     REQUIRE(columns.size() == 7);
@@ -96,8 +96,8 @@ std::vector<std::vector<int>> read_field(const std::string& path, int width, int
 }
 
 /// Takes the balls' cells out of the field, by the rule that --help tells; fails where one is not set.
-void take_discs(const std::vector<Ball>& balls, std::vector<std::vector<int>>* cells) {
-  for (const Ball& ball : balls) {
+void take_discs(const std::vector<BallState>& balls, std::vector<std::vector<int>>* cells) {
+  for (const BallState& ball : balls) {
     const int diameter = static_cast<int>(ball.radius / 32768);
     const long left = (ball.x - ball.radius + 32768) >> 16;
     const long top = (ball.y - ball.radius + 32768) >> 16;
@@ -144,7 +144,7 @@ TEST_CASE("particles: no option, no display, no terminal -> 2,000 steps of Figur
   // In the lower half of the picture all of it.
   const TemporaryFolder folder;
   REQUIRE(particles({"--steps", "2000", "--state", folder.path("a.csv"), "--quiet"}).status == 0);
-  for (const Ball& ball : read_state(folder.path("a.csv"))) {
+  for (const BallState& ball : read_state(folder.path("a.csv"))) {
     CHECK(ball.y > (300 << 16));
     CHECK(ball.asleep == 1);
   }
@@ -206,7 +206,7 @@ TEST_CASE("particles: --state and --field -> the field is the discs and the wall
   for (const char* steps : {"0", "1", "37", "400"}) {
     run({"--count", "90", "--steps", steps}, "a");
     auto cells = read_field(folder.path("a.pbm"), 203, 150);
-    const std::vector<Ball> balls = read_state(folder.path("a.csv"));
+    const std::vector<BallState> balls = read_state(folder.path("a.csv"));
     CHECK(balls.size() == 90);
     take_discs(balls, &cells);
     CHECK(count_of(cells) == 0);
@@ -311,7 +311,7 @@ TEST_CASE("particles: tools -> balls come, go, and are drawn along; figures are 
   REQUIRE(particles({"--size", "200x150", "--gravity", "0,0", "--count", "0", "--steps", "60", "--input",
                      script, "--state", folder.path("drag.csv"), "--quiet"})
               .status == 0);
-  const std::vector<Ball> balls = read_state(folder.path("drag.csv"));
+  const std::vector<BallState> balls = read_state(folder.path("drag.csv"));
   REQUIRE(balls.size() == 1);
   CHECK(std::abs(balls[0].x - ((150 << 16) + 32768)) < 65536);
   CHECK(std::abs(balls[0].y - ((100 << 16) + 32768)) < 65536);
@@ -358,7 +358,7 @@ TEST_CASE("particles: --bodies -> places, speeds, areas and colours of the file;
   REQUIRE(result.status == 0);
   CHECK(result.err.find("4 bodies placed, 1 of them at the nearest free place, 1 left out beyond the box") !=
         std::string::npos);
-  const std::vector<Ball> balls = read_state(folder.path("a.csv"));
+  const std::vector<BallState> balls = read_state(folder.path("a.csv"));
   REQUIRE(balls.size() == 4);
   CHECK(balls[0].x / 65536 == 150);
   CHECK(balls[0].y / 65536 == 100);
@@ -379,7 +379,7 @@ TEST_CASE("particles: --bodies -> places, speeds, areas and colours of the file;
   REQUIRE(particles({"--bodies", bodies, "--count", "1", "--size", "300x200", "--steps", "10", "--state",
                      folder.path("b.csv"), "--quiet"})
               .status == 0);
-  const std::vector<Ball> later = read_state(folder.path("b.csv"));
+  const std::vector<BallState> later = read_state(folder.path("b.csv"));
   REQUIRE(later.size() == 1);
   CHECK(later[0].vy == 0);
   CHECK(later[0].y / 65536 == 100);

@@ -1,4 +1,4 @@
-// `thimble render --samples auto`: the rule of thimble/picture/edge_samples.h, whoever draws, in bands of any
+// `thimble render --samples auto`: the rule of thimble/picture/render.h, whoever draws, in bands of any
 // height, on any number of threads, within any budget.
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "support/run_command.h"
-#include "thimble/picture/edge_samples.h"
+#include "thimble/picture/render.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/panel_model.h"
-#include "thimble/drivers/color_panel.h"
+#include "thimble/drivers/panel.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/panel_model.h"
-#include "thimble/drivers/page_panel.h"
+#include "thimble/drivers/panel.h"
 
 namespace {
 

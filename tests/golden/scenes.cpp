@@ -1,6 +1,6 @@
 #include "golden/scenes.h"
 
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::golden {
 namespace {

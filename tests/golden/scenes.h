@@ -17,7 +17,7 @@
 #include "thimble/picture/pixel.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"

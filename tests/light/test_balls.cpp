@@ -7,8 +7,8 @@
 
 #include "scene/random.h"
 #include "support/lit_world.h"
-#include "thimble/light/balls.h"
-#include "thimble/trace/trace.h"
+#include "thimble/light/render.h"
+#include "thimble/trace/ray.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/lit_world.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::testing {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "support/scene_under_test.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"
-#include "thimble/light/optics.h"
 #include "thimble/light/scene.h"
 #include "thimble/light/water.h"
 #include "thimble/tree/octree.h"

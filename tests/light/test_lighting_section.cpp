@@ -10,7 +10,7 @@
 
 #include "support/baked_damage.h"
 #include "support/scene_under_test.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 #include "thimble/tree/octree.h"
 
 namespace {

@@ -15,7 +15,7 @@
 #include "scene/scene_source.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace {
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "support/lit_world.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/host/slope.h"
-#include "thimble/light/optics.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 #include "thimble/light/water.h"
 
 namespace thimble::testing::lit_edges {

@@ -9,7 +9,7 @@
 
 #include "support/lit_cases.h"
 #include "support/wide_cases.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::tests {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "support/lit_world.h"
 #include "support/scene_under_test.h"
-#include "thimble/light/balls.h"
 #include "thimble/light/map_render.h"
+#include "thimble/light/render.h"
 #include "thimble/tree/brick_map.h"
 
 namespace thimble::testing::map_edges {

@@ -10,8 +10,8 @@
 #include "support/lit_world.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"
-#include "thimble/light/optics.h"
 #include "thimble/tree/brick_map.h"
 
 namespace thimble::testing::map_mirrors {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "support/ray_cases.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/trace/ray.h"
 #include "thimble/trace/secondary_ray.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "support/lit_world.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::testing {
 namespace {

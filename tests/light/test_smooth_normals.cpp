@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "support/lit_world.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/host/slope.h"
-#include "thimble/light/optics.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/secondary_ray.h"
 

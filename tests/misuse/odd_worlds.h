@@ -14,7 +14,6 @@
 #include "thimble/picture/shading.h"
 #include "thimble/trace/ray.h"
 #include "thimble/trace/secondary_ray.h"
-#include "thimble/trace/trace.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"

@@ -6,9 +6,9 @@
 
 #include "misuse/odd_worlds.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/light/scene.h"
+#include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "misuse/odd_worlds.h"
-#include "thimble/light/baked_lighting.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 #include "thimble/light/water.h"
 
 namespace {

@@ -9,10 +9,9 @@
 
 #include "misuse/odd_worlds.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/cutoff.h"
-#include "thimble/picture/edge_samples.h"
 #include "thimble/picture/pixel.h"
+#include "thimble/picture/render.h"
 
 namespace {
 

@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "misuse/odd_values.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
-#include "thimble/tree/morton.h"
 #include "thimble/tree/octree.h"
 #include "thimble/tree/shared_tree.h"
 

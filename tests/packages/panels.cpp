@@ -1,7 +1,6 @@
 // The ball of the README on an SSD1306, over I2C, and on an ST7735, by the drivers of a package: prints a hash of all that
 // was sent, which is one number wherever it was built.
-#include "thimble/drivers/color_panel.h"
-#include "thimble/drivers/page_panel.h"
+#include "thimble/drivers/panel.h"
 #include "thimble/thimble.h"
 using namespace thimble;
 

@@ -11,7 +11,6 @@
 #include "support/formats.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"

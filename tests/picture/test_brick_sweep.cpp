@@ -11,7 +11,6 @@
 #include "../../src/picture/bricks/place_across.h"
 #include "support/chip_worlds.h"
 #include "support/ray_cases.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "support/scene_under_test.h"
-#include "thimble/picture/edge_samples.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tests {

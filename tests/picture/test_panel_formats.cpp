@@ -16,7 +16,6 @@
 #include "support/simulated_run.h"
 #include "support/wide_cases.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"

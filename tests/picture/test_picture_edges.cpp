@@ -10,7 +10,6 @@
 #include "support/compact_damage.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"

@@ -10,11 +10,10 @@
 #include "support/lit_cases.h"
 #include "support/ray_cases.h"
 #include "support/wide_cases.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/cutoff.h"
-#include "thimble/picture/edge_samples.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/plane/particles.h"
 
 namespace thimble::tools {

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble {
 namespace {

@@ -14,7 +14,7 @@
 #include "scene/random.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/tree/edited_world.h"
 
 namespace {

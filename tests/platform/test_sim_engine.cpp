@@ -17,7 +17,7 @@
 #include "scene/wide_frames.h"
 #include "support/run_command.h"
 #include "support/simulated_run.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
 
 namespace {

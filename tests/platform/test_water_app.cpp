@@ -17,8 +17,8 @@
 #include "support/lit_world.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include "portable/case.h"
 
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 

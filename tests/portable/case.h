@@ -25,7 +25,6 @@
 #include "thimble/picture/pixel.h"
 #include "thimble/picture/shading.h"
 #include "thimble/trace/ray.h"
-#include "thimble/trace/trace.h"
 
 namespace thimble::portable {
 

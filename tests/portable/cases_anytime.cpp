@@ -2,7 +2,7 @@
 #include "golden/golden_table.h"
 #include "portable/golden_trees.h"
 #include "portable/groups.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/picture/anytime.h"
 
 namespace thimble::portable {

@@ -2,7 +2,7 @@
 #include "portable/groups.h"
 #include "portable/scene.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 namespace {

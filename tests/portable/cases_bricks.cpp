@@ -2,10 +2,8 @@
 #include "portable/brick_world.h"
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/base/memory.h"
 #include "thimble/picture/cutoff.h"
-#include "thimble/picture/edge_samples.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::portable {

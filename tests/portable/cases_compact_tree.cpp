@@ -1,8 +1,8 @@
 // The tree in flash: its size, its bytes, what is refused, and that damage cannot do harm.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
-#include "thimble/tree/morton.h"
+#include "thimble/base/memory.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::portable {
 namespace {

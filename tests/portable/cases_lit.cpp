@@ -2,8 +2,7 @@
 #include "golden/lit_table.h"
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
-#include "thimble/light/balls.h"
+#include "thimble/base/memory.h"
 #include "thimble/light/render.h"
 
 namespace thimble::portable {

@@ -1,8 +1,8 @@
 // Numbers and bytes that everything else stands on: fixed point, spans, the arena, CRC-32, Morton codes.
 #include "portable/groups.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/base/vec.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::portable {
 namespace {

@@ -1,7 +1,7 @@
 // The octree that changes: what is in it, how many nodes it has, what a full pool does, what merging does.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 namespace {

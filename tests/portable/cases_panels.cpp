@@ -4,7 +4,7 @@
 #include "portable/golden_trees.h"
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 namespace {

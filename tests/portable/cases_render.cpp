@@ -1,7 +1,7 @@
 // Bands: each pixel is its ray's shade, whatever the structure, the format and the way the picture is cut.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 namespace {

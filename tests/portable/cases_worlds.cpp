@@ -2,8 +2,8 @@
 // section that says what light does.
 #include "portable/groups.h"
 #include "portable/scene.h"
-#include "thimble/base/crc32.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/base/memory.h"
+#include "thimble/light/scene.h"
 #include "thimble/trace/secondary_ray.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/edited_world.h"

@@ -1,6 +1,6 @@
 #include "portable/runner.h"
 
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::portable {
 namespace {

@@ -15,11 +15,10 @@
 
 #include "base/ranges.h"
 #include "support/ray_cases.h"
-#include "thimble/light/optics.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/picture/render.h"
+#include "thimble/trace/ray.h"
 #include "thimble/trace/secondary_ray.h"
-#include "thimble/trace/trace.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble {

@@ -18,7 +18,7 @@
 #include "scene/scene_shape.h"
 #include "scene/tone.h"
 #include "support/lit_world.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 namespace {
 

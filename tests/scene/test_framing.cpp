@@ -9,7 +9,7 @@
 #include "readers/source.h"
 #include "scene/best_view.h"
 #include "scene/framing.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"

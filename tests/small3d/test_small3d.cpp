@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 #define THIMBLE_SMALL3DLIB_HEADER "small3d/small3dlib.h"
 #include "benchmarks/small3d/small3d_drawing.h"

@@ -24,8 +24,8 @@
 #include "support/solid_worlds.h"
 #include "support/trial_worlds.h"
 #include "thimble/picture/anytime.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/cutoff.h"
+#include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/shared_tree.h"
 

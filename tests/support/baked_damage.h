@@ -9,7 +9,7 @@
 
 #include "support/compact_damage.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::tests {
 

@@ -6,8 +6,8 @@
 
 #include <cstdint>
 
-#include "thimble/base/crc32.h"
-#include "thimble/trace/trace.h"
+#include "thimble/base/memory.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::tests {

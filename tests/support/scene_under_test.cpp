@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tests {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "reference/reference.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "readers/oct.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {

@@ -13,7 +13,7 @@
 #include "scene/framing.h"
 #include "scene/scene_source.h"
 #include "support/solid_worlds.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {

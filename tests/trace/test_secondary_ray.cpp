@@ -18,9 +18,9 @@
 #include "reference/secondary.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 #include "thimble/trace/secondary_ray.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace {
 

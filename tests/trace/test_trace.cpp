@@ -14,7 +14,7 @@
 #include "reference/reference.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "support/scene_under_test.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests::trace_edges {

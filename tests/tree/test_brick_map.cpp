@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/scene_under_test.h"
-#include "thimble/base/crc32.h"
+#include "thimble/base/memory.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"
 

@@ -14,7 +14,6 @@
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/compact_tree.h"
-#include "thimble/tree/morton.h"
 #include "thimble/tree/octree.h"
 
 namespace {

@@ -10,7 +10,6 @@
 #include "support/compact_damage.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
-#include "thimble/picture/brick_render.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/edited_world.h"
 #include "thimble/tree/octree.h"

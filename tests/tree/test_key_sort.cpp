@@ -13,7 +13,7 @@
 #include "scene/scene_source.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {

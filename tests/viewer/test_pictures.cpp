@@ -11,7 +11,7 @@
 
 #include "support/run_command.h"
 #include "thimble/light/scene.h"
-#include "thimble/picture/edge_samples.h"
+#include "thimble/picture/render.h"
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
 #include "viewer/magnify.h"

@@ -8,7 +8,7 @@
 
 #include "support/lit_world.h"
 #include "support/wide_cases.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 #include "wide/lit/kernels.h"
 #include "wide/lit/slope_table.h"
 

@@ -12,7 +12,7 @@
 #include "scene/host_memory.h"
 #include "support/hard_frames.h"
 #include "support/wide_cases.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 #include "wide/exact.h"
 #include "wide/surface.h"
 

@@ -9,7 +9,7 @@
 #include "scene/lit_streams.h"
 #include "scene/wide_renderer.h"
 #include "thimble/light/render.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "wide/limits.h"
 
 namespace thimble::tools {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "output/units.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {

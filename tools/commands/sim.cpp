@@ -32,7 +32,7 @@
 #include "scene/named_scenes.h"
 #include "scene/wide_frames.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 namespace {

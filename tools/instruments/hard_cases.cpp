@@ -8,9 +8,8 @@
 
 #include "reference/reference.h"
 #include "reference/textbook.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
-#include "thimble/tree/morton.h"
 
 namespace thimble::tools {
 namespace {

@@ -15,7 +15,6 @@
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
 #include "thimble/tree/compact_tree.h"
-#include "thimble/tree/morton.h"
 
 namespace thimble::tools {
 namespace {

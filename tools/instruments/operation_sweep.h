@@ -84,7 +84,7 @@ struct Operation {
   Found (*sweep)(Draw& draw, std::uint64_t cases);
 };
 
-/// Those of thimble/light/optics.h.
+/// Those of thimble/light/host/optics.h.
 std::vector<Operation> optics_operations();
 
 }  // namespace thimble::tools::sweep

@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "instruments/operation_sweep.h"
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 
 namespace thimble::tools::sweep {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "output/hit_csv.h"
 #include "readers/source.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 

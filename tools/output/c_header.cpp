@@ -5,7 +5,7 @@
 #include <cctype>
 #include <cstdio>
 
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "readers/scene_statements.h"
 #include "readers/text.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools::statements {

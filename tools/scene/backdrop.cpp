@@ -4,7 +4,7 @@
 #include <array>
 
 #include "scene/lit_streams.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {

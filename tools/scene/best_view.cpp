@@ -8,7 +8,7 @@
 #include "readers/source.h"
 #include "scene/workers.h"
 #include "thimble/picture/shading.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {

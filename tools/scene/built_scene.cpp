@@ -7,7 +7,7 @@
 #include "output/units.h"
 #include "scene/scene_source.h"
 #include "scene/structure_builder.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 namespace {

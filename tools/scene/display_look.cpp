@@ -7,7 +7,7 @@
 #include "scene/lit_setup.h"
 #include "scene/tone.h"
 #include "thimble/light/render.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,5 +1,5 @@
 /// @file edge_rows.h
-/// Pictures whose samples go where edges are (thimble/picture/edge_samples.h), row by row, by whatever draws
+/// Pictures whose samples go where edges are (thimble/picture/render.h), row by row, by whatever draws
 /// samples.
 #ifndef THIMBLE_TOOLS_SCENE_EDGE_ROWS_H
 #define THIMBLE_TOOLS_SCENE_EDGE_ROWS_H
@@ -13,7 +13,7 @@
 #include "thimble/base/memory.h"
 #include "thimble/base/status.h"
 #include "thimble/picture/camera.h"
-#include "thimble/picture/edge_samples.h"
+#include "thimble/picture/render.h"
 
 namespace thimble::tools {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "scene/workers.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 namespace {

@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "readers/source.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/scene.h"
 #include "thimble/tree/compact_tree.h"
 

@@ -10,7 +10,7 @@
 #include "scene/lit_setup.h"
 #include "scene/workers.h"
 #include "thimble/light/render.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {

@@ -11,7 +11,7 @@
 #include "scene/palette.h"
 #include "scene/text_scene.h"
 #include "scene/voxelise.h"
-#include "thimble/light/baked_lighting.h"
+#include "thimble/light/scene.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools {

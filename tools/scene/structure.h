@@ -7,7 +7,7 @@
 
 #include "scene/scene_arguments.h"
 #include "thimble/picture/render.h"
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"

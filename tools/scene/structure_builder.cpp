@@ -8,7 +8,7 @@
 #include "readers/oct.h"
 #include "scene/key_sort.h"
 #include "scene/scene_source.h"
-#include "thimble/tree/morton.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 namespace {

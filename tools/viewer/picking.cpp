@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools::viewer {
 namespace {

@@ -8,8 +8,8 @@
 #include "scene/behind.h"
 #include "scene/tone_table.h"
 #include "thimble/base/memory.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 #include "web/layout.h"
 #include "web/look_block.h"
 

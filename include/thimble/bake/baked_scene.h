@@ -45,7 +45,7 @@ enum class SectionKind : uint32_t {
   kCamera = 3,                ///< SceneCamera
   kBrickMap = 4,              ///< tables for frames on a chip (brick_map.h)
   kName = 5,                  ///< what it was made from: text in UTF-8, no final zero
-  kLighting = 6,              ///< surfaces, lights, sky, fog, water (baked_lighting.h)
+  kLighting = 6,              ///< surfaces, lights, sky, fog, water (light/scene.h)
   kLook = kOptionalKind | 1,  ///< what `thimble render` needs to know of the source; nothing to the core
 };
 

@@ -17,7 +17,7 @@
 #include "../base/memory.h"
 #include "../base/status.h"
 #include "../base/vec.h"
-#include "../picture/brick_render.h"
+#include "../picture/render.h"
 #include "../tree/brick_map.h"
 #include "render.h"
 

@@ -50,7 +50,7 @@
 
 #include "../base/memory.h"
 #include "../base/status.h"
-#include "../trace/trace.h"
+#include "../trace/ray.h"
 #include "camera.h"
 #include "pixel.h"
 #include "render.h"

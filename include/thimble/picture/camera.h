@@ -161,7 +161,7 @@ class Camera {
 
   /// A camera of `width_px` x `height_px` pixels of this one, from (px, py) on, all of them on this one's
   /// picture: the ray of its pixel (i, j) is this one's of (px + i, py + j), integer for integer. For a few
-  /// pixels of a finer picture (edge_samples.h).
+  /// pixels of a finer picture (render.h, "Samples where edges are").
   Camera window(int32_t px, int32_t py, int32_t width_px, int32_t height_px) const {
     Camera camera = *this;
     camera.width_px_ = width_px;

@@ -18,7 +18,7 @@
 /// So it only adds solid, in cubes that hold something solid already and are less than `pixels` pixels wide:
 /// nothing vanishes, and what is hit is never farther away than without a cut-off. The answer is a fact of
 /// integers, the same in every width and on every machine. `pixels` 0 cuts nothing: the very answers, visits
-/// and bytes of trace.h and render.h.
+/// and bytes of ray.h and render.h.
 ///
 /// Source: the idea of stopping where a node is smaller than a pixel is that of Crassin, Neyret, Lefebvre and
 /// Eisemann, "GigaVoxels", I3D 2009, and of Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010.
@@ -40,7 +40,6 @@
 #include "../base/status.h"
 #include "../base/vec.h"
 #include "../trace/ray.h"
-#include "../trace/trace.h"
 #include "../tree/compact_tree.h"
 #include "camera.h"
 #include "pixel.h"

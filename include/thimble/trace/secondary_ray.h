@@ -26,7 +26,6 @@
 #include "../base/vec.h"
 #include "../tree/compact_tree.h"
 #include "ray.h"
-#include "trace.h"
 
 namespace thimble {
 
@@ -112,7 +111,7 @@ Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint&
 Status any_hit_before(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,
                       uint32_t* visits = nullptr, const TraceOptions& options = {});
 
-/// The same with Width::k32 and nothing of the 64-bit path behind them, as closest_hit_32 (trace.h); a point
+/// The same with Width::k32 and nothing of the 64-bit path behind them, as closest_hit_32 (ray.h); a point
 /// of the ray is one of its planes' or its start.
 Status leave_medium_32(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
                        const RayPoint& from = {}, uint32_t max_visits = UINT32_MAX);

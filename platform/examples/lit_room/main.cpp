@@ -4,8 +4,8 @@
 #include "../display.h"
 #include "scene.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/baked_lighting.h"
 #include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 using namespace thimble;
 
 int main() {

@@ -4,8 +4,7 @@
 #include "panels.h"
 #include "scene.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/drivers/color_panel.h"
-#include "thimble/drivers/page_panel.h"
+#include "thimble/drivers/panel.h"
 #include "thimble/picture/render.h"
 using namespace thimble;
 

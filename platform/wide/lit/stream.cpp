@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "thimble/light/optics.h"
+#include "thimble/light/host/optics.h"
 #include "wide/lit/taker.h"
 
 namespace thimble::wide {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "thimble/trace/trace.h"
+#include "thimble/trace/ray.h"
 #include "wide/rays/job.h"
 #include "wide/rays/leaf_tag.h"
 

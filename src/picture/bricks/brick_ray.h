@@ -17,8 +17,8 @@
 #include "../../base/ranges.h"
 #include "inks.h"
 #include "layers.h"
-#include "thimble/picture/brick_render.h"
-#include "thimble/trace/trace.h"
+#include "thimble/picture/render.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::bricks {
 namespace {

@@ -6,7 +6,7 @@
 #include "beam.h"
 #include "brick_ray.h"
 #include "sweep.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
 #include "tile.h"
 
 namespace thimble::bricks {

@@ -10,7 +10,7 @@
 #include "place_across.h"
 #include "shadow.h"
 #include "sweep.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
 #include "tile.h"
 
 namespace thimble::bricks {

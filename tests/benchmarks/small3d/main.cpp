@@ -17,7 +17,7 @@
 #include "benchmarks/small3d/voxel_faces.h"
 #include "scene/baking.h"
 #include "scene/scene_source.h"
-#include "thimble/picture/brick_render.h"
+#include "thimble/picture/render.h"
 #ifdef THIMBLE_HAVE_SMALL3DLIB
 #include "benchmarks/small3d/small3d_drawing.h"
 #endif

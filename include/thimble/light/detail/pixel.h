@@ -1,7 +1,7 @@
 /// @file pixel.h
 /// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
 /// which the set names. Not for callers; it is here because the loop is compiled with the caller's set. A
-/// frame asks the tree itself; or it is asked.h's, to which somebody else gives the answers; or balls.h's.
+/// frame asks the tree itself; or it is asked.h's, to which somebody else gives the answers; or one with balls (light/render.h).
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
 /// since the weights of a pixel's rays never add up to more than 1.
@@ -17,7 +17,6 @@
 #include "../../picture/shading.h"
 #include "../../trace/ray.h"
 #include "../../trace/secondary_ray.h"
-#include "../../trace/trace.h"
 #include "../../tree/compact_tree.h"
 #include "../scene.h"
 #include "../water.h"

@@ -5,7 +5,7 @@
 #include <Adafruit_SSD1306.h>
 #include <Wire.h>
 #include <thimble.h>
-#include <thimble/picture/brick_render.h>
+#include <thimble/picture/render.h>
 
 #include "scene.h"
 

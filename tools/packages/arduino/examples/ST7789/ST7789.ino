@@ -5,7 +5,7 @@
 #include <Adafruit_ST7789.h>
 #include <SPI.h>
 #include <thimble.h>
-#include <thimble/picture/brick_render.h>
+#include <thimble/picture/render.h>
 
 #include "scene.h"
 

@@ -15,13 +15,13 @@
 /// Sources: Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994 (reflectance); Shirley
 /// and Chiu, "A Low Distortion Map Between Disk and Square", 1997 (why equal areas of the disc give cosine
 /// distribution); the laws of Snell and of Beer and Lambert.
-#ifndef THIMBLE_LIGHT_OPTICS_H
-#define THIMBLE_LIGHT_OPTICS_H
+#ifndef THIMBLE_LIGHT_HOST_OPTICS_H
+#define THIMBLE_LIGHT_HOST_OPTICS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../base/vec.h"
+#include "../../base/vec.h"
 
 namespace thimble {
 
