@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "scene/backdrop.h"
@@ -104,9 +105,16 @@ TEST_CASE(
 }
 
 TEST_CASE("backdrop: light on the ground by vectors -> what the core finds, ray by ray") {
-  for (const char* const name : {"spheres", "points:3000"}) {
-    CAPTURE(name);
-    const auto source = open_scene({.scene = name, .depth = 5});
+  struct World {
+    std::string name;
+    int depth;
+  };
+  // Where worlds are wide, most of the ground has nothing near it, or only on one side.
+  for (const World& world :
+       {World{"spheres", 5}, World{"points:3000", 5}, World{"spheres", 7}, World{"points:30000", 7}}) {
+    CAPTURE(world.name);
+    CAPTURE(world.depth);
+    const auto source = open_scene({.scene = world.name, .depth = world.depth});
     const BuiltScene built(*source, {}, {});
     const CompactTree& tree = built.compact();
     ViewWishes view;
@@ -129,7 +137,8 @@ TEST_CASE("backdrop: light on the ground by vectors -> what the core finds, ray 
       }
     }
     // Under the model, within it, and far above what is seen.
-    for (const std::int32_t ground_z : {tree.bounds().low.z, 7, 31}) {
+    for (const std::int32_t ground_z :
+         {tree.bounds().low.z, 7 << (world.depth - 5), 31 << (world.depth - 5)}) {
       look.ground.z = ground_z;
       std::vector<std::uint8_t> core(rays.size());
       std::vector<std::uint8_t> vectors(rays.size());

@@ -138,6 +138,48 @@ TEST_CASE("refinement: coarse to fine -> ends at the rows of the finished pictur
 }
 
 TEST_CASE(
+    "finished picture: after coarse passes -> their samples are taken, and the bytes are those without "
+    "them") {
+  const auto goes_on = [](std::int32_t) { return true; };
+  for (const char* const name : {"castle", "spheres,depth=5"}) {
+    for (const int across : {1, 2, 3}) {
+      CAPTURE(name);
+      CAPTURE(across);
+      viewer::LookWishes wishes;
+      wishes.across = across;
+      const auto look = std::make_shared<const FinishedLook>(scene_of(name), wishes);
+      const FinishedPicture picture(look, view_of(101, 67));
+      REQUIRE(picture.across() == across);
+      wide::Threads threads(2);
+      std::vector<std::uint8_t> wanted;
+      REQUIRE(picture.draw(0, &threads, &wanted, goes_on));
+      for (const std::vector<int>& steps : {std::vector<int>{8, 4, 2, 1}, std::vector<int>{3, 1},
+                                            std::vector<int>{4}, std::vector<int>{1, 2}}) {
+        KeptSamples kept;
+        std::vector<std::uint8_t> rgb;
+        for (const int step : steps) {
+          REQUIRE(picture.draw(step, &threads, &rgb, goes_on, &kept));
+          CHECK(kept.step == step);
+          CHECK(rgb.size() == static_cast<std::size_t>(3 * thinned_px(101, step) * thinned_px(67, step)));
+          // A pass that is interrupted leaves what is kept as it was.
+          CHECK_FALSE(picture.draw(
+              step, &threads, &rgb, [](std::int32_t) { return false; }, &kept));
+        }
+        std::vector<std::uint8_t> finished;
+        KeptSamples other = kept;
+        REQUIRE(picture.draw(0, &threads, &finished, goes_on, &kept));
+        CHECK(finished == wanted);
+        other.drawn[0] = {255, 0, 255, 255};
+        REQUIRE(picture.draw(0, &threads, &finished, goes_on, &other));
+        CHECK(finished != wanted);
+        std::copy_n(wanted.begin(), 3, finished.begin());
+        CHECK(finished == wanted);
+      }
+    }
+  }
+}
+
+TEST_CASE(
     "finished picture: samples at edges -> row by row, the bytes of render with the words of the look") {
   struct Wish {
     std::string scene;

@@ -317,6 +317,50 @@ TEST_CASE("rays: the material of every voxel -> the tree's") {
 }
 
 // THIMBLE_LONG=1: ten million rays and more, each by every instruction set.
+TEST_CASE("rays: empty boxes -> nothing solid in them, nor in what is left of their leaves") {
+  std::size_t empty = 0;
+  std::size_t full = 0;
+  for (int level = 1; level <= 7; ++level) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      CAPTURE(level);
+      CAPTURE(seed);
+      std::mt19937_64 random(seed);
+      const int side = 1 << level;
+      std::vector<Vec3i> solid;
+      const WideScene scene = make_scene(level, [&](Octree* octree) {
+        for (std::int64_t left = pick(random, 0, side); left > 0; --left) {
+          solid.push_back(random_voxel(random, 0, side - 1));
+          REQUIRE(octree->insert(solid.back(), 1) == Status::kOk);
+        }
+      });
+      const MapUnderTest made = make_map(random, scene.tree);
+      const auto holds = [&](const VoxelBox& box) {
+        return std::any_of(solid.begin(), solid.end(), [&](const Vec3i& voxel) {
+          return voxel.x >= box.low.x && voxel.x < box.high.x && voxel.y >= box.low.y &&
+                 voxel.y < box.high.y && voxel.z >= box.low.z && voxel.z < box.high.z;
+        });
+      };
+      for (int turn = 0; turn < 200; ++turn) {
+        VoxelBox box;
+        VoxelBox leaves;
+        for (int axis = 0; axis < 3; ++axis) {
+          box.low[axis] = static_cast<int>(pick(random, -3 - side, side + 3));
+          box.high[axis] = box.low[axis] + static_cast<int>(pick(random, 1, turn % 2 == 0 ? 20 : 2 * side));
+          leaves.low[axis] = box.low[axis] & ~3;
+          leaves.high[axis] = (box.high[axis] + 3) & ~3;
+        }
+        const bool is_empty = made.map.is_empty(box);
+        CHECK_FALSE((is_empty && holds(box)));
+        CHECK_FALSE((!is_empty && !holds(leaves)));
+        ++(is_empty ? empty : full);
+      }
+    }
+  }
+  CHECK(empty > 1000);
+  CHECK(full > 1000);
+  CHECK_FALSE(wide::RayMap(CompactTree()).is_empty({{0, 0, 0}, {1, 1, 1}}));  // without a map nobody knows
+}
+
 TEST_CASE("rays: a long run -> the core's answers") {
   if (std::getenv("THIMBLE_LONG") == nullptr) {
     return;

@@ -11,36 +11,93 @@ namespace {
 
 // Rays that are traced together: a few for each lane of the widest vectors, little on the stack.
 constexpr std::size_t kAtOnce = 256;
-constexpr std::size_t kPlacesAtOnce = kAtOnce / kAroundCount;
 
-// Shares of what stands near the model: without what it closes off above.
+// The quadrant of a direction of kAround: bit 0 to smaller x, bit 1 to smaller y.
+constexpr unsigned quadrant_of(const Vec3i& direction) {
+  return (direction.x < 0 ? 1U : 0U) | (direction.y < 0 ? 2U : 0U);
+}
+
+// Of the quadrants above a voxel of the ground, those in which there is anything within reach, by their bits.
+class NearQuadrants {
+ public:
+  NearQuadrants(const LitStreams& streams, std::int32_t reach) : streams_(streams), reach_(reach) {}
+
+  unsigned of(const Vec3i& voxel) {
+    if (!is_known_ || voxel != voxel_) {
+      is_known_ = true;
+      voxel_ = voxel;
+      found_ = find(voxel);
+    }
+    return found_;
+  }
+
+ private:
+  unsigned find(const Vec3i& voxel) const {
+    const std::int32_t beyond = reach_ + 1;
+    VoxelBox all{{voxel.x - beyond, voxel.y - beyond, voxel.z},
+                 {voxel.x + beyond + 1, voxel.y + beyond + 1, voxel.z + beyond + 1}};
+    if (streams_.is_empty(all)) {
+      return 0;
+    }
+    unsigned found = 0;
+    for (unsigned quadrant = 0; quadrant < 4; ++quadrant) {
+      VoxelBox box = all;
+      for (int axis = 0; axis < 2; ++axis) {
+        // A ray that begins on the lower plane of its voxel may go into the one before.
+        (quadrant >> axis & 1U) != 0 ? box.high[axis] = voxel[axis] + 1 : box.low[axis] = voxel[axis];
+      }
+      found |= streams_.is_empty(box) ? 0U : 1U << quadrant;
+    }
+    return found;
+  }
+
+  const LitStreams& streams_;
+  std::int32_t reach_;
+  bool is_known_ = false;
+  Vec3i voxel_;
+  unsigned found_ = 0;
+};
+
+// Shares of what stands near the model: without what it closes off above. At most kAtOnce places.
 Status darken_corners(const Look& look, const LitStreams& streams, Span<const Vec3Q8> places,
                       std::uint8_t* const* shares) {
   std::array<Ray, kAtOnce> rays;
   std::array<RayPoint, kAtOnce> entries;
-  for (std::size_t first = 0; first < places.size; first += kPlacesAtOnce) {
-    const std::size_t count = std::min(kPlacesAtOnce, places.size - first);
-    std::size_t ray = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-      for (const Vec3i& direction : kAround) {
-        rays[ray++] = {places.data[i], direction};
+  std::array<std::size_t, kAtOnce> place_of;  // by ray
+  std::array<std::int64_t, kAtOnce> closed{};
+  std::size_t count = 0;
+  const auto trace = [&] {
+    const Status status = streams.first_entry_before({rays.data(), count}, {look.ground.reach, kAroundLength},
+                                                     {entries.data(), count});
+    for (std::size_t ray = 0; ray < count; ++ray) {
+      closed[place_of[ray]] +=
+          entries[ray].t_denominator == 0 ? 0 : closed_at(entries[ray], look.ground.reach);
+    }
+    count = 0;
+    return status;
+  };
+  NearQuadrants near(streams, look.ground.reach);
+  Status status = Status::kOk;
+  for (std::size_t place = 0; place < places.size && status == Status::kOk; ++place) {
+    const Vec3Q8& at = places.data[place];
+    const unsigned quadrants = near.of({at.x.floor(), at.y.floor(), at.z.floor()});
+    for (const Vec3i& direction : kAround) {
+      if ((quadrants >> quadrant_of(direction) & 1U) != 0) {
+        place_of[count] = place;
+        rays[count++] = {at, direction};
       }
     }
-    const Status status = streams.first_entry_before({rays.data(), ray}, {look.ground.reach, kAroundLength},
-                                                     {entries.data(), ray});
-    if (status != Status::kOk) {
-      return status;
-    }
-    const RayPoint* entry = entries.data();
-    for (std::size_t i = first; i < first + count; ++i) {
-      std::int64_t closed = 0;
-      for (std::size_t around = 0; around < kAroundCount; ++around, ++entry) {
-        closed += entry->t_denominator == 0 ? 0 : closed_at(*entry, look.ground.reach);
-      }
-      *shares[i] = in_corner(*shares[i], closed);
+    if (count + kAroundCount > kAtOnce) {
+      status = trace();
     }
   }
-  return Status::kOk;
+  if (status == Status::kOk) {
+    status = trace();
+  }
+  for (std::size_t place = 0; place < places.size; ++place) {
+    *shares[place] = in_corner(*shares[place], closed[place]);
+  }
+  return status;
 }
 
 // Of at most kAtOnce rays. On an error the shares are not to be used.

@@ -46,6 +46,8 @@ class LitStreams {
   /// Whether each ray meets anything, 1 or 0, as the core's `any_hit`. This and the next: any number of threads at a
   /// time, each with rays of its own. An error of a ray is the call's; the others are answered.
   virtual Status any_hit(Span<const Ray> rays, Span<std::uint8_t> hits) const = 0;
+  /// Whether no voxel of a box is solid; false where that takes longer to find out.
+  virtual bool is_empty(const VoxelBox& box) const = 0;
   /// Where each ray enters something solid, if before the point `before`: t as in the core's `Hit`; denominator 0 for
   /// a miss.
   virtual Status first_entry_before(Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) const = 0;

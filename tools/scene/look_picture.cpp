@@ -147,34 +147,67 @@ Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts
 
 Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
                              Bytes samples, LitCounts* counts) const {
-  const Status status =
-      canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places, colors, counts);
+  const int threads = canvas_.streams != nullptr ? canvas_.streams->threads() : canvas_.threads;
+  constexpr std::size_t kAtOnce = 256;
+  const auto tasks = static_cast<std::int32_t>((places.size + kAtOnce - 1) / kAtOnce);
+  const auto each = [&](const auto& draw) {
+    return for_rows(tasks, threads, [&](std::int32_t task, std::size_t /*thread*/) {
+      const std::size_t first = kAtOnce * static_cast<std::size_t>(task);
+      return draw(static_cast<std::size_t>(task), first, std::min(first + kAtOnce, places.size));
+    });
+  };
+  std::vector<std::uint8_t> shares(places.size);
+  (void)each([&](std::size_t /*task*/, std::size_t first, std::size_t end) {
+    std::array<Ray, kAtOnce> rays;
+    for (std::size_t i = first; i < end; ++i) {
+      rays[i - first] = camera.ray(places.data[i].x, places.data[i].y);
+    }
+    find_light_behind(*canvas_.tree, *canvas_.look, canvas_.streams, {rays.data(), end - first},
+                      shares.data() + first);
+    return Status::kOk;
+  });
+  // Where light behind is seen, what the rays meet is nothing: only who counts asks for it all the same.
+  std::vector<SamplePlace> wanted;
+  std::vector<std::size_t> before(static_cast<std::size_t>(tasks));  // colours of the tasks before
+  for (std::size_t i = 0; i < places.size; ++i) {
+    if (i % kAtOnce == 0) {
+      before[i / kAtOnce] = wanted.size();
+    }
+    if (counts != nullptr || shares[i] == kNothingBehind) {
+      wanted.push_back(places.data[i]);
+    }
+  }
+  const Status status = trace_places(camera, {wanted.data(), wanted.size()}, colors, counts);
   if (status != Status::kOk) {
     return status;
   }
-  const Look& look = *canvas_.look;
-  const Camera& whole = canvas_.framing->camera;
-  constexpr std::size_t kAtOnce = 256;
-  const auto tasks = static_cast<std::int32_t>((places.size + kAtOnce - 1) / kAtOnce);
-  return for_rows(tasks, canvas_.streams->threads(), [&](std::int32_t task, std::size_t /*thread*/) {
-    const std::size_t first = kAtOnce * static_cast<std::size_t>(task);
-    const std::size_t count = std::min(kAtOnce, places.size - first);
-    std::array<Ray, kAtOnce> rays;
-    std::array<std::uint8_t, kAtOnce> shares;
-    for (std::size_t i = 0; i < count; ++i) {
-      rays[i] = camera.ray(places.data[first + i].x, places.data[first + i].y);
-    }
-    find_light_behind(*canvas_.tree, look, canvas_.streams, {rays.data(), count}, shares.data());
-    for (std::size_t i = first; i < first + count; ++i) {
-      const SamplePlace& place = places.data[i];
-      const std::uint8_t share = shares[i - first];
-      const std::uint8_t* color = colors.data + 3 * i;
-      const Rgb8 behind = backdrop_color(look.background, place.py, whole.height_px());
-      const Sample sample = sample_of({color[0], color[1], color[2]}, share, behind);
+  return each([&](std::size_t task, std::size_t first, std::size_t end) {
+    const std::uint8_t* color = colors.data + 3 * before[task];
+    for (std::size_t i = first; i < end; ++i) {
+      const bool has_color = counts != nullptr || shares[i] == kNothingBehind;
+      const Rgb8 behind =
+          backdrop_color(canvas_.look->background, places.data[i].py, canvas_.framing->camera.height_px());
+      const Sample sample =
+          sample_of(has_color ? Rgb8{color[0], color[1], color[2]} : Rgb8{}, shares[i], behind);
       std::copy(sample.begin(), sample.end(), samples.data + 4 * i);
+      color += has_color ? 3 : 0;
     }
     return Status::kOk;
   });
+}
+
+Status LookRows::trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
+                              LitCounts* counts) const {
+  if (canvas_.streams != nullptr) {
+    return canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places, colors,
+                                          counts);
+  }
+  return for_rows(static_cast<std::int32_t>(places.size), canvas_.threads,
+                  [&](std::int32_t place, std::size_t /*thread*/) {
+                    const auto i = static_cast<std::size_t>(place);
+                    return trace_colors(camera.window(places.data[i].x, places.data[i].y, 1, 1), 0, 1,
+                                        colors.subspan(3 * i, 3), nullptr);
+                  });
 }
 
 void LookRows::finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* sums, std::uint32_t count,

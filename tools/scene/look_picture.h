@@ -60,7 +60,8 @@ class LookRows {
   /// What an edge painter draws: samples with their tone and what is behind them, red, green, blue and cover,
   /// a byte each.
   Status draw_run(const SampleRun& run, Bytes samples, LitCounts* counts) const;
-  /// The same of single pixels of a camera, by `canvas.streams`, which there is. `colors` has three bytes for each.
+  /// The same of single pixels of a camera, by `canvas.streams` and its threads, or ray by ray. `colors` has three bytes
+  /// for each. Without `counts` (with them there must be streams) nothing is traced twice that meets nothing.
   Status draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors, Bytes samples,
                      LitCounts* counts) const;
   /// The pixel of such samples' sums.
@@ -78,6 +79,8 @@ class LookRows {
   Status trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
                LitCounts* counts) const;
   Status trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
+                      LitCounts* counts) const;
+  Status trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
                       LitCounts* counts) const;
   void find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes shares) const;
   void finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const;

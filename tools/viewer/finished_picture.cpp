@@ -1,8 +1,8 @@
 #include "viewer/finished_picture.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-
 #include <cstring>
 #include <new>
 
@@ -126,8 +126,6 @@ void FinishedPicture::take_own_look() {
     own_->across = 1;  // such a camera has no rays between the pixels'
     own_->at_edges = false;
   }
-  own_coarse_ = *own_;
-  own_coarse_.across = 1;
   quick_tone_ = quick_tone(*own_, look_->exposure_.load());
   quick_shading_ = shading_;
   if (own_->kind == LookKind::kStars) {
@@ -156,6 +154,9 @@ Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView 
 namespace {
 
 constexpr std::int32_t kRowsAThread = 2;
+// Many rows are drawn together, as long as a key need not wait for them.
+constexpr std::chrono::milliseconds kChunkTime{40};
+constexpr std::int32_t kMostRowsAThread = 8;
 constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
 
 Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
@@ -188,9 +189,10 @@ void FinishedPicture::draw_row(int step, std::int32_t y, std::uint8_t* rgb) cons
 }
 
 bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
-                           const GoesOn& goes_on) const {
+                           const GoesOn& goes_on, KeptSamples* kept) const {
   if (own_ && own_->kind == LookKind::kLit && (step != 0 || !own_->at_edges)) {
-    return draw_own(step, threads, rgb, goes_on);
+    KeptSamples none;
+    return draw_own(step, threads, rgb, goes_on, kept != nullptr ? kept : &none);
   }
   if (own_ && step == 0) {
     return paint_own(threads->count(), rgb, goes_on);
@@ -252,49 +254,39 @@ void FinishedPicture::expose(const LookCanvas& finished) const {
 }
 
 bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
-                               const GoesOn& goes_on) const {
-  const bool is_final = step == 0;
-  const Camera drawn = is_final ? fine_ : camera().thinned(step);
-  const LookCanvas finished{&look_->scene_->tree(), &*own_, &framing_, fine_, {}, threads->count()};
-  LookCanvas canvas = finished;
-  if (!is_final) {
-    canvas.look = &own_coarse_;
-    canvas.fine = drawn;
-  }
-  expose(finished);
+                               const GoesOn& goes_on, KeptSamples* kept) const {
+  LookCanvas canvas{&look_->scene_->tree(), &*own_, &framing_, fine_, {}, threads->count()};
   const std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::try_to_lock);
   if (lock.owns_lock()) {
     canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
   }
-  const LookRows rows(canvas, drawn, exposure_);
+  expose(canvas);
+  const LookRows rows(canvas, fine_, exposure_);
+  SamplePass pass(rows, fine_, own_->across, step, kept);
   Image image;
   image.width_px = thinned_px(width_px(), std::max(step, 1));
   image.height_px = thinned_px(height_px(), std::max(step, 1));
   const std::size_t line = 3 * static_cast<std::size_t>(image.width_px);
   image.pixels.resize(line * static_cast<std::size_t>(image.height_px));
   rgb->resize(image.pixels.size());
-  std::vector<std::uint8_t> together;  // work of all rows of a chunk
-  const std::int32_t chunk = kRowsAThread * threads->count();
-  for (std::int32_t first = 0; first < image.height_px; first += chunk) {
+  std::int32_t chunk = kRowsAThread * threads->count();
+  for (std::int32_t first = 0; first < image.height_px;) {
+    const auto start = std::chrono::steady_clock::now();
     const std::int32_t count = std::min(chunk, image.height_px - first);
-    const std::size_t row_bytes = look_work_bytes(image.width_px, canvas.look->across);
-    if (canvas.streams != nullptr) {
-      together.resize(row_bytes * static_cast<std::size_t>(count));
-      check(rows.draw_rows(first, count, Bytes(together.data(), together.size()), &image, nullptr));
-    } else {
-      threads->each(count, [&](int i) {
-        thread_local std::vector<std::uint8_t> work;
-        work.resize(row_bytes);
-        check(rows.draw(first + i, Bytes(work.data(), work.size()), &image, nullptr));
-      });
-    }
+    check(pass.draw(first, count, &image));
     std::memcpy(rgb->data() + line * static_cast<std::size_t>(first),
                 image.pixels.data() + line * static_cast<std::size_t>(first),
                 line * static_cast<std::size_t>(count));
-    if (!goes_on(first + count)) {
+    first += count;
+    if (!goes_on(first)) {
       return false;
     }
+    const auto took = std::chrono::steady_clock::now() - start;
+    chunk = took < kChunkTime / 2 ? std::min(2 * chunk, kMostRowsAThread * threads->count())
+            : took > kChunkTime   ? std::max(chunk / 2, 1)
+                                  : chunk;
   }
+  pass.end();
   return true;
 }
 

@@ -25,6 +25,7 @@
 #include "scene/scene_shape.h"
 #include "thimble/picture/render.h"
 #include "viewer/open_scene.h"
+#include "viewer/sample_passes.h"
 #include "wide/threads.h"
 
 namespace thimble::tools::viewer {
@@ -111,7 +112,9 @@ class FinishedPicture {
   /// are there, and ends it by false; then so does this. Throws InputError where the scene's lights are beyond
   /// the core's limits.
   using GoesOn = std::function<bool(std::int32_t rows)>;
-  bool draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
+  /// `kept` (may be null), which is for this picture alone, spares finer passes what coarser ones have drawn.
+  bool draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on,
+            KeptSamples* kept = nullptr) const;
 
   /// The same for a camera that moves: without shadows, occlusion, mirrors and glass.
   void draw_quick_row(int step, std::int32_t row, std::uint8_t* rgb) const;
@@ -131,8 +134,8 @@ class FinishedPicture {
   void take_own_look();
   Status draw_band(const Camera& camera, const Band& band) const;
   void draw_row(int step, std::int32_t y, std::uint8_t* rgb) const;
-  bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
-                const GoesOn& goes_on) const;
+  bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on,
+                KeptSamples* kept) const;
   bool draw_at_edges(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
   void expose(const LookCanvas& finished) const;
   bool paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
@@ -144,7 +147,6 @@ class FinishedPicture {
   Shading shading_;
   Shading quick_shading_;
   std::optional<Look> own_;  // the scene's own look from here
-  Look own_coarse_;          // with one sample a pixel
   std::optional<WaterSurface> moving_water_;
   ToneTable quick_tone_;
   std::vector<Rgb8> quick_palette_;  // toned, as bright as the brightest face

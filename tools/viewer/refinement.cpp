@@ -25,6 +25,7 @@ struct Refinement::State {
   wide::Threads threads;
   std::atomic<bool> cancelled{false};
   std::atomic<bool> ended{false};
+  KeptSamples kept;
 
   std::mutex mutex;  // of what follows
   std::vector<std::uint8_t> rgb;
@@ -41,7 +42,8 @@ struct Refinement::State {
 // Whether it was drawn to its end.
 bool Refinement::State::draw_coarse(int every) {
   std::vector<std::uint8_t> small;
-  if (!picture->draw(every, &threads, &small, [&](std::int32_t /*rows*/) { return !cancelled.load(); })) {
+  if (!picture->draw(
+          every, &threads, &small, [&](std::int32_t /*rows*/) { return !cancelled.load(); }, &kept)) {
     return false;
   }
   const std::int32_t width = picture->width_px();
@@ -64,26 +66,29 @@ bool Refinement::State::draw_full(bool is_final) {
   std::vector<std::uint8_t> full;
   std::int32_t shown = 0;
   Clock::time_point published = Clock::now();
-  return picture->draw(is_final ? 0 : 1, &threads, &full, [&](std::int32_t drawn) {
-    if (cancelled.load()) {
-      return false;
-    }
-    if (drawn < height && Clock::now() < published + kPublishTime) {
-      return true;
-    }
-    const std::scoped_lock lock(mutex);
-    rgb.resize(full.size());
-    std::memcpy(rgb.data() + line * static_cast<std::size_t>(shown),
-                full.data() + line * static_cast<std::size_t>(shown),
-                line * static_cast<std::size_t>(drawn - shown));
-    shown = drawn;
-    step = is_final ? 0 : 1;
-    percent = 100 * drawn / height;
-    finished = is_final && drawn == height;
-    ++version;
-    published = Clock::now();
-    return true;
-  });
+  return picture->draw(
+      is_final ? 0 : 1, &threads, &full,
+      [&](std::int32_t drawn) {
+        if (cancelled.load()) {
+          return false;
+        }
+        if (drawn < height && Clock::now() < published + kPublishTime) {
+          return true;
+        }
+        const std::scoped_lock lock(mutex);
+        rgb.resize(full.size());
+        std::memcpy(rgb.data() + line * static_cast<std::size_t>(shown),
+                    full.data() + line * static_cast<std::size_t>(shown),
+                    line * static_cast<std::size_t>(drawn - shown));
+        shown = drawn;
+        step = is_final ? 0 : 1;
+        percent = 100 * drawn / height;
+        finished = is_final && drawn == height;
+        ++version;
+        published = Clock::now();
+        return true;
+      },
+      &kept);
 }
 
 void Refinement::run(State* state) {

@@ -95,7 +95,8 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(frame, map, PixelFlow(frame, band, stride), workspace, threads, counts);
+  return draw_by_either(frame, map, PixelFlow(frame, band, stride, !is_opaque(effects)), workspace, threads,
+                        counts);
 }
 
 Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,

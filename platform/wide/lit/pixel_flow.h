@@ -17,23 +17,31 @@ namespace thimble::wide {
 /// The rows of a band, or places on a camera's picture, for any number of threads.
 class PixelFlow {
  public:
-  PixelFlow(const lit::Frame& frame, const Band& band, size_t stride)
+  /// `in_squares`: where pixels have bytes of their own, a thread takes what lies together both ways.
+  PixelFlow(const lit::Frame& frame, const Band& band, size_t stride, bool in_squares)
       : frame_(frame),
         band_(band),
         stride_(stride),
         width_(frame.camera.width_px()),
+        columns_(width_),
         count_(static_cast<size_t>(band.rows)) {
+    is_whole_ = bits_per_pixel(band.format) % 8 == 0;
+    if (in_squares && is_whole_) {
+      columns_ = kSquare;
+      together_ = kSquare;
+      return;
+    }
     // A thread takes some kTogether pixels at a time, and whole bytes.
-    const auto rows = static_cast<size_t>(kTogether / std::max(width_, 1));
+    const auto rows = static_cast<size_t>(kTogether / width_);
     const auto multiple = static_cast<size_t>(band_row_multiple(band.format));
     together_ = std::max<size_t>(rows / multiple, 1) * multiple;
-    is_whole_ = bits_per_pixel(band.format) % 8 == 0;
   }
   /// `rgb` gets three bytes for each place.
   PixelFlow(const lit::Frame& frame, Span<const PixelPlace> places, Bytes rgb)
       : frame_(frame),
         places_(places.data),
         width_(1),
+        columns_(1),
         count_(places.size),
         together_(kTogether),
         is_whole_(true) {
@@ -44,14 +52,16 @@ class PixelFlow {
  private:
   friend class PixelReader;
   static constexpr int32_t kTogether = 256;
+  static constexpr int32_t kSquare = 32;
 
   const lit::Frame& frame_;
   const PixelPlace* places_ = nullptr;
   Band band_;
   size_t stride_ = 3;  // bytes from a row, or a place, to the next one
   int32_t width_;
+  int32_t columns_;  // pixels of a row that a thread takes at a time
   size_t count_;     // rows, or places
-  size_t together_;  // how many of them a thread takes at a time
+  size_t together_;  // how many of them it takes
   bool is_whole_;    // each pixel has bytes of its own
   std::atomic<size_t> next_{0};
 };
@@ -67,8 +77,7 @@ class PixelReader {
  public:
   explicit PixelReader(PixelFlow* flow) : flow_(*flow), rays_(flow->frame_.camera, 0, 0) {}
 
-  /// Takes the next pixel; returns false when none is left. One thread takes a whole row, and all rows that share
-  /// bytes.
+  /// Takes the next pixel; returns false when none is left. One thread takes all rows that share bytes.
   bool next(Ray* ray, PixelSlot* at) {
     if (row_is_done() && !begin_row()) {
       return false;
@@ -85,19 +94,22 @@ class PixelReader {
       ++at_;
     }
     if (at_ == end_) {
-      at_ = flow_.next_.fetch_add(flow_.together_);
+      const size_t part = flow_.next_.fetch_add(1);
+      const auto parts_of_row = static_cast<size_t>((flow_.width_ + flow_.columns_ - 1) / flow_.columns_);
+      at_ = part / parts_of_row * flow_.together_;
       if (at_ >= flow_.count_) {
         end_ = at_;
         end_x_ = x_;
         return false;
       }
       end_ = std::min(at_ + flow_.together_, flow_.count_);
+      first_x_ = static_cast<int32_t>(part % parts_of_row) * flow_.columns_;
     }
-    x_ = 0;
-    end_x_ = flow_.width_;
+    x_ = first_x_;
+    end_x_ = std::min(first_x_ + flow_.columns_, flow_.width_);
     if (is_row()) {
       const auto row = static_cast<int32_t>(at_);
-      rays_ = RowRays(flow_.frame_.camera, 0, flow_.band_.first_row + row);
+      rays_ = RowRays(flow_.frame_.camera, x_, flow_.band_.first_row + row);
       if (!flow_.is_whole_ && begins_bytes(flow_.band_.format, row)) {
         lit::clear_row(flow_.frame_, flow_.band_, line_of(row));
       }
@@ -156,6 +168,7 @@ class PixelReader {
   RowRays rays_;
   size_t at_ = 0;  // the row, or place
   size_t end_ = 0;
+  int32_t first_x_ = 0;  // of each row that it takes together
   int32_t x_ = 0;
   int32_t end_x_ = 0;
 };

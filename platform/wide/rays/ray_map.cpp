@@ -324,6 +324,39 @@ bool RayMap::material_at(const Vec3i& voxel, uint8_t* material) const {
   return true;
 }
 
+bool RayMap::is_empty(const VoxelBox& box) const {
+  if (cells() == nullptr) {
+    return false;
+  }
+  const int bits = cells_.level - kCubeLevel;
+  Vec3i low;  // in leaves
+  Vec3i end;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = std::max(box.low[axis], 0) >> 2;
+    end[axis] = (std::min(box.high[axis], int32_t{1} << cells_.level) + 3) >> 2;
+  }
+  // Of a cube with this number on an axis, the leaves in the box: `wide` bits for each of the four along the axis.
+  const auto part = [&](int axis, int32_t cube, int wide) {
+    const int first = std::max(low[axis] - 4 * cube, 0) * wide;
+    const int last = std::min(end[axis] - 4 * cube, 4) * wide;
+    return UINT64_MAX >> (64 - last) & UINT64_MAX << first;
+  };
+  for (int32_t z = low.z >> 2; 4 * z < end.z; ++z) {
+    for (int32_t y = low.y >> 2; 4 * y < end.y; ++y) {
+      const uint64_t sheet = part(2, z, 16) & part(1, y, 4) * 0x0001000100010001U;
+      for (int32_t x = low.x >> 2; 4 * x < end.x; ++x) {
+        const uint32_t cube = cells_.top[(static_cast<size_t>(z) << bits | static_cast<size_t>(y)) << bits |
+                                         static_cast<size_t>(x)];
+        const bool is_brick = (cube & 15U) == 0;
+        if (is_brick && (cells_.bricks[cube >> 4] & sheet & part(0, x, 1) * 0x1111111111111111U) != 0) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
                         Span<Hit> hits) {
   Job job{&map, rays.data, rays.size, before.data, Bound::kBefore, nullptr, hits.data};

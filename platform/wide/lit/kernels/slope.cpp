@@ -26,6 +26,19 @@ constexpr int32_t kUnit = lit::kSlopeUnit;
 constexpr int kHalves[2 * kReach + 1] = {3, 4, 5, 5, 5, 5, 5, 5, 5, 4, 3};
 static_assert(lit::kSlopeReachHalves == 11);
 
+// Which lanes, from number `first` on, stand for voxels that a column has.
+HWY_INLINE hn::Mask<I32> solid_lanes(const uint16_t* column, size_t first) {
+  const I32 d;
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  static_assert(hn::MaxLanes(I32()) == 16);
+  (void)first;
+  return hn::Mask<I32>{*column};
+#else
+  const auto place = hn::Iota(d, static_cast<int32_t>(first));
+  return hn::TestBit(hn::Set(d, int32_t{*column}), hn::Shl(hn::Set(d, 1), place));
+#endif
+}
+
 // A lane is a voxel of the column: it has R^2 - d^2, or 0 where that is less or nothing is solid. Numbers of
 // columns and rows times these come as sums of sums, from the last one down. Whatever a sum passes on its
 // way, what it ends at fits 32 bits.
@@ -34,13 +47,17 @@ void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradi
   const auto zero = hn::Zero(d);
   const int middle_u = point[1] / kUnit;
   const int middle_v = point[2] / kUnit;
+  int32_t ways_u[2 * kReach + 1];  // squares
+  for (int u = 0; u <= 2 * kReach; ++u) {
+    const int32_t du = (middle_u + u - kReach) * kUnit + kUnit / 2 - point[1];
+    ways_u[u] = du * du;
+  }
   uint32_t sum = 0;
   uint32_t sum_w = 0;
   uint32_t sum_u = 0;
   uint32_t sum_v = 0;
   for (size_t first = 0; first < kSide; first += hn::Lanes(d)) {
     const auto place = hn::Iota(d, static_cast<int32_t>(first));
-    const auto bit = hn::Shl(hn::Set(d, 1), place);
     const auto dw = hn::Add(hn::ShiftLeft<6>(place), hn::Set(d, kUnit / 2 - point[0]));
     const auto square = hn::Mul(dw, dw);
     auto all = zero;
@@ -48,13 +65,13 @@ void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradi
     auto by_v = zero;
     for (int v = middle_v + kReach; v >= middle_v - kReach; --v) {
       const int32_t dv = v * kUnit + kUnit / 2 - point[2];
+      const auto of_row = hn::Sub(hn::Set(d, lit::kSlopeReachSquare - dv * dv), square);
       const int half = kHalves[v - middle_v + kReach];
       auto row = zero;
       auto row_by_u = zero;
       for (int u = middle_u + half; u >= middle_u - half; --u) {
-        const int32_t du = u * kUnit + kUnit / 2 - point[1];
-        const auto rest = hn::Sub(hn::Set(d, lit::kSlopeReachSquare - dv * dv - du * du), square);
-        const auto solid = hn::TestBit(hn::Set(d, int32_t{columns[v * kSide + u]}), bit);
+        const auto rest = hn::Sub(of_row, hn::Set(d, ways_u[u - middle_u + kReach]));
+        const auto solid = solid_lanes(columns + v * kSide + u, first);
         row = hn::Add(row, hn::IfThenElseZero(solid, hn::Max(rest, zero)));
         row_by_u = hn::Add(row_by_u, row);
       }
