@@ -43,8 +43,11 @@ class NearQuadrants {
     for (unsigned quadrant = 0; quadrant < 4; ++quadrant) {
       VoxelBox box = all;
       for (int axis = 0; axis < 2; ++axis) {
-        // A ray that begins on the lower plane of its voxel may go into the one before.
-        (quadrant >> axis & 1U) != 0 ? box.high[axis] = voxel[axis] + 1 : box.low[axis] = voxel[axis];
+        if ((quadrant >> axis & 1U) != 0) {
+          box.high[axis] = voxel[axis] + 1;
+        } else {
+          box.low[axis] = voxel[axis];
+        }
       }
       found |= streams_.is_empty(box) ? 0U : 1U << quadrant;
     }
