@@ -59,7 +59,7 @@ struct Sweep {
     }
   }
   void forget_planes() {
-#pragma GCC unroll(kDivides ? 8 : 1)
+#pragma GCC unroll 8
     for (HalfPlane& kept : plane) {
       kept.key = kNoKey;
     }

@@ -76,6 +76,11 @@ template <class Pixel>
 // Stores pixels of three bytes.
 [[gnu::noinline]] void store_triples(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
   const uint32_t four[3] = {ink | ink << 24, ink >> 8 | ink << 16, ink >> 16 | ink << 8};
+  const auto store_one = [ink](uint8_t* to) {
+    to[0] = static_cast<uint8_t>(ink);
+    to[1] = static_cast<uint8_t>(ink >> 8);
+    to[2] = static_cast<uint8_t>(ink >> 16);
+  };
   uint8_t* line = place.line + 3 * static_cast<size_t>(place.x);
   // Four pixels of a row that are stored by words, where these are aligned.
   const uint32_t all = ((reinterpret_cast<size_t>(line) | place.stride) & 3U) == 0 ? 15 : 16;
@@ -102,13 +107,17 @@ template <class Pixel>
           whole[2] = four[2];
           continue;
         }
-        uint8_t* one = to;
-        for (uint32_t bits = row & 15U; bits != 0; bits >>= 1, one += 3) {
-          if ((bits & 1U) != 0) {
-            one[0] = static_cast<uint8_t>(ink);
-            one[1] = static_cast<uint8_t>(ink >> 8);
-            one[2] = static_cast<uint8_t>(ink >> 16);
-          }
+        if ((row & 1U) != 0) {
+          store_one(to);
+        }
+        if ((row & 2U) != 0) {
+          store_one(to + 3);
+        }
+        if ((row & 4U) != 0) {
+          store_one(to + 6);
+        }
+        if ((row & 8U) != 0) {
+          store_one(to + 9);
         }
       }
     }
