@@ -12,6 +12,7 @@
 #pragma GCC optimize("O2", "rename-registers")
 #endif
 
+#define THIMBLE_RECIPROCALS
 #include "bricks/painter.h"
 
 namespace thimble {

@@ -2,7 +2,8 @@
 # What frames of every size take, in instructions: APP=bench for QEMU's MPS2 boards with other sizes, cores and scenes than
 # a board has, Cortex-M0 code on the Cortex-M3, and RV32 on the SiFive's core, up to the pictures that its 16 KiB hold.
 # Measuring targets: nothing here is a board of platform/boards.
-#   bench_frames.sh [--write]     --write: the table tests/budgets/frame_sizes.csv is written anew; else what grew beyond it fails
+#   bench_frames.sh [--write]     --write: the rows of tests/budgets/frame_sizes.csv that are measured are written anew; else what
+#                                 grew beyond them fails, and rows that were measured on another scene (`scene_crc32`)
 # In the environment: TARGETS, SIZES, SCENES choose some of those below; THIMBLE is another build/release/thimble.
 # A picture is compared with that of the tree's rays on the first target that draws it, then by its CRCs; one with light with
 # the simulator's.
@@ -25,7 +26,7 @@ for scene in $scenes; do
   case $what in *+*) effects=${what#*+} ;; esac
   "$thimble" bake "${what%%+*}" --board mps2-an500 --effects "$effects" -o "$work/${scene%%=*}.h" --quiet
 done
-echo core,scene,width,height,format,instructions_median,instructions_a_pixel,stack_bytes >"$work/measured.csv"
+: >"$work/measured.csv"
 failed=0
 for target in $targets; do
   core=${target%%:*}
@@ -89,22 +90,30 @@ for target in $targets; do
         echo "bench-frames: $core $width x $height $name draws other pixels than the tree's rays; see $log" >&2
         failed=1
       fi
-      awk -F, -v OFS=, -v row="$core,$name,$width,$height,$format" -v engine="$engine" '{ value[$1] = $2 }
+      baked=$(sed -n 's/^#define THIMBLE_SCENE_CRC32 0x\([0-9a-f]*\)u.*/\1/p' "$work/$name.h")
+      awk -F, -v OFS=, -v row="$core,$name,$width,$height,$format" -v engine="$engine" -v baked="$baked" '{ value[$1] = $2 }
         END { print row, value[engine ".instructions_median"], value[engine ".instructions_a_ray"],
-          value["stack_high_water_bytes"] }' "$log" | tee -a "$work/measured.csv"
+          value["stack_high_water_bytes"], baked }' "$log" | tee -a "$work/measured.csv"
     done
   done
 done
 if [ "${1:-}" = --write ]; then
-  { grep '^#' "$table"; cat "$work/measured.csv"; } >"$work/frame_sizes.csv"
+  {
+    grep '^#' "$table"
+    echo core,scene,width,height,format,instructions_median,instructions_a_pixel,stack_bytes,scene_crc32
+    awk -F, 'NR == FNR { new[$1,$2,$3,$4] = $0; next } /^#/ || /^core,/ { next }
+      ($1,$2,$3,$4) in new { print new[$1,$2,$3,$4]; delete new[$1,$2,$3,$4]; next } { print }
+      END { for (row in new) print new[row] }' "$work/measured.csv" "$table"
+  } >"$work/frame_sizes.csv"
   mv "$work/frame_sizes.csv" "$table"
   echo "bench-frames: wrote $table"
 else
   # One per cent: other versions of the compiler.
-  awk -F, 'FNR == 1 { next } /^#/ { next } NR == FNR { old[$1,$2,$3,$4] = $6; next }
-    old[$1,$2,$3,$4] != "" && $6 > 1.01 * old[$1,$2,$3,$4] {
-      print "bench-frames: " $1 " " $2 " " $3 " x " $4 " takes " $6 " instructions, the table says " old[$1,$2,$3,$4]
-      bad = 1
-    } END { exit bad }' "$table" "$work/measured.csv" || failed=1
+  awk -F, '/^#/ || /^core,/ { next } NR == FNR { old[$1,$2,$3,$4] = $6; scene[$1,$2,$3,$4] = $9; next }
+    old[$1,$2,$3,$4] == "" { next }
+    { row = "bench-frames: " $1 " " $2 " " $3 " x " $4 }
+    scene[$1,$2,$3,$4] != "" && scene[$1,$2,$3,$4] != $9 { print row " is another scene than that of the table; bench_frames.sh --write"; bad = 1; next }
+    $6 > 1.01 * old[$1,$2,$3,$4] { print row " takes " $6 " instructions, the table says " old[$1,$2,$3,$4]; bad = 1 }
+    END { exit bad }' "$table" "$work/measured.csv" || failed=1
 fi
 exit $failed

@@ -13,6 +13,7 @@ failed=0
 mkdir -p "$work"
 : >"$results"
 : >"$measured"
+: >"$THIMBLE_FIRMWARE/$board.lit_frames"
 # say APP RESULT...
 say() {
   app_said=$1
@@ -141,6 +142,7 @@ for app in $apps; do
       fi
       if cmp -s "$work/lit_crcs" "$work/lit_golden"; then
         said="${said}lit frames are the host's; "
+        wrong=$(sh "$here/lit_budget.sh" "$board" demo "$log") || fail bench "$wrong"
       else
         fail bench "lit frames are $(tr '\n' ' ' <"$work/lit_crcs"), not the host's, $(tr '\n' ' ' <"$work/lit_golden")"
       fi

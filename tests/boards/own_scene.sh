@@ -38,6 +38,10 @@ run() {
   said=$(UPDATE=1 sh tests/boards/budget.sh "$board" "$1" "$work/own.$1.log") || fail "$said"
   mv "$measured.kept" "$measured"
 }
+# holds_its_frames NAME: after bench has run.
+holds_its_frames() {
+  said=$(sh tests/boards/lit_budget.sh "$board" "$1" "$work/own.bench.log") || fail "$said"
+}
 # draws_as_the_simulator SCENE [OPTION...]
 draws_as_the_simulator() {
   run bench
@@ -92,6 +96,7 @@ mirror() {
   run demo
   of_demo=$said
   draws_as_the_simulator "$work/own_mirror.scene" --effects $effects
+  holds_its_frames sun-mirror
   say "a mirror and the sun by the map; $of_demo"
 }
 
@@ -117,6 +122,7 @@ TEXT
   run demo
   of_demo=$said
   draws_as_the_simulator "$work/own.scene" --effects $effects
+  holds_its_frames sun-lamp-occlusion
   say "a lamp, the sun and occlusion by the map; $of_demo"
 
   grep -v '^lamp' "$work/own.scene" >"$work/own_sun.scene"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds and runs the firmware of every board under its emulator and judges it: a line a board and application, exit status 1
 # when anything failed. Two boards at a time.
-#   run.sh [--budgets] [BOARD...]      --budgets writes tests/budgets/firmware.csv anew from what was measured
+#   run.sh [--budgets] [BOARD...]      --budgets writes tests/budgets/firmware.csv and lit_frames.csv anew from what was measured
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
@@ -42,6 +42,7 @@ fi
 export THIMBLE_FIRMWARE=build/boards
 work=$THIMBLE_FIRMWARE
 budgets=tests/budgets/firmware.csv
+lit_frames=tests/budgets/lit_frames.csv
 mkdir -p "$work"
 g++ -std=c++20 -O1 -o "$work/stack_bound" tests/checks/stack_bound.cpp
 g++ -std=c++20 -O1 -o "$work/qemu_screen" tests/boards/qemu_screen.cpp
@@ -86,7 +87,19 @@ if [ $update = 1 ]; then
     done
   } >"$work/budgets.csv"
   mv "$work/budgets.csv" "$budgets"
-  echo "test-boards: wrote $budgets"
+  # The rows of what was measured, and those of the rest.
+  {
+    grep '^#' "$lit_frames"
+    echo board,scene,instructions
+    {
+      for board in $boards; do
+        cat "$work/$board.lit_frames"
+      done
+      sed '/^#/d; /^board,/d' "$lit_frames"
+    } | awk -F, '!seen[$1, $2]++' | sort
+  } >"$work/lit_frames.csv"
+  mv "$work/lit_frames.csv" "$lit_frames"
+  echo "test-boards: wrote $budgets, $lit_frames"
 fi
 if [ $failed = 0 ]; then
   echo "test-boards: all passed"

@@ -3,11 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <random>
 #include <vector>
 
+#include "../../src/picture/bricks/edge_quotient.h"
 #include "../../src/picture/bricks/place_across.h"
 #include "support/chip_worlds.h"
 #include "support/ray_cases.h"
@@ -313,6 +315,39 @@ TEST_CASE("bricks: the place across a face, with a divider and without -> the gr
           }
         }
       }
+    }
+  }
+}
+
+TEST_CASE(
+    "bricks: where an edge crosses a row, with a divider and without -> 2 units wrong, and 2^-13 of it") {
+  const auto check = [](std::int32_t value, std::int32_t divisor) {
+    const double exact = std::ldexp(static_cast<double>(value), bricks::kCrossingBits) / divisor;
+    const double most = 2 + std::ldexp(std::abs(exact), -13);
+    CAPTURE(value);
+    CAPTURE(divisor);
+    REQUIRE(std::abs(bricks::EdgeQuotient<true>(divisor)(value) - exact) <= most);
+    if (divisor >= bricks::EdgeQuotient<false>::kLeast) {
+      REQUIRE(std::abs(bricks::EdgeQuotient<false>(divisor)(value) - exact) <= most);
+    }
+  };
+  constexpr std::int64_t kMost = INT32_MAX;
+  std::mt19937_64 random(20261126);
+  const auto check_divisor = [&](std::int32_t divisor) {
+    const std::int64_t limit = std::min(64 * std::int64_t{divisor} - 1, kMost);
+    std::uniform_int_distribution<std::int64_t> values(-limit, limit);
+    for (const std::int64_t value :
+         {std::int64_t{0}, std::int64_t{1}, limit, -limit, values(random), values(random)}) {
+      check(static_cast<std::int32_t>(value), divisor);
+    }
+  };
+  for (int bit = 0; bit < 31; ++bit) {
+    for (const std::int64_t more : {-2, -1, 0, 1, 2}) {
+      const std::int64_t divisor = (std::int64_t{1} << bit) + more;
+      check_divisor(static_cast<std::int32_t>(std::clamp(divisor, std::int64_t{1}, kMost)));
+    }
+    for (int i = 0; i < 2000; ++i) {
+      check_divisor(static_cast<std::int32_t>((std::int64_t{1} << bit) + (random() & ((1U << bit) - 1))));
     }
   }
 }

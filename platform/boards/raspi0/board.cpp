@@ -131,17 +131,24 @@ int board::get() {
   return pl011::get(kUart0);
 }
 
+// Three words hold four pixels. A row is a whole number of words, and so are the bytes of the arena.
 void board::flush(const Band& band) {
   if (pixels == nullptr) {
     return;
   }
-  const size_t stride =
-      band.stride_bytes != 0 ? band.stride_bytes : row_bytes(band.format, kFacts.display.width_px);
+  static_assert(kWidth % 4 == 0);
+  constexpr uint32_t kColor = 0xFFFFFF;
+  const uint8_t* from = band.pixels.data;
   for (int32_t row = 0; row < band.rows; ++row) {
-    const uint8_t* from = band.pixels.data + stride * static_cast<size_t>(row);
     uint32_t* to = pixels + pitch_bytes / sizeof(uint32_t) * static_cast<uint32_t>(band.first_row + row);
-    for (uint32_t column = 0; column < kWidth; ++column, from += 3) {
-      to[column] = static_cast<uint32_t>(from[0] | from[1] << 8 | from[2] << 16);
+    for (const uint32_t* const end = to + kWidth; to != end; to += 4) {
+      uint32_t words[3];
+      __builtin_memcpy(words, __builtin_assume_aligned(from, sizeof(uint32_t)), sizeof(words));
+      to[0] = words[0] & kColor;
+      to[1] = (words[0] >> 24 | words[1] << 8) & kColor;
+      to[2] = (words[1] >> 16 | words[2] << 16) & kColor;
+      to[3] = words[2] >> 8;
+      from += sizeof(words);
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "../../base/bits.h"
 #include "../../base/ranges.h"
+#include "edge_quotient.h"
 #include "layout.h"
 #include "thimble/picture/camera.h"
 #include "tile.h"
@@ -46,13 +47,14 @@ struct HalfPlane {
 // Before F is computed from distances they are cut to this many bits.
 constexpr int kDistanceBits = 13;
 
-// `divide_edge` does as `walk_edge` with three divisions instead of loops: it finds where an edge crosses the rows,
+// `divide_edge` does as `walk_edge` with three quotients instead of loops: it finds where an edge crosses the rows,
 // in 1/2^kCrossingBits pixel. It returns false for edges that are far from upright. `fx` is positive.
 //
-// Cutting off costs a quotient 1 unit, and its dividend likewise; the divisor keeps 14 bits, which costs 2^-13 of the
-// quotient. That is at most 24 units, with |crossing| <= 33 pixels in the first row and |slope| <= 5.
-constexpr int kCrossingBits = 11;
+// All quotients (edge_quotient.h) are wrong by at most 2 units and, together, by 2^-13 of them. With |crossing| <= 17
+// pixels where it matters that is at most 21 units: 1 + 7 quotients, and 5.
 constexpr int32_t kCrossingSlack = 24;
+// Whether edges are divided.
+constexpr bool kDividesEdges = kDivides || kHasReciprocals;
 
 // The pixels of a row from a crossing on. The place is limited to 31, so that one shift finds them.
 [[gnu::always_inline]] inline uint32_t row_from(int32_t crossing) {
@@ -61,43 +63,32 @@ constexpr int32_t kCrossingSlack = 24;
   return 0xFFFFU << (positive > 31 ? 31 : positive);
 }
 
-// Sets the rows of two masks; with kFlip, of their complements.
-template <bool kFlip>
-[[gnu::always_inline]] inline void fill_rows(int32_t at, int32_t slope, int32_t back, Pixels* first,
-                                             Pixels* second) {
+// Sets the rows of two masks; those of `invert` are of their complements. Without a divider there is no flash to unroll.
+[[gnu::always_inline]] inline void fill_rows(int32_t at, int32_t slope, int32_t back, uint32_t invert,
+                                             Pixels* first, Pixels* second) {
   Half* to = static_cast<Half*>(static_cast<void*>(first));
   Half* also = static_cast<Half*>(static_cast<void*>(second));
-#pragma GCC unroll 8
+#pragma GCC unroll(kDivides ? 8 : 1)
   for (int row = 0; row < kTileDownPx; ++row, at -= slope) {
-    const uint32_t pixels = row_from(at);
-    const uint32_t more = row_from(at - back);
-    to[row] = static_cast<Half>(kFlip ? ~pixels : pixels);
-    also[row] = static_cast<Half>(kFlip ? ~more : more);
+    to[row] = static_cast<Half>(row_from(at) ^ invert);
+    also[row] = static_cast<Half>(row_from(at - back) ^ invert);
   }
 }
 
 bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, HalfPlane* plane) {
   const int32_t ahead = bound - f;
-  if ((ahead < 0 ? -ahead : ahead) >> 5 > fx || (fy < 0 ? -fy : fy) >> 2 > fx || bound >> 2 > fx) {
+  if ((ahead < 0 ? -ahead : ahead) >> 5 > fx || (fy < 0 ? -fy : fy) >> 2 > fx || bound >> 2 > fx ||
+      fx < EdgeQuotient<kDivides>::kLeast) {
     return false;
   }
-  const int high = bits::highest_bit(static_cast<uint32_t>(fx));
-  const int cut = high > 13 ? high - 13 : 0;
-  const int32_t by = fx >> cut;
-  const auto quotient = [&](int32_t value) {
-    return (cut <= kCrossingBits ? value * (1 << (kCrossingBits - cut)) : value >> (cut - kCrossingBits)) /
-           by;
-  };
+  const EdgeQuotient<kDivides> quotient(fx);
   int32_t at = quotient(ahead);
   const int32_t slope = quotient(fy);
   // How far the first possible pixel's crossing lies before that of the first certain one, slack included.
   const int32_t back = quotient(2 * bound) + 2 * kCrossingSlack + 1;
   at += kCrossingSlack + (1 << kCrossingBits);
-  if (flip) {
-    fill_rows<true>(at, slope, back, &plane->possible, &plane->certain);
-  } else {
-    fill_rows<false>(at, slope, back, &plane->certain, &plane->possible);
-  }
+  fill_rows(at, slope, back, flip ? UINT32_MAX : 0, flip ? &plane->possible : &plane->certain,
+            flip ? &plane->certain : &plane->possible);
   return true;
 }
 
@@ -111,7 +102,7 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
     fx = -fx;
     fy = -fy;
   }
-  if (kDivides && divide_edge(f, fx, fy, bound, flip, plane)) {
+  if (kDividesEdges && divide_edge(f, fx, fy, bound, flip, plane)) {
     return;
   }
   Half* certain = static_cast<Half*>(static_cast<void*>(flip ? &plane->possible : &plane->certain));
@@ -145,7 +136,7 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
   }
 }
 
-void set_all(HalfPlane* plane, uint32_t word) {
+[[gnu::noinline]] void set_all(HalfPlane* plane, uint32_t word) {
   for (int i = 0; i < kTileWords; ++i) {
     plane->certain.word[i] = word;
     plane->possible.word[i] = word;

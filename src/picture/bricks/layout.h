@@ -61,6 +61,13 @@ constexpr bool kDivides = false;
 #else
 constexpr bool kDivides = true;
 #endif
+// Whether a reciprocal takes the place of a divider: the core counts leading zeros, and has products of 64 bits. Only
+// brick_render.cpp asks for it, since frames with light would take 0.3 KB of flash more.
+#if defined(THIMBLE_RECIPROCALS) && defined(__ARM_FEATURE_CLZ)
+constexpr bool kHasReciprocals = true;
+#else
+constexpr bool kHasReciprocals = false;
+#endif
 
 // Tells the compiler which way a branch mostly goes.
 [[gnu::always_inline]] constexpr bool seldom(bool condition) {

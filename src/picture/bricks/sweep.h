@@ -59,6 +59,7 @@ struct Sweep {
     }
   }
   void forget_planes() {
+#pragma GCC unroll 8
     for (HalfPlane& kept : plane) {
       kept.key = kNoKey;
     }
@@ -70,8 +71,12 @@ struct Sweep {
     }
   }
   // Whether no pixel is drawn yet of the quad whose first pixel is (x, y) in the tile.
-  bool has_quad(int32_t x, int32_t y) const { return (left.word[y >> 1] >> x & 1U) != 0; }
-  bool done() const { return (left.word[0] | left.word[1] | left.word[2] | left.word[3]) == 0; }
+  bool has_quad(int32_t x, int32_t y) const {
+    return (left.word[y >> 1] >> x & 1U) != 0;
+  }
+  bool done() const {
+    return (left.word[0] | left.word[1] | left.word[2] | left.word[3]) == 0;
+  }
 };
 
 // The families of half-planes: axis a against c, b against c, a against b.
@@ -449,19 +454,14 @@ class TileSweep : private Paint {
     for (int k = 0; k < 2; ++k) {
       int32_t low = reach_[k].low;
       int32_t high = reach_[k].high;
-      for (int32_t i = 0; i < 4; ++i) {
-        cells[k][i] = 0;
-        entered[k][i] = 0;
-        if (i < first_slab) {
-          continue;
-        }
+      for (int32_t i = first_slab; i < 4; ++i) {
         first_[k][i] = low >> kCellShift;
         last_[k][i] = high >> kCellShift;
         const int32_t first = first_[k][i] - 4 * from[k];
-        if (high >= 0) {
-          cells[k][i] = (2U << (last_[k][i] - 4 * from[k])) - (1U << (first < 0 ? 0 : first));
-          entered[k][i] = first < 0 ? cells[k][i] : cells[k][i] & (cells[k][i] - 1);
-        }
+        const int32_t end_cell = last_[k][i] - 4 * from[k] + 1;
+        const uint32_t under = (1U << (end_cell < 0 ? 0 : end_cell)) - (1U << (first < 0 ? 0 : first));
+        cells[k][i] = under;
+        entered[k][i] = first < 0 ? under : under & (under - 1);
         low += reach_[k].low_step;
         high += reach_[k].high_step;
       }
@@ -474,14 +474,18 @@ class TileSweep : private Paint {
       }
       const int shift_a = 4 * (brick->a - from[0]);
       const int shift_b = 4 * (brick->b - from[1]);
+      const Cells any{exposed.on[0].low | exposed.on[1].low | exposed.on[2].low,
+                      exposed.on[0].high | exposed.on[1].high | exposed.on[2].high};
       for (int32_t i = first_slab; i < 4; ++i) {
         const uint32_t rows = kRows[cells[1][i] >> shift_b & 15U];
         const uint32_t across = cells[0][i] >> shift_a & 15U;
+        const uint32_t under = across * rows;
         const int shift = 16 * (i & 1);
-        const auto faces = [&](int k) {
-          return (i < 2 ? exposed.on[k].low : exposed.on[k].high) >> shift & 0xFFFFU;
-        };
-        const uint32_t on_c = faces(2) & (across * rows);
+        if (((i < 2 ? any.low : any.high) >> shift & under) == 0) {
+          continue;
+        }
+        const auto faces = [&](int k) { return (i < 2 ? exposed.on[k].low : exposed.on[k].high) >> shift; };
+        const uint32_t on_c = faces(2) & under;
         const uint32_t on_a = faces(0) & ((entered[0][i] >> shift_a & 15U) * rows);
         const uint32_t on_b = faces(1) & (across * kRows[entered[1][i] >> shift_b & 15U]);
         if ((on_a | on_b | on_c) != 0) {
@@ -599,14 +603,14 @@ class TileSweep : private Paint {
   using Paint::place_;
   using Paint::sweep_;
   using Paint::value_;
-  Reach reach_[2] = {};  // in the next slab
+  Reach reach_[2];  // in the next slab; `run` sets it
   // The rectangle that the shadow was last narrowed to: so many columns, and pairs of rows.
   int32_t columns_ = kTileAcrossPx;
   int32_t words_ = kTileWords;
   bool begun_ = false;
-  // The first and the last voxel of the shadow in each slab of a layer.
-  int32_t first_[2][4] = {};
-  int32_t last_[2][4] = {};
+  // The first and the last voxel of the shadow in each slab of a layer; `draw_layer` sets those that it draws.
+  int32_t first_[2][4];
+  int32_t last_[2][4];
 };
 
 // Whether a solid voxel touches the eye: then rays may begin in it or on its surface.

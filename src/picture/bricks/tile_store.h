@@ -40,8 +40,15 @@ template <class Pixel>
       continue;
     }
     for (int half = 0; half < 2; ++half, word >>= 16, line += place.stride) {
+      uint32_t row = word & 0xFFFFU;
+      if (row == 0) {
+        continue;
+      }
       Pixel* to = static_cast<Pixel*>(static_cast<void*>(line));
-      for (uint32_t row = word & 0xFFFFU; row != 0; row >>= 4, to += 4) {
+      for (; (row & 15U) == 0; row >>= 4) {
+        to += 4;
+      }
+      for (; row != 0; row >>= 4, to += 4) {
         if ((row & 15U) == 15) {
           to[0] = value;
           to[1] = value;
@@ -69,24 +76,48 @@ template <class Pixel>
 // Stores pixels of three bytes.
 [[gnu::noinline]] void store_triples(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
   const uint32_t four[3] = {ink | ink << 24, ink >> 8 | ink << 16, ink >> 16 | ink << 8};
+  const auto store_one = [ink](uint8_t* to) {
+    to[0] = static_cast<uint8_t>(ink);
+    to[1] = static_cast<uint8_t>(ink >> 8);
+    to[2] = static_cast<uint8_t>(ink >> 16);
+  };
   uint8_t* line = place.line + 3 * static_cast<size_t>(place.x);
-  for (int i = 0; i < 2 * kTileWords; ++i, line += place.stride) {
-    uint8_t* to = line;
-    const bool words = (reinterpret_cast<size_t>(line) & 3U) == 0;
-    for (uint32_t row = pixels.word[i >> 1] >> 16 * (i & 1) & 0xFFFFU; row != 0; row >>= 4, to += 12) {
-      if (words && (row & 15U) == 15) {
-        Word* const whole = static_cast<Word*>(static_cast<void*>(to));
-        whole[0] = four[0];
-        whole[1] = four[1];
-        whole[2] = four[2];
+  // Four pixels of a row that are stored by words, where these are aligned.
+  const uint32_t all = ((reinterpret_cast<size_t>(line) | place.stride) & 3U) == 0 ? 15 : 16;
+  for (int i = 0; i < kTileWords; ++i) {
+    uint32_t word = pixels.word[i];
+    if (word == 0) {
+      line += 2 * place.stride;
+      continue;
+    }
+    for (int half = 0; half < 2; ++half, word >>= 16, line += place.stride) {
+      uint32_t row = word & 0xFFFFU;
+      if (row == 0) {
         continue;
       }
-      uint8_t* one = to;
-      for (uint32_t bits = row & 15U; bits != 0; bits >>= 1, one += 3) {
-        if ((bits & 1U) != 0) {
-          one[0] = static_cast<uint8_t>(ink);
-          one[1] = static_cast<uint8_t>(ink >> 8);
-          one[2] = static_cast<uint8_t>(ink >> 16);
+      uint8_t* to = line;
+      for (; (row & 15U) == 0; row >>= 4) {
+        to += 12;
+      }
+      for (; row != 0; row >>= 4, to += 12) {
+        if ((row & 15U) == all) {
+          Word* const whole = static_cast<Word*>(static_cast<void*>(to));
+          whole[0] = four[0];
+          whole[1] = four[1];
+          whole[2] = four[2];
+          continue;
+        }
+        if ((row & 1U) != 0) {
+          store_one(to);
+        }
+        if ((row & 2U) != 0) {
+          store_one(to + 3);
+        }
+        if ((row & 4U) != 0) {
+          store_one(to + 6);
+        }
+        if ((row & 8U) != 0) {
+          store_one(to + 9);
         }
       }
     }
