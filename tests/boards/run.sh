@@ -22,13 +22,15 @@ if [ "${1:-}" = --job ]; then
         sh "$here/own_scene.sh" lm3s6965evb || status=1
         sh "$here/water.sh" || status=1
         ;;
-      microbit) sh "$here/own_scene.sh" microbit || status=1 ;;
+      microbit)
+        sh "$here/own_scene.sh" microbit || status=1
+        sh "$here/formats.sh" microbit || status=1
+        ;;
       pico)
         sh "$here/cores.sh" pico || status=1
         sh "$here/uf2.sh" pico || status=1
         ;;
       gba) sh "$here/cartridge.sh" gba || status=1 ;;
-      microbit) sh "$here/formats.sh" microbit || status=1 ;;
     esac
   } >"$log" 2>&1
   cat "$log"

@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <random>
-#include <vector>
 
-#include "support/lit_world.h"
+#include "support/map_world.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/host/optics.h"
-#include "thimble/light/map_render.h"
-#include "thimble/tree/brick_map.h"
 
 namespace thimble::testing::map_mirrors {
 namespace {
@@ -21,56 +18,30 @@ using tests::HeapBytes;
 using tests::pick_int;
 
 constexpr EffectSet kMirrored = Effect::kDirectLight | Effect::kShadows | Effect::kMirror;
-constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
 constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
 constexpr int kMirrorRay = static_cast<int>(LitRayKind::kMirrorRay);
 constexpr std::uint8_t kMetal = 1;
 constexpr std::uint8_t kStone = 2;
 constexpr std::uint8_t kRough = 3;
 
-struct MirrorWorld : LitWorld {
-  explicit MirrorWorld(int level = 5) : LitWorld(level) {
+struct MirrorWorld : MapWorld {
+  explicit MirrorWorld(int level = 5) : MapWorld(level) {
     surfaces[kMetal] = surface(SurfaceKind::kMetal, {230, 190, 120});
     surfaces[kMetal].mirror = 200;
     surfaces[kStone] = surface(SurfaceKind::kDiffuse, {90, 160, 210});
     surfaces[kRough] = surfaces[kMetal];
     surfaces[kRough].roughness = 255;
     surfaces[4] = surface(SurfaceKind::kDiffuse, {200, 60, 30});
-    scene.has_shadows = true;
-    shading.background = {30, 60, 90};
-    lights = {sun({-5, -9, 16})};
   }
-  void map_it() {
-    finish();
-    room.resize(most_brick_map_bytes(tree.level()) / 8 + 1);
-    REQUIRE(BrickMap::make(tree,
-                           {static_cast<std::uint8_t*>(static_cast<void*>(room.data())), 8 * room.size()},
-                           &map) == Status::kOk);
-  }
-
-  std::vector<std::uint64_t> room;
-  BrickMap map;
 };
 
 /// Both pictures are the same; what the map's took. Where all metals show something of their own the rays are the tree's.
 template <EffectSet kSet = kMirrored>
 LitCounts compare(const MirrorWorld& world, PixelFormat format = PixelFormat::kRgb888,
                   std::size_t offset = 0) {
-  const Camera& camera = world.camera;
-  REQUIRE(draws_fast(world.map, camera));
-  const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
-  std::vector<std::uint8_t> fast(size + offset, 0x5A);
-  std::vector<std::uint8_t> right(size + offset, 0x5A);
-  LitCounts counts;
-  LitCounts wanted;
-  REQUIRE(render_lit_band<kSet>(world.tree, world.map, camera, world.shading, world.scene, {},
-                                {{fast.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                &counts) == Status::kOk);
-  REQUIRE(render_lit_band<kSet>(world.tree, camera, world.shading, world.scene,
-                                {{right.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                &wanted) == Status::kOk);
-  REQUIRE(fast == right);
-  REQUIRE(counts.rays[kPrimary] == wanted.rays[kPrimary]);
+  const BothCounts both = draw_both<kSet>(world, format, offset);
+  const LitCounts& counts = both.by_map;
+  const LitCounts& wanted = both.by_tree;
   REQUIRE(counts.rays[kMirrorRay] == wanted.rays[kMirrorRay]);
   REQUIRE(counts.hits[kMirrorRay] == wanted.hits[kMirrorRay]);
   if (world.surfaces[kMetal].mirror != 255) {

@@ -19,6 +19,7 @@
 #include "../base/vec.h"
 #include "../picture/render.h"
 #include "../tree/brick_map.h"
+#include "detail/flat_sets.h"
 #include "render.h"
 
 namespace thimble {
@@ -81,110 +82,17 @@ inline constexpr EffectSet kLamps = Effect::kEmitterLight;
 /// Whether the fast way takes the frame, whose set `is_flat`.
 bool draws_flat(const Frame& frame, const BrickMap& map);
 /// Draws the band where `draws_flat`. `suns` has what is proven of the distant lights, in their order; it may be empty.
-/// An entry that does not belong to its light is not looked at.
+/// An entry that does not belong to its light is not looked at. A function of its own in src/light/flat for each set that
+/// `is_flat`: the stack of an image is added up from their call graph.
 template <EffectSet kSet>
 Status draw_flat(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts);
-// src/light/flat has these, as functions of their own: the stack of an image is added up from their call graph.
-template <>
-Status draw_flat<0x001>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x003>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x00B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x203>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x20B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x007>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x1003>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x1007>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x00F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x100B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x100F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x207>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x1203>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x1207>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x20F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x120B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x120F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x013>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x01B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x213>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x21B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x017>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x01F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x217>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x21F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts);
-template <>
-Status draw_flat<0x1013>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x101B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x1213>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x121B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x1017>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x101F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x1217>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
-template <>
-Status draw_flat<0x121F>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                         const Band& band, LitCounts* counts);
+#define THIMBLE_DECLARE_FLAT(set)                                                            \
+  template <>                                                                                \
+  Status draw_flat<set>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, \
+                        const Band& band, LitCounts* counts);
+THIMBLE_FLAT_SETS(THIMBLE_DECLARE_FLAT)
+#undef THIMBLE_DECLARE_FLAT
 
 }  // namespace lit
 

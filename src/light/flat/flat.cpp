@@ -17,30 +17,6 @@ bool draws_flat(const Frame& frame, const BrickMap& map) {
   return suns <= kMaxFlatSuns;
 }
 
-template <>
-Status draw_flat<0x001>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts) {
-  return draw_faces<0x001>(frame, map, suns, band, counts);
-}
-template <>
-Status draw_flat<0x003>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts) {
-  return draw_faces<0x003>(frame, map, suns, band, counts);
-}
-template <>
-Status draw_flat<0x00B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts) {
-  return draw_faces<0x00B>(frame, map, suns, band, counts);
-}
-template <>
-Status draw_flat<0x203>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts) {
-  return draw_faces<0x203>(frame, map, suns, band, counts);
-}
-template <>
-Status draw_flat<0x20B>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                        LitCounts* counts) {
-  return draw_faces<0x20B>(frame, map, suns, band, counts);
-}
+THIMBLE_FLAT_SUNS(THIMBLE_DRAW_FLAT)
 
 }  // namespace thimble::lit

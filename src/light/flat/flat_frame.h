@@ -679,4 +679,12 @@ Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks>
 }  // namespace
 }  // namespace thimble::lit
 
+// What a source of this folder has of each of its sets.
+#define THIMBLE_DRAW_FLAT(set)                                                               \
+  template <>                                                                                \
+  Status draw_flat<set>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, \
+                        const Band& band, LitCounts* counts) {                               \
+    return draw_faces<set>(frame, map, suns, band, counts);                                  \
+  }
+
 #endif
