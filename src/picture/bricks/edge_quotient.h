@@ -22,7 +22,7 @@ class EdgeQuotient;
 template <>
 class EdgeQuotient<true> {
  public:
-  static constexpr int32_t kLeast = 1;
+  [[maybe_unused]] static constexpr int32_t kLeast = 1;
   [[gnu::always_inline]] explicit EdgeQuotient(int32_t divisor) {
     const int high = bits::highest_bit(static_cast<uint32_t>(divisor));
     cut_ = high > 13 ? high - 13 : 0;
@@ -42,7 +42,7 @@ template <>
 class EdgeQuotient<false> {
  public:
   // The least divisor.
-  static constexpr int32_t kLeast = 1 << (kCrossingBits + 1);
+  [[maybe_unused]] static constexpr int32_t kLeast = 1 << (kCrossingBits + 1);
   // Two of Newton's steps from a straight line that is wrong by at most 1/17; the divisor is cut to 16 bits.
   [[gnu::always_inline]] explicit EdgeQuotient(int32_t divisor) {
     high_ = bits::highest_bit(static_cast<uint32_t>(divisor));
