@@ -332,6 +332,12 @@ TEST_CASE("balls: none, or none that is there -> picture and counts of a scene w
   }
 }
 
+TEST_CASE("balls: effects that there are not -> as without any") {
+  const BallWorld world(false);
+  REQUIRE(draw_with(world, kLight, world.balls) != draw_with(world, Effect::kNone, world.balls));
+  CHECK(draw_with(world, ~Effect::kAll, world.balls) == draw_with(world, Effect::kNone, world.balls));
+}
+
 TEST_CASE("balls: rows whose rays pass no fall -> as they were, wherever the ball is on it") {
   const BallWorld world(false);
   Ball ball = world.balls[0];

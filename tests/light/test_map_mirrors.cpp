@@ -80,6 +80,30 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "mirrors by the map: a wall close by at each side of the world, from within -> the tree's picture") {
+  MirrorWorld world;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3i low{0, 0, 0};
+    Vec3i high{32, 32, 32};
+    high[axis] = 1;
+    world.box(low, high, kMetal);
+    low[axis] = 31;
+    high[axis] = 32;
+    world.box(low, high, kStone);
+  }
+  world.map_it();
+  for (int side = 0; side < 6; ++side) {
+    CAPTURE(side);
+    Vec3i eye{16 * 256 + 31, 15 * 256 + 77, 17 * 256 + 5};
+    eye[side / 2] = side % 2 == 0 ? 3 * 256 + 9 : 29 * 256 + 9;
+    Vec3i target{15 * 256, 17 * 256, 16 * 256};
+    target[side / 2] = side % 2 == 0 ? 0 : 32 * 256;
+    world.look(eye, target, 60, 49, 37);
+    CHECK(compare(world).hits[static_cast<int>(LitRayKind::kPrimary)] == 49 * 37);
+  }
+}
+
 TEST_CASE("mirrors by the map: all light mirrored -> nothing is asked of the metal's own") {
   MirrorWorld world;
   world.surfaces[kMetal].mirror = 255;

@@ -23,6 +23,9 @@ std::uint64_t lit_pixels_to_draw() {
   if (std::getenv("THIMBLE_LONG") != nullptr) {
     return 30'000'000;
   }
+  if (std::getenv("THIMBLE_FEW") != nullptr) {
+    return 60'000;
+  }
 #if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
   return 60'000;
 #else

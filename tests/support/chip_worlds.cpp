@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "support/ray_cases.h"
+#include "support/rolled.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {
@@ -27,7 +28,8 @@ void fill(std::mt19937_64& random, ChipWorld world, int level, Octree* pool) {
   const auto cell = [&] {
     return Vec3i{pick_int(random, 0, side - 1), pick_int(random, 0, side - 1), pick_int(random, 0, side - 1)};
   };
-  const auto material = [&] { return static_cast<std::uint8_t>(pick_int(random, 0, 9)); };
+  const int materials = pick_int(random, 0, 2) == 0 ? 256 : 10;
+  const auto material = [&] { return static_cast<std::uint8_t>(pick_int(random, 0, materials - 1)); };
   switch (world) {
     case ChipWorld::kHills:
       fill_hills(random, side, pool);
@@ -119,6 +121,7 @@ Camera hard_chip_camera(std::mt19937_64& random, int level) {
                       : look == 1 ? pick_int(random, -1000, 1000)
                                   : pick_int(random, 0, side_q8) - eye[axis].raw;
     }
+    const Vec3i up = random_up(random);
     const Q16 fov = Q16::from_raw(pick_int(random, 0, 2) == 0 ? pick_int(random, 65536, 8 * 65536)
                                                               : pick_int(random, 20 * 65536, 120 * 65536));
     const int width = pick_int(random, 0, 2) == 0 ? 320 : pick_int(random, 1, 250);
@@ -126,12 +129,12 @@ Camera hard_chip_camera(std::mt19937_64& random, int level) {
     const int bits = pick_int(random, 0, 3) == 0 ? pick_int(random, kMinDirectionBits, 15) : 0;
     Camera camera;
     if (pick_int(random, 0, 15) == 0) {
-      const OrthographicView view{eye,   forward, {}, Q14::saturate(pick_int(random, 1, 2 * side)),
+      const OrthographicView view{eye,   forward, up, Q14::saturate(pick_int(random, 1, 2 * side)),
                                   width, height,  0};
       if (camera.set(view, level) == Status::kOk) {
         return camera;
       }
-    } else if (camera.set(PerspectiveView{eye, forward, {}, fov, width, height, bits}, level) ==
+    } else if (camera.set(PerspectiveView{eye, forward, up, fov, width, height, bits}, level) ==
                Status::kOk) {
       return camera;
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/rolled.h"
+
 namespace thimble::tests {
 namespace {
 
@@ -91,6 +93,7 @@ bool hard_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera
     }
     view.eye = eye;
     view.forward = along;
+    view.up = random_up(random);
     // Pixels of a part of a voxel to some, lattice points among them.
     const std::int32_t parts = number(random, 1, 12);
     view.span = Q14::from_raw(width * Q14::kOne / parts);
@@ -104,6 +107,7 @@ bool hard_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera
   PerspectiveView view;
   view.eye = eye;
   view.forward = along;
+  view.up = random_up(random);
   view.fov_degrees = Q16::from_raw(number(random, 5, 120) * 65536);
   view.width_px = width;
   view.height_px = number(random, 10, 60);

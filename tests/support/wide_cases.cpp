@@ -7,6 +7,8 @@
 #include <cstring>
 #include <map>
 
+#include "support/rolled.h"
+
 namespace thimble::tests {
 namespace {
 
@@ -140,6 +142,7 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
     OrthographicView view;
     view.eye = eye;
     view.forward = forward;
+    view.up = random_up(random);
     const double most = std::ldexp(1.0, level) * 2;
     const double least = most / 4000;
     const double span = least * std::pow(most / least, static_cast<double>(pick(random, 0, 1000)) / 1000);
@@ -152,6 +155,7 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
   PerspectiveView view;
   view.eye = eye;
   view.forward = forward;
+  view.up = random_up(random);
   view.fov_degrees =
       Q16::from_raw(static_cast<std::int32_t>(pick(random, 0, 3) == 0   ? 65536
                                               : pick(random, 0, 3) == 0 ? 120 * 65536
