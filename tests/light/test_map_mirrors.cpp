@@ -104,6 +104,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("mirrors by the map: metals of one channel, seen straight on -> what they mirror of each other") {
+  for (int channel = 0; channel < 3; ++channel) {
+    CAPTURE(channel);
+    MirrorWorld world;
+    world.surfaces[kMetal].albedo = {static_cast<std::uint8_t>(channel == 0 ? 250 : 0),
+                                     static_cast<std::uint8_t>(channel == 1 ? 250 : 0),
+                                     static_cast<std::uint8_t>(channel == 2 ? 250 : 0)};
+    world.surfaces[kMetal].mirror = 120;
+    set_ambient(&world.scene, 256);
+    world.box({4, 0, 0}, {6, 32, 32}, kMetal);
+    world.box({20, 0, 0}, {23, 32, 32}, kMetal);
+    world.map_it();
+    world.look({12 * 256 + 3, 15 * 256 + 31, 16 * 256 + 77}, {4 * 256, 15 * 256 + 41, 16 * 256 + 71}, 20);
+    CHECK(compare(world).rays[kMirrorRay] > 1000);
+  }
+}
+
 TEST_CASE("mirrors by the map: all light mirrored -> nothing is asked of the metal's own") {
   MirrorWorld world;
   world.surfaces[kMetal].mirror = 255;
