@@ -32,11 +32,17 @@ function(thimble_choose_formats)
 endfunction()
 
 function(thimble_choose_frames)
+  set(wet_stack_bytes 7296)
   # Pictures of up to 160 x 128 do without what larger ones take (picture/render.h).
   if("${BOARD_FRAMES}" STREQUAL "small")
     target_compile_definitions(thimble PUBLIC THIMBLE_SMALL_FRAMES)
+    set(wet_stack_bytes 4096)
   elseif(NOT "${BOARD_FRAMES}" MATCHES "^(large)?$")
     message(FATAL_ERROR "BOARD_FRAMES of ${BOARD_NAME} is ${BOARD_FRAMES}; it may be small, large, or left out")
+  endif()
+  # Water by the map takes more stack than some boards keep, which draw it by the tree.
+  if(BOARD_STACK_BYTES LESS wet_stack_bytes)
+    target_compile_definitions(thimble_apps PRIVATE THIMBLE_WATER_BY_TREE)
   endif()
   if(THIMBLE_MEASURED)
     target_compile_definitions(thimble_apps PRIVATE THIMBLE_MEASURED)

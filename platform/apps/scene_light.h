@@ -37,11 +37,15 @@ inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
 constexpr EffectSet moving_effects(EffectSet effects) {
   return effects & ~Effect::kEdges;
 }
-/// Whether its lit frames may go through the brick map.
-#ifdef THIMBLE_IMAGE_EFFECTS
-inline constexpr bool kLightsFast = is_flat(moving_effects(kImageEffects));
-#else
+/// Whether its lit frames may go through the brick map. THIMBLE_WATER_BY_TREE: those with water do not
+/// (platform/frames.cmake).
+#if !defined(THIMBLE_IMAGE_EFFECTS)
 inline constexpr bool kLightsFast = true;
+#elif defined(THIMBLE_WATER_BY_TREE)
+inline constexpr bool kLightsFast =
+    is_flat(moving_effects(kImageEffects)) && (kImageEffects & Effect::kWater) == 0;
+#else
+inline constexpr bool kLightsFast = is_flat(moving_effects(kImageEffects));
 #endif
 
 /// Whether a scene stands before black: it was baked for a display of few greys, this is one, and it has no sky.
@@ -94,13 +98,14 @@ struct SceneLight {
 [[gnu::noinline]] inline void prove_light(const ShownScene& shown, Arena* arena, SceneLight* light) {
   if constexpr (kLightsFast) {
     const Span<const Light>& lights = light->baked.scene.lights;
-    const bool has_shadows = (light->effects() & Effect::kShadows) != 0;
-    // Of lamps without shadows the tree draws.
-    const bool takes_lamps = kImageLamps && has_shadows;
+    // Those of an image are its scene's, or `open_light` refuses that.
+    const EffectSet effects = kImageEffects != Effect::kAll ? kImageEffects : light->effects();
+    const bool has_shadows = (effects & Effect::kShadows) != 0;
+    const bool has_way_to_lamps = kImageLamps && takes_lamps(effects);
     size_t suns = 0;
-    light->is_fast = shown.has_map && is_flat(moving_effects(light->effects()));
+    light->is_fast = shown.has_map && is_flat(moving_effects(effects));
     for (const Light& one : lights) {
-      light->is_fast = light->is_fast && (one.is_point ? takes_lamps : ++suns <= kMaxFlatSuns);
+      light->is_fast = light->is_fast && (one.is_point ? has_way_to_lamps : ++suns <= kMaxFlatSuns);
     }
     suns = 0;
     for (const Light& one : lights) {

@@ -6,7 +6,7 @@ namespace thimble {
 namespace lit {
 namespace {
 
-Status draw_flat_set(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+Status draw_flat_set(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                      LitCounts* counts) {
   switch (frame.effects) {
 #define THIMBLE_CASE(set) \
@@ -32,9 +32,9 @@ Status render_lit_band(EffectSet effects, const CompactTree& tree, const BrickMa
   if (is_flat(effects)) {
     EffectSet set = effects & ~lit::kLamps;
     for (const Light& light : scene.lights) {
-      set |= light.is_point && (effects & Effect::kShadows) != 0 ? lit::kLamps : Effect::kNone;
+      set |= light.is_point && takes_lamps(effects) ? lit::kLamps : Effect::kNone;
     }
-    const lit::Frame frame{tree, camera, shading, scene, options, set};
+    lit::Frame frame{tree, camera, shading, scene, options, set};
     if (lit::draws_flat(frame, map)) {
       return lit::draw_flat_set(frame, map, suns, band, counts);
     }

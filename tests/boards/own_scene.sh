@@ -2,7 +2,7 @@
 # Scenes of one's own as firmware: own_scene.sh BOARD. A scene text is baked into a header; the image made from it has
 # the effects that this calls for and no others, keeps its stack, and draws the simulator's pictures. On lm3s6965evb:
 # glass, a mirror and a sun, dark edges for its few greys, by the tree, and the mirror and the sun by the brick map; on
-# microbit a lamp, a sun and occlusion, by the brick map. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
+# microbit a lamp, a sun and occlusion, and a pond, by the brick map. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
@@ -134,12 +134,40 @@ TEXT
   say "without a lamp the image has nothing for one"
 }
 
+# The set 17027 of map_render.h.
+water() {
+  cat >"$work/own.scene" <<'TEXT'
+depth 5
+camera eye 40 -14 26 target 15 16 6 fov 40
+sun toward 6 -5 9
+material floor color 190 180 160
+material steel color 120 160 226
+box floor from 0 0 0 to 32 32 2
+box floor from 0 30 2 to 32 32 20
+ball steel at 18 14 9 radius 7
+box steel from 3 18 2 to 12 27 14
+water level 6 floor 2 color 84 176 190 index 1.333 density 0.05
+TEXT
+  effects=direct-light,shadows,water,sky,ripples
+  "$thimble" bake "$work/own.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
+  build 'demo;bench' "$work/own.h"
+  holds 'draw_flat<17027u' || fail "water does not go through the map"
+  run demo
+  of_demo=$said
+  draws_as_the_simulator "$work/own.scene" --effects $effects
+  holds_its_frames sun-water
+  say "water with ripples, the sun and the sky by the map; $of_demo"
+}
+
 case $board in
   lm3s6965evb)
     glass_and_mirror
     mirror
     ;;
-  microbit) lamp ;;
+  microbit)
+    lamp
+    water
+    ;;
   *) fail "there is no scene for it" ;;
 esac
 exit $failed

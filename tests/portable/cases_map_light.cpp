@@ -1,4 +1,4 @@
-// Lit frames by the map of bricks are those of the tree, byte for byte: the sun, lamps, occlusion, mirrors.
+// Lit frames by the map of bricks are those of the tree, byte for byte: the sun, lamps, occlusion, mirrors, water.
 #include "portable/brick_world.h"
 #include "portable/groups.h"
 #include "portable/scene.h"
@@ -107,6 +107,14 @@ void light(Check& check, int index) {
   state->scene.has_shadows = true;
   state->scene.has_sky = true;
   state->scene.occlusion = {5, 180, 8};
+  if constexpr ((kSet & Effect::kWater) != 0) {
+    state->scene.has_water = true;
+    state->scene.water = still_water({1, 2, 1}, 14, 13, 6 * 256 + 77);
+    state->scene.water_material = surface({84, 176, 190}, SurfaceKind::kGlass);
+    state->scene.water_material.index_q12 = 5460;
+    state->scene.water_material.density_q8 = 30;
+    state->scene.ripple_phase = 77;
+  }
   for (const PixelFormat format : kFormats) {
     THIMBLE_REQUIRE((draw<kSet, kLamps>(check, state, rows, wanted, format)));
   }
@@ -127,6 +135,7 @@ constexpr EffectSet kOpen = kSun | Effect::kEmission | Effect::kSky;
 constexpr EffectSet kAll = kOpen | Effect::kAmbientOcclusion;
 constexpr EffectSet kMirrored = kOpen | Effect::kMirror;
 constexpr EffectSet kAllMirrored = kAll | Effect::kMirror;
+constexpr EffectSet kRippled = kOpen | Effect::kWater | Effect::kRipples;
 constexpr Case kCases[] = {
     {"direct light by the map -> the tree's picture", kArenaBytes, light<Effect::kDirectLight, false>,
      kBefore},
@@ -146,6 +155,10 @@ constexpr Case kCases[] = {
     {"metals, lamps and occlusion -> the tree's picture", kArenaBytes, light<kAllMirrored, true>, kBefore},
     {"metals, lamps and occlusion from far away -> the tree's picture", kArenaBytes,
      light<kAllMirrored, true>, kFarAway},
+    {"water with ripples -> the tree's picture", kArenaBytes, light<kRippled, false>, kBefore},
+    {"water from inside the world -> the tree's picture", kArenaBytes, light<kRippled, false>, kInside},
+    {"water along a diagonal -> the tree's picture", kArenaBytes, light<kRippled, false>, kDiagonal},
+    {"water from far away -> the tree's picture", kArenaBytes, light<kRippled, false>, kFarAway},
 };
 
 }  // namespace

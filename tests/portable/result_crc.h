@@ -21,7 +21,7 @@ inline constexpr uint32_t kWorldCrc32 = 0x46A9ABE0;
 /// Of frames by bricks, all of which every board draws.
 inline constexpr uint32_t kBrickCrc32 = 0xB9A37F48;
 /// Of lit frames by bricks.
-inline constexpr uint32_t kMapLightCrc32 = 0xD404935C;
+inline constexpr uint32_t kMapLightCrc32 = 0x72B3638C;
 
 }  // namespace thimble::portable
 

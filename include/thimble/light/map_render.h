@@ -3,7 +3,7 @@
 ///
 /// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band.
 /// Where the light of a pixel is a function of the face that it shows, of the lights that reach it and of what
-/// occludes it, or a sum of such by way of mirrors (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera
+/// occludes it, or a sum of such by way of mirrors or water (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera
 /// that `draws_fast`, no limit of visits), all rays go through the map; everything else is drawn by the tree. An image
 /// has the first way only when its set allows it, and lamps there only when it says that it has any.
 ///
@@ -64,12 +64,19 @@ class SunBricks {
   uint32_t cells_ = 0;
 };
 
-/// Whether a set has the fast way: direct light alone, or with shadows and any of occlusion, emission, mirrors and sky.
+/// Whether a set has the fast way: direct light alone, or with shadows and any of emission, sky, and either occlusion and
+/// mirrors or water and its ripples.
 constexpr bool is_flat(EffectSet effects) {
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
   constexpr EffectSet kMore = Effect::kAmbientOcclusion | Effect::kEmission | Effect::kMirror | Effect::kSky;
+  constexpr EffectSet kWet = Effect::kEmission | Effect::kSky | Effect::kRipples;
   effects &= ~Effect::kEmitterLight;
-  return effects == Effect::kDirectLight || (effects & ~kMore) == kSun;
+  return effects == Effect::kDirectLight || (effects & ~kMore) == kSun ||
+         (effects & ~kWet) == (kSun | Effect::kWater);
+}
+/// Whether the fast way of such a set takes lamps: else the tree draws scenes that have any.
+constexpr bool takes_lamps(EffectSet effects) {
+  return (effects & Effect::kShadows) != 0 && (effects & Effect::kWater) == 0;
 }
 /// Distant lights that the fast way takes.
 inline constexpr size_t kMaxFlatSuns = 2;
@@ -82,15 +89,15 @@ inline constexpr EffectSet kLamps = Effect::kEmitterLight;
 /// Whether the fast way takes the frame, whose set `is_flat`.
 bool draws_flat(const Frame& frame, const BrickMap& map);
 /// Draws the band where `draws_flat`. `suns` has what is proven of the distant lights, in their order; it may be empty.
-/// An entry that does not belong to its light is not looked at. A function of its own in src/light/flat for each set that
-/// `is_flat`: the stack of an image is added up from their call graph.
+/// An entry that does not belong to its light is not looked at. The frame's counts are 0, and are so again at the end. A
+/// function of its own in src/light/flat for each set that `is_flat`: the stack of an image is added up from their call graph.
 template <EffectSet kSet>
-Status draw_flat(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts);
-#define THIMBLE_DECLARE_FLAT(set)                                                            \
-  template <>                                                                                \
-  Status draw_flat<set>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, \
-                        const Band& band, LitCounts* counts);
+#define THIMBLE_DECLARE_FLAT(set)                                                                         \
+  template <>                                                                                             \
+  Status draw_flat<set>(Frame & frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band, \
+                        LitCounts* counts);
 THIMBLE_FLAT_SETS(THIMBLE_DECLARE_FLAT)
 #undef THIMBLE_DECLARE_FLAT
 
@@ -99,8 +106,9 @@ THIMBLE_FLAT_SETS(THIMBLE_DECLARE_FLAT)
 /// As `render_lit_band` (render.h) with `map`, which belongs to `tree`. `suns` (may be empty) has what is proven of
 /// each distant light of the scene, in their order. `kHasLamps`: lamps go through the map, too; without it a scene with
 /// any is drawn by the tree. The counters of nodes stay as they are for rays that read none; rays to lamps and of
-/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach; no ray waits; and a metal all
-/// of whose light is mirrored sends no rays to lights and none of occlusion.
+/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach; no ray of a mirror waits; a metal
+/// all of whose light is mirrored sends no rays to lights and none of occlusion; and of water only columns are counted that
+/// a ray may come to.
 /// Errors, with nothing drawn: those of render.h, and kDamaged when the map is another tree's.
 template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight) != 0>
 [[gnu::always_inline]] inline Status render_lit_band(const CompactTree& tree, const BrickMap& map,
@@ -112,11 +120,10 @@ template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight
     return Status::kDamaged;
   }
   if constexpr (is_flat(kEffects)) {
-    // Without shadows no ray goes to a lamp, and the tree draws.
-    constexpr bool kTakesLamps = kHasLamps && (kEffects & Effect::kShadows) != 0;
+    constexpr bool kTakesLamps = kHasLamps && takes_lamps(kEffects);
     constexpr EffectSet kSet =
         (kEffects & ~Effect::kEmitterLight) | (kTakesLamps ? lit::kLamps : Effect::kNone);
-    const lit::Frame frame{tree, camera, shading, scene, options, kSet};
+    lit::Frame frame{tree, camera, shading, scene, options, kSet};
     if (lit::draws_flat(frame, map)) {
       return lit::draw_flat<kSet>(frame, map, suns, band, counts);
     }

@@ -18,82 +18,43 @@
 #include "../../picture/bricks/face_light.h"
 #include "../../picture/bricks/sight.h"
 #include "gather.h"
+#include "inks.h"
 #include "mirrored.h"
+#include "watered.h"
 
 namespace thimble::lit {
 namespace {
 
 using namespace bricks;
 
-// How a colour becomes a format's pixel.
-enum class Storing : uint8_t { kGrays, kHalfwords, kBytes, kAny };
-
-Storing storing_of(PixelFormat format) {
-  if (format == PixelFormat::kMono1 || format == PixelFormat::kGray4) {
-    return Storing::kGrays;
-  }
-  return format == PixelFormat::kRgb565 ||
-                 (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
-                 (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)
-             ? Storing::kHalfwords
-         : format == PixelFormat::kGray8 || format == PixelFormat::kRgb888 ? Storing::kBytes
-                                                                           : Storing::kAny;
-}
-
-// By a pixel's place in the dither: the least rest of a channel, out of kWhite, at which the next step is stored.
-struct Thresholds {
-  uint16_t at[64];
-};
-constexpr Thresholds thresholds() {
-  Thresholds result{};
-  for (int32_t i = 0; i < 64; ++i) {
-    result.at[i] = static_cast<uint16_t>(kWhite - (128 - (2 * bayer_rank(i & 7, i >> 3) + 1)) * kWhite / 128);
-  }
-  return result;
-}
-constexpr Thresholds kDither = thresholds();
-constexpr uint32_t kNoDither = kWhite - 64 * kWhite / 128;
-
-// A colour as it is stored. kGrays: the step below it, and the rest, out of kWhite. kHalfwords: the pixel of the steps
-// below it, and each channel's rest. kBytes: the pixel. kAny: the colour itself.
-struct FlatInk {
-  uint32_t low;
-  uint16_t rest[3];
-  uint16_t key;
-};
-
 // Few colours are kept where most points have a light of their own.
 template <EffectSet kSet>
-constexpr uint32_t kInks = kGathersLight<kSet> ? 8
-                           : kMirrors<kSet>    ? 16
-                                               : 32;
-constexpr uint32_t kFaces = 64;
+constexpr uint32_t kInks = kGathersLight<kSet> || kIsWet<kSet> ? 8
+                           : kMirrors<kSet>                    ? 16
+                                                               : 32;
+// Faces whose material is kept.
+template <EffectSet kSet>
+constexpr uint32_t kFaces = kIsWet<kSet> ? 32 : 64;
 constexpr uint16_t kNoKey = UINT16_MAX;
 constexpr uint32_t kNoFace = UINT32_MAX;
-
-constexpr int kAskedWords = kTileAcrossPx * kTileDownPx / 32;
-static_assert(kAskedWords == 4);
 
 uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
   return band.pixels.data + stride * row_place(band.format, y - band.first_row);
 }
 
-// How far a band is drawn: the next tile, and the pixels of the tile before it that only the tree can tell.
-struct FlatProgress {
-  int32_t x;
-  int32_t y;
-  uint32_t asked[kAskedWords];
-};
-
-// Draws what SightPainter finds: it is a sink of that. Whether metals mirror is in its name, by which stacks are told
-// apart.
-template <EffectSet kSet, bool kMirrored>
-class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
-  friend class Mirroring<kSet, FlatSink<kSet, kMirrored>>;
+// Draws what SightPainter finds: it is a sink of that. Where rays go on, which is in its name, by which stacks are told
+// apart, they do so from its own points; but in water from what another has noted.
+template <EffectSet kSet, bool kGoesOn>
+class FlatSink : Gathering<kSet, kGoesOn>,
+                 Mirroring<kSet, FlatSink<kSet, kGoesOn>>,
+                 Watering<kSet, FlatSink<kSet, kGoesOn>, kGoesOn> {
+  friend class Mirroring<kSet, FlatSink<kSet, kGoesOn>>;
+  friend struct MapFrame<FlatSink>;
 
  public:
-  FlatSink(const Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
-      : frame_(frame),
+  FlatSink(Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
+      : Watering<kSet, FlatSink<kSet, kGoesOn>, kGoesOn>(frame, *this),
+        frame_(frame),
         map_(map),
         band_(band),
         stride_(stride),
@@ -152,7 +113,14 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
   void hit(int32_t x, int32_t y, const SightCourse& course, const Vec3<uint32_t>& d) {
     const unsigned face = course.face[course.landing.axis];
     unsigned lights = lights_of_[face];
-    if constexpr (kMirrored) {
+    if constexpr (kIsWet<kSet>) {
+      const FacePoint point = landed_on(course);
+      if (!this->is_dry(point, low_q8(2))) {
+        this->note(pixel_at(x, y), note_of(point));
+        return;
+      }
+    }
+    if constexpr (kMirrors<kSet>) {
       const uint8_t material = material_of(course.landing.voxel, face);
       if (mirrors(material)) {
         FacePoint point;
@@ -178,6 +146,12 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
   }
 
   void miss(int32_t x, int32_t y) {
+    if constexpr (kIsWet<kSet>) {
+      if (!this->is_dry(frame_.camera.ray(x, y).direction)) {
+        this->note(pixel_at(x, y), kNothing);
+        return;
+      }
+    }
     ++misses_;
     if constexpr ((kSet & Effect::kSky) == 0) {
       store(x, y, sky_);
@@ -189,7 +163,17 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
   // Draws the pixels of a tile that show a face.
   void face(const SeenPixels& seen, SeenFace& face) {
     const unsigned side = seen.course.face[face.point.axis];
-    if constexpr (kMirrored) {
+    if constexpr (kIsWet<kSet>) {
+      if (!this->is_dry(face.point, low_q8(2))) {
+        for_each(seen.pixels, [&](uint32_t pixel) {  // of the band's part of the tile
+          this->note(pixel_at(seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+                              seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx)),
+                     note_of(face.point));
+        });
+        return;
+      }
+    }
+    if constexpr (kMirrors<kSet>) {
       const uint8_t material = material_of(face.voxel, side);
       if (mirrors(material)) {
         for_each(seen.pixels, [&](uint32_t pixel) {
@@ -230,7 +214,7 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
   }
 
   void miss(const TilePlace& place, const Pixels& pixels) {
-    if constexpr ((kSet & Effect::kSky) == 0) {
+    if constexpr ((kSet & (Effect::kSky | Effect::kWater)) == 0) {
       misses_ += counts_ ? count_of(pixels) : 0;
       store(place, pixels, sky_);
     } else {
@@ -242,10 +226,15 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
   }
 
   void ask(int32_t x, int32_t y) {
-    const auto pixel = static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
+    const uint32_t pixel = pixel_at(x, y);
     asked_[pixel >> 5] |= 1U << (pixel & 31U);
   }
 
+  void set_asked(const uint32_t (&asked)[kAskedWords]) {
+    for (int i = 0; i < kAskedWords; ++i) {
+      asked_[i] = asked[i];
+    }
+  }
   // Hands over the pixels of a tile that only the tree can tell; returns whether there are any.
   bool take_asked(uint32_t (*asked)[kAskedWords]) {
     uint32_t any = 0;
@@ -267,17 +256,49 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
     if constexpr (kKeepsSuns) {
       this->add_counts(counts);
     }
-    if constexpr (kMirrored) {
+    if constexpr (kMirrors<kSet>) {
       this->add_mirror_counts(counts);
     }
   }
   uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
 
+  // Tells where notes are made.
+  template <class Progress>
+  void note_in(Progress* progress) {
+    if constexpr (kIsWet<kSet>) {
+      this->set_notes(progress->notes);
+    }
+  }
+  // Draws what was noted of the tile at (x0, y0); asks for the pixels that only the tree can tell.
+  void draw_noted(int32_t x0, int32_t y0, const WetNotes& notes, LitCounts* counts) {
+    for (int32_t pixel = 0; pixel < kTileAcrossPx * kTileDownPx; ++pixel) {
+      const uint32_t note = notes.of[pixel];
+      if (note == 0) {
+        continue;
+      }
+      const int32_t x = x0 + pixel % kTileAcrossPx;
+      const int32_t y = y0 + pixel / kTileAcrossPx;
+      const uint32_t shadow_rays = shadow_rays_;
+      const uint32_t shadows = shadows_;
+      Color color;
+      if (this->find_wet(frame_.camera.ray(x, y), note, &color)) {
+        if (counts != nullptr) {
+          lit::add_counts(this->wet_counts(), counts);
+        }
+        lit::store(frame_, band_, line_of(y), x, y, color);
+      } else {
+        shadow_rays_ = shadow_rays;
+        shadows_ = shadows;
+        ask(x, y);
+      }
+    }
+  }
+
  private:
   static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
   static constexpr bool kHasLamps = (kSet & kLamps) != 0;
   static constexpr bool kGathers = kGathersLight<kSet>;
-  static constexpr bool kKeepsSuns = Gathering<kSet>::kKeepsSuns;
+  static constexpr bool kKeepsSuns = Gathering<kSet, kGoesOn>::kKeepsSuns;
 
   static uint32_t count_of(const Pixels& pixels) {
     uint32_t count = 0;
@@ -362,14 +383,34 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
     return material < surfaces.size && is_mirror(surfaces[material]) && frame_.scene.bounces != 0;
   }
 
+  // The direction of a ray of the camera that is `d` mirrored.
+  static Vec3i direction_of(const SightCourse& course, const Vec3<uint32_t>& d) {
+    Vec3i direction;
+    for (int i = 0; i < 3; ++i) {
+      const auto size = static_cast<int32_t>(d[i]);
+      direction[i] = course.flip[i] != 0 ? -size : size;
+    }
+    return direction;
+  }
+  static uint32_t pixel_at(int32_t x, int32_t y) {
+    return static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
+  }
+  // The box's lowest corner, in 1/256 voxel.
+  int32_t low_q8(int axis) const { return 4 * Q8::kOne * map_.box().low[axis]; }
+
+  // For MapFrame.
+  template <class WetFrame>
+  [[gnu::noinline]] Color point_color(WetFrame& frame, const Spot& spot, const FacePoint& point) {
+    Color light;
+    ambient_light(frame_, spot, &light);
+    this->add_suns_in_water(frame, spot, suns_at(point, lights_of_[side_of(point)]), &light);
+    return shown_by(spot, light);
+  }
+
   // Stores a point of a metal, which the ray of direction `d` meets.
   [[gnu::noinline]] void show_mirrored(int32_t x, int32_t y, const SightCourse& course,
                                        const Vec3<uint32_t>& d, const FacePoint& point, uint8_t material) {
-    Vec3i arriving;
-    for (int i = 0; i < 3; ++i) {
-      const auto size = static_cast<int32_t>(d[i]);
-      arriving[i] = course.flip[i] != 0 ? -size : size;
-    }
+    const Vec3i arriving = direction_of(course, d);
     const auto counted = this->counted();
     const uint32_t shadow_rays = shadow_rays_;
     const uint32_t shadows = shadows_;
@@ -404,12 +445,12 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
     }
   }
 
-  // A face's key has 25 bits: its place in the table says 6 of them, the entry keeps the upper 19 beside the material.
+  // A face's key has 25 bits: its place in the table says the lower ones, the entry keeps the others beside the material.
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
     const uint32_t key = voxel << 3 | face;
-    uint32_t& seen = seen_[(key ^ key >> 6) % kFaces];
-    if (seen >> 8 != key >> 6) {
-      seen = key >> 6 << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
+    uint32_t& seen = seen_[(key ^ key / kFaces<kSet>) % kFaces<kSet>];
+    if (seen >> 8 != key / kFaces<kSet>) {
+      seen = key / kFaces<kSet> << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
     }
     return static_cast<uint8_t>(seen);
   }
@@ -589,10 +630,12 @@ class FlatSink : Gathering<kSet>, Mirroring<kSet, FlatSink<kSet, kMirrored>> {
   uint32_t shadows_ = 0;
   uint32_t asked_[kAskedWords] = {};
   FlatInk sky_;
-  FlatInk inks_[kInks<kSet>];
-  uint32_t seen_[kFaces];  // material, from bit 8 on the face; kFaces is 2^6
+  static constexpr bool kFindsFaces = !(kGoesOn && kIsWet<kSet>);
+  FlatInk inks_[kFindsFaces ? kInks<kSet> : 1];
+  uint32_t seen_[kFindsFaces ? kFaces<kSet> : 1];  // material, from bit 8 on the face
   ShadowCourse suns_[kHasShadows ? kMaxFlatSuns : 1];
-  Blockers blockers_[kHasShadows && kSlots != 0 ? kMaxFlatSuns : 1];  // of the face that is being drawn
+  // Of the face that is being drawn.
+  Blockers blockers_[kHasShadows && kSlots != 0 && kFindsFaces ? kMaxFlatSuns : 1];
 };
 
 bool shares_bytes(PixelFormat format) {
@@ -601,17 +644,18 @@ bool shares_bytes(PixelFormat format) {
 
 // Draws tiles up to the first with pixels that only the tree can tell. Not inlined, so that its frame has left the
 // stack when the tree is asked.
-template <EffectSet kSet, bool kMirrored>
-[[gnu::noinline]] void draw_tiles(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
-                                  const Band& band, size_t stride, FlatProgress* progress,
+template <EffectSet kSet, bool kGoesOn>
+[[gnu::noinline]] void draw_tiles(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                                  const Band& band, size_t stride, ProgressOf<kSet>* progress,
                                   LitCounts* counts) {
-  FlatSink<kSet, kMirrored> sink(frame, map, band, stride, counts != nullptr);
+  FlatSink<kSet, kGoesOn> sink(frame, map, band, stride, counts != nullptr);
+  sink.note_in(progress);
   sink.set_lights(suns);
   const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
   sweep.course = kNoKey;
   const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
-  SightPainter<FlatSink<kSet, kMirrored>> painter(sights, swept ? &sweep : nullptr, sink);
+  SightPainter<FlatSink<kSet, kGoesOn>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();
   const int32_t end = band.first_row + band.rows;
   for (bool open = false; progress->y < end && !open;) {
@@ -623,9 +667,44 @@ template <EffectSet kSet, bool kMirrored>
     progress->x = last ? 0 : x + kTileAcrossPx;
     progress->y = last ? tile_end : y;
     open = sink.take_asked(&progress->asked);
+    if constexpr (kIsWet<kSet>) {
+      open = open || progress->notes->any;
+    }
   }
   if (counts != nullptr) {
     sink.count(counts);
+  }
+}
+
+// Draws what was noted of the tile before.
+template <EffectSet kSet>
+[[gnu::noinline]] void draw_noted(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                                  const Band& band, size_t stride, WetProgress* progress, LitCounts* counts) {
+  FlatSink<kSet, true> sink(frame, map, band, stride, counts != nullptr);
+  sink.set_lights(suns);
+  sink.set_asked(progress->asked);
+  const bool first = progress->x == 0;
+  const int32_t y = first ? progress->y - 1 : progress->y;
+  const int32_t x = (first ? frame.camera.width_px() - 1 : progress->x - 1) / kTileAcrossPx * kTileAcrossPx;
+  sink.draw_noted(x, y - y % kTileDownPx, *progress->notes, counts);
+  sink.take_asked(&progress->asked);
+  frame.counts = {};  // they were those of single pixels
+  if (counts != nullptr) {
+    sink.count(counts);
+  }
+}
+
+// Draws tiles up to the first in which rays come to water, or only the tree can tell. Not inlined, so that its notes have
+// left the stack when the tree is asked.
+template <EffectSet kSet>
+[[gnu::noinline]] void draw_wet_tiles(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
+                                      const Band& band, size_t stride, WetProgress* progress,
+                                      LitCounts* counts) {
+  WetNotes notes;
+  progress->notes = &notes;
+  draw_tiles<kSet, false>(frame, map, suns, band, stride, progress, counts);
+  if (notes.any) {
+    draw_noted<kSet>(frame, map, suns, band, stride, progress, counts);
   }
 }
 
@@ -648,7 +727,7 @@ template <EffectSet kSet>
 }
 
 template <EffectSet kSet>
-Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+Status draw_faces(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                   LitCounts* counts) {
   size_t stride = 0;
   const Status status = check_frame(frame, band, &stride);
@@ -661,9 +740,14 @@ Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks>
       clear_row(frame, band, line_of(band, stride, y));
     }
   }
-  FlatProgress progress{0, band.first_row, {}};
+  ProgressOf<kSet> progress{};
+  progress.y = band.first_row;
   while (progress.y < end) {
-    draw_tiles<kSet, kMirrors<kSet>>(frame, map, suns, band, stride, &progress, counts);
+    if constexpr (kIsWet<kSet>) {
+      draw_wet_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+    } else {
+      draw_tiles<kSet, kMirrors<kSet>>(frame, map, suns, band, stride, &progress, counts);
+    }
     if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
       continue;
     }
@@ -680,11 +764,11 @@ Status draw_faces(const Frame& frame, const BrickMap& map, Span<const SunBricks>
 }  // namespace thimble::lit
 
 // What a source of this folder has of each of its sets.
-#define THIMBLE_DRAW_FLAT(set)                                                               \
-  template <>                                                                                \
-  Status draw_flat<set>(const Frame& frame, const BrickMap& map, Span<const SunBricks> suns, \
-                        const Band& band, LitCounts* counts) {                               \
-    return draw_faces<set>(frame, map, suns, band, counts);                                  \
+#define THIMBLE_DRAW_FLAT(set)                                                                            \
+  template <>                                                                                             \
+  Status draw_flat<set>(Frame & frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band, \
+                        LitCounts* counts) {                                                              \
+    return draw_faces<set>(frame, map, suns, band, counts);                                               \
   }
 
 #endif

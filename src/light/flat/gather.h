@@ -17,9 +17,11 @@ template <EffectSet kSet>
 constexpr bool kGathersLight = (kSet & (Effect::kAmbientOcclusion | kLamps)) != 0;
 template <EffectSet kSet>
 constexpr bool kMirrors = (kSet & Effect::kMirror) != 0;
+template <EffectSet kSet>
+constexpr bool kIsWet = (kSet & Effect::kWater) != 0;
 
 // What rays leave from.
-template <EffectSet kSet, bool = kMirrors<kSet>>
+template <EffectSet kSet, bool kGoesOn>
 struct PointOf {
   using Type = NearPoint<(kSet & kLamps) != 0>;
 };
@@ -28,16 +30,24 @@ struct PointOf<kSet, true> {
   using Type = MirrorPoint<(kSet & kLamps) != 0>;
 };
 
-// A set that gathers nothing keeps nothing.
-template <EffectSet kSet, bool = kGathersLight<kSet> || kMirrors<kSet>>
+// Where the distant lights are, as their rays have it; where these go through water alone.
+template <bool kKept>
+struct SunDirections {};
+template <>
+struct SunDirections<true> {
+  Vec3i towards[kMaxFlatSuns];
+};
+
+// Where nothing is gathered and no ray goes on nothing is kept.
+template <EffectSet kSet, bool kGoesOn, bool = kGathersLight<kSet> || kGoesOn>
 class Gathering {
  public:
   static constexpr bool kKeepsSuns = false;
 };
 
-// Where metals mirror the light of a point is asked without a face, and what the suns give is kept for that alone.
-template <EffectSet kSet>
-class Gathering<kSet, true> {
+// Where rays go on the light of a point is asked without a face, and what the suns give is kept for that alone.
+template <EffectSet kSet, bool kGoesOn>
+class Gathering<kSet, kGoesOn, true> : protected SunDirections<kIsWet<kSet>> {
  public:
   static constexpr bool kKeepsSuns = true;
   // Rays to lamps and of occlusion, and those of them that meet something.
@@ -57,7 +67,12 @@ class Gathering<kSet, true> {
     reach_q12_ = ((reach << 20) + kOcclusionLength - 1) / kOcclusionLength;
   }
   // Sets what sun `number` gives a face that it reaches.
-  void set_sun(size_t number, unsigned face, const LightRay& ray) { add_light(ray, &suns_[face][number]); }
+  void set_sun(size_t number, unsigned face, const LightRay& ray) {
+    add_light(ray, &suns_[face][number]);
+    if constexpr (kIsWet<kSet>) {
+      this->towards[number] = ray.ray.direction;
+    }
+  }
 
   // The light of a face, without lamps, where nothing is hidden but the suns that are not in `lights`.
   void light_of_face(const Frame& frame, const Spot& spot, unsigned lights, Color* light) const {
@@ -66,6 +81,23 @@ class Gathering<kSet, true> {
       darken(frame.scene.occlusion, kOpenShare, 1, light);
     }
     add_suns(spot, lights, light);
+  }
+
+  // Adds what comes to a spot from the suns of `lights`, through water where there is any.
+  template <class AnyFrame>
+  void add_suns_in_water(AnyFrame& frame, const Spot& spot, unsigned lights, Color* light) const {
+    const Color(&suns)[kMaxFlatSuns] = suns_[number_of(spot.face)];
+    for (size_t i = 0; i < kMaxFlatSuns; ++i) {
+      if ((lights >> i & 1U) != 0) {
+        LightRay ray;
+        ray.ray = {spot.at, this->towards[i]};
+        for (int channel = 0; channel < 3; ++channel) {
+          ray.brightness[channel] = suns[i].c[channel];
+        }
+        filter_by_water(frame, &ray);
+        add_light(ray, light);
+      }
+    }
   }
 
   // Gathers the light of a point; `at` holds its face. Returns false when the point has just the light of its face.
@@ -99,7 +131,7 @@ class Gathering<kSet, true> {
     counts->rays[kOcclusion] += counted_.occlusion_rays;
     counts->hits[kOcclusion] += counted_.occlusion_hits;
   }
-  typename PointOf<kSet>::Type& from() { return from_; }
+  typename PointOf<kSet, kGoesOn>::Type& from() { return from_; }
   const Counted& counted() const { return counted_; }
   void set_counted(const Counted& counted) { counted_ = counted; }
 
@@ -194,7 +226,7 @@ class Gathering<kSet, true> {
     return false;
   }
 
-  typename PointOf<kSet>::Type from_;
+  typename PointOf<kSet, kGoesOn>::Type from_;
   LightRay ray_;            // to a lamp
   int rays_ = 0;            // of occlusion, a point
   uint32_t reach_q12_ = 0;  // of occlusion: 1/256 voxel for each unit of a direction, in 1/2^12

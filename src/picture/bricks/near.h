@@ -93,6 +93,8 @@ class NearPoint {
   }
   // The point's coordinate in the world, in 1/256 voxel.
   int32_t place(int axis) const { return low_[axis] + at_[axis]; }
+  // The same of the box's lowest corner.
+  int32_t low(int axis) const { return low_[axis]; }
 
   // Sets the signs of the rays that follow, which leave the face: bit a is set where axis a is mirrored. Returns false
   // when they leave the box at once.
@@ -138,6 +140,12 @@ class NearPoint {
   // The distance of the point from the side of the box at which the rays come in, in 1/256 voxel.
   int32_t own_place(int axis) const { return is_mirrored(axis) ? size_[axis] - at_[axis] : at_[axis]; }
   int32_t bricks_on(int axis) const { return size_[axis] >> 10; }
+  void set_place(const Vec3Q8& place) {
+    for (int i = 0; i < 3; ++i) {
+      at_[i] = place[i].raw - low_[i];
+    }
+  }
+  bool is_before_box() const { return own_place(0) < 0 || own_place(1) < 0 || own_place(2) < 0; }
   OneRay& ray() { return ray_; }
 
  private:
@@ -179,14 +187,18 @@ class NearPoint {
   OneRay ray_;
 };
 
-// A point on a face that may be a metal's, from which rays go to what it mirrors, too.
+// A point on a face that may be a metal's, from which rays go to what it mirrors, too; or any other place from which rays
+// go on.
 template <bool kFar>
 class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
  public:
   // Traces a ray of any direction that leaves the face: kMissed; kAsk, where only the tree knows what is hit, since the
   // ray enters that through an edge, or begins in it; else goes on to the point that it hits, of `voxel` (as Landing's).
+  template <bool kPlaced = false>
   int32_t go_on(const Vec3i& direction, uint32_t* voxel, FacePoint* point) {
-    this->set(*point);
+    if constexpr (!kPlaced) {
+      this->set(*point);
+    }
     MirrorRay<kFar>& ray = this->ray();
     unsigned mirrored = 0;
     int c = 0;
@@ -198,6 +210,9 @@ class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
     if (!this->begin(mirrored)) {
       return kMissed;
     }
+    if (kPlaced && this->is_before_box()) {
+      return kAsk;
+    }
     ray.planes = UINT32_MAX;
     const int32_t answer = c == 0 ? near_along<0>(ray) : c == 1 ? near_along<1>(ray) : near_along<2>(ray);
     if (answer != kShadowed) {
@@ -205,6 +220,11 @@ class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
     }
     *voxel = ray.landing.voxel;
     return find_point(point) ? answer : kAsk;
+  }
+  // The same from a place in the world; kAsk, too, where the ray may come into the box.
+  int32_t go_on_from(const Vec3Q8& place, const Vec3i& direction, uint32_t* voxel, FacePoint* point) {
+    this->set_place(place);
+    return go_on<true>(direction, voxel, point);
   }
 
  private:

@@ -488,7 +488,7 @@ Color pixel(AnyFrame& frame, const Ray& ray) {
     PendingRay pending[pending_rays(kSet)];
     pending[0] = first;
     size_t count = 1;
-    while (count != 0) {
+    while (count != 0 && !frame.is_open) {
       --count;
       follow<kSet>(frame, pending[count], pending, &count, &sum);
       if (count > frame.counts.pending_high_water) {

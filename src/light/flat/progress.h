@@ -1,0 +1,73 @@
+// How far a band is drawn, and what is left of a tile for others to draw. Internal to src/.
+#ifndef THIMBLE_SRC_LIGHT_FLAT_PROGRESS_H
+#define THIMBLE_SRC_LIGHT_FLAT_PROGRESS_H
+
+#include "../../picture/bricks/sight.h"
+#include "gather.h"
+#include "mirrored.h"
+
+namespace thimble::lit {
+namespace {
+
+using namespace bricks;
+
+constexpr int kAskedWords = kTileAcrossPx * kTileDownPx / 32;
+static_assert(kAskedWords == 4);
+
+// How far a band is drawn: the next tile, and the pixels of the tile before it that only the tree can tell.
+struct FlatProgress {
+  int32_t x;
+  int32_t y;
+  uint32_t asked[kAskedWords];
+};
+
+// What the camera's ray of a pixel meets that may come to water: the face's voxel in the box, and from bit 24 on its side
+// and 1; kNothing, or 0 where nothing is noted.
+constexpr int kNoteBits = kMaxBrickMapLevel;
+constexpr uint32_t kNothing = 7U << 3 * kNoteBits;
+inline uint32_t note_of(const FacePoint& point) {
+  uint32_t note = side_of(point) + 1;
+  for (int i = 2; i >= 0; --i) {
+    note = note << kNoteBits | static_cast<uint32_t>(point.voxel[i]);
+  }
+  return note;
+}
+struct WetNotes {
+  bool any = false;
+  uint32_t of[kTileAcrossPx * kTileDownPx] = {};
+};
+
+// The face on which a ray has landed; not where on it.
+inline FacePoint landed_on(const SightCourse& course) {
+  const Landing& landing = course.landing;
+  FacePoint face;
+  for (int i = 0; i < 3; ++i) {
+    const int32_t side = course.frame->side[i];
+    const int32_t brick = static_cast<int32_t>(count_of(landing.left, i)) - (512 - side);
+    face.voxel[i] = 4 * (course.flip[i] != 0 ? side - 1 - brick : brick) +
+                    static_cast<int32_t>(landing.voxel >> 2 * i & 3U);
+  }
+  face.axis = landing.axis;
+  face.faces_up = course.flip[landing.axis] != 0;
+  return face;
+}
+
+// The same with what is noted of the tile for another to draw.
+struct WetProgress : FlatProgress {
+  WetNotes* notes;
+};
+template <bool kWet>
+struct Progress {
+  using Type = FlatProgress;
+};
+template <>
+struct Progress<true> {
+  using Type = WetProgress;
+};
+template <EffectSet kSet>
+using ProgressOf = typename Progress<kIsWet<kSet>>::Type;
+
+}  // namespace
+}  // namespace thimble::lit
+
+#endif
