@@ -24,6 +24,9 @@ uint32_t child_of(const CompactTree& tree, uint32_t node, const Vec3i& voxel, in
 }
 
 Status run(Job* job) {
+  if (job->count == 0) {
+    return Status::kOk;
+  }
   if (job->any != nullptr) {
     std::fill_n(job->any, job->count, uint8_t{0});
   } else if (job->entries != nullptr) {
@@ -169,13 +172,13 @@ struct Block {
   uint8_t material;
 };
 
-Block block_at(const RayMap& map, const Vec3i& voxel) {
+Block block_at(const RayMap& map, const Vec3i& voxel, const Leaf& leaf) {
   const CompactTree& tree = map.tree();
   Block block{voxel, 0, tree.uniform_material()};
   if (!map.cells()->has_nodes) {
     return block;
   }
-  if (map.cells()->has_tags && look_up(tree, leaf_at(*map.cells(), voxel), &block.material)) {
+  if (map.cells()->has_tags && look_up(tree, leaf, &block.material)) {
     return block;
   }
   const Parent parent = parent_of(map, voxel);
@@ -190,6 +193,10 @@ Block block_at(const RayMap& map, const Vec3i& voxel) {
     block.level = parent.level;
   }
   return block;
+}
+
+Block block_at(const RayMap& map, const Vec3i& voxel) {
+  return block_at(map, voxel, map.cells()->has_tags ? leaf_at(*map.cells(), voxel) : Leaf());
 }
 
 // Finds the face by which a ray enters a block, and its t: that of the lower plane that the ray crosses last, on a tie
@@ -274,8 +281,9 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   hit.visits = visits;
   if (job->exits != nullptr) {
     MediumExit& exit = job->exits[number];
-    exit.into_solid = job->in[number] == kInAir || leaf_at(*job->map->cells(), voxel).holds();
-    const Block block = exit.into_solid ? block_at(*job->map, voxel) : Block{voxel, 0, 0};
+    const Leaf leaf = leaf_at(*job->map->cells(), voxel);
+    exit.into_solid = job->in[number] == kInAir || leaf.holds();
+    const Block block = exit.into_solid ? block_at(*job->map, voxel, leaf) : Block{voxel, 0, 0};
     hit.kind = HitKind::kHit;
     hit.voxel = block.corner;
     hit.block_level = static_cast<uint8_t>(block.level);
@@ -358,10 +366,11 @@ bool RayMap::material_at(const Vec3i& voxel, uint8_t* material) const {
   if (cells() == nullptr) {
     return thimble::material_at(tree_, voxel, material);
   }
-  if (!leaf_at(cells_, voxel).holds()) {
+  const Leaf leaf = leaf_at(cells_, voxel);
+  if (!leaf.holds()) {
     return false;
   }
-  *material = block_at(*this, voxel).material;
+  *material = block_at(*this, voxel, leaf).material;
   return true;
 }
 
