@@ -317,7 +317,7 @@ TEST_CASE("rays: the material of every voxel -> the tree's") {
 }
 
 // THIMBLE_LONG=1: ten million rays and more, each by every instruction set.
-TEST_CASE("rays: empty boxes -> nothing solid in them, nor in what is left of their leaves") {
+TEST_CASE("rays: boxes -> empty where nothing solid is in them") {
   std::size_t empty = 0;
   std::size_t full = 0;
   for (int level = 1; level <= 7; ++level) {
@@ -342,22 +342,18 @@ TEST_CASE("rays: empty boxes -> nothing solid in them, nor in what is left of th
       };
       for (int turn = 0; turn < 200; ++turn) {
         VoxelBox box;
-        VoxelBox leaves;
         for (int axis = 0; axis < 3; ++axis) {
           box.low[axis] = static_cast<int>(pick(random, -3 - side, side + 3));
           box.high[axis] = box.low[axis] + static_cast<int>(pick(random, 1, turn % 2 == 0 ? 20 : 2 * side));
-          leaves.low[axis] = box.low[axis] & ~3;
-          leaves.high[axis] = (box.high[axis] + 3) & ~3;
         }
         const bool is_empty = made.map.is_empty(box);
-        CHECK_FALSE((is_empty && holds(box)));
-        CHECK_FALSE((!is_empty && !holds(leaves)));
+        CHECK(is_empty != holds(box));
         ++(is_empty ? empty : full);
       }
     }
   }
   CHECK(empty > 1000);
-  CHECK(full > 1000);
+  CHECK(full > 500);
   CHECK_FALSE(wide::RayMap(CompactTree()).is_empty({{0, 0, 0}, {1, 1, 1}}));  // without a map nobody knows
 }
 

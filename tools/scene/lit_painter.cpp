@@ -29,9 +29,13 @@ class LitPainter final : public BandPainter {
     return picture_.streams != nullptr ? picture_.streams->threads() : picture_.threads;
   }
   std::int32_t most_rows() const override {
-    return picture_.across == 1 ? static_cast<std::int32_t>(built_.band().size / row_bytes_) : 1;
+    if (picture_.across != 1) {
+      return 1;
+    }
+    return is_straight() ? std::max(1, kMostPixelsAtOnce / width_px_)
+                         : static_cast<std::int32_t>(built_.band().size / row_bytes_);
   }
-  Bytes work() const override { return built_.band(); }
+  Bytes work() const override { return is_straight() ? Bytes() : built_.band(); }
   Status draw(const Band& band, PaintCounts* counts) override {
     const Status status =
         picture_.across == 1 ? draw_band(band, &counts->lit) : draw_samples(band, &counts->lit);
@@ -40,6 +44,11 @@ class LitPainter final : public BandPainter {
   }
 
  private:
+  // At the end of each call of a stream its threads wait for one another, and what they keep of slopes and lights goes.
+  static constexpr std::int32_t kMostPixelsAtOnce = 1 << 19;
+
+  // Streams need no band of the scene's memory: a pixel is written once.
+  bool is_straight() const { return picture_.streams != nullptr && picture_.across == 1; }
   Status draw_rows(const Band& band, LitCounts* counts) const {
     return render_lit_band(picture_.effects, built_.compact(), camera_, shading_, picture_.scene, band,
                            counts);

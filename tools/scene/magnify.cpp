@@ -42,9 +42,8 @@ void magnify_rows(const uint8_t* small, int step, int32_t width_px, int32_t heig
                   int32_t end, uint16_t* work, uint8_t* rgb) {
   const size_t row_bytes = 3 * static_cast<size_t>(width_px);
   if (step == 1) {
-    for (size_t i = row_bytes * static_cast<size_t>(first); i < row_bytes * static_cast<size_t>(end); ++i) {
-      rgb[i] = small[i];
-    }
+    const size_t before = row_bytes * static_cast<size_t>(first);
+    __builtin_memcpy(rgb + before, small + before, row_bytes * static_cast<size_t>(end - first));
     return;
   }
   const int32_t columns = thinned_px(width_px, step);

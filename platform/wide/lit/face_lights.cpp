@@ -75,7 +75,12 @@ void FaceLightsParts::lay_out(const FaceLightsShape& shape, Taker* taker) {
 }
 
 FaceLights::FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker)
-    : frame_(frame), once_(frame), asking_(frame), map_(map), shape_(shape) {
+    : frame_(frame),
+      once_(frame),
+      asking_(frame),
+      map_(map),
+      open_(map, frame.scene.occlusion, shape.around),
+      shape_(shape) {
   parts_.lay_out(shape, taker);
   asking_.questions = parts_.questions;
   asking_.once = &once_;
@@ -112,12 +117,13 @@ LitCounts FaceLights::counts() const {
   return all;
 }
 
-// lit::occlude.
+// lit::occlude. Rays that can meet nothing are only counted.
 void FaceLights::occlude() {
   const uint32_t around = shape_.around;
   if (around == 0) {
     return;
   }
+  constexpr int kKind = static_cast<int>(LitRayKind::kOcclusion);
   uint32_t asking = 0;
   Ray* ray = parts_.rays;
   for (uint32_t i = 0; i < count_; ++i) {
@@ -125,27 +131,40 @@ void FaceLights::occlude() {
     if (face.face >= kInside) {
       continue;
     }
+    frame_.counts.rays[kKind] += around;
+    const unsigned sent = open_.rays_before(face.at, face.face);
+    if (sent == 0) {
+      for (uint32_t& channel : parts_.light[i].c) {
+        channel = std::min<uint32_t>(channel, UINT16_MAX);
+      }
+      continue;
+    }
+    parts_.any[asking] = static_cast<uint8_t>(sent);
     parts_.asking[asking++] = i;
     for (uint32_t n = 0; n < around; ++n) {
-      *ray++ = {face.at, occlusion_direction(static_cast<int>(n), face.face / 2, face.face % 2 == 0)};
+      if ((sent >> n % 4 & 1U) != 0) {
+        *ray++ = {face.at, occlusion_direction(static_cast<int>(n), face.face / 2, face.face % 2 == 0)};
+      }
     }
   }
-  const size_t rays = size_t{asking} * around;
+  const auto rays = static_cast<size_t>(ray - parts_.rays);
   const Occlusion& occlusion = frame_.scene.occlusion;
   (void)first_entry_before(map_, {parts_.rays, rays}, RayPoint{occlusion.reach, kOcclusionLength},
                            {parts_.points, rays}, has_clear_ ? of_occlusion_ : nullptr);
   const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
   const RayPoint* met = parts_.points;
-  uint64_t hits = 0;
   for (uint32_t i = 0; i < asking; ++i) {
     uint32_t open = 0;
-    for (uint32_t n = 0; n < around; ++n, ++met) {
+    for (uint32_t n = 0; n < around; ++n) {
       uint32_t share = kOpen;
-      if (met->t_denominator != 0) {
-        ++hits;
-        const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
-        const uint32_t distance_q8 = static_cast<uint32_t>(met->t_numerator) * kOcclusionLength / along;
-        share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;
+      if ((parts_.any[i] >> n % 4 & 1U) != 0) {
+        if (met->t_denominator != 0) {
+          ++frame_.counts.hits[kKind];
+          const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
+          const uint32_t distance_q8 = static_cast<uint32_t>(met->t_numerator) * kOcclusionLength / along;
+          share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;
+        }
+        ++met;
       }
       open += share;
     }
@@ -155,9 +174,6 @@ void FaceLights::occlude() {
       channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
     }
   }
-  constexpr int kKind = static_cast<int>(LitRayKind::kOcclusion);
-  frame_.counts.rays[kKind] += rays;
-  frame_.counts.hits[kKind] += hits;
 }
 
 // Notes which faces' rays may begin in water: those of faces in, or on, the box around the columns of water.

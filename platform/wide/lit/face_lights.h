@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "thimble/light/host/asked.h"
+#include "wide/lit/open_space.h"
 #include "wide/lit/taker.h"
 #include "wide/rays/ray_map.h"
 
@@ -100,6 +101,7 @@ class FaceLights {
   lit::AskedFrame asking_;  // nobody reads its counts
   lit::KnownRay known_;
   const RayMap& map_;
+  OpenSpace open_;
   FaceLightsShape shape_;
   FaceLightsParts parts_;
   uint32_t count_ = 0;

@@ -14,9 +14,10 @@ namespace {
 constexpr uint32_t kSlots = 1024;
 constexpr uint32_t kLeastSlots = 64;
 
-// Either kind of stream fits into these bytes, so a workspace for a set of effects serves all sets within it.
+// The stream of any set within this one fits into these bytes, so a workspace for a set of effects serves those, too.
 size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
-  return std::max(StreamShape(effects, scene, slots).bytes(), OpaqueShape(effects, scene, slots).bytes());
+  const size_t opaque = OpaqueShape(effects, scene, slots).bytes();
+  return is_opaque(effects) ? opaque : std::max(StreamShape(effects, scene, slots).bytes(), opaque);
 }
 
 template <class Stream, class Shape>

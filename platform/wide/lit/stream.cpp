@@ -37,7 +37,7 @@ void StreamParts::lay_out(const StreamShape& shape, Taker* taker) {
   exits = taker->take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
   any = taker->take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
   hits = taker->take<Hit>(most_hits);
-  shown = taker->take<ShownFace>(shape.slots);
+  shown = taker->take<ShownFace>(shape.of_faces.faces);
   done = taker->take<uint32_t>(shape.slots);
 }
 
@@ -47,7 +47,7 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
       answers(1),
       lights(0),
       most{},
-      of_faces(effects, scene, slot_count),
+      of_faces(effects, scene, slot_count + slot_count / 2),
       most_slopes((effects & Effect::kSmoothNormals) != 0 ? slot_count : 0),
       known_slopes(most_slopes * kSlopesASlot) {
   constexpr EffectSet kStretching = Effect::kGlass | Effect::kMedia | Effect::kWater;
@@ -336,10 +336,10 @@ void Stream::draw(PixelFlow* flow) {
     ++waiting;
   }
   answer();
+  uint32_t done = 0;
   // The loop ends: each turn gives every waiting ray one more answer, and a pixel has a bounded number of rays.
   while (waiting != 0) {
     uint32_t left = 0;
-    uint32_t done = 0;
     for (uint32_t i = 0; i < waiting; ++i) {
       const uint32_t number = parts_.waiting[i];
       if (go_on(number)) {
@@ -348,14 +348,18 @@ void Stream::draw(PixelFlow* flow) {
         parts_.waiting[left++] = number;
       }
     }
-    light_faces();
-    for (uint32_t i = 0; i < done; ++i) {
-      const uint32_t number = parts_.done[i];
-      const StreamSlot& slot = parts_.slots[number];
-      pixels.store(slot.at, slot.sum);
-      if (begin(number, &pixels)) {
-        parts_.waiting[left++] = number;
+    // Light goes on past glass stretch by stretch: many faces at once keep the last stretches' vectors full.
+    if (left == 0 || 4 * done >= 3 * shape_.slots || face_count_ + left > shape_.of_faces.faces) {
+      light_faces();
+      for (uint32_t i = 0; i < done; ++i) {
+        const uint32_t number = parts_.done[i];
+        const StreamSlot& slot = parts_.slots[number];
+        pixels.store(slot.at, slot.sum);
+        if (begin(number, &pixels)) {
+          parts_.waiting[left++] = number;
+        }
       }
+      done = 0;
     }
     answer();
     waiting = left;

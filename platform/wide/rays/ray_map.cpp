@@ -24,6 +24,9 @@ uint32_t child_of(const CompactTree& tree, uint32_t node, const Vec3i& voxel, in
 }
 
 Status run(Job* job) {
+  if (job->count == 0) {
+    return Status::kOk;
+  }
   if (job->any != nullptr) {
     std::fill_n(job->any, job->count, uint8_t{0});
   } else if (job->entries != nullptr) {
@@ -83,6 +86,47 @@ Leaf leaf_at(const MapCells& cells, const Vec3i& voxel) {
   return leaf;
 }
 
+// By axis and a bit for each coordinate 0 .. 3: the cells of 4^3 that have one of them.
+struct SheetTable {
+  uint64_t of[3][16];
+  constexpr SheetTable() : of{} {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      for (unsigned bits = 0; bits < 16; ++bits) {
+        for (unsigned cell = 0; cell < 64; ++cell) {
+          of[axis][bits] |= uint64_t{bits >> (cell >> (2 * axis) & 3U) & 1U} << cell;
+        }
+      }
+    }
+  }
+};
+constexpr SheetTable kSheets;
+
+// Of 4^3 cells of 2^level voxels, from `corner` on, those that reach into a box.
+uint64_t cells_in(const VoxelBox& box, const Vec3i& corner, int level) {
+  uint64_t cells = UINT64_MAX;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int32_t first = std::clamp((box.low[axis] - corner[axis]) >> level, 0, 4);
+    const int32_t last = std::clamp((box.high[axis] - corner[axis] - 1) >> level, -1, 3);
+    cells &= kSheets.of[axis][15U << first & 15U >> (3 - last)];
+  }
+  return cells;
+}
+
+// Whether a brick has a voxel in a box.
+bool reaches_into(const VoxelBox& box, const Vec3i& corner, const uint64_t* brick, uint64_t header) {
+  for (uint64_t leaves = *brick & cells_in(box, corner, 2); leaves != 0; leaves &= leaves - 1) {
+    const auto leaf = static_cast<unsigned>(__builtin_ctzll(leaves));
+    const auto before = static_cast<unsigned>(__builtin_popcountll(*brick & ((uint64_t{1} << leaf) - 1)));
+    const Vec3i at{corner.x + static_cast<int32_t>(4 * (leaf & 3U)),
+                   corner.y + static_cast<int32_t>(leaf & 12U),
+                   corner.z + static_cast<int32_t>(leaf >> 4 << 2)};
+    if ((brick[header + before] & cells_in(box, at, 0)) != 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // Looks up the material of a solid voxel where bricks have tags. Returns false where only the tree knows it.
 bool look_up(const CompactTree& tree, const Leaf& leaf, uint8_t* material) {
   if (leaf.tag == nullptr) {
@@ -128,13 +172,13 @@ struct Block {
   uint8_t material;
 };
 
-Block block_at(const RayMap& map, const Vec3i& voxel) {
+Block block_at(const RayMap& map, const Vec3i& voxel, const Leaf& leaf) {
   const CompactTree& tree = map.tree();
   Block block{voxel, 0, tree.uniform_material()};
   if (!map.cells()->has_nodes) {
     return block;
   }
-  if (map.cells()->has_tags && look_up(tree, leaf_at(*map.cells(), voxel), &block.material)) {
+  if (map.cells()->has_tags && look_up(tree, leaf, &block.material)) {
     return block;
   }
   const Parent parent = parent_of(map, voxel);
@@ -149,6 +193,10 @@ Block block_at(const RayMap& map, const Vec3i& voxel) {
     block.level = parent.level;
   }
   return block;
+}
+
+Block block_at(const RayMap& map, const Vec3i& voxel) {
+  return block_at(map, voxel, map.cells()->has_tags ? leaf_at(*map.cells(), voxel) : Leaf());
 }
 
 // Finds the face by which a ray enters a block, and its t: that of the lower plane that the ray crosses last, on a tie
@@ -233,8 +281,9 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   hit.visits = visits;
   if (job->exits != nullptr) {
     MediumExit& exit = job->exits[number];
-    exit.into_solid = job->in[number] == kInAir || leaf_at(*job->map->cells(), voxel).holds();
-    const Block block = exit.into_solid ? block_at(*job->map, voxel) : Block{voxel, 0, 0};
+    const Leaf leaf = leaf_at(*job->map->cells(), voxel);
+    exit.into_solid = job->in[number] == kInAir || leaf.holds();
+    const Block block = exit.into_solid ? block_at(*job->map, voxel, leaf) : Block{voxel, 0, 0};
     hit.kind = HitKind::kHit;
     hit.voxel = block.corner;
     hit.block_level = static_cast<uint8_t>(block.level);
@@ -317,10 +366,11 @@ bool RayMap::material_at(const Vec3i& voxel, uint8_t* material) const {
   if (cells() == nullptr) {
     return thimble::material_at(tree_, voxel, material);
   }
-  if (!leaf_at(cells_, voxel).holds()) {
+  const Leaf leaf = leaf_at(cells_, voxel);
+  if (!leaf.holds()) {
     return false;
   }
-  *material = block_at(*this, voxel).material;
+  *material = block_at(*this, voxel, leaf).material;
   return true;
 }
 
@@ -329,26 +379,19 @@ bool RayMap::is_empty(const VoxelBox& box) const {
     return false;
   }
   const int bits = cells_.level - kCubeLevel;
-  Vec3i low;  // in leaves
+  Vec3i low;  // in cubes
   Vec3i end;
   for (int axis = 0; axis < 3; ++axis) {
-    low[axis] = std::max(box.low[axis], 0) >> 2;
-    end[axis] = (std::min(box.high[axis], int32_t{1} << cells_.level) + 3) >> 2;
+    low[axis] = std::max(box.low[axis], 0) >> kCubeLevel;
+    end[axis] = (std::min(box.high[axis], int32_t{1} << cells_.level) + 15) >> kCubeLevel;
   }
-  // Of a cube with this number on an axis, the leaves in the box: `wide` bits for each of the four along the axis.
-  const auto part = [&](int axis, int32_t cube, int wide) {
-    const int first = std::max(low[axis] - 4 * cube, 0) * wide;
-    const int last = std::min(end[axis] - 4 * cube, 4) * wide;
-    return UINT64_MAX >> (64 - last) & UINT64_MAX << first;
-  };
-  for (int32_t z = low.z >> 2; 4 * z < end.z; ++z) {
-    for (int32_t y = low.y >> 2; 4 * y < end.y; ++y) {
-      const uint64_t sheet = part(2, z, 16) & part(1, y, 4) * 0x0001000100010001U;
-      for (int32_t x = low.x >> 2; 4 * x < end.x; ++x) {
-        const uint32_t cube = cells_.top[(static_cast<size_t>(z) << bits | static_cast<size_t>(y)) << bits |
-                                         static_cast<size_t>(x)];
-        const bool is_brick = (cube & 15U) == 0;
-        if (is_brick && (cells_.bricks[cube >> 4] & sheet & part(0, x, 1) * 0x1111111111111111U) != 0) {
+  for (int32_t z = low.z; z < end.z; ++z) {
+    for (int32_t y = low.y; y < end.y; ++y) {
+      const uint32_t* const row =
+          cells_.top + ((static_cast<size_t>(z) << bits | static_cast<size_t>(y)) << bits);
+      for (int32_t x = low.x; x < end.x; ++x) {
+        if ((row[x] & 15U) == 0 &&
+            reaches_into(box, {16 * x, 16 * y, 16 * z}, cells_.bricks + (row[x] >> 4), cells_.header())) {
           return false;
         }
       }

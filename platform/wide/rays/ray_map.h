@@ -69,7 +69,7 @@ class RayMap {
   const MapCells* cells() const { return cells_.top == nullptr ? nullptr : &cells_; }
   /// As `thimble::material_at`: whether a voxel is solid, and then its material.
   bool material_at(const Vec3i& voxel, uint8_t* material) const;
-  /// Whether the map shows that no voxel of a box is solid, to whole leaves: false may be said of an empty box, too.
+  /// Whether no voxel of a box is solid; false without a map.
   bool is_empty(const VoxelBox& box) const;
   /// The number of the layer in which all but the material is solid; 0: the material has no layer.
   uint8_t layer_of(uint8_t material) const { return layers_[material]; }
