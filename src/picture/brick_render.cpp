@@ -84,7 +84,7 @@ namespace {
   Sweep sweep;
   sweep.misses = 0;
   sweep.counts = &done;
-  sweep.course = kNoKey;
+  sweep.begin(map);
   const bool swept =
       kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) && !touches_solid(frame);
   BrickPainter painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride, band.first_row,

@@ -22,10 +22,15 @@ namespace {
 
 constexpr int kSlots = THIMBLE_SWEEP_SLOTS;
 constexpr uint32_t kNoKey = UINT32_MAX;
+constexpr uint8_t kNoCourse = UINT8_MAX;
 // How many bricks' faces are kept.
 constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
-// Where more voxels of a slab lie under a tile's shadow, the rest of the tile is drawn by rays.
+// Where more voxels of a slab lie under a tile's shadow, the rest of the tile is drawn by rays; but not in thin worlds as
+// long as at most so many of them are solid.
 constexpr int32_t kMostCells = 28;
+constexpr int32_t kMostSolid = 2;
+// A world is thin where the bricks hold so many voxels on average, or fewer.
+constexpr int32_t kThinBrick = 6;
 
 // The interval that a tile's rays take on a or b within a slab, in 1/2^kCellShift voxel, mirrored: from `low` at the
 // slab's near plane to `high` at its far one.
@@ -36,13 +41,30 @@ struct Reach {
   int32_t high_step;
 };
 
+int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
+  const int32_t at = 8 * static_cast<int32_t>(number);
+  return static_cast<int32_t>(bits::popcount32(word_at(bricks, at)) +
+                              bits::popcount32(word_at(bricks, at + 4)));
+}
+
+// Whether the world is thin, by eight of its bricks.
+[[maybe_unused]] bool is_thin(const BrickMap& map) {
+  const uint32_t step = map.brick_count() / 8;
+  int32_t room = 8 * kThinBrick;
+  for (uint32_t number = step; step != 0 && number < map.brick_count() && room >= 0; number += step) {
+    room -= voxels_of(map.bricks(), number);
+  }
+  return room >= 0;
+}
+
 // What the sweep keeps while it draws a tile, and from tile to tile of a band.
 struct Sweep {
   TileRays rays;
   Pixels left;  // pixels that are not drawn yet
   HalfPlane plane[3 * kSlots + (kSlots == 0 ? 1 : 0)];
   Exposed exposed[kExposedKept];
-  unsigned course;    // the course (axis c and signs) whose bricks are kept, or kNoKey
+  uint8_t course;     // the course (axis c and signs) whose bricks are kept, or kNoCourse
+  bool thin;          // whether the world is
   int32_t origin[3];  // of the rays, on a, b and c
   int32_t base;       // the first brick's offset in the directory
   int32_t side[3];
@@ -53,6 +75,10 @@ struct Sweep {
       step_x[3];  // a direction's change from pixel to pixel, with rays.fraction_bits, by the world's axes
   int32_t step_y[3];
 
+  void begin(const BrickMap& map) {
+    course = kNoCourse;
+    thin = is_thin(map);
+  }
   void forget_bricks() {
     for (Exposed& kept : exposed) {
       kept.place = -1;
@@ -183,7 +209,7 @@ void set_sweep_course(const Course& course, Sweep* sweep) {
   if (sweep->course == id) {
     return;
   }
-  sweep->course = id;
+  sweep->course = static_cast<uint8_t>(id);
   sweep->forget_bricks();
   sweep->base = 0;
   for (int k = 0; k < 3; ++k) {
@@ -318,7 +344,9 @@ class TileSweep : private Paint {
       SweptBrick bricks[kBeamBricks * kBeamBricks];
       const SweptBrick* const end = find_bricks(slab >> 2, from, to, bricks);
       if (end != bricks) {
-        if (cells_at_once() > kMostCells) {
+        const int32_t cells = cells_at_once();
+        if (cells > kMostCells &&
+            !(sweep_.thin && is_sparse(bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
           return slab;
         }
         if (!begun_) {
@@ -354,6 +382,17 @@ class TileSweep : private Paint {
       cells *= (reach.high >> kCellShift) - (reach.low >> kCellShift) + 1;
     }
     return cells;
+  }
+
+  // Whether few of `cells` voxels of a slab are solid, as dense as voxels are in the bricks of a layer, of which so many
+  // lie under the tile's shadow.
+  [[gnu::noinline]] bool is_sparse(const SweptBrick* brick, const SweptBrick* end, int32_t cells,
+                                   int32_t under) const {
+    int32_t solid = 0;
+    for (; brick != end; ++brick) {
+      solid += voxels_of(course_.bricks, half_at(course_.directory, brick->place));
+    }
+    return solid * cells <= kMostSolid * 64 * under;
   }
 
   bool set_reach(const Fan& fan, int32_t slab) {
