@@ -29,8 +29,10 @@ constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
 // long as at most so many of them are solid.
 constexpr int32_t kMostCells = 28;
 constexpr int32_t kMostSolid = 2;
-// A world is thin where the bricks hold so many voxels on average, or fewer.
+// A world is thin where the bricks hold so many voxels on average, or fewer. Cores without a divider have little flash,
+// and call no world thin.
 constexpr int32_t kThinBrick = 6;
+constexpr bool kKnowsThin = kSlots != 0 && kDivides;
 
 // The interval that a tile's rays take on a or b within a slab, in 1/2^kCellShift voxel, mirrored: from `low` at the
 // slab's near plane to `high` at its far one.
@@ -41,10 +43,15 @@ struct Reach {
   int32_t high_step;
 };
 
-int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
+[[gnu::noinline, maybe_unused]] int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
   const int32_t at = 8 * static_cast<int32_t>(number);
-  return static_cast<int32_t>(bits::popcount32(word_at(bricks, at)) +
-                              bits::popcount32(word_at(bricks, at + 4)));
+  int32_t voxels = 0;
+  for (int32_t half = 0; half < 8; half += 4) {
+    for (uint32_t word = word_at(bricks, at + half); word != 0; word &= word - 1) {
+      ++voxels;
+    }
+  }
+  return voxels;
 }
 
 // Whether the world is thin, by eight of its bricks.
@@ -77,7 +84,7 @@ struct Sweep {
 
   void begin(const BrickMap& map) {
     course = kNoCourse;
-    thin = is_thin(map);
+    thin = kKnowsThin && is_thin(map);
   }
   void forget_bricks() {
     for (Exposed& kept : exposed) {
@@ -250,6 +257,17 @@ struct SweptBrick {
   int32_t b;
 };
 
+// Whether few of `cells` voxels of a slab are solid, as dense as voxels are in the bricks of a layer, of which so many
+// lie under the tile's shadow.
+[[gnu::noinline, maybe_unused]] bool is_sparse(const Course& course, const SweptBrick* brick,
+                                               const SweptBrick* end, int32_t cells, int32_t under) {
+  int32_t solid = 0;
+  for (; brick != end; ++brick) {
+    solid += voxels_of(course.bricks, half_at(course.directory, brick->place));
+  }
+  return solid * cells <= kMostSolid * 64 * under;
+}
+
 // Names the voxel of a cell on a, b and c: 64 times the number of the brick at `place`, plus the voxel's bit.
 [[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
                                                 const int32_t (&cell)[3]) {
@@ -346,7 +364,8 @@ class TileSweep : private Paint {
       if (end != bricks) {
         const int32_t cells = cells_at_once();
         if (cells > kMostCells &&
-            !(sweep_.thin && is_sparse(bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
+            !(kKnowsThin && sweep_.thin &&
+              is_sparse(course_, bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
           return slab;
         }
         if (!begun_) {
@@ -382,17 +401,6 @@ class TileSweep : private Paint {
       cells *= (reach.high >> kCellShift) - (reach.low >> kCellShift) + 1;
     }
     return cells;
-  }
-
-  // Whether few of `cells` voxels of a slab are solid, as dense as voxels are in the bricks of a layer, of which so many
-  // lie under the tile's shadow.
-  [[gnu::noinline]] bool is_sparse(const SweptBrick* brick, const SweptBrick* end, int32_t cells,
-                                   int32_t under) const {
-    int32_t solid = 0;
-    for (; brick != end; ++brick) {
-      solid += voxels_of(course_.bricks, half_at(course_.directory, brick->place));
-    }
-    return solid * cells <= kMostSolid * 64 * under;
   }
 
   bool set_reach(const Fan& fan, int32_t slab) {
