@@ -45,7 +45,7 @@
   ROW(kBrickTime, false, 38, "chip", "rest times direction")                                              \
   ROW(kBrickFan, true, 30, "chip", "direction of a tile, 2^-12")                                          \
   ROW(kBrickSlope, true, 30, "chip", "slope times distance, of a beam")                                   \
-  ROW(kFaceOrder, true, 30, "chip", "order of two planes at a tile's first pixel: the whole part")        \
+  ROW(kFaceOrder, true, 31, "chip", "order of two planes at a tile's first pixel: the whole part")        \
   ROW(kFaceAffine, true, 31, "chip", "order of two planes in a tile, with its fraction")                  \
   ROW(kFaceBound, false, 26, "chip", "bound of what rounding does to it")                                 \
   ROW(kDot, true, 31, "light", "product of two vectors, Q14 each")                                        \

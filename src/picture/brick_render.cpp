@@ -39,35 +39,27 @@ bool draws_fast(const BrickMap& map, const Camera& camera) {
       camera.direction_bits() > kMaxBrickDirectionBits) {
     return false;
   }
-  // Two products of a distance and a direction are added; distances are measured from up to kOutsideCells beyond the
-  // world.
+  // Of the world, for the tree's rays, and of the box: where a ray starts is the sum of two products of such a distance
+  // and a direction, and kOutsideQ8 is added to one of the distances. Their 32 bits hold from -2^31 to 2^32.
   uint32_t distances = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const int32_t from_low = camera.eye()[axis].raw;
-    const int32_t from_high = (Q8::kOne << map.level()) - from_low;
-    distances |= static_cast<uint32_t>((from_low < 0 ? -from_low : from_low) + kOutsideQ8);
-    distances |= static_cast<uint32_t>((from_high < 0 ? -from_high : from_high) + kOutsideQ8);
+    const int32_t eye = camera.eye()[axis].raw;
+    const auto farther = [eye](int32_t low, int32_t high) {
+      return static_cast<uint32_t>(eye - low > high - eye ? eye - low : high - eye);
+    };
+    constexpr int32_t kBrickQ8 = 4 * Q8::kOne;
+    distances |= farther(0, Q8::kOne << map.level());
+    distances |=
+        farther(map.box().low[axis] * kBrickQ8, map.box().high[axis] * kBrickQ8) + kOutsideQ8 / 2 - 1;
   }
-  return bits::bit_length(distances) + camera.direction_bits() <= 30;
+  return distances >> (31 - camera.direction_bits()) == 0;
 }
 
-Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& camera, const Shading& shading,
-                   const Band& band, RenderCounts* counts) {
-  if (!map.belongs_to(tree)) {
-    return Status::kDamaged;
-  }
-  return draws_fast(map, camera) ? render_band_32(tree, map, camera, shading, band, counts)
-                                 : render_band(tree, camera, shading, band, counts);
-}
+namespace {
 
-Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
-                      const Shading& shading, const Band& band, RenderCounts* counts) {
-  if (!map.belongs_to(tree)) {
-    return Status::kDamaged;
-  }
-  if (!draws_fast(map, camera)) {
-    return Status::kBadArgument;
-  }
+// Draws a band of a frame that `draws_fast`.
+[[gnu::noinline]] Status draw_by_bricks(const CompactTree& tree, const BrickMap& map, const Camera& camera,
+                                        const Shading& shading, const Band& band, RenderCounts* counts) {
   size_t stride = 0;
   const Status status = check_band(camera, tree.level(), band, &stride);
   if (status != Status::kOk || band.rows == 0) {
@@ -92,7 +84,7 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   Sweep sweep;
   sweep.misses = 0;
   sweep.counts = &done;
-  sweep.course = kNoKey;
+  sweep.begin(map);
   const bool swept =
       kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) && !touches_solid(frame);
   BrickPainter painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride, band.first_row,
@@ -125,6 +117,26 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
     counts->node_visits += done.node_visits;
   }
   return Status::kOk;
+}
+
+}  // namespace
+
+Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& camera, const Shading& shading,
+                   const Band& band, RenderCounts* counts) {
+  if (!map.belongs_to(tree)) {
+    return Status::kDamaged;
+  }
+  return draws_fast(map, camera) ? draw_by_bricks(tree, map, camera, shading, band, counts)
+                                 : render_band(tree, camera, shading, band, counts);
+}
+
+Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
+                      const Shading& shading, const Band& band, RenderCounts* counts) {
+  if (!map.belongs_to(tree)) {
+    return Status::kDamaged;
+  }
+  return draws_fast(map, camera) ? draw_by_bricks(tree, map, camera, shading, band, counts)
+                                 : Status::kBadArgument;
 }
 
 }  // namespace thimble

@@ -61,6 +61,7 @@ TEST_CASE("brick sweep: a million pixels of hard cameras -> the bytes and hits o
   const std::uint64_t wanted_pixels = pixels_to_draw();
   std::uint64_t pixels = 0;
   std::uint64_t fast = 0;
+  std::uint64_t last_bit = 0;
   std::uint64_t hits = 0;
   for (unsigned turn = 0; pixels < wanted_pixels; ++turn) {
     const std::uint64_t seed = random();
@@ -96,11 +97,14 @@ TEST_CASE("brick sweep: a million pixels of hard cameras -> the bytes and hits o
       const auto area =
           static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
       pixels += area;
-      fast += draws_fast(scene.map, camera) ? area : 0;
+      const bool is_fast = draws_fast(scene.map, camera);
+      fast += is_fast ? area : 0;
+      last_bit += is_fast && takes_31_bits(camera) ? area : 0;
       hits += counts.hits;
     }
   }
   CHECK(fast > wanted_pixels / 2);
+  CHECK(last_bit > wanted_pixels / 100);
   CHECK(hits > wanted_pixels / 10);
 }
 
@@ -176,6 +180,55 @@ TEST_CASE("bricks: rays of 14 bits and more that start over 64 voxels outside ->
     }
   }
   CHECK(drawn_views > 100);
+}
+
+// Worlds that are full, and a voxel in a corner, from which eyes are farthest; pictures of few pixels, whose rays start
+// far from the box.
+TEST_CASE("bricks: eyes as far away as frames by bricks take them -> the tree's answer") {
+  std::mt19937_64 random(31);
+  int last_bit = 0;
+  for (int world = 0; world < 12; ++world) {
+    const int level = 6 + world % 3;
+    const int last = (1 << level) - 1;
+    std::vector<Vec3i> voxels;
+    for (int i = world % 2 == 0 ? 3000 : 2; i > 0; --i) {
+      const auto at = [&] {
+        return world % 2 == 0 ? pick_int(random, 0, last) : last * pick_int(random, 0, 1);
+      };
+      voxels.push_back({at(), at(), at()});
+    }
+    const ChipScene scene = make_chip_scene(level, voxels);
+    for (int turn = 0; turn < 60; ++turn) {
+      CAPTURE(world);
+      CAPTURE(turn);
+      const int bits = pick_int(random, 13, 15);
+      Vec3Q8 eye;
+      Vec3i forward;
+      const int look = pick_int(random, 0, 2);
+      const Vec3i& target = voxels[static_cast<std::size_t>(pick_int(random, 0, 1))];
+      for (int axis = 0; axis < 3; ++axis) {
+        eye[axis] = Q8::from_raw(far_coordinate(random, level, bits));
+        forward[axis] = look == 0   ? pick_int(random, -1, 1)
+                        : look == 1 ? pick_int(random, -1000, 1000)
+                                    : 256 * target[axis] + 128 - eye[axis].raw;
+      }
+      const bool small = pick_int(random, 0, 1) == 0;
+      const PerspectiveView view{eye,
+                                 forward,
+                                 {},
+                                 Q16::from_raw(pick_int(random, 65536, 120 * 65536)),
+                                 small ? pick_int(random, 1, 6) : pick_int(random, 1, 60),
+                                 small ? pick_int(random, 1, 6) : pick_int(random, 1, 40),
+                                 bits};
+      Camera camera;
+      if (camera.set(view, level) != Status::kOk) {
+        continue;
+      }
+      last_bit += draws_fast(scene.map, camera) && takes_31_bits(camera) ? 1 : 0;
+      check_bricks(scene, view, ShadeMode::kColor, view.height_px);
+    }
+  }
+  CHECK(last_bit > 100);
 }
 
 TEST_CASE("brick sweep: rays of few bits, far apart on the picture's middle -> no division by nothing") {

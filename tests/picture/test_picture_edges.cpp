@@ -64,6 +64,50 @@ struct Bricks {
   Status status;
 };
 
+// A world of 64 from one voxel and from all of it: an eye's distance from the farthest side of the world is below
+// 2^(31 - bits), that from the farthest side of what is solid 32 voxels less or nearer.
+TEST_CASE("picture edges: eyes from farther and farther away -> fast frames up to the last 1/256 voxel") {
+  OwnedPool corner(6);
+  REQUIRE(corner.octree.insert({0, 0, 0}, 1) == Status::kOk);
+  const HeapBytes corner_bytes = compact_of(corner.octree);
+  const CompactTree corner_tree = open_or_throw(corner_bytes);
+  const Bricks one(corner_tree);
+  REQUIRE(corner.octree.insert({63, 63, 63}, 1) == Status::kOk);
+  const HeapBytes whole_bytes = compact_of(corner.octree);
+  const CompactTree whole_tree = open_or_throw(whole_bytes);
+  const Bricks all(whole_tree);
+  const auto is_fast = [](const Bricks& bricks, int axis, std::int32_t raw, int bits) {
+    PerspectiveView view;
+    view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
+    view.eye[axis] = Q8::from_raw(raw);
+    view.forward = {1, 2, 3};
+    view.fov_degrees = Q16::saturate(60);
+    view.width_px = 8;
+    view.height_px = 8;
+    view.direction_bits = bits;
+    Camera camera;
+    REQUIRE(camera.set(view, 6) == Status::kOk);
+    return draws_fast(bricks.map, camera);
+  };
+  const std::int32_t side = 64 * 256;
+  const std::int32_t margin = 32 * 256;
+  const std::int32_t reach = 1 << (31 - 15);
+  for (int axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    for (const Bricks* bricks : {&all, &one}) {
+      CHECK(is_fast(*bricks, axis, reach - margin, 15));
+      CHECK_FALSE(is_fast(*bricks, axis, reach - margin + 1, 15));
+    }
+    CHECK(is_fast(all, axis, side - (reach - margin), 15));
+    CHECK_FALSE(is_fast(all, axis, side - (reach - margin) - 1, 15));
+    CHECK(is_fast(one, axis, side - reach + 1, 15));
+    CHECK_FALSE(is_fast(one, axis, side - reach, 15));
+    // As far away as an eye may be.
+    CHECK(is_fast(all, axis, 5 * side, 14));
+    CHECK(is_fast(all, axis, -4 * side, 14));
+  }
+}
+
 TEST_CASE("picture edges: cameras that no frame by bricks takes -> told, and refused or drawn ray by ray") {
   OwnedPool pool(4);
   REQUIRE(pool.octree.insert_block({4, 4, 4}, 2, 1) == Status::kOk);

@@ -188,12 +188,19 @@ std::int32_t extreme(std::mt19937_64& random, std::int32_t low, std::int32_t hig
 bool hard_camera(std::mt19937_64& random, int level, Camera* camera) {
   const std::int32_t world = Q8::kOne << level;
   const bool inside = pick(random, 0, 2) == 0;
+  // As far away as frames by bricks take directions of so many bits.
+  const bool is_far = pick(random, 0, 5) == 0;
+  const int far_bits = static_cast<int>(pick(random, 13, 15));
+  const std::int32_t reach = (1 << (31 - far_bits)) - 32 * Q8::kOne;
+  const std::int32_t low = std::max(world - reach, kMinOriginWorlds * world);
+  const std::int32_t high = std::min(reach, kMaxOriginWorlds * world);
   Vec3Q8 eye;
   Vec3i forward;
   const bool is_any = pick(random, 0, 1) == 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t at = inside ? extreme(random, 0, world)
-                                   : extreme(random, kMinOriginWorlds * world, kMaxOriginWorlds * world);
+    const std::int32_t at = is_far   ? extreme(random, std::min(low, high), std::max(low, high))
+                            : inside ? extreme(random, 0, world)
+                                     : extreme(random, kMinOriginWorlds * world, kMaxOriginWorlds * world);
     eye[axis] = Q8::from_raw(pick(random, 0, 1) == 0 ? at & ~255 : at);
     forward[axis] = is_any ? extreme(random, -kMaxViewComponent, kMaxViewComponent) : number(random, -1, 1);
   }
@@ -210,7 +217,7 @@ bool hard_camera(std::mt19937_64& random, int level, Camera* camera) {
   const bool large = pick(random, 0, 3) == 0;
   const std::int32_t width = large ? extreme(random, 1, kMaxPicturePx) : number(random, 1, 200);
   const std::int32_t height = large ? extreme(random, 1, kMaxPicturePx) : number(random, 1, 120);
-  const int bits = pick(random, 0, 2) == 0 ? static_cast<int>(pick(random, 8, 20)) : 0;
+  const int bits = is_far ? far_bits : pick(random, 0, 2) == 0 ? static_cast<int>(pick(random, 8, 20)) : 0;
   ++cameras_set;
   if (pick(random, 0, 2) == 0) {
     const Q14 span =

@@ -100,17 +100,41 @@ ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels) {
   });
 }
 
+int far_coordinate(std::mt19937_64& random, int level, int bits) {
+  const int side_q8 = 256 << level;
+  const int reach = (1 << (31 - bits)) - 32 * 256;
+  const int kind = pick_int(random, 0, 4);
+  const int at = kind == 0   ? side_q8 - reach
+                 : kind == 1 ? reach
+                 : kind == 2 ? side_q8 - pick_int(random, reach / 2, 2 * reach)
+                 : kind == 3 ? pick_int(random, reach / 2, 2 * reach)
+                             : pick_int(random, 0, side_q8);
+  return std::clamp(at, kMinOriginWorlds * side_q8, kMaxOriginWorlds * side_q8);
+}
+
+bool takes_31_bits(const Camera& camera) {
+  const int side_q8 = 256 << camera.level();
+  int farthest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int eye = camera.eye()[axis].raw;
+    farthest = std::max({farthest, eye, side_q8 - eye});
+  }
+  return (farthest >> (30 - camera.direction_bits())) == 1;
+}
+
 Camera hard_chip_camera(std::mt19937_64& random, int level) {
   const int side = 1 << level;
   const int side_q8 = 256 * side;
   for (;;) {
-    const int place = pick_int(random, 0, 5);
+    const int place = pick_int(random, 0, 6);
+    const int far_bits = pick_int(random, 13, 15);
     Vec3Q8 eye;
     for (int axis = 0; axis < 3; ++axis) {
       const int raw = place == 0   ? pick_int(random, -side_q8 / 2, side_q8 + side_q8 / 2)
                       : place == 1 ? 256 * pick_int(random, 0, side)
                       : place == 2 ? 256 * pick_int(random, 0, side) + pick_int(random, -1, 1)
                       : place == 3 ? 256 * pick_int(random, -side / 4, side + side / 4) + 128
+                      : place == 6 ? far_coordinate(random, level, far_bits)
                                    : pick_int(random, 0, side_q8);
       eye[axis] = Q8::from_raw(raw);
     }
@@ -126,7 +150,9 @@ Camera hard_chip_camera(std::mt19937_64& random, int level) {
                                                               : pick_int(random, 20 * 65536, 120 * 65536));
     const int width = pick_int(random, 0, 2) == 0 ? 320 : pick_int(random, 1, 250);
     const int height = width == 320 ? pick_int(random, 1, 80) : pick_int(random, 1, 120);
-    const int bits = pick_int(random, 0, 3) == 0 ? pick_int(random, kMinDirectionBits, 15) : 0;
+    const int bits = place == 6                    ? far_bits
+                     : pick_int(random, 0, 3) == 0 ? pick_int(random, kMinDirectionBits, 15)
+                                                   : 0;
     Camera camera;
     if (pick_int(random, 0, 15) == 0) {
       const OrthographicView view{eye,   forward, up, Q14::saturate(pick_int(random, 1, 2 * side)),

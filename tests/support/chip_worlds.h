@@ -31,7 +31,14 @@ ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level);
 /// These voxels, all of material 1.
 ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels);
 
-/// On lattice points and beside them, on diagonals, inside solids, outside; 1 to 120 degrees.
+/// A coordinate of an eye in 1/256 voxel: often the least or the greatest from which frames by bricks take directions of
+/// `bits` bits, whatever the box of what is solid; and beyond.
+int far_coordinate(std::mt19937_64& random, int level, int bits);
+/// Whether distances from the eye to the world's sides and directions have 31 bits together.
+bool takes_31_bits(const Camera& camera);
+
+/// On lattice points and beside them, on diagonals, inside solids, outside, as far away as `far_coordinate`; 1 to 120
+/// degrees.
 Camera hard_chip_camera(std::mt19937_64& random, int level);
 
 }  // namespace thimble::tests

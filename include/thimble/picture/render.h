@@ -97,8 +97,9 @@ Status render_band_32(const CompactTree& tree, const Camera& camera, const Shadi
 // between bands, so bands may be drawn in any order and side by side.
 //
 // The fast way takes perspective cameras whose products of distances and directions fit in 32 bits
-// (`draws_fast`): in a world of 64 pictures of up to 1,200 pixels a side from within it, of up to 300 seen
-// from two world sizes away. Bands of many rows that start at a multiple of kBrickTilePx are cheapest, in
+// (`draws_fast`): in a world of 64 pictures of up to 1,200 pixels a side from within it and up to two world
+// sizes away, of 600 from farther; in one of 128 1,200 from up to half its size away, 600 from two; in one of
+// 256 half as many. Bands of many rows that start at a multiple of kBrickTilePx are cheapest, in
 // pictures whose width is a multiple of 16. kDepth costs a division a pixel, and is drawn ray by ray.
 //
 // A tile is drawn face by face where faces cover several pixels, else ray by ray.
@@ -121,7 +122,9 @@ inline constexpr int kMaxBrickDirectionBits = 15;
 /// Rows of a tile. The rays of a tile start where the first of them may meet something.
 inline constexpr int32_t kBrickTilePx = 8;
 
-/// Whether frames of that camera take the fast way.
+/// Whether frames of that camera take the fast way: a perspective of the map's level, n <= kMaxBrickDirectionBits
+/// direction bits, and an eye less than 2^(23 - n) voxels from every side of the world, and at least 32 less than
+/// that from every side of the box of bricks that holds what is solid.
 bool draws_fast(const BrickMap& map, const Camera& camera);
 
 /// As `render_band` above with `map`, which belongs to `tree`; the counters of nodes stay as they are

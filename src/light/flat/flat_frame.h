@@ -653,7 +653,7 @@ template <EffectSet kSet, bool kGoesOn>
   sink.set_lights(suns);
   const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
-  sweep.course = kNoKey;
+  sweep.begin(map);
   const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
   SightPainter<FlatSink<kSet, kGoesOn>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();

@@ -287,10 +287,13 @@ class BrickRay {
       if (seldom(!kDivides && is_negative(at_a | at_b))) {
         return kAsk;
       }
-      THIMBLE_NOTE(Range::kBrickPlace,
-                   Exact(course_.origin[kA]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_a_));
-      THIMBLE_NOTE(Range::kBrickPlace,
-                   Exact(course_.origin[kB]) * Exact(d_c_) + Exact(course_.plane) * Exact(d_b_));
+      // 2^31 and more look negative, too. What does not is exact.
+      THIMBLE_NOTE(Range::kBrickPlace, is_negative(at_a) ? Exact(0)
+                                                         : Exact(course_.origin[kA]) * Exact(d_c_) +
+                                                               Exact(course_.plane) * Exact(d_a_));
+      THIMBLE_NOTE(Range::kBrickPlace, is_negative(at_b) ? Exact(0)
+                                                         : Exact(course_.origin[kB]) * Exact(d_c_) +
+                                                               Exact(course_.plane) * Exact(d_b_));
       const uint32_t cell_a = kDivides ? at_a / den_ : quotient(at_a, den_, most_cells(), near_cell() + 0);
       const uint32_t cell_b = kDivides ? at_b / den_ : quotient(at_b, den_, most_cells(), near_cell() + 1);
       // Where at_a or at_b is negative the ray starts far outside, and the quotient means nothing.

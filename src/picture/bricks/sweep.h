@@ -22,10 +22,17 @@ namespace {
 
 constexpr int kSlots = THIMBLE_SWEEP_SLOTS;
 constexpr uint32_t kNoKey = UINT32_MAX;
+constexpr uint8_t kNoCourse = UINT8_MAX;
 // How many bricks' faces are kept.
 constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
-// Where more voxels of a slab lie under a tile's shadow, the rest of the tile is drawn by rays.
+// Where more voxels of a slab lie under a tile's shadow, the rest of the tile is drawn by rays; but not in thin worlds as
+// long as at most so many of them are solid.
 constexpr int32_t kMostCells = 28;
+constexpr int32_t kMostSolid = 2;
+// A world is thin where the bricks hold so many voxels on average, or fewer. Cores without a divider have little flash,
+// and call no world thin.
+constexpr int32_t kThinBrick = 6;
+constexpr bool kKnowsThin = kSlots != 0 && kDivides;
 
 // The interval that a tile's rays take on a or b within a slab, in 1/2^kCellShift voxel, mirrored: from `low` at the
 // slab's near plane to `high` at its far one.
@@ -36,13 +43,35 @@ struct Reach {
   int32_t high_step;
 };
 
+[[gnu::noinline, maybe_unused]] int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
+  const int32_t at = 8 * static_cast<int32_t>(number);
+  int32_t voxels = 0;
+  for (int32_t half = 0; half < 8; half += 4) {
+    for (uint32_t word = word_at(bricks, at + half); word != 0; word &= word - 1) {
+      ++voxels;
+    }
+  }
+  return voxels;
+}
+
+// Whether the world is thin, by eight of its bricks.
+[[maybe_unused]] bool is_thin(const BrickMap& map) {
+  const uint32_t step = map.brick_count() / 8;
+  int32_t room = 8 * kThinBrick;
+  for (uint32_t number = step; step != 0 && number < map.brick_count() && room >= 0; number += step) {
+    room -= voxels_of(map.bricks(), number);
+  }
+  return room >= 0;
+}
+
 // What the sweep keeps while it draws a tile, and from tile to tile of a band.
 struct Sweep {
   TileRays rays;
   Pixels left;  // pixels that are not drawn yet
   HalfPlane plane[3 * kSlots + (kSlots == 0 ? 1 : 0)];
   Exposed exposed[kExposedKept];
-  unsigned course;    // the course (axis c and signs) whose bricks are kept, or kNoKey
+  uint8_t course;     // the course (axis c and signs) whose bricks are kept, or kNoCourse
+  bool thin;          // whether the world is
   int32_t origin[3];  // of the rays, on a, b and c
   int32_t base;       // the first brick's offset in the directory
   int32_t side[3];
@@ -53,6 +82,10 @@ struct Sweep {
       step_x[3];  // a direction's change from pixel to pixel, with rays.fraction_bits, by the world's axes
   int32_t step_y[3];
 
+  void begin(const BrickMap& map) {
+    course = kNoCourse;
+    thin = kKnowsThin && is_thin(map);
+  }
   void forget_bricks() {
     for (Exposed& kept : exposed) {
       kept.place = -1;
@@ -183,7 +216,7 @@ void set_sweep_course(const Course& course, Sweep* sweep) {
   if (sweep->course == id) {
     return;
   }
-  sweep->course = id;
+  sweep->course = static_cast<uint8_t>(id);
   sweep->forget_bricks();
   sweep->base = 0;
   for (int k = 0; k < 3; ++k) {
@@ -223,6 +256,17 @@ struct SweptBrick {
   int32_t a;
   int32_t b;
 };
+
+// Whether few of `cells` voxels of a slab are solid, as dense as voxels are in the bricks of a layer, of which so many
+// lie under the tile's shadow.
+[[gnu::noinline, maybe_unused]] bool is_sparse(const Course& course, const SweptBrick* brick,
+                                               const SweptBrick* end, int32_t cells, int32_t under) {
+  int32_t solid = 0;
+  for (; brick != end; ++brick) {
+    solid += voxels_of(course.bricks, half_at(course.directory, brick->place));
+  }
+  return solid * cells <= kMostSolid * 64 * under;
+}
 
 // Names the voxel of a cell on a, b and c: 64 times the number of the brick at `place`, plus the voxel's bit.
 [[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
@@ -318,7 +362,10 @@ class TileSweep : private Paint {
       SweptBrick bricks[kBeamBricks * kBeamBricks];
       const SweptBrick* const end = find_bricks(slab >> 2, from, to, bricks);
       if (end != bricks) {
-        if (cells_at_once() > kMostCells) {
+        const int32_t cells = cells_at_once();
+        if (cells > kMostCells &&
+            !(kKnowsThin && sweep_.thin &&
+              is_sparse(course_, bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
           return slab;
         }
         if (!begun_) {
