@@ -32,8 +32,11 @@ class LitPainter final : public BandPainter {
     if (picture_.across != 1) {
       return 1;
     }
-    return is_straight() ? std::max(1, kMostPixelsAtOnce / width_px_)
-                         : static_cast<std::int32_t>(built_.band().size / row_bytes_);
+    if (!is_straight()) {
+      return static_cast<std::int32_t>(built_.band().size / row_bytes_);
+    }
+    const std::int32_t rows = std::max(1, kMostPixelsAtOnce / width_px_);
+    return rows < kSquarePx ? rows : rows / kSquarePx * kSquarePx;
   }
   Bytes work() const override { return is_straight() ? Bytes() : built_.band(); }
   Status draw(const Band& band, PaintCounts* counts) override {
@@ -44,8 +47,10 @@ class LitPainter final : public BandPainter {
   }
 
  private:
-  // At the end of each call of a stream its threads wait for one another, and what they keep of slopes and lights goes.
-  static constexpr std::int32_t kMostPixelsAtOnce = 1 << 19;
+  // At the end of each call of a stream its threads, which take squares, wait for one another, and what they keep of slopes
+  // and lights goes. Between calls a person sees how far it is, and may end it.
+  static constexpr std::int32_t kMostPixelsAtOnce = 1 << 17;
+  static constexpr std::int32_t kSquarePx = 32;
 
   // Streams need no band of the scene's memory: a pixel is written once.
   bool is_straight() const { return picture_.streams != nullptr && picture_.across == 1; }
