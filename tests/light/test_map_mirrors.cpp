@@ -121,6 +121,22 @@ TEST_CASE("mirrors by the map: metals of one channel, seen straight on -> what t
   }
 }
 
+TEST_CASE("mirrors by the map: more suns than go through the map -> the tree's picture") {
+  for (std::size_t suns = kMaxFlatSuns - 1; suns < kMaxFlatSuns + 4; ++suns) {
+    CAPTURE(suns);
+    MirrorWorld world;
+    world.lights.clear();
+    for (std::size_t i = 0; i < suns; ++i) {
+      world.lights.push_back(sun({static_cast<std::int32_t>(3 * i) - 7, -5, 9}, 100));
+    }
+    world.box({0, 0, 0}, {32, 32, 2}, kStone);
+    world.box({4, 8, 2}, {9, 20, 12}, kMetal);
+    world.map_it();
+    world.look({16 * 256 + 31, -2 * 256 + 77, 22 * 256 + 5}, {16 * 256, 14 * 256, 2 * 256}, 50);
+    CHECK(compare(world).rays[kShadow] > 1000 * suns);
+  }
+}
+
 TEST_CASE("mirrors by the map: all light mirrored -> nothing is asked of the metal's own") {
   MirrorWorld world;
   world.surfaces[kMetal].mirror = 255;

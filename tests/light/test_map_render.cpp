@@ -24,7 +24,7 @@ std::uint64_t lit_pixels_to_draw() {
     return 30'000'000;
   }
   if (std::getenv("THIMBLE_FEW") != nullptr) {
-    return 60'000;
+    return 200'000;
   }
 #if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
   return 60'000;
