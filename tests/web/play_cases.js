@@ -45,6 +45,7 @@ async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
     const wanted = await browser.canvasCrc();
     await browser.click('#link');
     await browser.until(`location.hash.includes('frame=${shown}')`);
+    await browser.until(`document.getElementById('said').textContent.includes('clipboard')`);  // else it says so later
     await browser.eval(`dispatchEvent(new Event('hashchange'))`);
     await browser.until(`document.getElementById('said').textContent.startsWith('This link shows film.vox')`);
     await browser.drop([film]);
