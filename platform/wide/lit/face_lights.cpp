@@ -157,7 +157,7 @@ void FaceLights::occlude() {
     uint32_t open = 0;
     for (uint32_t n = 0; n < around; ++n) {
       uint32_t share = kOpen;
-      if ((parts_.any[i] >> n % 4 & 1U) != 0) {
+      if ((uint32_t{parts_.any[i]} >> n % 4 & 1U) != 0) {
         if (met->t_denominator != 0) {
           ++frame_.counts.hits[kKind];
           const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
