@@ -241,7 +241,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
            occluded > wanted_pixels / 20 && mirrored > wanted_pixels / 40 && shadows > wanted_pixels / 20 &&
            sunny > wanted_pixels / 40;
   };
-  for (unsigned turn = 0; !is_enough() && pixels < 10 * wanted_pixels; ++turn) {
+  for (unsigned turn = 0; !is_enough() && pixels < 40 * wanted_pixels; ++turn) {
     const std::uint64_t seed = random();
     CAPTURE(seed);
     std::mt19937_64 own(seed);
