@@ -2,7 +2,8 @@
 # Scenes of one's own as firmware: own_scene.sh BOARD. A scene text is baked into a header; the image made from it has
 # the effects that this calls for and no others, keeps its stack, and draws the simulator's pictures. On lm3s6965evb:
 # glass, a mirror and a sun, dark edges for its few greys, by the tree, and the mirror and the sun by the brick map; on
-# microbit a lamp, a sun and occlusion, and a pond, by the brick map. Prints a line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
+# microbit a lamp, a sun and occlusion, and a pond, by the brick map. Prints a line a question; exit status 1 when an
+# answer is wrong. After board.sh has built BOARD.
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
@@ -85,28 +86,12 @@ TEXT
   say "baked for no effects the image holds none"
 }
 
-# The set 19 of map_render.h.
-mirror() {
-  grep -v bottle "$work/own.scene" >"$work/own_mirror.scene"
-  effects=direct-light,shadows,mirror
-  "$thimble" bake "$work/own_mirror.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
-  build 'demo;bench' "$work/own.h"
-  holds 'draw_flat<19u' || fail "mirrors do not go through the map"
-  [ "$(grep -o 'thimble::lit::draw_flat<[0-9]*u' "$work/own.symbols" | sort -u | wc -l)" = 1 ] || fail "the image holds other sets than its own"
-  run demo
-  of_demo=$said
-  draws_as_the_simulator "$work/own_mirror.scene" --effects $effects
-  holds_its_frames sun-mirror
-  say "a mirror and the sun by the map; $of_demo"
-}
-
-# The sets of map_render.h: 4103 is sun, shadows, occlusion and lamps, 7 the same without lamps.
-lamp() {
-  cat >"$work/own.scene" <<'TEXT'
+# blocks: a room in the sun, for which a scene adds what it is about.
+blocks() {
+  cat <<'TEXT'
 depth 5
 camera eye 40 -14 26 target 15 16 6 fov 40
 sun toward 6 -5 9
-lamp at 20 10 12 color 255 206 140 brightness 1.5 reach 26
 material floor color 190 180 160
 material steel color 120 160 226
 box floor from 0 0 0 to 32 32 2
@@ -114,19 +99,38 @@ box floor from 0 30 2 to 32 32 20
 ball steel at 18 14 9 radius 7
 box steel from 3 18 2 to 12 27 14
 TEXT
-  effects=direct-light,shadows,ambient-occlusion
-  "$thimble" bake "$work/own.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
-  grep -q 'define THIMBLE_SCENE_LAMPS 1$' "$work/own.h" || fail "the header does not name its lamp"
+}
+# bake_own [SCENE]: into the header, for $effects.
+bake_own() {
+  "$thimble" bake "${1:-$work/own.scene}" --board "$board" --effects "$effects" -o "$work/own.h" --quiet
+}
+# draws_by_the_map SET ROW WHAT [SCENE]: bakes it; its image holds that set of map_render.h, and keeps the row's ceiling.
+draws_by_the_map() {
+  bake_own "${4:-$work/own.scene}"
   build 'demo;bench' "$work/own.h"
-  holds 'draw_flat<4103u' || fail "lamps do not go through the map"
+  holds "draw_flat<$1u" || fail "$3 does not go through the map"
+  [ "$(grep -o 'thimble::lit::draw_flat<[0-9]*u' "$work/own.symbols" | sort -u | wc -l)" = 1 ] || fail "the image holds other sets than its own"
   run demo
   of_demo=$said
-  draws_as_the_simulator "$work/own.scene" --effects $effects
-  holds_its_frames sun-lamp-occlusion
-  say "a lamp, the sun and occlusion by the map; $of_demo"
+  draws_as_the_simulator "${4:-$work/own.scene}" --effects "$effects"
+  holds_its_frames "$2"
+  say "$3 by the map; $of_demo"
+}
 
-  grep -v '^lamp' "$work/own.scene" >"$work/own_sun.scene"
-  "$thimble" bake "$work/own_sun.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
+mirror() {
+  grep -v bottle "$work/own.scene" >"$work/own_mirror.scene"
+  effects=direct-light,shadows,mirror
+  draws_by_the_map 19 sun-mirror "a mirror and the sun" "$work/own_mirror.scene"
+}
+
+lamp() {
+  { blocks && echo 'lamp at 20 10 12 color 255 206 140 brightness 1.5 reach 26'; } >"$work/own.scene"
+  effects=direct-light,shadows,ambient-occlusion
+  draws_by_the_map 4103 sun-lamp-occlusion "a lamp, the sun and occlusion"
+  grep -q 'define THIMBLE_SCENE_LAMPS 1$' "$work/own.h" || fail "the header does not name its lamp"
+
+  blocks >"$work/own_sun.scene"
+  bake_own "$work/own_sun.scene"
   grep -q 'define THIMBLE_SCENE_LAMPS 0$' "$work/own.h" || fail "the header names a lamp"
   build demo "$work/own.h"
   holds 'draw_flat<7u' || fail "occlusion does not go through the map"
@@ -134,29 +138,10 @@ TEXT
   say "without a lamp the image has nothing for one"
 }
 
-# The set 17027 of map_render.h.
 water() {
-  cat >"$work/own.scene" <<'TEXT'
-depth 5
-camera eye 40 -14 26 target 15 16 6 fov 40
-sun toward 6 -5 9
-material floor color 190 180 160
-material steel color 120 160 226
-box floor from 0 0 0 to 32 32 2
-box floor from 0 30 2 to 32 32 20
-ball steel at 18 14 9 radius 7
-box steel from 3 18 2 to 12 27 14
-water level 6 floor 2 color 84 176 190 index 1.333 density 0.05
-TEXT
+  { blocks && echo 'water level 6 floor 2 color 84 176 190 index 1.333 density 0.05'; } >"$work/own.scene"
   effects=direct-light,shadows,water,sky,ripples
-  "$thimble" bake "$work/own.scene" --board "$board" --effects $effects -o "$work/own.h" --quiet
-  build 'demo;bench' "$work/own.h"
-  holds 'draw_flat<17027u' || fail "water does not go through the map"
-  run demo
-  of_demo=$said
-  draws_as_the_simulator "$work/own.scene" --effects $effects
-  holds_its_frames sun-water
-  say "water with ripples, the sun and the sky by the map; $of_demo"
+  draws_by_the_map 17027 sun-water "water with ripples, the sun and the sky"
 }
 
 case $board in

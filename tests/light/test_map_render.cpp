@@ -1,5 +1,5 @@
 // Lit frames by the brick map are those of the tree, byte for byte, and count the same rays. THIMBLE_LONG draws 30
-// million pixels; THIMBLE_SEED begins elsewhere.
+// million pixels, THIMBLE_FEW 200,000; THIMBLE_SEED begins elsewhere.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Water by the brick map: the tree's bytes and rays, from over, in and below water that is still, moves or has ripples.
+// Water by the brick map: the tree's bytes and rays, from over, in and below water that is still, moves or has ripples, and
+// from as far away as `draws_fast`. THIMBLE_FEW draws a tenth.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -6,9 +7,10 @@
 #include <random>
 #include <vector>
 
+#include "support/chip_worlds.h"
 #include "support/map_world.h"
+#include "support/random_up.h"
 #include "support/ray_cases.h"
-#include "support/rolled.h"
 #include "thimble/light/water.h"
 
 namespace thimble::testing::map_water {
@@ -141,6 +143,7 @@ TEST_CASE("water by the map: random water, worlds and cameras -> the tree's pict
   int wet = 0;
   int passed = 0;
   int asked = 0;
+  int far_away = 0;
   for (int turn = 0; turn < turns; ++turn) {
     CAPTURE(turn);
     WaterWorld world;
@@ -165,6 +168,20 @@ TEST_CASE("water by the map: random water, worlds and cameras -> the tree's pict
                      world.tree.level()) == Status::kOk) {
         world.camera = rolled;
       }
+      if (pick_int(random, 0, 4) == 0) {
+        for (int axis = 0; axis < 3; ++axis) {
+          eye[axis] = tests::far_coordinate(random, world.tree.level(), 15);
+        }
+        const Vec3Q8 far = LitWorld::point(eye);
+        Camera away;
+        if (away.set(PerspectiveView{far, look_at(far, LitWorld::point(target)), tests::random_up(random),
+                                     Q16::saturate(pick_int(random, 1, 40)), 24, 18, 15},
+                     world.tree.level()) == Status::kOk &&
+            draws_fast(world.map, away)) {
+          world.camera = away;
+          far_away += tests::takes_31_bits(away) ? 1 : 0;
+        }
+      }
       const int set = (turn + view) % 4;
       const LitCounts counts = set == 0   ? compare<kWet>(world)
                                : set == 1 ? compare<kOpen>(world)
@@ -182,6 +199,7 @@ TEST_CASE("water by the map: random water, worlds and cameras -> the tree's pict
   CHECK(wet > turns);
   CHECK(passed > turns / 4);
   CHECK(asked > turns / 4);
+  CHECK(far_away > turns / 100);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "support/random_up.h"
 #include "support/ray_cases.h"
-#include "support/rolled.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {

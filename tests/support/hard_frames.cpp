@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/rolled.h"
+#include "support/random_up.h"
 
 namespace thimble::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <map>
 
-#include "support/rolled.h"
+#include "support/random_up.h"
 
 namespace thimble::tests {
 namespace {

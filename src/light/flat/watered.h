@@ -11,8 +11,8 @@
 namespace thimble::lit {
 namespace {
 
-// A frame, as its caller has it, whose rays ask the map. It is open where only the tree knows what a ray meets. A Sink says
-// what is seen: from(), material_of(voxel, side) and point_color(frame, spot, point).
+// A frame, as its caller has it, whose rays ask the map. It is open where only the tree knows what a ray meets. A Sink has
+// the map_, from() where rays go on, and point_color(frame, spot, point) of what is seen.
 template <class Sink>
 struct MapFrame {
   static constexpr bool kIsAsked = true;

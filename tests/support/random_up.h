@@ -1,7 +1,7 @@
-/// @file rolled.h
+/// @file random_up.h
 /// What is up in the pictures of random cameras.
-#ifndef THIMBLE_TESTS_SUPPORT_ROLLED_H
-#define THIMBLE_TESTS_SUPPORT_ROLLED_H
+#ifndef THIMBLE_TESTS_SUPPORT_RANDOM_UP_H
+#define THIMBLE_TESTS_SUPPORT_RANDOM_UP_H
 
 #include <random>
 
