@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "scene/host_memory.h"
@@ -90,6 +91,11 @@ TEST_CASE("magnify: every pixel that was drawn stays, those between lie between,
     std::vector<std::uint8_t> full(static_cast<std::size_t>(3 * width * height));
     std::vector<std::uint16_t> work(magnify_work(width));
     magnify_rows(small.data(), step, width, height, 0, rows, work.data(), full.data());
+    std::vector<std::uint8_t> parts(full.size());  // as threads draw it
+    for (const auto& [first, end] : {std::pair{rows / 3, rows}, std::pair{0, rows / 3}}) {
+      magnify_rows(small.data(), step, width, height, first, end, work.data(), parts.data());
+    }
+    CHECK(parts == full);
     for (std::int32_t y = 0; y < rows; ++y) {
       for (std::int32_t x = 0; x < 3 * columns; ++x) {
         CHECK(full[static_cast<std::size_t>(3 * width * y * step + 3 * (x / 3) * step + x % 3)] ==
