@@ -19,7 +19,6 @@ namespace {
 using tests::pick_int;
 
 constexpr EffectSet kWet = Effect::kDirectLight | Effect::kShadows | Effect::kWater;
-constexpr EffectSet kOpen = kWet | Effect::kEmission | Effect::kSky;
 constexpr int kPrimary = static_cast<int>(LitRayKind::kPrimary);
 constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
 constexpr int kWaterRay = static_cast<int>(LitRayKind::kWaterRay);
@@ -46,9 +45,8 @@ struct WaterWorld : MapWorld {
 
 /// Both pictures are the same, and so are the rays.
 template <EffectSet kSet>
-LitCounts compare(const WaterWorld& world, PixelFormat format = PixelFormat::kRgb888,
-                  std::size_t offset = 0) {
-  const BothCounts both = draw_both<kSet>(world, format, offset);
+LitCounts compare(const WaterWorld& world, PixelFormat format) {
+  const BothCounts both = draw_both<kSet>(world, format);
   for (const int kind : {kPrimary, kShadow, kWaterRay}) {
     CAPTURE(kind);
     REQUIRE(both.by_map.rays[kind] == both.by_tree.rays[kind]);
@@ -57,6 +55,18 @@ LitCounts compare(const WaterWorld& world, PixelFormat format = PixelFormat::kRg
   REQUIRE(both.by_map.pending_high_water == both.by_tree.pending_high_water);
   return both.by_map;
 }
+
+/// By every set that goes through the map.
+constexpr LitCounts (*kCompare[])(const WaterWorld&, PixelFormat) = {
+    compare<kWet>,
+    compare<kWet | Effect::kEmission>,
+    compare<kWet | Effect::kSky>,
+    compare<kWet | Effect::kEmission | Effect::kSky>,
+    compare<kWet | Effect::kRipples>,
+    compare<kWet | Effect::kRipples | Effect::kEmission>,
+    compare<kWet | Effect::kRipples | Effect::kSky>,
+    compare<kWet | Effect::kRipples | Effect::kEmission | Effect::kSky>,
+};
 
 /// A place near the water: over it, in it, below it, or on a plane of it.
 Vec3i place_near(std::mt19937_64& random, const WaterSurface& water) {
@@ -182,11 +192,9 @@ TEST_CASE("water by the map: random water, worlds and cameras -> the tree's pict
           far_away += tests::takes_31_bits(away) ? 1 : 0;
         }
       }
-      const int set = (turn + view) % 4;
-      const LitCounts counts = set == 0   ? compare<kWet>(world)
-                               : set == 1 ? compare<kOpen>(world)
-                               : set == 2 ? compare<kWet | Effect::kRipples>(world)
-                                          : compare<kOpen | Effect::kRipples>(world);
+      world.options.dither = pick_int(random, 0, 3) != 0;
+      const LitCounts counts =
+          kCompare[(turn + view) % 8](world, static_cast<PixelFormat>(pick_int(random, 0, 4)));
       const bool asks = counts.node_visits[kPrimary] != 0;
       wet += counts.rays[kWaterRay] != 0 ? 1 : 0;
       passed += counts.rays[kWaterRay] != 0 && !asks ? 1 : 0;

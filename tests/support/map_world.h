@@ -31,6 +31,7 @@ struct MapWorld : LitWorld {
 
   std::vector<std::uint64_t> room;
   BrickMap map;
+  LitOptions options;
 };
 
 /// What was counted for a picture.
@@ -39,8 +40,8 @@ struct BothCounts {
   LitCounts by_tree;
 };
 
-/// Holds that both pictures are the same, that by the map in bands of 1 to 7 rows as well (or as few as share bytes),
-/// and that both sent the same rays of the camera.
+/// Holds that both pictures are the same, that by the map in bands of 1 to 7 rows as well (or as few as share bytes), for a
+/// set that is known when running, and that both sent the same rays of the camera.
 template <EffectSet kSet>
 BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kRgb888,
                      std::size_t offset = 0) {
@@ -52,10 +53,10 @@ BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kR
   BothCounts counts;
   REQUIRE(render_lit_band<kSet>(world.tree, world.map, camera, world.shading, world.scene, {},
                                 {{fast.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                &counts.by_map) == Status::kOk);
+                                &counts.by_map, world.options) == Status::kOk);
   REQUIRE(render_lit_band<kSet>(world.tree, camera, world.shading, world.scene,
                                 {{right.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                &counts.by_tree) == Status::kOk);
+                                &counts.by_tree, world.options) == Status::kOk);
   REQUIRE(fast == right);
   std::vector<std::uint8_t> parts(size + offset, 0x5A);
   const std::int32_t together = band_row_multiple(format);
@@ -63,10 +64,10 @@ BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kR
     const std::int32_t wanted = together * (turn * turn % 7 + 1);
     const std::int32_t rows = wanted < camera.height_px() - row ? wanted : camera.height_px() - row;
     const std::size_t at = offset + band_bytes(format, camera.width_px(), row);
-    REQUIRE(render_lit_band<kSet>(
-                world.tree, world.map, camera, world.shading, world.scene, {},
-                {{parts.data() + at, band_bytes(format, camera.width_px(), rows)}, format, 0, row, rows}) ==
-            Status::kOk);
+    REQUIRE(render_lit_band(
+                kSet, world.tree, world.map, camera, world.shading, world.scene, {},
+                {{parts.data() + at, band_bytes(format, camera.width_px(), rows)}, format, 0, row, rows},
+                nullptr, world.options) == Status::kOk);
     row += rows;
   }
   REQUIRE(parts == right);
