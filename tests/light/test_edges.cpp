@@ -142,6 +142,21 @@ TEST_CASE("edges: two faces of one grey that meet -> the corner between them, in
   CHECK(parallel < 40);
 }
 
+TEST_CASE(
+    "edges: directions of so few bits that neighbours share a ray -> none, as no pixel sees beyond its own") {
+  LitWorld world;
+  put_block(&world, 160, 160);
+  const Vec3Q8 eye = LitWorld::point({8 * 256, -34 * 256, 12 * 256});
+  const PerspectiveView view{eye, {0, 1, 0}, {}, Q16::saturate(5), 96, 72, kMinDirectionBits};
+  REQUIRE(world.camera.set(view, world.tree.level()) == Status::kOk);
+  const Camera::Vec3Q32& step = world.camera.affine().step_x;
+  for (int axis = 0; axis < 3; ++axis) {
+    REQUIRE(Camera::rounded(step[axis]) == 0);
+  }
+  CHECK(plane_of(world, 0, 36) != plane_of(world, 95, 36));
+  CHECK(draw_both(world).dark == 0);
+}
+
 TEST_CASE("edges: one ray or two of the camera's more a pixel that shows a face, none where they are off") {
   LitWorld world;
   put_block(&world, 160, 160);

@@ -2,6 +2,7 @@
 // from as far away as `draws_fast`. THIMBLE_FEW draws a tenth.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <random>
@@ -68,7 +69,7 @@ constexpr LitCounts (*kCompare[])(const WaterWorld&, PixelFormat) = {
     compare<kWet | Effect::kRipples | Effect::kEmission | Effect::kSky>,
 };
 
-/// A place near the water: over it, in it, below it, or on a plane of it.
+/// A place near the water and the world: over it, in it, below it, or on a plane of it.
 Vec3i place_near(std::mt19937_64& random, const WaterSurface& water) {
   const int size[3] = {256 * water.width, 256 * water.depth, water.highest_q8};
   Vec3i at;
@@ -87,6 +88,7 @@ Vec3i place_near(std::mt19937_64& random, const WaterSurface& water) {
       default:
         at[i] = low + pick_int(random, 0, size[i]);
     }
+    at[i] = std::clamp(at[i], -40 * 256, 72 * 256);
   }
   return at;
 }
@@ -103,13 +105,15 @@ void build(std::mt19937_64& random, WaterWorld* world) {
         at, {at.x + size.x < 32 ? at.x + size.x : 32, at.y + size.y < 32 ? at.y + size.y : 32, at.z + size.z},
         pick_int(random, 1, 3));
   }
-  const Vec3i corner{pick_int(random, 0, 8), pick_int(random, 0, 8), pick_int(random, 0, 6)};
-  const int width = pick_int(random, 1, 32 - corner.x);
-  const int depth = pick_int(random, 1, 32 - corner.y);
-  const int whole = pick_int(random, 1, 12);
+  // Now and then it leaves the world by so many voxels, which the tree draws.
+  const int out = pick_int(random, 0, 9) != 0 ? 0 : pick_int(random, 0, 1) == 0 ? 5 : 2000;
+  const Vec3i corner{pick_int(random, -out, 8), pick_int(random, -out, 8), pick_int(random, -out, 6)};
+  const int width = pick_int(random, 1, 32 + out - corner.x);
+  const int depth = pick_int(random, 1, 32 + out - corner.y);
+  const int whole = pick_int(random, 1, 12 + out);
   const int height = 256 * whole + (pick_int(random, 0, 1) == 0 ? 0 : pick_int(random, -255, 255));
   world->still(corner, width, depth, height);
-  if (pick_int(random, 0, 1) == 0) {
+  if (pick_int(random, 0, 1) == 0 && out <= 5) {
     WaterSurface& water = world->scene.water;
     world->heights.resize(static_cast<std::size_t>(width * depth));
     const int amplitude = pick_int(random, 0, 2) == 0 ? 256 * height : pick_int(random, 1, 40000);

@@ -9,6 +9,7 @@
 #include "support/lit_world.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/light/host/slope.h"
+#include "thimble/light/host/slope_window.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/secondary_ray.h"
 
@@ -200,6 +201,21 @@ TEST_CASE("a staircase: the gradient of its definition, and its slope within a t
 
 // A floor of 4 voxels, open below, under a ceiling one voxel higher: what is solid above the point weighs as much as what
 // is below, so the gradient is what two holes leave of it, below 2^19 in the units in which it is added up.
+TEST_CASE("a gradient along the axis of its face: the normal is the face's, and nothing is followed") {
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3i along{};
+    along[axis] = -7;
+    Vec3i oblique{2, 2, 2};
+    oblique[(axis + 1) % 3] = -5;
+    for (const bool negative : {false, true}) {
+      const Face face{axis, negative};
+      CHECK(lit::slope_axis(along, face) == -1);
+      CHECK(lit::slope_axis({}, face) == -1);
+      CHECK(lit::slope_axis(oblique, face) == (axis + 1) % 3);
+    }
+  }
+}
+
 TEST_CASE("between a floor and a ceiling that balance: the gradient of its definition, small as it is") {
   const Body slot([](int x, int y, int z) {
     const bool hole = (x == 29 && y == 29 && z == 27) || (x == 37 && y == 29 && z == 30);

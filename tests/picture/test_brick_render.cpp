@@ -289,6 +289,10 @@ TEST_CASE(
   REQUIRE(render_band_32(tree, camera, shading, band, &counts) == Status::kOk);
   CHECK(pixels == wanted);
   CHECK(counts.rays == 60 * 40);
+  pixels.assign(pixels.size(), 0);
+  REQUIRE(render_band_32(tree, map, camera, shading, band, &counts) == Status::kOk);
+  CHECK(pixels == wanted);
+  CHECK(counts.rays == 2 * 60 * 40);
 }
 
 TEST_CASE("brick frames: arguments that contradict the picture -> a status, and not a byte is written") {
