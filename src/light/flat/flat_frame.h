@@ -115,7 +115,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     unsigned lights = lights_of_[face];
     if constexpr (kIsWet<kSet>) {
       const FacePoint point = landed_on(course);
-      if (!this->is_dry(point, low_q8(2))) {
+      if (!this->is_dry(point, floor_q8())) {
         this->note(pixel_at(x, y), note_of(point));
         return;
       }
@@ -164,7 +164,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
   void face(const SeenPixels& seen, SeenFace& face) {
     const unsigned side = seen.course.face[face.point.axis];
     if constexpr (kIsWet<kSet>) {
-      if (!this->is_dry(face.point, low_q8(2))) {
+      if (!this->is_dry(face.point, floor_q8())) {
         for_each(seen.pixels, [&](uint32_t pixel) {  // of the band's part of the tile
           this->note(pixel_at(seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
                               seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx)),
@@ -395,8 +395,8 @@ class FlatSink : Gathering<kSet, kGoesOn>,
   static uint32_t pixel_at(int32_t x, int32_t y) {
     return static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
   }
-  // The box's lowest corner, in 1/256 voxel.
-  int32_t low_q8(int axis) const { return 4 * Q8::kOne * map_.box().low[axis]; }
+  // Where the box begins along z, in 1/256 voxel.
+  int32_t floor_q8() const { return 4 * Q8::kOne * map_.box().low.z; }
 
   // For MapFrame.
   template <class WetFrame>
