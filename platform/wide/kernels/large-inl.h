@@ -182,8 +182,12 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
   float origin[3];
   origin_of(frame, *batch, origin);
   LargeBox<kGray> box(entry, number, depths, batch);
+  // A box that fits a vector gets one to itself in each row, unless that would reach into the next strip.
+  const int32_t last_x = (where.x0 | 31) + 1 - lanes;
+  const int32_t own_x = where.x0 < last_x ? where.x0 : last_x;
+  const int32_t first_x = where.x1 - where.x0 <= lanes ? own_x : where.x0 & -lanes;
   for (int32_t y = where.y0; y < where.y1; ++y) {
-    for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
+    for (int32_t x = first_x; x < where.x1; x += lanes) {
       uint32_t wanted = all_lanes;
       wanted &= x < where.x0 ? UINT32_MAX << (where.x0 - x) : UINT32_MAX;
       wanted &= where.x1 - x < lanes ? (uint32_t{1} << (where.x1 - x)) - 1 : UINT32_MAX;
