@@ -88,10 +88,13 @@ class LargeBox {
     uint8_t* const to_gray = depths_.gray + test.first;
     uint16_t* const to_sum = depths_.nearest_sum + test.first;
     const auto sum = test.same ? hn::Set(du, static_cast<uint32_t>(value_)) : hn::Load(du, sums);
-    const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, to_gray)), hn::Zero(du));
-    const auto before = hn::PromoteTo(du, hn::LoadU(shorts, to_sum));
-    const auto is_less = hn::Or(is_new, hn::Lt(sum, before));
-    const uint32_t taken = test.hits & bits_of(du, is_less);
+    uint32_t taken = test.hits;
+    // What is open need not be read: reads would wait for the masked stores of the neighbours.
+    if (!depths_.marks || (*test.word >> test.shift & test.hits) != 0) {
+      const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, to_gray)), hn::Zero(du));
+      const auto before = hn::PromoteTo(du, hn::LoadU(shorts, to_sum));
+      taken &= bits_of(du, hn::Or(is_new, hn::Lt(sum, before)));
+    }
     const uint8_t mask_bits[8] = {static_cast<uint8_t>(taken), static_cast<uint8_t>(taken >> 8),
                                   static_cast<uint8_t>(taken >> 16), static_cast<uint8_t>(taken >> 24)};
     hn::BlendedStore(hn::DemoteTo(shorts, hn::BitCast(I32(), sum)), hn::LoadMaskBits(shorts, mask_bits),
