@@ -88,10 +88,13 @@ class LargeBox {
     uint8_t* const to_gray = depths_.gray + test.first;
     uint16_t* const to_sum = depths_.nearest_sum + test.first;
     const auto sum = test.same ? hn::Set(du, static_cast<uint32_t>(value_)) : hn::Load(du, sums);
-    const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, to_gray)), hn::Zero(du));
-    const auto before = hn::PromoteTo(du, hn::LoadU(shorts, to_sum));
-    const auto is_less = hn::Or(is_new, hn::Lt(sum, before));
-    const uint32_t taken = test.hits & bits_of(du, is_less);
+    uint32_t taken = test.hits;
+    // What is open need not be read: reads would wait for the masked stores of the neighbours.
+    if (!depths_.marks || (*test.word >> test.shift & test.hits) != 0) {
+      const auto is_new = hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, to_gray)), hn::Zero(du));
+      const auto before = hn::PromoteTo(du, hn::LoadU(shorts, to_sum));
+      taken &= bits_of(du, hn::Or(is_new, hn::Lt(sum, before)));
+    }
     const uint8_t mask_bits[8] = {static_cast<uint8_t>(taken), static_cast<uint8_t>(taken >> 8),
                                   static_cast<uint8_t>(taken >> 16), static_cast<uint8_t>(taken >> 24)};
     hn::BlendedStore(hn::DemoteTo(shorts, hn::BitCast(I32(), sum)), hn::LoadMaskBits(shorts, mask_bits),
@@ -182,8 +185,12 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
   float origin[3];
   origin_of(frame, *batch, origin);
   LargeBox<kGray> box(entry, number, depths, batch);
+  // A box that fits a vector gets one to itself in each row, unless that would reach into the next strip.
+  const int32_t last_x = (where.x0 | 31) + 1 - lanes;
+  const int32_t own_x = where.x0 < last_x ? where.x0 : last_x;
+  const int32_t first_x = where.x1 - where.x0 <= lanes ? own_x : where.x0 & -lanes;
   for (int32_t y = where.y0; y < where.y1; ++y) {
-    for (int32_t x = where.x0 & -lanes; x < where.x1; x += lanes) {
+    for (int32_t x = first_x; x < where.x1; x += lanes) {
       uint32_t wanted = all_lanes;
       wanted &= x < where.x0 ? UINT32_MAX << (where.x0 - x) : UINT32_MAX;
       wanted &= where.x1 - x < lanes ? (uint32_t{1} << (where.x1 - x)) - 1 : UINT32_MAX;
