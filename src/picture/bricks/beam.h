@@ -161,7 +161,7 @@ template <int kC>
 
 // Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs when
 // there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab.
-template <int kC>
+template <int kC, bool kDeep>
 [[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
@@ -209,7 +209,7 @@ template <int kC>
     for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
       int32_t cell = row;
       for (int32_t i = from_a; i <= to_a; ++i, cell += stride_a) {
-        const uint32_t number = half_at(directory, cell);
+        const uint32_t number = number_at<kDeep>(directory, cell);
         if (number != 0) {
           *bricks_end++ = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
         }
@@ -241,10 +241,11 @@ template <int kC>
   return slabs;
 }
 
+template <bool kDeep = false>
 int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
-  return course.c == 0   ? first_slab<0>(course, fan, slab)
-         : course.c == 1 ? first_slab<1>(course, fan, slab)
-                         : first_slab<2>(course, fan, slab);
+  return course.c == 0   ? first_slab<0, kDeep>(course, fan, slab)
+         : course.c == 1 ? first_slab<1, kDeep>(course, fan, slab)
+                         : first_slab<2, kDeep>(course, fan, slab);
 }
 
 }  // namespace
