@@ -44,7 +44,8 @@ TEST_CASE(
   std::uint64_t pixels = 0;
   std::uint64_t fast = 0;
   std::uint64_t hits = 0;
-  for (int turn = 0; pixels < wanted_pixels; ++turn) {
+  for (int turn = 0; pixels < wanted_pixels || (hits <= wanted_pixels / 10 && pixels < 10 * wanted_pixels);
+       ++turn) {
     const std::uint64_t seed = random();
     CAPTURE(seed);
     CAPTURE(turn);
@@ -53,7 +54,7 @@ TEST_CASE(
     const ChipScene scene = make_deep_scene(own, static_cast<DeepWorld>(turn % kDeepWorldKinds), level);
     for (int view = 0; view < 24; ++view) {
       CAPTURE(view);
-      const Camera camera = hard_deep_camera(own, level);
+      const Camera camera = hard_deep_camera(own, scene.tree);
       Shading shading;
       shading.mode = pick_int(own, 0, 5) == 0 ? ShadeMode::kDepth : ShadeMode::kColor;
       shading.palette = {palette.data(), palette.size()};

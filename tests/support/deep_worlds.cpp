@@ -107,26 +107,30 @@ ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
   return scene;
 }
 
-Camera hard_deep_camera(std::mt19937_64& random, int level) {
-  if (pick_int(random, 0, 1) == 0) {
+Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree) {
+  const int level = tree.level();
+  const VoxelBox& box = tree.bounds();
+  if (pick_int(random, 0, 3) == 0) {
     return hard_chip_camera(random, level);
   }
   const int side_q8 = 256 << level;
   for (;;) {
     Vec3Q8 eye;
     Vec3i forward;
+    const int look = pick_int(random, 0, 5);
     for (int axis = 0; axis < 3; ++axis) {
-      const int kind = pick_int(random, 0, 3);
+      const int kind = pick_int(random, 0, 4);
+      const int solid = pick_int(random, 256 * box.low[axis], 256 * box.high[axis]);
       eye[axis] = Q8::from_raw(kind == 0   ? 256 * pick_int(random, 0, 1 << level)
                                : kind == 1 ? pick_int(random, 0, 1) * side_q8 + pick_int(random, -256, 256)
+                               : kind == 2 ? solid + pick_int(random, -40 * 256, 40 * 256)
                                            : pick_int(random, 0, side_q8));
-      forward[axis] = pick_int(random, 0, 1) == 0 ? pick_int(random, -20, 20)
-                                                  : pick_int(random, 0, side_q8) - eye[axis].raw;
+      forward[axis] = look == 0 ? pick_int(random, -1, 1) : solid - eye[axis].raw;
     }
     const PerspectiveView view{eye,
                                forward,
                                random_up(random),
-                               Q16::from_raw(pick_int(random, 65536, 120 * 65536)),
+                               Q16::from_raw(pick_int(random, 65536, (look % 2 == 0 ? 15 : 120) * 65536)),
                                pick_int(random, 1, 120),
                                pick_int(random, 1, 60),
                                pick_int(random, 0, 1) == 0 ? 0 : pick_int(random, 11, 15)};

@@ -19,8 +19,8 @@ inline constexpr int kDeepWorldKinds = 6;
 ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
                           std::vector<std::uint8_t>* pool_bytes = nullptr, Octree* pool = nullptr);
 
-/// As hard_chip_camera, and eyes within the world that look along it.
-Camera hard_deep_camera(std::mt19937_64& random, int level);
+/// As hard_chip_camera; and eyes within the world, close by what is solid and at its sides, that mostly look at that.
+Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree);
 
 }  // namespace thimble::tests
 
