@@ -25,11 +25,11 @@ inline constexpr int32_t kPageSide = 4;
 inline constexpr uint32_t kPageEntries = 64;
 
 // The place's page in the table: x / 4 + y / 4 * 2^6 + z / 4 * 2^12.
-constexpr uint32_t page_of(uint32_t place) {
+[[gnu::always_inline]] constexpr uint32_t page_of(uint32_t place) {
   return (place >> 2 & 0x3FU) | (place >> 4 & 0xFC0U) | (place >> 6 & 0x3F000U);
 }
 // Its entry in the page: x + 4 y + 16 z of what is left.
-constexpr uint32_t entry_of(uint32_t place) {
+[[gnu::always_inline]] constexpr uint32_t entry_of(uint32_t place) {
   return (place & 3U) | (place >> 6 & 12U) | (place >> 12 & 48U);
 }
 

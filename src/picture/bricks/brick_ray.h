@@ -229,7 +229,7 @@ class BrickRay {
     if constexpr (OneCourse::kAim == Aim::kNear || kMirrors) {
       return OneCourse::kRunsFar && kDivides;
     } else {
-      return false;
+      return OneCourse::kDeep;
     }
   }
   static constexpr uint32_t kFarPlanes = 8;  // with fewer planes to go, voxel by voxel is quicker
@@ -288,6 +288,8 @@ class BrickRay {
         return (cell_a | cell_b) < 0 ? kAsk : kMissed;
       }
       enter_at(static_cast<uint32_t>(cell_a), static_cast<uint32_t>(cell_b));
+      // A ray that is faster on another axis may enter several bricks of a layer, and goes voxel by voxel.
+      planes_ = d_a_ <= d_c_ && d_b_ <= d_c_ ? UINT32_MAX : 0;
       return kGoOn;
     } else {
       const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
@@ -390,7 +392,15 @@ class BrickRay {
   // Goes on from a plane of c between two layers of bricks.
   [[gnu::always_inline]] bool skip_empty() {
     LayerPlace at{{rest_a_, rest_b_}, left_, cell_, planes_, row_of(at_) << 3 | shift_, 0};
-    if (!skip_layers(course_, kC, &at)) {
+    if constexpr (OneCourse::kDeep) {
+      DeepWay way{course_.directory, course_.next_brick, {}, {last<0>(), last<1>(), last<2>()}};
+      way.d[kA] = d_a_;
+      way.d[kB] = d_b_;
+      way.d[kC] = d_c_;
+      if (!skip_layers(way, kC, &at)) {
+        return false;
+      }
+    } else if (!skip_layers(course_, kC, &at)) {
       return false;
     }
     rest_a_ = at.rest[0];

@@ -50,10 +50,10 @@ template <bool kDeep>
 [[gnu::always_inline]] inline uint32_t number_at(const uint8_t* directory, int32_t place) {
   if constexpr (kDeep) {
     const auto at = static_cast<uint32_t>(place);
-    const uint8_t* const page =
-        directory + word_at(directory, static_cast<int32_t>(4 * deep_place::page_of(at)));
+    const auto* const table = static_cast<const Word*>(static_cast<const void*>(directory));
+    const uint8_t* const page = directory + table[deep_place::page_of(at)];
     const uint32_t own = page[4 + deep_place::entry_of(at)];
-    return own == 0 ? 0 : word_at(page, 0) + own;
+    return own == 0 ? 0 : *static_cast<const Word*>(static_cast<const void*>(page)) + own;
   } else {
     return half_at(directory, place);
   }

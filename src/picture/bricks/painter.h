@@ -83,6 +83,13 @@ class BrickPainter {
     course_.exact_ties = !frame.tree.merged();
     course_.wide = frame.camera.direction_bits() > kNarrowDirectionBits;
     course_.most_cells = (1U << (23 - frame.camera.direction_bits())) - 1;
+    if constexpr (OneCourse::kDeep) {
+      const Vec3i& side = frame.side;
+      const auto last = static_cast<uint32_t>((side.x - 1) * deep_place::kStride[0] +
+                                              (side.y - 1) * deep_place::kStride[1] +
+                                              (side.z - 1) * deep_place::kStride[2]);
+      course_.empty_page = (4 * (deep_place::page_of(last) + 1) + 7) & ~uint32_t{7};
+    }
     set_course<OneCourse::kDeep>(course_, 0, 0);  // NOLINT: where rays start is set_start's
   }
 
