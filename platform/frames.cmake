@@ -40,6 +40,12 @@ function(thimble_choose_frames)
   elseif(NOT "${BOARD_FRAMES}" MATCHES "^(large)?$")
     message(FATAL_ERROR "BOARD_FRAMES of ${BOARD_NAME} is ${BOARD_FRAMES}; it may be small, large, or left out")
   endif()
+  # Brick maps and frames by them for worlds of level 9 and 10 (tree/brick_map.h), 30 KB of code.
+  if("${BOARD_WORLDS}" STREQUAL "deep")
+    target_compile_definitions(thimble PRIVATE THIMBLE_DEEP_WORLDS)
+  elseif(NOT "${BOARD_WORLDS}" STREQUAL "")
+    message(FATAL_ERROR "BOARD_WORLDS of ${BOARD_NAME} is ${BOARD_WORLDS}; it may be deep, or left out")
+  endif()
   # Water by the map takes more stack than some boards keep, which draw it by the tree.
   if(BOARD_STACK_BYTES LESS wet_stack_bytes)
     target_compile_definitions(thimble_apps PRIVATE THIMBLE_WATER_BY_TREE)

@@ -41,11 +41,13 @@
   ROW(kDepth, false, 55, "camera", "depth of a hit: numerator times depth a t")                           \
   ROW(kAllMiss, true, 44, "camera", "a run of pixels against the box: distance times direction")          \
   ROW(kBrickPlace, true, 31, "chip", "place times den: o_a d_c + s_c d_a")                                \
+  ROW(kDeepPlace, false, 25, "chip", "place times den, of level 9 and 10: less whole voxels")             \
   ROW(kBrickRest, true, 23, "chip", "rest: distance to the next plane times den")                         \
   ROW(kBrickTime, false, 38, "chip", "rest times direction")                                              \
   ROW(kBrickFan, true, 30, "chip", "direction of a tile, 2^-12")                                          \
   ROW(kBrickSlope, true, 30, "chip", "slope times distance, of a beam")                                   \
   ROW(kFaceOrder, true, 31, "chip", "order of two planes at a tile's first pixel: the whole part")        \
+  ROW(kDeepOrder, true, 34, "chip", "the same, of level 9 and 10")                                        \
   ROW(kFaceAffine, true, 31, "chip", "order of two planes in a tile, with its fraction")                  \
   ROW(kFaceBound, false, 26, "chip", "bound of what rounding does to it")                                 \
   ROW(kDot, true, 31, "light", "product of two vectors, Q14 each")                                        \

@@ -1,12 +1,18 @@
 // Which bricks have nothing behind them towards a distant light: all bricks that a ray from somewhere in one can pass
 // through, layer by layer along the axis on which the light's rays move fastest.
 #include "../base/bits.h"
+#include "../tree/deep_map.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"
 
 namespace thimble {
 
 size_t SunBricks::bytes(const BrickMap& map) {
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(map.level())) {
+      return 0;
+    }
+  }
   const Vec3i& low = map.box().low;
   const Vec3i& high = map.box().high;
   return (static_cast<size_t>((high.x - low.x) * (high.y - low.y) * (high.z - low.z)) + 7) / 8;
@@ -16,6 +22,11 @@ Status SunBricks::make(const BrickMap& map, const Vec3i& towards, Bytes room, Su
   const size_t size = bytes(map);
   if (map.directory() == nullptr || towards == Vec3i{}) {
     return Status::kBadArgument;
+  }
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(map.level())) {
+      return Status::kOutOfRange;
+    }
   }
   if (room.size < size || (size != 0 && room.data == nullptr)) {
     return Status::kOutOfMemory;

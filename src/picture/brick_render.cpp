@@ -4,6 +4,7 @@
 
 #include "../base/bits.h"
 #include "../base/wide_arithmetic.h"
+#include "../tree/deep_map.h"
 #include "band.h"
 
 // Compiles this file and the headers that follow for speed, whatever the rest is optimised for. ("rename-registers"
@@ -34,23 +35,45 @@ bool shares_bytes(PixelFormat format) {
 
 }  // namespace
 
+namespace {
+
+uint32_t farther(int32_t eye, int32_t low, int32_t high) {
+  return static_cast<uint32_t>(eye - low > high - eye ? eye - low : high - eye);
+}
+
+// In worlds of level 9 and 10 only beams are bounded: a slope of up to 2 and 1/1024 times a distance is below 2^30.
+constexpr uint32_t kMostDeepDistance = (uint32_t{1} << 19) - 512;
+
+[[maybe_unused]] bool draws_deep(const Camera& camera) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (farther(camera.eye()[axis].raw, 0, Q8::kOne << camera.level()) > kMostDeepDistance) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 bool draws_fast(const BrickMap& map, const Camera& camera) {
   if (!camera.is_perspective() || camera.width_px() == 0 || camera.level() != map.level() ||
       camera.direction_bits() > kMaxBrickDirectionBits) {
     return false;
+  }
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(map.level())) {
+      return draws_deep(camera);
+    }
   }
   // Of the world, for the tree's rays, and of the box: where a ray starts is the sum of two products of such a distance
   // and a direction, and kOutsideQ8 is added to one of the distances. Their 32 bits hold from -2^31 to 2^32.
   uint32_t distances = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t eye = camera.eye()[axis].raw;
-    const auto farther = [eye](int32_t low, int32_t high) {
-      return static_cast<uint32_t>(eye - low > high - eye ? eye - low : high - eye);
-    };
     constexpr int32_t kBrickQ8 = 4 * Q8::kOne;
-    distances |= farther(0, Q8::kOne << map.level());
+    distances |= farther(eye, 0, Q8::kOne << map.level());
     distances |=
-        farther(map.box().low[axis] * kBrickQ8, map.box().high[axis] * kBrickQ8) + kOutsideQ8 / 2 - 1;
+        farther(eye, map.box().low[axis] * kBrickQ8, map.box().high[axis] * kBrickQ8) + kOutsideQ8 / 2 - 1;
   }
   return distances >> (31 - camera.direction_bits()) == 0;
 }
@@ -58,6 +81,7 @@ bool draws_fast(const BrickMap& map, const Camera& camera) {
 namespace {
 
 // Draws a band of a frame that `draws_fast`.
+template <class OneCourse>
 [[gnu::noinline]] Status draw_by_bricks(const CompactTree& tree, const BrickMap& map, const Camera& camera,
                                         const Shading& shading, const Band& band, RenderCounts* counts) {
   size_t stride = 0;
@@ -77,7 +101,11 @@ namespace {
     frame.side[axis] = map.box().high[axis] - map.box().low[axis];
     frame.eye[axis] = camera.eye()[axis].raw - map.box().low[axis] * (4 * Q8::kOne);
   }
-  frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
+  if constexpr (OneCourse::kDeep) {
+    frame.stride = {deep_place::kStride[0], deep_place::kStride[1], deep_place::kStride[2]};
+  } else {
+    frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
+  }
   margins_of(camera, kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
   margins_of(camera, kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
@@ -85,10 +113,10 @@ namespace {
   sweep.misses = 0;
   sweep.counts = &done;
   sweep.begin(map);
-  const bool swept =
-      kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) && !touches_solid(frame);
-  BrickPainter painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride, band.first_row,
-                       &done);
+  const bool swept = kSlots != 0 && shading.mode != ShadeMode::kDepth && set_steps(camera, &sweep) &&
+                     !touches_solid<OneCourse::kDeep>(frame);
+  BrickPainter<OneCourse> painter(frame, inks, swept ? &sweep : nullptr, band.pixels.data, stride,
+                                  band.first_row, &done);
   const int32_t end = band.first_row + band.rows;
   for (int32_t y = band.first_row; y < end;) {
     const int32_t tile_end = (y / kBrickTilePx + 1) * kBrickTilePx;
@@ -126,7 +154,13 @@ Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& c
   if (!map.belongs_to(tree)) {
     return Status::kDamaged;
   }
-  return draws_fast(map, camera) ? draw_by_bricks(tree, map, camera, shading, band, counts)
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(map.level())) {
+      return draws_fast(map, camera) ? draw_by_bricks<DeepCourse>(tree, map, camera, shading, band, counts)
+                                     : render_band(tree, camera, shading, band, counts);
+    }
+  }
+  return draws_fast(map, camera) ? draw_by_bricks<Course>(tree, map, camera, shading, band, counts)
                                  : render_band(tree, camera, shading, band, counts);
 }
 
@@ -135,7 +169,12 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   if (!map.belongs_to(tree)) {
     return Status::kDamaged;
   }
-  return draws_fast(map, camera) ? draw_by_bricks(tree, map, camera, shading, band, counts)
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(map.level())) {
+      return Status::kBadArgument;
+    }
+  }
+  return draws_fast(map, camera) ? draw_by_bricks<Course>(tree, map, camera, shading, band, counts)
                                  : Status::kBadArgument;
 }
 

@@ -4,6 +4,7 @@
 #include "../base/bits.h"
 #include "brick_parts.h"
 #include "compact_header.h"
+#include "deep_map.h"
 #include "thimble/base/memory.h"
 
 namespace thimble {
@@ -25,6 +26,8 @@ constexpr uint32_t kMixedOffset = 28;
 // While a map is made, where a brick comes from: below this a node of level 2, counted from the first of that
 // level; from it on the low byte is the material of all that is seen of the brick.
 constexpr uint32_t kUniform = 0xFF00;
+
+constexpr int kMostLevel = kDeepWorlds ? kMaxDeepMapLevel : kMaxBrickMapLevel;
 
 using brick_parts::kChildBits;
 using brick_parts::kOriginBytes;
@@ -84,27 +87,7 @@ bool aligned(const uint8_t* data) {
 }
 
 using brick_parts::bits_of_node;
-
-uint8_t material_in_node(const CompactTree& tree, uint32_t node, unsigned bit) {
-  const unsigned octant = (bit >> 1 & 1U) | (bit >> 3 & 1U) << 1 | (bit >> 5 & 1U) << 2;
-  const unsigned voxel = (bit & 1U) | (bit >> 2 & 1U) << 1 | (bit >> 4 & 1U) << 2;
-  if (node >= tree.node_count()) {
-    return 0;
-  }
-  const unsigned mask = tree.mask(node);
-  if (mask == 0) {
-    return tree.block_material(node);
-  }
-  const uint32_t child = tree.first_child(node) + bits::popcount8(mask & ((1U << octant) - 1));
-  if (child >= tree.node_count()) {
-    return 0;
-  }
-  const unsigned voxels = tree.mask(child);
-  if (voxels == 0) {
-    return tree.block_material(child);
-  }
-  return tree.voxel_material(tree.first_child(child) + bits::popcount8(voxels & ((1U << voxel) - 1)));
-}
+using brick_parts::material_in_node;
 
 // A map in the making: directory and bricks as they will be, sources from the end of the bytes downwards.
 class MapBuilder {
@@ -429,6 +412,11 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
   if (!aligned(bytes.data)) {
     return Status::kBadArgument;
   }
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_one(bytes)) {
+      return DeepMap::open(bytes, map);
+    }
+  }
   MapHeader header{};
   if (read_map_header(bytes, &header) != nullptr) {
     return Status::kDamaged;
@@ -461,6 +449,11 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
 }
 
 const char* BrickMap::validate(ConstBytes bytes) {
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_one(bytes)) {
+      return DeepMap::validate(bytes);
+    }
+  }
   MapHeader header{};
   if (const char* text = read_map_header(bytes, &header)) {
     return text;
@@ -479,13 +472,22 @@ const char* BrickMap::validate(ConstBytes bytes) {
 }
 
 Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size) {
-  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel) {
+  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostLevel) {
     return Status::kOutOfRange;
   }
   if (!aligned(out.data)) {
     return Status::kBadArgument;
   }
   size_t written = 0;
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(tree.level())) {
+      const Status status = DeepMap::make(tree, out, &written);
+      if (status == Status::kOk && size != nullptr) {
+        *size = written;
+      }
+      return status == Status::kOk && map != nullptr ? open(out.subspan(0, written), map) : status;
+    }
+  }
   const Status status = MapBuilder(tree, out).run(&written);
   if (status != Status::kOk) {
     return status;
@@ -496,6 +498,18 @@ Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t*
   return map == nullptr ? Status::kOk : open(out.subspan(0, written), map);
 }
 
+size_t most_brick_map_bytes(const CompactTree& tree) {
+  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostLevel) {
+    return 0;
+  }
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(tree.level())) {
+      return DeepMap::most_bytes(tree);
+    }
+  }
+  return most_brick_map_bytes(tree.level());
+}
+
 bool BrickMap::belongs_to(const CompactTree& tree) const {
   return directory_ != nullptr && tree.bytes() != nullptr && tree.level() == level_ &&
          bits::load32(tree.bytes() + compact_header::kChecksumOffset) == tree_checksum_;
@@ -503,6 +517,14 @@ bool BrickMap::belongs_to(const CompactTree& tree) const {
 
 uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const {
   const uint8_t* origin = origins_ + kOriginBytes * (number - 1);
+  if constexpr (kDeepWorlds) {
+    if (DeepMap::is_deep(level_)) {
+      origin = DeepMap::origin(*this, number);
+      if (origin == nullptr) {
+        return materials_[number];
+      }
+    }
+  }
   const uint32_t children = bits::load32(origin);
   const unsigned octant = (bit >> 1 & 1U) | (bit >> 2 & 2U) | (bit >> 3 & 4U);
   const unsigned voxel = (bit & 1U) | (bit >> 1 & 2U) | (bit >> 2 & 4U);

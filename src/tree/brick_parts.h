@@ -54,6 +54,28 @@ inline uint64_t spread(unsigned octant, unsigned mask) {
   bits::store32(origin + 8, known ? tree.blocks_before(child) : 0);
 }
 
+// The material of voxel `bit` of the brick whose node of level 2 is `node`.
+[[gnu::always_inline]] inline uint8_t material_in_node(const CompactTree& tree, uint32_t node, unsigned bit) {
+  const unsigned octant = (bit >> 1 & 1U) | (bit >> 3 & 1U) << 1 | (bit >> 5 & 1U) << 2;
+  const unsigned voxel = (bit & 1U) | (bit >> 2 & 1U) << 1 | (bit >> 4 & 1U) << 2;
+  if (node >= tree.node_count()) {
+    return 0;
+  }
+  const unsigned mask = tree.mask(node);
+  if (mask == 0) {
+    return tree.block_material(node);
+  }
+  const uint32_t child = tree.first_child(node) + bits::popcount8(mask & ((1U << octant) - 1));
+  if (child >= tree.node_count()) {
+    return 0;
+  }
+  const unsigned voxels = tree.mask(child);
+  if (voxels == 0) {
+    return tree.block_material(child);
+  }
+  return tree.voxel_material(tree.first_child(child) + bits::popcount8(voxels & ((1U << voxel) - 1)));
+}
+
 }  // namespace thimble::brick_parts
 
 #endif

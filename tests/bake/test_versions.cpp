@@ -212,7 +212,7 @@ TEST_CASE("versions: trees and brick maps by themselves -> another version is to
   const std::string tree = section(SectionKind::kTree, 2);
   CHECK(std::string(CompactTree::validate(bytes_of(tree))) == kAnotherVersion);
   CHECK(std::string(CompactTree::validate(bytes_of(good))) == "not a compact tree");
-  const std::string map = section(SectionKind::kBrickMap, 2);
+  const std::string map = section(SectionKind::kBrickMap, 3);
   CHECK(std::string(BrickMap::validate(bytes_of(map))) == kAnotherVersion);
   CHECK(std::string(BrickMap::validate(bytes_of(tree))) == "not a brick map");
   BrickMap opened;

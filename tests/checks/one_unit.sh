@@ -5,7 +5,7 @@ set -eu
 cd "$1"
 flags='-std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wall -Wextra -Wpedantic -Wconversion
   -Wsign-conversion -Wshadow -Wundef -Wcast-align -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2
-  -Werror -Iinclude -I. -x c++'
+  -Werror -DTHIMBLE_DEEP_WORLDS -Iinclude -I. -x c++'
 failed=0
 for compiler in g++ clang++; do
   if ! command -v $compiler >/dev/null 2>&1; then

@@ -584,7 +584,7 @@ TEST_CASE("tree edges: a brick map of no tree, or of a level without maps -> out
   HeapBytes out(most_brick_map_bytes(2));
   BrickMap map;
   CHECK(BrickMap::make(CompactTree(), out.span(), &map) == Status::kOutOfRange);
-  for (const int level : {1, 9, 12}) {
+  for (const int level : {1, 11, 12}) {
     OwnedPool pool(level);
     REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
     const HeapBytes bytes = compact_of(pool.octree);

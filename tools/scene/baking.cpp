@@ -106,10 +106,11 @@ class Assembly {
 
   /// Adds a brick map of the tree, unless the world has none or all of it would then exceed `limit`.
   void add_brick_map(const CompactTree& tree, std::uint64_t limit) {
-    if (tree.empty() || tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel) {
+    const std::size_t most = most_brick_map_bytes(tree);
+    if (tree.empty() || most == 0) {
       return;
     }
-    map_.resize(most_brick_map_bytes(tree.level()) / sizeof(std::uint64_t) + 1);
+    map_.resize(most / sizeof(std::uint64_t) + 1);
     std::size_t written = 0;
     const Bytes room{reinterpret_cast<std::uint8_t*>(map_.data()), map_.size() * sizeof(std::uint64_t)};
     if (BrickMap::make(tree, room, nullptr, &written) != Status::kOk) {

@@ -9,7 +9,8 @@
 /// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout,
 /// src/picture/README.md, "Frames on a chip", the reasons.
 ///
-/// A map does not change with its tree (build it anew), and does not serve worlds beyond level 8.
+/// A map does not change with its tree (build it anew). Worlds of level 9 and 10 have maps where the core is compiled with
+/// THIMBLE_DEEP_WORLDS (hosts, and boards that can hold one); their directory has two levels.
 #ifndef THIMBLE_TREE_BRICK_MAP_H
 #define THIMBLE_TREE_BRICK_MAP_H
 
@@ -28,6 +29,10 @@ inline constexpr int kMinBrickMapLevel = 2;
 inline constexpr int kMaxBrickMapLevel = 8;
 /// Bricks are numbered in 16 bits.
 inline constexpr uint32_t kMaxBricks = 65535;
+/// Worlds of up to 1,024 voxels a side, with THIMBLE_DEEP_WORLDS.
+inline constexpr int kMaxDeepMapLevel = 10;
+/// The ink of a face is kept under its brick's number and 9 bits, in a word.
+inline constexpr uint32_t kMaxDeepBricks = (uint32_t{1} << 23) - 1;
 inline constexpr size_t kBrickMapHeaderBytes = 32;
 
 /// Bytes of a map over a box of `cells` bricks (at most 64^3) that holds `bricks` different ones, the empty
@@ -44,6 +49,10 @@ constexpr size_t most_brick_map_bytes(int level) {
   const uint32_t bricks = cells < kMaxBricks ? cells + 1 : kMaxBricks;
   return brick_map_bytes(cells, bricks, bricks - 1) + 2 * size_t{bricks};
 }
+
+/// Bytes in which the map of this tree can be built: for worlds of level 9 and 10 so many as its surface takes, counted in
+/// one pass over it; for smaller ones those of any world. 0 where the core makes none.
+size_t most_brick_map_bytes(const CompactTree& tree);
 
 /// A view of a map's bytes, which outlive it. Copy it freely.
 class BrickMap {
@@ -65,7 +74,8 @@ class BrickMap {
   /// (level, more than kMaxBricks - 1 bricks or 65,280 nodes of level 2, 2^24 nodes), `kOutOfMemory`,
   /// `kBadArgument` (odd address). What `out` then holds is not a map. One pass over the tree, some 2,000
   /// instructions a brick on its surface, and cells times bricks that are shared or renumbered; stack below
-  /// 1 KiB.
+  /// 1 KiB. Of level 9 and 10: nothing more than the map while it is being made, up to kMaxDeepBricks, three passes,
+  /// nothing renumbered; stack below 3 KiB.
   static Status make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size = nullptr);
 
   /// Whether the map was made from that tree, as its checksum says.
@@ -81,11 +91,12 @@ class BrickMap {
 
   // What the renderer reads. Indices are checked by the caller or come from the directory.
 
-  /// Entry x + y * side(x) + z * side(x) * side(y), relative to the box: the number of a brick.
+  /// Entry x + y * side(x) + z * side(x) * side(y), relative to the box: the number of a brick. Of level 9 and 10: the
+  /// table of pages (src/FORMAT.md).
   const uint8_t* directory() const { return directory_; }
   /// 8 bytes a brick: bit x + 4 y + 16 z is a solid voxel.
   const uint8_t* bricks() const { return bricks_; }
-  /// Bricks 1 .. mixed_count() show more than one material.
+  /// Bricks 1 .. mixed_count() show more than one material; of level 9 and 10 they may.
   uint32_t mixed_count() const { return mixed_count_; }
   /// The material of voxel `bit` of brick `number` (1 .. brick_count() - 1), which is solid and on the
   /// surface.
@@ -95,6 +106,7 @@ class BrickMap {
 
  private:
   friend class EditedWorld;
+  friend struct DeepMap;
 
   uint8_t mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const;
 
@@ -106,7 +118,7 @@ class BrickMap {
   size_t size_bytes_ = 0;
   uint32_t cells_ = 0;
   uint32_t brick_count_ = 0;
-  uint32_t mixed_count_ = 0;
+  uint32_t mixed_count_ = 0;  // of level 9 and 10 that of all bricks: `mixed_material` tells them apart
   uint32_t tree_checksum_ = 0;
   uint8_t level_ = 0;
 };

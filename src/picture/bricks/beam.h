@@ -73,6 +73,7 @@ constexpr int kCellShift = kSlopeBits + 8;
 constexpr int kBrickShift = kCellShift + 2;
 // A beam may be so many bricks wide. The search stops where it is wider: rays then start early, which is right.
 constexpr int32_t kBeamBricks = 4;
+constexpr int32_t kDeepBeamBricks = 8;  // of level 9 and 10: a word has bits for the cells of so many
 
 // The interval of one axis that all rays of a fan stay in within a slab of voxels, in the box's own coordinates.
 struct Shadow {
@@ -93,7 +94,7 @@ struct Shadow {
     return first < 0 ? 0 : first;
   }
   int32_t last_brick(int32_t voxels) const { return (high + (voxels - 1) * high_more) >> kBrickShift; }
-  // The cells of this slab as bits, from cell `base` on. The last cell is below base + 4 * kBeamBricks; both ends may
+  // The cells of this slab as bits, from cell `base` on. The last cell is below base + 32; both ends may
   // be negative.
   uint32_t cells_from(int32_t base) const {
     const int32_t from = (low >> kCellShift) - base;
@@ -161,10 +162,11 @@ template <int kC>
 
 // Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs when
 // there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab.
-template <int kC>
+template <int kC, bool kDeep>
 [[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
+  constexpr int32_t kMost = kDeep ? kDeepBeamBricks : kBeamBricks;
   course.waiting = kWaiting;
   const BrickFrame& frame = *course.frame;
   const int32_t slabs = 4 * frame.side[kC];
@@ -190,26 +192,47 @@ template <int kC>
   const int32_t stride_b = frame.stride[kB];
   const uint8_t* directory = course.directory;
   while (slab < slabs) {
+    if constexpr (kDeep) {
+      // Empty pages are passed at once.
+      constexpr int32_t kPage = 16;
+      const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
+      if ((slab & 3) == 0 && (layer & 3) == (flipped ? 3 : 0) && slab + kPage <= slabs) {
+        Vec3i low;
+        Vec3i high;
+        low[kA] = a.first_brick(kPage);
+        low[kB] = b.first_brick(kPage);
+        low[kC] = layer;
+        high = low;
+        high[kA] = a.last_brick(kPage) > last_a ? last_a : a.last_brick(kPage);
+        high[kB] = b.last_brick(kPage) > last_b ? last_b : b.last_brick(kPage);
+        if (has_empty_pages(static_cast<DeepCourse&>(course), low, high)) {
+          a.advance(kPage);
+          b.advance(kPage);
+          slab += kPage;
+          continue;
+        }
+      }
+    }
     // How many slabs of this layer of bricks are left, and which of its bricks the rays may pass.
     const int32_t voxels = 4 - (slab & 3);
     const int32_t from_a = a.first_brick(voxels);
     const int32_t from_b = b.first_brick(voxels);
     int32_t to_a = a.last_brick(voxels);
     int32_t to_b = b.last_brick(voxels);
-    if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
+    if (to_a - from_a >= kMost || to_b - from_b >= kMost) {
       return slab;
     }
     to_a = to_a > last_a ? last_a : to_a;
     to_b = to_b > last_b ? last_b : to_b;
     // Keeps the bricks that are not empty.
-    NearBrick bricks[kBeamBricks * kBeamBricks];
+    NearBrick bricks[size_t{kMost * kMost}];
     NearBrick* bricks_end = bricks;
     const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
     int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
     for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
       int32_t cell = row;
       for (int32_t i = from_a; i <= to_a; ++i, cell += stride_a) {
-        const uint32_t number = half_at(directory, cell);
+        const uint32_t number = number_at<kDeep>(directory, cell);
         if (number != 0) {
           *bricks_end++ = {course.bricks + 8 * number, 4 * (i - from_a), 4 * (j - from_b)};
         }
@@ -241,10 +264,11 @@ template <int kC>
   return slabs;
 }
 
+template <bool kDeep = false>
 int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
-  return course.c == 0   ? first_slab<0>(course, fan, slab)
-         : course.c == 1 ? first_slab<1>(course, fan, slab)
-                         : first_slab<2>(course, fan, slab);
+  return course.c == 0   ? first_slab<0, kDeep>(course, fan, slab)
+         : course.c == 1 ? first_slab<1, kDeep>(course, fan, slab)
+                         : first_slab<2, kDeep>(course, fan, slab);
 }
 
 }  // namespace

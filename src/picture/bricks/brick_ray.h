@@ -229,7 +229,7 @@ class BrickRay {
     if constexpr (OneCourse::kAim == Aim::kNear || kMirrors) {
       return OneCourse::kRunsFar && kDivides;
     } else {
-      return false;
+      return OneCourse::kDeep;
     }
   }
   static constexpr uint32_t kFarPlanes = 8;  // with fewer planes to go, voxel by voxel is quicker
@@ -281,6 +281,16 @@ class BrickRay {
   [[gnu::always_inline]] int32_t start() {
     if constexpr (kFromFace) {
       return kGoOn;  // begin() did
+    } else if constexpr (OneCourse::kDeep) {
+      const int32_t cell_a = cell_on(kA, d_a_, &rest_a_, near_cell() + 0);
+      const int32_t cell_b = cell_on(kB, d_b_, &rest_b_, near_cell() + 1);
+      if (seldom(static_cast<uint32_t>(cell_a | cell_b) >= 2048)) {
+        return (cell_a | cell_b) < 0 ? kAsk : kMissed;
+      }
+      enter_at(static_cast<uint32_t>(cell_a), static_cast<uint32_t>(cell_b));
+      // A ray that is faster on another axis may enter several bricks of a layer, and goes voxel by voxel.
+      planes_ = d_a_ <= d_c_ && d_b_ <= d_c_ ? UINT32_MAX : 0;
+      return kGoOn;
     } else {
       const uint32_t at_a = static_cast<uint32_t>(course_.origin[kA]) * d_c_ + course_.plane * d_a_;
       const uint32_t at_b = static_cast<uint32_t>(course_.origin[kB]) * d_c_ + course_.plane * d_b_;
@@ -304,17 +314,38 @@ class BrickRay {
       rest_b_ = at_b - (cell_b + 1) * den_;
       THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_a_)));
       THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(rest_b_)));
-      left_ = course_.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
-      cell_ = course_.start + static_cast<int32_t>(cell_a >> 2) * course_.stride[kA] +
-              static_cast<int32_t>(cell_b >> 2) * course_.stride[kB];
-      constexpr bool kAny = kMirrored == kAnySigns;
-      const uint32_t in_a = ((cell_a & 3U) ^ (kAny ? course_.flip[kA] : flip(kA))) << kPlaceShift[kA];
-      const uint32_t in_b = ((cell_b & 3U) ^ (kAny ? course_.flip[kB] : flip(kB))) << kPlaceShift[kB];
-      shift_ = in_a | (kB == 2 ? course_.first : in_b);
-      at_ = course_.bricks + (kB == 2 ? in_b : course_.first);
-      axis_ = kC;
+      enter_at(cell_a, cell_b);
       return kGoOn;
     }
+  }
+
+  // Lets the ray start in this cell of a and b.
+  [[gnu::always_inline]] void enter_at(uint32_t cell_a, uint32_t cell_b) {
+    left_ = course_.left + ((cell_a >> 2) << 10 * kA) + ((cell_b >> 2) << 10 * kB);
+    cell_ = course_.start + static_cast<int32_t>(cell_a >> 2) * course_.stride[kA] +
+            static_cast<int32_t>(cell_b >> 2) * course_.stride[kB];
+    constexpr bool kAny = kMirrored == kAnySigns;
+    const uint32_t in_a = ((cell_a & 3U) ^ (kAny ? course_.flip[kA] : flip(kA))) << kPlaceShift[kA];
+    const uint32_t in_b = ((cell_b & 3U) ^ (kAny ? course_.flip[kB] : flip(kB))) << kPlaceShift[kB];
+    shift_ = in_a | (kB == 2 ? course_.first : in_b);
+    at_ = course_.bricks + (kB == 2 ? in_b : course_.first);
+    axis_ = kC;
+  }
+
+  // Finds the cell and the rest on a or b at the plane where the ray starts. The position times den has more than 32 bits
+  // in worlds of level 9 and 10, so that the way is divided in two: by whole voxels along c, then what is left of these
+  // and what lies within a voxel.
+  [[gnu::always_inline]] int32_t cell_on(int axis, uint32_t d, uint32_t* rest, uint32_t* last) const {
+    const uint32_t way = (course_.plane >> 8) * d;
+    const uint32_t whole = kDivides ? way / d_c_ : quotient(way, d_c_, 0xFFFF, last);
+    const auto origin = static_cast<uint32_t>(course_.origin[axis]);
+    const uint32_t part = ((way - whole * d_c_) << 8) + (origin & 255U) * d_c_ + (course_.plane & 255U) * d;
+    THIMBLE_NOTE(Range::kDeepPlace, Exact(part));
+    uint32_t none = 0;
+    const uint32_t more = kDivides ? part / den_ : quotient(part, den_, 0xFFFF, &none);
+    *rest = part - (more + 1) * den_;
+    THIMBLE_NOTE(Range::kBrickRest, Exact(static_cast<int32_t>(*rest)));
+    return (course_.origin[axis] >> 8) + static_cast<int32_t>(whole + more);
   }
 
   // The halfword of brick `number` at the same place as at_ in its brick.
@@ -327,7 +358,7 @@ class BrickRay {
   // there it returns false if the brick is empty, and else sets kInside, so that the ray ends with this brick.
   [[gnu::always_inline]] bool find_brick() {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
-      const uint32_t number = half_at(course_.directory, cell_);
+      const uint32_t number = number_at<OneCourse::kDeep>(course_.directory, cell_);
       if (course_.is_free(cell_)) {
         if (number == 0) {
           return false;
@@ -336,7 +367,7 @@ class BrickRay {
       }
       at_ = brick_at(number);
     } else {
-      at_ = brick_at(half_at(course_.directory, cell_));
+      at_ = brick_at(number_at<OneCourse::kDeep>(course_.directory, cell_));
     }
     return true;
   }
@@ -361,7 +392,15 @@ class BrickRay {
   // Goes on from a plane of c between two layers of bricks.
   [[gnu::always_inline]] bool skip_empty() {
     LayerPlace at{{rest_a_, rest_b_}, left_, cell_, planes_, row_of(at_) << 3 | shift_, 0};
-    if (!skip_layers(course_, kC, &at)) {
+    if constexpr (OneCourse::kDeep) {
+      DeepWay way{course_.directory, course_.next_brick, {}, {last<0>(), last<1>(), last<2>()}};
+      way.d[kA] = d_a_;
+      way.d[kB] = d_b_;
+      way.d[kC] = d_c_;
+      if (!skip_layers(way, kC, &at)) {
+        return false;
+      }
+    } else if (!skip_layers(course_, kC, &at)) {
       return false;
     }
     rest_a_ = at.rest[0];
@@ -405,7 +444,7 @@ class BrickRay {
       if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
                                       count_of(left_, kB) >= 512U - static_cast<uint32_t>(side[kB]))) {
         left_ &= ~kWaiting;
-        number = half_at(course_.directory, cell_);
+        number = number_at<OneCourse::kDeep>(course_.directory, cell_);
       }
       at_ = brick_at(number);
       if ((left_ & kInside) != 0 && solid()) {
@@ -528,16 +567,17 @@ class BrickRay {
   uint32_t planes_;    // planes of c that the ray may still cross (Aim::kNear, Aim::kMirror)
 };
 
-template <int kC, unsigned kMirrored>
-[[gnu::noinline]] int32_t trace_one(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
-  return BrickRay<kC, kMirrored>(course, d_a, d_b, d_c).trace();
+template <int kC, unsigned kMirrored, class OneCourse>
+[[gnu::noinline]] int32_t trace_one(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+  return BrickRay<kC, kMirrored, OneCourse>(course, d_a, d_b, d_c).trace();
 }
 
 // Traces through the tree a ray that the bricks leave open.
+template <bool kDeep>
 [[maybe_unused]] int32_t ask(const BrickFrame& frame, int32_t x, int32_t y, RenderCounts* counts) {
   const Ray ray = frame.camera.ray(x, y);
   Hit hit;
-  if (closest_hit_32(frame.tree, ray, &hit) != Status::kOk) {
+  if ((kDeep ? closest_hit(frame.tree, ray, &hit) : closest_hit_32(frame.tree, ray, &hit)) != Status::kOk) {
     return kMissed;
   }
   counts->node_visits += hit.visits;
@@ -575,8 +615,8 @@ template <class Call>
 }
 
 // Traces one ray of direction `d`, whose signs are the course's.
-template <int kC>
-int32_t trace_by_signs(const Course& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+template <int kC, class OneCourse>
+int32_t trace_by_signs(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
   return with_mirrored(course.mirrored, [&](auto axes) {
     return trace_one<kC, decltype(axes)::kMirrored>(course, d_a, d_b, d_c);
   });

@@ -42,6 +42,7 @@ struct BrickFrame {
 // tile to tile.
 struct Course {
   static constexpr Aim kAim = Aim::kInk;
+  static constexpr bool kDeep = false;
   const BrickFrame* frame;
   Inks* inks;
   int32_t origin[3];  // the eye, mirrored; on a and b kOutsideQ8 more
@@ -73,7 +74,30 @@ struct Course {
   bool wide;            // products of directions and rests take more than 31 bits
 };
 
+// The same in worlds of level 9 and 10.
+struct DeepCourse : Course {
+  static constexpr bool kDeep = true;
+  uint32_t empty_page;  // what the directory says of pages that are empty
+};
+
+// Whether all pages are empty of bricks from `low` to `high`, by the box's axes.
+[[gnu::noinline, maybe_unused]] bool has_empty_pages(const DeepCourse& course, const Vec3i& low,
+                                                     const Vec3i& high) {
+  for (int32_t z = low.z >> 2; z <= high.z >> 2; ++z) {
+    for (int32_t y = low.y >> 2; y <= high.y >> 2; ++y) {
+      const int32_t row = z * 4096 + y * 64;
+      for (int32_t x = low.x >> 2; x <= high.x >> 2; ++x) {
+        if (word_at(course.directory, 4 * (row + x)) != course.empty_page) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 // Sets all members but those that say where the rays start.
+template <bool kDeep = false>
 void set_course(Course& course, unsigned mirrored, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
@@ -88,6 +112,9 @@ void set_course(Course& course, unsigned mirrored, int c) {
   const Camera::Affine& affine = frame.camera.affine();
   for (int axis = 0; axis < 3; ++axis) {
     const bool flipped = (mirrored >> axis & 1U) != 0;
+    if constexpr (kDeep) {
+      stride = deep_place::kStride[axis];
+    }
     const int32_t side = frame.side[axis];
     const int32_t origin = frame.camera.eye()[axis].raw;
     const int32_t near_q8 = (flipped ? box.high[axis] : box.low[axis]) * (4 * Q8::kOne);

@@ -69,8 +69,9 @@ Cells turned(Cells cells, unsigned mirrored, int c) {
   return cells;
 }
 
+template <bool kDeep>
 Cells cells_of(const Course& course, int32_t place) {
-  const int32_t brick = 8 * static_cast<int32_t>(half_at(course.directory, place));
+  const int32_t brick = 8 * static_cast<int32_t>(number_at<kDeep>(course.directory, place));
   return {word_at(course.bricks, brick), word_at(course.bricks, brick + 4)};
 }
 
@@ -94,14 +95,15 @@ Cells uncovered_on(int axis, bool mirrored, const Cells& own, const Cells& befor
 }
 
 // Finds the exposed faces of the brick at `place` in the directory, the box's brick number `bricks` along a, b and c.
+template <bool kDeep>
 [[gnu::noinline]] void find_exposed(const Course& course, int32_t place, const int32_t (&bricks)[3],
                                     Exposed* exposed) {
-  const Cells own = cells_of(course, place);
+  const Cells own = cells_of<kDeep>(course, place);
   exposed->place = place;
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axis[k];
     const bool flipped = (course.mirrored >> axis & 1U) != 0;
-    const Cells before = bricks[k] > 0 ? cells_of(course, place - course.stride[axis]) : Cells{0, 0};
+    const Cells before = bricks[k] > 0 ? cells_of<kDeep>(course, place - course.stride[axis]) : Cells{0, 0};
     exposed->on[k] = turned(uncovered_on(axis, flipped, own, before), course.mirrored, course.c);
   }
 }

@@ -136,6 +136,18 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
   }
 }
 
+// The number of bits of a distance times a direction, signed.
+template <bool kDeep>
+struct WholeIs {
+  using Type = int32_t;
+};
+template <>
+struct WholeIs<true> {
+  using Type = int64_t;
+};
+template <bool kDeep>
+using WholeOf = typename WholeIs<kDeep>::Type;
+
 [[gnu::noinline]] void set_all(HalfPlane* plane, uint32_t word) {
   for (int i = 0; i < kTileWords; ++i) {
     plane->certain.word[i] = word;
@@ -145,20 +157,24 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
 
 // Finds the pixels that meet the plane of axis i (0 a, 1 b, 2 c) at distance `s_i` before that of axis j at `s_j`.
 // Planes at or behind the eye count as met before all others.
+template <bool kDeep>
 [[gnu::noinline]] void find_half_plane(const TileRays& rays, int i, int j, int32_t s_i, int32_t s_j,
                                        HalfPlane* plane) {
   if (s_i <= 0 || s_j <= 0) {
     set_all(plane, s_i <= 0 ? UINT32_MAX : 0);
     return;
   }
-  const int32_t exact = s_j * rays.base[i] - s_i * rays.base[j];
-  THIMBLE_NOTE(Range::kFaceOrder, Exact(s_j) * Exact(rays.base[i]) - Exact(s_i) * Exact(rays.base[j]));
+  // Products of worlds of level 9 and 10 take more than 31 bits.
+  using Whole = WholeOf<kDeep>;
+  const Whole exact = Whole{s_j} * rays.base[i] - Whole{s_i} * rays.base[j];
+  THIMBLE_NOTE(kDeep ? Range::kDeepOrder : Range::kFaceOrder,
+               Exact(s_j) * Exact(rays.base[i]) - Exact(s_i) * Exact(rays.base[j]));
   int cut = 0;
   for (int32_t most = s_i > s_j ? s_i : s_j; most >= 1 << kDistanceBits; most >>= 2) {
     cut += 2;
   }
   const int bits = rays.fraction_bits;
-  const int32_t size = exact < 0 ? -exact : exact;
+  const Whole size = exact < 0 ? -exact : exact;
   if (size >> cut >= 1 << (30 - bits)) {
     set_all(plane, exact > 0 ? UINT32_MAX : 0);
     return;
@@ -167,8 +183,8 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
   s_i = (s_i + half) >> cut;
   s_j = (s_j + half) >> cut;
   const int32_t bound = (s_i + s_j + 1) * rays.unit + (cut == 0 ? 2 : rays.reach + 2);
-  const int32_t f = (bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) + s_j * rays.rest[i] -
-                    s_i * rays.rest[j];
+  const int32_t f = static_cast<int32_t>(bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) +
+                    s_j * rays.rest[i] - s_i * rays.rest[j];
   const int32_t fx = s_j * rays.step_x[i] - s_i * rays.step_x[j];
   const int32_t fy = s_j * rays.step_y[i] - s_i * rays.step_y[j];
   const int32_t across = (kTileAcrossPx - 1) * fx;

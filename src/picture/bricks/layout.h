@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../../tree/deep_map.h"
 #include "thimble/base/vec.h"
 
 namespace thimble::bricks {
@@ -42,6 +43,20 @@ uint32_t half_at(const uint8_t* bytes, int32_t offset) {
 }
 uint32_t word_at(const uint8_t* bytes, int32_t offset) {
   return *static_cast<const Word*>(static_cast<const void*>(bytes + offset));
+}
+
+// The number of the brick at a place in the directory: of kDeep, worlds of level 9 and 10, from its page.
+template <bool kDeep>
+[[gnu::always_inline]] inline uint32_t number_at(const uint8_t* directory, int32_t place) {
+  if constexpr (kDeep) {
+    const auto at = static_cast<uint32_t>(place);
+    const auto* const table = static_cast<const Word*>(static_cast<const void*>(directory));
+    const uint8_t* const page = directory + table[deep_place::page_of(at)];
+    const uint32_t own = page[4 + deep_place::entry_of(at)];
+    return own == 0 ? 0 : *static_cast<const Word*>(static_cast<const void*>(page)) + own;
+  } else {
+    return half_at(directory, place);
+  }
 }
 
 // A voxel's place in its brick: x and y are a shift within a halfword, z is the address of the halfword. Each

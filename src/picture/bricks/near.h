@@ -13,6 +13,7 @@ namespace {
 template <bool kFar>
 struct NearRay {
   static constexpr Aim kAim = Aim::kNear;
+  static constexpr bool kDeep = false;
   static constexpr bool kRunsFar = kFar;
   static constexpr bool wide = true;  // the wide comparison is right for directions of few bits, too
   static constexpr bool exact_ties = false;

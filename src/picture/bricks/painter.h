@@ -14,7 +14,8 @@ namespace {
 
 static_assert(kTileDownPx == kBrickTilePx);
 
-int32_t trace_along(const Course& course, const Vec3i& d) {
+template <class OneCourse>
+int32_t trace_along(const OneCourse& course, const Vec3i& d) {
   const auto size = [](int32_t value) { return static_cast<uint32_t>(value < 0 ? -value : value); };
   const uint32_t x = size(d.x);
   const uint32_t y = size(d.y);
@@ -26,8 +27,8 @@ int32_t trace_along(const Course& course, const Vec3i& d) {
 
 // Traces a quad with rays of one course. `from`, the mirrored affine function and a half, is positive all over the
 // quad, so rounding is cutting off. Returns a negative number when any answer is no ink.
-template <int kC, unsigned kMirrored>
-[[gnu::noinline]] int32_t trace_quad(const Course& course, const Camera::Vec3Q32& from, int32_t across,
+template <int kC, unsigned kMirrored, class OneCourse>
+[[gnu::noinline]] int32_t trace_quad(const OneCourse& course, const Camera::Vec3Q32& from, int32_t across,
                                      int32_t down, int32_t* inks) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
@@ -55,15 +56,16 @@ template <int kC, unsigned kMirrored>
   return all;
 }
 
-template <int kC>
-int32_t trace_quad_by_signs(const Course& course, const Camera::Vec3Q32& from, int32_t across, int32_t down,
-                            int32_t* inks) {
+template <int kC, class OneCourse>
+int32_t trace_quad_by_signs(const OneCourse& course, const Camera::Vec3Q32& from, int32_t across,
+                            int32_t down, int32_t* inks) {
   return with_mirrored(course.mirrored, [&](auto axes) {
     return trace_quad<kC, decltype(axes)::kMirrored>(course, from, across, down, inks);
   });
 }
 
 // Draws the tiles of one band.
+template <class OneCourse>
 class BrickPainter {
  public:
   BrickPainter(const BrickFrame& frame, Inks& inks, Sweep* sweep, uint8_t* first_line, size_t stride,
@@ -81,7 +83,14 @@ class BrickPainter {
     course_.exact_ties = !frame.tree.merged();
     course_.wide = frame.camera.direction_bits() > kNarrowDirectionBits;
     course_.most_cells = (1U << (23 - frame.camera.direction_bits())) - 1;
-    set_course(course_, 0, 0);  // NOLINT: where rays start is set_start's
+    if constexpr (OneCourse::kDeep) {
+      const Vec3i& side = frame.side;
+      const auto last = static_cast<uint32_t>((side.x - 1) * deep_place::kStride[0] +
+                                              (side.y - 1) * deep_place::kStride[1] +
+                                              (side.z - 1) * deep_place::kStride[2]);
+      course_.empty_page = (4 * (deep_place::page_of(last) + 1) + 7) & ~uint32_t{7};
+    }
+    set_course<OneCourse::kDeep>(course_, 0, 0);  // NOLINT: where rays start is set_start's
   }
 
   void draw_tile(const Tile& tile) {
@@ -113,7 +122,7 @@ class BrickPainter {
         }
       }
       if (!begun) {
-        slab = first_slab_along(course_, fan, slab);
+        slab = first_slab_along<OneCourse::kDeep>(course_, fan, slab);
         if (slab == 4 * frame_.side[fan.c]) {
           fill(tile);
           return;
@@ -152,7 +161,7 @@ class BrickPainter {
     set_sweep_course(course_, &sweep);
     const TilePlace place{line_of(tile.y0), row_stride(),      tile.x0,
                           tile.y0,          tile.x1 - tile.x0, tile.y1 - tile.y0};
-    TileSweep<InkPaint> tile_sweep({sweep, course_, value, place});
+    TileSweep<InkPaint<OneCourse>> tile_sweep({sweep, course_, value, place});
     course_.waiting = kWaiting;
     set_start(course_, *slab);
     *slab = tile_sweep.run(fan, *slab);
@@ -174,7 +183,7 @@ class BrickPainter {
 
   void use(unsigned mirrored, int c) {
     if (mirrored != course_.mirrored || c != course_.c) {
-      set_course(course_, mirrored, c);
+      set_course<OneCourse::kDeep>(course_, mirrored, c);
     }
   }
 
@@ -183,7 +192,8 @@ class BrickPainter {
     const bool usable = fan.usable();
     if (usable) {
       use(fan.mirrored, fan.c);
-      slab = first_slab_along(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0);
+      slab = first_slab_along<OneCourse::kDeep>(course_, fan,
+                                                tile_fan.usable() && tile_fan.c == fan.c ? slab : 0);
       if (slab == 4 * frame_.side[fan.c]) {
         fill(quad);
         return;
@@ -225,7 +235,7 @@ class BrickPainter {
           const Vec3i d{Camera::rounded(at.x), Camera::rounded(at.y), Camera::rounded(at.z)};
           const unsigned signs = signs_of(d);
           if (signs != course_.mirrored) {
-            set_course(course_, signs, c);
+            set_course<OneCourse::kDeep>(course_, signs, c);
             set_start(course_, slab);
           }
           *inks = trace_along(course_, d);
@@ -282,7 +292,7 @@ class BrickPainter {
     for (int32_t y = quad.y0; y < quad.y1; ++y) {
       for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
         if (*inks == kAsk) {  // NOLINT: all of a quad are set
-          *inks = ask(frame_, x, y, counts_);
+          *inks = ask<OneCourse::kDeep>(frame_, x, y, counts_);
         }
         if (*inks < 0) {
           *inks = static_cast<int32_t>(frame_.background);
@@ -318,7 +328,7 @@ class BrickPainter {
   int32_t first_row_;
   RenderCounts* counts_;
   uint32_t misses_ = 0;
-  Course course_;
+  OneCourse course_;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace {
 // Rays of one direction from any point: what BrickRay reads of a course, and what starting a ray takes.
 struct ShadowCourse {
   static constexpr Aim kAim = Aim::kShadow;
+  static constexpr bool kDeep = false;
   const uint8_t* directory;
   const uint8_t* bricks;
   const uint8_t*

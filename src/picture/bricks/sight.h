@@ -151,6 +151,7 @@ struct SeenPixels {
 // Hands what a sweep finds to a sink, where no inks are wanted.
 template <class Sink>
 struct SightPaint {
+  static constexpr bool kDeep = false;
   Sweep& sweep_;
   SightCourse& course_;
   const Camera::Vec3Q32& value_;
@@ -161,7 +162,7 @@ struct SightPaint {
 
   void paint_face(int32_t place, const int32_t (&cell)[3], int k, const Pixels& pixels) {
     SeenFace face;
-    face.voxel = voxel_of(course_, place, cell);
+    face.voxel = voxel_of<kDeep>(course_, place, cell);
     face.point.axis = course_.axis[k];
     face.point.faces_up = course_.flip[face.point.axis] != 0;
     for (int m = 0; m < 3; ++m) {

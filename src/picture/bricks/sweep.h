@@ -122,16 +122,17 @@ int32_t distance_of(const Sweep& sweep, int k, int32_t plane) {
 }
 
 // The half-plane of the rays that meet plane `i` of a family's first axis before plane `j` of its second.
+template <bool kDeep>
 [[gnu::always_inline]] inline const HalfPlane& half_plane(Sweep& sweep, Family family, int32_t i, int32_t j) {
   constexpr int kAcross = kSlots >= 16 ? 8 : kSlots >= 8 ? 4 : 2;
-  constexpr int kDeep = kSlots / (kAcross == 0 ? 1 : kAcross);
+  constexpr int kAlong = kSlots / (kAcross == 0 ? 1 : kAcross);
   const uint32_t key = static_cast<uint32_t>(i) | static_cast<uint32_t>(j) << 16;
-  HalfPlane& kept = sweep.plane[family * kSlots + (i & (kAcross - 1)) * kDeep + (j & (kDeep - 1))];
+  HalfPlane& kept = sweep.plane[family * kSlots + (i & (kAcross - 1)) * kAlong + (j & (kAlong - 1))];
   if (kept.key != key) {
     kept.key = key;
-    find_half_plane(sweep.rays, kFirstAxis[family], kSecondAxis[family],
-                    distance_of(sweep, kFirstAxis[family], i), distance_of(sweep, kSecondAxis[family], j),
-                    &kept);
+    find_half_plane<kDeep>(sweep.rays, kFirstAxis[family], kSecondAxis[family],
+                           distance_of(sweep, kFirstAxis[family], i),
+                           distance_of(sweep, kSecondAxis[family], j), &kept);
   }
   return kept;
 }
@@ -150,6 +151,7 @@ void find_direction(const Course& course, const Camera::Vec3Q32& value, uint32_t
 }
 
 // Returns where a ray meets the plane of a face: 1 inside of the face, -1 outside, 0 on one of its edges.
+template <bool kDeep>
 int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uint32_t (&d)[3]) {
   const int32_t s_k = distance_of(sweep, k, cell[k]);
   int result = 1;
@@ -159,9 +161,10 @@ int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uin
     }
     const int32_t near_m = distance_of(sweep, m, cell[m]);
     const int32_t far_m = near_m + Q8::kOne;
-    const int32_t here = s_k * static_cast<int32_t>(d[m]);
-    const int32_t after = near_m <= 0 ? 1 : here - near_m * static_cast<int32_t>(d[k]);
-    const int32_t before = far_m <= 0 ? -1 : far_m * static_cast<int32_t>(d[k]) - here;
+    using Whole = WholeOf<kDeep>;
+    const Whole here = Whole{s_k} * static_cast<int32_t>(d[m]);
+    const Whole after = near_m <= 0 ? 1 : here - Whole{near_m} * static_cast<int32_t>(d[k]);
+    const Whole before = far_m <= 0 ? -1 : Whole{far_m} * static_cast<int32_t>(d[k]) - here;
     if (after < 0 || before < 0) {
       return -1;
     }
@@ -171,7 +174,8 @@ int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uin
 }
 
 // Traces the ray of direction `d` from where the course starts.
-int32_t trace_turned(const Course& course, const uint32_t (&d)[3]) {
+template <class OneCourse>
+int32_t trace_turned(const OneCourse& course, const uint32_t (&d)[3]) {
   return course.c == 0   ? trace_by_signs<0>(course, d[0], d[1], d[2])
          : course.c == 1 ? trace_by_signs<1>(course, d[0], d[1], d[2])
                          : trace_by_signs<2>(course, d[0], d[1], d[2]);
@@ -259,19 +263,21 @@ struct SweptBrick {
 
 // Whether few of `cells` voxels of a slab are solid, as dense as voxels are in the bricks of a layer, of which so many
 // lie under the tile's shadow.
+template <bool kDeep>
 [[gnu::noinline, maybe_unused]] bool is_sparse(const Course& course, const SweptBrick* brick,
                                                const SweptBrick* end, int32_t cells, int32_t under) {
   int32_t solid = 0;
   for (; brick != end; ++brick) {
-    solid += voxels_of(course.bricks, half_at(course.directory, brick->place));
+    solid += voxels_of(course.bricks, number_at<kDeep>(course.directory, brick->place));
   }
   return solid * cells <= kMostSolid * 64 * under;
 }
 
 // Names the voxel of a cell on a, b and c: 64 times the number of the brick at `place`, plus the voxel's bit.
+template <bool kDeep>
 [[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
                                                 const int32_t (&cell)[3]) {
-  uint32_t voxel = half_at(course.directory, place) << 6;
+  uint32_t voxel = number_at<kDeep>(course.directory, place) << 6;
   for (int m = 0; m < 3; ++m) {
     const int axis = course.axis[m];
     voxel |= ((static_cast<uint32_t>(cell[m]) & 3U) ^ course.flip[axis]) << 2 * axis;
@@ -280,9 +286,11 @@ struct SweptBrick {
 }
 
 // Stores the inks of what a sweep finds: of a face's pixels, and of single rays.
+template <class OneCourse>
 struct InkPaint {
+  static constexpr bool kDeep = OneCourse::kDeep;
   Sweep& sweep_;
-  Course& course_;
+  OneCourse& course_;
   const Camera::Vec3Q32& value_;
   const TilePlace& place_;
 
@@ -306,7 +314,7 @@ struct InkPaint {
     const BrickFrame& frame = *course_.frame;
     sweep_.left.word[pixel >> 5] &= ~(1U << (pixel & 31U));
     if (ink == kAsk) {
-      ink = ask(frame, x, place_.y + down, sweep_.counts);
+      ink = ask<kDeep>(frame, x, place_.y + down, sweep_.counts);
     }
     if (ink < 0) {
       ink = static_cast<int32_t>(frame.background);
@@ -317,7 +325,7 @@ struct InkPaint {
   }
 
   uint32_t ink_of_face(int32_t place, const int32_t (&cell)[3], int k) const {
-    const uint32_t voxel = voxel_of(course_, place, cell);
+    const uint32_t voxel = voxel_of<kDeep>(course_, place, cell);
     const int axis = course_.axis[k];
     const uint32_t key = voxel << 3 | course_.face[axis];
     const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
@@ -365,7 +373,7 @@ class TileSweep : private Paint {
         const int32_t cells = cells_at_once();
         if (cells > kMostCells &&
             !(kKnowsThin && sweep_.thin &&
-              is_sparse(course_, bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
+              is_sparse<kDeep>(course_, bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
           return slab;
         }
         if (!begun_) {
@@ -483,7 +491,7 @@ class TileSweep : private Paint {
     for (int32_t b = from[1]; b <= to[1]; ++b, row += stride_b) {
       int32_t place = row;
       for (int32_t a = from[0]; a <= to[0]; ++a, place += stride_a) {
-        if (half_at(course_.directory, place) != 0) {
+        if (number_at<kDeep>(course_.directory, place) != 0) {
           *bricks++ = {place, a, b};
         }
       }
@@ -517,7 +525,7 @@ class TileSweep : private Paint {
       Exposed& exposed =
           sweep_.exposed[static_cast<uint32_t>(brick->place) * 0x9E3779B1U >> 16 & (kExposedKept - 1)];
       if (exposed.place != brick->place) {
-        find_exposed(course_, brick->place, {brick->a, brick->b, slab >> 2}, &exposed);
+        find_exposed<kDeep>(course_, brick->place, {brick->a, brick->b, slab >> 2}, &exposed);
       }
       const int shift_a = 4 * (brick->a - from[0]);
       const int shift_b = 4 * (brick->b - from[1]);
@@ -561,18 +569,20 @@ class TileSweep : private Paint {
     const int32_t c = cell[2];
     const int32_t in_brick = c & 3;
     if (on_c != 0 && distance_of(sweep_, 2, c) > 0) {
-      draw_face(place, cell, 2, a == first_[0][in_brick] ? kAllPixels : half_plane(sweep_, kAc, a, c),
-                b == first_[1][in_brick] ? kAllPixels : half_plane(sweep_, kBc, b, c),
-                a == last_[0][in_brick] ? kNoPixels : half_plane(sweep_, kAc, a + 1, c),
-                b == last_[1][in_brick] ? kNoPixels : half_plane(sweep_, kBc, b + 1, c));
+      draw_face(place, cell, 2, a == first_[0][in_brick] ? kAllPixels : half_plane<kDeep>(sweep_, kAc, a, c),
+                b == first_[1][in_brick] ? kAllPixels : half_plane<kDeep>(sweep_, kBc, b, c),
+                a == last_[0][in_brick] ? kNoPixels : half_plane<kDeep>(sweep_, kAc, a + 1, c),
+                b == last_[1][in_brick] ? kNoPixels : half_plane<kDeep>(sweep_, kBc, b + 1, c));
     }
     if (on_a != 0 && distance_of(sweep_, 0, a) > 0) {
-      draw_face(place, cell, 0, half_plane(sweep_, kAc, a, c + 1), half_plane(sweep_, kAb, a, b + 1),
-                half_plane(sweep_, kAc, a, c), half_plane(sweep_, kAb, a, b));
+      draw_face(place, cell, 0, half_plane<kDeep>(sweep_, kAc, a, c + 1),
+                half_plane<kDeep>(sweep_, kAb, a, b + 1), half_plane<kDeep>(sweep_, kAc, a, c),
+                half_plane<kDeep>(sweep_, kAb, a, b));
     }
     if (on_b != 0 && distance_of(sweep_, 1, b) > 0) {
-      draw_face(place, cell, 1, half_plane(sweep_, kBc, b, c + 1), half_plane(sweep_, kAb, a, b),
-                half_plane(sweep_, kBc, b, c), half_plane(sweep_, kAb, a + 1, b));
+      draw_face(place, cell, 1, half_plane<kDeep>(sweep_, kBc, b, c + 1),
+                half_plane<kDeep>(sweep_, kAb, a, b), half_plane<kDeep>(sweep_, kBc, b, c),
+                half_plane<kDeep>(sweep_, kAb, a + 1, b));
     }
   }
 
@@ -613,7 +623,7 @@ class TileSweep : private Paint {
         const uint32_t bit = bits::lowest_bit(word);
         uint32_t d[3];
         find_direction(course_, value_, 32 * i + bit, d);
-        const int where = place_on_face(sweep_, k, cell, d);
+        const int where = place_on_face<kDeep>(sweep_, k, cell, d);
         if (where > 0) {
           mine->word[i] |= 1U << bit;
           sweep_.left.word[i] &= ~(1U << bit);
@@ -647,6 +657,7 @@ class TileSweep : private Paint {
 
  private:
   using Paint::course_;
+  using Paint::kDeep;
   using Paint::place_;
   using Paint::sweep_;
   using Paint::value_;
@@ -661,6 +672,7 @@ class TileSweep : private Paint {
 };
 
 // Whether a solid voxel touches the eye: then rays may begin in it or on its surface.
+template <bool kDeep = false>
 bool touches_solid(const BrickFrame& frame) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     int32_t offset = 0;
@@ -673,7 +685,7 @@ bool touches_solid(const BrickFrame& frame) {
       bit |= (static_cast<uint32_t>(cell) & 3U) << 2 * axis;
     }
     if (inside) {
-      const int32_t brick = 8 * static_cast<int32_t>(half_at(frame.map.directory(), offset));
+      const int32_t brick = 8 * static_cast<int32_t>(number_at<kDeep>(frame.map.directory(), offset));
       if ((half_at(frame.map.bricks(), brick + 2 * static_cast<int32_t>(bit >> 4)) >> (bit & 15U) & 1U) !=
           0) {
         return true;

@@ -138,7 +138,7 @@ template <class Pixel>
   }
 }
 
-[[gnu::noinline]] void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame,
+[[gnu::noinline, maybe_unused]] void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame,
                                     uint32_t ink) {
   if (frame.halfwords) {
     store_whole<Half>(place, pixels, ink);

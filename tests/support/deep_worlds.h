@@ -1,0 +1,27 @@
+/// @file deep_worlds.h
+/// Worlds of level 9 and 10 with their brick maps, of every kind that a directory of two levels tells apart.
+#ifndef THIMBLE_TESTS_SUPPORT_DEEP_WORLDS_H
+#define THIMBLE_TESTS_SUPPORT_DEEP_WORLDS_H
+
+#include <random>
+#include <vector>
+
+#include "support/chip_worlds.h"
+#include "thimble/tree/octree.h"
+
+namespace thimble::tests {
+
+/// kTerrain and kShell are patches near a corner, a side or the middle; kMerged has blocks that coarsening made.
+enum class DeepWorld { kDust, kBlocks, kTerrain, kShell, kCorners, kMerged };
+inline constexpr int kDeepWorldKinds = 6;
+
+/// Materials 0 .. 9, or any, or one. `pool_bytes` holds the pool (null: it is dropped).
+ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
+                          std::vector<std::uint8_t>* pool_bytes = nullptr, Octree* pool = nullptr);
+
+/// As hard_chip_camera; and eyes within the world, close by what is solid and at its sides, that mostly look at that.
+Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree);
+
+}  // namespace thimble::tests
+
+#endif

@@ -1,0 +1,213 @@
+// Brick maps of worlds of level 9 and 10: each voxel and what is seen of its material, the room that they take, and
+// damage.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "support/deep_worlds.h"
+#include "support/ray_cases.h"
+#include "thimble/base/memory.h"
+#include "thimble/trace/ray.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/octree.h"
+
+namespace {
+
+using namespace thimble;
+using namespace thimble::tests;
+
+std::uint32_t word_at(const std::uint8_t* bytes) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes, sizeof word);
+  return word;
+}
+
+// The brick at a place of the box, as src/FORMAT.md says.
+std::uint32_t number_of(const BrickMap& map, const Vec3i& brick) {
+  const auto page = static_cast<std::size_t>(brick.x / 4 + brick.y / 4 * 64 + brick.z / 4 * 4096);
+  const std::uint8_t* const at = map.directory() + word_at(map.directory() + 4 * page);
+  const std::uint32_t own = at[4 + brick.x % 4 + 4 * (brick.y % 4) + 16 * (brick.z % 4)];
+  return own == 0 ? 0 : word_at(at) + own;
+}
+
+struct Cell {
+  std::uint32_t number;
+  unsigned bit;
+  bool solid;
+};
+Cell cell_of(const BrickMap& map, const Vec3i& voxel) {
+  Vec3i brick;
+  for (int axis = 0; axis < 3; ++axis) {
+    brick[axis] = (voxel[axis] >> 2) - map.box().low[axis];
+    if (voxel[axis] < 0 || brick[axis] < 0 || (voxel[axis] >> 2) >= map.box().high[axis]) {
+      return {0, 0, false};
+    }
+  }
+  const std::uint32_t number = number_of(map, brick);
+  const unsigned bit = static_cast<unsigned>((voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3));
+  return {number, bit, (map.bricks()[8 * number + bit / 8] >> (bit % 8) & 1) != 0};
+}
+
+// What a ray along x from beside the voxel hits: the tree's own answer.
+int tree_material(const CompactTree& tree, const Vec3i& voxel) {
+  Ray ray;
+  ray.origin = {Q8::from_raw(voxel.x * 256), Q8::from_raw(voxel.y * 256 + 128),
+                Q8::from_raw(voxel.z * 256 + 128)};
+  ray.direction = {1, 0, 0};
+  Hit hit;
+  REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
+  return hit.kind == HitKind::kHit && hit.t_numerator == 0 ? hit.material : -1;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "deep map: random worlds of level 9 and 10 -> each voxel looked at, and its material where it is seen") {
+  std::mt19937_64 random(910);
+  for (int turn = 0; turn < 2 * kDeepWorldKinds; ++turn) {
+    CAPTURE(turn);
+    const int level = 9 + turn / kDeepWorldKinds;
+    const ChipScene scene = make_deep_scene(random, static_cast<DeepWorld>(turn % kDeepWorldKinds), level);
+    const BrickMap& map = scene.map;
+    REQUIRE(map.level() == level);
+    REQUIRE(map.belongs_to(scene.tree));
+    std::uint64_t solid = 0;
+    std::uint64_t wrong = 0;
+    const Vec3i size{map.box().high.x - map.box().low.x, map.box().high.y - map.box().low.y,
+                     map.box().high.z - map.box().low.z};
+    for (std::int32_t z = 0; z < size.z; ++z) {
+      for (std::int32_t y = 0; y < size.y; ++y) {
+        for (std::int32_t x = 0; x < size.x; ++x) {
+          const std::uint32_t number = number_of(map, {x, y, z});
+          for (int half = 0; half < 8 && number != 0; half += 4) {
+            solid += static_cast<unsigned>(
+                __builtin_popcount(word_at(map.bricks() + 8 * std::size_t{number} + half)));
+          }
+        }
+      }
+    }
+    CHECK(solid == scene.tree.voxel_count());
+    const int side = 1 << level;
+    for (int i = 0; i < 4000; ++i) {
+      // Mostly near the box, whose corner is often solid.
+      Vec3i at;
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = i % 4 == 0 ? pick_int(random, 0, side - 1)
+                              : std::min(side - 1, 4 * map.box().low[axis] + pick_int(random, 0, 100));
+      }
+      const Cell cell = cell_of(map, at);
+      const int material = tree_material(scene.tree, at);
+      wrong += cell.solid != (material >= 0) ? 1U : 0U;
+      bool seen = false;
+      for (int face = 0; face < 6; ++face) {
+        Vec3i next = at;
+        next[face / 2] += face % 2 != 0 ? 1 : -1;
+        seen = seen || !cell_of(map, next).solid;
+      }
+      wrong += cell.solid && seen && map.material(scene.tree, cell.number, cell.bit) != material ? 1U : 0U;
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE(
+    "deep map: less room than it takes -> out of memory, nothing written behind it; exactly so much -> "
+    "made") {
+  std::mt19937_64 random(911);
+  for (int turn = 0; turn < kDeepWorldKinds; ++turn) {
+    CAPTURE(turn);
+    const ChipScene scene = make_deep_scene(random, static_cast<DeepWorld>(turn), 9);
+    const std::size_t size = scene.map.size_bytes();
+    REQUIRE(size <= most_brick_map_bytes(scene.tree));
+    const HeapBytes room(size);
+    std::size_t written = 0;
+    BrickMap map;
+    REQUIRE(BrickMap::make(scene.tree, room.span(), &map, &written) == Status::kOk);
+    CHECK(written == size);
+    CHECK(BrickMap::validate(room.view()) == nullptr);
+    CHECK(std::memcmp(room.view().data, scene.map_words.data(), size) == 0);
+    for (const std::size_t less : {size - 1, size - 12, size / 2, std::size_t{48}, std::size_t{0}}) {
+      const HeapBytes tight(less);
+      CHECK(BrickMap::make(scene.tree, tight.span(), nullptr, nullptr) == Status::kOutOfMemory);
+    }
+    const HeapBytes odd(size, 4);
+    CHECK(BrickMap::make(scene.tree, odd.span(), nullptr, nullptr) == Status::kBadArgument);
+  }
+}
+
+TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the format's page says") {
+  const struct {
+    int block;  // its level; -1 none
+    std::size_t bytes;
+    std::uint32_t bricks;
+  } worlds[] = {{-1, 48 + 72 + 8 + 8 + 4, 1}, {0, 48 + 8 + 136 + 16 + 8 + 4, 2}, {9, 0, 2}};
+  for (const auto& world : worlds) {
+    CAPTURE(world.block);
+    std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
+    Octree octree;
+    REQUIRE(Octree::make(9, {pool.data(), pool.size()}, &octree) == Status::kOk);
+    if (world.block >= 0) {
+      REQUIRE(octree.insert_block({0, 0, 0}, world.block, 5) == Status::kOk);
+    }
+    const HeapBytes bytes = compact_of(octree);
+    const CompactTree tree = open_or_throw(bytes);
+    const HeapBytes room(most_brick_map_bytes(tree));
+    BrickMap map;
+    std::size_t size = 0;
+    REQUIRE(BrickMap::make(tree, room.span(), &map, &size) == Status::kOk);
+    CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+    CHECK(map.brick_count() == world.bricks);
+    CHECK(map.empty() == (world.block < 0));
+    if (world.bytes != 0) {
+      CHECK(size == world.bytes);
+    }
+  }
+}
+
+// Each byte of a small map, and random ones of larger: what opens is read inside its bytes (AddressSanitizer looks).
+TEST_CASE("deep map: damaged bytes -> refused, or each place and material read inside them") {
+  std::mt19937_64 random(912);
+  int opened = 0;
+  int refused = 0;
+  for (int turn = 0; turn < 600; ++turn) {
+    const ChipScene scene =
+        make_deep_scene(random, turn % 20 == 0 ? DeepWorld::kBlocks : DeepWorld::kCorners, 9);
+    const std::size_t size = scene.map.size_bytes();
+    const HeapBytes bytes(size);
+    std::memcpy(bytes.span().data, scene.map_words.data(), size);
+    for (int change = pick_int(random, 1, 3); change > 0; --change) {
+      const int last = static_cast<int>(size) - 1;
+      const int part = pick_int(random, 0, 3);
+      const auto at = static_cast<std::size_t>(part == 0   ? pick_int(random, 0, 47)
+                                               : part == 1 ? pick_int(random, 48, last)
+                                                           : pick_int(random, std::max(48, last - 1500), last));
+      bytes.span().data[at] = static_cast<std::uint8_t>(random());
+    }
+    BrickMap map;
+    if (BrickMap::open(bytes.view(), &map) != Status::kOk) {
+      CHECK(BrickMap::validate(bytes.view()) != nullptr);
+      ++refused;
+      continue;
+    }
+    ++opened;
+    for (int look = 0; look < 300; ++look) {
+      Vec3i at;
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = pick_int(random, 0, 511);
+      }
+      const Cell cell = cell_of(map, at);
+      if (cell.number != 0) {
+        (void)map.material(scene.tree, cell.number, cell.bit);
+      }
+    }
+    for (std::uint32_t number = 1; number < map.brick_count(); ++number) {
+      (void)map.material(scene.tree, number, number & 63U);
+    }
+  }
+  CHECK(opened > 50);
+  CHECK(refused > 100);
+}
