@@ -84,7 +84,7 @@ class BrickPainter {
     set_course(course_, 0, 0);  // NOLINT: where rays start is set_start's
   }
 
-  void draw_tile(const Tile& tile) {
+  [[THIMBLE_OWN_FUNCTION]] void draw_tile(const Tile& tile) {
     if (frame_.map.empty()) {
       fill(tile);
       return;
