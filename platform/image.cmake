@@ -10,6 +10,10 @@ foreach(source IN LISTS BOARD_FAST_SOURCES)
   endforeach()
 endforeach()
 
+if(BOARD_FAST_RAM_BYTES)
+  target_compile_definitions(thimble PRIVATE THIMBLE_FAST_RAM)
+endif()
+
 # The linker scripts: flash.ld, and where a loader puts images into RAM, too, ram.ld (firmware.ld.in).
 function(thimble_write_linker_script place)
   set(IMAGE_PLACE ${place})

@@ -132,9 +132,11 @@ inline Rgb8 thin_color(const uint8_t* row, int32_t x, PixelFormat format) {
   const port::Display& screen = port::facts().display;
   if (widens_halfwords(from)) {
     for (int32_t x = 0; x < screen.width_px; thin += 2) {
+      uint16_t pixel = 0;
+      __builtin_memcpy(&pixel, __builtin_assume_aligned(thin, sizeof(pixel)), sizeof(pixel));
       for (const int32_t end = x + step < screen.width_px ? x + step : screen.width_px; x < end; ++x) {
-        *row++ = thin[0];
-        *row++ = thin[1];
+        __builtin_memcpy(__builtin_assume_aligned(row, sizeof(pixel)), &pixel, sizeof(pixel));
+        row += sizeof(pixel);
       }
     }
     return;

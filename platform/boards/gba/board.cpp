@@ -76,9 +76,10 @@ void board::flush(const Band& band) {
   volatile uint32_t* to =
       reinterpret_cast<volatile uint32_t*>(gba::kPicture + static_cast<size_t>(band.first_row) * row_bytes);
   const uint8_t* from = band.pixels.data;
-  for (size_t i = 0; i < static_cast<size_t>(band.rows) * row_bytes; i += sizeof(uint32_t)) {
+  const uint8_t* const end = from + static_cast<size_t>(band.rows) * row_bytes;
+  for (; from != end; from += sizeof(uint32_t)) {
     uint32_t pixels = 0;
-    __builtin_memcpy(&pixels, __builtin_assume_aligned(from + i, sizeof(pixels)), sizeof(pixels));
+    __builtin_memcpy(&pixels, __builtin_assume_aligned(from, sizeof(pixels)), sizeof(pixels));
     *to++ = (pixels & kRed) | (pixels >> 1 & kGreenAndBlue);
   }
 }

@@ -540,7 +540,9 @@ class BrickRay {
 
   [[gnu::always_inline]] int32_t ink() const {
     const uint32_t voxel = static_cast<uint32_t>(at_ - course_.bricks) * 8 + shift_;
-    const uint32_t face = static_cast<uint32_t>(2 * axis_) + (kMirrored >> axis_ & 1U);
+    const uint32_t face = kMirrored == kAnySigns
+                              ? course_.face[axis_]
+                              : static_cast<uint32_t>(2 * axis_) + (kMirrored >> axis_ & 1U);
     const uint32_t key = voxel << 3 | face;
     const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
     if (seen.key == key) {
@@ -594,6 +596,9 @@ struct Mirrored {
 };
 template <class Call>
 [[gnu::always_inline]] inline int32_t with_mirrored(unsigned mirrored, const Call& call) {
+  if constexpr (kFastRam) {
+    return call(Mirrored<kAnySigns>{});
+  }
   switch (mirrored) {
     case 0:
       return call(Mirrored<0>{});

@@ -72,6 +72,10 @@ struct Course {
   int axis[3];          // a, b and c
   uint32_t most_cells;  // so many cells times a direction times 256 stay below 2^31
   bool wide;            // products of directions and rests take more than 31 bits
+#ifdef THIMBLE_FAST_RAM
+  uint32_t last[3];     // the last voxel of a brick, shifted to its place
+  int32_t one_step[3];  // what a step adds to a voxel's place
+#endif
 };
 
 // The same in worlds of level 9 and 10.
@@ -125,6 +129,10 @@ void set_course(Course& course, unsigned mirrored, int c) {
     course.base += (flipped ? (side - 1) * stride : 0) + course.stride[axis] * from;
     course.base_left += static_cast<uint32_t>(512 - side + from) << 10 * axis;
     course.flip[axis] = flipped ? 3 : 0;
+#ifdef THIMBLE_FAST_RAM
+    course.last[axis] = flipped ? 0U : 3U << kPlaceShift[axis];
+    course.one_step[axis] = flipped ? -(1 << kPlaceShift[axis]) : 1 << kPlaceShift[axis];
+#endif
     course.face[axis] = static_cast<uint32_t>(2 * axis) + (flipped ? 1U : 0U);
     course.step_x[axis] = flipped ? -affine.step_x[axis] : affine.step_x[axis];
     course.step_y[axis] = flipped ? -affine.step_y[axis] : affine.step_y[axis];

@@ -84,6 +84,16 @@ constexpr bool kHasReciprocals = true;
 constexpr bool kHasReciprocals = false;
 #endif
 
+// Whether code runs from a small RAM of the core's own (THIMBLE_FAST_RAM): then one ray loop for each axis reads the
+// signs, where others have eight, and tiles are drawn by a function that fits there.
+#ifdef THIMBLE_FAST_RAM
+constexpr bool kFastRam = true;
+#define THIMBLE_OWN_FUNCTION gnu::noinline
+#else
+constexpr bool kFastRam = false;
+#define THIMBLE_OWN_FUNCTION
+#endif
+
 // Tells the compiler which way a branch mostly goes.
 [[gnu::always_inline]] constexpr bool seldom(bool condition) {
   return __builtin_expect(static_cast<long>(condition), 0) != 0;

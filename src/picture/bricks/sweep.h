@@ -29,10 +29,8 @@ constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
 // long as at most so many of them are solid.
 constexpr int32_t kMostCells = 28;
 constexpr int32_t kMostSolid = 2;
-// A world is thin where the bricks hold so many voxels on average, or fewer. Cores without a divider have little flash,
-// and call no world thin.
+// A world is thin where the bricks hold so many voxels on average, or fewer.
 constexpr int32_t kThinBrick = 6;
-constexpr bool kKnowsThin = kSlots != 0 && kDivides;
 
 // The interval that a tile's rays take on a or b within a slab, in 1/2^kCellShift voxel, mirrored: from `low` at the
 // slab's near plane to `high` at its far one.
@@ -45,13 +43,8 @@ struct Reach {
 
 [[gnu::noinline, maybe_unused]] int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
   const int32_t at = 8 * static_cast<int32_t>(number);
-  int32_t voxels = 0;
-  for (int32_t half = 0; half < 8; half += 4) {
-    for (uint32_t word = word_at(bricks, at + half); word != 0; word &= word - 1) {
-      ++voxels;
-    }
-  }
-  return voxels;
+  return static_cast<int32_t>(bits::popcount32(word_at(bricks, at)) +
+                              bits::popcount32(word_at(bricks, at + 4)));
 }
 
 // Whether the world is thin, by eight of its bricks.
@@ -84,7 +77,7 @@ struct Sweep {
 
   void begin(const BrickMap& map) {
     course = kNoCourse;
-    thin = kKnowsThin && is_thin(map);
+    thin = kSlots != 0 && is_thin(map);
   }
   void forget_bricks() {
     for (Exposed& kept : exposed) {
@@ -372,7 +365,7 @@ class TileSweep : private Paint {
       if (end != bricks) {
         const int32_t cells = cells_at_once();
         if (cells > kMostCells &&
-            !(kKnowsThin && sweep_.thin &&
+            !(sweep_.thin &&
               is_sparse<kDeep>(course_, bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
           return slab;
         }
