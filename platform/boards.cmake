@@ -71,12 +71,16 @@ function(thimble_write_board_table file)
     if(BOARD_CORES)
       set(cores ${BOARD_CORES})
     endif()
+    set(most_map_level 8)
+    if(BOARD_WORLDS STREQUAL "deep")
+      set(most_map_level 10)
+    endif()
     thimble_capitalise(format ${BOARD_FORMAT})
     thimble_capitalise(screen ${BOARD_DISPLAY})
     string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, "
       "${BOARD_FLASH_BYTES}, ${BOARD_STACK_BYTES}, Screen::k${screen}, PixelFormat::k${format}, ${BOARD_WIDTH_PX}, "
       "${BOARD_HEIGHT_PX}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, ${BOARD_CORE_MHZ}, ${BOARD_FRAME_INSTRUCTIONS}, "
-      "${band_buffers}, ${cores}, {${app_stacks}}},\n")
+      "${band_buffers}, ${cores}, ${most_map_level}, {${app_stacks}}},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
 endfunction()

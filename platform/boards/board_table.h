@@ -37,6 +37,7 @@ struct BoardFacts {
   uint32_t frame_instructions;  ///< of the demonstration, the median of its golden frames (bench)
   int32_t band_buffers;         ///< port::band_buffers()
   int32_t cores;                ///< port::cores()
+  int32_t most_map_level;       ///< of worlds whose brick maps it takes
   AppStack app_stacks[5];       ///< those that there are, then empty ones
 };
 

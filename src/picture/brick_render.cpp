@@ -37,16 +37,14 @@ bool shares_bytes(PixelFormat format) {
 
 namespace {
 
-uint32_t farther(int32_t eye, int32_t low, int32_t high) {
-  return static_cast<uint32_t>(eye - low > high - eye ? eye - low : high - eye);
-}
-
 // In worlds of level 9 and 10 only beams are bounded: a slope of up to 2 and 1/1024 times a distance is below 2^30.
-constexpr uint32_t kMostDeepDistance = (uint32_t{1} << 19) - 512;
+constexpr int32_t kMostDeepDistance = (1 << 19) - 512;
 
 [[maybe_unused]] bool draws_deep(const Camera& camera) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (farther(camera.eye()[axis].raw, 0, Q8::kOne << camera.level()) > kMostDeepDistance) {
+    const int32_t eye = camera.eye()[axis].raw;
+    const int32_t beyond = (Q8::kOne << camera.level()) - eye;
+    if ((eye > beyond ? eye : beyond) > kMostDeepDistance) {
       return false;
     }
   }
@@ -70,10 +68,13 @@ bool draws_fast(const BrickMap& map, const Camera& camera) {
   uint32_t distances = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t eye = camera.eye()[axis].raw;
+    const auto farther = [eye](int32_t low, int32_t high) {
+      return static_cast<uint32_t>(eye - low > high - eye ? eye - low : high - eye);
+    };
     constexpr int32_t kBrickQ8 = 4 * Q8::kOne;
-    distances |= farther(eye, 0, Q8::kOne << map.level());
+    distances |= farther(0, Q8::kOne << map.level());
     distances |=
-        farther(eye, map.box().low[axis] * kBrickQ8, map.box().high[axis] * kBrickQ8) + kOutsideQ8 / 2 - 1;
+        farther(map.box().low[axis] * kBrickQ8, map.box().high[axis] * kBrickQ8) + kOutsideQ8 / 2 - 1;
   }
   return distances >> (31 - camera.direction_bits()) == 0;
 }

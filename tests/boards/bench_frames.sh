@@ -14,17 +14,22 @@ work=build/bench-frames
 thimble=${THIMBLE:-build/release/thimble}
 mkdir -p "$work"
 # core:machine
-targets=${TARGETS:-cortex-m3:mps2-an385 cortex-m0:mps2-an385 cortex-m4:mps2-an386 cortex-m7:mps2-an500 rv32imac:sifive_e}
+targets=${TARGETS:-cortex-m3:mps2-an385 cortex-m0:mps2-an385 cortex-m4:mps2-an386 cortex-m7:mps2-an500 rv32imac:sifive_e
+  arm1176jz-s:raspi0}
 # width:height:format
 sizes=${SIZES:-128:64:gray4 160:128:rgb565 240:240:rgb565 320:240:rgb565 640:480:rgb565}
-# name=what `thimble bake` takes: the demonstration's valley, many small faces, open sky; +effects: with light, in two sizes
-scenes=${SCENES:-valley=demo dust=cluster:6000,depth=6 castle=castle sun=demo+direct-light,shadows}
+# name=what `thimble bake` takes: the demonstration's valley, many small faces, open sky; +effects: with light, in two sizes;
+# deep...: worlds of level 9 and 10, on the Raspberry Pi alone, whose memory holds them
+scenes=${SCENES:-valley=demo dust=cluster:6000,depth=6 castle=castle sun=demo+direct-light,shadows deep9=demo,depth=9
+  deep10=demo,depth=10}
 export CCACHE_DISABLE=1
 for scene in $scenes; do
   what=${scene#*=}
   effects=none
   case $what in *+*) effects=${what#*+} ;; esac
-  "$thimble" bake "${what%%+*}" --board mps2-an500 --effects "$effects" -o "$work/${scene%%=*}.h" --quiet
+  limit='--board mps2-an500'
+  case $scene in deep*) limit='--brick-map --size 320x240' ;; esac
+  "$thimble" bake "${what%%+*}" $limit --effects "$effects" -o "$work/${scene%%=*}.h" --quiet
 done
 : >"$work/measured.csv"
 failed=0
@@ -44,6 +49,12 @@ for target in $targets; do
       qemu="qemu-system-riscv32 -M ${target#*:} -icount shift=0"
       facts=';FRAMES=large;STACK_BYTES=8192'
       ;;
+    arm1176*)
+      board=raspi0
+      arch=arm11
+      qemu="qemu-system-arm -M ${target#*:} -icount shift=10"
+      facts=';FLASH_BYTES=8355840'  # up to its RAM
+      ;;
   esac
   for size in $sizes; do
     width=${size%%:*}
@@ -55,6 +66,10 @@ for target in $targets; do
       name=${scene%%=*}
       engine=brick_map
       what=$alone
+      case $core:$width:$name in
+        arm1176*:320:deep* | arm1176*:640:deep*) what=OFF ;;
+        arm1176* | *:deep*) continue ;;
+      esac
       case $scene in
         *+*)
           engine=lit

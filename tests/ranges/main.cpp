@@ -89,8 +89,8 @@ struct MeasuredWorld {
     if (CompactTree::make(octree, {bytes.data(), bytes.size()}, &tree) != Status::kOk) {
       std::abort();
     }
-    if (level >= kMinBrickMapLevel && level <= kMaxBrickMapLevel) {
-      map_bytes.resize(std::min(most_brick_map_bytes(level), std::size_t{1} << 22));
+    if (most_brick_map_bytes(tree) != 0) {
+      map_bytes.resize(std::min(most_brick_map_bytes(tree), std::size_t{1} << 22));
       has_map = BrickMap::make(tree, {map_bytes.data(), map_bytes.size()}, &map) == Status::kOk;
     }
     if (level <= 6) {
@@ -229,6 +229,34 @@ bool hard_camera(std::mt19937_64& random, int level, Camera* camera) {
   return camera->set(PerspectiveView{eye, forward, up, fov, width, height, bits}, level) == Status::kOk;
 }
 
+// Faces that cover several pixels: close by, or through a narrow view from as far away as level 9 and 10 take it.
+bool near_camera(std::mt19937_64& random, const MeasuredWorld& world, Camera* camera) {
+  const reference::Voxel& voxel = world.targets[static_cast<std::size_t>(
+      pick(random, 0, static_cast<std::int64_t>(world.targets.size()) - 1))];
+  const bool is_close = pick(random, 0, 1) == 0;
+  const std::int32_t reach = is_close ? 20 : 2040;
+  const std::int32_t world_q8 = Q8::kOne << world.level;
+  Vec3Q8 eye;
+  Vec3Q8 target;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::int32_t>(voxel[static_cast<std::size_t>(axis)]) * Q8::kOne;
+    const std::int32_t most = std::max(reach * Q8::kOne, world_q8) - world_q8;
+    target[axis] = Q8::from_raw(at + number(random, 0, Q8::kOne));
+    eye[axis] = Q8::from_raw(is_close ? at + number(random, -reach * Q8::kOne, reach * Q8::kOne)
+                                      : extreme(random, -most, world_q8 + most));
+  }
+  ++cameras_set;
+  const Q16 fov = Q16::saturate(is_close ? number(random, 1, 120) : 1);
+  return camera->set(PerspectiveView{eye,
+                                     look_at(eye, target),
+                                     {},
+                                     fov,
+                                     number(random, 1, 200),
+                                     number(random, 1, 120),
+                                     static_cast<int>(pick(random, 13, 15))},
+                     world.level) == Status::kOk;
+}
+
 // Some rows of a picture by both of the core's renderers.
 void draw_rows(std::mt19937_64& random, const MeasuredWorld& world, const Camera& camera) {
   Shading shading;
@@ -333,6 +361,12 @@ int main(int argc, char** argv) {
     for (int view = 0; view < 400; ++view) {
       thimble::Camera camera;
       if (hard_camera(random, world.level, &camera) && view % 16 == 0) {
+        draw_rows(random, world, camera);
+      }
+    }
+    for (int view = 0; view < 4; ++view) {
+      thimble::Camera camera;
+      if (near_camera(random, world, &camera)) {
         draw_rows(random, world, camera);
       }
     }

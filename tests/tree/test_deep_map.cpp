@@ -11,6 +11,7 @@
 #include "support/deep_worlds.h"
 #include "support/ray_cases.h"
 #include "thimble/base/memory.h"
+#include "thimble/picture/render.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"
@@ -182,9 +183,10 @@ TEST_CASE("deep map: damaged bytes -> refused, or each place and material read i
     for (int change = pick_int(random, 1, 3); change > 0; --change) {
       const int last = static_cast<int>(size) - 1;
       const int part = pick_int(random, 0, 3);
-      const auto at = static_cast<std::size_t>(part == 0   ? pick_int(random, 0, 47)
-                                               : part == 1 ? pick_int(random, 48, last)
-                                                           : pick_int(random, std::max(48, last - 1500), last));
+      const auto at =
+          static_cast<std::size_t>(part == 0   ? pick_int(random, 0, 47)
+                                   : part == 1 ? pick_int(random, 48, last)
+                                               : pick_int(random, std::max(48, last - 1500), last));
       bytes.span().data[at] = static_cast<std::uint8_t>(random());
     }
     BrickMap map;
@@ -207,6 +209,12 @@ TEST_CASE("deep map: damaged bytes -> refused, or each place and material read i
     for (std::uint32_t number = 1; number < map.brick_count(); ++number) {
       (void)map.material(scene.tree, number, number & 63U);
     }
+    const Camera camera = hard_deep_camera(random, scene.tree);
+    const std::size_t size_px = band_bytes(PixelFormat::kGray8, camera.width_px(), camera.height_px());
+    const HeapBytes pixels(size_px);
+    const Status status = render_band(scene.tree, map, camera, Shading(),
+                                      {pixels.span(), PixelFormat::kGray8, 0, 0, camera.height_px()});
+    CHECK(status == (map.belongs_to(scene.tree) ? Status::kOk : Status::kDamaged));
   }
   CHECK(opened > 50);
   CHECK(refused > 100);

@@ -44,6 +44,7 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   options.effects = command.effects;
   options.default_look = source.baked() == nullptr && !parse_generator(command.scene.arguments.scene);
   if (const platform::BoardFacts* const board = command.scene.board) {
+    options.most_map_level = board->most_map_level;
     options.display = DisplayFacts{board->format, board->width_px, board->height_px};
   } else {
     options.keeps_look = options.default_look;
@@ -204,7 +205,8 @@ void add_bake(CLI::App& app) {
   add_flag(*sub, "--coarsen", &command->scene.coarsen,
            "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
   add_flag(*sub, "--brick-map", &command->brick_map,
-           "add a table that makes frames on a chip several times faster, in worlds of up to 256 a side, "
+           "add a table that makes frames on a chip several times faster, in worlds of up to 1,024 a side "
+           "(256 on most boards), "
            "as long as all keeps the limit; --board always does");
   add_effect_list(
       *sub, &command->effects,

@@ -102,6 +102,7 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.limit_bytes = limit;
     options.coarsen = command.scene.coarsen;
     options.brick_map = true;
+    options.most_map_level = board.most_map_level;
     options.effects = command.effects;
     options.name = scene_name(command.scene.arguments.scene);
     // Framed as `thimble render` does, and a person's scene is lit so; a generator's figures stay what they are.

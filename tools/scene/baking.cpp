@@ -104,10 +104,11 @@ class Assembly {
 
   std::size_t bytes() const { return baked_bytes(parts_); }
 
-  /// Adds a brick map of the tree, unless the world has none or all of it would then exceed `limit`.
-  void add_brick_map(const CompactTree& tree, std::uint64_t limit) {
+  /// Adds a brick map of the tree, unless the world has none, is above that level, or all of it would then exceed
+  /// `limit`.
+  void add_brick_map(const CompactTree& tree, int most_level, std::uint64_t limit) {
     const std::size_t most = most_brick_map_bytes(tree);
-    if (tree.empty() || most == 0) {
+    if (tree.empty() || most == 0 || tree.level() > most_level) {
       return;
     }
     map_.resize(most / sizeof(std::uint64_t) + 1);
@@ -317,7 +318,7 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
   result.fits = whole.bytes() <= limit;
   if (result.fits || !options.coarsen) {
     if (options.brick_map) {
-      whole.add_brick_map(exact, limit);
+      whole.add_brick_map(exact, options.most_map_level, limit);
     }
     whole.write(&result);
   } else {
@@ -335,7 +336,7 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
     Assembly coarse(source, options, tree);
     result.fits = coarse.bytes() <= limit;
     if (options.brick_map) {
-      coarse.add_brick_map(tree, limit);
+      coarse.add_brick_map(tree, options.most_map_level, limit);
     }
     coarse.write(&result);
   }

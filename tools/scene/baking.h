@@ -21,6 +21,7 @@ struct BakingOptions {
   /// Add a brick map (brick_map.h), which makes frames on a chip faster, where the world has one and it keeps
   /// the limit.
   bool brick_map = false;
+  int most_map_level = kMaxDeepMapLevel;  ///< deeper worlds get none: the board's (board_table.h)
   /// Which effects the scene is baked for; what they need goes into a section of its own.
   EffectChoice effects;
   std::string name;  ///< cut off at kMaxNameBytes

@@ -78,6 +78,7 @@ extern "C" {
   options.limit_bytes = limit.bytes();
   options.name = scene_name(scene);
   options.brick_map = true;
+  options.most_map_level = board.most_map_level;
   options.coarsen = coarsen;
   options.default_look = source->baked() == nullptr && !parse_generator(scene);
   options.display = DisplayFacts{board.format, board.width_px, board.height_px};

@@ -4,7 +4,7 @@
 /// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band.
 /// Where the light of a pixel is a function of the face that it shows, of the lights that reach it and of what
 /// occludes it, or a sum of such by way of mirrors or water (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera
-/// that `draws_fast`, no limit of visits), all rays go through the map; everything else is drawn by the tree. An image
+/// that `draws_fast`, a world up to level 8, no limit of visits), all rays go through the map; everything else is drawn by the tree. An image
 /// has the first way only when its set allows it, and lamps there only when it says that it has any.
 ///
 /// Cost of the fast way: platform/README.md, "Light on a chip". Stack: tests/budgets/stack.csv.
@@ -38,7 +38,7 @@ class SunBricks {
   static size_t bytes(const BrickMap& map);
 
   /// Makes bits of which none is proven yet, which is never wrong. `towards` is as `Light::place` of a distant light.
-  /// Errors, `*sun` as it was: kOutOfMemory; kBadArgument for no direction or no map.
+  /// Errors, `*sun` as it was: kOutOfMemory; kBadArgument for no direction or no map; kOutOfRange above level 8.
   static Status make(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun);
 
   /// Proves for up to `bricks` more bricks whether anything solid lies behind them towards the light: for all at

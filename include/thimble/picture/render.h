@@ -124,7 +124,8 @@ inline constexpr int32_t kBrickTilePx = 8;
 
 /// Whether frames of that camera take the fast way: a perspective of the map's level, n <= kMaxBrickDirectionBits
 /// direction bits, and an eye less than 2^(23 - n) voxels from every side of the world, and at least 32 less than
-/// that from every side of the box of bricks that holds what is solid.
+/// that from every side of the box of bricks that holds what is solid. In worlds of level 9 and 10, where the core has
+/// THIMBLE_DEEP_WORLDS (brick_map.h): an eye at most 2,046 voxels from every side of the world.
 bool draws_fast(const BrickMap& map, const Camera& camera);
 
 /// As `render_band` above with `map`, which belongs to `tree`; the counters of nodes stay as they are
@@ -133,7 +134,7 @@ bool draws_fast(const BrickMap& map, const Camera& camera);
 Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& camera, const Shading& shading,
                    const Band& band, RenderCounts* counts = nullptr);
 
-/// The same for cameras that `draws_fast`; kBadArgument for others. A firmware that calls this one only has
+/// The same for cameras that `draws_fast` in worlds up to level 8; kBadArgument for others. A firmware that calls this one only has
 /// nothing of the 64-bit tracer in its flash and on its stack.
 Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
                       const Shading& shading, const Band& band, RenderCounts* counts = nullptr);

@@ -2,6 +2,8 @@
 /// A compact tree and its brick map that change: voxels are set and cleared while the world is drawn, on a
 /// chip, in the caller's bytes.
 ///
+/// Worlds have level 8 at most, whatever else the core is compiled with (kMaxBrickMapLevel).
+///
 /// `make` copies a compact tree (from flash, say) into bytes with room to grow. From then on `tree()` and
 /// `map()` are views for everything that draws or traces, and after each edit they are what a tree and a map
 /// built anew would be: same nodes, same materials, same pictures and hits. A view that was copied before an
