@@ -31,6 +31,8 @@ namespace {
 
 constexpr std::int32_t kMostBandRows = 16;
 constexpr std::int32_t kMostEdgeRows = 64;
+// Samples of a lit picture that are drawn at once, about: the threads of a stream wait for one another at its end.
+constexpr std::int32_t kMostSamplesAtOnce = 1 << 17;
 
 std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
   return band_rows(command, row_bytes(format, command.view.width_px), kMostBandRows);
@@ -146,6 +148,11 @@ SceneOptions::DrawingBytes drawing_bytes(const RenderCommand& command, const Sce
     bytes.band = edge_band_bytes(format, width,
                                  band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
     bytes.least_band = edge_band_bytes(format, width, 1, threads);
+  }
+  if (light.effects != Effect::kNone && command.quality.samples() > 1 && !command.quality.at_edges) {
+    const std::int32_t most = std::max(1, kMostSamplesAtOnce / (width * command.quality.samples()));
+    bytes.band *=
+        static_cast<std::uint64_t>(band_rows(command, static_cast<std::size_t>(quality_bytes), most));
   }
   const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
   bytes.state = in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);

@@ -22,7 +22,8 @@ class LitPainter final : public BandPainter {
         shading_(shading),
         picture_(picture),
         width_px_(camera.width_px() / picture.across),
-        row_bytes_(std::max<std::size_t>(1, row_bytes(format, width_px_))) {}
+        row_bytes_(std::max<std::size_t>(1, row_bytes(format, width_px_))),
+        fine_bytes_(samples_bytes(width_px_, picture.across)) {}
 
   const char* engine() const override { return "lit"; }
   int threads() const override {
@@ -30,7 +31,7 @@ class LitPainter final : public BandPainter {
   }
   std::int32_t most_rows() const override {
     if (picture_.across != 1) {
-      return 1;
+      return static_cast<std::int32_t>(built_.band().size / (row_bytes_ + fine_bytes_));
     }
     if (!is_straight()) {
       return static_cast<std::int32_t>(built_.band().size / row_bytes_);
@@ -84,16 +85,21 @@ class LitPainter final : public BandPainter {
     }
     return worst;
   }
+  // The band's rows stand before those of its samples.
   Status draw_samples(const Band& band, LitCounts* counts) const {
     Band fine;
     fine.first_row = band.first_row * picture_.across;
-    fine.rows = picture_.across;
+    fine.rows = band.rows * picture_.across;
     fine.format = PixelFormat::kRgb888;
-    fine.pixels = band.pixels.subspan(row_bytes_);
-    const Status status = draw_band(fine, counts);
-    return status != Status::kOk ? status
-                                 : average_samples(fine.pixels, picture_.across, width_px_, band.first_row,
-                                                   band.format, band.pixels.subspan(0, row_bytes_));
+    fine.pixels = band.pixels.subspan(row_bytes_ * static_cast<std::size_t>(band.rows));
+    Status status = draw_band(fine, counts);
+    for (std::int32_t row = 0; row < band.rows && status == Status::kOk; ++row) {
+      const auto at = static_cast<std::size_t>(row);
+      status = average_samples(fine.pixels.subspan(fine_bytes_ * at, fine_bytes_), picture_.across, width_px_,
+                               band.first_row + row, band.format,
+                               band.pixels.subspan(row_bytes_ * at, row_bytes_));
+    }
+    return status;
   }
 
   const BuiltScene& built_;
@@ -102,6 +108,7 @@ class LitPainter final : public BandPainter {
   LitPicture picture_;
   std::int32_t width_px_;
   std::size_t row_bytes_;
+  std::size_t fine_bytes_;  // of the samples of a row
 };
 
 }  // namespace
