@@ -236,8 +236,8 @@ bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
   if (plan->has_surface) {
     plan->has_boxes =
         census.boxes <= kFewBoxesBeside || census.boxes <= plan->surface.entries / kVoxelsPerBoxBeside;
-    // Beside a surface a list of boxes is of use only if it has blocks.
-    plan->has_boxes = plan->has_boxes && census.has_blocks;
+    // Beside a surface a list of boxes is of use only if it has blocks, and is shorter.
+    plan->has_boxes = plan->has_boxes && census.has_blocks && census.boxes < plan->surface.entries;
     plan->surface_level =
         choose_block_level(tree.level(), plan->surface.level_begin, plan->surface.entries, 2);
   } else {
