@@ -40,7 +40,7 @@ function(thimble_choose_frames)
   elseif(NOT "${BOARD_FRAMES}" MATCHES "^(large)?$")
     message(FATAL_ERROR "BOARD_FRAMES of ${BOARD_NAME} is ${BOARD_FRAMES}; it may be small, large, or left out")
   endif()
-  # Brick maps and frames by them for worlds of level 9 and 10 (tree/brick_map.h), 30 KB of code.
+  # Brick maps and frames by them for worlds of level 9 and 10 (tree/brick_map.h), 95 KB of code.
   if("${BOARD_WORLDS}" STREQUAL "deep")
     target_compile_definitions(thimble PRIVATE THIMBLE_DEEP_WORLDS)
   elseif(NOT "${BOARD_WORLDS}" STREQUAL "")

@@ -219,3 +219,31 @@ TEST_CASE("deep map: damaged bytes -> refused, or each place and material read i
   CHECK(opened > 50);
   CHECK(refused > 100);
 }
+
+TEST_CASE("deep map: each count of origins and each entry of the table moved -> damaged") {
+  std::mt19937_64 random(913);
+  const ChipScene scene = make_deep_scene(random, DeepWorld::kBlocks, 9);
+  const std::size_t size = scene.map.size_bytes();
+  const HeapBytes bytes(size);
+  std::uint8_t* const base = bytes.span().data;
+  std::memcpy(base, scene.map_words.data(), size);
+  const std::size_t bricks = word_at(base + 36);
+  const std::size_t ranks = (bricks + 31) / 32;
+  const std::size_t first = size - 12 * std::size_t{word_at(base + 40)} - (bricks + 3) / 4 * 4 - 8 * ranks;
+  const auto is_refused_with = [&](std::size_t at, std::uint8_t more) {
+    base[at] = static_cast<std::uint8_t>(base[at] + more);
+    BrickMap map;
+    const bool refused = BrickMap::open(bytes.view(), &map) == Status::kDamaged;
+    base[at] = static_cast<std::uint8_t>(base[at] - more);
+    return refused;
+  };
+  for (std::size_t rank = 0; rank < ranks; ++rank) {
+    REQUIRE(is_refused_with(first + 8 * rank + 4, 1));
+  }
+  for (std::size_t cell = 0; cell < 50; ++cell) {
+    REQUIRE(is_refused_with(48 + 4 * cell, 1));       // between two pages
+    REQUIRE(is_refused_with(48 + 4 * cell + 3, 68));  // beyond the last
+  }
+  BrickMap map;
+  CHECK(BrickMap::open(bytes.view(), &map) == Status::kOk);
+}

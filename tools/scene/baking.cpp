@@ -14,7 +14,6 @@
 #include "scene/look_note.h"
 #include "scene/paths.h"
 #include "scene/scene_source.h"
-#include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tools {

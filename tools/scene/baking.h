@@ -12,6 +12,7 @@
 #include "scene/display_look.h"
 #include "scene/scene_source.h"
 #include "thimble/bake/baked_scene.h"
+#include "thimble/tree/brick_map.h"
 
 namespace thimble::tools {
 

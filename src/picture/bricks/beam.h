@@ -160,6 +160,30 @@ template <int kC>
   return ((rows | rows >> 16) & wanted) != 0;
 }
 
+// Whether slab `slab` begins a layer of pages, and those under the shadow are empty.
+constexpr int32_t kPageVoxels = 4 * deep_place::kPageSide;
+template <int kC>
+bool has_empty_layer(const DeepCourse& course, const Shadow& a, const Shadow& b, int32_t slab) {
+  const Vec3i& side = course.frame->side;
+  const bool flipped = (course.mirrored >> kC & 1U) != 0;
+  const int32_t layer = flipped ? side[kC] - 1 - (slab >> 2) : slab >> 2;
+  if ((slab & 3) != 0 || (layer & 3) != (flipped ? 3 : 0) || slab + kPageVoxels > 4 * side[kC]) {
+    return false;
+  }
+  Vec3i low;
+  Vec3i high;
+  low[kC] = layer;
+  high[kC] = layer;
+  const auto set = [&](int axis, const Shadow& shadow) {
+    const int32_t last = shadow.last_brick(kPageVoxels);
+    low[axis] = shadow.first_brick(kPageVoxels);
+    high[axis] = last < side[axis] ? last : side[axis] - 1;
+  };
+  set(kOtherA<kC>, a);
+  set(kOtherB<kC>, b);
+  return has_empty_pages(course, low, high);
+}
+
 // Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs when
 // there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab.
 template <int kC, bool kDeep>
@@ -193,24 +217,11 @@ template <int kC, bool kDeep>
   const uint8_t* directory = course.directory;
   while (slab < slabs) {
     if constexpr (kDeep) {
-      // Empty pages are passed at once.
-      constexpr int32_t kPage = 16;
-      const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
-      if ((slab & 3) == 0 && (layer & 3) == (flipped ? 3 : 0) && slab + kPage <= slabs) {
-        Vec3i low;
-        Vec3i high;
-        low[kA] = a.first_brick(kPage);
-        low[kB] = b.first_brick(kPage);
-        low[kC] = layer;
-        high = low;
-        high[kA] = a.last_brick(kPage) > last_a ? last_a : a.last_brick(kPage);
-        high[kB] = b.last_brick(kPage) > last_b ? last_b : b.last_brick(kPage);
-        if (has_empty_pages(static_cast<DeepCourse&>(course), low, high)) {
-          a.advance(kPage);
-          b.advance(kPage);
-          slab += kPage;
-          continue;
-        }
+      if (has_empty_layer<kC>(static_cast<DeepCourse&>(course), a, b, slab)) {
+        a.advance(kPageVoxels);
+        b.advance(kPageVoxels);
+        slab += kPageVoxels;
+        continue;
       }
     }
     // How many slabs of this layer of bricks are left, and which of its bricks the rays may pass.
