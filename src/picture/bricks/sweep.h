@@ -41,7 +41,7 @@ struct Reach {
   int32_t high_step;
 };
 
-[[gnu::noinline, maybe_unused]] int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
+[[gnu::noinline, gnu::cold, maybe_unused]] int32_t voxels_of(const uint8_t* bricks, uint32_t number) {
   const int32_t at = 8 * static_cast<int32_t>(number);
   return static_cast<int32_t>(bits::popcount32(word_at(bricks, at)) +
                               bits::popcount32(word_at(bricks, at + 4)));
