@@ -138,8 +138,8 @@ template <class Pixel>
   }
 }
 
-[[gnu::noinline, maybe_unused]] void store_pixels(const TilePlace& place, const Pixels& pixels, const BrickFrame& frame,
-                                    uint32_t ink) {
+[[gnu::noinline, maybe_unused]] void store_pixels(const TilePlace& place, const Pixels& pixels,
+                                                  const BrickFrame& frame, uint32_t ink) {
   if (frame.halfwords) {
     store_whole<Half>(place, pixels, ink);
   } else if (frame.format == PixelFormat::kGray8 ||
