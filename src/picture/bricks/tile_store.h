@@ -19,7 +19,7 @@ struct TilePlace {
 };
 
 // Clears a tile of kGray4.
-void clear(const TilePlace& place) {
+[[maybe_unused]] void clear(const TilePlace& place) {
   uint8_t* line = place.line;
   for (int32_t y = 0; y < place.down; ++y, line += place.stride) {
     for (int32_t x = place.x >> 1; x < (place.x + place.across + 1) >> 1; ++x) {
