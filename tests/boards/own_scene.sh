@@ -1,9 +1,9 @@
 #!/bin/sh
 # Scenes of one's own as firmware: own_scene.sh BOARD. A scene text is baked into a header; the image made from it has
 # the effects that this calls for and no others, keeps its stack, and draws the simulator's pictures. On lm3s6965evb:
-# glass, a mirror and a sun, dark edges for its few greys, by the tree, and the mirror and the sun by the brick map; on
-# microbit a lamp, a sun and occlusion, and a pond, by the brick map. Prints a line a question; exit status 1 when an
-# answer is wrong. After board.sh has built BOARD.
+# glass, a mirror and a sun, dark edges for its few greys, by the tree, and the mirror and the sun by the brick map, and a
+# scene that is too large beside demo; on microbit a lamp, a sun and occlusion, and a pond, by the brick map. Prints a
+# line a question; exit status 1 when an answer is wrong. After board.sh has built BOARD.
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
@@ -86,6 +86,17 @@ TEXT
   say "baked for no effects the image holds none"
 }
 
+# What `bake` takes for the board's flash is too large beside demo, which draws more ways: the build says what is left.
+too_large() {
+  "$thimble" bake demo,depth=8 --board "$board" --coarsen --effects none -o "$work/own.h" --quiet
+  ! sh platform/build.sh "$board" demo "$work/own.h" >"$work/own.log" 2>&1 || fail "a scene of all of the flash fits beside demo"
+  bytes=$(sed -n 's/.*--coarsen --memory \([0-9]*\) .*/\1/p' "$work/own.log")
+  [ -n "$bytes" ] || fail "the build does not say how large a scene may be"
+  "$thimble" bake demo,depth=8 --board "$board" --coarsen --memory "${bytes:-1}" --effects none -o "$work/own.h" --quiet
+  build demo "$work/own.h"
+  say "a scene that is too large beside demo is refused with the bytes that fit, $bytes, and these do"
+}
+
 # blocks: a room in the sun, for which a scene adds what it is about.
 blocks() {
   cat <<'TEXT'
@@ -147,6 +158,7 @@ water() {
 case $board in
   lm3s6965evb)
     glass_and_mirror
+    too_large
     mirror
     ;;
   microbit)

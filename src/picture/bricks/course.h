@@ -80,7 +80,7 @@ struct Course {
 
 // The same in worlds of level 9 and 10.
 struct DeepCourse : Course {
-  static constexpr bool kDeep = true;
+  [[maybe_unused]] static constexpr bool kDeep = true;
   uint32_t empty_page;  // what the directory says of pages that are empty
 };
 

@@ -19,7 +19,7 @@ struct LayerPlace {
 
 // The way of a ray in a world of level 9 or 10, as skip_layers wants it.
 struct DeepWay {
-  static constexpr bool kDeep = true;
+  [[maybe_unused]] static constexpr bool kDeep = true;
   const uint8_t* directory;
   const int32_t* next_brick;
   uint32_t d[3];
