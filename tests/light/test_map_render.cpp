@@ -20,17 +20,7 @@ using namespace thimble;
 using namespace thimble::tests;
 
 std::uint64_t lit_pixels_to_draw() {
-  if (std::getenv("THIMBLE_LONG") != nullptr) {
-    return 30'000'000;
-  }
-  if (std::getenv("THIMBLE_FEW") != nullptr) {
-    return 200'000;
-  }
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-  return 60'000;
-#else
-  return 1'000'000;
-#endif
+  return std::getenv("THIMBLE_FEW") != nullptr ? 200'000 : pixels_to_draw(30'000'000, 60'000);
 }
 
 struct LitView {
@@ -225,8 +215,7 @@ std::vector<std::uint8_t> lit_bytes(const Camera& camera, PixelFormat format, st
 }
 
 TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and rays of the tree's") {
-  const char* text = std::getenv("THIMBLE_SEED");
-  std::mt19937_64 random(text != nullptr ? std::strtoull(text, nullptr, 10) : 20260501);
+  std::mt19937_64 random(seed_or(20260501));
   const std::uint64_t wanted_pixels = lit_pixels_to_draw();
   std::uint64_t pixels = 0;
   std::uint64_t fast = 0;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -18,17 +17,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-
-std::uint64_t pixels_to_draw() {
-  if (std::getenv("THIMBLE_LONG") != nullptr) {
-    return 100'000'000;
-  }
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-  return 100'000;
-#else
-  return 1'000'000;
-#endif
-}
 
 using Draw = Status (*)(const ChipScene& scene, const Camera& camera, const Shading& shading,
                         const Band& band, RenderCounts* counts);
@@ -51,8 +39,7 @@ std::vector<std::uint8_t> drawn(const ChipScene& scene, const Camera& camera, co
 }
 
 TEST_CASE("brick sweep: a million pixels of hard cameras -> the bytes and hits of render_band, none wrong") {
-  const char* text = std::getenv("THIMBLE_SEED");
-  std::mt19937_64 random(text != nullptr ? std::strtoull(text, nullptr, 10) : 20260401);
+  std::mt19937_64 random(seed_or(20260401));
   std::vector<Rgb8> palette(256);
   for (Rgb8& color : palette) {
     color = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),

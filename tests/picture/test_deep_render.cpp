@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -12,29 +11,13 @@
 #include "support/ray_cases.h"
 #include "thimble/picture/render.h"
 
-namespace {
-
 using namespace thimble;
 using namespace thimble::tests;
-
-std::uint64_t pixels_to_draw() {
-  if (std::getenv("THIMBLE_LONG") != nullptr) {
-    return 100'000'000;
-  }
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-  return 100'000;
-#else
-  return 1'000'000;
-#endif
-}
-
-}  // namespace
 
 TEST_CASE(
     "deep frames: hard cameras in worlds of level 9 and 10 -> the bytes and hits of render_band, none "
     "wrong") {
-  const char* text = std::getenv("THIMBLE_SEED");
-  std::mt19937_64 random(text != nullptr ? std::strtoull(text, nullptr, 10) : 20261026);
+  std::mt19937_64 random(seed_or(20261026));
   std::vector<Rgb8> palette(256);
   for (Rgb8& color : palette) {
     color = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),

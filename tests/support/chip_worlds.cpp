@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "support/random_up.h"
 #include "support/ray_cases.h"
-#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 namespace {
@@ -36,16 +36,7 @@ void fill(std::mt19937_64& random, ChipWorld world, int level, Octree* pool) {
       return;
     case ChipWorld::kBlocks:
     case ChipWorld::kMerged:
-      for (int i = 0; i < 40; ++i) {
-        const int block = pick_int(random, 0, level - 2);
-        const Vec3i at = cell();
-        const int mask = ~((1 << block) - 1);
-        REQUIRE(pool->insert_block({at.x & mask, at.y & mask, at.z & mask}, block, material()) ==
-                Status::kOk);
-      }
-      for (int i = 0; i < 200; ++i) {
-        REQUIRE(pool->insert(cell(), material()) == Status::kOk);
-      }
+      insert_blocks(random, level, 40, 200, cell, material, pool);
       if (world == ChipWorld::kMerged) {
         REQUIRE(pool->coarsen_to(pool->nodes_used() / 2) == Status::kOk);
       }
@@ -87,6 +78,36 @@ ChipScene scene_of(int level, const Fill& fill_pool) {
 }
 
 }  // namespace
+
+std::uint64_t pixels_to_draw(std::uint64_t longest, [[maybe_unused]] std::uint64_t slowly) {
+  if (std::getenv("THIMBLE_LONG") != nullptr) {
+    return longest;
+  }
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+  return slowly;
+#else
+  return 1'000'000;
+#endif
+}
+
+std::uint64_t seed_or(std::uint64_t otherwise) {
+  const char* const text = std::getenv("THIMBLE_SEED");
+  return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+void insert_blocks(std::mt19937_64& random, int level, int blocks, int voxels,
+                   const std::function<Vec3i()>& cell, const std::function<std::uint8_t()>& material,
+                   Octree* pool) {
+  for (int i = 0; i < blocks; ++i) {
+    const int block = pick_int(random, 0, level - 2);
+    const Vec3i at = cell();
+    const int mask = ~((1 << block) - 1);
+    REQUIRE(pool->insert_block({at.x & mask, at.y & mask, at.z & mask}, block, material()) == Status::kOk);
+  }
+  for (int i = 0; i < voxels; ++i) {
+    REQUIRE(pool->insert(cell(), material()) == Status::kOk);
+  }
+}
 
 ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
   return scene_of(level, [&](Octree* pool) { fill(random, world, level, pool); });

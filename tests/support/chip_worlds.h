@@ -5,6 +5,7 @@
 #define THIMBLE_TESTS_SUPPORT_CHIP_WORLDS_H
 
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -12,8 +13,14 @@
 #include "thimble/picture/camera.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
+
+/// How many pixels a run draws: a million, fewer where that takes long; with THIMBLE_LONG `longest`.
+std::uint64_t pixels_to_draw(std::uint64_t longest = 100'000'000, std::uint64_t slowly = 100'000);
+/// The seed of all of them: THIMBLE_SEED or this one.
+std::uint64_t seed_or(std::uint64_t otherwise);
 
 enum class ChipWorld { kHills, kBlocks, kDust, kRoom, kMerged, kTower };
 inline constexpr ChipWorld kChipWorlds[] = {ChipWorld::kHills, ChipWorld::kBlocks, ChipWorld::kDust,
@@ -25,6 +32,11 @@ struct ChipScene {
   CompactTree tree;
   BrickMap map;
 };
+
+/// Inserts so many blocks below level - 1 and voxels, where cell() says.
+void insert_blocks(std::mt19937_64& random, int level, int blocks, int voxels,
+                   const std::function<Vec3i()>& cell, const std::function<std::uint8_t()>& material,
+                   Octree* pool);
 
 /// Materials 0 .. 9.
 ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level);

@@ -33,16 +33,7 @@ void fill_deep(std::mt19937_64& random, DeepWorld world, int level, Octree* pool
       return;
     case DeepWorld::kBlocks:
     case DeepWorld::kMerged:
-      for (int i = 0; i < 60; ++i) {
-        const int block = pick_int(random, 0, level - 2);
-        const Vec3i at = cell();
-        const int mask = ~((1 << block) - 1);
-        REQUIRE(pool->insert_block({at.x & mask, at.y & mask, at.z & mask}, block, material()) ==
-                Status::kOk);
-      }
-      for (int i = 0; i < 300; ++i) {
-        insert(cell());
-      }
+      insert_blocks(random, level, 60, 300, cell, material, pool);
       if (world == DeepWorld::kMerged) {
         REQUIRE(pool->coarsen_to(pool->nodes_used() / 2) == Status::kOk);
       }

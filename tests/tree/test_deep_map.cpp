@@ -247,3 +247,46 @@ TEST_CASE("deep map: each count of origins and each entry of the table moved -> 
   BrickMap map;
   CHECK(BrickMap::open(bytes.view(), &map) == Status::kOk);
 }
+
+// A floor of two materials and a voxel far from it; pixels of a camera by it.
+TEST_CASE("deep map: each bit of a small map -> refused, or drawn inside its bytes and to an end") {
+  std::vector<std::uint8_t> pool(Octree::octree_bytes(200));
+  Octree octree;
+  REQUIRE(Octree::make(9, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  for (int x = 0; x < 6; ++x) {
+    REQUIRE(octree.insert({x, x / 2, 0}, static_cast<std::uint8_t>(x / 2)) == Status::kOk);
+  }
+  REQUIRE(octree.insert({20, 3, 5}, 7) == Status::kOk);
+  const HeapBytes tree_bytes = compact_of(octree);
+  const CompactTree tree = open_or_throw(tree_bytes);
+  const HeapBytes room(most_brick_map_bytes(tree));
+  std::size_t size = 0;
+  REQUIRE(BrickMap::make(tree, room.span(), nullptr, &size) == Status::kOk);
+  const HeapBytes bytes(size);
+  std::memcpy(bytes.span().data, room.view().data, size);
+  Camera camera;
+  const Vec3Q8 eye{Q8::from_raw(10 * 256), Q8::from_raw(-9 * 256), Q8::from_raw(8 * 256)};
+  REQUIRE(camera.set(PerspectiveView{eye, {0, 12, -6}, {}, Q16::saturate(80), 32, 24, 0}, 9) == Status::kOk);
+  std::vector<std::uint8_t> pixels(32 * 24);
+  const Band band{{pixels.data(), pixels.size()}, PixelFormat::kGray8, 0, 0, 24};
+  int drawn = 0;
+  int told = 0;
+  for (std::size_t bit = 0; bit < 8 * size; ++bit) {
+    CAPTURE(bit);
+    std::uint8_t& changed = bytes.span().data[bit / 8];
+    const auto mask = static_cast<std::uint8_t>(1 << bit % 8);
+    changed ^= mask;
+    BrickMap map;
+    const bool opens = BrickMap::open(bytes.view(), &map) == Status::kOk;
+    told += BrickMap::validate(bytes.view()) != nullptr ? 1 : 0;
+    if (opens && map.belongs_to(tree)) {
+      RenderCounts counts;
+      REQUIRE(render_band(tree, map, camera, Shading(), band, &counts) == Status::kOk);
+      REQUIRE(counts.rays == pixels.size());
+      ++drawn;
+    }
+    changed ^= mask;
+  }
+  CHECK(told == static_cast<int>(8 * size));
+  CHECK(drawn > 100);
+}

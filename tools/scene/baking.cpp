@@ -110,11 +110,14 @@ class Assembly {
     if (tree.empty() || most == 0 || tree.level() > most_level) {
       return;
     }
-    map_.resize(most / sizeof(std::uint64_t) + 1);
+    // A deep map takes nothing more while it is made, so what would not be kept needs no room.
+    const std::uint64_t wanted =
+        tree.level() > kMaxBrickMapLevel ? std::min<std::uint64_t>(most, limit) : most;
+    map_.resize(static_cast<std::size_t>(wanted / sizeof(std::uint64_t)) + 1);
     std::size_t written = 0;
     const Bytes room{reinterpret_cast<std::uint8_t*>(map_.data()), map_.size() * sizeof(std::uint64_t)};
     if (BrickMap::make(tree, room, nullptr, &written) != Status::kOk) {
-      return;  // more bricks than a map has numbers for
+      return;  // more bricks than a map has numbers for, or than the limit has room for
     }
     parts_.brick_map = {room.data, written};
     if (bytes() > limit) {

@@ -3,9 +3,10 @@
 ///
 /// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band.
 /// Where the light of a pixel is a function of the face that it shows, of the lights that reach it and of what
-/// occludes it, or a sum of such by way of mirrors or water (a set that `is_flat`, at most kMaxFlatSuns distant lights, a camera
-/// that `draws_fast`, a world up to level 8, no limit of visits), all rays go through the map; everything else is drawn by the tree. An image
-/// has the first way only when its set allows it, and lamps there only when it says that it has any.
+/// occludes it, or a sum of such by way of mirrors or water (a set that `is_flat`, at most kMaxFlatSuns distant lights,
+/// a camera that `draws_fast`, a world up to level 8, no limit of visits), all rays go through the map; everything else is
+/// drawn by the tree. An image has the first way only when its set allows it, and lamps there only when it says that it
+/// has any.
 ///
 /// Cost of the fast way: platform/README.md, "Light on a chip". Stack: tests/budgets/stack.csv.
 #ifndef THIMBLE_LIGHT_MAP_RENDER_H

@@ -134,8 +134,8 @@ bool draws_fast(const BrickMap& map, const Camera& camera);
 Status render_band(const CompactTree& tree, const BrickMap& map, const Camera& camera, const Shading& shading,
                    const Band& band, RenderCounts* counts = nullptr);
 
-/// The same for cameras that `draws_fast` in worlds up to level 8; kBadArgument for others. A firmware that calls this one only has
-/// nothing of the 64-bit tracer in its flash and on its stack.
+/// The same for cameras that `draws_fast` in worlds up to level 8; kBadArgument for others. A firmware that calls this
+/// one only has nothing of the 64-bit tracer in its flash and on its stack.
 Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera& camera,
                       const Shading& shading, const Band& band, RenderCounts* counts = nullptr);
 

@@ -9,8 +9,8 @@
 /// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout,
 /// src/picture/README.md, "Frames on a chip", the reasons.
 ///
-/// A map does not change with its tree (build it anew). Worlds of level 9 and 10 have maps where the core is compiled with
-/// THIMBLE_DEEP_WORLDS (hosts, and boards that can hold one); their directory has two levels.
+/// A map does not change with its tree (build it anew). Worlds of level 9 and 10 have maps where the core is compiled
+/// with THIMBLE_DEEP_WORLDS (hosts, and boards that can hold one); their directory has two levels.
 #ifndef THIMBLE_TREE_BRICK_MAP_H
 #define THIMBLE_TREE_BRICK_MAP_H
 
@@ -50,8 +50,8 @@ constexpr size_t most_brick_map_bytes(int level) {
   return brick_map_bytes(cells, bricks, bricks - 1) + 2 * size_t{bricks};
 }
 
-/// Bytes in which the map of this tree can be built: for worlds of level 9 and 10 so many as its surface takes, counted in
-/// one pass over it; for smaller ones those of any world. 0 where the core makes none.
+/// Bytes in which the map of this tree can be built: for worlds of level 9 and 10 so many as its surface takes, counted
+/// in one pass over it; for smaller ones those of any world. 0 where the core makes none.
 size_t most_brick_map_bytes(const CompactTree& tree);
 
 /// A view of a map's bytes, which outlive it. Copy it freely.

@@ -195,6 +195,20 @@ class LargeBox {
   uint64_t value_ = 0;
 };
 
+// Where a box and the rays' origin lie in the block.
+struct PlacedBox {
+  HWY_INLINE PlacedBox(const WideFrame& frame, uint32_t entry, const Batch& batch)
+      : low{hn::Set(F32(), static_cast<float>(x_of(entry))),
+            hn::Set(F32(), static_cast<float>(entry >> 10 & kWithin)),
+            hn::Set(F32(), static_cast<float>(entry >> 20 & kWithin))},
+        half(hn::Set(F32(), static_cast<float>(256 << level_of(entry)))) {
+    origin_of(frame, batch, origin);
+  }
+  hn::Vec<F32> low[3];
+  hn::Vec<F32> half;
+  float origin[3];
+};
+
 // Draws a box that covers many pixels along the rows of its rectangle, a vector of pixels at a time. With `reject` it
 // skips covered pixels.
 template <bool kPerspective, Keep kKeep>
@@ -204,12 +218,7 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
   const F32 d;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
   const uint32_t all_lanes = lanes == 32 ? UINT32_MAX : (uint32_t{1} << lanes) - 1;
-  const hn::Vec<F32> low[3] = {hn::Set(d, static_cast<float>(x_of(entry))),
-                               hn::Set(d, static_cast<float>(entry >> 10 & kWithin)),
-                               hn::Set(d, static_cast<float>(entry >> 20 & kWithin))};
-  const auto half = hn::Set(d, static_cast<float>(256 << level_of(entry)));
-  float origin[3];
-  origin_of(frame, *batch, origin);
+  const PlacedBox place(frame, entry, *batch);
   LargeBox<kGray> box(entry, number, depths, batch);
   // A box that fits a vector gets one to itself in each row, unless that would reach into the next strip.
   const int32_t last_x = (where.x0 | 31) + 1 - lanes;
@@ -231,14 +240,14 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
         continue;
       }
       batch->counts.candidates += static_cast<unsigned>(__builtin_popcount(wanted));
-      const Aims aims = aims_of<kPerspective>(frame, origin, hn::Iota(d, static_cast<float>(x)),
-                                              hn::Set(d, static_cast<float>(y)), low, half);
-      const Verdict verdict = judge<kPerspective>(frame, aims, half);
+      const Aims aims = aims_of<kPerspective>(frame, place.origin, hn::Iota(d, static_cast<float>(x)),
+                                              hn::Set(d, static_cast<float>(y)), place.low, place.half);
+      const Verdict verdict = judge<kPerspective>(frame, aims, place.half);
       test.hits = bits_of(d, verdict.hit) & wanted;
       uint32_t unclear = bits_of(d, hn::Or(verdict.unclear, aims.unclear)) & wanted;
       HWY_ALIGN uint8_t grays[64];
       if (kGray) {
-        auto no_gray = hn::Lt(half, hn::Zero(d));
+        auto no_gray = hn::Lt(place.half, hn::Zero(d));
         const hn::Rebind<uint8_t, I32> bytes;
         const auto found = codes_of<kPerspective, kKeep>(frame, *depths.gray_scale, aims, &no_gray);
         hn::Store(hn::DemoteTo(bytes, hn::BitCast(I32(), found)), bytes, grays);
@@ -301,25 +310,20 @@ HWY_NOINLINE void draw_gathered_in(const WideFrame& frame, uint32_t entry, uint3
   const size_t count = gather_open(where, depths, places);
   batch->counts.candidates += count;
   const size_t lanes = hn::Lanes(d);
-  const hn::Vec<F32> low[3] = {hn::Set(d, static_cast<float>(x_of(entry))),
-                               hn::Set(d, static_cast<float>(entry >> 10 & kWithin)),
-                               hn::Set(d, static_cast<float>(entry >> 20 & kWithin))};
-  const auto half = hn::Set(d, static_cast<float>(256 << level_of(entry)));
-  float origin[3];
-  origin_of(frame, *batch, origin);
+  const PlacedBox place(frame, entry, *batch);
   LargeBox<kGray> box(entry, number, depths, batch);
   for (size_t at = 0; at < count; at += lanes) {
     const auto live = hn::FirstN(d, count - at < lanes ? count - at : lanes);
-    const auto place = hn::Load(du, places + at);
-    const auto x = hn::And(place, hn::Set(du, 0xFFFFU));
-    const auto y = hn::ShiftRight<16>(place);
-    const Aims aims = aims_of<kPerspective>(frame, origin, hn::ConvertTo(d, hn::BitCast(di, x)),
-                                            hn::ConvertTo(d, hn::BitCast(di, y)), low, half);
-    const Verdict verdict = judge<kPerspective>(frame, aims, half);
+    const auto pixel_place = hn::Load(du, places + at);
+    const auto x = hn::And(pixel_place, hn::Set(du, 0xFFFFU));
+    const auto y = hn::ShiftRight<16>(pixel_place);
+    const Aims aims = aims_of<kPerspective>(frame, place.origin, hn::ConvertTo(d, hn::BitCast(di, x)),
+                                            hn::ConvertTo(d, hn::BitCast(di, y)), place.low, place.half);
+    const Verdict verdict = judge<kPerspective>(frame, aims, place.half);
     auto unclear = hn::Or(verdict.unclear, aims.unclear);
     HWY_ALIGN uint32_t codes[64];
     if (kGray) {
-      auto no_gray = hn::Lt(half, hn::Zero(d));
+      auto no_gray = hn::Lt(place.half, hn::Zero(d));
       hn::Store(codes_of<kPerspective, kKeep>(frame, *depths.gray_scale, aims, &no_gray), du, codes);
       unclear = hn::Or(unclear, hn::And(no_gray, verdict.hit));
     }

@@ -2,6 +2,7 @@
 #ifndef THIMBLE_SRC_LIGHT_FLAT_PROGRESS_H
 #define THIMBLE_SRC_LIGHT_FLAT_PROGRESS_H
 
+#include "../../base/choose.h"
 #include "../../picture/bricks/sight.h"
 #include "gather.h"
 #include "mirrored.h"
@@ -56,16 +57,8 @@ inline FacePoint landed_on(const SightCourse& course) {
 struct WetProgress : FlatProgress {
   WetNotes* notes;
 };
-template <bool kWet>
-struct Progress {
-  using Type = FlatProgress;
-};
-template <>
-struct Progress<true> {
-  using Type = WetProgress;
-};
 template <EffectSet kSet>
-using ProgressOf = typename Progress<kIsWet<kSet>>::Type;
+using ProgressOf = Choose<kIsWet<kSet>, WetProgress, FlatProgress>;
 
 }  // namespace
 }  // namespace thimble::lit

@@ -8,6 +8,7 @@
 #define THIMBLE_SRC_PICTURE_BRICKS_HALF_PLANE_H
 
 #include "../../base/bits.h"
+#include "../../base/choose.h"
 #include "../../base/ranges.h"
 #include "edge_quotient.h"
 #include "layout.h"
@@ -138,15 +139,7 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plan
 
 // The number of bits of a distance times a direction, signed.
 template <bool kDeep>
-struct WholeIs {
-  using Type = int32_t;
-};
-template <>
-struct WholeIs<true> {
-  using Type = int64_t;
-};
-template <bool kDeep>
-using WholeOf = typename WholeIs<kDeep>::Type;
+using WholeOf = Choose<kDeep, int64_t, int32_t>;
 
 [[gnu::noinline]] void set_all(HalfPlane* plane, uint32_t word) {
   for (int i = 0; i < kTileWords; ++i) {
