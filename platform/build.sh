@@ -49,8 +49,8 @@ cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH
   -DTHIMBLE_CASE_STEP="${CASE_STEP:-1}" -DTHIMBLE_MEASURED="${MEASURED:-OFF}" --log-level=WARNING -Wno-dev \
   --no-warn-unused-cli >/dev/null
 # What does not fit the flash: the linker counts the bytes, of which the scene is what can be less.
-if ! cmake --build "$work" -- --quiet >"$work/build.log" 2>&1; then
-  over=$(sed -n 's/.*region .FLASH. overflowed by \([0-9]*\) bytes.*/\1/p' "$work/build.log" | sort -n | tail -n 1)
+if ! cmake --build "$work" -- --quiet >"$work/cmake.log" 2>&1; then
+  over=$(sed -n 's/.*region .FLASH. overflowed by \([0-9]*\) bytes.*/\1/p' "$work/cmake.log" | sort -n | tail -n 1)
   bytes=
   [ -z "$header" ] || bytes=$(sed -n 's/^#define THIMBLE_SCENE_BYTES \([0-9]*\)u.*/\1/p' "$header")
   if [ -n "$over" ] && [ "${bytes:-0}" -gt "$over" ]; then
@@ -59,11 +59,11 @@ if ! cmake --build "$work" -- --quiet >"$work/build.log" 2>&1; then
     echo "Make the scene smaller: thimble bake SCENE --board $board --coarsen --memory $fits -o scene.h" >&2
     echo "Then:                   make firmware BOARD=$board SCENE=scene.h" >&2
   else
-    cat "$work/build.log" >&2
+    cat "$work/cmake.log" >&2
   fi
   exit 1
 fi
-cat "$work/build.log"
+cat "$work/cmake.log"
 # A drive takes images for RAM, too (APP_ram.uf2), where they leave an arena. PLACE=flash: not wanted.
 if [ -n "$(fact UF2)" ] && [ "${PLACE:-}" != flash ]; then
   targets=
