@@ -42,7 +42,7 @@ function(thimble_choose_frames)
   endif()
   # Brick maps and frames by them for worlds of level 9 and 10 (tree/brick_map.h), 95 KB of code.
   if("${BOARD_WORLDS}" STREQUAL "deep")
-    target_compile_definitions(thimble PRIVATE THIMBLE_DEEP_WORLDS)
+    target_compile_definitions(thimble PUBLIC THIMBLE_DEEP_WORLDS)
   elseif(NOT "${BOARD_WORLDS}" STREQUAL "")
     message(FATAL_ERROR "BOARD_WORLDS of ${BOARD_NAME} is ${BOARD_WORLDS}; it may be deep, or left out")
   endif()

@@ -6,7 +6,12 @@
 namespace thimble::apps {
 
 int bricks() {
-  return run_cases("bricks", portable::kBrickGroups, portable::kBrickCrc32, portable::kBrickCrc32,
+#ifdef THIMBLE_DEEP_WORLDS
+  constexpr uint32_t kAll = portable::kBrickCrc32;
+#else
+  constexpr uint32_t kAll = portable::kCommonBrickCrc32;
+#endif
+  return run_cases("bricks", portable::kBrickGroups, kAll, portable::kCommonBrickCrc32,
                    portable::kLitArenaBytes);
 }
 

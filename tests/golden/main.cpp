@@ -143,8 +143,8 @@ int print_crc() {
   if (!print_crcs("kWorldCrc32", nullptr, portable::kWorldGroups)) {
     return 1;
   }
-  printf("/// Of frames by bricks, all of which every board draws.\n");
-  if (!print_crcs("kBrickCrc32", nullptr, portable::kBrickGroups)) {
+  printf("/// Of frames by bricks, all of them and those that every board draws.\n");
+  if (!print_crcs("kBrickCrc32", "kCommonBrickCrc32", portable::kBrickGroups)) {
     return 1;
   }
   printf("/// Of lit frames by bricks.\n");

@@ -35,12 +35,17 @@ static_assert(kLookCount == sizeof kCourses / sizeof kCourses[0]);
 
 }  // namespace
 
-bool make_world(Check& check) {
-  if (!make_pool(check, kPoolNodes, kLevel)) {
+bool make_world(Check& check, const Site& site) {
+  if (!make_pool(check, kPoolNodes, site.level)) {
     return false;
   }
   for (const Box& one : kBoxes) {
-    if (!check.equal(check.world.pool.insert_box(one.box, one.material), Status::kOk,
+    VoxelBox box = one.box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] += site.corner[axis];
+      box.high[axis] += site.corner[axis];
+    }
+    if (!check.equal(check.world.pool.insert_box(box, one.material), Status::kOk,
                      THIMBLE_WHAT("insert_box"))) {
       return false;
     }
@@ -48,22 +53,27 @@ bool make_world(Check& check) {
   return make_compact(check);
 }
 
-bool look(Check& check, int number) {
+bool look(Check& check, int number, const Site& site) {
   const Course& how = kCourses[number];
-  const Vec3Q8 eye = point_q8(how.eye[0], how.eye[1], how.eye[2]);
-  const Vec3i forward = look_at(eye, point_q8(how.target[0], how.target[1], how.target[2]));
+  const auto place = [&site](const int32_t(&at)[3]) {
+    return point_q8(at[0] + site.corner.x * Q8::kOne, at[1] + site.corner.y * Q8::kOne,
+                    at[2] + site.corner.z * Q8::kOne);
+  };
+  const Vec3Q8 eye = place(how.eye);
+  const Vec3i forward = look_at(eye, place(how.target));
   Status status = Status::kOk;
   if (how.fov != 0) {
     status = check.camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(how.fov), kWidth, kHeight, 0},
-                              kLevel);
+                              site.level);
   } else {
     status = check.camera.set(OrthographicView{eye, forward, {}, Q14::saturate(how.span), kWidth, kHeight, 0},
-                              kLevel);
+                              site.level);
   }
   check.shading = {};
   check.shading.palette = {kPalette, sizeof kPalette / sizeof kPalette[0]};
   check.shading.background = {12, 34, 56};
-  const DepthRange range = depth_range(check.camera, {{0, 0, 0}, {16, 16, 16}});
+  const Vec3i& low = site.corner;
+  const DepthRange range = depth_range(check.camera, {low, {low.x + 16, low.y + 16, low.z + 16}});
   check.shading.near_q8 = range.near_q8;
   check.shading.far_q8 = range.far_q8;
   return check.equal(status, Status::kOk, THIMBLE_WHAT("camera"));

@@ -17,13 +17,19 @@ inline constexpr uint32_t kPoolBytes = (static_cast<uint32_t>(Octree::octree_byt
 inline constexpr uint32_t kTreeBytes = 80 + 3 * kPoolNodes;
 inline constexpr uint32_t kMapBytes = 640;
 
+/// Where the boxes stand: in a world of kLevel or deeper, from a corner on whose coordinates are multiples of 16.
+struct Site {
+  int level = kLevel;
+  Vec3i corner;
+};
+
 /// The tree in `check.world.compact`, of materials 1 to 5.
-bool make_world(Check& check);
+bool make_world(Check& check, const Site& site = {});
 
 inline constexpr int kLookCount = 8;
 /// Sets `check.camera` and `check.shading` for one of kLookCount cameras:
 enum Look : int { kBefore, kAlongAxis, kInside, kInSolid, kDiagonal, kParallel, kFromAbove, kFarAway };
-bool look(Check& check, int number);
+bool look(Check& check, int number, const Site& site = {});
 
 /// A band of the picture in `check.band`, nothing counted in `check.counts`.
 void set_band(Check& check, Bytes bytes, PixelFormat format, int32_t y, int32_t rows);

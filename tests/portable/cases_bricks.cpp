@@ -19,18 +19,16 @@ constexpr uint32_t kBandBytes = 232;
 constexpr uint32_t kBrickArena = kPoolBytes + kTreeBytes + kMapBytes + 2 * kBandBytes + sizeof(BrickMap) + 64;
 static_assert(kBrickArena <= kLitArenaBytes);
 
-void bricks(Check& check, int index) {
-  THIMBLE_REQUIRE(make_world(check));
-  const Span<BrickMap> map = check.take<BrickMap>(1);
-  const Bytes bytes = check.arena.take(kMapBytes);
-  const Bytes wanted = check.arena.take(kBandBytes);
-  const Bytes drawn = check.arena.take(kBandBytes);
-  THIMBLE_REQUIRE(map.size == 1 && bytes.size == kMapBytes && wanted.size == kBandBytes &&
-                  drawn.size == kBandBytes);
-  map[0] = BrickMap();
-  THIMBLE_REQUIRE_OK(BrickMap::make(check.world.compact, bytes, &map[0]));
-  THIMBLE_REQUIRE(look(check, index));
-  check.note(draws_fast(map[0], check.camera) ? 1 : 0);
+// What frames are compared in: two bands.
+struct Bands {
+  explicit Bands(Check& check) : wanted(check.arena.take(kBandBytes)), drawn(check.arena.take(kBandBytes)) {}
+  bool there() const { return wanted.size == kBandBytes && drawn.size == kBandBytes; }
+  Bytes wanted;
+  Bytes drawn;
+};
+
+// Draws the frame by the tree and by `map`, in bands of every format and shading.
+void compare(Check& check, const BrickMap& map, const Bands& bands, int index) {
   for (int mode = 0; mode < 4; ++mode) {
     const PixelFormat format = kFormats[(index + mode) % 5];
     check.shading.mode = static_cast<ShadeMode>(mode);
@@ -40,7 +38,7 @@ void bricks(Check& check, int index) {
     const int32_t band_rows = fits < most ? fits : most;
     for (int32_t y = 0; y < kHeight; y += band_rows) {
       const int32_t rows = kHeight - y < band_rows ? kHeight - y : band_rows;
-      set_band(check, wanted, format, y, rows);
+      set_band(check, bands.wanted, format, y, rows);
       for (uint8_t& byte : check.band.pixels) {
         byte = 0;
       }
@@ -48,22 +46,35 @@ void bricks(Check& check, int index) {
           render_band(check.world.compact, check.camera, check.shading, check.band, &check.counts));
       const uint64_t hits = check.counts.hits;
       const uint64_t rays = check.counts.rays;
-      set_band(check, drawn, format, y, rows);
+      set_band(check, bands.drawn, format, y, rows);
       for (uint8_t& byte : check.band.pixels) {
         byte = 0;
       }
       THIMBLE_REQUIRE_OK(
-          render_band(check.world.compact, map[0], check.camera, check.shading, check.band, &check.counts));
+          render_band(check.world.compact, map, check.camera, check.shading, check.band, &check.counts));
       THIMBLE_EQUAL(check.counts.rays, rays);
       THIMBLE_EQUAL(check.counts.hits, hits);
       check.note(static_cast<int64_t>(check.counts.node_visits));
       const size_t size = check.band.pixels.size;
-      THIMBLE_REQUIRE(check.equal(crc32(drawn.subspan(0, size)), crc32(wanted.subspan(0, size)),
+      THIMBLE_REQUIRE(check.equal(crc32(bands.drawn.subspan(0, size)), crc32(bands.wanted.subspan(0, size)),
                                   THIMBLE_WHAT("the band of bricks is that of the tree")));
     }
   }
+}
+
+void bricks(Check& check, int index) {
+  THIMBLE_REQUIRE(make_world(check));
+  const Span<BrickMap> map = check.take<BrickMap>(1);
+  const Bytes bytes = check.arena.take(kMapBytes);
+  const Bands bands(check);
+  THIMBLE_REQUIRE(map.size == 1 && bytes.size == kMapBytes && bands.there());
+  map[0] = BrickMap();
+  THIMBLE_REQUIRE_OK(BrickMap::make(check.world.compact, bytes, &map[0]));
+  THIMBLE_REQUIRE(look(check, index));
+  check.note(draws_fast(map[0], check.camera) ? 1 : 0);
+  compare(check, map[0], bands, index);
   // What is not the tree's own is refused, and what the fast way does not take.
-  set_band(check, drawn, PixelFormat::kGray8, 0, 1);
+  set_band(check, bands.drawn, PixelFormat::kGray8, 0, 1);
   const BrickMap none;
   THIMBLE_EQUAL(render_band_32(check.world.compact, none, check.camera, check.shading, check.band),
                 Status::kDamaged);
@@ -72,6 +83,39 @@ void bricks(Check& check, int index) {
                   Status::kBadArgument);
   }
 }
+
+#ifdef THIMBLE_DEEP_WORLDS
+// Worlds of level 9 and 10.
+constexpr uint32_t kDeepMapBytes = 2048;
+constexpr uint32_t kDeepArena = kCommonArenaBytes + kDeepMapBytes;
+constexpr Site kDeepSites[] = {
+    {9, {0, 0, 0}}, {9, {496, 240, 48}}, {10, {1008, 0, 512}}, {10, {512, 1008, 1008}}};
+
+void deep_bricks(Check& check, int index) {
+  const Site& site = kDeepSites[index % 4];
+  THIMBLE_REQUIRE(make_world(check, site));
+  const Span<BrickMap> map = check.take<BrickMap>(1);
+  const size_t most = most_brick_map_bytes(check.world.compact);
+  const Bytes bytes = check.arena.take(most);
+  const Bands bands(check);
+  THIMBLE_REQUIRE(map.size == 1 && bytes.size == most && bands.there());
+  THIMBLE_REQUIRE(look(check, index, site));
+  map[0] = BrickMap();
+  size_t size = 0;
+  THIMBLE_REQUIRE_OK(BrickMap::make(check.world.compact, bytes, &map[0], &size));
+  THIMBLE_CHECK(BrickMap::validate(bytes.subspan(0, size)) == nullptr);
+  THIMBLE_EQUAL(BrickMap::make(check.world.compact, bytes.subspan(0, size - 1), nullptr),
+                Status::kOutOfMemory);
+  THIMBLE_REQUIRE_OK(BrickMap::make(check.world.compact, bytes, &map[0], &size));
+  THIMBLE_EQUAL(draws_fast(map[0], check.camera), check.camera.is_perspective());
+  compare(check, map[0], bands, index);
+  set_band(check, bands.drawn, PixelFormat::kGray8, 0, 1);
+  THIMBLE_EQUAL(render_band_32(check.world.compact, map[0], check.camera, check.shading, check.band),
+                Status::kBadArgument);
+  bytes[size - 1] = static_cast<uint8_t>(bytes[size - 1] ^ 1U);
+  THIMBLE_CHECK(BrickMap::validate(bytes.subspan(0, size)) != nullptr);
+}
+#endif
 
 // --- Cut-off
 
@@ -209,6 +253,15 @@ constexpr Case kCases[] = {
     {"bricks, a parallel camera -> the tree's frame", kBrickArena, bricks, kParallel},
     {"bricks, a parallel camera from above -> the tree's frame", kBrickArena, bricks, kFromAbove},
     {"bricks, from far away -> the tree's frame", kBrickArena, bricks, kFarAway},
+#ifdef THIMBLE_DEEP_WORLDS
+    {"bricks at level 9, a camera before the scene -> the tree's frame", kDeepArena, deep_bricks, kBefore},
+    {"bricks at level 9, along an axis -> the tree's frame", kDeepArena, deep_bricks, kAlongAxis},
+    {"bricks at level 10, from inside the world -> the tree's frame", kDeepArena, deep_bricks, kInside},
+    {"bricks at level 10, from inside what is solid -> the tree's frame", kDeepArena, deep_bricks, kInSolid},
+    {"bricks at level 9, along a diagonal -> the tree's frame", kDeepArena, deep_bricks, kDiagonal},
+    {"bricks at level 9, a parallel camera -> the tree's frame", kDeepArena, deep_bricks, kParallel},
+    {"bricks at level 10, from far away -> the tree's frame", kDeepArena, deep_bricks, kFarAway},
+#endif
     {"a frame that stops at small blocks -> the same everywhere", kCutArena, cut_off, kBefore},
     {"the same, from inside the world -> the same everywhere", kCutArena, cut_off, kInside},
     {"the same, parallel -> the same everywhere", kCutArena, cut_off, kParallel},
