@@ -7,7 +7,7 @@ const {test, is, holds} = require('./check.js');
 const numbers = fs.readFileSync('tests/portable/result_crc.h', 'utf8');
 const resultOf = (name) => new RegExp(`${name} = 0x([0-9A-F]+)`).exec(numbers)[1].toLowerCase();
 const CASES = {selftest: 'kCoreCrc32', golden: 'kCommonGoldenCrc32', lit: 'kLitCrc32', formats: 'kPanelCrc32',
-  worlds: 'kWorldCrc32', bricks: 'kBrickCrc32', map_light: 'kMapLightCrc32'};
+  worlds: 'kWorldCrc32', bricks: 'kCommonBrickCrc32', map_light: 'kMapLightCrc32'};
 const FORMATS_BYTES = 4608;  // kCommonArenaBytes (tests/portable/groups.h): 8 KiB less a stack that draws are not enough
 
 // `run(board, app)`: the status, the output and the RAM used of an application that runs until it ends.
