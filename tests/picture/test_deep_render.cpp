@@ -23,7 +23,7 @@ TEST_CASE(
     color = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
              static_cast<std::uint8_t>(random())};
   }
-  const std::uint64_t wanted_pixels = pixels_to_draw();
+  const std::uint64_t wanted_pixels = pixels_to_draw(100'000'000, 1'000'000);
   std::uint64_t pixels = 0;
   std::uint64_t fast = 0;
   std::uint64_t hits = 0;
