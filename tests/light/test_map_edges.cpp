@@ -18,7 +18,7 @@ using tests::HeapBytes;
 
 // A house of a few walls, in all materials.
 struct House : LitWorld {
-  explicit House(bool empty = false) : LitWorld(5) {
+  explicit House(bool empty = false, int level = 5) : LitWorld(level) {
     if (!empty) {
       box({2, 2, 0}, {30, 30, 2}, 1);
       box({6, 6, 2}, {8, 26, 14}, 2);
@@ -310,6 +310,20 @@ TEST_CASE(
   CHECK_FALSE(sun.belongs_to(map, {1, 2, 3}));
   CHECK(SunBricks::make(map, {1, 2, 3}, sun_bytes.span(), &sun) == Status::kOk);
   CHECK(sun.belongs_to(map, {1, 2, 3}));
+}
+
+TEST_CASE("lit frames by the map: a world of level 9 -> the tree's bytes, and nothing is proven of a sun") {
+  const House world(false, 9);
+  HeapBytes room(most_brick_map_bytes(world.tree));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  CHECK(SunBricks::bytes(map) == 0);
+  HeapBytes sun_bytes(4096);
+  SunBricks sun;
+  CHECK(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOutOfRange);
+  CHECK_FALSE(sun.belongs_to(map, world.lights[0].place));
+  compare<kSun>(world, map, {}, PixelFormat::kRgb888, false, true, 0);
+  compare<kSun>(world, map, {&sun, 1}, PixelFormat::kGray8, true, false, 0);
 }
 
 // ---- balls

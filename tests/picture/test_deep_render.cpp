@@ -75,3 +75,41 @@ TEST_CASE(
   CHECK(fast > wanted_pixels / 2);
   CHECK(hits > wanted_pixels / 10);
 }
+
+TEST_CASE(
+    "deep frames: limits -> the farthest eye by the map, 1/256 voxel farther by the tree, the same bytes") {
+  std::mt19937_64 random(20261126);
+  for (const int level : {9, 10}) {
+    const int side_q8 = 256 << level;
+    const ChipScene scene = make_deep_scene(random, DeepWorld::kBlocks, level);
+    const VoxelBox& box = scene.tree.bounds();
+    for (int turn = 0; turn < 12; ++turn) {
+      CAPTURE(level);
+      CAPTURE(turn);
+      const int axis = turn / 2 % 3;
+      const bool beyond = turn % 2 != 0;
+      const int distance = kMostDeepDistanceQ8 + (beyond ? 1 : 0);
+      Vec3Q8 eye;
+      Vec3i forward;
+      for (int k = 0; k < 3; ++k) {
+        const int middle = 128 * (box.low[k] + box.high[k]);
+        eye[k] = Q8::from_raw(k != axis ? side_q8 / 3 : turn < 6 ? distance : side_q8 - distance);
+        forward[k] = middle - eye[k].raw;
+      }
+      Camera camera;
+      REQUIRE(camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(30), 160, 90, 15}, level) ==
+              Status::kOk);
+      CHECK(draws_fast(scene.map, camera) != beyond);
+      std::vector<std::uint8_t> wanted(160 * 90);
+      std::vector<std::uint8_t> got(wanted.size());
+      RenderCounts counts;
+      REQUIRE(render_band(scene.tree, camera, Shading(),
+                          {{wanted.data(), wanted.size()}, PixelFormat::kGray8, 0, 0, 90},
+                          &counts) == Status::kOk);
+      REQUIRE(render_band(scene.tree, scene.map, camera, Shading(),
+                          {{got.data(), got.size()}, PixelFormat::kGray8, 0, 0, 90}) == Status::kOk);
+      CHECK(got == wanted);
+      CHECK(counts.hits > 0);
+    }
+  }
+}

@@ -78,6 +78,15 @@ void fill_deep(std::mt19937_64& random, DeepWorld world, int level, Octree* pool
   }
 }
 
+// Often the least or the greatest from which frames go by the map; and beyond.
+int far_deep_coordinate(std::mt19937_64& random, int side_q8) {
+  const int reach = kMostDeepDistanceQ8 + pick_int(random, 0, 1);
+  const int kind = pick_int(random, 0, 3);
+  const int distance = kind < 2 ? reach : pick_int(random, reach / 2, reach + reach / 4);
+  const int at = kind % 2 == 0 ? distance : side_q8 - distance;
+  return std::clamp(at, kMinOriginWorlds * side_q8, kMaxOriginWorlds * side_q8);
+}
+
 }  // namespace
 
 ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
@@ -109,12 +118,14 @@ Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree) {
     Vec3Q8 eye;
     Vec3i forward;
     const int look = pick_int(random, 0, 5);
+    const bool far = pick_int(random, 0, 3) == 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const int kind = pick_int(random, 0, 4);
+      const int kind = pick_int(random, 0, far ? 6 : 4);
       const int solid = pick_int(random, 256 * box.low[axis], 256 * box.high[axis]);
       eye[axis] = Q8::from_raw(kind == 0   ? 256 * pick_int(random, 0, 1 << level)
                                : kind == 1 ? pick_int(random, 0, 1) * side_q8 + pick_int(random, -256, 256)
                                : kind == 2 ? solid + pick_int(random, -40 * 256, 40 * 256)
+                               : kind >= 5 ? far_deep_coordinate(random, side_q8)
                                            : pick_int(random, 0, side_q8));
       forward[axis] = look == 0 ? pick_int(random, -1, 1) : solid - eye[axis].raw;
     }

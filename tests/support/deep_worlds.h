@@ -15,11 +15,15 @@ namespace thimble::tests {
 enum class DeepWorld { kDust, kBlocks, kTerrain, kShell, kCorners, kMerged };
 inline constexpr int kDeepWorldKinds = 6;
 
+/// How far from a world's sides an eye may be for a frame by the map, in 1/256 voxel.
+inline constexpr int kMostDeepDistanceQ8 = (1 << 19) - 512;
+
 /// Materials 0 .. 9, or any, or one. `pool_bytes` holds the pool (null: it is dropped).
 ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
                           std::vector<std::uint8_t>* pool_bytes = nullptr, Octree* pool = nullptr);
 
-/// As hard_chip_camera; and eyes within the world, close by what is solid and at its sides, that mostly look at that.
+/// As hard_chip_camera; and eyes within the world, close by what is solid, at its sides and as far away as frames by the
+/// map go, that mostly look at what is solid.
 Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree);
 
 }  // namespace thimble::tests

@@ -116,6 +116,77 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "deep map: solid pages of three materials, and the world's last voxel -> each brick of its material") {
+  std::vector<std::uint8_t> pool(Octree::octree_bytes(300));
+  Octree octree;
+  REQUIRE(Octree::make(9, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  const struct {
+    Vec3i corner;
+    int level;
+    std::uint8_t material;
+  } blocks[] = {{{32, 0, 64}, 5, 3}, {{64, 0, 64}, 4, 7}, {{80, 0, 64}, 4, 3}, {{128, 0, 64}, 6, 0}};
+  for (const auto& block : blocks) {
+    REQUIRE(octree.insert_block(block.corner, block.level, block.material) == Status::kOk);
+  }
+  REQUIRE(octree.insert({511, 511, 511}, 9) == Status::kOk);
+  const HeapBytes bytes = compact_of(octree);
+  const CompactTree tree = open_or_throw(bytes);
+  const HeapBytes room(most_brick_map_bytes(tree));
+  BrickMap map;
+  std::size_t size = 0;
+  REQUIRE(BrickMap::make(tree, room.span(), &map, &size) == Status::kOk);
+  CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+  CHECK(map.brick_count() == 5);  // empty, one a material, the last voxel's
+  for (const auto& block : blocks) {
+    const int last = (1 << block.level) - 1;
+    for (const Vec3i& at :
+         {block.corner, Vec3i{block.corner.x + last, block.corner.y + last, block.corner.z + last}}) {
+      const Cell cell = cell_of(map, at);
+      REQUIRE(cell.solid);
+      CHECK(map.material(tree, cell.number, cell.bit) == block.material);
+    }
+  }
+  const Cell last = cell_of(map, {511, 511, 511});
+  REQUIRE(last.solid);
+  CHECK(map.material(tree, last.number, last.bit) == 9);
+}
+
+TEST_CASE("deep map: no tree, levels that have no map -> none made, no bytes") {
+  CHECK(most_brick_map_bytes(CompactTree()) == 0);
+  CHECK(BrickMap::make(CompactTree(), {}, nullptr, nullptr) == Status::kOutOfRange);
+  for (const int level : {1, 11}) {
+    CAPTURE(level);
+    std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
+    Octree octree;
+    REQUIRE(Octree::make(level, {pool.data(), pool.size()}, &octree) == Status::kOk);
+    REQUIRE(octree.insert({1, 1, 1}, 5) == Status::kOk);
+    const HeapBytes bytes = compact_of(octree);
+    const CompactTree tree = open_or_throw(bytes);
+    CHECK(most_brick_map_bytes(tree) == 0);
+    CHECK(BrickMap::make(tree, {}, nullptr, nullptr) == Status::kOutOfRange);
+  }
+}
+
+TEST_CASE("deep map: each beginning of a map -> truncated, or not a map") {
+  std::mt19937_64 random(914);
+  const ChipScene scene = make_deep_scene(random, DeepWorld::kCorners, 10);
+  const std::size_t size = scene.map.size_bytes();
+  const auto* const from = static_cast<const std::uint8_t*>(static_cast<const void*>(scene.map_words.data()));
+  for (std::size_t length = 0; length < size; length += length < 64 || length + 64 > size ? 1 : 61) {
+    CAPTURE(length);
+    const HeapBytes bytes(length);
+    if (length != 0) {
+      std::memcpy(bytes.span().data, from, length);
+    }
+    BrickMap map;
+    REQUIRE(BrickMap::open(bytes.view(), &map) == Status::kDamaged);
+    const char* const text = BrickMap::validate(bytes.view());
+    REQUIRE(text != nullptr);
+    CHECK(std::strcmp(text, length < 4 ? "not a brick map" : "truncated") == 0);
+  }
+}
+
+TEST_CASE(
     "deep map: less room than it takes -> out of memory, nothing written behind it; exactly so much -> "
     "made") {
   std::mt19937_64 random(911);
@@ -167,6 +238,43 @@ TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the
       CHECK(size == world.bytes);
     }
   }
+}
+
+// A tree whose nodes are damaged still opens, as those that are read from flash do.
+TEST_CASE("deep map: a damaged tree -> its map is made inside the room, or refused") {
+  std::mt19937_64 random(915);
+  int made = 0;
+  for (int turn = 0; turn < 100; ++turn) {
+    const ChipScene scene =
+        make_deep_scene(random, turn % 2 == 0 ? DeepWorld::kCorners : DeepWorld::kBlocks, 9);
+    const HeapBytes bytes(scene.tree_bytes.view().size);
+    std::memcpy(bytes.span().data, scene.tree_bytes.view().data, bytes.view().size);
+    const auto first = static_cast<std::size_t>(scene.tree.masks() - scene.tree_bytes.view().data);
+    const int last = static_cast<int>(first + scene.tree.node_count()) - 1;
+    for (int change = pick_int(random, 1, 40); change > 0; --change) {
+      bytes.span().data[pick_int(random, static_cast<int>(first), last)] =
+          static_cast<std::uint8_t>(random());
+    }
+    CompactTree tree;
+    if (CompactTree::open(bytes.view(), &tree) != Status::kOk) {
+      continue;
+    }
+    const std::size_t most = std::min(most_brick_map_bytes(tree), std::size_t{1} << 23);
+    const HeapBytes room(most);
+    std::size_t size = 0;
+    BrickMap map;
+    const Status status = BrickMap::make(tree, room.span(), &map, &size);
+    CHECK((status == Status::kOk || status == Status::kOutOfMemory || status == Status::kOutOfRange));
+    if (status == Status::kOk) {
+      CHECK(size <= most);
+      CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+      for (std::uint32_t number = 1; number < map.brick_count(); ++number) {
+        (void)map.material(tree, number, number & 63U);
+      }
+      ++made;
+    }
+  }
+  CHECK(made > 30);
 }
 
 // Each byte of a small map, and random ones of larger: what opens is read inside its bytes (AddressSanitizer looks).
