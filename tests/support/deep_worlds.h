@@ -4,10 +4,8 @@
 #define THIMBLE_TESTS_SUPPORT_DEEP_WORLDS_H
 
 #include <random>
-#include <vector>
 
 #include "support/chip_worlds.h"
-#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 
@@ -15,9 +13,10 @@ namespace thimble::tests {
 enum class DeepWorld { kDust, kBlocks, kTerrain, kShell, kCorners, kMerged };
 inline constexpr int kDeepWorldKinds = 6;
 
-/// Materials 0 .. 9, or any, or one. `pool_bytes` holds the pool (null: it is dropped).
-ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
-                          std::vector<std::uint8_t>* pool_bytes = nullptr, Octree* pool = nullptr);
+/// The bytes of such a tree. Materials 0 .. 9, or any, or one.
+HeapBytes make_deep_tree(std::mt19937_64& random, DeepWorld world, int level);
+/// The same with its map.
+ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level);
 
 /// As hard_chip_camera; and eyes within the world, close by what is solid and at its sides, that mostly look at that.
 Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree);
