@@ -1,9 +1,9 @@
 // Every renderer, over random and real worlds, by cameras that stand on lattice points, look along diagonals and from
 // inside: each pixel of each is the core's, and the core's hits are the judge's.
 //
-// A run takes four million pixels. THIMBLE_SOAK_MINUTES=60 goes on for that long, with a seed of its own for each frame
-// and a summary at the end (`make soak MINUTES=60 SEED=2`); with THIMBLE_DATA the scene files of that folder are among
-// its worlds.
+// A run takes four million pixels, a hundred thousand of them by maps of worlds of level 9 and 10.
+// THIMBLE_SOAK_MINUTES=60 goes on for that long, with a seed of its own for each frame and a summary at the end (`make
+// soak MINUTES=60 SEED=2`); with THIMBLE_DATA the scene files of that folder are among its worlds.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,6 +19,7 @@
 
 #include "readers/source.h"
 #include "reference/reference.h"
+#include "support/deep_worlds.h"
 #include "support/hard_frames.h"
 #include "support/lit_cases.h"
 #include "support/solid_worlds.h"
@@ -36,6 +37,8 @@ double number_from(const char* name, double otherwise) {
   const char* const given = std::getenv(name);
   return given == nullptr ? otherwise : std::atof(given);
 }
+
+constexpr const char* kDeepBricks = "bricks, worlds of level 9 and 10";
 
 // What a renderer drew so far, and how much of it was not the core's.
 struct Tally {
@@ -63,6 +66,11 @@ class Soak {
     }
     return sum;
   }
+  std::uint64_t pixels_of_deep_worlds() const {
+    const auto at = std::find_if(tallies_.begin(), tallies_.end(),
+                                 [](const Tally& tally) { return tally.name == kDeepBricks; });
+    return at == tallies_.end() ? 0 : at->pixels;
+  }
   std::uint64_t wrong() const {
     std::uint64_t sum = 0;
     for (const Tally& tally : tallies_) {
@@ -88,7 +96,8 @@ class Soak {
   void draw_frame(std::mt19937_64& random);
   void draw_by_core(const WideScene& scene, const FrameCase& frame,
                     const std::vector<std::uint8_t>& expected);
-  void draw_bricks(const WideScene& scene, const FrameCase& frame, const std::vector<std::uint8_t>& expected);
+  void draw_bricks(const WideScene& scene, const BrickMap& map, const FrameCase& frame,
+                   const std::vector<std::uint8_t>& expected);
   void draw_anytime(const WideScene& scene, const FrameCase& frame,
                     const std::vector<std::uint8_t>& expected);
   void draw_wide_all(std::mt19937_64& random, const WideScene& scene, const FrameCase& frame,
@@ -164,13 +173,17 @@ const std::vector<WideScene>& real_worlds() {
 }
 
 WideScene any_world(std::mt19937_64& random) {
-  switch (pick(random, 0, 3)) {
+  switch (pick(random, 0, 4)) {
     case 0:
       return random_scene(random);
     case 1:
       return cabinet(random);
+    case 2: {
+      const auto kind = static_cast<DeepWorld>(pick(random, 0, kDeepWorldKinds - 1));
+      return scene_of(make_deep_tree(random, kind, pick_int(random, 9, 10)).view(), "deep");
+    }
     default:
-      // Up to level 8 there are brick maps.
+      // Up to level 8 brick maps have one directory.
       return solid_scene(random, static_cast<int>(pick(random, 2, pick(random, 0, 2) == 0 ? 12 : 8)));
   }
 }
@@ -214,21 +227,17 @@ void Soak::draw_by_core(const WideScene& scene, const FrameCase& frame,
   }
 }
 
-void Soak::draw_bricks(const WideScene& scene, const FrameCase& frame,
+void Soak::draw_bricks(const WideScene& scene, const BrickMap& map, const FrameCase& frame,
                        const std::vector<std::uint8_t>& expected) {
-  if (scene.level < kMinBrickMapLevel || scene.level > kMaxBrickMapLevel) {
+  if (!draws_fast(map, frame.camera)) {
     return;
   }
-  const HeapBytes room(std::min(most_brick_map_bytes(scene.level), std::size_t{1} << 23));
-  BrickMap map;
-  if (BrickMap::make(scene.tree, room.span(), &map) != Status::kOk || !draws_fast(map, frame.camera)) {
-    return;
-  }
+  const bool is_deep = scene.level > kMaxBrickMapLevel;
   Status status = Status::kOk;
-  const bool same = same_as(frame, expected, &status, [&](const Band& band) {
+  const auto draw = [&](const Band& band) {
     return render_band(scene.tree, map, frame.camera, frame.shading, band);
-  });
-  count("bricks", pixels_of(frame), same);
+  };
+  count(is_deep ? kDeepBricks : "bricks", pixels_of(frame), same_as(frame, expected, &status, draw));
   // Row by row, or as many as a page has.
   const std::int32_t step = band_row_multiple(frame.band.format);
   bool is_right = true;
@@ -241,11 +250,13 @@ void Soak::draw_bricks(const WideScene& scene, const FrameCase& frame,
     const std::size_t size = band_size(part);
     const std::vector<std::uint8_t> wanted(expected.begin() + static_cast<std::ptrdiff_t>(first),
                                            expected.begin() + static_cast<std::ptrdiff_t>(first + size));
-    is_right = is_right && same_as(part, wanted, &status, [&](const Band& band) {
-                 return render_band_32(scene.tree, map, frame.camera, frame.shading, band);
-               });
+    is_right =
+        is_right && same_as(part, wanted, &status, [&](const Band& band) {
+          return is_deep ? draw(band) : render_band_32(scene.tree, map, frame.camera, frame.shading, band);
+        });
   }
-  count("bricks, 32 bits, by rows", pixels_of(frame), is_right);
+  count(is_deep ? std::string(kDeepBricks) + ", by rows" : "bricks, 32 bits, by rows", pixels_of(frame),
+        is_right);
 }
 
 void Soak::draw_anytime(const WideScene& scene, const FrameCase& frame,
@@ -329,6 +340,13 @@ void Soak::judge(std::mt19937_64& random, const WideScene& scene, const FrameCas
   count("rays of the core, by the judge", kJudged, is_right);
 }
 
+// Most of such a world is empty: a camera that finds what is solid.
+void look_at_deep(std::mt19937_64& random, const WideScene& scene, FrameCase* frame) {
+  frame->camera = hard_deep_camera(random, scene.tree);
+  frame->band.rows = frame->camera.height_px();
+  set_depth_range(scene, frame);
+}
+
 void Soak::draw_frame(std::mt19937_64& random) {
   const bool is_real = pick(random, 0, 3) == 0;
   const std::vector<WideScene>& real = real_worlds();
@@ -336,15 +354,21 @@ void Soak::draw_frame(std::mt19937_64& random) {
   const WideScene& scene =
       is_real ? real[static_cast<std::size_t>(pick(random, 0, static_cast<std::int64_t>(real.size()) - 1))]
               : own;
+  const HeapBytes room(std::min(most_brick_map_bytes(scene.tree), std::size_t{1} << 23));
+  BrickMap map;  // of no level where there is none
+  (void)BrickMap::make(scene.tree, room.span(), &map);
   for (int view = 0; view < 4; ++view) {
     FrameCase frame;
     if (!hard_frame(random, scene, &frame)) {
       continue;
     }
+    if (map.level() > kMaxBrickMapLevel && view % 2 == 1) {
+      look_at_deep(random, scene, &frame);
+    }
     std::uint64_t hits = 0;
     const std::vector<std::uint8_t> expected = draw_core(scene, frame, &hits);
     draw_by_core(scene, frame, expected);
-    draw_bricks(scene, frame, expected);
+    draw_bricks(scene, map, frame, expected);
     draw_anytime(scene, frame, expected);
     draw_wide_all(random, scene, frame, expected);
     if (view == 0) {
@@ -385,7 +409,7 @@ TEST_CASE("soak: every renderer, hard cameras, random and real worlds -> every p
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   Soak soak(first_seed);
-  while (soak.pixels() < kPixels || seconds() < 60 * minutes) {
+  while (soak.pixels() < kPixels || soak.pixels_of_deep_worlds() < kPixels / 40 || seconds() < 60 * minutes) {
     soak.frame();
   }
   if (minutes > 0 || soak.wrong() != 0) {

@@ -89,16 +89,16 @@ int far_deep_coordinate(std::mt19937_64& random, int side_q8) {
 
 }  // namespace
 
-ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
-                          std::vector<std::uint8_t>* pool_bytes, Octree* pool) {
-  std::vector<std::uint8_t> own_bytes;
-  Octree own;
-  std::vector<std::uint8_t>& bytes = pool_bytes == nullptr ? own_bytes : *pool_bytes;
-  Octree& octree = pool == nullptr ? own : *pool;
-  bytes.resize(Octree::octree_bytes(150000));
-  REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
+HeapBytes make_deep_tree(std::mt19937_64& random, DeepWorld world, int level) {
+  std::vector<std::uint8_t> pool(Octree::octree_bytes(150000));
+  Octree octree;
+  REQUIRE(Octree::make(level, {pool.data(), pool.size()}, &octree) == Status::kOk);
   fill_deep(random, world, level, &octree);
-  ChipScene scene{compact_of(octree, kMinRankShift), {}, {}, {}};
+  return compact_of(octree, kMinRankShift);
+}
+
+ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level) {
+  ChipScene scene{make_deep_tree(random, world, level), {}, {}, {}};
   scene.tree = open_or_throw(scene.tree_bytes);
   scene.map_words.resize(most_brick_map_bytes(scene.tree) / 8 + 1);
   const Bytes room(static_cast<std::uint8_t*>(static_cast<void*>(scene.map_words.data())),

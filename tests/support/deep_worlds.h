@@ -4,10 +4,8 @@
 #define THIMBLE_TESTS_SUPPORT_DEEP_WORLDS_H
 
 #include <random>
-#include <vector>
 
 #include "support/chip_worlds.h"
-#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 
@@ -18,9 +16,10 @@ inline constexpr int kDeepWorldKinds = 6;
 /// How far from a world's sides an eye may be for a frame by the map, in 1/256 voxel.
 inline constexpr int kMostDeepDistanceQ8 = (1 << 19) - 512;
 
-/// Materials 0 .. 9, or any, or one. `pool_bytes` holds the pool (null: it is dropped).
-ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level,
-                          std::vector<std::uint8_t>* pool_bytes = nullptr, Octree* pool = nullptr);
+/// The bytes of such a tree. Materials 0 .. 9, or any, or one.
+HeapBytes make_deep_tree(std::mt19937_64& random, DeepWorld world, int level);
+/// The same with its map.
+ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level);
 
 /// As hard_chip_camera; and eyes within the world, close by what is solid, at its sides and as far away as frames by the
 /// map go, that mostly look at what is solid.
