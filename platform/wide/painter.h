@@ -27,6 +27,7 @@ class TilePainter {
   uint64_t paint_codes(const WideFrame& frame, const Depths& depths) const;
   bool find_bytes();
   Rgb8 color_of_code(unsigned code) const;
+  void fill_piece(uint8_t* to, size_t size) const;
   void fill_background(const WideFrame& frame, const Depths& depths) const;
   template <PixelFormat kFormat>
   void store_as(const Pixels& pixels, const Rgb8* colors) const;

@@ -50,7 +50,7 @@ class LitPainter final : public BandPainter {
  private:
   // At the end of each call of a stream its threads, which take squares, wait for one another, and what they keep of slopes
   // and lights goes. Between calls a person sees how far it is, and may end it.
-  static constexpr std::int32_t kMostPixelsAtOnce = 1 << 17;
+  static constexpr std::int32_t kMostPixelsAtOnce = 1 << 18;
   static constexpr std::int32_t kSquarePx = 32;
 
   // Streams need no band of the scene's memory: a pixel is written once.

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "wide/lit/kernels.h"
-
 namespace thimble::wide {
 namespace {
 
@@ -12,10 +10,6 @@ constexpr EffectSet kOpaque = Effect::kDirectLight | Effect::kShadows | Effect::
 
 uint32_t channel_of(const Rgb8& color, int channel) {
   return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
-}
-
-lit::Color color_of(const Rgb8& color) {
-  return {{color.r * lit::kLevel, color.g * lit::kLevel, color.b * lit::kLevel}};
 }
 
 // The whole part of a quotient of integers; the dividend is below 2^52 and the divisor below 2^21, so a double is off
@@ -47,9 +41,7 @@ void OpaqueParts::lay_out(const OpaqueShape& shape, Taker* taker) {
   rays = taker->take<Ray>(slots);
   hits = taker->take<Hit>(slots);
   beyond = taker->take<uint32_t>(slots);
-  for (int32_t*& column : sky) {
-    column = taker->take<int32_t>(slots + kMostLightLanes);
-  }
+  sky.lay_out(shape.slots, taker);
   colors = taker->take<lit::Color>(slots);
   places = taker->take<PixelSlot>(slots);
 }
@@ -69,10 +61,9 @@ OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const Opa
     : frame_(frame),
       map_(map),
       shape_(shape),
-      spans_(frame.camera, map.tree().bounds()),
       taker_(laid_out(shape, bytes, &parts_)),
-      lights_(frame, map, shape.lights, &taker_),
-      background_(lit::background(frame)) {
+      beyond_(frame, map, parts_.sky, shape.slots),
+      lights_(frame, map, shape.lights, &taker_) {
   for (uint32_t material = 0; material < 256; ++material) {
     const Surface surface = lit::surface_of(frame, static_cast<uint8_t>(material));
     const bool shines = (frame.effects & Effect::kEmission) != 0 && surface.kind == SurfaceKind::kEmit;
@@ -133,98 +124,13 @@ LitFace OpaqueStream::face_of_hit(uint32_t pixel) {
   return face;
 }
 
-// Gives lit::sky_color of the directions in `parts_.sky`, one after the other.
-template <class Give>
-void OpaqueStream::each_sky_color(uint32_t count, const Give& give) {
-  // Lanes behind the last ray get some direction, which must not be zero.
-  for (size_t i = count; i < count + kMostLightLanes; ++i) {
-    parts_.sky[0][i] = 1;
-  }
-  int32_t* const shares = parts_.sky[3];
-  find_sky_shares(parts_.sky[0], parts_.sky[1], parts_.sky[2], count, shares);
-  const Sky& sky = frame_.scene.sky;
-  const lit::Color horizon = color_of(sky.horizon);
-  const lit::Color beyond[2] = {color_of(sky.zenith), color_of(sky.ground)};
-  uint32_t change[2][3];  // modulo 2^32
-  for (int c = 0; c < 3; ++c) {
-    change[0][c] = beyond[0].c[c] - horizon.c[c];
-    change[1][c] = beyond[1].c[c] - horizon.c[c];
-  }
-  for (uint32_t i = 0; i < count; ++i) {
-    const auto share = static_cast<uint32_t>(shares[i]);
-    const uint32_t* const to = change[parts_.sky[2][i] < 0 ? 1 : 0];
-    const auto mix = [&](int c) { return (horizon.c[c] * 4096 + to[c] * share) >> 12; };
-    give(i, lit::Color{{mix(0), mix(1), mix(2)}});
-  }
-}
-
 // lit::sky_color, or the background, of the rays that met nothing.
-void OpaqueStream::show_sky(uint32_t count) {
-  const auto give = [&](uint32_t i, const lit::Color& color) { parts_.colors[parts_.beyond[i]] = color; };
-  if ((frame_.effects & Effect::kSky) == 0) {
-    for (uint32_t i = 0; i < count; ++i) {
-      give(i, background_);
-    }
-    return;
-  }
+void OpaqueStream::show_beyond(uint32_t count) {
   for (uint32_t i = 0; i < count; ++i) {
-    const Vec3i& direction = parts_.rays[parts_.beyond[i]].direction;
-    for (int axis = 0; axis < 3; ++axis) {
-      parts_.sky[axis][i] = direction[axis];
-    }
+    parts_.sky.put(i, parts_.rays[parts_.beyond[i]].direction);
   }
-  each_sky_color(count, give);
-}
-
-// The same for columns of a row that were not taken.
-void OpaqueStream::show_sky_of_row(const PixelReader& pixels, int32_t first, int32_t end) {
-  const Camera& camera = frame_.camera;
-  const Camera::Affine& affine = camera.affine();
-  const auto most = static_cast<int32_t>(shape_.slots);
-  for (int32_t x = first; x < end; x += most) {
-    const auto count = static_cast<uint32_t>(std::min(most, end - x));
-    uint8_t* const rgb = pixels.rgb_of({x, pixels.row()});
-    const auto give = [&](uint32_t i, const lit::Color& color) {
-      if (rgb != nullptr) {
-        PixelReader::store_rgb(color, rgb + 3 * i);
-      } else {
-        pixels.store({x + static_cast<int32_t>(i), pixels.row()}, color);
-      }
-    };
-    if ((frame_.effects & Effect::kSky) == 0) {
-      for (uint32_t i = 0; i < count; ++i) {
-        give(i, background_);
-      }
-      continue;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      int64_t value = int64_t{camera.direction()[axis]} << 32;
-      int64_t step = 0;
-      if (camera.is_perspective()) {
-        step = affine.step_x[axis];
-        value = affine.base[axis] + x * step + pixels.camera_row() * affine.step_y[axis];
-      }
-      round_along_row(value, step, count, parts_.sky[axis]);
-    }
-    each_sky_color(count, give);
-  }
-  const auto count = static_cast<uint32_t>(end - first);
-  frame_.counts.rays[static_cast<int>(LitRayKind::kPrimary)] += count;
-}
-
-// Begins a row, of which only what can show the occupied box is left to be taken. The core, which traces
-// where there is no map, counts its visits of the rest.
-bool OpaqueStream::begin_row(PixelReader* pixels) {
-  if (!pixels->begin_row()) {
-    return false;
-  }
-  if (pixels->is_row() && map_.cells() != nullptr) {
-    const RowSpans::Columns columns = spans_.of_row(pixels->camera_row());
-    show_sky_of_row(*pixels, 0, columns.first);
-    show_sky_of_row(*pixels, columns.end, frame_.camera.width_px());
-    pixels->narrow(columns.first, columns.end);
-  }
-  return true;
+  beyond_.each_color(count,
+                     [&](uint32_t i, const lit::Color& color) { parts_.colors[parts_.beyond[i]] = color; });
 }
 
 void OpaqueStream::find_faces(uint32_t count) {
@@ -240,7 +146,7 @@ void OpaqueStream::find_faces(uint32_t count) {
       parts_.beyond[beyond++] = pixel;
     }
   }
-  show_sky(beyond);
+  show_beyond(beyond);
   frame_.counts.rays[kPrimary] += count;
   frame_.counts.hits[kPrimary] += face_count_;
   frame_.counts.node_visits[kPrimary] += visits;
@@ -274,7 +180,7 @@ void OpaqueStream::draw(PixelFlow* flow) {
   PixelReader pixels(flow);
   for (;;) {
     uint32_t count = 0;
-    while (count < shape_.slots && (!pixels.row_is_done() || begin_row(&pixels))) {
+    while (count < shape_.slots && (!pixels.row_is_done() || beyond_.begin_row(&pixels, &frame_.counts))) {
       for (; count < shape_.slots && !pixels.row_is_done(); ++count) {
         pixels.take(&parts_.rays[count], &parts_.places[count]);
       }

@@ -12,10 +12,10 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/host/asked.h"
+#include "wide/lit/beyond.h"
 #include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
 #include "wide/lit/pixel_flow.h"
-#include "wide/lit/row_spans.h"
 #include "wide/lit/taker.h"
 #include "wide/rays/ray_map.h"
 
@@ -40,7 +40,7 @@ struct OpaqueParts {
   Ray* rays;  ///< the pixels' rays
   Hit* hits;
   uint32_t* beyond;    ///< the pixels that met nothing
-  int32_t* sky[4];     ///< components of their directions; then shares of the sky
+  SkyColumns sky;      ///< of these
   PixelSlot* places;   ///< by pixel
   lit::Color* colors;  ///< by pixel
 };
@@ -63,23 +63,18 @@ class OpaqueStream {
   void light_up(uint32_t count);
   void find_faces(uint32_t count);
   LitFace face_of_hit(uint32_t pixel);
-  bool begin_row(PixelReader* pixels);
-  void show_sky_of_row(const PixelReader& pixels, int32_t first, int32_t end);
-  void show_sky(uint32_t count);
-  template <class Give>
-  void each_sky_color(uint32_t count, const Give& give);
+  void show_beyond(uint32_t count);
   void paint();
 
   lit::Frame frame_;
   const RayMap& map_;
   OpaqueShape shape_;
   OpaqueParts parts_;
-  RowSpans spans_;
   Taker taker_;
+  Beyond beyond_;
   FaceLights lights_;
   uint32_t face_count_ = 0;
   Paint paints_[256];
-  lit::Color background_;
 };
 
 }  // namespace thimble::wide

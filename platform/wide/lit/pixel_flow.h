@@ -11,6 +11,7 @@
 
 #include "thimble/light/host/asked.h"
 #include "wide/lit/lit_renderer.h"
+#include "wide/lit/row_spans.h"
 
 namespace thimble::wide {
 
@@ -77,18 +78,9 @@ class PixelReader {
  public:
   explicit PixelReader(PixelFlow* flow) : flow_(*flow), rays_(flow->frame_.camera, 0, 0) {}
 
-  /// Takes the next pixel; returns false when none is left. One thread takes all rows that share bytes.
-  bool next(Ray* ray, PixelSlot* at) {
-    if (row_is_done() && !begin_row()) {
-      return false;
-    }
-    take(ray, at);
-    return true;
-  }
-
   /// Whether the row, or place, has no pixel left.
   bool row_is_done() const { return x_ == end_x_; }
-  /// Begins the next one; false: there is none left.
+  /// Begins the next one; false: there is none left. One thread takes all rows that share bytes.
   bool begin_row() {
     if (at_ != end_) {
       ++at_;
@@ -120,6 +112,8 @@ class PixelReader {
   bool is_row() const { return flow_.places_ == nullptr; }
   int32_t row() const { return static_cast<int32_t>(at_); }
   int32_t camera_row() const { return flow_.band_.first_row + row(); }
+  /// The columns of a row that are left to be taken.
+  RowSpans::Columns columns() const { return {x_, end_x_}; }
   /// Leaves only columns `first` to `end` - 1 of a row that was begun to be taken.
   void narrow(int32_t first, int32_t end) {
     x_ = first;

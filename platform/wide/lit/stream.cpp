@@ -39,6 +39,8 @@ void StreamParts::lay_out(const StreamShape& shape, Taker* taker) {
   hits = taker->take<Hit>(most_hits);
   shown = taker->take<ShownFace>(shape.of_faces.faces);
   done = taker->take<uint32_t>(shape.slots);
+  sky.lay_out(shape.of_faces.faces, taker);
+  beyond = taker->take<ShownBeyond>(shape.of_faces.faces);
 }
 
 StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot_count)
@@ -107,7 +109,9 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
       is_clear_((frame.effects & (Effect::kGlass | Effect::kMedia)) != 0),
       is_wet_((frame.effects & Effect::kWater) != 0),
       is_smooth_((frame.effects & Effect::kSmoothNormals) != 0),
+      is_open_beyond_((frame.effects & (Effect::kWater | Effect::kFog)) == 0),
       taker_(laid_out(shape, bytes, &parts_)),
+      beyond_(frame, map, parts_.sky, shape.of_faces.faces),
       slopes_(frame, parts_.known_slopes, parts_.known_windows, shape.known_slopes),
       lights_(frame, map, shape.of_faces, &taker_) {
   frame_.questions = parts_.questions;
@@ -122,11 +126,14 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
 }
 
 bool Stream::begin(uint32_t number, PixelReader* pixels) {
+  while (pixels->row_is_done()) {
+    if (!(is_open_beyond_ ? beyond_.begin_row(pixels, &frame_.counts) : pixels->begin_row())) {
+      return false;
+    }
+  }
   StreamSlot& slot = parts_.slots[number];
   lit::PendingRay first;
-  if (!pixels->next(&first.ray, &slot.at)) {
-    return false;
-  }
+  pixels->take(&first.ray, &slot.at);
   slot.sum = {};
   slot.pending = 1;
   parts_.pending[size_t{number} * shape_.pending] = first;
@@ -225,8 +232,26 @@ void Stream::show_face(uint32_t number) {
   ray.has_spot = false;
 }
 
-// Lights the faces that were met since the last call, as lit::face_color does.
-void Stream::light_faces() {
+bool Stream::show_beyond(uint32_t number) {
+  StreamSlot& slot = parts_.slots[number];
+  const Hit& hit = parts_.answers[size_t{number} * shape_.answers].hit;
+  if (!is_open_beyond_ || slot.known != 1 || hit.kind != HitKind::kMiss) {
+    return false;
+  }
+  const lit::PendingRay& ray = parts_.pending[size_t{number} * shape_.pending + --slot.pending];
+  lit::count_result(frame_, ray.kind, hit.kind, hit.visits);
+  parts_.sky.put(beyond_count_, ray.ray.direction);
+  parts_.beyond[beyond_count_++] = {ray.weight, number};
+  slot.known = 0;
+  return true;
+}
+
+// Faces as lit::face_color does, the sky as lit::sky_color.
+void Stream::light_up() {
+  beyond_.each_color(beyond_count_, [&](uint32_t i, const lit::Color& color) {
+    lit::add(color, parts_.beyond[i].weight, &parts_.slots[parts_.beyond[i].pixel].sum);
+  });
+  beyond_count_ = 0;
   lights_.shine(face_count_);
   lit::Spot spot;
   for (uint32_t i = 0; i < face_count_; ++i) {
@@ -243,7 +268,7 @@ void Stream::light_faces() {
 
 bool Stream::go_on(uint32_t number) {
   StreamSlot& slot = parts_.slots[number];
-  if (!slot.ray.has_spot && !follow(number)) {
+  if (!slot.ray.has_spot && !show_beyond(number) && !follow(number)) {
     return false;
   }
   if (slot.ray.has_spot) {
@@ -349,8 +374,9 @@ void Stream::draw(PixelFlow* flow) {
       }
     }
     // Light goes on past glass stretch by stretch: many faces at once keep the last stretches' vectors full.
-    if (left == 0 || 4 * done >= 3 * shape_.slots || face_count_ + left > shape_.of_faces.faces) {
-      light_faces();
+    if (left == 0 || 4 * done >= 3 * shape_.slots ||
+        std::max(face_count_, beyond_count_) + left > shape_.of_faces.faces) {
+      light_up();
       for (uint32_t i = 0; i < done; ++i) {
         const uint32_t number = parts_.done[i];
         const StreamSlot& slot = parts_.slots[number];

@@ -8,6 +8,7 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/host/asked.h"
+#include "wide/lit/beyond.h"
 #include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
 #include "wide/lit/pixel_flow.h"
@@ -47,6 +48,12 @@ struct ShownFace {
   Surface surface;
 };
 
+/// How much of what a ray sees that left the world its pixel gets.
+struct ShownBeyond {
+  lit::Weight weight;
+  uint32_t pixel;
+};
+
 struct StreamParts {
   void lay_out(const StreamShape& shape, Taker* taker);
 
@@ -64,6 +71,8 @@ struct StreamParts {
   MediumExit* exits;
   ShownFace* shown;
   uint32_t* done;  ///< slots whose pixels wait only for light
+  SkyColumns sky;  ///< of rays that left the world
+  ShownBeyond* beyond;
 };
 
 class Stream {
@@ -88,7 +97,10 @@ class Stream {
   bool follow(uint32_t number);
   bool shine(uint32_t number);
   void show_face(uint32_t number);
-  void light_faces();
+  // Whether the ray, which has its first answer, sees only the sky or the background: then that is noted.
+  bool show_beyond(uint32_t number);
+  // Gives pixels what their rays were noted to show.
+  void light_up();
   void answer();
   void answer_slopes();
 
@@ -102,11 +114,14 @@ class Stream {
   bool is_wet_;
   bool is_clear_material_[256] = {};
   bool is_smooth_;
+  bool is_open_beyond_;  // nothing is between a ray's beginning and the sky that the tree does not hold
   StreamParts parts_;
   Taker taker_;
+  Beyond beyond_;
   SlopeTable slopes_;
   FaceLights lights_;
   uint32_t face_count_ = 0;
+  uint32_t beyond_count_ = 0;
 };
 
 }  // namespace thimble::wide

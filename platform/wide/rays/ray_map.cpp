@@ -277,42 +277,37 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
       voxel[axis] = last - cell[axis];
     }
   }
-  Hit hit;
+  // Written where it stays: a copy would be read just after it was written in pieces, and wait.
+  Hit own;
+  Hit& hit = job->exits != nullptr ? job->exits[number].hit : job->hits != nullptr ? job->hits[number] : own;
   hit.visits = visits;
-  if (job->exits != nullptr) {
-    MediumExit& exit = job->exits[number];
-    const Leaf leaf = leaf_at(*job->map->cells(), voxel);
-    exit.into_solid = job->in[number] == kInAir || leaf.holds();
-    const Block block = exit.into_solid ? block_at(*job->map, voxel, leaf) : Block{voxel, 0, 0};
-    hit.kind = HitKind::kHit;
+  hit.kind = HitKind::kHit;
+  const auto enter = [&](const Block& block) {
     hit.voxel = block.corner;
     hit.block_level = static_cast<uint8_t>(block.level);
     hit.material = block.material;
     find_face(ray, block.corner, int32_t{1} << block.level, &hit);
-    exit.hit = hit;
+  };
+  if (job->exits != nullptr) {
+    MediumExit& exit = job->exits[number];
+    const Leaf leaf = leaf_at(*job->map->cells(), voxel);
+    exit.into_solid = job->in[number] == kInAir || leaf.holds();
+    enter(exit.into_solid ? block_at(*job->map, voxel, leaf) : Block{voxel, 0, 0});
     return;
   }
   if (job->hits == nullptr) {
     find_face(ray, voxel, 1, &hit);  // a merged block is entered at the same t
   } else if (!job->names && !job->map->tree().merged()) {
-    hit.voxel = voxel;
-    hit.material = job->map->tree().uniform_material();
-    find_face(ray, voxel, 1, &hit);
+    enter({voxel, 0, job->map->tree().uniform_material()});
   } else {
-    const Block block = block_at(*job->map, voxel);
-    hit.voxel = block.corner;
-    hit.block_level = static_cast<uint8_t>(block.level);
-    hit.material = block.material;
-    find_face(ray, block.corner, int32_t{1} << block.level, &hit);
+    enter(block_at(*job->map, voxel));
   }
-  hit.kind = HitKind::kHit;
   if (job->bound == Bound::kBefore &&
       !is_before(hit.t_numerator, hit.t_denominator, job->points[number * job->point_step])) {
     hit = Hit{};
     hit.visits = visits;
   }
   if (job->hits != nullptr) {
-    job->hits[number] = hit;
     return;
   }
   if (job->classes != nullptr && hit.kind == HitKind::kHit) {

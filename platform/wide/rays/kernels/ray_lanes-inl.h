@@ -158,11 +158,10 @@ HWY_INLINE void refill(Lanes* lanes, uint32_t empty, Queue* queue) {
   const F64 d;
   const U64 du;
   const size_t left = queue->count - queue->next;
-  uint32_t bits = 0;
-  size_t wanted = 0;
-  for (uint32_t rest = empty; rest != 0 && wanted < left; rest &= rest - 1) {
-    bits |= rest & (0U - rest);
-    ++wanted;
+  uint32_t bits = empty;
+  size_t wanted = static_cast<size_t>(__builtin_popcount(bits));
+  for (; wanted > left; --wanted) {
+    bits &= bits - 1;
   }
   if (bits == 0) {
     return;
