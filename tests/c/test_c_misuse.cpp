@@ -8,6 +8,7 @@
 
 #include "c/c_world.h"
 #include "misuse/odd_values.h"
+#include "support/small_deep.h"
 #include "thimble/plane/particles.h"
 
 namespace {
@@ -263,11 +264,13 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
 
 TEST_CASE("misuse: C face, scenes of damaged bytes and anything for a handle -> refused, or safe to draw") {
   const CWorld world;
+  const std::vector<std::uint8_t> deep_scene = small_deep_scene();
+  const ConstBytes deep(deep_scene.data(), deep_scene.size());
   int opened = 0;
   misuse(72, 2500, [&](OddValues& values) {
     Things things(world);
     Odd odd(values, 10);
-    const ExactBytes bytes = damaged(values, world.bytes());
+    const ExactBytes bytes = damaged(values, values.one_in(3) ? deep : world.bytes());
     thimble_scene_t scene = {};
     (void)thimble_scene_validate(values.one_in(9) ? nullptr : bytes.bytes().data, bytes.bytes().size,
                                  nullptr);

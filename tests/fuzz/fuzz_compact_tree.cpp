@@ -1,6 +1,7 @@
-// libFuzzer target: the first 24 bytes choose a ray, the rest is a compact tree. Whatever it is, it is
-// refused, or tracing it stays inside its bytes, ends within the bound and gives an answer that makes sense;
-// a tree that the validator passes too. The checksum is put right first, or no change would get past it.
+// libFuzzer target: the first 24 bytes choose a ray, the rest is a compact tree, or changes to one of level 9. Whatever
+// it is, it is refused, or tracing it and making its brick map stay inside their bytes, end within the bound and give
+// what makes sense; a tree that the validator passes too. The checksum is put right first, or no change would get
+// past it.
 //
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Itests
 //       tests/fuzz/fuzz_compact_tree.cpp src/*.cpp -o fuzz_compact_tree
@@ -9,9 +10,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
+#include <vector>
 
 #include "support/compact_damage.h"
+#include "support/small_deep.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace thimble;
@@ -20,13 +22,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   std::memcpy(numbers, data, sizeof numbers);
-  const std::size_t tree_size = size - sizeof numbers;
-  const std::unique_ptr<std::uint8_t[]> bytes(new std::uint8_t[tree_size]);
-  std::memcpy(bytes.get(), data + sizeof numbers, tree_size);
-  if (tree_size >= kCompactHeaderBytes) {
-    tests::repair_checksum({bytes.get(), tree_size});
+  static const std::vector<std::uint8_t> sound = tests::small_deep_scene();
+  BakedScene scene;
+  (void)BakedScene::open({sound.data(), sound.size()}, &scene);
+  std::vector<std::uint8_t> bytes = tests::given_or_changed(
+      {data + sizeof numbers, size - sizeof numbers}, {scene.tree().bytes(), scene.tree().size_bytes()});
+  if (bytes.size() >= kCompactHeaderBytes) {
+    tests::repair_checksum({bytes.data(), bytes.size()});
   }
-  const ConstBytes view{bytes.get(), tree_size};
+  const ConstBytes view{bytes.data(), bytes.size()};
   const char* fault = CompactTree::validate(view);
   CompactTree tree;
   if (CompactTree::open(view, &tree) != Status::kOk) {
@@ -34,6 +38,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::abort();
     }
     return 0;
+  }
+  if (tests::map_damaged(tree) != nullptr) {
+    std::abort();
   }
   // Brought into the limits of the tree's own level.
   const std::int64_t world_q8 = std::int64_t{Q8::kOne} << tree.level();

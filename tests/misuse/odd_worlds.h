@@ -14,6 +14,7 @@
 #include "thimble/picture/shading.h"
 #include "thimble/trace/ray.h"
 #include "thimble/trace/secondary_ray.h"
+#include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"
@@ -71,6 +72,120 @@ struct OddWorld {
         }
       }
     }
+  }
+};
+
+/// Changes numbers of a sound map of level 9 or 10 to others that may stand there, or are one too many; all but the
+/// checksum of its tree.
+inline void damage_deep_map(OddValues& odd, Bytes map) {
+  const auto word_at = [&](std::size_t at) {
+    return map[at] | std::size_t{map[at + 1]} << 8 | std::size_t{map[at + 2]} << 16 |
+           std::size_t{map[at + 3]} << 24;
+  };
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    for (int i = 0; i < 4; ++i) {
+      map[at++] = static_cast<std::uint8_t>(value >> 8 * i);
+    }
+  };
+  const auto below = [&](std::size_t count) { return count == 0 ? 0 : odd.bits() % count; };
+  const std::size_t pages = word_at(32);
+  const std::size_t bricks = word_at(36);
+  const std::size_t origins_at = map.size - 12 * word_at(40);
+  const std::size_t ranks = (bricks + 31) / 32;
+  const std::size_t ranks_at = origins_at - (bricks + 3) / 4 * 4 - 8 * ranks;
+  const std::size_t pages_at = ranks_at - 8 * bricks - (68 * pages + 7) / 8 * 8;
+  constexpr std::size_t kTableAt = 48;
+  for (int i = odd.between_32(1, 2); i > 0; --i) {
+    const std::size_t page_at = pages_at + 68 * below(pages);
+    const std::size_t rank_at = ranks_at + 8 * below(ranks);
+    switch (odd.bits() % 6) {
+      case 0: {
+        const std::size_t at = below(kTableAt);
+        map[at] = at < 16 || at >= 20 ? static_cast<std::uint8_t>(map[at] + odd.between(-2, 2)) : map[at];
+        break;
+      }
+      case 1: {
+        const std::size_t page = odd.one_in(2) ? below(pages + 2) : odd.any<std::uint32_t>() / 68;
+        const auto along = [&](std::size_t at) { return below(word_at(at) & 0xFFFF) / 4; };
+        put(kTableAt + 4 * (along(26) + 64 * along(28) + 4096 * along(30)),
+            static_cast<std::uint32_t>(pages_at - kTableAt + 68 * page));
+        break;
+      }
+      case 2:
+        put(page_at,
+            odd.one_in(2) ? static_cast<std::uint32_t>(below(bricks + 2)) : odd.any<std::uint32_t>());
+        break;
+      case 3:
+        map[page_at + 4 + below(64)] = static_cast<std::uint8_t>(below(bricks + 2));
+        break;
+      case 4:
+        put(rank_at + 4 * below(2),
+            odd.one_in(2) ? static_cast<std::uint32_t>(below(bricks)) : odd.any<std::uint32_t>());
+        break;
+      default:
+        map[ranks_at + 8 * ranks + below(map.size - ranks_at - 8 * ranks)] = odd.any<std::uint8_t>();
+        break;
+    }
+  }
+}
+
+/// A world of level 9 or 10 with little in it, and its brick map in as many bytes as it has.
+struct OddDeepWorld {
+  ExactBytes compact_bytes, map_bytes;
+  CompactTree compact;
+  BrickMap map;
+
+  explicit OddDeepWorld(OddValues& odd) {
+    const int level = odd.between_32(kMaxBrickMapLevel + 1, kMaxDeepMapLevel);
+    const std::int32_t side = std::int32_t{1} << level;
+    ExactBytes pool(Octree::octree_bytes(3000));
+    Octree octree;
+    REQUIRE(Octree::make(level, pool.bytes(), &octree) == Status::kOk);
+    // Mostly within a few pages at the world's lowest corner, so that the table is small.
+    const std::int32_t part = odd.one_in(6) ? side : odd.between_32(4, 40);
+    const Vec3i from = odd.one_in(4) ? odd.vector_between(0, side - part) : Vec3i{};
+    const bool one_material = odd.one_in(4);
+    const auto material = [&] { return static_cast<std::uint8_t>(one_material ? 1 : odd.bits() % 5); };
+    const auto place = [&] {
+      const Vec3i step = odd.vector_between(0, part - 1);
+      return Vec3i{from.x + step.x, from.y + step.y, from.z + step.z};
+    };
+    for (std::uint64_t count = odd.bits() % 60; count > 0; --count) {
+      REQUIRE(octree.insert(place(), material()) == Status::kOk);
+    }
+    for (std::uint64_t count = odd.bits() % 4; count > 0; --count) {
+      const int block = odd.between_32(1, odd.one_in(8) ? level : 5);
+      const Vec3i at = place();
+      const std::int32_t mask = -(1 << block);
+      REQUIRE(octree.insert_block({at.x & mask, at.y & mask, at.z & mask}, block, material()) == Status::kOk);
+    }
+    if (odd.one_in(3) && !octree.empty()) {
+      (void)octree.coarsen_to(1 + octree.nodes_used() / 2);
+    }
+    compact_bytes = ExactBytes(thimble::compact_bytes(compact_shape(octree)));
+    REQUIRE(CompactTree::make(octree, compact_bytes.bytes(), &compact) == Status::kOk);
+    ExactBytes room(most_brick_map_bytes(compact));
+    std::size_t size = 0;
+    REQUIRE(BrickMap::make(compact, room.bytes(), nullptr, &size) == Status::kOk);
+    map_bytes = ExactBytes(ConstBytes(room.bytes()).subspan(0, size));
+    REQUIRE(BrickMap::open(map_bytes.bytes(), &map) == Status::kOk);
+  }
+
+  /// A camera by what is solid that looks at it from outside or from within.
+  Camera near(OddValues& odd) const {
+    const auto solid = [&](std::int32_t beyond) {
+      Vec3Q8 point;
+      for (int axis = 0; axis < 3; ++axis) {
+        point[axis] = Q8::from_raw(
+            256 * odd.between_32(compact.bounds().low[axis] - beyond, compact.bounds().high[axis] + beyond));
+      }
+      return point;
+    };
+    const Vec3Q8 eye = solid(odd.one_in(3) ? 0 : 20);
+    Camera camera;
+    (void)camera.set(PerspectiveView{eye, look_at(eye, solid(0)), {}, Q16::saturate(70), 24, 16, 0},
+                     compact.level());
+    return camera;
   }
 };
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
+#include <optional>
 
 #include "misuse/odd_worlds.h"
 #include "thimble/bake/baked_scene.h"
@@ -53,13 +54,17 @@ void open_and_draw(OddValues& odd, ConstBytes bytes) {
 TEST_CASE(
     "misuse: scenes made of any parts, damaged or not -> refused, or opened and drawn inside the bytes") {
   misuse(50, 700, [](OddValues& odd) {
-    const int level = odd.between_32(kMinLevel, 6);
-    OddWorld world(odd, level);
+    OddWorld world(odd, odd.between_32(kMinLevel, 6));
+    std::optional<OddDeepWorld> deep;
+    if (odd.one_in(4)) {
+      deep.emplace(odd);
+    }
+    const CompactTree& tree = deep ? deep->compact : world.compact;
+    const int level = tree.level();
     Rgb8 palette[8] = {{1, 2, 3}, {200, 10, 10}};
-    ExactBytes map_bytes(most_brick_map_bytes(std::max(level, kMinBrickMapLevel)));
-    BrickMap map;
+    ExactBytes map_bytes(most_brick_map_bytes(tree));
     std::size_t map_size = 0;
-    (void)BrickMap::make(world.compact, map_bytes.bytes(), &map, &map_size);
+    (void)BrickMap::make(tree, map_bytes.bytes(), nullptr, &map_size);
     const Surface surfaces[] = {{{9, 9, 9}, SurfaceKind::kGlass}, {{200, 200, 0}, SurfaceKind::kMetal}};
     const Light lights[] = {Light{}};
     BakedLighting lighting;
@@ -81,7 +86,7 @@ TEST_CASE(
 
     BakedParts parts;
     if (!odd.one_in(12)) {
-      parts.tree = world.compact_bytes.bytes();
+      parts.tree = {tree.bytes(), tree.size_bytes()};
     }
     parts.palette = Span<const Rgb8>(palette, odd.bits() % 9);
     parts.camera = odd.one_in(2) ? &camera : nullptr;

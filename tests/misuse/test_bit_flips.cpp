@@ -1,4 +1,4 @@
-// Every bit of a baked scene and of a shared tree, one at a time, with the checksums as they were and put right:
+// Every bit of baked scenes and of a shared tree, one at a time, with the checksums as they were and put right:
 // refused, or read, traced and drawn by every renderer inside the bytes and to an end.
 //
 // A run takes every flip through the core, and each fifth through the host's renderers and light; with
@@ -16,6 +16,7 @@
 #include "support/baked_damage.h"
 #include "support/run_command.h"
 #include "support/scene_under_test.h"
+#include "support/small_deep.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/anytime.h"
 #include "thimble/picture/cutoff.h"
@@ -37,11 +38,6 @@ constexpr std::size_t kFewCommands = 211;
 bool all_flips() {
   const char* const given = std::getenv("THIMBLE_FLIPS");
   return given != nullptr && std::string(given) == "all";
-}
-
-std::uint32_t word_at(ConstBytes bytes, std::size_t at) {
-  return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
-         static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
 }
 
 // A floor, a pane of glass, a mirror, a lamp, fog; merged blocks; a lamp and a sun; water in a corner.
@@ -131,23 +127,6 @@ struct FlippedWorld {
     REQUIRE(BakedScene::validate(scene.bytes()) == nullptr);
   }
 };
-
-// Scene, tree, brick map, and that the map belongs to the tree.
-void repair_all_checksums(Bytes bytes) {
-  repair_baked_checksums(bytes);
-  BakedScene scene;
-  if (BakedScene::open(bytes, &scene) != Status::kOk) {
-    return;
-  }
-  const ConstBytes map = scene.section(SectionKind::kBrickMap);
-  constexpr std::size_t kMapHeader = 32;
-  if (map.size >= kMapHeader) {
-    const Bytes own = bytes.subspan(static_cast<std::size_t>(map.data - bytes.data), map.size);
-    std::copy_n(scene.tree().bytes() + 12, 4, own.data + 16);
-    repair_checksum(own.subspan(0, word_at(own, 8)));
-  }
-  repair_baked_checksums(bytes);
-}
 
 // A picture of any renderer, in as many bytes as it has.
 struct SmallPicture {
@@ -280,14 +259,10 @@ void flip_each(ConstBytes sound, std::size_t step, void (*repair)(Bytes), const 
   }
 }
 
-}  // namespace
-
-TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or read and drawn inside it") {
-  const FlippedWorld world;
-  const ConstBytes sound = world.scene.bytes();
+void flip_scene(ConstBytes sound) {
   int drawn = 0;
   int told = 0;
-  flip_each(sound, 1, repair_all_checksums, [&](ConstBytes bytes, bool is_repaired, std::size_t number) {
+  flip_each(sound, 1, repair_baked_checksums, [&](ConstBytes bytes, bool is_repaired, std::size_t number) {
     std::uint32_t place = 0;
     const char* const fault = BakedScene::validate(bytes, &place);
     if (!is_repaired) {
@@ -301,8 +276,6 @@ TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or 
       return;
     }
     (void)BakedLighting::validate(scene.section(SectionKind::kLighting), scene.tree().level());
-    ExactBytes aligned(scene.section(SectionKind::kBrickMap));
-    (void)BrickMap::validate(aligned.bytes());
     draw_by_core(scene);
     if (all_flips() || number % kFewLit == 0) {
       draw_wide_and_lit(scene);
@@ -310,6 +283,19 @@ TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or 
     ++drawn;
   });
   CHECK(drawn > told / 2);
+}
+
+}  // namespace
+
+TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or read and drawn inside it") {
+  const FlippedWorld world;
+  flip_scene(world.scene.bytes());
+}
+
+TEST_CASE("bit flips: a baked scene of level 9 with its bricks -> refused, or read and drawn inside it") {
+  const std::vector<std::uint8_t> sound = small_deep_scene();
+  REQUIRE(BakedScene::validate({sound.data(), sound.size()}) == nullptr);
+  flip_scene({sound.data(), sound.size()});
 }
 
 TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") {
@@ -351,12 +337,12 @@ TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") 
 
 TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1") {
   const FlippedWorld world;
-  const ConstBytes sound = world.scene.bytes();
+  const std::vector<std::uint8_t> deep = small_deep_scene();
   const TemporaryFolder folder;
   const std::string path = folder.path("flipped.oct");
   int described = 0;
   int refused = 0;
-  flip_each(sound, kFewCommands, repair_all_checksums, [&](ConstBytes bytes, bool, std::size_t) {
+  const auto describe = [&](ConstBytes bytes, bool, std::size_t) {
     folder.write("flipped.oct", {reinterpret_cast<const char*>(bytes.data), bytes.size});
     const CommandResult result = run_command({"info", path});
     CAPTURE(result.describe());
@@ -364,7 +350,9 @@ TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1"
     REQUIRE((result.status == 0 || is_one_sentence(result.err)));
     described += result.status == 0 ? 1 : 0;
     refused += result.status == 1 ? 1 : 0;
-  });
+  };
+  flip_each(world.scene.bytes(), kFewCommands, repair_baked_checksums, describe);
+  flip_each({deep.data(), deep.size()}, kFewCommands, repair_baked_checksums, describe);
   CHECK(described > 0);
   CHECK(refused > 0);
 }

@@ -5,6 +5,7 @@
 
 #include "misuse/odd_worlds.h"
 #include "thimble/light/host/optics.h"
+#include "thimble/light/map_render.h"
 #include "thimble/light/render.h"
 #include "thimble/light/scene.h"
 #include "thimble/light/water.h"
@@ -189,6 +190,40 @@ TEST_CASE("misuse: lit bands of any scene, set and band over sound and damaged t
     const LitOptions options{odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), odd.one_in(2)};
     const EffectSet effects = odd.one_in(2) ? effects_of(lit.scene) : odd.any<EffectSet>();
     (void)render_lit_band(effects, world.compact, camera, shading, lit.scene, band,
+                          odd.one_in(2) ? &counts : nullptr, options);
+  });
+}
+
+TEST_CASE("misuse: light by maps, up to level 8 and beyond -> refused, or drawn inside the bytes") {
+  const Rgb8 palette[] = {{200, 100, 50}, {30, 60, 90}};
+  misuse(34, 300, [&](OddValues& odd) {
+    const bool is_deep = odd.one_in(2);
+    OddWorld small(odd, odd.between_32(kMinBrickMapLevel, 5));
+    const OddDeepWorld deep(odd);
+    ExactBytes room(most_brick_map_bytes(small.compact));
+    BrickMap small_map;
+    REQUIRE(BrickMap::make(small.compact, room.bytes(), &small_map) == Status::kOk);
+    const CompactTree& tree = is_deep ? deep.compact : small.compact;
+    const BrickMap& map = odd.one_in(8) ? BrickMap() : is_deep ? deep.map : small_map;
+    const OddScene lit(odd, std::min(tree.level(), 6));
+    ExactBytes bits(odd_size(odd, SunBricks::bytes(map)));
+    SunBricks sun;
+    const Vec3i towards = odd.one_in(8) ? Vec3i{} : some_vector(odd, kMaxLightComponent);
+    const Status status = SunBricks::make(map, towards, bits.bytes(), &sun);
+    if (is_deep) {
+      CHECK((status == Status::kOutOfRange || status == Status::kBadArgument));
+    }
+    if (status == Status::kOk) {
+      (void)sun.prove(odd.any<std::uint32_t>());
+    }
+    const Camera camera = is_deep && odd.one_in(2) ? deep.near(odd) : odd_camera(odd, tree.level());
+    const Shading shading = odd_shading(odd, Span<const Rgb8>(palette));
+    ExactBytes pixels;
+    const Band band = odd_band(odd, camera, &pixels);
+    LitCounts counts;
+    const LitOptions options{odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), odd.one_in(2)};
+    const EffectSet effects = odd.one_in(2) ? effects_of(lit.scene) : odd.any<EffectSet>();
+    (void)render_lit_band(effects, tree, map, camera, shading, lit.scene, {&sun, 1}, band,
                           odd.one_in(2) ? &counts : nullptr, options);
   });
 }

@@ -138,6 +138,66 @@ TEST_CASE("misuse: any map under a tree -> refused, or drawn within the band") {
   });
 }
 
+TEST_CASE(
+    "misuse: any map of level 9 and 10 under a tree, sound or damaged -> refused, or drawn in the band") {
+  int opened = 0;
+  misuse(23, 300, [&](OddValues& odd) {
+    OddDeepWorld world(odd);
+    const Camera camera = odd.one_in(2) ? odd_camera(odd, world.compact.level()) : world.near(odd);
+    const Shading shading = odd_shading(odd, kColors);
+    RenderCounts counts;
+    RenderCounts* const counted = odd.one_in(2) ? &counts : nullptr;
+    draw_band(odd, camera, [&](const Band& band) {
+      const Status status = render_band(world.compact, world.map, camera, shading, band, counted);
+      ExactBytes own(ConstBytes(band.pixels));
+      Band same = band;
+      same.pixels = own.bytes();
+      CHECK(render_band(world.compact, camera, shading, same) == status);
+      CHECK(std::equal(own.bytes().begin(), own.bytes().end(), band.pixels.begin()));
+      return status;
+    });
+    draw_band(odd, camera, [&](const Band& band) {
+      const Status status = render_band_32(world.compact, world.map, camera, shading, band, counted);
+      CHECK(status == Status::kBadArgument);
+      return status;
+    });
+    const auto draw = [&](const BrickMap& map) {
+      (void)draws_fast(map, camera);
+      draw_band(odd, camera, [&](const Band& band) {
+        return render_band(world.compact, map, camera, shading, band, counted);
+      });
+    };
+    // All but its tree's checksum may be wrong.
+    ExactBytes bad(world.map_bytes.bytes());
+    damage_deep_map(odd, bad.bytes());
+    BrickMap map;
+    if (BrickMap::open(bad.bytes(), &map) == Status::kOk) {
+      draw(map);
+      for (int i = 0; i < 4; ++i) {
+        const Camera view = world.near(odd);
+        ExactBytes pixels(band_bytes(PixelFormat::kGray8, view.width_px(), view.height_px()));
+        const Band band{pixels.bytes(), PixelFormat::kGray8, 0, 0, view.height_px()};
+        CHECK((view.width_px() == 0 || render_band(world.compact, map, view, shading, band) ==
+                                           (map.belongs_to(world.compact) ? Status::kOk : Status::kDamaged)));
+      }
+      ++opened;
+    }
+    // Another tree's, of another level, and under a tree with other bytes behind its checksum.
+    draw(BrickMap());
+    const OddDeepWorld other(odd);
+    draw(other.map);
+    for (int i = 0; i < 6; ++i) {
+      const std::size_t size = world.compact_bytes.bytes().size;
+      if (size > kCompactHeaderBytes) {
+        world.compact_bytes.bytes()[kCompactHeaderBytes + odd.bits() % (size - kCompactHeaderBytes)] =
+            odd.any<std::uint8_t>();
+      }
+    }
+    draw(world.map);
+  });
+  CHECK(opened > 30);
+}
+
 TEST_CASE("misuse: samples, colours and pixels of any numbers -> refused, or within their bytes") {
   misuse(22, 4000, [](OddValues& odd) {
     const int across = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, kMaxSamplesAcross + 1);

@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "misuse/odd_values.h"
+#include "misuse/odd_worlds.h"
 #include "thimble/base/memory.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
+#include "thimble/tree/edited_world.h"
 #include "thimble/tree/octree.h"
 #include "thimble/tree/shared_tree.h"
 
@@ -57,6 +58,16 @@ void ask_nodes(OddValues& odd, const SharedTree& tree) {
       const auto octant = static_cast<unsigned>(odd.bits() % 8);
       node = (std::uint32_t{mask} >> octant & 1U) != 0 ? tree.child(node, mask, octant) : tree.root();
     }
+  }
+}
+
+// What a map may be asked, whatever its bytes hold.
+void ask_map(OddValues& odd, const BrickMap& map, const CompactTree& tree) {
+  (void)map.belongs_to(tree);
+  (void)map.box();
+  for (int i = 0; i < 8 && map.brick_count() > 1; ++i) {
+    (void)map.material(tree, static_cast<std::uint32_t>(odd.between(1, std::int64_t{map.brick_count()} - 1)),
+                       static_cast<unsigned>(odd.bits() % 64));
   }
 }
 
@@ -297,15 +308,70 @@ TEST_CASE("misuse: damaged compact, shared and brick bytes -> opened or refused,
     (void)BrickMap::validate(bad_map.bytes());
     BrickMap opened_map;
     if (BrickMap::open(bad_map.bytes(), &opened_map) == Status::kOk) {
-      (void)opened_map.belongs_to(tree);
-      for (int i = 0; i < 8 && opened_map.brick_count() > 1; ++i) {
-        (void)opened_map.material(
-            tree, static_cast<std::uint32_t>(odd.between(1, std::int64_t{opened_map.brick_count()} - 1)),
-            static_cast<unsigned>(odd.bits() % 64));
-      }
+      ask_map(odd, opened_map, tree);
     }
     (void)crc32(bad.bytes(), odd.any<std::uint32_t>());
     (void)morton_voxel(odd.any<std::uint64_t>());
     (void)morton_code(odd.any<std::uint32_t>(), odd.any<std::uint32_t>(), odd.any<std::uint32_t>());
   });
+}
+
+TEST_CASE(
+    "misuse: maps of level 9 and 10 of sound and damaged trees -> made, opened or refused, in their bytes") {
+  int made_of_damaged = 0;
+  int opened_damaged = 0;
+  misuse(7, 400, [&](OddValues& odd) {
+    const OddDeepWorld world(odd);
+    const std::size_t size = world.map_bytes.bytes().size;
+    // Room to the byte.
+    ExactBytes room(odd_size(odd, size));
+    const bool is_odd = odd.one_in(8);
+    const Bytes out = room.bytes().subspan(is_odd ? 1 : 0);
+    BrickMap map;
+    std::size_t written = 77;
+    const Status status = BrickMap::make(world.compact, out, odd.one_in(4) ? nullptr : &map, &written);
+    CHECK(status == (is_odd && !out.empty() ? Status::kBadArgument
+                     : out.size < size      ? Status::kOutOfMemory
+                                            : Status::kOk));
+    CHECK(written == (status == Status::kOk ? size : 77));
+    if (status == Status::kOk) {
+      CHECK(std::equal(out.begin(), out.begin() + size, world.map_bytes.bytes().begin()));
+      ask_map(odd, world.map, world.compact);
+    } else {
+      CHECK(map.directory() == nullptr);
+    }
+    EditedWorld edited;
+    CHECK(EditedWorld::make(world.compact, EditRoom{100, 100, 100}, room.bytes(), &edited) != Status::kOk);
+
+    const ExactBytes bad_tree = damaged(odd, world.compact_bytes.bytes());
+    CompactTree opened_tree;
+    if (CompactTree::open(bad_tree.bytes(), &opened_tree) == Status::kOk) {
+      const std::size_t most = most_brick_map_bytes(opened_tree);
+      ExactBytes bricks(odd_size(odd, most));
+      const Status of_damaged = BrickMap::make(opened_tree, bricks.bytes(), &map);
+      CHECK((of_damaged == Status::kOk || of_damaged == Status::kOutOfRange || bricks.bytes().size < most));
+      if (of_damaged == Status::kOk) {
+        CHECK(map.belongs_to(opened_tree));
+        CHECK(BrickMap::validate(bricks.bytes()) == nullptr);
+        ask_map(odd, map, opened_tree);
+        ++made_of_damaged;
+      }
+    }
+    ExactBytes bad_map = damaged(odd, world.map_bytes.bytes());
+    if (odd.one_in(2)) {
+      bad_map = ExactBytes(ConstBytes(world.map_bytes.bytes()));
+      damage_deep_map(odd, bad_map.bytes());
+    }
+    const char* const fault = BrickMap::validate(bad_map.bytes());
+    BrickMap opened;
+    if (BrickMap::open(bad_map.bytes(), &opened) == Status::kOk) {
+      ask_map(odd, opened, odd.one_in(2) ? world.compact : CompactTree());
+      ++opened_damaged;
+    } else {
+      CHECK(fault != nullptr);
+      CHECK(opened.directory() == nullptr);
+    }
+  });
+  CHECK(made_of_damaged > 40);
+  CHECK(opened_damaged > 30);
 }

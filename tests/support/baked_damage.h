@@ -4,12 +4,16 @@
 #ifndef THIMBLE_TESTS_SUPPORT_BAKED_DAMAGE_H
 #define THIMBLE_TESTS_SUPPORT_BAKED_DAMAGE_H
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "support/compact_damage.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
+#include "thimble/picture/render.h"
+#include "thimble/tree/brick_map.h"
 
 namespace thimble::tests {
 
@@ -52,8 +56,37 @@ inline const char* use_lighting(const BakedLighting& lighting, int level) {
   return nullptr;
 }
 
+/// Draws a few pixels by the scene's brick map, of either version and maybe damaged, in as many bytes as it has.
+inline const char* draw_by_damaged_map(const BakedScene& scene) {
+  const ConstBytes section = scene.section(SectionKind::kBrickMap);
+  const std::unique_ptr<std::uint8_t[]> own(new std::uint8_t[section.size]);
+  std::copy(section.begin(), section.end(), own.get());
+  const ConstBytes bytes{own.get(), section.size};
+  const char* const fault = BrickMap::validate(bytes);
+  BrickMap map;
+  if (BrickMap::open(bytes, &map) != Status::kOk) {
+    return fault == nullptr ? "a map that does not open is valid" : nullptr;
+  }
+  constexpr std::int32_t kWidth = 9;
+  constexpr std::int32_t kHeight = 7;
+  Camera camera;
+  if (!scene.has_camera() ||
+      set_camera(scene.camera(), kWidth, kHeight, scene.tree().level(), &camera) != Status::kOk) {
+    return nullptr;
+  }
+  std::uint8_t pixels[kWidth * kHeight];
+  RenderCounts counts;
+  const Status status = render_band(scene.tree(), map, camera, Shading(),
+                                    {{pixels, sizeof pixels}, PixelFormat::kGray8, 0, 0, kHeight}, &counts);
+  const bool is_ours = map.belongs_to(scene.tree());
+  if (status != (is_ours ? Status::kOk : Status::kDamaged) || counts.rays != (is_ours ? sizeof pixels : 0)) {
+    return "a frame by a map is not drawn, or by one of another tree";
+  }
+  return nullptr;
+}
+
 /// Opens `bytes` and does with the scene what a program may do: reads every section, makes the camera, traces
-/// rays through the tree. Returns a phrase when a promise is broken, else nullptr. Reads outside the bytes
+/// rays through the tree, draws by the brick map. Returns a phrase when a promise is broken, else nullptr. Reads outside the bytes
 /// are for AddressSanitizer to see, so `bytes` should end where their memory ends.
 inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   const char* fault = BakedScene::validate(bytes);
@@ -86,6 +119,9 @@ inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   } else if (lighting.effects != UINT32_MAX) {
     return "lighting that is refused was changed";
   }
+  if (const char* text = draw_by_damaged_map(scene)) {
+    return text;
+  }
   if (scene.has_camera()) {
     Camera camera;
     // Square and one pixel: only what is wrong with the view itself could be refused.
@@ -111,14 +147,23 @@ inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   return trace_damaged(scene.tree(), ray);
 }
 
-/// Puts the right checksum into a baked scene, and into its tree where it has one that opens; for damage that
-/// they are not to catch. Bytes shorter than a header stay.
+/// Puts the right checksums into a baked scene, into its tree where it has one that opens, and into its brick map of
+/// either version, which then belongs to that tree; for damage that they are not to catch. Bytes shorter than a header
+/// stay.
 inline void repair_baked_checksums(Bytes bytes) {
   constexpr std::size_t kChecksumOffset = 8;
   BakedScene scene;
   if (BakedScene::open(bytes, &scene) == Status::kOk) {
-    const std::size_t at = static_cast<std::size_t>(scene.tree().bytes() - bytes.data);
-    repair_checksum(bytes.subspan(at, scene.tree().size_bytes()));
+    const auto own = [&](ConstBytes part) {
+      return bytes.subspan(static_cast<std::size_t>(part.data - bytes.data), part.size);
+    };
+    const Bytes tree = own({scene.tree().bytes(), scene.tree().size_bytes()});
+    repair_checksum(tree);
+    const ConstBytes map = scene.section(SectionKind::kBrickMap);
+    if (map.size >= kBrickMapHeaderBytes) {
+      std::copy_n(tree.data + 12, 4, own(map).data + 16);
+      repair_checksum(own(map));
+    }
   }
   if (bytes.size < kBakedHeaderBytes) {
     return;

@@ -4,10 +4,13 @@
 #ifndef THIMBLE_TESTS_SUPPORT_COMPACT_DAMAGE_H
 #define THIMBLE_TESTS_SUPPORT_COMPACT_DAMAGE_H
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 
 #include "thimble/base/memory.h"
 #include "thimble/trace/ray.h"
+#include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::tests {
@@ -63,6 +66,31 @@ inline const char* trace_damaged(const CompactTree& tree, const Ray& ray) {
     }
   }
   return nullptr;
+}
+
+/// Makes the brick map of `tree`, which may be damaged, in at most 256 KiB. Returns a phrase when it is not sound, else
+/// nullptr. Leaves out boxes so large that it takes long.
+inline const char* map_damaged(const CompactTree& tree) {
+  const VoxelBox& box = tree.bounds();
+  std::int64_t volume = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    volume *= box.high[axis] - box.low[axis];
+  }
+  if (volume > std::int64_t{1} << 24) {
+    return nullptr;
+  }
+  const std::size_t most = most_brick_map_bytes(tree);
+  const std::size_t size = std::min(most, std::size_t{1} << 18);
+  const std::unique_ptr<std::uint8_t[]> room(new std::uint8_t[size]);
+  BrickMap map;
+  std::size_t made = 0;
+  const Status status = BrickMap::make(tree, {room.get(), size}, &map, &made);
+  if (status == Status::kOk) {
+    return BrickMap::validate({room.get(), made}) != nullptr || !map.belongs_to(tree)
+               ? "a map that is not sound"
+               : nullptr;
+  }
+  return status == Status::kOutOfMemory && size == most ? "a map takes more than it may" : nullptr;
 }
 
 /// Puts the right checksum into bytes that are at least a header long; for damage that it is not to catch.

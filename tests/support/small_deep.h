@@ -1,0 +1,65 @@
+/// @file small_deep.h
+/// The least scene of level 9 that has all that a brick map of version 2 tells apart: for tests that change each bit of
+/// it, and as what the fuzz target starts from.
+#ifndef THIMBLE_TESTS_SUPPORT_SMALL_DEEP_H
+#define THIMBLE_TESTS_SUPPORT_SMALL_DEEP_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "thimble/bake/baked_scene.h"
+#include "thimble/tree/brick_map.h"
+#include "thimble/tree/octree.h"
+
+namespace thimble::tests {
+
+/// Stairs of three materials in a mixed brick and one that is not, a solid brick, a voxel on a page of its own, a camera
+/// that sees them. Empty where something is refused.
+inline std::vector<std::uint8_t> small_deep_scene() {
+  constexpr int kLevel = 9;
+  std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
+  Octree octree;
+  bool is_made = Octree::make(kLevel, {pool.data(), pool.size()}, &octree) == Status::kOk;
+  for (int x = 0; x < 6; ++x) {
+    is_made = is_made && octree.insert({x, x / 2, 0}, static_cast<std::uint8_t>(x / 2)) == Status::kOk;
+  }
+  is_made = is_made && octree.insert_block({8, 4, 0}, 2, 1) == Status::kOk &&
+            octree.insert({20, 3, 5}, 3) == Status::kOk;
+  std::vector<std::uint8_t> tree_bytes(compact_bytes(compact_shape(octree)));
+  CompactTree tree;
+  is_made =
+      is_made && CompactTree::make(octree, {tree_bytes.data(), tree_bytes.size()}, &tree) == Status::kOk;
+  std::vector<std::uint8_t> map(most_brick_map_bytes(tree));
+  std::size_t map_size = 0;
+  is_made = is_made && BrickMap::make(tree, {map.data(), map.size()}, nullptr, &map_size) == Status::kOk;
+
+  SceneCamera camera;
+  camera.eye = {Q8::saturate(10), Q8::saturate(-9), Q8::saturate(8)};
+  camera.forward = {0, 12, -6};
+  camera.fov_degrees = Q16::saturate(80);
+  BakedParts parts;
+  parts.tree = {tree_bytes.data(), tree_bytes.size()};
+  parts.camera = &camera;
+  parts.brick_map = {map.data(), map_size};
+  std::vector<std::uint8_t> scene(is_made ? baked_bytes(parts) : 0);
+  is_made = is_made && BakedScene::make(parts, {scene.data(), scene.size()}, nullptr) == Status::kOk;
+  return is_made ? scene : std::vector<std::uint8_t>();
+}
+
+/// What a fuzzer hands over: as it is or, where it begins with a C, changes of three bytes (two that say where, and the
+/// new byte) to `sound`, which no search would find.
+inline std::vector<std::uint8_t> given_or_changed(ConstBytes input, ConstBytes sound) {
+  if (input.empty() || input[0] != 'C') {
+    return {input.begin(), input.end()};
+  }
+  std::vector<std::uint8_t> bytes(sound.begin(), sound.end());
+  for (std::size_t at = 1; at + 2 < input.size; at += 3) {
+    bytes[(input[at] | std::size_t{input[at + 1]} << 8) % bytes.size()] = input[at + 2];
+  }
+  return bytes;
+}
+
+}  // namespace thimble::tests
+
+#endif
