@@ -8,7 +8,7 @@
 
 #include "c/c_world.h"
 #include "misuse/odd_values.h"
-#include "support/small_deep.h"
+#include "support/small_scene.h"
 #include "thimble/plane/particles.h"
 
 namespace {
@@ -264,7 +264,7 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
 
 TEST_CASE("misuse: C face, scenes of damaged bytes and anything for a handle -> refused, or safe to draw") {
   const CWorld world;
-  const std::vector<std::uint8_t> deep_scene = small_deep_scene();
+  const std::vector<std::uint8_t> deep_scene = small_scene(9);
   const ConstBytes deep(deep_scene.data(), deep_scene.size());
   int opened = 0;
   misuse(72, 2500, [&](OddValues& values) {

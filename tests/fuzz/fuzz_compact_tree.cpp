@@ -1,9 +1,9 @@
-// libFuzzer target: the first 24 bytes choose a ray, the rest is a compact tree, or changes to one of level 9. Whatever
+// libFuzzer target: the first 24 bytes choose a ray, the rest is a compact tree, or changes to one of level 9 or 5. Whatever
 // it is, it is refused, or tracing it and making its brick map stay inside their bytes, end within the bound and give
 // what makes sense; a tree that the validator passes too. The checksum is put right first, or no change would get
 // past it.
 //
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Itests
+//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Itests -DTHIMBLE_DEEP_WORLDS
 //       tests/fuzz/fuzz_compact_tree.cpp src/*.cpp -o fuzz_compact_tree
 //   ./fuzz_compact_tree -max_len=2048 -timeout=10 corpus/
 #include <cstddef>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "support/compact_damage.h"
-#include "support/small_deep.h"
+#include "support/small_scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace thimble;
@@ -22,11 +22,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   std::memcpy(numbers, data, sizeof numbers);
-  static const std::vector<std::uint8_t> sound = tests::small_deep_scene();
-  BakedScene scene;
-  (void)BakedScene::open({sound.data(), sound.size()}, &scene);
-  std::vector<std::uint8_t> bytes = tests::given_or_changed(
-      {data + sizeof numbers, size - sizeof numbers}, {scene.tree().bytes(), scene.tree().size_bytes()});
+  static const std::vector<std::uint8_t> scenes[] = {tests::small_scene(9), tests::small_scene(5)};
+  ConstBytes sounds[2];
+  for (int i = 0; i < 2; ++i) {
+    BakedScene scene;
+    (void)BakedScene::open({scenes[i].data(), scenes[i].size()}, &scene);
+    sounds[i] = scene.section(SectionKind::kTree);
+  }
+  std::vector<std::uint8_t> bytes =
+      tests::given_or_changed({data + sizeof numbers, size - sizeof numbers}, sounds);
   if (bytes.size() >= kCompactHeaderBytes) {
     tests::repair_checksum({bytes.data(), bytes.size()});
   }

@@ -16,7 +16,7 @@
 #include "support/baked_damage.h"
 #include "support/run_command.h"
 #include "support/scene_under_test.h"
-#include "support/small_deep.h"
+#include "support/small_scene.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/anytime.h"
 #include "thimble/picture/cutoff.h"
@@ -293,7 +293,7 @@ TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or 
 }
 
 TEST_CASE("bit flips: a baked scene of level 9 with its bricks -> refused, or read and drawn inside it") {
-  const std::vector<std::uint8_t> sound = small_deep_scene();
+  const std::vector<std::uint8_t> sound = small_scene(9);
   REQUIRE(BakedScene::validate({sound.data(), sound.size()}) == nullptr);
   flip_scene({sound.data(), sound.size()});
 }
@@ -337,7 +337,7 @@ TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") 
 
 TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1") {
   const FlippedWorld world;
-  const std::vector<std::uint8_t> deep = small_deep_scene();
+  const std::vector<std::uint8_t> deep = small_scene(9);
   const TemporaryFolder folder;
   const std::string path = folder.path("flipped.oct");
   int described = 0;

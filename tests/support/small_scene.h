@@ -1,8 +1,8 @@
-/// @file small_deep.h
-/// The least scene of level 9 that has all that a brick map of version 2 tells apart: for tests that change each bit of
-/// it, and as what the fuzz target starts from.
-#ifndef THIMBLE_TESTS_SUPPORT_SMALL_DEEP_H
-#define THIMBLE_TESTS_SUPPORT_SMALL_DEEP_H
+/// @file small_scene.h
+/// The least scene that has all that brick maps tell apart: for tests that change each bit of it, and as what the fuzz
+/// targets start from.
+#ifndef THIMBLE_TESTS_SUPPORT_SMALL_SCENE_H
+#define THIMBLE_TESTS_SUPPORT_SMALL_SCENE_H
 
 #include <cstddef>
 #include <cstdint>
@@ -14,13 +14,12 @@
 
 namespace thimble::tests {
 
-/// Stairs of three materials in a mixed brick and one that is not, a solid brick, a voxel on a page of its own, a camera
+/// Of level 5 or more, so with a map of version 1 or 2: stairs of three materials in a mixed brick and one that is not, a solid brick, a voxel on a page of its own, a camera
 /// that sees them. Empty where something is refused.
-inline std::vector<std::uint8_t> small_deep_scene() {
-  constexpr int kLevel = 9;
+inline std::vector<std::uint8_t> small_scene(int level) {
   std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
   Octree octree;
-  bool is_made = Octree::make(kLevel, {pool.data(), pool.size()}, &octree) == Status::kOk;
+  bool is_made = Octree::make(level, {pool.data(), pool.size()}, &octree) == Status::kOk;
   for (int x = 0; x < 6; ++x) {
     is_made = is_made && octree.insert({x, x / 2, 0}, static_cast<std::uint8_t>(x / 2)) == Status::kOk;
   }
@@ -47,12 +46,14 @@ inline std::vector<std::uint8_t> small_deep_scene() {
   return is_made ? scene : std::vector<std::uint8_t>();
 }
 
-/// What a fuzzer hands over: as it is or, where it begins with a C, changes of three bytes (two that say where, and the
-/// new byte) to `sound`, which no search would find.
-inline std::vector<std::uint8_t> given_or_changed(ConstBytes input, ConstBytes sound) {
-  if (input.empty() || input[0] != 'C') {
+/// What a fuzzer hands over: as it is or, where it begins with a C or a D, changes of three bytes (two that say where, and
+/// the new byte) to the first of `sounds` or the second, which no search would find.
+inline std::vector<std::uint8_t> given_or_changed(ConstBytes input, const ConstBytes (&sounds)[2]) {
+  const int which = input.empty() ? -1 : input[0] - 'C';
+  if ((which != 0 && which != 1) || sounds[which].empty()) {
     return {input.begin(), input.end()};
   }
+  const ConstBytes sound = sounds[which];
   std::vector<std::uint8_t> bytes(sound.begin(), sound.end());
   for (std::size_t at = 1; at + 2 < input.size; at += 3) {
     bytes[(input[at] | std::size_t{input[at + 1]} << 8) % bytes.size()] = input[at + 2];
