@@ -119,6 +119,9 @@ const char* check_deep_numbers(const uint8_t* base, const DeepLayout& layout) {
       if (before >= layout.bricks || before + page[4 + entry] >= layout.bricks) {
         return "a page names a brick that is not there";
       }
+      if (number == 0 && page[4 + entry] != 0) {
+        return "page 0 is not empty";
+      }
     }
   }
   if (bits::load64(base + layout.bricks_at()) != 0) {

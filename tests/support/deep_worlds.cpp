@@ -82,7 +82,7 @@ void fill_deep(std::mt19937_64& random, DeepWorld world, int level, Octree* pool
 int far_deep_coordinate(std::mt19937_64& random, int side_q8) {
   const int reach = kMostDeepDistanceQ8 + pick_int(random, 0, 1);
   const int kind = pick_int(random, 0, 3);
-  const int distance = kind < 2 ? reach : pick_int(random, reach / 2, reach + reach / 4);
+  const int distance = kind < 2 ? reach : pick_int(random, reach / 2, 5 * reach / 2);
   const int at = kind % 2 == 0 ? distance : side_q8 - distance;
   return std::clamp(at, kMinOriginWorlds * side_q8, kMaxOriginWorlds * side_q8);
 }

@@ -348,6 +348,10 @@ TEST_CASE("deep map: each count of origins and each entry of the table moved -> 
   for (std::size_t rank = 0; rank < ranks; ++rank) {
     REQUIRE(is_refused_with(first + 8 * rank + 4, 1));
   }
+  const std::size_t page_0 = first - 8 * bricks - (68 * std::size_t{word_at(base + 32)} + 7) / 8 * 8;
+  for (std::size_t entry = 0; entry < 64; ++entry) {
+    REQUIRE(is_refused_with(page_0 + 4 + entry, 1));
+  }
   for (std::size_t cell = 0; cell < 50; ++cell) {
     REQUIRE(is_refused_with(48 + 4 * cell, 1));       // between two pages
     REQUIRE(is_refused_with(48 + 4 * cell + 3, 68));  // beyond the last
