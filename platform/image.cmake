@@ -28,7 +28,7 @@ function(thimble_write_linker_script place)
       if(function MATCHES "\\.o$")
         string(APPEND functions "    *${function}(.text .text.*)\n")
       else()
-        string(APPEND functions "    *(.text.*${function}*)\n")
+        string(APPEND functions "    *(.text.*${function}* .rodata.*${function}*)\n")
       endif()
     endforeach()
     set(IMAGE_FAST_SECTIONS "  .boot :

@@ -35,7 +35,20 @@ constexpr int highest_bit(uint32_t word) {
 
 // Index of the lowest set bit of `word`, which is not 0.
 constexpr unsigned lowest_bit(uint32_t word) {
+#if defined(__ARM_ARCH_4T__) && !defined(__thumb__)
+  // In place of a call; no step has a branch.
+  unsigned bit = 0;
+#pragma GCC unroll 5
+  for (unsigned step = 16; step != 0; step >>= 1) {
+    if ((word & ((1U << step) - 1)) == 0) {
+      word >>= step;
+      bit += step;
+    }
+  }
+  return bit;
+#else
   return static_cast<unsigned>(__builtin_ctz(word));
+#endif
 }
 
 // Number of bits needed to write `value`: 0 for 0.

@@ -525,6 +525,7 @@ uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsig
       }
     }
   }
+  origin = static_cast<const uint8_t*>(__builtin_assume_aligned(origin, 4));
   const uint32_t children = bits::load32(origin);
   const unsigned octant = (bit >> 1 & 1U) | (bit >> 2 & 2U) | (bit >> 3 & 4U);
   const unsigned voxel = (bit & 1U) | (bit >> 1 & 2U) | (bit >> 2 & 4U);

@@ -26,6 +26,20 @@ struct Pixels {
   uint32_t word[kTileWords];
 };
 
+// Loads four words: on an ARM7, by one instruction in half the time.
+[[gnu::always_inline]] inline Pixels words_of(const Pixels& pixels) {
+#if defined(__ARM_ARCH_4T__) && !defined(__thumb__)
+  register uint32_t a asm("r0");
+  register uint32_t b asm("r1");
+  register uint32_t c asm("r2");
+  register uint32_t d asm("r3");
+  asm("ldmia %4, {r0-r3}" : "=r"(a), "=r"(b), "=r"(c), "=r"(d) : "r"(&pixels), "m"(pixels));
+  return {{a, b, c, d}};
+#else
+  return pixels;
+#endif
+}
+
 // The directions of a tile, mirrored and in the order a, b, c: base + rest + x * step_x + y * step_y, of which
 // `base` is whole and the others have `fraction_bits` behind the point.
 struct TileRays {
@@ -40,7 +54,6 @@ struct TileRays {
 
 // The pixels at which f is certainly positive, and those at which it is not certainly negative.
 struct HalfPlane {
-  uint32_t key;
   Pixels certain;
   Pixels possible;
 };
@@ -93,44 +106,43 @@ bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, Ha
   return true;
 }
 
-// Walks along an edge. `f` is F times 2^fraction_bits, scaled, at the tile's first pixel; `fx` and `fy` are its steps.
-// Exactly the pixels above `bound` become certain, those from -bound on possible.
-void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, HalfPlane* plane) {
-  // Turns F so that it grows to the right, and visits the rows in the order in which it grows.
-  const bool flip = fx < 0;
-  if (flip) {
-    f = -f;
-    fx = -fx;
-    fy = -fy;
-  }
-  if (kDividesEdges && divide_edge(f, fx, fy, bound, flip, plane)) {
-    return;
-  }
+// Walks along an edge of an F that grows to the right and, if `step` is 1, downwards; `f` is its least value in the tile,
+// times 2^fraction_bits and scaled, `fx` and `fy` are its steps. Exactly the pixels above `bound` become certain, those
+// from -bound on possible; where F was turned, it is the other way round.
+void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, int step, HalfPlane* plane) {
   Half* certain = static_cast<Half*>(static_cast<void*>(flip ? &plane->possible : &plane->certain));
   Half* possible = static_cast<Half*>(static_cast<void*>(flip ? &plane->certain : &plane->possible));
-  const uint32_t invert = flip ? 0xFFFFU : 0;
-  int step = 1;
-  if (fy < 0) {
-    f += (kTileDownPx - 1) * fy;
-    fy = -fy;
+  if (step < 0) {
     certain += kTileDownPx - 1;
     possible += kTileDownPx - 1;
-    step = -1;
   }
-  // The pixels from `first` on are certain; `at` is F of the pixel before `first`, less the bound.
-  int32_t first = kTileAcrossPx;
+  // The lower half of `mask` is a row: its certain pixels, or where F is turned those that are not possible, of which a
+  // shift adds one. `at` is F of the pixel that is added next, less the bound.
+  const auto is_full = [](int32_t row) { return row == row >> 1; };
+  int32_t mask = flip ? 0xFFFF : ~0xFFFF;
   int32_t at = f + (kTileAcrossPx - 1) * fx - bound;
+#pragma GCC unroll 2
+  for (int jump = 8; jump >= 4; jump >>= 1) {
+    if (at - (jump - 1) * fx > 0) {
+      mask >>= jump;
+      at -= jump * fx;
+    }
+  }
   for (int row = 0; row < kTileDownPx; ++row) {
-    while (first > 0 && at > 0) {
-      --first;
+    while (at > 0 && !is_full(mask)) {
+      mask >>= 1;
       at -= fx;
     }
-    int32_t open = first;
-    for (int32_t there = at + 2 * bound; open > 0 && there >= 0; there -= fx) {
-      --open;
+    int32_t open = mask;
+    int32_t there = at + 2 * bound;
+    if (seldom(there >= 0)) {
+      open >>= 1;
+      for (there -= fx; seldom(there >= 0 && !is_full(open)); there -= fx) {
+        open >>= 1;
+      }
     }
-    *certain = static_cast<Half>((0xFFFFU << first) ^ invert);
-    *possible = static_cast<Half>((0xFFFFU << open) ^ invert);
+    *certain = static_cast<Half>(mask);
+    *possible = static_cast<Half>(open);
     certain += step;
     possible += step;
     at += fy;
@@ -153,7 +165,7 @@ using WholeOf = Choose<kDeep, int64_t, int32_t>;
 template <bool kDeep>
 [[gnu::noinline]] void find_half_plane(const TileRays& rays, int i, int j, int32_t s_i, int32_t s_j,
                                        HalfPlane* plane) {
-  if (s_i <= 0 || s_j <= 0) {
+  if (((s_i - 1) | (s_j - 1)) < 0) {
     set_all(plane, s_i <= 0 ? UINT32_MAX : 0);
     return;
   }
@@ -176,29 +188,40 @@ template <bool kDeep>
   s_i = (s_i + half) >> cut;
   s_j = (s_j + half) >> cut;
   const int32_t bound = (s_i + s_j + 1) * rays.unit + (cut == 0 ? 2 : rays.reach + 2);
-  const int32_t f = static_cast<int32_t>(bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) +
-                    s_j * rays.rest[i] - s_i * rays.rest[j];
-  const int32_t fx = s_j * rays.step_x[i] - s_i * rays.step_x[j];
-  const int32_t fy = s_j * rays.step_y[i] - s_i * rays.step_y[j];
-  const int32_t across = (kTileAcrossPx - 1) * fx;
-  const int32_t down = (kTileDownPx - 1) * fy;
-  const int32_t least = f + (across < 0 ? across : 0) + (down < 0 ? down : 0);
-  const int32_t greatest = f + (across < 0 ? 0 : across) + (down < 0 ? 0 : down);
+  int32_t f = static_cast<int32_t>(bits >= cut ? exact * (1 << (bits - cut)) : exact >> (cut - bits)) +
+              s_j * rays.rest[i] - s_i * rays.rest[j];
+  int32_t fx = s_j * rays.step_x[i] - s_i * rays.step_x[j];
+  int32_t fy = s_j * rays.step_y[i] - s_i * rays.step_y[j];
+  [[maybe_unused]] const int32_t across = (kTileAcrossPx - 1) * fx;
+  [[maybe_unused]] const int32_t below = (kTileDownPx - 1) * fy;
   THIMBLE_NOTE(Range::kFaceBound,
                Exact(s_i + s_j + 1) * Exact(rays.unit) + Exact(cut == 0 ? 2 : rays.reach + 2));
   THIMBLE_NOTE(Range::kFaceAffine,
                (bits >= cut ? Exact(exact) * Exact(1 << (bits - cut)) : Exact(exact >> (cut - bits))) +
                    Exact(s_j) * Exact(rays.rest[i]) - Exact(s_i) * Exact(rays.rest[j]) +
-                   Exact(across < 0 ? across : 0) + Exact(down < 0 ? down : 0));
+                   Exact(across < 0 ? across : 0) + Exact(below < 0 ? below : 0));
   THIMBLE_NOTE(Range::kFaceAffine,
                (bits >= cut ? Exact(exact) * Exact(1 << (bits - cut)) : Exact(exact >> (cut - bits))) +
                    Exact(s_j) * Exact(rays.rest[i]) - Exact(s_i) * Exact(rays.rest[j]) +
-                   Exact(across < 0 ? 0 : across) + Exact(down < 0 ? 0 : down));
+                   Exact(across < 0 ? 0 : across) + Exact(below < 0 ? 0 : below));
+  // Turns F so that it grows to the right.
+  const bool flip = fx < 0;
+  if (flip) {
+    f = -f;
+    fx = -fx;
+    fy = -fy;
+  }
+  const int32_t down = (kTileDownPx - 1) * fy;
+  const int32_t least = f + (down < 0 ? down : 0);
+  const int32_t greatest = f + (kTileAcrossPx - 1) * fx + (down < 0 ? 0 : down);
   if (least > bound || greatest < -bound) {
-    set_all(plane, least > bound ? UINT32_MAX : 0);
+    set_all(plane, (least > bound) != flip ? UINT32_MAX : 0);
     return;
   }
-  walk_edge(f, fx, fy, bound, plane);
+  if (kDividesEdges && divide_edge(f, fx, fy, bound, flip, plane)) {
+    return;
+  }
+  walk_edge(least, fx, fy < 0 ? -fy : fy, bound, flip, fy < 0 ? -1 : 1, plane);
 }
 
 }  // namespace

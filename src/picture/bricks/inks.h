@@ -23,7 +23,7 @@ struct Inks {
 
   static uint32_t slot(uint32_t key) { return (key ^ key >> 6) % kFaces; }
 
-  void forget() {
+  [[THIMBLE_OWN_FUNCTION]] void forget() {
     for (Seen& seen : face) {
       seen.key = kNone;
     }

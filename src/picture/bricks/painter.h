@@ -157,7 +157,8 @@ class BrickPainter {
     set_sweep_course(course_, &sweep);
     const TilePlace place{line_of(tile.y0), row_stride(),      tile.x0,
                           tile.y0,          tile.x1 - tile.x0, tile.y1 - tile.y0};
-    TileSweep<InkPaint<OneCourse>> tile_sweep({sweep, course_, value, place});
+    const FirstDirection first = first_direction(course_, value);
+    TileSweep<InkPaint<OneCourse>> tile_sweep({sweep, course_, first, place});
     course_.waiting = kWaiting;
     set_start(course_, *slab);
     *slab = tile_sweep.run(fan, *slab);

@@ -129,14 +129,14 @@ void find_point(const SightCourse& course, const Vec3<uint32_t>& d, SeenFace* fa
 // The pixels of a tile that show one face.
 struct SeenPixels {
   const SightCourse& course;
-  const Camera::Vec3Q32& value;  // of the tile's first pixel
+  const FirstDirection& first;
   const TilePlace& place;
   const Pixels& pixels;
 
   // The direction of one of the pixels, mirrored.
   Vec3<uint32_t> direction(uint32_t pixel) const {
     uint32_t turned[3];
-    find_direction(course, value, pixel, turned);
+    find_direction(course, first, pixel, turned);
     return in_world(course, turned);
   }
   static Vec3<uint32_t> in_world(const Course& course, const uint32_t (&turned)[3]) {
@@ -154,7 +154,7 @@ struct SightPaint {
   static constexpr bool kDeep = false;
   Sweep& sweep_;
   SightCourse& course_;
-  const Camera::Vec3Q32& value_;
+  const FirstDirection& first_direction_;
   const TilePlace& place_;
   Sink& sink_;
 
@@ -170,7 +170,7 @@ struct SightPaint {
       face.way[axis] = distance_of(sweep_, m, cell[m]);
       face.point.voxel[axis] = course_.flip[axis] != 0 ? 4 * sweep_.side[m] - 1 - cell[m] : cell[m];
     }
-    sink_.face({course_, value_, place_, pixels}, face);
+    sink_.face({course_, first_direction_, place_, pixels}, face);
   }
 
   void paint_ray(uint32_t pixel, const uint32_t (&d)[3]) {
@@ -268,7 +268,8 @@ class SightPainter {
     Sweep& sweep = *sweep_;
     set_sweep_course(course_, &sweep);
     const TilePlace place{nullptr, 0, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
-    TileSweep<SightPaint<Sink>> tile_sweep({sweep, course_, value, place, sink_});
+    const FirstDirection first = first_direction(course_, value);
+    TileSweep<SightPaint<Sink>> tile_sweep({sweep, course_, first, place, sink_});
     course_.waiting = kWaiting;
     set_start(course_, *slab);
     *slab = tile_sweep.run(fan, *slab);

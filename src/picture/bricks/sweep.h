@@ -21,13 +21,14 @@ namespace thimble::bricks {
 namespace {
 
 constexpr int kSlots = THIMBLE_SWEEP_SLOTS;
+constexpr int kPlanes = kSlots == 0 ? 1 : 3 * kSlots;
 constexpr uint32_t kNoKey = UINT32_MAX;
 constexpr uint8_t kNoCourse = UINT8_MAX;
 // How many bricks' faces are kept.
 constexpr int kExposedKept = kSlots == 0 ? 1 : kSlots;
 // Where more voxels of a slab lie under a tile's shadow, the rest of the tile is drawn by rays; but not in thin worlds as
-// long as at most so many of them are solid.
-constexpr int32_t kMostCells = 28;
+// long as at most so many of them are solid. (On an ARM7 a ray takes longer beside a face: 28 gives 9 per cent more.)
+constexpr int32_t kMostCells = kFastRam ? 64 : 28;
 constexpr int32_t kMostSolid = 2;
 // A world is thin where the bricks hold so many voxels on average, or fewer.
 constexpr int32_t kThinBrick = 6;
@@ -60,8 +61,9 @@ struct Reach {
 // What the sweep keeps while it draws a tile, and from tile to tile of a band.
 struct Sweep {
   TileRays rays;
-  Pixels left;  // pixels that are not drawn yet
-  HalfPlane plane[3 * kSlots + (kSlots == 0 ? 1 : 0)];
+  Pixels left;            // pixels that are not drawn yet
+  uint32_t key[kPlanes];  // of the planes
+  HalfPlane plane[kPlanes];
   Exposed exposed[kExposedKept];
   uint8_t course;     // the course (axis c and signs) whose bricks are kept, or kNoCourse
   bool thin;          // whether the world is
@@ -86,8 +88,8 @@ struct Sweep {
   }
   void forget_planes() {
 #pragma GCC unroll 8
-    for (HalfPlane& kept : plane) {
-      kept.key = kNoKey;
+    for (uint32_t& kept : key) {
+      kept = kNoKey;
     }
   }
   void set_left(int32_t across, int32_t down) {
@@ -120,9 +122,10 @@ template <bool kDeep>
   constexpr int kAcross = kSlots >= 16 ? 8 : kSlots >= 8 ? 4 : 2;
   constexpr int kAlong = kSlots / (kAcross == 0 ? 1 : kAcross);
   const uint32_t key = static_cast<uint32_t>(i) | static_cast<uint32_t>(j) << 16;
-  HalfPlane& kept = sweep.plane[family * kSlots + (i & (kAcross - 1)) * kAlong + (j & (kAlong - 1))];
-  if (kept.key != key) {
-    kept.key = key;
+  const int slot = family * kSlots + (i & (kAcross - 1)) * kAlong + (j & (kAlong - 1));
+  HalfPlane& kept = sweep.plane[slot];
+  if (sweep.key[slot] != key) {
+    sweep.key[slot] = key;
     find_half_plane<kDeep>(sweep.rays, kFirstAxis[family], kSecondAxis[family],
                            distance_of(sweep, kFirstAxis[family], i),
                            distance_of(sweep, kSecondAxis[family], j), &kept);
@@ -130,23 +133,52 @@ template <bool kDeep>
   return kept;
 }
 
-// Finds a pixel's exact direction on a, b and c; the pixel's ray has the course's signs.
-void find_direction(const Course& course, const Camera::Vec3Q32& value, uint32_t pixel, uint32_t (&d)[3]) {
-  const int32_t x = static_cast<int32_t>(pixel & (kTileAcrossPx - 1));
-  const int32_t y = static_cast<int32_t>(pixel / kTileAcrossPx);
+// An element by an axis that is known at run time only: without the branches of `operator[]`.
+template <class Number>
+Number element(const Vec3<Number>& vector, int axis) {
+  Number number;
+  const uint8_t* from =
+      reinterpret_cast<const uint8_t*>(&vector) + static_cast<size_t>(axis) * sizeof(number);
+  __builtin_memcpy(&number, __builtin_assume_aligned(from, alignof(Number)), sizeof(number));
+  return number;
+}
+// The direction of a tile's first pixel on a, b and c, mirrored, and a half: rounding is cutting off.
+struct FirstDirection {
+  uint64_t on[3];
+};
+
+FirstDirection first_direction(const Course& course, const Camera::Vec3Q32& value) {
+  FirstDirection first;
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axis[k];
-    const int64_t own = (course.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis];
-    const int64_t sum = own + wide_multiple(x, course.step_x[axis]) + wide_multiple(y, course.step_y[axis]) +
-                        (int64_t{1} << 31);
-    d[k] = static_cast<uint32_t>(static_cast<uint64_t>(sum) >> 32);
+    const int64_t own = element(value, axis);
+    first.on[k] =
+        static_cast<uint64_t>((course.mirrored >> axis & 1U) != 0 ? -own : own) + (uint64_t{1} << 31);
+  }
+  return first;
+}
+
+// Finds a pixel's exact direction on a, b and c; the pixel's ray has the course's signs.
+void find_direction(const Course& course, const FirstDirection& first, uint32_t pixel, uint32_t (&d)[3]) {
+  const uint32_t x = pixel & (kTileAcrossPx - 1);
+  const uint32_t y = pixel / kTileAcrossPx;
+  for (int k = 0; k < 3; ++k) {
+    const auto step_x = static_cast<uint64_t>(element(course.step_x, course.axis[k]));
+    const auto step_y = static_cast<uint64_t>(element(course.step_y, course.axis[k]));
+    uint64_t sum = first.on[k];
+    sum += wide_product_u(static_cast<uint32_t>(step_x), x);
+    sum += wide_product_u(static_cast<uint32_t>(step_y), y);
+    d[k] = static_cast<uint32_t>(sum >> 32) + static_cast<uint32_t>(step_x >> 32) * x +
+           static_cast<uint32_t>(step_y >> 32) * y;
   }
 }
 
 // Returns where a ray meets the plane of a face: 1 inside of the face, -1 outside, 0 on one of its edges.
 template <bool kDeep>
 int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uint32_t (&d)[3]) {
-  const int32_t s_k = distance_of(sweep, k, cell[k]);
+  using Whole = WholeOf<kDeep>;
+  const Whole s_k = distance_of(sweep, k, cell[k]);
+  const auto d_k = static_cast<int32_t>(d[k]);
   int result = 1;
   for (int m = 0; m < 3; ++m) {
     if (m == k) {
@@ -154,10 +186,11 @@ int place_on_face(const Sweep& sweep, int k, const int32_t (&cell)[3], const uin
     }
     const int32_t near_m = distance_of(sweep, m, cell[m]);
     const int32_t far_m = near_m + Q8::kOne;
-    using Whole = WholeOf<kDeep>;
-    const Whole here = Whole{s_k} * static_cast<int32_t>(d[m]);
-    const Whole after = near_m <= 0 ? 1 : here - Whole{near_m} * static_cast<int32_t>(d[k]);
-    const Whole before = far_m <= 0 ? -1 : Whole{far_m} * static_cast<int32_t>(d[k]) - here;
+    if (far_m <= 0) {
+      return -1;
+    }
+    const Whole before = Whole{far_m} * d_k - s_k * static_cast<int32_t>(d[m]);
+    const Whole after = near_m <= 0 ? 1 : Whole{Q8::kOne} * d_k - before;
     if (after < 0 || before < 0) {
       return -1;
     }
@@ -228,13 +261,11 @@ void set_sweep_course(const Course& course, Sweep* sweep) {
   }
 }
 
-// Sets the sweep to a tile of `across` by `down` pixels whose first pixel has the direction `value`.
-void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across, int32_t down,
-              Sweep* sweep) {
+// Sets the sweep to a tile of `across` by `down` pixels.
+void set_tile(const FirstDirection& first, int32_t across, int32_t down, Sweep* sweep) {
   TileRays& rays = sweep->rays;
   for (int k = 0; k < 3; ++k) {
-    const int axis = course.axis[k];
-    const int64_t own = (course.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis];
+    const uint64_t own = first.on[k] - (uint64_t{1} << 31);
     rays.base[k] = static_cast<int32_t>(own >> 32);
     rays.rest[k] = static_cast<int32_t>(static_cast<uint32_t>(own) >> (32 - rays.fraction_bits));
   }
@@ -242,10 +273,40 @@ void set_tile(const Course& course, const Camera::Vec3Q32& value, int32_t across
   sweep->set_left(across, down);
 }
 
-constexpr HalfPlane kAllPixels = {kNoKey,
-                                  {{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}},
+constexpr HalfPlane kAllPixels = {{{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}},
                                   {{UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX}}};
-constexpr HalfPlane kNoPixels = {kNoKey, {{0, 0, 0, 0}}, {{0, 0, 0, 0}}};
+constexpr HalfPlane kNoPixels = {{{0, 0, 0, 0}}, {{0, 0, 0, 0}}};
+
+// The planes of a face: its pixels have met two, and have not come past two others. And the pixels that it may have.
+struct CellFace {
+  const HalfPlane& met0;
+  const HalfPlane& met1;
+  const HalfPlane& past0;
+  const HalfPlane& past1;
+  Pixels possible;
+};
+
+// Leaves the pixels that may have met a plane, or not have met it. Return whether there are any.
+[[gnu::always_inline]] inline bool keep_met(Pixels& pixels, const HalfPlane& plane) {
+  const Pixels kept = words_of(plane.possible);
+  uint32_t any = 0;
+#pragma GCC unroll 4
+  for (int i = 0; i < kTileWords; ++i) {
+    pixels.word[i] &= kept.word[i];
+    any |= pixels.word[i];
+  }
+  return any != 0;
+}
+[[gnu::always_inline]] inline bool keep_not_met(Pixels& pixels, const HalfPlane& plane) {
+  const Pixels lost = words_of(plane.certain);
+  uint32_t any = 0;
+#pragma GCC unroll 4
+  for (int i = 0; i < kTileWords; ++i) {
+    pixels.word[i] &= ~lost.word[i];
+    any |= pixels.word[i];
+  }
+  return any != 0;
+}
 
 // A brick under the shadow of a tile.
 struct SweptBrick {
@@ -270,12 +331,14 @@ template <bool kDeep>
 template <bool kDeep>
 [[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
                                                 const int32_t (&cell)[3]) {
-  uint32_t voxel = number_at<kDeep>(course.directory, place) << 6;
+  uint32_t voxel = 0;
+#pragma GCC unroll 3
   for (int m = 0; m < 3; ++m) {
-    const int axis = course.axis[m];
-    voxel |= ((static_cast<uint32_t>(cell[m]) & 3U) ^ course.flip[axis]) << 2 * axis;
+    voxel |= (static_cast<uint32_t>(cell[m]) & 3U) << 2 * course.axis[m];
   }
-  return voxel;
+  const uint32_t flip =
+      3 * ((course.mirrored & 1U) | (course.mirrored & 2U) << 1 | (course.mirrored & 4U) << 2);
+  return number_at<kDeep>(course.directory, place) << 6 | (voxel ^ flip);
 }
 
 // Stores the inks of what a sweep finds: of a face's pixels, and of single rays.
@@ -284,7 +347,7 @@ struct InkPaint {
   static constexpr bool kDeep = OneCourse::kDeep;
   Sweep& sweep_;
   OneCourse& course_;
-  const Camera::Vec3Q32& value_;
+  const FirstDirection& first_direction_;
   const TilePlace& place_;
 
   void begin_tile() {
@@ -391,7 +454,7 @@ class TileSweep : private Paint {
  private:
   void begin() {
     begun_ = true;
-    set_tile(course_, value_, place_.across, place_.down, &sweep_);
+    set_tile(first_direction_, place_.across, place_.down, &sweep_);
     this->begin_tile();
   }
 
@@ -426,8 +489,8 @@ class TileSweep : private Paint {
         return false;
       }
       const int32_t low = least[k] < 0 ? 0 : least[k];
-      const int32_t low_slope = low * (1 << kSlopeBits) / greatest[2];
-      const int32_t high_slope = greatest[k] * (1 << kSlopeBits) / least[2] + 1;
+      const int32_t low_slope = slope_of(low * (1 << kSlopeBits), greatest[2]);
+      const int32_t high_slope = slope_of(greatest[k] * (1 << kSlopeBits), least[2]) + 1;
       const int32_t at = sweep_.origin[k] * (1 << kSlopeBits);
       reach_[k] = {at + low_slope * plane - 1, at + high_slope * (plane + Q8::kOne) + 1, low_slope * Q8::kOne,
                    high_slope * Q8::kOne};
@@ -436,7 +499,7 @@ class TileSweep : private Paint {
   }
 
   // Narrows the shadow to the pixels that are left. Returns false where that is not done: the rectangle around these
-  // pixels has lost less than a quarter.
+  // pixels has lost less than an eighth.
   bool narrow(int32_t slab) {
     const Pixels& left = sweep_.left;
     uint32_t columns = 0;
@@ -454,7 +517,7 @@ class TileSweep : private Paint {
     const int32_t x1 = bits::highest_bit(columns);
     const int32_t across = x1 - x0 + 1;
     const int32_t words = last - first + 1;
-    if (4 * across * words > 3 * columns_ * words_) {
+    if (8 * across * words > 7 * columns_ * words_) {
       return false;
     }
     columns_ = across;
@@ -493,7 +556,8 @@ class TileSweep : private Paint {
   }
 
   // Draws bricks of one layer from its slab `slab` on.
-  void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick, const SweptBrick* end) {
+  [[THIMBLE_OWN_FUNCTION]] void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick,
+                                           const SweptBrick* end) {
     // The shadow's voxels as bits, from the first brick on. All rays have entered the lowest of them before the slab
     // begins, so none enters it by a plane of a or of b: `entered` leaves it out.
     uint32_t cells[2][4];
@@ -525,11 +589,15 @@ class TileSweep : private Paint {
       const Cells any{exposed.on[0].low | exposed.on[1].low | exposed.on[2].low,
                       exposed.on[0].high | exposed.on[1].high | exposed.on[2].high};
       for (int32_t i = first_slab; i < 4; ++i) {
+        const int shift = 16 * (i & 1);
+        const uint32_t exposed_here = (i < 2 ? any.low : any.high) >> shift & 0xFFFFU;
+        if (exposed_here == 0) {
+          continue;
+        }
         const uint32_t rows = kRows[cells[1][i] >> shift_b & 15U];
         const uint32_t across = cells[0][i] >> shift_a & 15U;
         const uint32_t under = across * rows;
-        const int shift = 16 * (i & 1);
-        if (((i < 2 ? any.low : any.high) >> shift & under) == 0) {
+        if ((exposed_here & under) == 0) {
           continue;
         }
         const auto faces = [&](int k) { return (i < 2 ? exposed.on[k].low : exposed.on[k].high) >> shift; };
@@ -547,7 +615,8 @@ class TileSweep : private Paint {
   }
 
   // Draws faces of a brick's voxels in one slab.
-  void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a, uint32_t on_b, uint32_t on_c) {
+  [[THIMBLE_OWN_FUNCTION]] void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a,
+                                           uint32_t on_b, uint32_t on_c) {
     for (uint32_t any = on_a | on_b | on_c; any != 0; any &= any - 1) {
       const uint32_t bit = bits::lowest_bit(any);
       const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
@@ -556,75 +625,105 @@ class TileSweep : private Paint {
     }
   }
 
-  void draw_cell(int32_t place, const int32_t (&cell)[3], uint32_t on_a, uint32_t on_b, uint32_t on_c) {
+  // Draws faces of one voxel. A half-plane is asked for only while pixels are left to the face.
+  [[gnu::always_inline]] void draw_cell(int32_t place, const int32_t (&cell)[3], uint32_t on_a, uint32_t on_b,
+                                        uint32_t on_c) {
     const int32_t a = cell[0];
     const int32_t b = cell[1];
     const int32_t c = cell[2];
-    const int32_t in_brick = c & 3;
-    if (on_c != 0 && distance_of(sweep_, 2, c) > 0) {
-      draw_face(place, cell, 2, a == first_[0][in_brick] ? kAllPixels : half_plane<kDeep>(sweep_, kAc, a, c),
-                b == first_[1][in_brick] ? kAllPixels : half_plane<kDeep>(sweep_, kBc, b, c),
-                a == last_[0][in_brick] ? kNoPixels : half_plane<kDeep>(sweep_, kAc, a + 1, c),
-                b == last_[1][in_brick] ? kNoPixels : half_plane<kDeep>(sweep_, kBc, b + 1, c));
+    Sweep& sweep = sweep_;
+    const auto plane = [&sweep](Family family, int32_t i, int32_t j) {
+      return &half_plane<kDeep>(sweep, family, i, j);
+    };
+    if (on_c != 0 && distance_of(sweep, 2, c) > 0) {
+      const int32_t in_brick = c & 3;
+      Pixels possible = words_of(sweep.left);
+      const HalfPlane* met_a = &kAllPixels;
+      const HalfPlane* met_b = &kAllPixels;
+      const HalfPlane* past_a = &kNoPixels;
+      const HalfPlane* past_b = &kNoPixels;
+      if ((a == first_[0][in_brick] || keep_met(possible, *(met_a = plane(kAc, a, c)))) &&
+          (b == first_[1][in_brick] || keep_met(possible, *(met_b = plane(kBc, b, c)))) &&
+          (a == last_[0][in_brick] || keep_not_met(possible, *(past_a = plane(kAc, a + 1, c)))) &&
+          (b == last_[1][in_brick] || keep_not_met(possible, *(past_b = plane(kBc, b + 1, c))))) {
+        draw_face(place, cell, 2, {*met_a, *met_b, *past_a, *past_b, possible});
+      }
     }
-    if (on_a != 0 && distance_of(sweep_, 0, a) > 0) {
-      draw_face(place, cell, 0, half_plane<kDeep>(sweep_, kAc, a, c + 1),
-                half_plane<kDeep>(sweep_, kAb, a, b + 1), half_plane<kDeep>(sweep_, kAc, a, c),
-                half_plane<kDeep>(sweep_, kAb, a, b));
+    if (on_a != 0 && distance_of(sweep, 0, a) > 0) {
+      Pixels possible = words_of(sweep.left);
+      const HalfPlane& met_c = *plane(kAc, a, c + 1);
+      if (keep_met(possible, met_c)) {
+        const HalfPlane& met_b = *plane(kAb, a, b + 1);
+        if (keep_met(possible, met_b)) {
+          const HalfPlane& past_c = *plane(kAc, a, c);
+          const HalfPlane& past_b = *plane(kAb, a, b);
+          if (keep_not_met(possible, past_c) && keep_not_met(possible, past_b)) {
+            draw_face(place, cell, 0, {met_c, met_b, past_c, past_b, possible});
+          }
+        }
+      }
     }
-    if (on_b != 0 && distance_of(sweep_, 1, b) > 0) {
-      draw_face(place, cell, 1, half_plane<kDeep>(sweep_, kBc, b, c + 1),
-                half_plane<kDeep>(sweep_, kAb, a, b), half_plane<kDeep>(sweep_, kBc, b, c),
-                half_plane<kDeep>(sweep_, kAb, a + 1, b));
+    if (on_b != 0 && distance_of(sweep, 1, b) > 0) {
+      Pixels possible = words_of(sweep.left);
+      const HalfPlane& met_c = *plane(kBc, b, c + 1);
+      if (keep_met(possible, met_c)) {
+        const HalfPlane& met_a = *plane(kAb, a, b);
+        if (keep_met(possible, met_a)) {
+          const HalfPlane& past_c = *plane(kBc, b, c);
+          const HalfPlane& past_a = *plane(kAb, a + 1, b);
+          if (keep_not_met(possible, past_c) && keep_not_met(possible, past_a)) {
+            draw_face(place, cell, 1, {met_c, met_a, past_c, past_a, possible});
+          }
+        }
+      }
     }
   }
 
-  // Draws the face of `cell` on axis k: the pixels that have met two planes (`yes`) and not yet two others (`no`).
-  void draw_face(int32_t place, const int32_t (&cell)[3], int k, const HalfPlane& yes0, const HalfPlane& yes1,
-                 const HalfPlane& no0, const HalfPlane& no1) {
-    Pixels possible;
-    uint32_t any = 0;
-    for (int i = 0; i < kTileWords; ++i) {
-      possible.word[i] = yes0.possible.word[i] & yes1.possible.word[i] &
-                         ~(no0.certain.word[i] | no1.certain.word[i]) & sweep_.left.word[i];
-      any |= possible.word[i];
-    }
-    if (any == 0) {
-      return;
-    }
+  // Draws the face of `cell` on axis k.
+  [[gnu::noinline]] void draw_face(int32_t place, const int32_t (&cell)[3], int k, const CellFace& face) {
+    const HalfPlane& met0 = face.met0;
+    const HalfPlane& met1 = face.met1;
+    const HalfPlane& past0 = face.past0;
+    const HalfPlane& past1 = face.past1;
+    Sweep& sweep = sweep_;
     Pixels mine;
-    any = 0;
+    uint32_t any = 0;
+#pragma GCC unroll 4
     for (int i = 0; i < kTileWords; ++i) {
-      mine.word[i] = yes0.certain.word[i] & yes1.certain.word[i] &
-                     ~(no0.possible.word[i] | no1.possible.word[i]) & sweep_.left.word[i];
-      sweep_.left.word[i] &= ~mine.word[i];
-      possible.word[i] &= ~mine.word[i];
-      any |= possible.word[i];
+      const uint32_t possible = face.possible.word[i];
+      uint32_t own = 0;
+      if (possible != 0) {
+        own = met0.certain.word[i] & met1.certain.word[i] &
+              ~(past0.possible.word[i] | past1.possible.word[i]) & possible;
+        sweep.left.word[i] &= ~own;
+        if (own != possible) {
+          own |= decide(cell, k, static_cast<uint32_t>(i), possible ^ own);
+        }
+        any |= own;
+      }
+      mine.word[i] = own;
     }
     if (any != 0) {
-      decide(cell, k, possible, &mine);
-    }
-    if ((mine.word[0] | mine.word[1] | mine.word[2] | mine.word[3]) != 0) {
       this->paint_face(place, cell, k, mine);
     }
   }
 
-  // Decides open pixels by their exact rays.
-  [[gnu::noinline]] void decide(const int32_t (&cell)[3], int k, const Pixels& open, Pixels* mine) {
-    for (uint32_t i = 0; i < kTileWords; ++i) {
-      for (uint32_t word = open.word[i]; word != 0; word &= word - 1) {
-        const uint32_t bit = bits::lowest_bit(word);
-        uint32_t d[3];
-        find_direction(course_, value_, 32 * i + bit, d);
-        const int where = place_on_face<kDeep>(sweep_, k, cell, d);
-        if (where > 0) {
-          mine->word[i] |= 1U << bit;
-          sweep_.left.word[i] &= ~(1U << bit);
-        } else if (where == 0) {
-          this->paint_ray(32 * i + bit, d);
-        }
+  // Decides open pixels of word `i` by their exact rays. Returns those that are the face's.
+  [[gnu::noinline]] uint32_t decide(const int32_t (&cell)[3], int k, uint32_t i, uint32_t open) {
+    uint32_t mine = 0;
+    for (; open != 0; open &= open - 1) {
+      const uint32_t bit = bits::lowest_bit(open);
+      uint32_t d[3];
+      find_direction(course_, first_direction_, 32 * i + bit, d);
+      const int where = place_on_face<kDeep>(sweep_, k, cell, d);
+      if (where > 0) {
+        mine |= 1U << bit;
+      } else if (where == 0) {
+        this->paint_ray(32 * i + bit, d);
       }
     }
+    sweep_.left.word[i] &= ~mine;
+    return mine;
   }
 
  public:
@@ -642,7 +741,7 @@ class TileSweep : private Paint {
       for (uint32_t word = sweep_.left.word[i] & ~(quads * 0x000F000FU); word != 0; word &= word - 1) {
         const uint32_t pixel = 32 * i + bits::lowest_bit(word);
         uint32_t d[3];
-        find_direction(course_, value_, pixel, d);
+        find_direction(course_, first_direction_, pixel, d);
         this->paint_ray(pixel, d);
       }
     }
@@ -650,10 +749,10 @@ class TileSweep : private Paint {
 
  private:
   using Paint::course_;
+  using Paint::first_direction_;
   using Paint::kDeep;
   using Paint::place_;
   using Paint::sweep_;
-  using Paint::value_;
   Reach reach_[2];  // in the next slab; `run` sets it
   // The rectangle that the shadow was last narrowed to: so many columns, and pairs of rows.
   int32_t columns_ = kTileAcrossPx;

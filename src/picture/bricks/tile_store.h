@@ -49,7 +49,7 @@ template <class Pixel>
         to += 4;
       }
       for (; row != 0; row >>= 4, to += 4) {
-        if ((row & 15U) == 15) {
+        if (!kFastRam && (row & 15U) == 15) {
           to[0] = value;
           to[1] = value;
           to[2] = value;
