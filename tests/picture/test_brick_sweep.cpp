@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/chip_worlds.h"
+#include "support/random_up.h"
 #include "support/ray_cases.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
@@ -123,6 +124,77 @@ void check_bricks(const ChipScene& scene, const PerspectiveView& view, ShadeMode
 }
 Vec3Q8 eye_at(int x, int y, int z) {
   return {Q8::from_raw(x), Q8::from_raw(y), Q8::from_raw(z)};
+}
+
+// Narrowed to the pixels that are left, a tile's slope on one axis may come to 2, where that of all of them did not.
+TEST_CASE("brick sweep: a tile that cannot be narrowed along its second axis -> goes on as it was") {
+  const ChipScene scene = make_chip_scene(3, {{5, 6, 3}, {6, 0, 4}});
+  const Vec3Q8 eye{Q8::from_raw(2304), Q8::from_raw(1017), Q8::from_raw(1519)};
+  Camera camera;
+  REQUIRE(camera.set(PerspectiveView{eye, {-1, 0, -1}, {}, Q16::saturate(101), 62, 32, 0}, 3) == Status::kOk);
+  Shading shading;
+  shading.mode = ShadeMode::kNormal;
+  std::vector<std::uint8_t> wanted(62 * 32);
+  REQUIRE(render_band(scene.tree, camera, shading,
+                      {{wanted.data(), wanted.size()}, PixelFormat::kGray8, 0, 0, 32}) == Status::kOk);
+  for (int row = 0; row < 32; ++row) {
+    CAPTURE(row);
+    std::vector<std::uint8_t> got(62);
+    REQUIRE(render_band(scene.tree, scene.map, camera, shading,
+                        {{got.data(), got.size()}, PixelFormat::kGray8, 0, row, 1}) == Status::kOk);
+    CHECK(std::equal(got.begin(), got.end(), wanted.begin() + 62 * row));
+  }
+}
+
+TEST_CASE(
+    "brick sweep: wide pictures of few pixels along diagonals, in bands of few rows -> the tree's bytes") {
+  std::mt19937_64 random(seed_or(20261127));
+  const std::uint64_t wanted_pixels = 20 * pixels_to_draw();
+  Shading shading;
+  shading.mode = ShadeMode::kNormal;
+  const auto by_tree = [](const ChipScene& scene, const Camera& camera, const Shading& with, const Band& band,
+                          RenderCounts* counts) {
+    return render_band(scene.tree, camera, with, band, counts);
+  };
+  const auto by_map = [](const ChipScene& scene, const Camera& camera, const Shading& with, const Band& band,
+                         RenderCounts* counts) {
+    return render_band(scene.tree, scene.map, camera, with, band, counts);
+  };
+  std::uint64_t pixels = 0;
+  for (int turn = 0; pixels < wanted_pixels; ++turn) {
+    const std::uint64_t seed = random();
+    CAPTURE(seed);
+    std::mt19937_64 own(seed);
+    const int level = pick_int(own, 3, 5);
+    const int side_q8 = 256 << level;
+    const ChipScene scene = make_chip_scene(own, kChipWorlds[turn % 6], level);
+    for (int view = 0; view < 8; ++view) {
+      CAPTURE(view);
+      Vec3Q8 eye;
+      Vec3i forward;
+      for (int axis = 0; axis < 3; ++axis) {
+        eye[axis] = Q8::from_raw(pick_int(own, -600, side_q8 + 600));
+        forward[axis] = pick_int(own, -1, 1);
+      }
+      const Q16 fov = Q16::saturate(pick_int(own, 60, 120));
+      const int width = pick_int(own, 16, 70);
+      const int height = pick_int(own, 8, 40);
+      const int bits = pick_int(own, 0, 1) == 0 ? 0 : pick_int(own, kMinDirectionBits, 12);
+      Camera camera;
+      if (camera.set(PerspectiveView{eye, forward, random_up(own), fov, width, height, bits}, level) !=
+          Status::kOk) {
+        continue;
+      }
+      const std::size_t stride = row_bytes(PixelFormat::kGray8, width);
+      const auto wanted =
+          drawn(scene, camera, shading, PixelFormat::kGray8, stride, height, by_tree, nullptr);
+      for (const int rows : {1, 3, height}) {
+        CAPTURE(rows);
+        REQUIRE(drawn(scene, camera, shading, PixelFormat::kGray8, stride, rows, by_map, nullptr) == wanted);
+        pixels += wanted.size();
+      }
+    }
+  }
 }
 
 TEST_CASE("bricks: rays of 14 bits and more that start over 64 voxels outside -> the tree's answer") {

@@ -481,13 +481,12 @@ class TileSweep : private Paint {
 
   bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
     const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
-    if (least[2] < 1) {
-      return false;  // some rays hardly advance along c: their directions have few bits
+    // Some rays may hardly advance along c: their directions have few bits. Both axes or none: a shadow that is not
+    // narrowed goes on from slab to slab.
+    if (least[2] < 1 || greatest[0] > 2 * least[2] || greatest[1] > 2 * least[2]) {
+      return false;
     }
     for (int k = 0; k < 2; ++k) {
-      if (greatest[k] > 2 * least[2]) {
-        return false;
-      }
       const int32_t low = least[k] < 0 ? 0 : least[k];
       const int32_t low_slope = slope_of(low * (1 << kSlopeBits), greatest[2]);
       const int32_t high_slope = slope_of(greatest[k] * (1 << kSlopeBits), least[2]) + 1;
