@@ -20,13 +20,16 @@ macro(thimble_read_board name)
   foreach(fact IN LISTS facts)
     unset(BOARD_${fact})
   endforeach()
-  foreach(fact CHIP FRAMES WORLDS UF2 IMAGE CORE_MHZ BAND_BUFFERS CORES FAST_RAM_ORIGIN FAST_RAM_BYTES FAST_SOURCES
+  foreach(fact CHIP FRAMES WORLDS UF2 IMAGE CORE_MHZ MAP_RAYS_A_SECOND BAND_BUFFERS CORES FAST_RAM_ORIGIN FAST_RAM_BYTES FAST_SOURCES
       FAST_FUNCTIONS)
     unset(BOARD_${fact})
   endforeach()
   include(${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)
   if(NOT DEFINED BOARD_CORE_MHZ)
     set(BOARD_CORE_MHZ ${BOARD_CLOCK_MHZ})
+  endif()
+  if(NOT DEFINED BOARD_MAP_RAYS_A_SECOND)
+    math(EXPR BOARD_MAP_RAYS_A_SECOND "${BOARD_VISITS_A_SECOND} * 4 / 5")
   endif()
   foreach(fact IN LISTS facts)
     if(NOT DEFINED BOARD_${fact})
@@ -80,7 +83,7 @@ function(thimble_write_board_table file)
     thimble_capitalise(screen ${BOARD_DISPLAY})
     string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, "
       "${BOARD_FLASH_BYTES}, ${BOARD_STACK_BYTES}, Screen::k${screen}, PixelFormat::k${format}, ${BOARD_WIDTH_PX}, "
-      "${BOARD_HEIGHT_PX}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, ${BOARD_CORE_MHZ}, ${BOARD_FRAME_INSTRUCTIONS}, "
+      "${BOARD_HEIGHT_PX}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, ${BOARD_MAP_RAYS_A_SECOND}, ${BOARD_CORE_MHZ}, ${BOARD_FRAME_INSTRUCTIONS}, "
       "${band_buffers}, ${cores}, ${most_map_level}, {${app_stacks}}},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)

@@ -45,6 +45,8 @@ struct Facts {
   /// Node visits that rays through a tree take in a second, everything about a ray included
   /// (BOARD_VISITS_A_SECOND); 0 where an application is not to hold a rate of frames.
   uint32_t visits_a_second = 0;
+  /// Rays through a brick map likewise (BOARD_MAP_RAYS_A_SECOND).
+  uint32_t map_rays_a_second = 0;
   /// The rate that an application is to hold from its start; 0: it draws exact frames as fast as it can.
   uint32_t hold_fps = 0;
   uint32_t core_mhz = 0;  ///< 0: not known, or another machine's

@@ -112,10 +112,10 @@ const port::Display& display() {
   return port::facts().display;
 }
 
-/// Where bands are sent while others are drawn, one holds what a tile of the coarsest thinned picture becomes,
-/// so that the next tile is drawn meanwhile.
+/// Where bands are sent while others are drawn, one holds what a tile of a thinned picture becomes, every 4th
+/// pixel both ways, so that the next tile is drawn meanwhile.
 int32_t most_band_rows() {
-  const int32_t rows = port::band_buffers() > 1 ? kBrickTilePx * kMostThinned : kBandRows;
+  const int32_t rows = port::band_buffers() > 1 ? kBrickTilePx * 4 : kBandRows;
   return display().height_px < rows ? display().height_px : rows;
 }
 
@@ -303,7 +303,8 @@ void tell_crew(const Demo& /*demo*/) {}
   return Status::kOk;
 }
 
-/// The picture of the thinned camera by the brick map, each pixel as a square.
+/// The picture of the thinned camera by the brick map, each pixel as a square. The rows of a square are one row, copied, or
+/// flushed again where flushing is copying.
 [[gnu::noinline]] Status draw_thinned(Demo* demo, int32_t step, uint32_t* crc) {
   const port::Display& screen = display();
   HeldFrame& held = *demo->held;
@@ -311,10 +312,17 @@ void tell_crew(const Demo& /*demo*/) {}
   const int32_t width = held.thin_camera.width_px();
   const int32_t height = held.thin_camera.height_px();
   const PixelFormat format = thin_format(screen.format);
+  const bool rows_alike = widened_bytes(format) != 0;
+  const bool flushes_again = rows_alike && port::band_buffers() == 1;
+  // Rows of a tile, or as many as fill a band where it is sent meanwhile.
+  const int32_t most_rows =
+      rows_alike && !flushes_again && demo->band_rows >= step && demo->band_rows < kBrickTilePx * step
+          ? demo->band_rows / step
+          : kBrickTilePx;
   demo->inexact = static_cast<uint32_t>(screen.width_px * screen.height_px - width * height);
   *crc = 0;
-  for (int32_t thin_y = 0; thin_y < height; thin_y += kBrickTilePx) {
-    const int32_t rows = height - thin_y < kBrickTilePx ? height - thin_y : kBrickTilePx;
+  for (int32_t thin_y = 0; thin_y < height; thin_y += most_rows) {
+    const int32_t rows = height - thin_y < most_rows ? height - thin_y : most_rows;
     const Band thin{held.thin_bytes, format, 0, thin_y, rows};
     const Status status =
         render_band(demo->shown.scene.tree(), demo->shown.map, held.thin_camera, demo->shading, thin);
@@ -323,12 +331,12 @@ void tell_crew(const Demo& /*demo*/) {}
     }
     const int32_t last = (thin_y + rows) * step;
     const int32_t end = last < screen.height_px ? last : screen.height_px;
-    for (int32_t y = thin_y * step; y < end; y += demo->band_rows) {
-      const Band band = band_at(*demo, y, end);
+    for (int32_t y = thin_y * step; y < end;) {
+      Band band = band_at(*demo, y, flushes_again ? y + 1 : end);
       const size_t row = row_bytes(screen.format, screen.width_px);
       for (int32_t i = 0; i < band.rows; ++i) {
         uint8_t* const to = band.pixels.data + row_place(screen.format, i) * row;
-        if (widens_halfwords(format) && i > 0 && (y + i) % step != 0) {
+        if (rows_alike && i > 0 && (y + i) % step != 0) {
           __builtin_memcpy(to, to - row, row);  // the same squares
           continue;
         }
@@ -336,6 +344,11 @@ void tell_crew(const Demo& /*demo*/) {}
         widen_row(held.thin_bytes.data + from * row_bytes(format, width), format, step, y + i, to);
       }
       flush(demo, band, crc);
+      y += band.rows;
+      for (; flushes_again && y % step != 0 && y < end; ++y) {
+        band.first_row = y;
+        flush(demo, band, crc);
+      }
     }
   }
   return Status::kOk;
@@ -369,11 +382,10 @@ void tell_crew(const Demo& /*demo*/) {}
 
 /// Draws and flushes what there is time for.
 [[gnu::noinline]] Status draw_held(Demo* demo, uint32_t* crc) {
-  const uint32_t visits = visits_a_frame(demo->fps);
   if (demo->builds || !demo->shown.has_map) {
-    return draw_anytime(demo, visits, crc);
+    return draw_anytime(demo, visits_a_frame(demo->fps), crc);
   }
-  const int32_t step = demo->changed ? thinning_for(visits) : 1;
+  const int32_t step = demo->changed ? thinning_for(demo->fps) : 1;
   if (step > 1) {
     return draw_thinned(demo, step, crc);
   }
@@ -506,8 +518,14 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format)
   put("holding ");
   put_number(demo->fps);
   put(" frames a second: ");
-  put_number(visits_a_frame(demo->fps));
-  put(" visits a frame\n");
+  if (demo->shown.has_map) {
+    put("a pixel of ");
+    put_number(static_cast<uint32_t>(thinning_for(demo->fps)));
+    put(" both ways\n");
+  } else {
+    put_number(visits_a_frame(demo->fps));
+    put(" visits a frame\n");
+  }
 }
 
 [[gnu::noinline]] void switch_light(Demo* demo) {

@@ -5,8 +5,8 @@
 /// The work depends on the board's facts and the rate alone, never on a clock, so that the pictures are the
 /// same on the board and in the simulator. Two ways, whichever serves better:
 ///   - rays through a tree: an any-time frame (thimble/picture/anytime.h) of so many node visits;
-///   - with a brick map, a thirteenth of the instructions a pixel: the thinned camera's picture, every 2nd or
-///     4th pixel both ways by the map, each as a square; the exact picture when the camera stands still.
+///   - with a brick map, a thirteenth of the instructions a pixel: the thinned camera's picture, every 2nd to
+///     8th pixel both ways by the map, each as a square; the exact picture when the camera stands still.
 #ifndef THIMBLE_PLATFORM_APPS_HELD_FRAME_H
 #define THIMBLE_PLATFORM_APPS_HELD_FRAME_H
 
@@ -30,7 +30,7 @@ inline constexpr bool kCanHold = true;
 /// The rate where nothing else was said.
 inline constexpr uint32_t kHoldFps = 30;
 /// The coarsest thinned picture.
-inline constexpr int32_t kMostThinned = 4;
+inline constexpr int32_t kMostThinned = 8;
 
 struct HeldFrame : Placed {
   AnytimeFrame frame;
@@ -62,21 +62,34 @@ constexpr uint32_t pool_visits(uint32_t visits, bool is_growing) {
   return is_growing ? visits / 3 : visits * 5 / 8;
 }
 
-/// The least thinning for which a picture by the brick map takes no longer than `visits`: a pixel of it, with
-/// the square that it becomes, takes as long as one and a quarter.
-inline int32_t thinning_for(uint32_t visits) {
-  for (int32_t step = 1; step < kMostThinned; step *= 2) {
-    if (display_pixels() / static_cast<uint32_t>(step * step) * 5 / 4 <= visits) {
-      return step;
-    }
+/// The least thinning whose rays through the brick map the rate leaves time for, less what squares, flushing
+/// and the camera take, a 64th of a ray a pixel.
+inline int32_t thinning_for(uint32_t fps) {
+  const port::Display& screen = port::facts().display;
+  const uint32_t rays = port::facts().map_rays_a_second / fps;
+  const uint32_t other = display_pixels() / 64;
+  int32_t step = 1;
+  while (step<kMostThinned&& static_cast<uint32_t>(((screen.width_px + step - 1) / step) *
+                                                   ((screen.height_px + step - 1) / step)) +
+              other>
+             rays) {
+    ++step;
   }
-  return kMostThinned;
+  return step;
 }
 
-/// Whether halfwords are widened as they are, row by row: a fiftieth of the time, where pictures are large.
-inline bool widens_halfwords(PixelFormat format) {
-  return kMaxBrickDirectionBits > 12 && (format == PixelFormat::kRgb565 || format == PixelFormat::kRgb565Be ||
-                                         format == PixelFormat::kBgr565);
+/// Bytes of a pixel that is widened as it is, a row for all rows of its square, where pictures are large: a fiftieth
+/// of the time. 0: each pixel is stored by itself.
+inline size_t widened_bytes(PixelFormat format) {
+  if (kMaxBrickDirectionBits <= 12) {
+    return 0;
+  }
+  if (format == PixelFormat::kRgb888) {
+    return 3;
+  }
+  return format == PixelFormat::kRgb565 || format == PixelFormat::kRgb565Be || format == PixelFormat::kBgr565
+             ? 2
+             : 0;
 }
 
 /// The format of a thinned picture, from which the display's pixels follow exactly.
@@ -84,7 +97,7 @@ inline PixelFormat thin_format(PixelFormat format) {
   if (is_gray(format)) {
     return PixelFormat::kGray8;
   }
-  if (widens_halfwords(format)) {
+  if (widened_bytes(format) != 0) {
     return format;
   }
   if (!kHasPanelFormats || format <= PixelFormat::kRgb888) {
@@ -126,20 +139,30 @@ inline Rgb8 thin_color(const uint8_t* row, int32_t x, PixelFormat format) {
   return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
 }
 
+/// Each pixel of kBytes, aligned to kAlignment, `step` times, until the row has `width`.
+template <size_t kBytes, size_t kAlignment>
+[[gnu::noinline]] void widen_pixels(const uint8_t* thin, int32_t step, int32_t width, uint8_t* row) {
+  for (int32_t x = 0; x < width; thin += kBytes) {
+    uint8_t pixel[kBytes];
+    __builtin_memcpy(pixel, __builtin_assume_aligned(thin, kAlignment), kBytes);
+    for (const int32_t end = x + step < width ? x + step : width; x < end; ++x) {
+      __builtin_memcpy(__builtin_assume_aligned(row, kAlignment), pixel, kBytes);
+      row += kBytes;
+    }
+  }
+}
+
 /// Row `y` of the display from row y / step of the thinned picture; rows that share bytes from the first down.
 [[gnu::noinline]] inline void widen_row(const uint8_t* thin, PixelFormat from, int32_t step, int32_t y,
                                         uint8_t* row) {
   const port::Display& screen = port::facts().display;
-  if (widens_halfwords(from)) {
-    for (int32_t x = 0; x < screen.width_px; thin += 2) {
-      uint16_t pixel = 0;
-      __builtin_memcpy(&pixel, __builtin_assume_aligned(thin, sizeof(pixel)), sizeof(pixel));
-      for (const int32_t end = x + step < screen.width_px ? x + step : screen.width_px; x < end; ++x) {
-        __builtin_memcpy(__builtin_assume_aligned(row, sizeof(pixel)), &pixel, sizeof(pixel));
-        row += sizeof(pixel);
-      }
-    }
-    return;
+  switch (widened_bytes(from)) {
+    case 2:
+      return widen_pixels<2, 2>(thin, step, screen.width_px, row);
+    case 3:
+      return widen_pixels<3, 1>(thin, step, screen.width_px, row);
+    default:
+      break;
   }
   const size_t bytes = begins_bytes(screen.format, y) ? row_bytes(screen.format, screen.width_px) : 0;
   for (size_t i = 0; i < bytes; ++i) {

@@ -32,7 +32,8 @@ struct BoardFacts {
   int32_t width_px;
   int32_t height_px;
   int32_t buttons;
-  uint32_t visits_a_second;  ///< port::Facts::visits_a_second
+  uint32_t visits_a_second;    ///< port::Facts::visits_a_second
+  uint32_t map_rays_a_second;  ///< port::Facts::map_rays_a_second
   uint32_t core_mhz;
   uint32_t frame_instructions;  ///< of the demonstration, the median of its golden frames (bench)
   int32_t band_buffers;         ///< port::band_buffers()

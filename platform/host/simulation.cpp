@@ -205,6 +205,7 @@ Simulation::State::State(const SimulationOptions& options)
             options.board->stack_bytes,
             {options.board->width_px, options.board->height_px, options.board->format, options.connected},
             options.board->visits_a_second,
+            options.board->map_rays_a_second,
             options.hold_fps},
       band_buffers(options.board->band_buffers),
       cores(options.board->cores),

@@ -137,6 +137,7 @@ extern "C" {
                   board.stack_bytes,
                   {board.width_px, board.height_px, board.format, connected},
                   board.visits_a_second,
+                  board.map_rays_a_second,
                   0};
   layout.scene = {web::at(scene), scene_bytes};
   layout.arena = {end - arena_bytes, arena_bytes};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -572,6 +573,52 @@ TEST_CASE(
   // It stands where it stood when the frame before was drawn.
   CHECK(held.pictures[4].bytes == exact.pictures[3].bytes);
   CHECK(held.pictures[5].bytes == exact.pictures[3].bytes);
+}
+
+TEST_CASE("demo: rates that are held in colour -> squares as small as the rate leaves time for") {
+  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
+  tools::BakingOptions options;
+  options.brick_map = true;
+  options.camera = [&source](const CompactTree&) { return *source->camera(); };
+  const tools::Baked baked = tools::bake_scene(*source, options);
+  std::set<int> steps;
+  for (const char* name : {"gba", "pico", "pico-lcd-2", "raspi0"}) {
+    const platform::BoardFacts& board = *platform::find_board(name);
+    const auto bytes = static_cast<std::size_t>(board.format == PixelFormat::kRgb888 ? 3 : 2);
+    const auto width = static_cast<std::size_t>(board.width_px);
+    const Run exact = run_demo(board, bytes_of(baked.bytes), 2, {}, true);
+    REQUIRE(exact.pictures.size() == 2);
+    int before = 1;
+    for (const std::uint32_t fps : {1U, 2U, 4U, 10U, 30U, 45U, 60U, 120U}) {
+      const Run held = run_demo(board, bytes_of(baked.bytes), 2, {}, true, fps);
+      REQUIRE(held.pictures.size() == 2);
+      const std::size_t told = held.out.find("a pixel of ");
+      REQUIRE(told != std::string::npos);
+      const int step = std::stoi(held.out.substr(told + 11));
+      CAPTURE(name);
+      CAPTURE(fps);
+      CAPTURE(step);
+      CHECK(step >= before);
+      CHECK(step <= 8);
+      before = step;
+      steps.insert(step);
+      const auto every = static_cast<std::size_t>(step);
+      for (std::size_t frame = 0; frame < 2; ++frame) {
+        std::size_t others = 0;
+        for (std::size_t at = 0; at < held.pictures[frame].bytes.size(); ++at) {
+          const std::size_t x = at / bytes % width;
+          const std::size_t y = at / bytes / width;
+          const std::size_t corner = (y - y % every) * width + x - x % every;
+          others += held.pictures[frame].bytes[at] == exact.pictures[frame].bytes[corner * bytes + at % bytes]
+                        ? 0U
+                        : 1U;
+        }
+        CHECK(held.pictures[frame].bytes.size() == bytes * width * static_cast<std::size_t>(board.height_px));
+        CHECK(others == 0);
+      }
+    }
+  }
+  CHECK(steps.size() >= 7);
 }
 
 TEST_CASE("demo: a rate is held with a tree alone -> refined by what there is time for, exact in the end") {

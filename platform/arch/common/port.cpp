@@ -9,11 +9,15 @@ namespace thimble::port {
 
 const Facts& facts() {
   // The linker knows the size of the stack, so this is no constant of the compiler; but no code either.
-  static const Facts kFacts = {
-      board::kFacts.name,        board::kFacts.ram_bytes,
-      board::kFacts.flash_bytes, static_cast<uint32_t>(reinterpret_cast<uintptr_t>(thimble_stack_bytes)),
-      board::kFacts.display,     board::kFacts.visits_a_second,
-      board::kFacts.hold_fps,    board::kFacts.core_mhz};
+  static const Facts kFacts = {board::kFacts.name,
+                               board::kFacts.ram_bytes,
+                               board::kFacts.flash_bytes,
+                               static_cast<uint32_t>(reinterpret_cast<uintptr_t>(thimble_stack_bytes)),
+                               board::kFacts.display,
+                               board::kFacts.visits_a_second,
+                               board::kFacts.map_rays_a_second,
+                               board::kFacts.hold_fps,
+                               board::kFacts.core_mhz};
   return kFacts;
 }
 
