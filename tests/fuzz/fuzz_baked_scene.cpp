@@ -1,10 +1,10 @@
-// libFuzzer target: the first 12 bytes choose a direction, the rest is a baked scene, or changes to one of level 9 or 5
-// with its brick map. Whatever it is, it is refused, or using it stays inside its bytes, ends within the bound and gives
-// answers that make sense. The checksums are put right first, or no change would get past them.
+// libFuzzer target: the first 12 bytes choose a direction, the rest is a baked scene, or changes to one of level 9 or, with
+// light, of level 5, with its brick map. Whatever it is, it is refused, or using it stays inside its bytes, ends within the
+// bound and gives answers that make sense. The checksums are put right first, or no change would get past them.
 //
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Itests -DTHIMBLE_DEEP_WORLDS
 //       tests/fuzz/fuzz_baked_scene.cpp src/*.cpp -o fuzz_baked_scene
-//   ./fuzz_baked_scene -max_len=2048 -timeout=10 corpus/
+//   ./fuzz_baked_scene -max_len=4096 -timeout=10 corpus/
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -80,34 +80,9 @@ struct FlippedWorld {
 
  private:
   void bake() {
-    Surface surfaces[5] = {};
-    surfaces[1].kind = SurfaceKind::kGlass;
-    surfaces[1].density_q8 = 20;
-    surfaces[2].kind = SurfaceKind::kMetal;
-    surfaces[2].mirror = 200;
-    surfaces[3].kind = SurfaceKind::kEmit;
-    surfaces[3].emission_q8 = 400;
-    surfaces[4].kind = SurfaceKind::kMedia;
-    surfaces[4].density_q8 = 60;
-    Light lights[2];
-    lights[0].place = Vec3i{-3, -5, 9};
-    lights[1].is_point = true;
-    lights[1].place = Vec3i{4 * 256, 2 * 256, 6 * 256};
-    lights[1].reach = 4;
-    BakedLighting lit;
-    lit.scene.surfaces = Span<const Surface>(surfaces);
-    lit.scene.lights = Span<const Light>(lights);
-    lit.scene.has_shadows = true;
-    lit.scene.has_sky = true;
-    lit.scene.has_water = true;
-    lit.scene.water = still_water({4, 0, 1}, 4, 4, 300);
-    lit.scene.fog.density_q16 = 300;
-    lit.scene.occlusion = {4, 128, 3};
-    lit.scene.bounces = 2;
-    lit.effects = effects_of(lit.scene) | Effect::kShadows | Effect::kMirror | Effect::kGlass |
-                  Effect::kMedia | Effect::kWater | Effect::kSmoothNormals;
-    lighting = ExactBytes(lighting_bytes(lit.scene));
-    REQUIRE(BakedLighting::make(lit, kFlipLevel, lighting.bytes()) == Status::kOk);
+    const std::vector<std::uint8_t> lit = lighting_of_all_effects(kFlipLevel);
+    REQUIRE(!lit.empty());
+    lighting = ExactBytes(ConstBytes{lit.data(), lit.size()});
 
     constexpr Rgb8 kPalette[] = {{180, 170, 160}, {200, 240, 230}, {230, 220, 200}, {255, 200, 90}};
     SceneCamera camera;

@@ -11,6 +11,8 @@
 
 #include "support/compact_damage.h"
 #include "thimble/bake/baked_scene.h"
+#include "thimble/light/map_render.h"
+#include "thimble/light/render.h"
 #include "thimble/light/scene.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/brick_map.h"
@@ -85,8 +87,46 @@ inline const char* draw_by_damaged_map(const BakedScene& scene) {
   return nullptr;
 }
 
+/// Draws a few pixels in the scene's light, without its brick map and with it: all effects, and those that go through the
+/// map.
+inline const char* draw_damaged_light(const BakedScene& scene, const BakedLighting& lighting) {
+  constexpr std::int32_t kWidth = 9;
+  constexpr std::int32_t kHeight = 7;
+  constexpr LitOptions kOptions{3000, true};
+  Camera camera;
+  if (!scene.has_camera() ||
+      set_camera(scene.camera(), kWidth, kHeight, scene.tree().level(), &camera) != Status::kOk) {
+    return nullptr;
+  }
+  Shading shading;
+  shading.mode = ShadeMode::kColor;
+  shading.palette = scene.palette();
+  std::uint8_t pixels[3 * kWidth * kHeight];
+  const Band band{{pixels, sizeof pixels}, PixelFormat::kRgb888, 0, 0, kHeight};
+  BrickMap map;
+  const bool has_map = BrickMap::open(scene.section(SectionKind::kBrickMap), &map) == Status::kOk;
+  for (const EffectSet effects :
+       {lighting.effects, lighting.effects & (Effect::kDirectLight | Effect::kShadows | Effect::kSky)}) {
+    LitCounts counts;
+    const Status status =
+        render_lit_band(effects, scene.tree(), camera, shading, lighting.scene, band, &counts, kOptions);
+    if (status == Status::kOk && counts.rays[0] < kWidth * kHeight) {
+      return "pixels in light were left out";
+    }
+    if (!has_map) {
+      continue;
+    }
+    const Status by_map = render_lit_band(effects, scene.tree(), map, camera, shading, lighting.scene, {},
+                                          band, nullptr, kOptions);
+    if (by_map != (map.belongs_to(scene.tree()) ? status : Status::kDamaged)) {
+      return "light by a map has another status";
+    }
+  }
+  return nullptr;
+}
+
 /// Opens `bytes` and does with the scene what a program may do: reads every section, makes the camera, traces
-/// rays through the tree, draws by the brick map. Returns a phrase when a promise is broken, else nullptr. Reads outside the bytes
+/// rays through the tree, draws by the brick map and in light. Returns a phrase when a promise is broken, else nullptr. Reads outside the bytes
 /// are for AddressSanitizer to see, so `bytes` should end where their memory ends.
 inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   const char* fault = BakedScene::validate(bytes);
@@ -114,6 +154,9 @@ inline const char* use_damaged(ConstBytes bytes, const Vec3i& direction) {
   if (BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
       Status::kOk) {
     if (const char* text = use_lighting(lighting, scene.tree().level())) {
+      return text;
+    }
+    if (const char* text = draw_damaged_light(scene, lighting)) {
       return text;
     }
   } else if (lighting.effects != UINT32_MAX) {

@@ -9,13 +9,51 @@
 #include <vector>
 
 #include "thimble/bake/baked_scene.h"
+#include "thimble/light/render.h"
+#include "thimble/light/scene.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 
-/// Of level 5 or more, so with a map of version 1 or 2: stairs of three materials in a mixed brick and one that is not, a solid brick, a voxel on a page of its own, a camera
-/// that sees them. Empty where something is refused.
+/// A lighting section with each kind of surface, lamp and suns, water, fog and every effect, for worlds of 8 and more a side.
+/// Empty where it is refused.
+inline std::vector<std::uint8_t> lighting_of_all_effects(int level) {
+  Surface surfaces[5] = {};
+  surfaces[1].kind = SurfaceKind::kGlass;
+  surfaces[1].density_q8 = 20;
+  surfaces[2].kind = SurfaceKind::kMetal;
+  surfaces[2].mirror = 200;
+  surfaces[3].kind = SurfaceKind::kEmit;
+  surfaces[3].emission_q8 = 400;
+  surfaces[4].kind = SurfaceKind::kMedia;
+  surfaces[4].density_q8 = 60;
+  Light lights[2];
+  lights[0].place = Vec3i{-3, -5, 9};
+  lights[1].is_point = true;
+  lights[1].place = Vec3i{4 * 256, 2 * 256, 6 * 256};
+  lights[1].reach = 4;
+  BakedLighting lit;
+  lit.scene.surfaces = Span<const Surface>(surfaces);
+  lit.scene.lights = Span<const Light>(lights);
+  lit.scene.has_shadows = true;
+  lit.scene.has_sky = true;
+  lit.scene.has_water = true;
+  lit.scene.water = still_water({4, 0, 1}, 4, 4, 300);
+  lit.scene.fog.density_q16 = 300;
+  lit.scene.occlusion = {4, 128, 3};
+  lit.scene.bounces = 2;
+  lit.effects = effects_of(lit.scene) | Effect::kShadows | Effect::kMirror | Effect::kGlass | Effect::kMedia |
+                Effect::kWater | Effect::kSmoothNormals;
+  std::vector<std::uint8_t> bytes(lighting_bytes(lit.scene));
+  return BakedLighting::make(lit, level, {bytes.data(), bytes.size()}) == Status::kOk
+             ? bytes
+             : std::vector<std::uint8_t>();
+}
+
+/// Of level 5 or more, so with a map of version 1 or 2: stairs of three materials in a mixed brick and one that is not, a
+/// solid brick, a voxel on a page of its own, a camera that sees them, and light up to level 8. Empty where something is
+/// refused.
 inline std::vector<std::uint8_t> small_scene(int level) {
   std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
   Octree octree;
@@ -41,6 +79,12 @@ inline std::vector<std::uint8_t> small_scene(int level) {
   parts.tree = {tree_bytes.data(), tree_bytes.size()};
   parts.camera = &camera;
   parts.brick_map = {map.data(), map_size};
+  std::vector<std::uint8_t> lighting;
+  if (level <= 8) {
+    lighting = lighting_of_all_effects(level);
+    is_made = is_made && !lighting.empty();
+    parts.lighting = {lighting.data(), lighting.size()};
+  }
   std::vector<std::uint8_t> scene(is_made ? baked_bytes(parts) : 0);
   is_made = is_made && BakedScene::make(parts, {scene.data(), scene.size()}, nullptr) == Status::kOk;
   return is_made ? scene : std::vector<std::uint8_t>();
