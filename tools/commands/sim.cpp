@@ -372,13 +372,10 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
   add_whole_option(
       sub, "--hold", "FPS", 1, 1000,
       [command](std::int64_t rate) { command->session.hold_fps = static_cast<std::uint32_t>(rate); },
-      "demo: hold so many frames a second of the board's time: while the camera moves a frame is refined "
-      "from "
-      "coarse to fine by as many node visits as the board has time for, and to the exact picture when it "
-      "stands "
-      "still; the key h switches it, t stops the turning; the work a frame depends on the board alone, so "
-      "the "
-      "pictures are the board's");
+      "demo: hold so many frames a second of the board's time: while the camera moves a frame has squares "
+      "of 2 to 8 pixels or, without a brick map, is refined from coarse to fine, as the board has time for, "
+      "and it is exact when the camera stands still; the key h switches it, t stops the turning; the work a "
+      "frame depends on the board alone, so the pictures are the board's");
   add_whole_option(
       sub, "--fps", "N", 1, 1000,
       [command](std::int64_t rate) { command->session.frames_a_second = static_cast<int>(rate); },
