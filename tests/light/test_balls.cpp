@@ -166,6 +166,31 @@ TEST_CASE(
   CHECK(hit.at.t_numerator == 2 * 256);
 }
 
+TEST_CASE("balls: a ray of one unit along an axis -> the spot on the face that looks to it") {
+  LitWorld world;
+  world.finish();
+  world.look({0, 0, 0}, {16 * 256, 16 * 256, 16 * 256});
+  const Ball ball = ball_at({16, 14, 12}, 4, surface(SurfaceKind::kDiffuse, {1, 2, 3}));
+  const LitOptions options;
+  lit::BallFrame frame({world.tree, world.camera, world.shading, world.scene, options, kLight},
+                       {{&ball, 1}, nullptr});
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int way : {-1, 1}) {
+      lit::PendingRay now;
+      now.ray.origin = LitWorld::point(ball.center);
+      now.ray.origin[axis].raw -= way * 2000;
+      now.ray.direction[axis] = way;
+      lit::Meeting meeting;
+      meet_solid(frame, now, &meeting);
+      REQUIRE(meeting.opaque);
+      const lit::Spot spot = spot_of(frame, now, meeting);
+      CHECK(spot.at[axis].raw == ball.center[axis] - way * ball.half_q8);
+      CHECK(spot.face.axis == axis);
+      CHECK(spot.face.negative == (way > 0));
+    }
+  }
+}
+
 TEST_CASE("balls: a camera within one -> the picture of a tree that has it, where no light comes") {
   BallWorld judge(true);
   BallWorld world(false);

@@ -196,6 +196,32 @@ TEST_CASE("edges: a face that lies behind another one -> an edge from four pixel
   CHECK(dark(3) == 24);
 }
 
+TEST_CASE(
+    "edges: directions of 8 bits, which change by 1 from pixel to pixel -> an edge from four such sizes "
+    "apart") {
+  const auto dark = [](int away) {
+    LitWorld world;
+    world.box({0, 12, 0}, {16, 30, 32}, 1);
+    world.box({16, 13, 0}, {32, 30, 32}, 1);
+    world.lights = {sun({0, -1, 0}, 180)};
+    world.finish();
+    REQUIRE(
+        world.camera.set(PerspectiveView{LitWorld::point({16 * 256 + 70, (12 - away) * 256, 16 * 256 + 70}),
+                                         {0, 16, 0},
+                                         {},
+                                         Q16::saturate(60),
+                                         300,
+                                         300,
+                                         8},
+                         world.tree.level()) == Status::kOk);
+    return draw_both(world).dark;
+  };
+  // A pixel is 1/255 of the way.
+  CHECK(dark(40) > 0);
+  CHECK(dark(60) > 0);
+  CHECK(dark(70) == 0);
+}
+
 TEST_CASE("edges: greys a tenth of white apart -> none, nearer ones -> an edge; green counts most") {
   const auto dark = [](const Rgb8& one, const Rgb8& other) {
     LitWorld world;

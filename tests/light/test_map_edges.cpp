@@ -122,6 +122,49 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("lit frames by the map: rows of whole tiles -> nothing is written behind the last") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  for (const Vec3i& target : {Vec3i{16 * 256, 16 * 256, 0}, Vec3i{0, 16 * 256, 60 * 256}}) {  // ground, sky
+    world.look({16 * 256, 3 * 256, 12 * 256}, target, 60, 96, 48);
+    std::vector<std::uint16_t> pixels(96 * 64, 0x5A5A);
+    const Band band{{static_cast<std::uint8_t*>(static_cast<void*>(pixels.data())), 2 * 96 * 48},
+                    PixelFormat::kRgb565,
+                    0,
+                    0,
+                    48};
+    REQUIRE(render_lit_band<kSun>(world.tree, map, world.camera, world.shading, world.scene, {}, band) ==
+            Status::kOk);
+    int written = 0;
+    for (std::size_t i = 96 * 48; i < pixels.size(); ++i) {
+      written += pixels[i] == 0x5A5A ? 0 : 1;
+    }
+    CHECK(written == 0);
+  }
+}
+
+TEST_CASE("lit frames by the map: effects that there are not -> by the map as without, no node is read") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  LitCounts counts[2];
+  std::vector<std::uint8_t> pixels[2];
+  for (int i = 0; i < 2; ++i) {
+    pixels[i].resize(band_bytes(PixelFormat::kRgb888, 53, 37));
+    const EffectSet effects = kSun | (i == 0 ? Effect::kNone : ~Effect::kAll);
+    REQUIRE(render_lit_band(effects, world.tree, map, world.camera, world.shading, world.scene, {},
+                            {{pixels[i].data(), pixels[i].size()}, PixelFormat::kRgb888, 0, 0, 37},
+                            &counts[i]) == Status::kOk);
+  }
+  CHECK(pixels[0] == pixels[1]);
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    CHECK(counts[0].node_visits[kind] == counts[1].node_visits[kind]);
+  }
+}
+
 // The middle row's points lie on a plane between voxels, in which the light of a level sun runs.
 TEST_CASE("lit frames by the map: large faces under a sun without x, y or z -> the tree's bytes") {
   House world;

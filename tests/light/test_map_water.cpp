@@ -214,5 +214,35 @@ TEST_CASE("water by the map: random water, worlds and cameras -> the tree's pict
   CHECK(far_away > turns / 100);
 }
 
+// A pixel is a ray to the water, one up and one down to the ground, from where one goes to the sun. All but that up come
+// to the one column of still water.
+TEST_CASE("water by the map: all of a still sea from above -> three times a column is looked at, a pixel") {
+  WaterWorld world;
+  world.box({0, 0, 0}, {32, 32, 2}, kStone);
+  world.still({0, 0, 0}, 32, 32, 4 * 256);
+  world.map_it();
+  world.look({16 * 256 + 31, 16 * 256 + 57, 25 * 256}, {16 * 256 + 3, 15 * 256 + 11, 0}, 40, 24, 18);
+  const BothCounts both = draw_both<kWet>(world);
+  constexpr unsigned kPixels = 24 * 18;
+  CHECK(both.by_map.rays[kWaterRay] == 2 * kPixels);
+  CHECK(both.by_map.node_visits[kWaterRay] >= 3 * kPixels);
+  CHECK(both.by_map.node_visits[kWaterRay] < 3 * kPixels + kPixels / 16);  // more of a few on a column's edge
+}
+
+// The middle pixel's ray rises at 45 degrees to where the water's side ends, beside a bank as high as the water: there it
+// leaves by the side, below the top, and so begins in the bank.
+TEST_CASE("water by the map: a ray that leaves through the edge of side and surface -> the tree's picture") {
+  for (const int up : {0, 1, 5}) {
+    WaterWorld world;
+    world.box({14, 0, 0}, {32, 32, up + 6}, kStone);
+    world.still({2, 2, up}, 12, 28, 6 * 256);
+    world.map_it();
+    const Vec3i eye{11 * 256, 16 * 256 + 77, (up + 3) * 256};
+    world.look(eye, {eye.x + 1024, eye.y, eye.z + 1024}, 20, 5, 5);
+    const LitCounts counts = compare<kWet | Effect::kSky>(world, PixelFormat::kRgb888);
+    CHECK(counts.rays[kWaterRay] >= 25);
+  }
+}
+
 }  // namespace
 }  // namespace thimble::testing::map_water

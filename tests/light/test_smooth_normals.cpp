@@ -212,7 +212,72 @@ TEST_CASE("a gradient along the axis of its face: the normal is the face's, and 
       CHECK(lit::slope_axis(along, face) == -1);
       CHECK(lit::slope_axis({}, face) == -1);
       CHECK(lit::slope_axis(oblique, face) == (axis + 1) % 3);
+      for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) {
+        Vec3i beside = along;
+        beside[other] = 5;
+        CHECK(lit::slope_axis(beside, face) == axis);
+      }
     }
+  }
+}
+
+TEST_CASE("a gradient in steps: a part that leans behind the face is left out, the rest is a unit") {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int side = 1; side < 3; ++side) {
+      for (const int shrunk : {1, 32}) {  // to 20 bits
+        const int size = shrunk == 1 ? 40 : 3 << 21;
+        Vec3i normal{};
+        normal[axis] = -4 * size;
+        normal[(axis + side) % 3] = -3 * size;
+        Vec3i unit{};
+        unit[(axis + side) % 3] = -kUnitQ14;
+        CHECK(lit::unit_of_slope(normal, {axis, false}) == unit);
+        CHECK(lit::unit_of_slope(normal, {axis, true}) ==
+              unit_q14(Vec3i{normal.x / shrunk, normal.y / shrunk, normal.z / shrunk}));
+      }
+    }
+  }
+}
+
+// A slope of 1:2 that steps down once, where a face looks up the slope: in the middle of a voxel's side nothing is left
+// but the way up.
+TEST_CASE("a face within a slope that leans the other way: straight up, along any axes") {
+  for (int along = 0; along < 3; ++along) {
+    for (const int up : {(along + 1) % 3, (along + 2) % 3}) {
+      const Body slope([=](int x, int y, int z) {
+        const Vec3i at{x, y, z};
+        return at[up] <= at[along] / 2 + (at[along] < 33 ? 10 : 9);
+      });
+      Vec3i at{30 * 256 + 128, 30 * 256 + 128, 30 * 256 + 128};
+      at[along] = 33 * 256;
+      at[up] = 26 * 256 + 128;
+      CHECK(slope.normal_at(LitWorld::point(at), {along, false}) == own_normal({up, false}));
+    }
+  }
+}
+
+// Plates are 3 voxels thick, which is no shell: nothing is made solid below them.
+TEST_CASE("a ramp of plates 3 thick in steps of 2: the gradient of its definition, on treads and risers") {
+  for (int turn = 0; turn < 3; ++turn) {
+    const Body ramp([turn](int x, int y, int z) {
+      const int along[3] = {x, y, z};
+      const int top = along[(turn + 1) % 3] / 5 * 2 + 20;
+      const int up = along[turn];
+      return up <= top && up > top - 3;
+    });
+    double worst = 0;
+    int places = 0;
+    ramp.each_place(1, [&](const Vec3Q8& at, const Face& face, const Vec3i& normal) {
+      const Vec3i voxel{at.x.floor(), at.y.floor(), at.z.floor()};
+      const bool inner = voxel[(turn + 1) % 3] > 10 && voxel[(turn + 1) % 3] < 54 &&
+                         voxel[(turn + 2) % 3] > 8 && voxel[(turn + 2) % 3] < 56;
+      if (inner && face.axis == (turn + 1) % 3) {
+        ++places;
+        worst = std::max(worst, degrees_between(normal, ramp.gradient(at)));
+      }
+    });
+    CHECK(places > 100);
+    CHECK(worst < 0.02);
   }
 }
 

@@ -498,6 +498,33 @@ TEST_CASE("water: a touch deeper than the water -> as deep as it can be, heights
   CHECK(pool.water.highest_q8() <= 400);
 }
 
+TEST_CASE(
+    "water: a touch that raises columns to the very limit -> as without a limit; 1/256 less -> less deep") {
+  int found = 0;
+  for (std::int32_t depth = 64; depth < 1600 && found < 3; ++depth) {
+    const auto touch = [&](std::int32_t greatest_q8, Pool* pool) {
+      make_pool(*pool, 9, 9, 2048, greatest_q8);
+      REQUIRE(pool->open() == Status::kOk);
+      REQUIRE(pool->water.touch(4 * 256 + 128, 4 * 256 + 128, 512, depth) == Status::kOk);
+    };
+    Pool free;
+    touch(4096, &free);
+    const Plain wanted(free.water);
+    const std::int64_t most = *std::max_element(wanted.height.begin(), wanted.height.end());
+    if (most % 256 != 0) {
+      continue;
+    }
+    ++found;
+    Pool limited;
+    touch(static_cast<std::int32_t>(most / 256), &limited);
+    CHECK(Plain(limited.water).height == wanted.height);
+    Pool lower;
+    touch(static_cast<std::int32_t>(most / 256) - 1, &lower);
+    CHECK(Plain(lower.water).height != wanted.height);
+  }
+  CHECK(found == 3);
+}
+
 TEST_CASE("water: a wall across the pool -> the other basin stays still, bit for bit") {
   Pool pool;
   make_pool(pool, 30, 20);
