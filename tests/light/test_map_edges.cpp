@@ -180,6 +180,37 @@ TEST_CASE("lit frames by the map: large faces under a sun without x, y or z -> t
   }
 }
 
+// A column of points less than 1/256 beside an edge of two voxels, at the end of the shadow of both.
+TEST_CASE("lit frames by the map: points on voxels' edges under a sun without x -> the tree's bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  world.lights[0].place = Vec3i{0, -9, 40};
+  const Vec3Q8 eye = LitWorld::point({18 * 256, 44 * 256, 30 * 256});
+  for (const int width : {31, 33}) {
+    for (const int off : {-1, 1}) {
+      REQUIRE(world.camera.set(
+                  PerspectiveView{eye, {off, -16500, -28000}, {}, Q16::saturate(3), width, 24, 15}, 5) ==
+              Status::kOk);
+      compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+    }
+  }
+}
+
+TEST_CASE("lit frames by the map: suns of 12 bits -> the tree's bytes") {
+  House world;
+  HeapBytes room(most_brick_map_bytes(5));
+  BrickMap map;
+  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  for (const Vec3i& direction :
+       {Vec3i{-3900, -4000, 4095}, Vec3i{-4000, -2100, 4090}, Vec3i{2900, -4095, 4000}}) {
+    CAPTURE(direction.x);
+    world.lights[0].place = direction;
+    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+  }
+}
+
 // The picture's middle column runs through the edges of boxes, which only the tree can name.
 TEST_CASE("lit frames by the map: rays through edges, counted or not -> the tree's bytes") {
   House world;

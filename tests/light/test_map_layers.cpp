@@ -116,6 +116,39 @@ TEST_CASE("lamps by the map: voxels that hang in the air, empty bricks around th
   CHECK(reached > 100000);
 }
 
+// A ray to a lamp ends in the voxel that it hangs in, whatever the number of layers before that.
+TEST_CASE("lamps by the map: a wall two voxels behind a lamp, near and far -> no ray meets it") {
+  constexpr int kNear = 3;
+  for (int way = 6; way <= 40; ++way) {
+    CAPTURE(way);
+    std::vector<Vec3i> voxels;
+    for (int i = 0; i < 64; ++i) {
+      for (int k = 0; k < 64; ++k) {
+        voxels.push_back({kNear, i, k});
+        voxels.push_back({kNear + way + 3, i, k});
+      }
+    }
+    const ChipScene scene = make_chip_scene(6, voxels);
+    Light lamp;
+    lamp.is_point = true;
+    lamp.reach = 60;
+    lamp.place = Vec3i{256 * (kNear + 1 + way) + 100, 32 * 256 + 30, 32 * 256 - 50};
+    lamp.color_q8[0] = lamp.color_q8[1] = lamp.color_q8[2] = 900;
+    LitScene lit;
+    lit.lights = {&lamp, 1};
+    Camera camera;
+    const Vec3Q8 eye{Q8::saturate(kNear + 3), Q8::saturate(32), Q8::saturate(32)};
+    REQUIRE(camera.set(PerspectiveView{eye, {-1, 0, 0}, {}, Q16::saturate(20), kWide, kHigh, 0}, 6) ==
+            Status::kOk);
+    const Drawn got = drawn([&](const Band& band, LitCounts* counts) {
+      return render_lit_band<kByLamps>(scene.tree, scene.map, camera, Shading(), lit, {}, band, counts);
+    });
+    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+    CHECK(got.counts.rays[kShadow] == kWide * kHigh);
+    CHECK(got.counts.hits[kShadow] == 0);
+  }
+}
+
 // The middle pixel meets a wall on a corner of bricks; from there the ray to the lamp crosses planes of bricks on two
 // axes or on all three at the same time, once or again and again. What hangs beside its way hides the lamp only where
 // the ray spends a length in it.

@@ -506,6 +506,35 @@ TEST_CASE("anytime: what can be seen -> the range of greys") {
   CHECK(range(PixelFormat::kGray8) == 100);
 }
 
+TEST_CASE("anytime: a face that only the rays of one corner can enter -> its grey counts") {
+  std::vector<std::uint8_t> bytes(Octree::octree_bytes(100));
+  Octree pool;
+  REQUIRE(Octree::make(5, Bytes(bytes.data(), bytes.size()), &pool) == Status::kOk);
+  REQUIRE(pool.insert({16, 16, 16}, 0) == Status::kOk);
+  Shading shading;
+  shading.mode = ShadeMode::kColor;
+  for (std::uint16_t& light : shading.face_light) {
+    light = 0;
+  }
+  shading.default_color = {255, 255, 255};
+  shading.face_light[0] = 256;  // only the face -x can be seen
+  unsigned corners = 0;
+  for (const Vec3i& up : {Vec3i{1, 0, 1}, Vec3i{1, 0, -1}, Vec3i{-1, 0, 1}, Vec3i{-1, 0, -1}}) {
+    Camera camera;
+    REQUIRE(camera.set(PerspectiveView{{}, {-1, 2, 0}, up, Q16::saturate(60), 20, 20, 0}, 5) == Status::kOk);
+    unsigned going_up = 0;
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Ray ray = camera.ray((corner & 1U) != 0 ? 19 : 0, (corner & 2U) != 0 ? 19 : 0);
+      going_up |= ray.direction.x > 0 ? 1U << corner : 0U;
+    }
+    CAPTURE(going_up);
+    CHECK((going_up & (going_up - 1)) == 0);
+    corners |= going_up;
+    CHECK(Drawing(Case<Octree>(pool, camera, shading, PixelFormat::kGray8)).frame.gray_range() == 255);
+  }
+  CHECK(corners == 15);
+}
+
 TEST_CASE("anytime: what cannot be -> an error, and nothing changed") {
   SplitMix64 random(11);
   const RandomScene scene(random);

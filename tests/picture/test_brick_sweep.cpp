@@ -327,6 +327,22 @@ TEST_CASE("brick sweep: a face whose half plane just holds all pixels of a cell 
                ShadeMode::kNormal, 48);
 }
 
+// Coarse directions round to the edge of a pillar 1/256 voxel away in pixels that see what is beside it.
+TEST_CASE("brick sweep: an edge close by, seen by directions of 8 bits -> the tree's bytes") {
+  std::vector<Vec3i> pillar;
+  for (int z = 0; z < 64; ++z) {
+    pillar.push_back({32, 32, z});
+  }
+  const ChipScene scene = make_chip_scene(6, pillar);
+  for (int turn = 0; turn < 12; ++turn) {
+    CAPTURE(turn);
+    const Vec3i forward{1000 + (turn % 3 - 1) * 2, 1000, turn * 40};
+    check_bricks(scene,
+                 {eye_at(32 * 256 - 1, 32 * 256 - 1, 32 * 256), forward, {}, Q16::saturate(4), 64, 48, 8},
+                 ShadeMode::kNormal, 48);
+  }
+}
+
 // From pixel to pixel the edges of a pillar 32 voxels away change what tells their sides apart by 2^25 and more: as much
 // as distances of 13 bits and steps of 11 come to.
 TEST_CASE(

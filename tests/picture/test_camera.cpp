@@ -624,6 +624,8 @@ TEST_CASE("camera: arguments at and beyond their limits -> the stated status, ca
   orthographic.width_px = 1;
   orthographic.height_px = kMaxPicturePx;
   refuses(orthographic, 12, Status::kOutOfRange);
+  orthographic.height_px = 1;  // one pixel reaches to no side
+  CHECK(Camera().set(orthographic, 12) == Status::kOk);
 
   // Origins to the limit: looking down from the middle, 8 worlds to either side of... x = -4 .. 5 worlds.
   orthographic = simple_orthographic();
@@ -719,8 +721,17 @@ TEST_CASE("camera: automatic bits -> the fewest that bound the error by 1/16 pix
       }
     }
   }
+  // In small pictures one unit more or less of what is bounded changes the number of bits.
   PerspectiveView view = simple_perspective();
   view.forward = {-3, -2, -1};
+  view.width_px = 16;
+  for (view.height_px = 8; view.height_px <= 40; view.height_px += 8) {
+    for (view.fov_degrees = kMinFov; view.fov_degrees <= kMaxFov;
+         view.fov_degrees = Q16::from_raw(view.fov_degrees.raw + 1001)) {
+      CAPTURE(view.fov_degrees.raw);
+      CHECK(made(view, 10).error_bound_px_q16() <= 4096);
+    }
+  }
   view.fov_degrees = Q16::saturate(60);
   view.width_px = 800;
   view.height_px = 600;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -111,5 +112,31 @@ TEST_CASE(
       CHECK(got == wanted);
       CHECK(counts.hits > 0);
     }
+  }
+}
+
+// 8 by 3 by 1 pages: where the table of 136 ends, the first page is the empty one.
+TEST_CASE("deep frames: beams through empty pages to each page of a small table -> the tree's bytes") {
+  const Vec3i voxels[] = {{0, 0, 0}, {24, 5, 8}, {56, 24, 8}, {100, 40, 3}, {127, 47, 15}};
+  const ChipScene scene = make_chip_scene(9, {std::begin(voxels), std::end(voxels)});
+  Shading shading;
+  shading.mode = ShadeMode::kDepth;  // which is not swept
+  shading.far_q8 = 256 * 128;
+  for (const Vec3i& voxel : voxels) {
+    CAPTURE(voxel.x);
+    const Vec3Q8 eye{Q8::from_raw(256 * voxel.x + 130), Q8::saturate(-40), Q8::from_raw(256 * voxel.z + 120)};
+    Camera camera;
+    REQUIRE(camera.set(PerspectiveView{eye, {0, 1, 0}, {}, Q16::saturate(4), 16, 16, 0}, 9) == Status::kOk);
+    REQUIRE(draws_fast(scene.map, camera));
+    std::vector<std::uint8_t> wanted(16 * 16);
+    std::vector<std::uint8_t> got(wanted.size());
+    RenderCounts counts;
+    REQUIRE(render_band(scene.tree, camera, shading,
+                        {{wanted.data(), wanted.size()}, PixelFormat::kGray8, 0, 0, 16},
+                        &counts) == Status::kOk);
+    REQUIRE(render_band(scene.tree, scene.map, camera, shading,
+                        {{got.data(), got.size()}, PixelFormat::kGray8, 0, 0, 16}) == Status::kOk);
+    CHECK(got == wanted);
+    CHECK(counts.hits > 0);
   }
 }

@@ -175,6 +175,17 @@ TEST_CASE("shade depth: distance grows -> brightness falls from 255 at near to k
   }
 }
 
+TEST_CASE("shade depth: planes just less than 2^24 apart -> the exact share, rounded up") {
+  const Camera camera = camera_along_x();
+  for (const std::int32_t far_q8 : {(1 << 23) + 255, (1 << 24) - 1}) {
+    for (std::int32_t depth = 1000; depth < 1 << 23; depth += 4001) {
+      const std::int64_t seen = planar_depth_q8(hit_at(depth), camera);
+      CAPTURE(seen);
+      CHECK(depth_gray(camera, depth, 0, far_q8) == 255 - seen * (255 - kFarBrightness) / far_q8);
+    }
+  }
+}
+
 TEST_CASE("shade depth: planes at the ends of the numbers, equal or swapped -> in range, monotone") {
   const Camera camera = camera_along_x();
   for (const std::int32_t near_q8 : kExtremes) {

@@ -70,7 +70,7 @@ ChipScene scene_of(int level, const Fill& fill_pool) {
   fill_pool(&pool);
   ChipScene scene{compact_of(pool, kMinRankShift), {}, {}, {}};
   scene.tree = open_or_throw(scene.tree_bytes);
-  scene.map_words.resize(most_brick_map_bytes(level) / 8 + 1);
+  scene.map_words.resize(most_brick_map_bytes(scene.tree) / 8 + 1);
   const Bytes room(static_cast<std::uint8_t*>(static_cast<void*>(scene.map_words.data())),
                    8 * scene.map_words.size());
   REQUIRE(BrickMap::make(scene.tree, room, &scene.map) == Status::kOk);
