@@ -1,0 +1,68 @@
+// Applications on boards whose displays have the formats of panels.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "apps/apps.h"
+#include "boards/board_table.h"
+#include "host/packed_picture.h"
+#include "scene/baking.h"
+#include "support/simulated_run.h"
+#include "thimble/picture/render.h"
+
+namespace {
+
+using namespace thimble;
+
+const std::vector<std::uint8_t>& baked_demo() {
+  static const tools::Baked baked = [] {
+    const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
+    tools::BakingOptions options;
+    options.effects = {true, Effect::kNone};
+    options.name = "demo";
+    options.camera = [&source](const CompactTree&) { return *source->camera(); };
+    return tools::bake_scene(*source, options);
+  }();
+  return baked.bytes;
+}
+
+TEST_CASE("panel formats: applications on boards with such displays -> the pictures of their likes") {
+  const platform::BoardFacts* oled = platform::find_board("lm3s6965evb");
+  REQUIRE(oled != nullptr);
+  struct Played {
+    int (*application)();
+    std::uint32_t hold_fps;
+  };
+  // The third draws thinned frames, the fourth any-time ones of what it builds.
+  constexpr Played kPlayed[] = {{apps::particles, 0}, {apps::demo, 0}, {apps::demo, 30}};
+  for (const Played& played : kPlayed) {
+    const auto last_picture = [&](PixelFormat format) {
+      platform::BoardFacts board = *oled;
+      board.format = format;
+      board.ram_bytes = 4 << 20;
+      board.width_px = 84;
+      board.height_px = 43;
+      host::SimulationOptions options;
+      options.board = &board;
+      options.connected = true;
+      options.application = played.application;
+      options.hold_fps = played.hold_fps;
+      options.scene = {baked_demo().data(), baked_demo().size()};
+      const tests::SimulatedRun run = tests::run_simulated(options, 3, {{{1, "b"}}, {}});
+      CHECK(run.fault == "");
+      CHECK(run.last.bytes.size() == band_bytes(format, 84, 43));
+      return host::expand_rgb(run.last);
+    };
+    CHECK(last_picture(PixelFormat::kMono1Pages) == last_picture(PixelFormat::kMono1));
+    CHECK(last_picture(PixelFormat::kGray4Low) == last_picture(PixelFormat::kGray4));
+    CHECK(last_picture(PixelFormat::kRgb565Be) == last_picture(PixelFormat::kRgb565));
+    for (int number = 5; number < kPixelFormats; ++number) {
+      const std::vector<std::uint8_t> picture = last_picture(static_cast<PixelFormat>(number));
+      CHECK(*std::max_element(picture.begin(), picture.end()) >= 170);
+    }
+  }
+}
+
+}  // namespace
