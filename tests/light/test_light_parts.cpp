@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "support/lit_world.h"
-#include "thimble/light/detail/pixel.h"
 #include "thimble/light/host/optics.h"
 
 namespace thimble::testing::light_parts {
