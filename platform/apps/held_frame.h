@@ -68,14 +68,14 @@ inline int32_t thinning_for(uint32_t fps) {
   const port::Display& screen = port::facts().display;
   const uint32_t rays = port::facts().map_rays_a_second / fps;
   const uint32_t other = display_pixels() / 64;
-  int32_t step = 1;
-  while (step<kMostThinned&& static_cast<uint32_t>(((screen.width_px + step - 1) / step) *
-                                                   ((screen.height_px + step - 1) / step)) +
-              other>
-             rays) {
-    ++step;
+  for (int32_t step = 1; step < kMostThinned; ++step) {
+    const int32_t columns = (screen.width_px + step - 1) / step;
+    const int32_t rows = (screen.height_px + step - 1) / step;
+    if (static_cast<uint32_t>(columns * rows) + other <= rays) {
+      return step;
+    }
   }
-  return step;
+  return kMostThinned;
 }
 
 /// Bytes of a pixel that is widened as it is, a row for all rows of its square, where pictures are large: a fiftieth

@@ -16,6 +16,7 @@
 #include "golden/demo_table.h"
 #include "scene/baking.h"
 #include "scene/random.h"
+#include "support/baked_demo.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
@@ -24,6 +25,8 @@
 namespace {
 
 using namespace thimble;
+using tests::bake_demo;
+using tests::demo_scene;
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr std::uint32_t kFrameStep = 8;
@@ -33,18 +36,6 @@ constexpr std::uint32_t kFrameStep = 1;
 constexpr int kWandering = 2000;
 #endif
 
-tools::Baked bake_demo(EffectSet effects) {
-  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
-  tools::BakingOptions options;
-  options.effects = {effects == Effect::kNone, effects};
-  options.name = "demo";
-  options.camera = [&source](const CompactTree&) { return *source->camera(); };
-  return tools::bake_scene(*source, options);
-}
-const tools::Baked& demo_scene() {
-  static const tools::Baked baked = bake_demo(Effect::kNone);
-  return baked;
-}
 const tools::Baked& lit_scene() {
   static const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kShadows);
   return baked;
@@ -575,16 +566,11 @@ TEST_CASE(
   CHECK(held.pictures[5].bytes == exact.pictures[3].bytes);
 }
 
-TEST_CASE("demo: rates that are held in colour -> squares as small as the rate leaves time for") {
-  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
-  tools::BakingOptions options;
-  options.brick_map = true;
-  options.camera = [&source](const CompactTree&) { return *source->camera(); };
-  const tools::Baked baked = tools::bake_scene(*source, options);
+TEST_CASE("demo: rates that are held -> squares as small as the rate leaves time for") {
+  const tools::Baked baked = bake_demo(Effect::kNone, true);
   std::set<int> steps;
-  for (const char* name : {"gba", "pico", "pico-lcd-2", "raspi0"}) {
+  for (const char* name : {"gba", "lm3s6965evb", "pico", "pico-lcd-2", "raspi0"}) {
     const platform::BoardFacts& board = *platform::find_board(name);
-    const auto bytes = static_cast<std::size_t>(board.format == PixelFormat::kRgb888 ? 3 : 2);
     const auto width = static_cast<std::size_t>(board.width_px);
     const Run exact = run_demo(board, bytes_of(baked.bytes), 2, {}, true);
     REQUIRE(exact.pictures.size() == 2);
@@ -604,16 +590,16 @@ TEST_CASE("demo: rates that are held in colour -> squares as small as the rate l
       steps.insert(step);
       const auto every = static_cast<std::size_t>(step);
       for (std::size_t frame = 0; frame < 2; ++frame) {
-        std::size_t others = 0;
-        for (std::size_t at = 0; at < held.pictures[frame].bytes.size(); ++at) {
-          const std::size_t x = at / bytes % width;
-          const std::size_t y = at / bytes / width;
+        const std::vector<std::uint8_t> shown = host::expand_rgb(held.pictures[frame]);
+        const std::vector<std::uint8_t> wanted = host::expand_rgb(exact.pictures[frame]);
+        REQUIRE(shown.size() == 3 * width * static_cast<std::size_t>(board.height_px));
+        unsigned others = 0;
+        for (std::size_t at = 0; at < shown.size(); ++at) {
+          const std::size_t x = at / 3 % width;
+          const std::size_t y = at / 3 / width;
           const std::size_t corner = (y - y % every) * width + x - x % every;
-          others += held.pictures[frame].bytes[at] == exact.pictures[frame].bytes[corner * bytes + at % bytes]
-                        ? 0U
-                        : 1U;
+          others += shown[at] != wanted[corner * 3 + at % 3] ? 1U : 0U;
         }
-        CHECK(held.pictures[frame].bytes.size() == bytes * width * static_cast<std::size_t>(board.height_px));
         CHECK(others == 0);
       }
     }

@@ -10,8 +10,8 @@
 #include "apps/demo_view.h"
 #include "boards/board_table.h"
 #include "port.h"
-#include "scene/baking.h"
 #include "scene/random.h"
+#include "support/baked_demo.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
@@ -21,25 +21,14 @@ namespace {
 
 using namespace thimble;
 using tests::board_of;
+using tests::demo_scene;
 using tests::flagship;
 using tests::Hand;
-
-const tools::Baked& dig_scene() {
-  static const tools::Baked baked = [] {
-    const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
-    tools::BakingOptions options;
-    options.effects = {true, Effect::kNone};
-    options.name = "demo";
-    options.camera = [&source](const CompactTree&) { return *source->camera(); };
-    return tools::bake_scene(*source, options);
-  }();
-  return baked;
-}
 
 tests::SimulatedRun run_dig(const platform::BoardFacts& board, std::uint32_t frames, const Hand& hand = {}) {
   host::SimulationOptions options;
   options.board = &board;
-  options.scene = {dig_scene().bytes.data(), dig_scene().bytes.size()};
+  options.scene = {demo_scene().bytes.data(), demo_scene().bytes.size()};
   options.application = apps::dig;
   return tests::run_simulated(options, frames, hand);
 }
@@ -65,7 +54,7 @@ TEST_CASE(
   const std::vector<long> voxels = voxels_told(ran.out);
   REQUIRE(voxels.size() == 3);
   BakedScene scene;
-  REQUIRE(BakedScene::open({dig_scene().bytes.data(), dig_scene().bytes.size()}, &scene) == Status::kOk);
+  REQUIRE(BakedScene::open({demo_scene().bytes.data(), demo_scene().bytes.size()}, &scene) == Status::kOk);
   CHECK(voxels[0] < static_cast<long>(scene.tree().voxel_count()));
   CHECK(voxels[1] < voxels[0]);
   CHECK(voxels[2] > voxels[1]);
@@ -155,7 +144,7 @@ TEST_CASE("dig: without room -> it says so and goes on; boards that cannot hold 
     hand.buttons[frame] = frame % 2 == 0 ? port::kLeft : port::kRight | port::kUp;
   }
   BakedScene scene;
-  REQUIRE(BakedScene::open({dig_scene().bytes.data(), dig_scene().bytes.size()}, &scene) == Status::kOk);
+  REQUIRE(BakedScene::open({demo_scene().bytes.data(), demo_scene().bytes.size()}, &scene) == Status::kOk);
   // A chip with room for the application, a band and a few bricks that are opened.
   platform::BoardFacts tight = flagship();
   const EditRoom least = EditedWorld::room_of(scene.tree());

@@ -8,25 +8,13 @@
 #include "apps/apps.h"
 #include "boards/board_table.h"
 #include "host/packed_picture.h"
-#include "scene/baking.h"
+#include "support/baked_demo.h"
 #include "support/simulated_run.h"
 #include "thimble/picture/render.h"
 
 namespace {
 
 using namespace thimble;
-
-const std::vector<std::uint8_t>& baked_demo() {
-  static const tools::Baked baked = [] {
-    const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
-    tools::BakingOptions options;
-    options.effects = {true, Effect::kNone};
-    options.name = "demo";
-    options.camera = [&source](const CompactTree&) { return *source->camera(); };
-    return tools::bake_scene(*source, options);
-  }();
-  return baked.bytes;
-}
 
 TEST_CASE("panel formats: applications on boards with such displays -> the pictures of their likes") {
   const platform::BoardFacts* oled = platform::find_board("lm3s6965evb");
@@ -49,7 +37,7 @@ TEST_CASE("panel formats: applications on boards with such displays -> the pictu
       options.connected = true;
       options.application = played.application;
       options.hold_fps = played.hold_fps;
-      options.scene = {baked_demo().data(), baked_demo().size()};
+      options.scene = {tests::demo_scene().bytes.data(), tests::demo_scene().bytes.size()};
       const tests::SimulatedRun run = tests::run_simulated(options, 3, {{{1, "b"}}, {}});
       CHECK(run.fault == "");
       CHECK(run.last.bytes.size() == band_bytes(format, 84, 43));
