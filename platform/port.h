@@ -67,6 +67,16 @@ ConstBytes scene();
 /// the frame before: nothing is sent, and a display shows what it has. Not before a whole frame was flushed.
 void flush(const Band& band);
 
+/// Shows the one row of `band`, which is what was flushed last and has not changed, once more: as the row below,
+/// `first_row`. A port that copies rows faster within its display than to it has its own (BOARD_FLUSHES_AGAIN).
+#if defined(THIMBLE_FLUSHES_AGAIN)
+void flush_again(const Band& band);
+#else
+inline void flush_again(const Band& band) {
+  flush(band);
+}
+#endif
+
 /// The two halves of `flush`: begins to send, and waits until all is sent. From `begin_flush` on the band's
 /// bytes are the display's, to be read and not to be written, until `await_flush`, or another `flush` or
 /// `begin_flush`, returns: at most one band is on its way. So an application with `band_buffers()` bands of

@@ -303,6 +303,20 @@ void tell_crew(const Demo& /*demo*/) {}
   return Status::kOk;
 }
 
+/// The squares of a row of the thinned picture, from row `y` of the display on: one row, flushed again.
+[[gnu::noinline]] void flush_squares(Demo* demo, const uint8_t* thin, PixelFormat format, int32_t step,
+                                     int32_t y, int32_t end, uint32_t* crc) {
+  Band band = band_at(*demo, y, y + 1);
+  widen_row(thin, format, step, y, band.pixels.data);
+  flush(demo, band, crc);
+  for (const int32_t below = y + step < end ? y + step : end; ++band.first_row < below;) {
+    port::flush_again(band);
+    if (demo->tells_crc) {
+      *crc = crc32(band.pixels, *crc);
+    }
+  }
+}
+
 /// The picture of the thinned camera by the brick map, each pixel as a square. The rows of a square are one row, copied, or
 /// flushed again where flushing is copying.
 [[gnu::noinline]] Status draw_thinned(Demo* demo, int32_t step, uint32_t* crc) {
@@ -331,8 +345,15 @@ void tell_crew(const Demo& /*demo*/) {}
     }
     const int32_t last = (thin_y + rows) * step;
     const int32_t end = last < screen.height_px ? last : screen.height_px;
+    if (flushes_again) {
+      for (int32_t i = 0; i < rows; ++i) {
+        flush_squares(demo, held.thin_bytes.data + static_cast<size_t>(i) * row_bytes(format, width), format,
+                      step, (thin_y + i) * step, end, crc);
+      }
+      continue;
+    }
     for (int32_t y = thin_y * step; y < end;) {
-      Band band = band_at(*demo, y, flushes_again ? y + 1 : end);
+      const Band band = band_at(*demo, y, end);
       const size_t row = row_bytes(screen.format, screen.width_px);
       for (int32_t i = 0; i < band.rows; ++i) {
         uint8_t* const to = band.pixels.data + row_place(screen.format, i) * row;
@@ -345,10 +366,6 @@ void tell_crew(const Demo& /*demo*/) {}
       }
       flush(demo, band, crc);
       y += band.rows;
-      for (; flushes_again && y % step != 0 && y < end; ++y) {
-        band.first_row = y;
-        flush(demo, band, crc);
-      }
     }
   }
   return Status::kOk;

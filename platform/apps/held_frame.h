@@ -145,9 +145,30 @@ template <size_t kBytes, size_t kAlignment>
   for (int32_t x = 0; x < width; thin += kBytes) {
     uint8_t pixel[kBytes];
     __builtin_memcpy(pixel, __builtin_assume_aligned(thin, kAlignment), kBytes);
-    for (const int32_t end = x + step < width ? x + step : width; x < end; ++x) {
-      __builtin_memcpy(__builtin_assume_aligned(row, kAlignment), pixel, kBytes);
-      row += kBytes;
+    const int32_t end = x + step < width ? x + step : width;
+    if constexpr (kBytes == 2) {
+      // Two at a time, in words.
+      uint16_t one = 0;
+      __builtin_memcpy(&one, pixel, 2);
+      const uint32_t two = one | static_cast<uint32_t>(one) << 16;
+      if ((reinterpret_cast<uintptr_t>(row) & 2U) != 0) {
+        __builtin_memcpy(__builtin_assume_aligned(row, 2), &one, 2);
+        row += 2;
+        ++x;
+      }
+      for (; x + 1 < end; x += 2, row += 4) {
+        __builtin_memcpy(__builtin_assume_aligned(row, 4), &two, 4);
+      }
+      if (x < end) {
+        __builtin_memcpy(__builtin_assume_aligned(row, 2), &one, 2);
+        row += 2;
+        ++x;
+      }
+    } else {
+      for (; x < end; ++x) {
+        __builtin_memcpy(__builtin_assume_aligned(row, kAlignment), pixel, kBytes);
+        row += kBytes;
+      }
     }
   }
 }

@@ -27,6 +27,8 @@ int get();
 /// port::flush and port::buttons.
 void flush(const Band& band);
 uint32_t buttons();
+/// port::flush_again, where board.cmake sets BOARD_FLUSHES_AGAIN.
+void flush_again(const Band& band);
 /// In place of `flush`, where board.cmake sets BOARD_BAND_BUFFERS to 2: begins to send a band, after what was
 /// on its way has arrived; and waits until it is sent. The band has bytes.
 void begin_flush(const Band& band);

@@ -50,6 +50,12 @@ void flush(const Band& band) {
 }
 #endif
 
+#ifdef THIMBLE_FLUSHES_AGAIN
+void flush_again(const Band& band) {
+  board::flush_again(band);
+}
+#endif
+
 uint32_t buttons() {
   return board::buttons();
 }

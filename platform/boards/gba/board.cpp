@@ -93,6 +93,22 @@ void board::flush(const Band& band) {
       : "r4", "r5", "r6", "r7", "r8", "r9", "r10", "r11", "r12", "cc", "memory");
 }
 
+// Within the display, where no bit is lost any more.
+void board::flush_again(const Band& band) {
+  constexpr size_t kRowBytes = static_cast<size_t>(kFacts.display.width_px) * 2;
+  uintptr_t to = gba::kPicture + static_cast<size_t>(band.first_row) * kRowBytes;
+  uintptr_t from = to - kRowBytes;
+  const uintptr_t end = to;
+  asm volatile(
+      "1: ldmia %[from]!, {r4-r11}\n"
+      "stmia %[to]!, {r4-r11}\n"
+      "cmp %[from], %[end]\n"
+      "blo 1b\n"
+      : [from] "+&r"(from), [to] "+&r"(to)
+      : [end] "r"(end)
+      : "r4", "r5", "r6", "r7", "r8", "r9", "r10", "r11", "cc", "memory");
+}
+
 uint32_t board::buttons() {
   const uint32_t up = register16(gba::kKeys);
   uint32_t down = 0;

@@ -136,11 +136,11 @@ struct AlongC {
 // from the origin, whichever is wider.
 [[gnu::always_inline]] inline Shadow shadow_of(const BrickFrame& frame, const Fan& fan, const AlongC& c,
                                                int axis) {
-  const int32_t low = fan.low[axis] * (1 << kSlopeBits);
-  const int32_t high = fan.high[axis] * (1 << kSlopeBits);
+  const int32_t low = component(fan.low, axis) * (1 << kSlopeBits);
+  const int32_t high = component(fan.high, axis) * (1 << kSlopeBits);
   const int32_t low_slope = slope_of(low, low < 0 ? c.low : c.high) - 1;
   const int32_t high_slope = slope_of(high, high < 0 ? c.high : c.low) + 1;
-  const int32_t from = frame.eye[axis] * (1 << kSlopeBits);
+  const int32_t from = component(frame.eye, axis) * (1 << kSlopeBits);
   const int32_t low_step = low_slope * Q8::kOne;
   const int32_t high_step = high_slope * Q8::kOne;
   const int32_t low_more = low_step < 0 ? low_step : 0;
@@ -168,14 +168,13 @@ struct NearBrick {
 };
 
 // Whether the brick's layer `own` on c has a solid voxel among the cells that are set in `in_a` and `in_b`.
-template <int kC>
-[[gnu::always_inline]] inline bool any_solid(const uint8_t* bits, uint32_t own, uint32_t in_a,
+[[gnu::always_inline]] inline bool any_solid(const uint8_t* bits, int c, uint32_t own, uint32_t in_a,
                                              uint32_t in_b) {
-  if (kC == 2) {
+  if (c == 2) {
     return (half_at(bits, static_cast<int32_t>(2 * own)) & (in_a * kRows[in_b])) != 0;
   }
   const uint32_t rows = (word_at(bits, 0) & kHalves[in_b & 3U]) | (word_at(bits, 4) & kHalves[in_b >> 2]);
-  const uint32_t wanted = kC == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own;
+  const uint32_t wanted = c == 1 ? in_a << 4 * own : static_cast<uint32_t>(kRows[in_a]) << own;
   return ((rows | rows >> 16) & wanted) != 0;
 }
 
@@ -204,35 +203,41 @@ bool has_empty_layer(const DeepCourse& course, const Shadow& a, const Shadow& b,
 }
 
 // Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs when
-// there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab.
+// there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab; and `far`.
+// kC is kAnyAxis where one function serves all courses.
 template <int kC, bool kDeep>
 [[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
-  constexpr int kA = kOtherA<kC>;
-  constexpr int kB = kOtherB<kC>;
+  const int along = kC == kAnyAxis ? course.c : kC;
+  const int axis_a = other_a(along);
+  const int axis_b = other_b(along);
   constexpr int32_t kMost = kDeep ? kDeepBeamBricks : kBeamBricks;
   course.waiting = kWaiting;
+#ifdef THIMBLE_FAST_RAM
+  course.far = true;
+#endif
   const BrickFrame& frame = *course.frame;
-  const int32_t slabs = 4 * frame.side[kC];
-  const int32_t origin = course.origin[kC];
+  const int32_t slabs = 4 * component(frame.side, along);
+  const int32_t origin = course.origin[along];
   const int32_t nearest = origin < 0 ? 0 : origin >> 8;
   slab = slab < nearest ? nearest : slab;
   if (slab >= slabs) {
     return slabs;
   }
-  const bool flipped = (course.mirrored >> kC & 1U) != 0;
+  const bool flipped = (course.mirrored >> along & 1U) != 0;
   const int32_t plane = slab * Q8::kOne - origin;
-  const AlongC c{flipped ? -fan.high[kC] : fan.low[kC], flipped ? -fan.low[kC] : fan.high[kC], plane,
+  const AlongC c{flipped ? -component(fan.high, along) : component(fan.low, along),
+                 flipped ? -component(fan.low, along) : component(fan.high, along), plane,
                  plane < 0 ? 0 : plane};
-  if (fan.high[kA] > 2 * c.low || fan.low[kA] < -2 * c.low || fan.high[kB] > 2 * c.low ||
-      fan.low[kB] < -2 * c.low) {
+  if (component(fan.high, axis_a) > 2 * c.low || component(fan.low, axis_a) < -2 * c.low ||
+      component(fan.high, axis_b) > 2 * c.low || component(fan.low, axis_b) < -2 * c.low) {
     return slab;
   }
-  Shadow a = shadow_of(frame, fan, c, kA);
-  Shadow b = shadow_of(frame, fan, c, kB);
-  const int32_t last_a = frame.side[kA] - 1;
-  const int32_t last_b = frame.side[kB] - 1;
-  const int32_t stride_a = frame.stride[kA];
-  const int32_t stride_b = frame.stride[kB];
+  Shadow a = shadow_of(frame, fan, c, axis_a);
+  Shadow b = shadow_of(frame, fan, c, axis_b);
+  const int32_t last_a = component(frame.side, axis_a) - 1;
+  const int32_t last_b = component(frame.side, axis_b) - 1;
+  const int32_t stride_a = component(frame.stride, axis_a);
+  const int32_t stride_b = component(frame.stride, axis_b);
   const uint8_t* directory = course.directory;
   while (slab < slabs) {
     if constexpr (kDeep) {
@@ -257,8 +262,8 @@ template <int kC, bool kDeep>
     // Keeps the bricks that are not empty.
     NearBrick bricks[size_t{kMost * kMost}];
     NearBrick* bricks_end = bricks;
-    const int32_t layer = flipped ? frame.side[kC] - 1 - (slab >> 2) : slab >> 2;
-    int32_t row = layer * frame.stride[kC] + from_b * stride_b + from_a * stride_a;
+    const int32_t layer = flipped ? component(frame.side, along) - 1 - (slab >> 2) : slab >> 2;
+    int32_t row = layer * component(frame.stride, along) + from_b * stride_b + from_a * stride_a;
     for (int32_t j = from_b; j <= to_b; ++j, row += stride_b) {
       int32_t cell = row;
       for (int32_t i = from_a; i <= to_a; ++i, cell += stride_a) {
@@ -279,13 +284,16 @@ template <int kC, bool kDeep>
     for (const int32_t end = slab + voxels; slab < end; ++slab, a.advance(1), b.advance(1)) {
       const uint32_t cells_a = a.cells_from(base_a);
       const uint32_t cells_b = b.cells_from(base_b);
-      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[kC];
+      const uint32_t own = (static_cast<uint32_t>(slab) & 3U) ^ course.flip[along];
       for (const NearBrick* near = bricks; near != bricks_end; ++near) {
-        if (any_solid<kC>(near->bits, own, cells_a >> near->a & 15U, cells_b >> near->b & 15U)) {
+        if (any_solid(near->bits, along, own, cells_a >> near->a & 15U, cells_b >> near->b & 15U)) {
           // Where both ends are within the box no ray waits outside.
           const bool outside =
               a.low < 0 || b.low < 0 || a.high >> kBrickShift > last_a || b.high >> kBrickShift > last_b;
           course.waiting = outside ? kWaiting : 0;
+#ifdef THIMBLE_FAST_RAM
+          course.far = false;
+#endif
           return slab;
         }
       }
@@ -296,6 +304,9 @@ template <int kC, bool kDeep>
 
 template <bool kDeep = false>
 int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
+  if constexpr (kFastRam && !kDeep) {
+    return first_slab<kAnyAxis, false>(course, fan, slab);
+  }
   return course.c == 0   ? first_slab<0, kDeep>(course, fan, slab)
          : course.c == 1 ? first_slab<1, kDeep>(course, fan, slab)
                          : first_slab<2, kDeep>(course, fan, slab);

@@ -75,6 +75,7 @@ struct Course {
 #ifdef THIMBLE_FAST_RAM
   uint32_t last[3];     // the last voxel of a brick, shifted to its place
   int32_t one_step[3];  // what a step adds to a voxel's place
+  bool far;             // the rays start far from anything: their beam became too wide to be followed
 #endif
 };
 

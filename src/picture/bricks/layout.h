@@ -12,10 +12,27 @@ namespace thimble::bricks {
 namespace {
 
 // The two axes besides the fastest one, c; a is the lower of them.
+constexpr int other_a(int c) {
+  return c == 0 ? 1 : 0;
+}
+constexpr int other_b(int c) {
+  return c == 2 ? 1 : 2;
+}
 template <int kC>
-constexpr int kOtherA = kC == 0 ? 1 : 0;
+constexpr int kOtherA = other_a(kC);
 template <int kC>
-constexpr int kOtherB = kC == 2 ? 1 : 2;
+constexpr int kOtherB = other_b(kC);
+// In place of an axis: it is read from the course at run time.
+constexpr int kAnyAxis = -1;
+// v[axis], for an axis that is known at run time only: a choice of three members is three times the code.
+template <class T>
+[[gnu::always_inline]] inline T component(const Vec3<T>& v, int axis) {
+  T value;
+  const auto* const bytes =
+      reinterpret_cast<const unsigned char*>(&v) + sizeof(T) * static_cast<unsigned>(axis);
+  __builtin_memcpy(&value, __builtin_assume_aligned(bytes, alignof(T)), sizeof(T));
+  return value;
+}
 
 // A ray may start this many cells outside of the box on axes a and b.
 constexpr int32_t kOutsideCells = 64;
@@ -70,8 +87,8 @@ uint32_t row_of(const uint8_t* at) {
   return static_cast<uint32_t>(reinterpret_cast<size_t>(at)) & 6U;
 }
 
-// Whether the core has an instruction to divide.
-#if defined(__arm__) && !defined(__ARM_FEATURE_IDIV)
+// Whether the core has an instruction to divide. (THIMBLE_NO_DIVIDER: tests say that it has none.)
+#if defined(THIMBLE_NO_DIVIDER) || (defined(__arm__) && !defined(__ARM_FEATURE_IDIV))
 constexpr bool kDivides = false;
 #else
 constexpr bool kDivides = true;

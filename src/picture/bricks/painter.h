@@ -5,6 +5,9 @@
 
 #include "beam.h"
 #include "brick_ray.h"
+#ifdef THIMBLE_FAST_RAM
+#include "far_ray.h"
+#endif
 #include "sweep.h"
 #include "thimble/picture/render.h"
 #include "tile.h"
@@ -56,12 +59,67 @@ template <int kC, unsigned kMirrored, class OneCourse>
   return all;
 }
 
+#ifdef THIMBLE_FAST_RAM
+// The same by one function for all courses. The rays start in slab `slab`, or from farther on (far_ray.h).
+[[gnu::noinline]] int32_t trace_any_quad(Course& course, int32_t slab, const Camera::Vec3Q32& from,
+                                         int32_t across, int32_t down, int32_t* inks) {
+  const int c = course.c;
+  const int a = other_a(c);
+  const int b = other_b(c);
+  const auto trace = c == 0   ? trace_one<0, kAnySigns, Course>
+                     : c == 1 ? trace_one<1, kAnySigns, Course>
+                              : trace_one<2, kAnySigns, Course>;
+  const int32_t slabs = 4 * component(course.frame->side, c);
+  int32_t begins = slab;  // as the course has it
+  int64_t row[3] = {from.x, from.y, from.z};
+  int32_t all = 0;
+  for (; down > 0; --down) {
+    int64_t at[3] = {row[0], row[1], row[2]};
+    for (const int32_t* end = inks + across; inks != end; ++inks) {
+      const auto whole = [&](int axis) { return static_cast<uint32_t>(at[axis] >> 32); };
+      int32_t ink = kMissed;
+      const int32_t start = course.far ? far_slab(course, slab, whole(a), whole(b), whole(c)) : slab;
+      if (start < slabs) {
+        if (start != begins) {
+          set_start(course, start);
+          begins = start;
+        }
+        ink = trace(course, whole(a), whole(b), whole(c));
+      }
+      *inks = ink;
+      all |= ink;
+      at[0] += course.step_x.x;
+      at[1] += course.step_x.y;
+      at[2] += course.step_x.z;
+    }
+    row[0] += course.step_y.x;
+    row[1] += course.step_y.y;
+    row[2] += course.step_y.z;
+  }
+  return all;
+}
+#endif
+
 template <int kC, class OneCourse>
 int32_t trace_quad_by_signs(const OneCourse& course, const Camera::Vec3Q32& from, int32_t across,
                             int32_t down, int32_t* inks) {
   return with_mirrored(course.mirrored, [&](auto axes) {
     return trace_quad<kC, decltype(axes)::kMirrored>(course, from, across, down, inks);
   });
+}
+
+// Traces a quad with rays that start in slab `slab`.
+template <class OneCourse>
+int32_t trace_quad_along(OneCourse& course, [[maybe_unused]] int32_t slab, const Camera::Vec3Q32& from,
+                         int32_t across, int32_t down, int32_t* inks) {
+#ifdef THIMBLE_FAST_RAM
+  if constexpr (!OneCourse::kDeep) {
+    return trace_any_quad(course, slab, from, across, down, inks);
+  }
+#endif
+  return course.c == 0   ? trace_quad_by_signs<0>(course, from, across, down, inks)
+         : course.c == 1 ? trace_quad_by_signs<1>(course, from, across, down, inks)
+                         : trace_quad_by_signs<2>(course, from, across, down, inks);
 }
 
 // Draws the tiles of one band.
@@ -208,9 +266,7 @@ class BrickPainter {
       for (int axis = 0; axis < 3; ++axis) {
         from[axis] = ((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) + (int64_t{1} << 31);
       }
-      const int32_t all = fan.c == 0   ? trace_quad_by_signs<0>(course_, from, across, down, inks)
-                          : fan.c == 1 ? trace_quad_by_signs<1>(course_, from, across, down, inks)
-                                       : trace_quad_by_signs<2>(course_, from, across, down, inks);
+      const int32_t all = trace_quad_along(course_, slab, from, across, down, inks);
       if (all < 0) {
         answer(quad, inks);
       }
