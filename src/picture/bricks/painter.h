@@ -5,9 +5,7 @@
 
 #include "beam.h"
 #include "brick_ray.h"
-#ifdef THIMBLE_FAST_RAM
 #include "far_ray.h"
-#endif
 #include "sweep.h"
 #include "thimble/picture/render.h"
 #include "tile.h"
