@@ -4,7 +4,8 @@
 # run.sh --budgets (UPDATE=1) writes the table anew.
 set -eu
 cd "$(dirname "$0")/../.."
-cost=$(sed -n 's/^lit\.instructions_median,\([0-9]*\).*/\1/p' "$3")
+. tests/boards/three_digits.sh
+cost=$(awk -F, "$three_digits"'$1 == "lit.instructions_median" { print three_digits($2) }' "$3")
 if [ -z "$cost" ]; then
   echo "bench says no instructions of a lit frame"
   exit 1

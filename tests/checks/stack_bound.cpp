@@ -15,8 +15,9 @@
 // not always in the graph, so every chain is given kHelperBytes for one at its end: they use at most ten
 // registers' worth.
 //
-// Exit status 1 and a sentence for each of: recursion, a call through a pointer, a frame whose size is not
-// known when compiling, a function without a row in STACK.csv or above its limit.
+// Exit status 1 and a sentence for each of: recursion, a call through a pointer, a frame whose size is not known when
+// compiling, a function that nobody calls (the public ones) without a row in STACK.csv, one above the limit of its row.
+// The row `*` holds only what nobody calls: what an inner function needs counts in its callers.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -141,17 +142,20 @@ class Graph {
         continue;
       }
       const std::uint64_t bytes = worst(id) + kHelperBytes;
+      const bool is_entry = id.find(':') == std::string::npos && !called.contains(id);
       const Limit* limit = find_limit(function.name, target, limits);
       if (limit == nullptr) {
-        complain(function, "has no row in the table of stack limits");
+        if (is_entry) {
+          complain(function, "has no row in the table of stack limits");
+        }
         continue;
       }
-      const bool is_entry = id.find(':') == std::string::npos && !called.contains(id);
-      if (is_entry || limit->pattern != "*") {
-        std::printf("%6llu of %6llu  %s\n", static_cast<unsigned long long>(bytes),
-                    static_cast<unsigned long long>(limit->bytes), function.name.c_str());
-        print_chain(id);
+      if (limit->pattern == "*" && !is_entry) {
+        continue;  // counts in what calls it
       }
+      std::printf("%6llu of %6llu  %s\n", static_cast<unsigned long long>(bytes),
+                  static_cast<unsigned long long>(limit->bytes), function.name.c_str());
+      print_chain(id);
       if (bytes > limit->bytes) {
         complain(function, ("needs " + std::to_string(bytes) + " bytes of stack; the limit is " +
                             std::to_string(limit->bytes))

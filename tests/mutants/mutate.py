@@ -1,10 +1,8 @@
 """Writes a copy of src in which some places can be changed by number, as files that compile as one part each.
 
     mutate.py ROOT OUT --count 2000 --seed 1     a sample of every file and kind
-    mutate.py ROOT OUT --thirty                  thirty of that sample's rooms JUDGED, by a hash of the bytes of src
-    mutate.py ROOT OUT --thirty --draw TEXT      the thirty that src would have if its hash were TEXT
-    mutate.py ROOT OUT --judged                  all of the sample of which the thirty are
-    mutate.py ROOT OUT ... --faults faults.csv   besides these, the faults that the file's rows name
+    mutate.py ROOT OUT --quick                   one in ten of every file and kind of the rooms QUICK
+    mutate.py ROOT OUT ... --faults faults.csv   besides these, the faults that the file's rows describe
 
 OUT/mutants.json says what was chosen; OUT/part_0.cpp and so on are the core that has it: the whole of it, since a
 function of a header is compiled into what includes it, in whichever room that stands.
@@ -12,7 +10,6 @@ function of a header is compiled into what includes it, in whichever room that s
 import argparse
 import csv
 import json
-import os.path
 import pathlib
 import re
 import subprocess
@@ -20,9 +17,8 @@ import subprocess
 import sites
 
 PARTS = 4
-SEED = 1
-ONE_IN = 10  # the sample of which --thirty takes thirty
-JUDGED = ("base", "bake", "c", "trace")  # rooms of which every survivor was looked at
+ONE_IN = 10  # of --quick
+QUICK = ("base", "bake", "c", "trace")  # rooms whose tests are quick
 
 
 def code_only(text):
@@ -55,6 +51,8 @@ def rendered(source, chosen):
                 text = f"({on} ? ({code_only(mutant.alternative)}) : {text})"
             elif mutant.form == "statement":
                 text = f"({on} ? static_cast<void>(0) : static_cast<void>({text}))"
+            elif mutant.form == "fault":
+                text = f"if ({on}) {{ {mutant.alternative} }} else {{ {text} }}"
             else:
                 text = f"if (!{on}) {text}"
         return text
@@ -99,32 +97,33 @@ def refused(root, out, parts, chosen):
     return drop
 
 
-def included(sources, file):
-    """The files of src that a file includes, itself among them."""
-    found, waiting = set(), [file]
-    while waiting:
-        name = waiting.pop()
-        if name in sources and name not in found:
-            found.add(name)
-            waiting += [os.path.normpath(os.path.join(os.path.dirname(name), other))
-                        for other in re.findall(r'^#include "(.+)"', sources[name].decode(), re.M)]
-    return found
+def pattern_of(code):
+    """Finds code however its lines are broken and indented."""
+    tokens = re.findall(r"\w+|\S", code)
+    edges = [r"\b" if re.match(r"\w", token) else "" for token in (tokens[0], tokens[-1])]
+    return re.compile(edges[0] + r"\s*".join(map(re.escape, tokens)) + edges[1])
 
 
-def faults(root, sources, path, known):
-    """The places that the rows of a file name, in their order; and what is to be said of rows that name none."""
+def faults(sources, path):
+    """The places that the rows of a file describe; and what is to be said of rows that describe no place, or several."""
     with open(path, newline="") as file:
         rows = list(csv.reader(file))[1:]
-    wanted = {row[0] for row in rows} - {m.file for m in known}
-    whole = {file: included(sources, file) for file in sources if file.endswith(".cpp")}
-    parsed = {next((source for source in whole if file in whole[source]), None) for file in wanted} - {None}
-    places = {m.key: m for m in sites.find(root, sources, sorted(parsed))[0] + known}
+    texts = {file: source.decode("latin-1") for file, source in sources.items()}  # a character a byte
     chosen, missing = [], []
-    for number, row in enumerate(rows, 2):
-        if tuple(row[:5]) in places:
-            chosen.append(places[tuple(row[:5])])
-        else:
-            missing.append(f"{path.name}:{number}: {row[0]}: {row[1]} has no such place any more: {row[3]} in {row[2]}")
+    for number, (code, faulty, what) in enumerate(rows, 2):
+        places = [(file, m) for file, text in texts.items() for m in pattern_of(code).finditer(text)]
+        if len(places) != 1:
+            where = "".join(f", {file}:{texts[file].count(chr(10), 0, m.start()) + 1}" for file, m in places)
+            missing.append(f"{path.name}:{number}: this code stands {len(places)} times in src{where}, not once: {code} "
+                           f"-- describe where it is possible today that {what}")
+            continue
+        file, m = places[0]
+        form = "fault" if code.endswith((";", "}")) else "value"
+        mutant = sites.Mutant(file, what, "fault", m.start(), m.end(), faulty, f"to {faulty or 'nothing'}", form)
+        mutant.text = " ".join(code.split())
+        mutant.line = texts[file].count("\n", 0, m.start()) + 1
+        mutant.last_line = texts[file].count("\n", 0, m.end()) + 1
+        chosen.append(mutant)
     return chosen, missing
 
 
@@ -133,31 +132,22 @@ def main():
     options.add_argument("root")
     options.add_argument("out")
     options.add_argument("--count", type=int, default=2000)
-    options.add_argument("--seed", type=int, default=SEED)
-    options.add_argument("--thirty", action="store_true")
-    options.add_argument("--judged", action="store_true")
-    options.add_argument("--draw", default="")
+    options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--quick", action="store_true")
     options.add_argument("--faults", type=pathlib.Path)
     given = options.parse_args()
     root, out = pathlib.Path(given.root).resolve(), pathlib.Path(given.out).resolve()
     out.mkdir(parents=True, exist_ok=True)
     sources = sites.sources_of(root)
     files = [f for f in sources if f.endswith(".cpp")]
-    if given.thirty or given.judged:
-        mutants, fixed = sites.find(root, sources, [f for f in files if f.split("/")[1] in JUDGED])
-        mutants = [m for m in mutants if m.room in JUDGED]
-        total = len(mutants)
-        chosen = sites.sample(mutants, ONE_IN, SEED)
-        if given.thirty:
-            state = given.draw or sites.digest(*(s.decode() for s in sources.values()))
-            chosen = sorted(chosen, key=lambda m: sites.digest(state, *m.key))[:40]
-    else:
-        mutants, fixed = sites.find(root, sources, files)
-        total = len(mutants)
-        chosen = sites.sample(mutants, max(1, total // given.count), given.seed)
-    seeded, missing = faults(root, sources, given.faults, mutants) if given.faults else ([], [])
-    drawn = [m for m in chosen if m not in seeded]
-    chosen = seeded + drawn
+    if given.quick:
+        files = [f for f in files if f.split("/")[1] in QUICK]
+    mutants, fixed = sites.find(root, sources, files)
+    mutants = [m for m in mutants if not given.quick or m.room in QUICK]
+    total = len(mutants)
+    chosen = sites.sample(mutants, ONE_IN if given.quick else max(1, total // given.count), given.seed)
+    seeded, missing = faults(sources, given.faults) if given.faults else ([], [])
+    chosen = seeded + chosen
     for number, mutant in enumerate(chosen, 1):
         mutant.number = number
     parts = [f"part_{part}.cpp" for part in range(PARTS)]
@@ -170,9 +160,6 @@ def main():
         dropped += len(drop)
         chosen = [m for m in chosen if m not in drop]
     missing += [f"{given.faults.name}: the compiler refuses {m.key}" for m in seeded if m not in chosen]
-    if given.thirty:
-        chosen = [m for m in chosen if m in seeded] + [m for m in chosen if m in drawn][:30]
-        write_tree(out, sources, parts, chosen)
     (out / "mutants.json").write_text(json.dumps({
         "places": total, "compiled_away": fixed, "refused": dropped, "seed": given.seed, "missing": missing,
         "mutants": [{"number": m.number, "room": m.room, "kind": m.kind, "line": m.line, "key": m.key,
