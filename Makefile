@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install deb \
-  packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install \
+  uninstall deb packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
   bench-frames bench-small3dlib test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
@@ -38,12 +38,15 @@ run: all ## Render four scenes within fixed budgets into out/ and print what the
 sim: all ## Run the demo as on BOARD=NAME, in a window or the terminal (SCENE=..., SIM_ARGS=...)
 	@build/release/thimble sim $(filter-out auto,$(SCENE)) --board $(BOARD) $(SIM_ARGS)
 
-# DESTDIR is another root, for packages.
+# DESTDIR is another root, for packages. An empty PREFIX is the root itself.
 PREFIX ?= /usr/local
 DESTDIR ?=
+INSTALL = cmake --install build/release --prefix "$(or $(PREFIX),/)" --strip >/dev/null
 install: all ## Install command, library, scenes, manual, completions (PREFIX=/usr/local, DESTDIR=...)
-	@DESTDIR="$(DESTDIR)" cmake --install build/release --prefix "$(PREFIX)" --strip >/dev/null
-	@echo "installed in $(DESTDIR)$(PREFIX)"
+	@DESTDIR="$(DESTDIR)" $(INSTALL)
+	@echo "installed in $(DESTDIR)$(or $(PREFIX),/)"
+uninstall: all ## Remove what `make install` with the same PREFIX and DESTDIR installs
+	@sh tools/uninstall.sh build/release "$(DESTDIR)" "$(or $(PREFIX),/)"
 deb: all ## Make a Debian package of what `make install` installs (build/release/thimble_*.deb)
 	@sh tools/package.sh build/release
 packages: all ## Make the packages of every ecosystem (build/packages); RELEASE=1 refuses to name no place
