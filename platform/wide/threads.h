@@ -7,11 +7,12 @@
 #include <stddef.h>
 
 #include <algorithm>
-#ifdef THIMBLE_STD_THREADS
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
-#else
+#ifndef THIMBLE_STD_THREADS
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -24,11 +25,36 @@
 
 namespace thimble::wide {
 
+/// How many of `wanted` threads, of which the calling one is one, the system gives at a time: at least 1. Where it gives
+/// fewer oneTBB throws in the middle of its work, so they are tried first, once.
+inline int startable_threads(int wanted) {
+  static std::mutex mutex;
+  static int tried = 1;
+  static int started = 1;
+  const std::lock_guard lock(mutex);
+  if (wanted > tried) {
+    std::atomic<bool> ended{false};
+    std::vector<std::jthread> others;
+    try {
+      while (static_cast<int>(others.size()) < wanted - 1) {
+        others.emplace_back([&] { ended.wait(false); });
+      }
+    } catch (const std::exception&) {
+      // These are all.
+    }
+    ended = true;
+    ended.notify_all();
+    tried = wanted;
+    started = static_cast<int>(others.size()) + 1;
+  }
+  return std::min(wanted, started);
+}
+
 #ifdef THIMBLE_STD_THREADS
 /// The same with threads of the C++ library, made for each call: ThreadSanitizer sees into these.
 class Threads {
  public:
-  explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)) {}
+  explicit Threads(int count) : count_(startable_threads(std::clamp(count, 1, kMaxThreads))) {}
 
   int count() const { return count_; }
 
@@ -54,9 +80,9 @@ class Threads {
 /// Not to be copied; draws one frame at a time.
 class Threads {
  public:
-  /// `count` includes the calling thread and is limited to 1 .. kMaxThreads. More threads than processors are made if
+  /// `count` includes the calling thread and is limited to 1 .. kMaxThreads and to what the system gives. More threads than processors are made if
   /// asked for, but gain nothing.
-  explicit Threads(int count) : count_(std::clamp(count, 1, kMaxThreads)), arena_(count_) {
+  explicit Threads(int count) : count_(startable_threads(std::clamp(count, 1, kMaxThreads))), arena_(count_) {
     if (count_ > oneapi::tbb::info::default_concurrency()) {
       allowed_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count_));
     }

@@ -4,11 +4,13 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include "scene/workers.h"
+#include "wide/threads.h"
 
 namespace thimble::tools {
 
 void each_task(std::size_t tasks, int threads,
                const std::function<void(std::size_t task, std::size_t worker)>& run) {
+  threads = wide::startable_threads(threads);
   const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(threads));
   oneapi::tbb::task_arena arena(threads);
