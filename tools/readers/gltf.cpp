@@ -354,6 +354,8 @@ class Scene {
     }
     try {
       return GltfPicture(file_.link(uri->get_ref<const std::string&>(), place).bytes, limit);
+    } catch (const ShortageError&) {
+      throw;
     } catch (const InputError&) {
       return {};  // shapes without their pictures are worth having
     }

@@ -269,6 +269,8 @@ SharedBytes GltfFile::link(const std::string& uri, const std::string& place) con
   }
   try {
     return share(load_file((std::filesystem::path(path_).parent_path() / relative).string()));
+  } catch (const ShortageError& error) {
+    throw ShortageError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
   } catch (const InputError& error) {
     throw InputError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
   }

@@ -15,6 +15,13 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The input may be good, but the system has nothing left to open it with. Whoever can do without an input that is bad
+/// does not do without this one.
+class ShortageError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// An option that this input can never take, as the command line alone tells: exit status 2.
 class UsageError : public InputError {
  public:

@@ -45,6 +45,9 @@ std::map<std::string, std::string> known_scenes() {
         known.try_emplace(file.substr(0, file.size() - ending.size()), entry->path().string());
       }
     }
+    if (error && !folder.empty()) {
+      throw ShortageError("the folder of the scenes that come along cannot be opened: " + error.message());
+    }
   }
   return known;
 }
