@@ -71,7 +71,8 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
   add_normals(app, choice);
 }
 
-void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more) {
+void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more,
+                        const std::string& usual) {
   add_text_option(
       app, "--effects", "auto|none|all|LIST",
       [wishes](const std::string& text) {
@@ -81,7 +82,7 @@ void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& 
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
       "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
           spaced_names() + more)
-      .default_str("auto")
+      .default_str(usual)
       .offers(offered());
   add_normals(app, &wishes->choice);
   add_whole_option(

@@ -13,8 +13,9 @@ class App;
 
 namespace thimble::tools {
 
-/// `more` ends the help of --effects.
-void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more = {});
+/// `more` ends the help of --effects; `usual` is what it says of the default.
+void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more = {},
+                        const std::string& usual = "auto");
 
 /// --effects (auto, none, all or a list) and --normals alone.
 /// `names_default`: the help ends with "(default: auto)".

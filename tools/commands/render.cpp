@@ -551,7 +551,7 @@ void add_render(CLI::App& app) {
   add_picture_view(*sub, &command->view);
   add_shade(*sub, &command->shade,
             "brightness by distance (the paper's), the face's direction, the palette in one light, or white "
-            "where anything is; given without --effects it draws none (default: the scene's own look, below)",
+            "where anything is; given without --effects it draws none",
             &command->shade_name);
   add_look(*sub, command);
   add_path_option(
@@ -563,7 +563,8 @@ void add_render(CLI::App& app) {
                   "distance in voxels along the unit ray as float32, +inf for a miss");
   add_effect_options(*sub, &command->effects,
                      "; what calls for none is drawn by --shade; --structure compact and --engine auto "
-                     "only");
+                     "only",
+                     "the scene's own look; none with --shade; else auto");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);
   add_paragraph_below(*sub, kDefaultLookText);

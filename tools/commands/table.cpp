@@ -150,7 +150,7 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
   return row;
 }
 
-void print_row(const Row& row) {
+std::string row_text(const Row& row) {
   const std::optional<double> paper = paper_seconds(row.points, row.orthographic);
   std::array<char, 64> beside{};
   if (paper) {
@@ -158,10 +158,11 @@ void print_row(const Row& row) {
   } else {
     std::snprintf(beside.data(), beside.size(), "%10s %9s", "-", "-");
   }
-  std::printf("%12s  %-12s %10.6f %s %9s %11s\n", grouped(row.points).c_str(),
-              row.orthographic ? "orthographic" : "perspective", row.seconds, beside.data(),
-              grouped(row.hits).c_str(), grouped(row.mismatches).c_str());
-  std::fflush(stdout);
+  std::array<char, 160> line{};
+  std::snprintf(line.data(), line.size(), "%12s  %-12s %10.6f %s %9s %11s\n", grouped(row.points).c_str(),
+                row.orthographic ? "orthographic" : "perspective", row.seconds, beside.data(),
+                grouped(row.hits).c_str(), grouped(row.mismatches).c_str());
+  return line.data();
 }
 
 std::string json_text(const std::vector<Row>& rows) {
@@ -209,8 +210,7 @@ std::string plot_text(const TableCommand& command, const std::vector<Row>& rows)
 
 void run(const TableCommand& command) {
   OutputSet outputs({command.json_path, command.plot_path}, {});
-  std::printf("%12s  %-12s %10s %10s %9s %9s %11s\n", "points", "projection", "seconds", "paper", "faster",
-              "hits", "mismatches");
+  outputs.print("      points  projection      seconds      paper    faster      hits  mismatches\n");
   std::vector<Row> rows;
   for (const std::uint64_t points : command.points) {
     ProgressBar bar(grouped(points) + " points", command.quiet);
@@ -237,7 +237,7 @@ void run(const TableCommand& command) {
     }
     bar.clear();
     for (const Row& row : pair) {
-      print_row(row);
+      outputs.print(row_text(row));
       rows.push_back(row);
     }
   }

@@ -10,7 +10,7 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
-#include "output/output_file.h"
+#include "output/output_set.h"
 #include "readers/file_bytes.h"
 #include "readers/input_error.h"
 #include "thimble/picture/camera.h"
@@ -79,9 +79,9 @@ void add_uart_picture(CLI::App& app) {
     const FileBytes log = load_file(command->log, std::uint64_t{1} << 30);
     const ImageKind kind = *image_kind(command->output);
     const Image picture = find_picture(log.text());
-    OutputFile file(command->output);
-    write_image(&file, kind, converted(picture, pixel_format(kind)));
-    file.commit();
+    OutputSet outputs({command->output}, {command->log});
+    write_image(outputs[0], kind, converted(picture, pixel_format(kind)));
+    outputs.commit();
   });
 }
 

@@ -73,8 +73,9 @@ void add_view_command(CLI::App& app) {
       .default_str("auto");
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
-  add_effect_options(*sub, &command->effects);
-  add_samples(*sub, &command->across, &command->at_edges, "in the picture at rest", 2);
+  add_effect_options(*sub, &command->effects, {}, "the scene's own look; none with --shade");
+  add_samples(*sub, &command->across, &command->at_edges, "in the picture at rest",
+              "those of the scene's own look, else 4");
   also_check(*sub, [sub, command] {
     if (is_given(*sub, "--samples")) {
       command->viewer.look.across = command->across;

@@ -185,7 +185,8 @@ void add_direction_bits(CLI::App& app, int* bits) {
       "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
-void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what, int usual_across) {
+void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what,
+                 const std::string& usual) {
   add_text_option(
       app, "--samples", "auto|N",
       [across, at_edges](const std::string& text) -> std::string {
@@ -198,12 +199,13 @@ void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& 
         return {};
       },
       samples_help(of_what) + "; auto: one, and 2 or 4 more where the picture of one has edges")
-      .default_str(std::to_string(usual_across * usual_across));
+      .default_str(usual);
   note_samples(app, across);
 }
 
 void add_quality(CLI::App& app, Quality* quality) {
-  add_samples(app, &quality->across, &quality->at_edges, "on a regular grid in it, averaged", 1);
+  add_samples(app, &quality->across, &quality->at_edges, "on a regular grid in it, averaged",
+              "those of the scene's own look, else 1");
   also_check(app, [&app, quality] { quality->is_sampled = is_given(app, "--samples"); });
   add_text_option(
       app, "--cutoff", "PX",
@@ -238,7 +240,7 @@ void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::str
         }
       },
       help)
-      .default_str("depth");
+      .default_str(given != nullptr ? "the scene's own look" : "depth");
 }
 
 }  // namespace thimble::tools

@@ -32,12 +32,13 @@ void add_direction_bits(CLI::App& app, int* bits);
 void use_display(const platform::BoardFacts* board, ViewWishes* view);
 
 /// --samples: auto, or squares up to 64; another number is taken as the next of them, and said so. `across` gets
-/// the square's side, which is `usual_across` by default; `of_what` says in the help how they lie.
-void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what, int usual_across);
+/// the square's side; `of_what` says in the help how they lie, `usual` what is taken without the option.
+void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what,
+                 const std::string& usual);
 /// --samples, --cutoff and --max-depth.
 void add_quality(CLI::App& app, Quality* quality);
 
-/// --shade. `given` (may be null) gets its word where it is given.
+/// --shade. `given` gets its word where it is given, and without it the scene's own look is drawn; null: depth is.
 void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given = nullptr);
 
 }  // namespace thimble::tools
