@@ -16,6 +16,7 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "output/held_signals.h"
 #include "output/output_file.h"
 #include "output/suggestion.h"
 #include "output/units.h"
@@ -27,12 +28,6 @@ namespace {
 
 constexpr int kInputStatus = 1;
 constexpr int kUsageStatus = 2;
-
-extern "C" void clean_up_and_die(int signal_number) {
-  thimble::tools::discard_unfinished_output();
-  std::signal(signal_number, SIG_DFL);
-  std::raise(signal_number);
-}
 
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -104,6 +99,9 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
       dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     for (const std::string& extra : extras) {
+      if (extra == "--") {
+        break;  // what follows it is no option
+      }
       if (extra.size() > 1 && extra.starts_with("-")) {
         const std::string name = extra.substr(0, extra.find('='));
         return in_quotes(extra) + " is not an option of " + command +
@@ -111,7 +109,8 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
       }
     }
     if (!extras.empty() && dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-      return in_quotes(extras.front()) + " is one argument too many" + advice;
+      const bool is_marked = extras.front() == "--" && extras.size() > 1;
+      return in_quotes(extras[is_marked ? 1 : 0]) + " is one argument too many" + advice;
     }
   }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
@@ -146,12 +145,7 @@ void occupy_standard_descriptors() {
 
 int main(int argc, char** argv) {
   occupy_standard_descriptors();
-  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
-    // Whoever started us with a signal ignored (nohup, a shell's background job) wants it ignored.
-    if (std::signal(signal_number, clean_up_and_die) == SIG_IGN) {
-      std::signal(signal_number, SIG_IGN);
-    }
-  }
+  thimble::tools::clean_up_on_signals();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of the write, with a sentence
   std::signal(SIGXFSZ, SIG_IGN);  // and so is the limit on a file's size
 
@@ -164,7 +158,14 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", thimble::tools::version_text,
                        "print version, commit, and what this build and this machine have");
   thimble::tools::add_all_commands(app);
-  app.footer("thimble SUBCOMMAND --help describes each.");
+  thimble::tools::add_paragraph_below(app,
+                                      "thimble SUBCOMMAND --help describes each. Behind -- nothing is an "
+                                      "option. The files that one run writes are "
+                                      "all there whole, or none and what was there before is as it was, also "
+                                      "when a signal other than KILL ends it; "
+                                      "none may be what the run reads. What goes to -, to a name of an open "
+                                      "descriptor (/dev/stdout, /dev/fd/3), to "
+                                      "a device or a pipe is written straight on.");
   // The file that an input error is about, for the sentence: the subcommand's first argument.
   const auto subject = [&]() -> std::string {
     for (const CLI::App* command : app.get_subcommands()) {
@@ -186,8 +187,18 @@ int main(int argc, char** argv) {
     }
     std::vector<char*> words(argv, argv + argc);
     char view[] = "view";
+    char end_of_options[] = "--";
     const std::vector<std::string> names = subcommand_names(app);
-    if (std::find(names.begin(), names.end(), argv[1]) == names.end() && is_scene(argv[1])) {
+    const auto is_subcommand = [&](const char* word) {
+      return std::find(names.begin(), names.end(), word) != names.end();
+    };
+    if (words[1] == std::string(end_of_options) && argc > 2) {
+      // What follows is no option, whatever it begins with.
+      words.erase(words.begin() + 1);
+      if (!is_subcommand(words[1])) {
+        words.insert(words.begin() + 1, {view, end_of_options});
+      }
+    } else if (!is_subcommand(words[1]) && is_scene(words[1])) {
       words.insert(words.begin() + 1, view);
     }
     try {

@@ -1,7 +1,10 @@
 #include "support/run_command.h"
 
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +13,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -24,9 +28,33 @@ void limit(int resource, std::uint64_t bytes) {
   }
 }
 
+// What the system asks at each call of the command.
+std::vector<sock_filter> filter_of(const std::vector<RefusedCall>& refused) {
+  std::vector<sock_filter> steps;
+  const auto load = [&](std::size_t offset) {
+    steps.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)));
+  };
+  for (const RefusedCall& call : refused) {
+    const bool is_some = call.argument >= 0;
+    const std::uint8_t steps_of_it = is_some ? 3 : 1;
+    load(offsetof(seccomp_data, nr));
+    steps.push_back(
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call.number), 0, steps_of_it));
+    if (is_some) {
+      constexpr std::size_t kLow = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 4 : 0;
+      load(offsetof(seccomp_data, args) + 8 * static_cast<std::size_t>(call.argument) + kLow);
+      steps.push_back(BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, call.bits, 0, 1));
+    }
+    steps.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | static_cast<std::uint32_t>(call.error)));
+  }
+  steps.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
+  return steps;
+}
+
 // In the child, between vfork and exec, with the parent's memory: only what a signal handler may do, and
 // nothing of the parent's is written to.
-[[noreturn]] void become(const CommandLimits& limits, const std::vector<char*>& arguments, int out, int err) {
+[[noreturn]] void become(const CommandLimits& limits, const std::vector<char*>& arguments,
+                         const sock_fprog& filter, int out, int err) {
   const int in = ::open("/dev/null", O_RDONLY);
   const int to = limits.output_path.empty()
                      ? out
@@ -39,11 +67,16 @@ void limit(int resource, std::uint64_t bytes) {
   limit(RLIMIT_AS, limits.address_space_bytes);
 #endif
   limit(RLIMIT_FSIZE, limits.file_size_bytes);
+  limit(RLIMIT_NOFILE, limits.descriptors);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   // Whoever started the tests may ignore some (nohup does); the command must not begin so.
   for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
     ::signal(number, SIG_DFL);
+  }
+  if (!limits.refused.empty() && (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+                                  ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) != 0)) {
+    ::_exit(126);
   }
   ::execv(arguments.front(), arguments.data());
   ::_exit(127);
@@ -65,6 +98,8 @@ CommandResult run_command(const std::vector<std::string>& arguments, const Comma
   }
   pointers.push_back(nullptr);
 
+  std::vector<sock_filter> steps = filter_of(limits.refused);
+  const sock_fprog filter{static_cast<unsigned short>(steps.size()), steps.data()};
   std::array<int, 2> out{};
   std::array<int, 2> err{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) {
@@ -77,7 +112,7 @@ CommandResult run_command(const std::vector<std::string>& arguments, const Comma
     throw std::runtime_error("no process");
   }
   if (child == 0) {
-    become(limits, pointers, out[1], err[1]);
+    become(limits, pointers, filter, out[1], err[1]);
   }
   ::close(out[1]);
   ::close(err[1]);

@@ -29,15 +29,26 @@ struct CommandResult {
   std::string describe() const;
 };
 
+/// A call of the system that fails for the command with an errno of one's choice (x86-64 and other machines whose
+/// calls have numbers; by seccomp, so that nobody need be root).
+struct RefusedCall {
+  long number = 0;         ///< SYS_...
+  int error = 0;           ///< errno
+  int argument = -1;       ///< only where this argument, from 0, ...
+  std::uint32_t bits = 0;  ///< ... has one of these bits
+};
+
 struct CommandLimits {
   double seconds = 60;
   /// Limit on the child's address space; 0 for none. Not set under AddressSanitizer, whose shadow memory
   /// needs terabytes of it.
   std::uint64_t address_space_bytes = 0;
   std::uint64_t file_size_bytes = 0;  ///< limit on what the child may write to one file; 0 for none
-  std::string directory;              ///< where it runs; empty for here
-  std::string program;                ///< what runs; empty for the `thimble` command
-  std::string output_path;            ///< where standard output goes; empty: into `CommandResult::out`
+  std::uint64_t descriptors = 0;      ///< limit on open files; 0 for none
+  std::vector<RefusedCall> refused;
+  std::string directory;    ///< where it runs; empty for here
+  std::string program;      ///< what runs; empty for the `thimble` command
+  std::string output_path;  ///< where standard output goes; empty: into `CommandResult::out`
 };
 
 /// Runs the command with `arguments`, standard input empty. Throws `std::runtime_error` when it cannot be

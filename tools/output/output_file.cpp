@@ -1,84 +1,44 @@
 #include "output/output_file.h"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
+
+#include "output/file_place.h"
+#include "output/held_signals.h"
 
 namespace thimble::tools {
 namespace {
-
-// Names of temporary files in use, for the signal handler: plain arrays, because a handler may not allocate.
-constexpr std::size_t kSlots = 8;
-constexpr std::size_t kNameBytes = 4096;
-struct Slot {
-  std::atomic<bool> used{false};
-  std::atomic<bool> named{false};
-  std::array<char, kNameBytes> name{};
-};
-std::array<Slot, kSlots>& slots() {
-  static std::array<Slot, kSlots> all;
-  return all;
-}
-
-void remember(const std::string& name) {
-  for (Slot& slot : slots()) {
-    bool expected = false;
-    if (name.size() < kNameBytes && slot.used.compare_exchange_strong(expected, true)) {
-      std::memcpy(slot.name.data(), name.c_str(), name.size() + 1);
-      slot.named = true;
-      return;
-    }
-  }
-}
-
-// Short, so that any name that the target has will do.
-constexpr const char* kTemporary = ".thimble-XXXXXX";
 
 std::string name_of_open(int descriptor) {
   return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
-// Where a chain of links leads, whether or not something stands at its end: the links stay.
-std::string followed(const std::string& path) {
-  std::filesystem::path at = path;
-  for (int links = 0; links < 64; ++links) {
-    std::error_code is_no_link;
-    const std::filesystem::path next = std::filesystem::read_symlink(at, is_no_link);
-    if (is_no_link) {
-      break;
-    }
-    at = at.parent_path() / next;  // `next` alone where it begins at the root
+// A copy of a descriptor that the program was started with: those that it opened itself end with it, and are nobody
+// else's to name. -1 and errno where there is none that can be written to.
+int copy_of_given(int descriptor) {
+  const int flags = ::fcntl(descriptor, F_GETFD);
+  const int mode = ::fcntl(descriptor, F_GETFL);
+  if (flags < 0 || (flags & FD_CLOEXEC) != 0 || (mode & O_ACCMODE) == O_RDONLY) {
+    errno = EBADF;
+    return -1;
   }
-  return at.string();
+  return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
 }
 
-void forget(const std::string& name) {
-  for (Slot& slot : slots()) {
-    if (slot.named && name == slot.name.data()) {
-      slot.named = false;
-      slot.used = false;
-      return;
-    }
-  }
+// Nothing can take the name of what is mounted there.
+bool is_mounted(const std::string& path) {
+  struct statx info {};
+  return ::statx(AT_FDCWD, path.c_str(), 0, STATX_TYPE, &info) == 0 &&
+         (info.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
 }
 
 }  // namespace
-
-void discard_unfinished_output() {
-  for (Slot& slot : slots()) {
-    if (slot.named) {
-      ::unlink(slot.name.data());
-    }
-  }
-}
 
 void check_standard_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -86,76 +46,59 @@ void check_standard_output() {
   }
 }
 
-void check_distinct(std::span<const std::string> paths, std::span<const std::string> inputs) {
-  const auto same = [](const std::string& a, const std::string& b) {
-    if (a == b) {
-      return true;
-    }
-    if (a == "-" || b == "-") {
-      return false;
-    }
-    std::error_code ignored;
-    const auto first_path = std::filesystem::weakly_canonical(a, ignored);
-    const auto second_path = std::filesystem::weakly_canonical(b, ignored);
-    if (!first_path.empty() && first_path == second_path) {
-      return true;
-    }
-    struct stat first {};
-    struct stat second {};
-    return ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 && S_ISREG(first.st_mode) &&
-           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
-  };
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    // A device such as /dev/null takes anything any number of times.
-    struct stat info {};
-    const bool device = ::stat(paths[i].c_str(), &info) == 0 && S_ISCHR(info.st_mode);
-    if (paths[i].empty() || (device && paths[i] != "-")) {
-      continue;
-    }
-    for (std::size_t j = 0; j < i; ++j) {
-      if (same(paths[i], paths[j])) {
-        throw OutputError((paths[i] == "-" ? "standard output" : paths[i]) + ": two outputs cannot share it");
-      }
-    }
-    for (const std::string& input : inputs) {
-      if (paths[i] != "-" && same(paths[i], input)) {
-        throw OutputError(paths[i] + ": is an input and would be overwritten");
-      }
-    }
-  }
-}
-
-OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
-  if (path == "-") {
+OutputFile::OutputFile(const std::string& path) : path_(path) {
+  const FilePlace place(path);
+  target_ = place.target;
+  if (place.descriptor == 1) {
     file_ = stdout;
     return;
   }
-  struct stat info {};
-  const bool exists = ::stat(path.c_str(), &info) == 0;
-  if (!exists && errno != ENOENT) {
-    fail(errno);
+  if (place.error != 0 && place.error != ENOENT) {
+    fail(place.error);
   }
-  if (exists && S_ISDIR(info.st_mode)) {
+  const bool exists = place.error == 0;
+  if (exists && S_ISDIR(place.info.st_mode)) {
     fail(EISDIR);
   }
-  if (exists && !S_ISREG(info.st_mode)) {
-    file_ = std::fopen(path.c_str(), "wb");
+  int descriptor = -1;
+  if (place.descriptor >= 0) {
+    descriptor = copy_of_given(place.descriptor);
+  } else if (place.is_descriptor) {
+    descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);  // behind what its owner wrote
+  } else if (exists && !S_ISREG(place.info.st_mode)) {
+    descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   } else if (exists && ::access(path.c_str(), W_OK) != 0) {
     fail(errno);
+  } else if (is_mounted(target_)) {
+    fail(EBUSY);
   } else {
-    target_ = followed(path);
-    const int descriptor = open_unfinished();
+    descriptor = open_unfinished();
     // The result gets the mode that any new file would, or that of the file it replaces.
     const mode_t mask = ::umask(0);
     ::umask(mask);
-    if (::fchmod(descriptor, exists ? info.st_mode & 07777U : 0666U & ~mask) != 0) {
+    if (::fchmod(descriptor, exists ? place.info.st_mode & 07777U : 0666U & ~mask) != 0) {
       // Not all file systems have modes.
     }
-    file_ = ::fdopen(descriptor, "wb");
   }
+  file_ = descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
   if (file_ == nullptr) {
+    const int error = errno;
+    delete_unfinished();
+    fail(error);
+  }
+}
+
+// Beside the target, and short, so that any name that the target has will do. It is free but for a chance of 2^-64.
+std::string OutputFile::hidden_name() const {
+  std::array<unsigned char, 8> random{};
+  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
     fail(errno);
   }
+  std::string name = target_.substr(0, target_.rfind('/') + 1) + ".thimble-";
+  for (const unsigned byte : random) {
+    name += {"0123456789abcdef"[byte >> 4], "0123456789abcdef"[byte & 15]};
+  }
+  return name;
 }
 
 // A file beside the target, so that the renaming is one step. Where the system can, it has no name until it is
@@ -170,56 +113,50 @@ int OutputFile::open_unfinished() {
   if (nameless >= 0) {
     ::close(nameless);  // without /proc it could never get a name
   }
-  temporary_ = folder + kTemporary;
-  const int descriptor = ::mkstemp(temporary_.data());
+  const HeldSignals held;
+  temporary_ = hidden_name();
+  const int descriptor = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
   if (descriptor < 0) {
+    const int error = errno;
     temporary_.clear();
-    fail(errno);
+    fail(error);
   }
-  remember(temporary_);
+  remember_unfinished(temporary_);
   return descriptor;
 }
 
-// Gives what was written a name of its own, which `commit` changes into the target's: a link cannot replace
-// what stands there.
-void OutputFile::name_unfinished() {
-  const std::string open_file = name_of_open(::fileno(file_));
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    // mkstemp chooses a free name; its file makes way at once. Whoever takes the name in between sends us on.
-    std::string name = target_.substr(0, target_.rfind('/') + 1) + kTemporary;
-    const int taken = ::mkstemp(name.data());
-    if (taken < 0) {
-      fail(errno);
-    }
-    ::close(taken);
-    remember(name);
-    temporary_ = name;
-    ::unlink(name.c_str());
-    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-      is_nameless_ = false;
-      return;
-    }
+// Gives what was written a name of its own, which `place` changes into the target's: a link cannot replace what stands
+// there.
+void OutputFile::name_unfinished(int descriptor) {
+  const HeldSignals held;
+  temporary_ = hidden_name();
+  if (::linkat(AT_FDCWD, name_of_open(descriptor).c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) !=
+      0) {
     const int error = errno;
-    forget(name);
     temporary_.clear();
-    if (error != EEXIST) {
-      fail(error);
-    }
+    fail(error);
   }
-  fail(EEXIST);
+  remember_unfinished(temporary_);
+  is_nameless_ = false;
+}
+
+void OutputFile::delete_unfinished() {
+  if (!temporary_.empty()) {
+    const HeldSignals held;
+    ::unlink(temporary_.c_str());
+    forget_unfinished(temporary_);
+    temporary_.clear();
+  }
 }
 
 OutputFile::~OutputFile() {
   if (file_ != nullptr && file_ != stdout) {
     std::fclose(file_);
   }
-  if (!temporary_.empty()) {
-    ::unlink(temporary_.c_str());
-    forget(temporary_);
-  }
+  delete_unfinished();
 }
 
-void OutputFile::fail(int error) {
+void OutputFile::fail(int error) const {
   throw OutputError((path_ == "-" ? std::string("standard output") : path_) +
                     ": cannot be written: " + std::strerror(error));
 }
@@ -234,33 +171,72 @@ void OutputFile::write(std::span<const unsigned char> bytes) {
   write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-void OutputFile::flush() {
+void OutputFile::finish() {
   if (std::fflush(file_) != 0) {
     fail(errno);
   }
-}
-
-void OutputFile::commit() {
-  flush();
   if (file_ == stdout) {
     return;
   }
   if (is_nameless_) {
-    name_unfinished();
+    name_unfinished(::fileno(file_));
   }
   std::FILE* file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) {
     fail(errno);
   }
+}
+
+void OutputFile::keep_old() {
+  struct stat info {};
+  if (temporary_.empty() || (::lstat(target_.c_str(), &info) != 0 && errno == ENOENT)) {
+    return;
+  }
+  if (S_ISDIR(info.st_mode)) {
+    fail(EISDIR);
+  }
+  const std::string name = hidden_name();
+  // A second name for it, or where the file system has none it goes aside.
+  if (::link(target_.c_str(), name.c_str()) != 0 && ::rename(target_.c_str(), name.c_str()) != 0) {
+    fail(errno);
+  }
+  kept_ = name;
+}
+
+void OutputFile::place() {
   if (temporary_.empty()) {
     return;
   }
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
+  const HeldSignals held;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
     fail(errno);
   }
-  forget(temporary_);
+  is_placed_ = true;
+  forget_unfinished(temporary_);
   temporary_.clear();
+}
+
+void OutputFile::undo() {
+  if (!kept_.empty()) {
+    ::rename(kept_.c_str(), target_.c_str());  // does nothing where both names are of one file
+    settle();
+  } else if (is_placed_) {
+    ::unlink(target_.c_str());
+  }
+  is_placed_ = false;
+}
+
+void OutputFile::settle() {
+  if (!kept_.empty()) {
+    ::unlink(kept_.c_str());
+    kept_.clear();
+  }
+}
+
+void OutputFile::commit() {
+  finish();
+  place();
 }
 
 }  // namespace thimble::tools

@@ -18,8 +18,9 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One output. `-` is standard output, written straight on. What exists and is no regular file (a device, a
-/// pipe) is written to directly too. A symbolic link stays one: the file that it leads to is replaced, or made.
+/// One output. `-` is standard output, written straight on, and so is a name that leads to an open descriptor
+/// (/dev/stdout, /dev/fd/3), whatever stands behind it. What exists and is no regular file (a device, a pipe) is
+/// written to directly too. A symbolic link stays one: the file that it leads to is replaced, or made.
 class OutputFile {
  public:
   /// Opens `path` for writing. Throws OutputError (no such folder, no permission, ...).
@@ -32,32 +33,44 @@ class OutputFile {
   /// Throws OutputError when the bytes cannot be written (disk full).
   void write(std::string_view text);
   void write(std::span<const unsigned char> bytes);
-  /// Hands all bytes to the system, so that `commit` has little left that can fail. Throws OutputError.
-  void flush();
-  /// Flushes and gives the file its name. Throws OutputError, leaving a file of that name as it was.
+  /// Finishes the file and gives it its name. Throws OutputError, leaving a file of that name as it was.
   void commit();
 
+  // The steps of `commit`, for several outputs of which all or none are to take their names (OutputSet).
+
+  /// Hands all bytes to the system and closes the file, so that nothing is left but to name it. Throws OutputError.
+  void finish();
+  /// Whether it is then to be given its name: not what was written to directly.
+  bool wants_name() const { return !temporary_.empty(); }
+  /// Keeps what has the output's name under a hidden one. Throws OutputError. Signals are held until it is settled.
+  void keep_old();
+  /// Gives the file its name. Throws OutputError.
+  void place();
+  /// Takes `place` and `keep_old` back, or deletes what was kept.
+  void undo();
+  void settle();
+
+  bool is_standard_output() const { return file_ == stdout; }
+
  private:
-  [[noreturn]] void fail(int error);
+  [[noreturn]] void fail(int error) const;
   int open_unfinished();
-  void name_unfinished();
+  void name_unfinished(int descriptor);
+  std::string hidden_name() const;
+  void delete_unfinished();
 
   std::string path_;
-  std::string target_;     ///< `path_` behind symbolic links
-  std::string temporary_;  ///< empty when written to directly, or while the file has no name
+  std::string target_;  ///< `path_` behind symbolic links
+  std::string
+      temporary_;     ///< empty when written to directly, while the file has no name, and once it is placed
+  std::string kept_;  ///< what had the output's name before; empty for nothing
   bool is_nameless_ = false;
+  bool is_placed_ = false;
   std::FILE* file_ = nullptr;
 };
 
 /// Throws OutputError when something printed on standard output did not get there.
 void check_standard_output();
-
-/// Throws OutputError when two of `paths` are one file, or when one of them is among `inputs`: whoever writes
-/// there last would win, and an input would be gone. Empty paths are skipped.
-void check_distinct(std::span<const std::string> paths, std::span<const std::string> inputs);
-
-/// Deletes the temporary file of the output being written, if any. Safe to call from a signal handler.
-void discard_unfinished_output();
 
 }  // namespace thimble::tools
 

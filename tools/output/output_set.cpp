@@ -1,31 +1,43 @@
 #include "output/output_set.h"
 
-#include <algorithm>
-#include <iterator>
+#include "output/held_signals.h"
 
 namespace thimble::tools {
 
 OutputSet::OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs)
-    : has_standard_output_(std::find(paths.begin(), paths.end(), "-") != paths.end()) {
-  std::vector<std::string> named;
-  std::copy_if(inputs.begin(), inputs.end(), std::back_inserter(named),
-               [](const std::string& input) { return !input.empty(); });
-  check_distinct(paths, named);
+    : claim_(paths, inputs) {
   for (const std::string& path : paths) {
     files_.push_back(path.empty() ? nullptr : std::make_unique<OutputFile>(path));
+    has_standard_output_ = has_standard_output_ || (!path.empty() && files_.back()->is_standard_output());
   }
 }
 
 void OutputSet::commit() {
+  std::vector<OutputFile*> files;
   for (const auto& file : files_) {
     if (file != nullptr) {
-      file->flush();
+      file->finish();
+      if (file->wants_name()) {
+        files.push_back(file.get());
+      }
     }
   }
-  for (const auto& file : files_) {
-    if (file != nullptr) {
-      file->commit();
+  const HeldSignals held;
+  try {
+    for (OutputFile* file : files) {
+      if (files.size() > 1) {
+        file->keep_old();
+      }
+      file->place();
     }
+  } catch (const OutputError&) {
+    for (OutputFile* file : files) {
+      file->undo();
+    }
+    throw;
+  }
+  for (OutputFile* file : files) {
+    file->settle();
   }
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "output/file_place.h"
 #include "output/output_file.h"
 
 namespace thimble::tools {
@@ -17,18 +18,20 @@ namespace thimble::tools {
 class OutputSet {
  public:
   /// An output for each of `paths`; an empty one is not wanted. Throws OutputError when one cannot be opened,
-  /// or when two are one file, or one is among `inputs` (check_distinct).
+  /// or when two are one file, or one is among `inputs` (OutputClaim).
   OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
 
   /// The output of that path, by its place among `paths`; null where there is none.
   OutputFile* operator[](std::size_t index) const { return files_[index].get(); }
-  /// Flushes all of them, so that a full disk is found before any takes its name; then gives them their
-  /// names. Throws OutputError.
+  /// Finishes all of them, so that a full disk is found before any takes its name; then gives them their names. When
+  /// one cannot take its name, those before it are taken back; a signal that ends the program waits for the end.
+  /// Throws OutputError.
   void commit();
   /// For people, on standard output, unless that is among the paths: data want no table between them.
   void print(std::string_view text) const;
 
  private:
+  OutputClaim claim_;
   std::vector<std::unique_ptr<OutputFile>> files_;
   bool has_standard_output_ = false;
 };

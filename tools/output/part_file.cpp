@@ -11,6 +11,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "output/file_place.h"
 #include "output/output_file.h"
 #include "output/units.h"
 #include "readers/input_error.h"
@@ -98,7 +99,8 @@ class Reader {
     if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
       fail("is no file that can be read twice, as a part must be");
     }
-    file_.reset(std::fopen(path.c_str(), "rb"));
+    claim_input(path);
+    file_.reset(std::fopen(path.c_str(), "rbe"));
     if (file_ == nullptr) {
       fail(std::strerror(errno));
     }

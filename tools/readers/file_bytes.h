@@ -76,7 +76,8 @@ SharedBytes share(FileBytes bytes);
 /// @param look         may be empty
 /// @throws InputError  the file cannot be opened or read (with the system's reason), is a directory or empty,
 ///   holds more than `limit_bytes` or than this machine has memory for, or its gzip data is truncated,
-///   damaged or followed by something else; and what `look` throws. Zero bytes after the last member are
+///   damaged or followed by something else; and what `look` throws. ShortageError where the system has no descriptor
+///   or memory left to open it, OutputError where this run would overwrite it. Zero bytes after the last member are
 ///   padding and ignored, as gzip itself does.
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes,
                     const FirstLook& look = {});

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "output/file_place.h"
+
 namespace thimble::tools {
 
 namespace {
@@ -27,9 +29,13 @@ std::string reason(int error) {
 class Descriptor {
  public:
   explicit Descriptor(const std::string& path) {
+    claim_input(path);
     do {
       fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     } while (fd_ < 0 && errno == EINTR);
+    if (fd_ < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOMEM)) {
+      throw ShortageError("cannot be opened: " + reason(errno));
+    }
     if (fd_ < 0) {
       throw InputError("cannot be opened: " + reason(errno));
     }

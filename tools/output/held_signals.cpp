@@ -1,0 +1,78 @@
+#include "output/held_signals.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+
+namespace thimble::tools {
+namespace {
+
+// More than any subcommand has outputs. A handler may not allocate.
+constexpr std::size_t kMostUnfinished = 64;
+std::array<std::atomic<const char*>, kMostUnfinished> unfinished{};
+std::atomic<int> holders{0};
+std::atomic<int> arrived{0};  // the signal that ends the program, as soon as nobody holds it
+
+void end_by(int number) {
+  for (const std::atomic<const char*>& name : unfinished) {
+    if (name != nullptr) {
+      ::unlink(name);
+    }
+  }
+  std::signal(number, SIG_DFL);
+  std::raise(number);
+}
+
+// It may run in any thread. It looks for holders after it says that it came, and a holder the other way round, so
+// that at least one of them sees the other.
+extern "C" void end_unless_held(int number) {
+  arrived = number;
+  if (holders == 0) {
+    end_by(number);
+  }
+}
+
+}  // namespace
+
+void clean_up_on_signals() {
+  for (const int number : {SIGHUP, SIGINT, SIGQUIT, SIGABRT, SIGALRM, SIGTERM, SIGUSR1, SIGUSR2, SIGPOLL,
+                           SIGPROF, SIGVTALRM, SIGXCPU, SIGPWR, SIGSTKFLT}) {
+    if (std::signal(number, end_unless_held) == SIG_IGN) {
+      std::signal(number, SIG_IGN);
+    }
+  }
+}
+
+HeldSignals::HeldSignals() {
+  if (++holders == 1 && arrived != 0) {
+    end_by(arrived);
+  }
+}
+
+HeldSignals::~HeldSignals() {
+  if (--holders == 0 && arrived != 0) {
+    end_by(arrived);
+  }
+}
+
+void remember_unfinished(const std::string& name) {
+  for (std::atomic<const char*>& place : unfinished) {
+    const char* none = nullptr;
+    if (place.compare_exchange_strong(none, name.c_str())) {
+      return;
+    }
+  }
+}
+
+void forget_unfinished(const std::string& name) {
+  for (std::atomic<const char*>& place : unfinished) {
+    const char* kept = name.c_str();
+    if (place.compare_exchange_strong(kept, nullptr)) {
+      return;
+    }
+  }
+}
+
+}  // namespace thimble::tools
