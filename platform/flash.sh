@@ -1,6 +1,7 @@
 #!/bin/sh
 # Writes an image to a real board, the way its board.cmake says (BOARD_PROBE). flash.sh BOARD APP
-# In the environment: PLACE=ram writes the image for RAM where the board has one (BOARD_UF2).
+# In the environment: PLACE=ram writes the image for RAM where the board has one (BOARD_UF2); THIMBLE_DRIVE is where the board's
+# drive is mounted, THIMBLE_DRIVE_S how long its answer is waited for (20 s).
 set -eu
 cd "$(dirname "$0")/.."
 board=$1
@@ -53,8 +54,38 @@ case $probe in
     case $file in *.uf2) how="hold BOOTSEL while you connect the board, or copy $image.uf2 onto it by hand" ;; esac
     [ -n "$drive" ] || fail "no drive $with is mounted; $how, or say where it is: THIMBLE_DRIVE=/path"
     case $file in *.hex) from=$image.hex ;; *.elf) from=$image.elf ;; *.uf2) from=$image.uf2 ;; *) from=$image.bin ;; esac
-    cp "$from" "$drive/$file" || fail "the drive does not take it"
+    # What was there before under a name that is not ours, a system's kernel.img, is kept: the first one.
+    case $file in
+      */thimble.* | thimble.*) ;;
+      *)
+        if [ -f "$drive/$file" ] && [ ! -e "$drive/$file.bak" ] && ! cmp -s "$from" "$drive/$file"; then
+          cp "$drive/$file" "$drive/$file.bak" && cmp -s "$drive/$file" "$drive/$file.bak" ||
+            fail "cannot keep $drive/$file as $file.bak"
+          echo "$board: $file that was on the drive is $file.bak now"
+        fi
+        ;;
+    esac
+    # DAPLink (a drive with DETAILS.TXT) programs the chip, then comes back without the file; FAIL.TXT on it says why not.
+    # One that is there already tells of an earlier time.
+    old=$(cat "$drive/FAIL.TXT" 2>/dev/null || true)
+    is_daplink=no
+    [ ! -f "$drive/DETAILS.TXT" ] || is_daplink=yes
+    taken=yes
+    cp "$from" "$drive/$file" || taken=no
     sync
+    if [ $is_daplink = yes ]; then
+      waited=0
+      while [ $waited -lt $((${THIMBLE_DRIVE_S:-20} * 5)) ] && { [ -e "$drive/$file" ] || [ ! -f "$drive/DETAILS.TXT" ]; }; do
+        sleep 0.2
+        waited=$((waited + 1))
+      done
+      [ -e "$drive/$file" ] || old=
+    fi
+    why=$(cat "$drive/FAIL.TXT" 2>/dev/null || true)
+    if [ -n "$why" ] && { [ "$why" != "$old" ] || [ $taken = no ]; }; then
+      fail "its drive says in FAIL.TXT: $(printf %s "$why" | tr -d '\r' | tr '\n' ' ')"
+    fi
+    [ $taken = yes ] || fail "the drive does not take it"
     ;;
   *) fail "its board.cmake has no BOARD_PROBE that this script knows: $probe" ;;
 esac

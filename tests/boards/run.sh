@@ -25,6 +25,7 @@ if [ "${1:-}" = --job ]; then
       microbit)
         sh "$here/own_scene.sh" microbit || status=1
         sh "$here/formats.sh" microbit || status=1
+        sh "$here/flash.sh" "$THIMBLE_FIRMWARE/flash" || status=1
         ;;
       pico)
         sh "$here/cores.sh" pico || status=1
