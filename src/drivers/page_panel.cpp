@@ -30,6 +30,8 @@ constexpr uint8_t kAddressing = 0x20;
 constexpr uint8_t kColumns = 0x21;
 constexpr uint8_t kPages = 0x22;
 constexpr uint8_t kChargePump = 0x8D;
+constexpr uint8_t kScrollOff = 0x2E;
+constexpr uint8_t kReference = 0xAD;
 // SH1106.
 constexpr uint8_t kPumpVoltage = 0x30;
 constexpr uint8_t kConverter = 0xAD;
@@ -143,8 +145,11 @@ bool Ssd1306::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation 
   if (!PagePanel::begin(Kind::kSsd1306, bus, geometry, rotation)) {
     return false;
   }
-  if (!commands({kOff,
-                 kClock,
+  // A reset of the board alone leaves a scroll running that somebody has started. The module of 72 x 40 has no resistor
+  // for the segments' current, so that the controller's own reference sets it: 30 uA.
+  if (!commands({kOff, kScrollOff}) ||
+      (geometry.width_px == 72 && geometry.height_px == 40 && !commands({kReference, 0x30})) ||
+      !commands({kClock,
                  0x80,
                  kMultiplex,
                  static_cast<uint8_t>(geometry.height_px - 1),

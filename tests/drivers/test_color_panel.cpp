@@ -23,16 +23,31 @@ struct Module {
   ColorGeometry geometry;
 };
 const Module kModules[] = {
-    {ColorModel::Kind::kSt7735, St7735::k128x160},      {ColorModel::Kind::kSt7735, St7735::k128x160Green},
-    {ColorModel::Kind::kSt7735, St7735::k128x128Green}, {ColorModel::Kind::kSt7735, St7735::k80x160},
-    {ColorModel::Kind::kSt7789, St7789::k240x320},      {ColorModel::Kind::kSt7789, St7789::k240x240},
-    {ColorModel::Kind::kSt7789, St7789::k135x240},      {ColorModel::Kind::kSt7789, St7789::k170x320},
-    {ColorModel::Kind::kIli9341, Ili9341::k240x320},
+    {ColorModel::Kind::kSt7735, St7735::k128x160},      {ColorModel::Kind::kSt7735, St7735::k128x160Red},
+    {ColorModel::Kind::kSt7735, St7735::k128x160Green}, {ColorModel::Kind::kSt7735, St7735::k128x128Green},
+    {ColorModel::Kind::kSt7735, St7735::k80x160},       {ColorModel::Kind::kSt7789, St7789::k240x320},
+    {ColorModel::Kind::kSt7789, St7789::k240x240},      {ColorModel::Kind::kSt7789, St7789::k135x240},
+    {ColorModel::Kind::kSt7789, St7789::k170x320},      {ColorModel::Kind::kIli9341, Ili9341::k240x320},
 };
 
 ColorModel::Glass glass_of(const ColorGeometry& g) {
   return {g.width_px,  g.height_px, g.memory_width, g.memory_height, g.first_column,
           g.first_row, g.mirrors_x, g.mirrors_y,    g.is_bgr,        g.is_inverse};
+}
+
+// A glass is made of what the driver says of it, so that what the modules are is said once more: which have blue first
+// (Adafruit-ST7735-Library, initR: all but the black tab; ILI9341: all that are sold).
+TEST_CASE(
+    "colour panels: the modules' order of subpixels -> blue first on red and green tabs and the ILI9341") {
+  CHECK_FALSE(St7735::k128x160.is_bgr);
+  for (const ColorGeometry& blue_first : {St7735::k128x160Red, St7735::k128x160Green, St7735::k128x128Green,
+                                          St7735::k80x160, Ili9341::k240x320}) {
+    CHECK(blue_first.is_bgr);
+  }
+  for (const ColorGeometry& red_first :
+       {St7789::k240x320, St7789::k240x240, St7789::k135x240, St7789::k170x320}) {
+    CHECK_FALSE(red_first.is_bgr);
+  }
 }
 
 template <class Test>

@@ -197,9 +197,11 @@ TEST_CASE("page panels: the model tells a set-up without its steps") {
     return model.fault();
   };
   CHECK(fault_of(PageModel::Kind::kSsd1306, {0x81, 1, 0xAF}) == "on without the pump");
-  CHECK(fault_of(PageModel::Kind::kSsd1306, {0x8D, 0x14, 0xDA, 0x02, 0x81, 1, 0xAF}) ==
-        "on with the rows of another panel");
   CHECK(fault_of(PageModel::Kind::kSsd1306, {0x8D, 0x14, 0xDA, 0x12, 0x81, 1, 0xAF}) ==
+        "on while it may scroll");
+  CHECK(fault_of(PageModel::Kind::kSsd1306, {0x2E, 0x8D, 0x14, 0xDA, 0x02, 0x81, 1, 0xAF}) ==
+        "on with the rows of another panel");
+  CHECK(fault_of(PageModel::Kind::kSsd1306, {0x2E, 0x8D, 0x14, 0xDA, 0x12, 0x81, 1, 0xAF}) ==
         "on with a memory that was never written");
   CHECK(fault_of(PageModel::Kind::kSsd1306, {0x20, 0x00, 0x21, 10, 128}) == "a window beyond the memory");
   CHECK(fault_of(PageModel::Kind::kSh1106, {0x21, 0, 127}) == "unknown command 21");

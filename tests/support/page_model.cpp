@@ -66,7 +66,7 @@ std::optional<std::size_t> PageModel::parameters_of(std::uint8_t byte) {
       (byte == 0xA8 || byte == 0xD3 || byte == 0xD5 || byte == 0xD9 || byte == 0xDA || byte == 0xDB)) {
     return 1;
   }
-  if (ssd1306 && (byte == 0x20 || byte == 0x8D)) {
+  if (ssd1306 && (byte == 0x20 || byte == 0x8D || byte == 0xAD)) {
     return 1;
   }
   if (ssd1306 && (byte == 0x21 || byte == 0x22)) {
@@ -78,7 +78,7 @@ std::optional<std::size_t> PageModel::parameters_of(std::uint8_t byte) {
   const bool is_known =
       byte <= 0x1F || (byte >= 0x40 && byte <= 0x7F) || byte == 0xA0 || byte == 0xA1 ||
       (byte >= 0xA4 && byte <= 0xA7) || byte == 0xAE || byte == 0xAF || (byte >= 0xB0 && byte <= 0xB7) ||
-      byte == 0xC0 || byte == 0xC8 || byte == 0xE3 ||
+      byte == 0xC0 || byte == 0xC8 || byte == 0xE3 || (ssd1306 && byte == 0x2E) ||
       (kind_ == Kind::kSh1106 && byte >= 0x30 && byte <= 0x33) ||
       (st7567 && ((byte >= 0x20 && byte <= 0x2F) || byte == 0xA2 || byte == 0xA3 || byte == 0xE2));
   if (!is_known) {
@@ -116,6 +116,12 @@ void PageModel::turn_on() {
   } else {
     if (!has_pump_) {
       complain("on without the pump");
+    }
+    if (kind_ == Kind::kSsd1306 && may_scroll_) {
+      complain("on while it may scroll");
+    }
+    if (kind_ == Kind::kSsd1306 && width_ == 72 && !has_reference_) {
+      complain("on without a reference for its current");
     }
     if (multiplex_ != height_ || row_pins_ != (height_ > 32 ? 0x12 : 0x02)) {
       complain("on with the rows of another panel");
@@ -164,6 +170,10 @@ void PageModel::finish(const std::vector<std::uint8_t>& command) {
     row_pins_ = command[1];
   } else if (code == 0x8D) {
     has_pump_ = command[1] == 0x14;
+  } else if (code == 0x2E && !st7567) {
+    may_scroll_ = false;
+  } else if (code == 0xAD && kind_ == Kind::kSsd1306) {
+    has_reference_ = (command[1] & 0x10) != 0;
   } else if (code == 0xAD) {
     if (is_on_) {
       complain("the converter switched while on");

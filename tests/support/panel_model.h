@@ -33,7 +33,8 @@ class PanelModel {
   std::uint64_t bytes_sent_ = 0;
 };
 
-/// SSD1306, SH1106, ST7567.
+/// SSD1306, SH1106, ST7567. An SSD1306 may be scrolling when it is set up, and its module of 72 x 40 has no resistor
+/// that sets the segments' current.
 class PageModel : public PanelModel {
  public:
   enum class Kind : std::uint8_t { kSsd1306, kSh1106, kSt7567 };
@@ -77,6 +78,8 @@ class PageModel : public PanelModel {
   bool all_on_ = false;
   bool is_on_ = false;
   bool has_pump_ = false;
+  bool may_scroll_ = true;
+  bool has_reference_ = false;
   int power_ = 0;
   int multiplex_ = 64;
   int row_pins_ = -1;

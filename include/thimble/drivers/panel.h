@@ -87,7 +87,8 @@ class I2cPanel {
 //     }
 //
 // These controllers turn the picture by 180 degrees, not by 90. Sources, by section:
-//   SSD1306  Solomon Systech, SSD1306, Rev 1.1: 8.9 (power on), 9 and 10 (commands), appendix "Charge Pump Regulator"
+//   SSD1306  Solomon Systech, SSD1306, Rev 1.1: 8.9 (power on), 9 and 10 (commands), appendix "Charge Pump Regulator";
+//            the reference of 72 x 40: u8g2 issue 1047, Zephyr pull request 74885, and SSD1315, "Internal IREF Setting"
 //   SH1106   Sino Wealth, SH1106, V2.3: "Commands", "Power On and Initialization"
 //   ST7567   Sitronix, ST7567: "Instruction Table", "Operation Flow"
 
@@ -227,12 +228,13 @@ class ColorPanel {
   bool is_inverse_ = false;
 };
 
-/// Modules of 1.8", 1.44" and 0.96". The colour of the tab on the protecting foil tells which.
+/// Modules of 1.8", 1.44" and 0.96". The colour of the tab on the protecting foil tells which, mostly. All but the black
+/// one have blue first (Adafruit-ST7735-Library, initR; TFT_eSPI issues 213 and 56).
 class St7735 : public ColorPanel {
  public:
-  static constexpr ColorGeometry k128x160{128, 160,  128,  160,   0,
-                                          0,   true, true, false, false};  ///< black, red
-  static constexpr ColorGeometry k128x160Green{128, 160, 132, 162, 2, 1, true, true, false, false};
+  static constexpr ColorGeometry k128x160{128, 160, 128, 160, 0, 0, true, true, false, false};  ///< black
+  static constexpr ColorGeometry k128x160Red{128, 160, 128, 160, 0, 0, true, true, true, false};
+  static constexpr ColorGeometry k128x160Green{128, 160, 132, 162, 2, 1, true, true, true, false};
   static constexpr ColorGeometry k128x128Green{128, 128, 132, 132, 2, 1, true, true, true, false};
   static constexpr ColorGeometry k80x160{80, 160, 132, 162, 26, 1, true, true, true, true};
   /// Sets the panel up, clears it and turns it on.
