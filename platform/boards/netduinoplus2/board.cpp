@@ -1,4 +1,6 @@
-// Clock and UART of the Netduino Plus 2 (STM32F405RG, reference manual RM0090): USART1 on PA9 and PA10.
+// Clock and UART of the Netduino Plus 2 (STM32F405RG, reference manual RM0090): USART6, which sends on PC6 (header D1)
+// and receives on PC7 (D0). Of USART1's pins PA9 is on no header, and PA10 is the LED (MicroPython,
+// ports/stm32/boards/NETDUINO_PLUS_2/pins.csv).
 #include "board.h"
 
 #include <stdint.h>
@@ -11,8 +13,8 @@ namespace thimble::board {
 namespace {
 
 constexpr uint32_t kBaud = 115200;
-constexpr uintptr_t kUsart1 = 0x40011000;
-constexpr uint32_t kUsart1ClockHz = 84000000;  // APB2
+constexpr uintptr_t kUsart6 = 0x40011400;
+constexpr uint32_t kUsart6ClockHz = 84000000;  // APB2
 
 // Flash interface.
 constexpr uintptr_t kFlashAcr = 0x40023C00;
@@ -28,17 +30,17 @@ constexpr uintptr_t kRccCfgr = 0x40023808;
 constexpr uint32_t kCfgrApbDividers = 5U << 10 | 4U << 13;  // APB1 / 4, APB2 / 2
 constexpr uint32_t kCfgrUsePll = 2U << 0;
 constexpr uintptr_t kRccAhb1Enable = 0x40023830;
-constexpr uint32_t kAhb1PortA = 1U << 0;
+constexpr uint32_t kAhb1PortC = 1U << 2;
 constexpr uintptr_t kRccApb2Enable = 0x40023844;
-constexpr uint32_t kApb2Usart1 = 1U << 4;
+constexpr uint32_t kApb2Usart6 = 1U << 5;
 
-// Port A.
-constexpr uintptr_t kPortAMode = 0x40020000;
-constexpr uint32_t kModePins = 0xFU << 18;  // PA9, PA10
-constexpr uint32_t kModeAlternate = 0xAU << 18;
-constexpr uintptr_t kPortAAlternateHigh = 0x40020024;
-constexpr uint32_t kAlternatePins = 0xFFU << 4;
-constexpr uint32_t kAlternateUsart1 = 0x77U << 4;
+// Port C: two bits of mode and four of alternate function a pin.
+constexpr uintptr_t kPortCMode = 0x40020800;
+constexpr uint32_t kModePins = 0xFU << 12;  // PC6, PC7
+constexpr uint32_t kModeAlternate = 0xAU << 12;
+constexpr uintptr_t kPortCAlternateLow = 0x40020820;
+constexpr uint32_t kAlternatePins = 0xFFU << 24;
+constexpr uint32_t kAlternateUsart6 = 0x88U << 24;  // AF8
 
 void start_core_clock() {
   register32(kFlashAcr) = kFlash5WaitsAndCaches;
@@ -54,19 +56,19 @@ void start_core_clock() {
 
 void start() {
   start_core_clock();
-  set_bits(kRccAhb1Enable, kAhb1PortA);
-  set_bits(kRccApb2Enable, kApb2Usart1);
-  register32(kPortAMode) = (register32(kPortAMode) & ~kModePins) | kModeAlternate;
-  register32(kPortAAlternateHigh) = (register32(kPortAAlternateHigh) & ~kAlternatePins) | kAlternateUsart1;
-  stm32_usart::start(kUsart1, kUsart1ClockHz, kBaud);
+  set_bits(kRccAhb1Enable, kAhb1PortC);
+  set_bits(kRccApb2Enable, kApb2Usart6);
+  register32(kPortCMode) = (register32(kPortCMode) & ~kModePins) | kModeAlternate;
+  register32(kPortCAlternateLow) = (register32(kPortCAlternateLow) & ~kAlternatePins) | kAlternateUsart6;
+  stm32_usart::start(kUsart6, kUsart6ClockHz, kBaud);
 }
 
 void put(uint8_t byte) {
-  stm32_usart::put(kUsart1, byte);
+  stm32_usart::put(kUsart6, byte);
 }
 
 int get() {
-  return stm32_usart::get(kUsart1);
+  return stm32_usart::get(kUsart6);
 }
 
 }  // namespace thimble::board
