@@ -21,6 +21,10 @@ constexpr uint32_t kSelectShift = 3;      // from pin 1 to port::kSelect, bit 4
 uint32_t released_once = 0;
 
 void start_core_clock() {
+  // Revision A2 has a PLL that wants 2.75 V in place of 2.5 (StellarisWare, programs of boards/ek-lm3s6965).
+  if ((register32(lm3s6965::kDid0) & lm3s6965::kDid0Revision) == lm3s6965::kDid0RevisionA2) {
+    register32(lm3s6965::kLdoControl) = lm3s6965::kLdo2750Mv;
+  }
   // Onto the oscillator while the PLL settles, then onto it (data sheet, 6.1.4.2 "Initialization and
   // Configuration").
   set_bits(lm3s6965::kRcc, lm3s6965::kRccBypassPll);

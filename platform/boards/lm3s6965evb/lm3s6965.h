@@ -7,7 +7,12 @@
 
 namespace thimble::lm3s6965 {
 
-// System control: clocks.
+// System control: what revision of the chip it is, its voltage, clocks.
+inline constexpr uintptr_t kDid0 = 0x400FE000;
+inline constexpr uint32_t kDid0Revision = 0xFFFF;
+inline constexpr uint32_t kDid0RevisionA2 = 0x0002;
+inline constexpr uintptr_t kLdoControl = 0x400FE034;
+inline constexpr uint32_t kLdo2750Mv = 0x1B;
 inline constexpr uintptr_t kRis = 0x400FE050;  ///< raw interrupt status
 inline constexpr uint32_t kRisPllLocked = 1U << 6;
 inline constexpr uintptr_t kRcc = 0x400FE060;  ///< run-mode clock configuration

@@ -1,5 +1,6 @@
 // The OLED: 128 x 64 pixels of 16 greys behind an SSD0323 (Solomon Systech data sheet), two pixels a byte,
-// the left one in the high nibble, as PixelFormat::kGray4 has it.
+// the left one in the high nibble, as PixelFormat::kGray4 has it. What the panel wants of the controller is OSRAM's
+// (application note AN018), as the board's maker sends it (StellarisWare, boards/ek-lm3s6965, osram128x64x4.c).
 #include <stddef.h>
 #include <stdint.h>
 
@@ -14,15 +15,25 @@ namespace {
 constexpr uint8_t kSetColumns = 0x15;
 constexpr uint8_t kSetRows = 0x75;
 constexpr uint8_t kStartSequence[] = {
-    0xAE,        // display off
-    0xA4,        // shows its memory
-    0xA0, 0x52,  // columns and rows run as they are wired here, nibbles swapped
-    0x81, 0x40,  // contrast
-    0xA8, 0x3F,  // 64 rows
-    0xA1, 0x00,  // first row
-    0xA2, 0x00,  // no offset
-    0xAF,        // display on
+    0xAE,                                                  // display off
+    0xA4,                                                  // shows its memory
+    0xA0, 0x52,                                            // rows run upward and in turns, nibbles swapped
+    0x81, 0x32,                                            // contrast
+    0x85,                                                  // half of the current
+    0xA8, 0x3F,                                            // 64 rows
+    0xA1, 0x00,                                            // first row
+    0xA2, 0x4C,                                            // of 80, by the way that 64 are wired
+    0xB1, 0x22,                                            // phases of a row: 2 clocks each
+    0xB2, 0x46,                                            // a row: 70 clocks
+    0xB3, 0xF1,                                            // fastest oscillator, divided by 2
+    0xBF, 0x0D,                                            // low voltage of segments
+    0xBE, 0x02,                                            // high voltage of rows
+    0xBC, 0x10,                                            // voltage before a phase
+    0xB8, 0x01, 0x11, 0x22, 0x32, 0x43, 0x54, 0x65, 0x76,  // brightness of the 16 greys
+    0xAD, 0x03,                                            // converter on
 };
+constexpr uint8_t kDisplayOn = 0xAF;
+constexpr int32_t kMemoryRows = 80;
 constexpr uint8_t kLastColumn = 63;  // of two pixels
 
 constexpr uint32_t kDataPin = 1U << 7;    // C7
@@ -87,17 +98,18 @@ void lm3s6965::start_display() {
   start_output_pin(kPortD, kSelectPin);
   register32(pins(kPortD, kSelectPin)) = kSelectPin;
   register32(kSsiCr1) = 0;
-  register32(kSsiCpsr) = 10;  // 50 MHz / 10; the display takes one bit in 250 ns at least
+  register32(kSsiCpsr) = 14;  // 50 MHz / 14: a bit takes 280 ns, the display wants 250 at least
   register32(kSsiCr0) = kSsiCr08Bits;
   register32(kSsiCr1) = kSsiCr1Enable;
   choose(false);
   send(kStartSequence, sizeof(kStartSequence));
-  const port::Display& display = board::kFacts.display;
-  send_window(0, display.height_px);
+  send_window(0, kMemoryRows);
   static constexpr uint8_t kBlackRow[64] = {};
-  for (int32_t row = 0; row < display.height_px; ++row) {
+  for (int32_t row = 0; row < kMemoryRows; ++row) {
     send(kBlackRow, sizeof(kBlackRow));
   }
+  choose(false);
+  send(&kDisplayOn, 1);
 }
 
 void board::flush(const Band& band) {
