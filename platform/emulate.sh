@@ -1,8 +1,9 @@
 #!/bin/sh
 # Runs an image under QEMU, or the board's own emulator (BOARD_EMULATOR), the UART on stdin and stdout; the exit status is the application's.
 #   emulate.sh BOARD APP [QEMU ARGUMENTS...]      (-display gtk shows the display)
-# In the environment: PLACE=ram runs the image for RAM where the board has one (BOARD_UF2). SHOT=PICTURE asks the demonstration for its picture over the UART, writes it (.png, .ppm, .pgm,
-# .pbm) and ends; CRC=1 shows the lines that the demonstration writes for each frame where the board has no display.
+# In the environment: FLASHED=yes runs the image that `make flash` writes, which ends by standing still; PLACE=ram the image for RAM
+# where the board has one (BOARD_UF2). SHOT=PICTURE asks the demonstration for its picture over the UART, writes it (.png, .ppm,
+# .pgm, .pbm) and ends; CRC=1 shows the lines that the demonstration writes for each frame where the board has no display.
 # -icount: time is counted in instructions, so every run is the same.
 set -eu
 cd "$(dirname "$0")/.."
@@ -20,13 +21,18 @@ ending=elf
 [ -z "$(fact IMAGE)" ] || ending=$(fact IMAGE)
 in=
 [ "${PLACE:-}" != ram ] || in=_ram
-image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app$in.$ending
+kind=.emulated
+semihosting=enable=on,target=native
+if [ -n "${FLASHED:-}" ]; then
+  kind=
+  semihosting=enable=off
+fi
+image=${THIMBLE_FIRMWARE:-build/firmware}/$board/$app$in$kind.$ending
 if [ ! -f "$image" ]; then
   echo "thimble: $image is not there; make firmware BOARD=$board APP=$app builds it" >&2
   exit 1
 fi
 qemu="$(fact QEMU) -icount shift=$(fact ICOUNT_SHIFT) -display none -monitor none -serial stdio"
-semihosting=enable=on,target=native
 run() {
   if [ -n "$emulator" ]; then
     exec sh "platform/emulators/$emulator/run.sh" "$(fact ICOUNT_SHIFT)" "$image" $(fact EMULATOR_OPTIONS) "$@"

@@ -59,13 +59,15 @@ ${functions}    . = ALIGN(4);
   configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/firmware.ld.in ${generated}/${place}.ld @ONLY)
 endfunction()
 thimble_write_linker_script(flash)
+# What stands in .semihosting of images for emulators.
+file(WRITE ${generated}/semihosting "yes!")
 if(BOARD_UF2)
   thimble_find_make_uf2()
   thimble_write_linker_script(ram)
 endif()
 
-# An image: APP.elf, APP.bin, APP.hex from `ARGN`, with whatever of the libraries that needs; and APP.uf2 for
-# BOARD_UF2. `place` is flash or ram.
+# An image: APP.elf, APP.bin, APP.hex from `ARGN`, with whatever of the libraries that needs; APP.uf2 for BOARD_UF2; and
+# APP.emulated.elf (or .uf2, .BOARD_IMAGE), which tells an emulator its exit status. `place` is flash or ram.
 function(thimble_add_image_in place app)
   add_executable(${app} ${ARGN})
   set(script ${generated}/${place}.ld)
@@ -77,23 +79,27 @@ function(thimble_add_image_in place app)
   endif()
   target_link_options(${app} PRIVATE ${THIMBLE_ARCH_FLAGS} -nostdlib -T ${script}
     -Wl,--defsym=thimble_stack_bytes=${stack}
-    -Wl,--gc-sections,--no-warn-rwx-segments,-Map=${app}.map)
+    # --nmagic: segments hold sections alone, not the headers of the file in front of them, which would lie on other memory.
+    -Wl,--nmagic,--gc-sections,--no-warn-rwx-segments,-Map=${app}.map)
   target_link_libraries(${app} PRIVATE thimble_firmware_flags thimble_warnings thimble_board thimble_apps
     thimble thimble_port gcc)
+  set(others)
   if(BOARD_UF2)
     thimble_add_uf2(${app})
+    set(others COMMAND ${PROJECT_BINARY_DIR}/make_uf2 ${app}.emulated.elf ${app}.emulated.uf2 ${BOARD_UF2})
+  elseif(BOARD_IMAGE)
+    set(others COMMAND ${CMAKE_OBJCOPY} -O binary ${app}.elf ${app}.${BOARD_IMAGE}
+      COMMAND ${CMAKE_OBJCOPY} -O binary ${app}.emulated.elf ${app}.emulated.${BOARD_IMAGE})
   endif()
   add_custom_command(TARGET ${app} POST_BUILD
+    COMMAND ${CMAKE_OBJCOPY} --update-section .semihosting=${generated}/semihosting ${app}.elf ${app}.emulated.elf
+    ${others}
     COMMAND ${CMAKE_OBJCOPY} -O binary ${app}.elf ${app}.bin
     COMMAND ${CMAKE_OBJCOPY} -O ihex ${app}.elf ${app}.hex
     COMMAND ${CMAKE_COMMAND} -DPREFIX=${THIMBLE_BINUTILS_PREFIX} -DBOARD=${BOARD_NAME} -DAPP=${app}
       -DFLASH_BYTES=${BOARD_FLASH_BYTES} -DRAM_BYTES=${BOARD_RAM_BYTES} -DPLACE=${place}
       -P ${THIMBLE_PLATFORM_DIR}/memory_table.cmake
-    BYPRODUCTS ${app}.bin ${app}.hex VERBATIM)
-  if(BOARD_IMAGE)
-    add_custom_command(TARGET ${app} POST_BUILD BYPRODUCTS ${app}.${BOARD_IMAGE} VERBATIM
-      COMMAND ${CMAKE_COMMAND} -E copy ${app}.bin ${app}.${BOARD_IMAGE})
-  endif()
+    BYPRODUCTS ${app}.bin ${app}.hex ${app}.emulated.elf VERBATIM)
 endfunction()
 
 function(thimble_add_image app)

@@ -1,13 +1,13 @@
 # Says what an image takes of its board, and writes it to APP.memory.csv: cmake -DPREFIX= -DBOARD= -DAPP=
 # -DFLASH_BYTES= -DRAM_BYTES= -DPLACE=flash|ram -P memory_table.cmake, in the folder of APP.elf.
 execute_process(COMMAND ${PREFIX}size -A -d ${APP}.elf OUTPUT_VARIABLE sizes COMMAND_ERROR_IS_FATAL ANY)
-foreach(section boot text fast rodata stack data bss)
+foreach(section boot text fast rodata semihosting stack data bss)
   set(${section} 0)
   if(sizes MATCHES "\n\\.${section} +([0-9]+)")
     set(${section} ${CMAKE_MATCH_1})
   endif()
 endforeach()
-math(EXPR flash "${boot} + ${text} + ${fast} + ${rodata} + ${data}")
+math(EXPR flash "${boot} + ${text} + ${fast} + ${rodata} + ${semihosting} + ${data}")
 math(EXPR ram "${data} + ${bss}")
 string(COMPARE EQUAL "${PLACE}" ram is_in_ram)
 if(is_in_ram)

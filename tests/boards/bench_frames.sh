@@ -94,7 +94,7 @@ for target in $targets; do
       cmake --build "$work/$core" -- --quiet >/dev/null
       log=$work/$core-$width-$name.log
       if ! $qemu -display none -monitor none -serial stdio \
-        -semihosting-config enable=on,target=native -kernel "$work/$core/bench.elf" >"$log" </dev/null; then
+        -semihosting-config enable=on,target=native -kernel "$work/$core/bench.emulated.elf" >"$log" </dev/null; then
         echo "bench-frames: $core $width x $height $name failed; see $log" >&2
         failed=1
         continue

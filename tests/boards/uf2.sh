@@ -31,8 +31,8 @@ FRAMES=2 EFFECTS=none sh platform/build.sh "$board" demo "$(sh tests/boards/scen
   exit 1
 }
 for place in flash RAM; do
-  image=$work/demo.uf2
-  [ $place = flash ] || image=$work/demo_ram.uf2
+  image=$work/demo.emulated.uf2
+  [ $place = flash ] || image=$work/demo_ram.emulated.uf2
   run "$image" -v -shot "$work/uf2.ppm"
   if [ $status != 0 ] || ! grep -q "started from $place" "$work/uf2.said"; then
     fail "the image for $place: exit status $status, $(tail -n 1 "$work/uf2.said")"

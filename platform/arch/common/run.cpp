@@ -7,6 +7,8 @@
 
 int thimble_application();
 
+[[gnu::section(".semihosting"), gnu::used]] const uint32_t thimble_semihosting = 0;
+
 namespace thimble {
 namespace {
 

@@ -9,14 +9,19 @@
 /// board, the application, the exit.
 extern "C" [[noreturn]] void thimble_run();
 
+/// Whether something outside takes the exit status. 0 in an image for a board: without a debugger the call is a fault,
+/// and a Cortex-M0 cannot ask whether there is one. APP.emulated.elf is the same image with another number here
+/// (image.cmake).
+extern "C" const uint32_t thimble_semihosting;
+
 namespace thimble {
 
 /// Supplied by each kind of core: makes the RAM end where it ends, as well as the core can (MPU, PMP, MMU),
 /// and faults arrive at their handlers.
 void raise_fence();
 
-/// Supplied by each kind of core: tells a debugger or an emulator the exit status (semihosting); stops when
-/// there is none.
+/// Supplied by each kind of core: tells an emulator the exit status (semihosting), if thimble_semihosting says so;
+/// then stops.
 [[noreturn]] void finish(int status);
 
 /// What a fault handler found out.

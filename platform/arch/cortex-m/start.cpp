@@ -33,22 +33,37 @@ extern "C" {
 
 namespace {
 
-// Armv6-M and Armv7-M number their exceptions alike. Interrupts of devices are not used.
+// Armv6-M and Armv7-M number their exceptions alike. Interrupts of devices are not used. Reserved words are 0: on
+// Armv6-M those of MemManage, BusFault and UsageFault, too, by which the drive of a micro:bit V2 knows an image for the V1
+// and refuses it (DAPLink, board_detect_incompatible_image).
 union Vector {
   const void* stack;
   void (*handler)();
 };
 
+constexpr Vector kReserved = {.handler = nullptr};
+#if defined(__ARM_ARCH_6M__)
+constexpr Vector kArmv7 = kReserved;
+#else
+constexpr Vector kArmv7 = {.handler = thimble_fault};
+#endif
+
 [[gnu::section(".vectors"), gnu::used]] const Vector kVectors[16] = {
-    {.stack = thimble_stack_top}, {.handler = thimble_reset}, {.handler = thimble_fault},  // NMI
-    {.handler = thimble_fault},                                                            // HardFault
-    {.handler = thimble_fault},                                                            // MemManage
-    {.handler = thimble_fault},                                                            // BusFault
-    {.handler = thimble_fault},                                                            // UsageFault
-    {.handler = thimble_fault},   {.handler = thimble_fault}, {.handler = thimble_fault},
-    {.handler = thimble_fault},   {.handler = thimble_fault},  // SVCall
-    {.handler = thimble_fault},                                // DebugMonitor
-    {.handler = thimble_fault},   {.handler = thimble_fault},  // PendSV
+    {.stack = thimble_stack_top},
+    {.handler = thimble_reset},
+    {.handler = thimble_fault},  // NMI
+    {.handler = thimble_fault},  // HardFault
+    kArmv7,                      // MemManage
+    kArmv7,                      // BusFault
+    kArmv7,                      // UsageFault
+    kReserved,
+    kReserved,
+    kReserved,
+    kReserved,
+    {.handler = thimble_fault},  // SVCall
+    kArmv7,                      // DebugMonitor
+    kReserved,
+    {.handler = thimble_fault},  // PendSV
     {.handler = thimble_systick},
 };
 
