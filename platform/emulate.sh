@@ -60,7 +60,7 @@ if [ -n "${SHOT:-}" ]; then
       exit 1
     fi
     # Asked once a second: a picture is more than the UART sends at once.
-    if [ $((try % 5)) = 1 ] && ! grep -aqs '^P5' "$folder/log"; then
+    if [ $((try % 5)) = 1 ] && ! grep -aqs '^P[56]' "$folder/log"; then
       printf p >&3 2>/dev/null || true
     fi
     sleep 0.2

@@ -1,6 +1,6 @@
 // The demonstration: the baked scene turns; a hand on the buttons steers; bytes over the UART ask for more.
 //
-//   p   the picture on the display, as P5 with 8 bits a pixel; the exact one while a rate is held
+//   p   the picture on the display, as P5 or, in colour, P6; the exact one while a rate is held
 //   b   builds a scene of spheres in a pool in RAM, voxel by voxel; when the pool is full it coarsens
 //   s   back to the baked scene
 //   h   holds a rate of frames (held_frame.h), or draws exact ones as fast as it can
@@ -410,33 +410,18 @@ void tell_crew(const Demo& /*demo*/) {}
   return draw_frame(demo, crc);
 }
 
-/// The grey of a pixel as the display shows it, 0..255.
-uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
-  const auto column = static_cast<uint32_t>(x);
-  if (format == PixelFormat::kMono1) {
-    return (row[column >> 3] << (column & 7U) & 0x80) != 0 ? 255 : 0;
-  }
-  if (format == PixelFormat::kGray4) {
-    return static_cast<uint8_t>((row[column >> 1] >> ((column & 1U) != 0 ? 0 : 4) & 15) * 17);
-  }
-  if (kHasPanelFormats && format > PixelFormat::kRgb888) {
-    return load_pixel(row, x, y, format).r;
-  }
-  return row[column];
-}
-
-/// The frame that was drawn last, once more and over the UART. Pictures in colour are sent in their greys.
+/// The frame that was drawn last, once more and over the UART, in the display's own colours or greys.
 [[gnu::noinline]] void send_picture(const Demo& demo) {
   const port::Display& screen = display();
-  const PixelFormat format = is_gray(screen.format) ? screen.format : PixelFormat::kGray8;
+  const PixelFormat format = screen.format;
+  const bool has_colors = !is_gray(format);
   port::await_flush();  // the bands' memory is used here
-  put("P5\n");
+  put(has_colors ? "P6\n" : "P5\n");
   put_number(static_cast<uint32_t>(screen.width_px));
   put(" ");
   put_number(static_cast<uint32_t>(screen.height_px));
   put("\n255\n");
   for (int32_t y = 0; y < screen.height_px; ++y) {
-    // A row of greys is shorter than a row in colour.
     const int32_t together = band_row_multiple(format);
     const int32_t left = screen.height_px - y;
     const Band band{demo.bands.subspan(0, row_bytes(format, screen.width_px)), format, 0, y,
@@ -444,13 +429,18 @@ uint8_t shown_gray(const uint8_t* row, int32_t x, int32_t y, PixelFormat format)
     if (begins_bytes(format, y) && draw(demo, band) != Status::kOk) {
       return;
     }
-    uint8_t grays[32];
+    uint8_t bytes[30];  // whole pixels
     for (int32_t x = 0; x < screen.width_px;) {
       size_t count = 0;
-      for (; count < sizeof grays && x < screen.width_px; ++x) {
-        grays[count++] = shown_gray(band.pixels.data, x, y, format);
+      for (; count < sizeof bytes && x < screen.width_px; ++x) {
+        const Rgb8 color = load_pixel(band.pixels.data, x, y, format);
+        bytes[count++] = color.r;
+        if (has_colors) {
+          bytes[count++] = color.g;
+          bytes[count++] = color.b;
+        }
       }
-      port::write({grays, count});
+      port::write({bytes, count});
     }
   }
   put("\n");

@@ -196,6 +196,7 @@ TEST_CASE(
   };
   refused("frame 1 crc 12345678\n", "no picture");
   refused("P5\n2 2\n255\nabc", "not whole");
+  refused("P6\n2 1\n255\nabcde", "not whole");
   refused("P5\n2 2\n254\nabcd", "no picture");
   refused("P5\n99999999999 2\n255\nabcd", "no picture");
   refused("P5\n0 2\n255\n", "no picture");
@@ -205,6 +206,12 @@ TEST_CASE(
       folder.write("log", "demo on microbit\nP5\n3 1\n255\nP5\nP5\n2 2\n255\nabcd\nmore\n");
   CHECK(run_command({"uart-picture", log, "-o", folder.path("a.pgm")}).status == 0);
   CHECK(read_text(folder.path("a.pgm")) == "P5\n3 1\n255\nP5\n");
+  // In colour: red, then blue.
+  const std::string colors = "P6\n2 1\n255\n" + std::string("\xFF\x00\x00\x00\x00\xFF", 6);
+  CHECK(run_command({"uart-picture", folder.write("log", "frame 1\n" + colors + "\nP5\n"), "-o",
+                     folder.path("a.ppm")})
+            .status == 0);
+  CHECK(read_text(folder.path("a.ppm")) == colors);
   check_refused({"uart-picture", log, "-o", "x.bmp"}, 2, {"--output", ".png"});
   check_refused({"uart-picture", folder.path("none"), "-o", "x.png"}, 1, {"No such file"});
 }

@@ -447,30 +447,40 @@ TEST_CASE("demo: on every board -> draws within its RAM, the golden frames where
   }
 }
 
-TEST_CASE("demo: p over the UART -> the picture on the display as P5; q -> the end, status 0") {
-  for (const char* name : {"lm3s6965evb", "mps2-an500"}) {
+TEST_CASE("demo: p over the UART -> the picture on the display, in its colours; q -> the end, status 0") {
+  // 16 greys; red in the highest bits; blue there.
+  for (const char* name : {"lm3s6965evb", "mps2-an500", "gba"}) {
     CAPTURE(std::string(name));
     const platform::BoardFacts& board = *platform::find_board(name);
     const Run run = run_demo(board, bytes_of(demo_scene().bytes), 100, {{0, "p"}, {2, "p"}, {3, "xq"}}, true);
     CHECK(run.status == 0);
     CHECK(run.pictures.size() == 3);
     CHECK(crcs_of(run.out, "frame").empty());
-    const std::string header =
-        "P5\n" + std::to_string(board.width_px) + " " + std::to_string(board.height_px) + "\n255\n";
+    const bool is_gray = board.format == PixelFormat::kGray4;
+    const std::string header = (is_gray ? "P5\n" : "P6\n") + std::to_string(board.width_px) + " " +
+                               std::to_string(board.height_px) + "\n255\n";
     const std::size_t start = run.out.find(header);
     REQUIRE(start != std::string::npos);
-    REQUIRE(run.out.find("P5", start + 1) == std::string::npos);
+    REQUIRE(run.out.find(header, start + 1) == std::string::npos);
     const auto count = static_cast<std::size_t>(board.width_px) * static_cast<std::size_t>(board.height_px);
-    REQUIRE(run.out.size() >= start + header.size() + count);
-    if (board.format == PixelFormat::kGray4) {
-      const auto& shown = run.pictures[1].bytes;
-      std::size_t wrong = 0;
-      for (std::size_t i = 0; i < count; ++i) {
+    const auto& shown = run.pictures[1].bytes;
+    std::string right;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_gray) {
         const int nibble = shown[i / 2] >> (i % 2 == 0 ? 4 : 0) & 15;
-        wrong += static_cast<unsigned char>(run.out[start + header.size() + i]) != nibble * 17 ? 1U : 0U;
+        right += static_cast<char>(nibble * 17);
+        continue;
       }
-      CHECK(wrong == 0);
+      const int pixel = shown[2 * i] | shown[2 * i + 1] << 8;
+      const int high = pixel >> 11;
+      const int green = pixel >> 5 & 63;
+      const int low = pixel & 31;
+      const bool swaps = board.format == PixelFormat::kBgr565;
+      for (const int five : {swaps ? low : high, -1, swaps ? high : low}) {
+        right += static_cast<char>(five < 0 ? green << 2 | green >> 4 : five << 3 | five >> 2);
+      }
     }
+    CHECK(run.out.compare(start + header.size(), right.size(), right) == 0);
   }
 }
 

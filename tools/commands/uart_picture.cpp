@@ -18,8 +18,6 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kMark = "P5\n";
-
 // The number at `*at`, which ends at a blank or a line feed; moves behind that.
 std::optional<std::int32_t> take_number(std::string_view text, std::size_t* at) {
   const std::size_t end = std::min(text.find_first_of(" \n", *at), text.size());
@@ -31,15 +29,16 @@ std::optional<std::int32_t> take_number(std::string_view text, std::size_t* at) 
   return static_cast<std::int32_t>(*number);
 }
 
-// The first whole picture, where a P5 begins a line.
+// The first whole picture, where a P5 (greys) or P6 (colours) begins a line.
 Image find_picture(std::string_view text) {
   bool any = false;
-  for (std::size_t mark = text.find(kMark); mark != std::string_view::npos;
-       mark = text.find(kMark, mark + 1)) {
-    if (mark != 0 && text[mark - 1] != '\n') {
+  for (std::size_t mark = text.find('P'); mark != std::string_view::npos; mark = text.find('P', mark + 1)) {
+    const std::string_view kind = text.substr(mark, 3);
+    const bool has_colors = kind == "P6\n";
+    if ((kind != "P5\n" && !has_colors) || (mark != 0 && text[mark - 1] != '\n')) {
       continue;
     }
-    std::size_t at = mark + kMark.size();
+    std::size_t at = mark + kind.size();
     const auto width = take_number(text, &at);
     const auto height = width ? take_number(text, &at) : std::nullopt;
     const auto most = height ? take_number(text, &at) : std::nullopt;
@@ -47,13 +46,14 @@ Image find_picture(std::string_view text) {
       continue;
     }
     any = true;
-    const std::size_t bytes = static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height);
+    const PixelFormat format = has_colors ? PixelFormat::kRgb888 : PixelFormat::kGray8;
+    const std::size_t bytes = row_bytes(format, *width) * static_cast<std::size_t>(*height);
     if (text.size() - at >= bytes) {
       const std::string_view pixels = text.substr(at, bytes);
-      return {*width, *height, PixelFormat::kGray8, {pixels.begin(), pixels.end()}};
+      return {*width, *height, format, {pixels.begin(), pixels.end()}};
     }
   }
-  throw InputError(any ? "the picture in it is not whole" : "there is no picture (P5) in it");
+  throw InputError(any ? "the picture in it is not whole" : "there is no picture (P5, P6) in it");
 }
 
 }  // namespace
