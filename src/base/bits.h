@@ -56,8 +56,8 @@ constexpr int bit_length(uint32_t value) {
   return value == 0 ? 0 : highest_bit(value) + 1;
 }
 
-// Little-endian words at any address. The targets are little-endian; the compiler turns these into single
-// loads where the machine allows unaligned ones.
+// Little-endian words at any address; the compiler turns these into single loads where the machine is little-endian and
+// allows unaligned ones.
 inline uint32_t load32(const uint8_t* bytes) {
   return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8 |
          static_cast<uint32_t>(bytes[2]) << 16 | static_cast<uint32_t>(bytes[3]) << 24;
@@ -79,6 +79,22 @@ inline void store32(uint8_t* bytes, uint32_t value) {
 inline void store64(uint8_t* bytes, uint64_t value) {
   store32(bytes, static_cast<uint32_t>(value));
   store32(bytes + 4, static_cast<uint32_t>(value >> 32));
+}
+
+// Little-endian words at multiples of their size, which one instruction loads or stores: those of a brick map, pixels of
+// two bytes. `little` turns a word from memory round on a big-endian machine, or one for memory; on others it is nothing.
+constexpr bool kBigEndian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+using Half [[gnu::may_alias]] = uint16_t;
+using Word [[gnu::may_alias]] = uint32_t;
+
+constexpr uint8_t little(uint8_t byte) {
+  return byte;
+}
+constexpr uint16_t little(uint16_t half) {
+  return kBigEndian ? __builtin_bswap16(half) : half;
+}
+constexpr uint32_t little(uint32_t word) {
+  return kBigEndian ? __builtin_bswap32(word) : word;
 }
 
 }  // namespace thimble::bits

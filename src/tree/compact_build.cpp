@@ -602,7 +602,7 @@ Status CompactTree::make(const Octree& octree, Arena& arena, CompactTree* tree, 
   if (rank_shift < kMinRankShift || rank_shift > kMaxRankShift) {
     return Status::kOutOfRange;
   }
-  return make_in(arena, compact_bytes(compact_shape(octree, rank_shift)), alignof(uint64_t),
+  return make_in(arena, compact_bytes(compact_shape(octree, rank_shift)), sizeof(uint64_t),
                  [&](Bytes bytes) { return make(octree, bytes, tree, nullptr, rank_shift); });
 }
 

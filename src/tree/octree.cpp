@@ -78,7 +78,7 @@ Status Octree::make(int level, Bytes bytes, Octree* octree) {
     return Status::kOutOfRange;
   }
   const size_t address = reinterpret_cast<size_t>(bytes.data);
-  const size_t padding = (0 - address) & (alignof(Node) - 1);
+  const size_t padding = (0 - address) & (sizeof(uint32_t) - 1);
   const size_t size = bytes.size < padding ? 0 : bytes.size - padding;
   const size_t count = size / kNodeBytes;
   octree->capacity_ = count < kMaxNodes ? static_cast<uint32_t>(count) : kMaxNodes;

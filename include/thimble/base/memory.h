@@ -62,8 +62,9 @@ class Arena {
   explicit constexpr Arena(Bytes bytes) : bytes_(bytes) {}
 
   /// `size` bytes whose address is a multiple of `alignment` (a power of two), or an empty span and no change
-  /// when they do not fit. Constant time. The bytes are not cleared.
-  Bytes take(size_t size, size_t alignment = alignof(uint64_t)) {
+  /// when they do not fit. Constant time. The bytes are not cleared. Alignments are sizes: `alignof` of a word
+  /// is less than its size on some machines, and a brick map is at a multiple of 8 on all.
+  Bytes take(size_t size, size_t alignment = sizeof(uint64_t)) {
     const size_t address = reinterpret_cast<size_t>(bytes_.data) + used_;
     const size_t padding = (0 - address) & (alignment - 1);
     const size_t left = bytes_.size - used_;

@@ -169,7 +169,7 @@ class Water {
   static Status make(const WaterConfig& config, Bytes bytes, Water* water);
   /// The same in an arena, which gives `water_bytes`; after an error it is as it was.
   static Status make(const WaterConfig& config, Arena& arena, Water* water) {
-    return make_in(arena, water_bytes(config.width, config.depth), alignof(uint32_t),
+    return make_in(arena, water_bytes(config.width, config.depth), sizeof(uint32_t),
                    [&](Bytes bytes) { return make(config, bytes, water); });
   }
 

@@ -241,7 +241,7 @@ class BitField {
   static Status make(int32_t width, int32_t height, Bytes bytes, BitField* field);
   /// The same in an arena, which gives just those bytes; after an error it is as it was.
   static Status make(int32_t width, int32_t height, Arena& arena, BitField* field) {
-    return make_in(arena, bitfield_bytes(width, height), alignof(uint32_t),
+    return make_in(arena, bitfield_bytes(width, height), sizeof(uint32_t),
                    [&](Bytes bytes) { return make(width, height, bytes, field); });
   }
 

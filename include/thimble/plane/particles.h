@@ -171,7 +171,7 @@ class ParticleWorld {
   static Status make(const ParticleConfig& config, Bytes bytes, ParticleWorld* world);
   /// The same in an arena, which gives just those bytes; after an error it is as it was.
   static Status make(const ParticleConfig& config, Arena& arena, ParticleWorld* world) {
-    return make_in(arena, particles_bytes(config), alignof(uint32_t),
+    return make_in(arena, particles_bytes(config), sizeof(uint32_t),
                    [&](Bytes bytes) { return make(config, bytes, world); });
   }
 

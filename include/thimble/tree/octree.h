@@ -77,7 +77,7 @@ class Octree {
   /// Bytes that hold a pool of `nodes` at any address (a span aligned to 4 bytes does with 3 fewer); SIZE_MAX
   /// when `size_t` cannot say it.
   static constexpr size_t octree_bytes(size_t nodes) {
-    constexpr size_t kSlackBytes = alignof(uint32_t) - 1;
+    constexpr size_t kSlackBytes = sizeof(uint32_t) - 1;
     if (nodes > (SIZE_MAX - kSlackBytes) / kNodeBytes) {
       return SIZE_MAX;
     }
@@ -94,7 +94,7 @@ class Octree {
   /// The same with room for `nodes` nodes, of which the arena gives octree_bytes(nodes). Errors: also
   /// `kOutOfMemory`; the arena is then as it was, too.
   static Status make(int level, size_t nodes, Arena& arena, Octree* octree) {
-    return make_in(arena, octree_bytes(nodes), alignof(uint32_t), [&](Bytes bytes) {
+    return make_in(arena, octree_bytes(nodes), sizeof(uint32_t), [&](Bytes bytes) {
       return nodes != 0 && bytes.empty() ? Status::kOutOfMemory : make(level, bytes, octree);
     });
   }
@@ -204,7 +204,7 @@ class Octree {
     uint32_t link_mask;
     uint32_t next_flags;
   };
-  static_assert(sizeof(Node) == kNodeBytes && alignof(Node) == alignof(uint32_t));
+  static_assert(sizeof(Node) == kNodeBytes && alignof(Node) <= sizeof(uint32_t));
 
   /// added / saved, exactly. added <= 2^36 and saved <= 2^27, so products across stay below 2^64.
   struct Ratio {

@@ -57,7 +57,7 @@ constexpr size_t shared_work_bytes(uint32_t compact_nodes) {
   // The way down takes 8 words a level. Of w words more, w / 8 + 1 are heads; the others must hold 3 words a
   // node and one a child, and every node but the root is a child.
   const uint64_t words = uint64_t{5} * compact_nodes + 8 * (kMaxLevel + 2) + 2;
-  const uint64_t bytes = 4 * words + alignof(uint32_t) - 1;
+  const uint64_t bytes = 4 * words + sizeof(uint32_t) - 1;
   return bytes <= SIZE_MAX ? static_cast<size_t>(bytes) : SIZE_MAX;
 }
 

@@ -573,7 +573,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     const uint32_t blue = ink.rest[2];
     const uint32_t one_red = 1U << shift_[0];
     const uint32_t one_blue = 1U << shift_[2];
-    const bool swaps = is_big_endian();
+    const bool swaps = is_big_endian() != bits::kBigEndian;
     for (int32_t row = 0; row < place.down; ++row) {
       uint32_t word = pixels.word[row >> 1] >> 16 * (row & 1) & 0xFFFFU;
       if (word == 0) {

@@ -77,6 +77,17 @@ constexpr bool kDividesEdges = kDivides || kHasReciprocals;
   return 0xFFFFU << (positive > 31 ? 31 : positive);
 }
 
+// Puts rows that were stored as halfwords, from the first on, where `Pixels` has them: on big-endian machines the first
+// of two is the upper half of its word.
+[[gnu::always_inline]] inline void order_rows([[maybe_unused]] HalfPlane* plane) {
+  if constexpr (bits::kBigEndian) {
+    for (int i = 0; i < kTileWords; ++i) {
+      plane->certain.word[i] = plane->certain.word[i] << 16 | plane->certain.word[i] >> 16;
+      plane->possible.word[i] = plane->possible.word[i] << 16 | plane->possible.word[i] >> 16;
+    }
+  }
+}
+
 // Sets the rows of two masks; those of `invert` are of their complements. Without a divider there is no flash to unroll.
 [[gnu::always_inline]] inline void fill_rows(int32_t at, int32_t slope, int32_t back, uint32_t invert,
                                              Pixels* first, Pixels* second) {
@@ -103,6 +114,7 @@ bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, Ha
   at += kCrossingSlack + (1 << kCrossingBits);
   fill_rows(at, slope, back, flip ? UINT32_MAX : 0, flip ? &plane->possible : &plane->certain,
             flip ? &plane->certain : &plane->possible);
+  order_rows(plane);
   return true;
 }
 
@@ -147,6 +159,7 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, int 
     possible += step;
     at += fy;
   }
+  order_rows(plane);
 }
 
 // The number of bits of a distance times a direction, signed.

@@ -32,7 +32,7 @@ template <bool kDeep>
   if constexpr (kDeep) {
     return number_at<true>(directory, place);
   } else {
-    return *static_cast<const Half*>(static_cast<const void*>(directory + place));
+    return bits::little(*static_cast<const Half*>(static_cast<const void*>(directory + place)));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../../base/bits.h"
 #include "../../tree/deep_map.h"
 #include "thimble/base/vec.h"
 
@@ -50,16 +51,19 @@ constexpr uint32_t count_of(uint32_t counts, int axis) {
   return counts >> 10 * axis & 0x3FFU;
 }
 
-// The directory and the bricks are read as halfwords and words: they lie at multiples of 4.
-using Half [[gnu::may_alias]] = uint16_t;
-using Word [[gnu::may_alias]] = uint32_t;
+using bits::Half;
+using bits::Word;
 
+// The directory and the bricks are read as halfwords and words: they lie at multiples of 4. As bits::little does, but
+// in place: a call, though it is inlined, would give the loops of the rays other registers.
 uint32_t half_at(const uint8_t* bytes, int32_t offset) {
   // Through void: compilers for small chips warn of a cast that promises an alignment.
-  return *static_cast<const Half*>(static_cast<const void*>(bytes + offset));
+  const Half half = *static_cast<const Half*>(static_cast<const void*>(bytes + offset));
+  return bits::kBigEndian ? __builtin_bswap16(half) : half;
 }
 uint32_t word_at(const uint8_t* bytes, int32_t offset) {
-  return *static_cast<const Word*>(static_cast<const void*>(bytes + offset));
+  const Word word = *static_cast<const Word*>(static_cast<const void*>(bytes + offset));
+  return bits::kBigEndian ? __builtin_bswap32(word) : word;
 }
 
 // The number of the brick at a place in the directory: of kDeep, worlds of level 9 and 10, from its page.
@@ -68,9 +72,11 @@ template <bool kDeep>
   if constexpr (kDeep) {
     const auto at = static_cast<uint32_t>(place);
     const auto* const table = static_cast<const Word*>(static_cast<const void*>(directory));
-    const uint8_t* const page = directory + table[deep_place::page_of(at)];
+    const Word offset = table[deep_place::page_of(at)];
+    const uint8_t* const page = directory + (bits::kBigEndian ? __builtin_bswap32(offset) : offset);
     const uint32_t own = page[4 + deep_place::entry_of(at)];
-    return own == 0 ? 0 : *static_cast<const Word*>(static_cast<const void*>(page)) + own;
+    const auto* const first = static_cast<const Word*>(static_cast<const void*>(page));
+    return own == 0 ? 0 : (bits::kBigEndian ? __builtin_bswap32(*first) : *first) + own;
   } else {
     return half_at(directory, place);
   }

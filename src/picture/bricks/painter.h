@@ -325,7 +325,7 @@ class BrickPainter {
       for (int32_t y = quad.y0; y < quad.y1; ++y, line += stride) {
         Half* const pixels = static_cast<Half*>(static_cast<void*>(line)) + quad.x0;
         for (int32_t i = 0; i < across; ++i) {
-          pixels[i] = static_cast<Half>(*inks++);
+          pixels[i] = bits::little(static_cast<Half>(*inks++));
         }
       }
       return;
@@ -387,7 +387,7 @@ class BrickPainter {
       } else if (frame_.halfwords) {
         Half* const pixels = static_cast<Half*>(static_cast<void*>(line));
         for (int32_t x = tile.x0; x < tile.x1; ++x) {
-          pixels[x] = static_cast<Half>(ink);
+          pixels[x] = bits::little(static_cast<Half>(ink));
         }
       } else {
         for (int32_t x = tile.x0; x < tile.x1; ++x) {

@@ -31,7 +31,7 @@ struct TilePlace {
 // Stores pixels of one or two bytes each.
 template <class Pixel>
 [[gnu::noinline]] void store_whole(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
-  const Pixel value = static_cast<Pixel>(ink);
+  const Pixel value = bits::little(static_cast<Pixel>(ink));
   uint8_t* line = place.line + static_cast<size_t>(place.x) * sizeof(Pixel);
   for (int i = 0; i < kTileWords; ++i) {
     uint32_t word = pixels.word[i];
@@ -75,7 +75,8 @@ template <class Pixel>
 
 // Stores pixels of three bytes.
 [[gnu::noinline]] void store_triples(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
-  const uint32_t four[3] = {ink | ink << 24, ink >> 8 | ink << 16, ink >> 16 | ink << 8};
+  const uint32_t four[3] = {bits::little(ink | ink << 24), bits::little(ink >> 8 | ink << 16),
+                            bits::little(ink >> 16 | ink << 8)};
   const auto store_one = [ink](uint8_t* to) {
     to[0] = static_cast<uint8_t>(ink);
     to[1] = static_cast<uint8_t>(ink >> 8);
