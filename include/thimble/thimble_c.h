@@ -28,6 +28,12 @@
 #ifndef THIMBLE_THIMBLE_C_H
 #define THIMBLE_THIMBLE_C_H
 
+#if defined(__AVR__)
+#error "AVR is not supported: int has 16 bits. Thimble needs a chip of 32 bits."
+#elif defined(__SIZEOF_INT__) && __SIZEOF_INT__ < 4
+#error "This processor is not supported: int has 16 bits. Thimble needs one of 32 bits."
+#endif
+
 #include <stddef.h>
 #include <stdint.h>
 

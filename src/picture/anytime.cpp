@@ -40,12 +40,12 @@ int32_t limited(int32_t score) {
   return score > kScoreLimit ? kScoreLimit : score < -kScoreLimit ? -kScoreLimit : score;
 }
 
-bool within(int32_t a, int32_t b, int32_t tolerance) {
+bool is_near(int32_t a, int32_t b, int32_t tolerance) {
   const int32_t difference = a < b ? b - a : a - b;
   return difference <= tolerance;
 }
-bool within(Rgb8 a, Rgb8 b, int32_t tolerance) {
-  return within(a.r, b.r, tolerance) && within(a.g, b.g, tolerance) && within(a.b, b.b, tolerance);
+bool is_near(Rgb8 a, Rgb8 b, int32_t tolerance) {
+  return is_near(a.r, b.r, tolerance) && is_near(a.g, b.g, tolerance) && is_near(a.b, b.b, tolerance);
 }
 
 // A panel's pixel stored on its own, in the column of a row that has the same place in its bytes and in the dither,
@@ -392,7 +392,7 @@ bool AnytimeFrame::neighbours_differ() const {
       if (!found) {
         first = here;
         found = true;
-      } else if (!within(first, here, kDiffers)) {
+      } else if (!is_near(first, here, kDiffers)) {
         return true;
       }
     }
@@ -428,7 +428,7 @@ void AnytimeFrame::take_sample(Rgb8 color) {
       continue;
     }
     const Rgb8 other = stored(picture_ + row_bytes_ * row_place(format_, y), x, y, format_);
-    const bool is_like = within(mine, other, kAlike);
+    const bool is_like = is_near(mine, other, kAlike);
     there |= uint32_t{1} << place;
     alike |= is_like ? uint32_t{1} << place : 0;
     // Two different things beside each other say nothing about sizes.

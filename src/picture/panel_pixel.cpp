@@ -7,7 +7,7 @@ namespace {
 
 using namespace panels;
 
-void put(uint8_t* bytes, size_t place, unsigned bits) {
+void set_bits(uint8_t* bytes, size_t place, unsigned bits) {
   bytes[place] = static_cast<uint8_t>(bytes[place] | bits);
 }
 
@@ -23,11 +23,11 @@ void store_rgb444(uint8_t* row, size_t column, Rgb8 color) {
   const unsigned b = level_of_16(color.b);
   uint8_t* const pair = row + column / 2 * 3;
   if ((column & 1U) == 0) {
-    put(pair, 0, r << 4 | g);
-    put(pair, 1, b << 4);
+    set_bits(pair, 0, r << 4 | g);
+    set_bits(pair, 1, b << 4);
   } else {
-    put(pair, 1, r);
-    put(pair, 2, g << 4 | b);
+    set_bits(pair, 1, r);
+    set_bits(pair, 2, g << 4 | b);
   }
 }
 
@@ -85,30 +85,30 @@ void store_panel_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format, R
       return;
     case PixelFormat::kMono1Pages:
       if constexpr (has_format(PixelFormat::kMono1Pages)) {
-        put(row, column, gray_of(color) > threshold ? 1U << (y & 7) : 0);
+        set_bits(row, column, gray_of(color) > threshold ? 1U << (y & 7) : 0);
       }
       return;
     case PixelFormat::kGray4Low:
       if constexpr (has_format(PixelFormat::kGray4Low)) {
-        put(row, column >> 1, level_of_16(gray_of(color)) << ((column & 1U) != 0 ? 4 : 0));
+        set_bits(row, column >> 1, level_of_16(gray_of(color)) << ((column & 1U) != 0 ? 4 : 0));
       }
       return;
     case PixelFormat::kGray2:
       if constexpr (has_format(PixelFormat::kGray2)) {
-        put(row, column >> 2, gray2(gray_of(color), threshold) << (6 - 2 * (column & 3U)));
+        set_bits(row, column >> 2, gray2(gray_of(color), threshold) << (6 - 2 * (column & 3U)));
       }
       return;
     case PixelFormat::kPaper3:
       if constexpr (has_format(PixelFormat::kPaper3)) {
         const Paper3 ink = paper3(color, threshold);
         const unsigned bit = 0x80U >> (column & 7U);
-        put(row, 2 * (column >> 3), ink == Paper3::kWhite ? bit : 0);
-        put(row, 2 * (column >> 3) + 1, ink == Paper3::kRed ? bit : 0);
+        set_bits(row, 2 * (column >> 3), ink == Paper3::kWhite ? bit : 0);
+        set_bits(row, 2 * (column >> 3) + 1, ink == Paper3::kRed ? bit : 0);
       }
       return;
     case PixelFormat::kPaper7:
       if constexpr (has_format(PixelFormat::kPaper7)) {
-        put(row, column >> 1, paper7(color, threshold) << ((column & 1U) != 0 ? 0 : 4));
+        set_bits(row, column >> 1, paper7(color, threshold) << ((column & 1U) != 0 ? 0 : 4));
       }
       return;
     case PixelFormat::kRgb332:

@@ -253,8 +253,8 @@ bool SearchWalk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
 
 // Not inlined, so that a ray takes the stack of its own width only. False: not in the world there.
 template <class Int, class Unsigned>
-[[gnu::noinline]] bool walk(const CompactTree& tree, const MirroredRay& ray, const Search& search,
-                            MediumExit* exit) {
+[[gnu::noinline]] bool walk_search(const CompactTree& tree, const MirroredRay& ray, const Search& search,
+                                   MediumExit* exit) {
   SearchWalk<Int, Unsigned> walk(tree, ray);
   if (!walk.run(search, exit)) {
     return false;
@@ -308,8 +308,8 @@ MirroredRay in_all_of(int level, const Ray& ray) {
     return Status::kOutOfRange;
   }
   const MirroredRay mirrored = in_all_of(level, ray);
-  *in_world = narrow ? walk<int32_t, uint32_t>(tree, mirrored, search, exit)
-                     : walk<int64_t, uint64_t>(tree, mirrored, search, exit);
+  *in_world = narrow ? walk_search<int32_t, uint32_t>(tree, mirrored, search, exit)
+                     : walk_search<int64_t, uint64_t>(tree, mirrored, search, exit);
   return Status::kOk;
 }
 [[gnu::always_inline]] inline Status search_from_32(const CompactTree& tree, const Ray& ray,
@@ -323,7 +323,7 @@ MirroredRay in_all_of(int level, const Ray& ray) {
   if (!accepts_32_from(ray, level, search)) {
     return Status::kOutOfRange;
   }
-  *in_world = walk<int32_t, uint32_t>(tree, in_all_of(level, ray), search, exit);
+  *in_world = walk_search<int32_t, uint32_t>(tree, in_all_of(level, ray), search, exit);
   return Status::kOk;
 }
 

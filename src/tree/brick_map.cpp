@@ -82,7 +82,7 @@ const char* read_map_header(ConstBytes bytes, MapHeader* header) {
   return size > bytes.size ? "truncated" : nullptr;
 }
 
-bool aligned(const uint8_t* data) {
+bool is_aligned(const uint8_t* data) {
   return (reinterpret_cast<size_t>(data) & 7U) == 0;
 }
 
@@ -409,7 +409,7 @@ class MapBuilder {
 }  // namespace
 
 Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
-  if (!aligned(bytes.data)) {
+  if (!is_aligned(bytes.data)) {
     return Status::kBadArgument;
   }
   if constexpr (kDeepWorlds) {
@@ -475,7 +475,7 @@ Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t*
   if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostLevel) {
     return Status::kOutOfRange;
   }
-  if (!aligned(out.data)) {
+  if (!is_aligned(out.data)) {
     return Status::kBadArgument;
   }
   size_t written = 0;

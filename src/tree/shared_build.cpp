@@ -108,8 +108,8 @@ class NodeTable {
 
   // False when the workspace is too small for any tree.
   bool set(Bytes work) {
-    const size_t past = reinterpret_cast<size_t>(work.data) & (alignof(uint32_t) - 1);
-    work = work.subspan(past == 0 ? 0 : alignof(uint32_t) - past);
+    const size_t past = reinterpret_cast<size_t>(work.data) & (sizeof(uint32_t) - 1);
+    work = work.subspan(past == 0 ? 0 : sizeof(uint32_t) - past);
     size_t words = work.size / 4;
     constexpr uint32_t kMostWords = uint32_t{1} << 30;
     words = words < kMostWords ? words : kMostWords;
@@ -278,7 +278,7 @@ struct MaterialWriter {
   bool leave(int) { return true; }
 };
 
-uint8_t* put(uint8_t* to, uint32_t number, unsigned bytes) {
+uint8_t* put_number(uint8_t* to, uint32_t number, unsigned bytes) {
   for (unsigned i = 0; i < bytes; ++i) {
     *to++ = static_cast<uint8_t>(number >> (8 * i));
   }
@@ -326,9 +326,9 @@ uint8_t* write_node(const NodeTable& table, const Layout& layout, const uint32_t
     }
     return to;
   }
-  to = put(to, record[2], layout.count_bytes);
+  to = put_number(to, record[2], layout.count_bytes);
   for (uint32_t i = 0; i < children; ++i) {
-    to = put(to, words[i] == 0 ? 0 : *table.record(words[i]), layout.link_bytes);
+    to = put_number(to, words[i] == 0 ? 0 : *table.record(words[i]), layout.link_bytes);
   }
   return to;
 }

@@ -1,8 +1,15 @@
 """The pair: all public headers as thimble.h, all of src as thimble.cpp; a C face and drivers stay files of their own."""
 
 import posixpath
+import re
 
 import tree
+
+# The first line of a function of a namespace, as clang-format leaves it.
+_FUNCTION = re.compile(
+    r"^(?!namespace|using|typedef|struct|class|enum|union|static_assert|template|return|extern)"
+    r"(?:\[\[[^]]*\]\] )*[A-Za-z_][\w:<>,\[\] *&()]*?[ *&](\w+)\("
+)
 
 
 def is_c(name):
@@ -48,6 +55,32 @@ class _Text:
         self.parts.append(f"// ---- {name}\n".encode() + data.strip() + b"\n")
 
 
+def _own_functions(text):
+    """Functions of unnamed namespaces, with the names of the namespaces around them."""
+    around = []
+    for line in text.split("\n"):
+        opened = re.match(r"^namespace ?([\w:]*) ?{$", line)
+        if opened:
+            around.append(opened.group(1))
+        elif line.startswith("}  // namespace"):
+            around.pop()
+        elif "" in around:
+            function = _FUNCTION.match(line)
+            if function:
+                yield "::".join(each for each in around if each), function.group(1)
+
+
+def refuse_equal_names(sources):
+    """Ends with a sentence where two files keep a function of one name to themselves. In one translation unit these are
+    one function, or, as long as their types differ, two: then what is one type on some target decides."""
+    seen = {}
+    for name, data in sources.items():
+        for function in _own_functions(data.decode()):
+            other = seen.setdefault(function, name)
+            if other != name:
+                raise SystemExit(f"packages: {other} and {name} both have a function {function[1]}; rename one of them")
+
+
 def _driver(name):
     """Headers and sources of drivers in one folder; what they include of the core is in thimble.h."""
 
@@ -67,6 +100,7 @@ def _opening(what, version):
 
 def files(_):
     version = tree.version()
+    refuse_equal_names({name: tree.read(name) for name in tree.sources() if not is_driver(name)})
     header = _Text()
     # The tour of the first page goes first.
     for name in ["include/thimble/thimble.h"] + tree.headers():

@@ -3,6 +3,12 @@
 #ifndef THIMBLE_BASE_STATUS_H
 #define THIMBLE_BASE_STATUS_H
 
+#if defined(__AVR__)
+#error "AVR is not supported: int has 16 bits. Thimble needs a chip of 32 bits."
+#elif defined(__SIZEOF_INT__) && __SIZEOF_INT__ < 4
+#error "This processor is not supported: int has 16 bits. Thimble needs one of 32 bits."
+#endif
+
 #include <stdint.h>
 
 namespace thimble {

@@ -39,6 +39,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../base/status.h"  // refuses processors that are too small
+
 namespace thimble {
 
 enum class PixelFormat : uint8_t {

@@ -19,7 +19,7 @@ constexpr uint32_t kSameGray = 26 * kLevel;
 constexpr uint32_t kLeftOnEdge = 48;
 
 // What a ray turns or moves by from one pixel to the next.
-Vec3i step_of(const Camera& camera, bool down) {
+Vec3i pixel_step(const Camera& camera, bool down) {
   const Camera::Vec3Q32& step = down ? camera.affine().step_y : camera.affine().step_x;
   return {Camera::rounded(step.x), Camera::rounded(step.y), Camera::rounded(step.z)};
 }
@@ -57,7 +57,7 @@ bool goes_on(const CompactTree& tree, const Spot& spot, int axis, int32_t voxels
 }  // namespace
 
 bool meets_edge(Frame& frame, const Ray& ray, const Hit& hit, const Spot& spot, bool down, Spot* beyond) {
-  const Vec3i step = step_of(frame.camera, down);
+  const Vec3i step = pixel_step(frame.camera, down);
   PendingRay next;
   next.ray = ray;
   for (int axis = 0; axis < 3; ++axis) {
