@@ -15,8 +15,8 @@ using brick_parts::kChildBits;
 using brick_parts::kOriginBytes;
 
 constexpr unsigned kAllChildren = 0xFF;
-constexpr uint32_t kMostNodes = uint32_t{1} << kChildBits;
-constexpr uint32_t kMostBricks = 65000;
+constexpr uint32_t kNodeBits = kMostEditRoom.nodes;
+static_assert(kNodeBits == (uint32_t{1} << kChildBits) - 1);
 
 unsigned child_octant(const Vec3i& voxel, int child_level) {
   return (static_cast<unsigned>(voxel.x) >> child_level & 1U) |
@@ -81,15 +81,13 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
   constexpr size_t kBytesABrick = 8 + kOriginBytes + kNodesABrick + kLeavesABrick + 2;
   constexpr size_t kRounding = 64;
   EditRoom room = room_of(tree);
-  const size_t least = tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel
-                           ? SIZE_MAX
-                           : edited_world_bytes(tree.level(), room);
-  if (least > bytes || room.bricks > kMostBricks) {
+  const size_t least = edited_world_bytes(tree.level(), room);
+  if (least == 0 || least > bytes) {
     return {};
   }
   if (bytes - least > kRounding) {
     size_t more = (bytes - least - kRounding) / kBytesABrick;
-    more = more < kMostBricks - room.bricks ? more : kMostBricks - room.bricks;
+    more = more < kMostEditRoom.bricks - room.bricks ? more : kMostEditRoom.bricks - room.bricks;
     room.bricks += static_cast<uint32_t>(more);
     room.nodes += kNodesABrick * static_cast<uint32_t>(more);
     room.leaves += kLeavesABrick * static_cast<uint32_t>(more);
@@ -98,8 +96,8 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
 }
 
 Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes bytes, EditedWorld* world) {
-  if (tree.level() < kMinBrickMapLevel || tree.level() > kMaxBrickMapLevel || room.nodes >= kMostNodes ||
-      room.bricks > kMostBricks) {
+  const size_t needed = edited_world_bytes(tree.level(), room);
+  if (needed == 0) {
     return Status::kOutOfRange;
   }
   if (tree.bytes() == nullptr || tree.merged() || (reinterpret_cast<size_t>(bytes.data) & 7U) != 0) {
@@ -110,7 +108,7 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
     return Status::kDamaged;
   }
   if (used.nodes > room.nodes || used.leaves > room.leaves || used.bricks > room.bricks ||
-      bytes.size < edited_world_bytes(tree.level(), room)) {
+      bytes.size < needed) {
     return Status::kOutOfMemory;
   }
   EditedWorld made;
@@ -296,7 +294,7 @@ void EditedWorld::insert_nodes(uint32_t at, uint32_t count) {
   for (uint32_t i = 0; i < room_.bricks; ++i) {
     uint8_t* const origin = origins_ + kOriginBytes * size_t{i};
     const uint32_t first = bits::load32(origin);
-    bits::store32(origin, first + ((first & (kMostNodes - 1)) >= at ? count : 0));
+    bits::store32(origin, first + ((first & kNodeBits) >= at ? count : 0));
   }
 }
 
@@ -306,7 +304,7 @@ void EditedWorld::remove_nodes(uint32_t at, uint32_t count) {
   for (uint32_t i = 0; i < room_.bricks; ++i) {
     uint8_t* const origin = origins_ + kOriginBytes * size_t{i};
     const uint32_t first = bits::load32(origin);
-    bits::store32(origin, first - ((first & (kMostNodes - 1)) >= at + count ? count : 0));
+    bits::store32(origin, first - ((first & kNodeBits) >= at + count ? count : 0));
   }
 }
 

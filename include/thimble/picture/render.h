@@ -146,9 +146,12 @@ inline constexpr int kMaxSamplesAcross = 8;
 /// Bound on the difference between a channel of a mean and the exact one, in 1/256 of 1/255.
 inline constexpr int kSampleMeanErrorQ8 = 128;
 
-/// Bytes of the `across` fine rows, in kRgb888, that make one row of `width_px` pixels; SIZE_MAX when size_t
-/// cannot say it.
+/// Bytes of the `across` fine rows, in kRgb888, that make one row of `width_px` pixels; 0 for what
+/// `average_samples` refuses.
 constexpr size_t samples_bytes(int32_t width_px, int across) {
+  if (across < 1 || across > kMaxSamplesAcross || width_px < 0 || width_px > kMaxPicturePx / across) {
+    return 0;
+  }
   return band_bytes(PixelFormat::kRgb888, width_px * across, across);
 }
 

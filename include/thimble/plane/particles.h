@@ -116,7 +116,17 @@ constexpr size_t particles_bytes(int32_t width, int32_t height, uint32_t capacit
          4 * particle_detail::cell_count(width, height, most_diameter) +
          4 * particle_detail::awake_words(capacity) + particle_detail::kSlackBytes;
 }
+/// The same; 0 for each configuration that `ParticleWorld::make` refuses, too.
 constexpr size_t particles_bytes(const ParticleConfig& config) {
+  const auto is_weak = [](int32_t component) {
+    return component >= -kMaxAccelerationQ16 && component <= kMaxAccelerationQ16;
+  };
+  if (config.least_diameter < 1 || config.least_diameter > config.most_diameter ||
+      config.restitution_q16 > 65536 || !is_weak(config.gravity_q16.x) || !is_weak(config.gravity_q16.y) ||
+      config.substeps_log2 < 0 || config.substeps_log2 > 4 || config.subpixel_bits < 1 ||
+      config.subpixel_bits > 15) {
+    return 0;
+  }
   return particles_bytes(config.width, config.height, config.capacity, config.most_diameter);
 }
 

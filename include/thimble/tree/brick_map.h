@@ -43,8 +43,11 @@ constexpr size_t brick_map_bytes(uint32_t cells, uint32_t bricks, uint32_t mixed
 }
 
 /// Bytes in which the map of any world of 2^level can be built, whatever is in it. A world of 64 with a model
-/// in it seldom needs a fifth of them.
+/// in it seldom needs a fifth of them. 0 for a level beyond kMinBrickMapLevel .. kMaxBrickMapLevel.
 constexpr size_t most_brick_map_bytes(int level) {
+  if (level < kMinBrickMapLevel || level > kMaxBrickMapLevel) {
+    return 0;
+  }
   const uint32_t cells = uint32_t{1} << (3 * (level - 2));
   const uint32_t bricks = cells < kMaxBricks ? cells + 1 : kMaxBricks;
   return brick_map_bytes(cells, bricks, bricks - 1) + 2 * size_t{bricks};

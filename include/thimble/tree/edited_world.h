@@ -38,8 +38,16 @@ struct EditRoom {
 /// Materials of which whole bricks can be solid.
 inline constexpr uint32_t kSolidBrickKinds = 32;
 
-/// Bytes of a world of 2^level voxels a side (kMinBrickMapLevel to kMaxBrickMapLevel) with that room.
+/// The most room: a node's number takes 24 bits, a brick's 16 with some to spare, and a node has 8 leaves at most.
+inline constexpr EditRoom kMostEditRoom{(uint32_t{1} << 24) - 1, uint32_t{1} << 27, 65000};
+
+/// Bytes of a world of 2^level voxels a side (kMinBrickMapLevel to kMaxBrickMapLevel) with that room; 0 for another
+/// level and for more than the most room.
 constexpr size_t edited_world_bytes(int level, const EditRoom& room) {
+  if (level < kMinBrickMapLevel || level > kMaxBrickMapLevel || room.nodes > kMostEditRoom.nodes ||
+      room.leaves > kMostEditRoom.leaves || room.bricks > kMostEditRoom.bricks) {
+    return 0;
+  }
   const auto up = [](size_t bytes) { return (bytes + 7) & ~size_t{7}; };
   const size_t blocks = (size_t{room.nodes} >> kDefaultRankShift) + 1;
   const size_t cells = size_t{1} << (3 * (level - 2));
@@ -61,7 +69,7 @@ class EditedWorld {
 
   /// Copies `tree` into `bytes` (at a multiple of 8, at least edited_world_bytes of the room). Some 1,000
   /// instructions a brick of the world. Errors, with `world` unchanged: `kOutOfRange` (levels that no brick map
-  /// has, room for more than 65,000 bricks or 2^24 nodes), `kBadArgument` (a coarsened tree, whose blocks are
+  /// has, more than the most room), `kBadArgument` (a coarsened tree, whose blocks are
   /// no voxels; an odd address), `kOutOfMemory` (bytes or room too small, or, with `bytes` written, more than
   /// kSolidBrickKinds materials of solid bricks).
   static Status make(const CompactTree& tree, const EditRoom& room, Bytes bytes, EditedWorld* world);

@@ -1,0 +1,121 @@
+// Each function that says how many bytes a thing takes, against what makes the thing.
+#include <doctest/doctest.h>
+
+#include "misuse/odd_values.h"
+#include "thimble/picture/render.h"
+#include "thimble/plane/bitfield.h"
+#include "thimble/plane/particles.h"
+#include "thimble/thimble_c.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/edited_world.h"
+#include "thimble/tree/octree.h"
+
+namespace thimble::tests {
+namespace {
+
+static_assert(most_brick_map_bytes(kMinBrickMapLevel - 1) == 0 && most_brick_map_bytes(INT32_MIN) == 0 &&
+              most_brick_map_bytes(kMaxBrickMapLevel + 1) == 0 && most_brick_map_bytes(INT32_MAX) == 0);
+static_assert(most_brick_map_bytes(kMinBrickMapLevel) != 0 && most_brick_map_bytes(kMaxBrickMapLevel) != 0);
+
+constexpr std::size_t kMost = std::size_t{1} << 20;
+
+// `make` gets as many bytes as were said to be needed, and one less: none are said exactly where it refuses the arguments.
+// More than a mebibyte is not tried.
+template <class Make>
+void hold_to(std::size_t needed, const Make& make) {
+  ExactBytes room(std::min(needed, kMost));
+  const Status status = make(room.bytes());
+  REQUIRE((status == Status::kOutOfRange) == (needed == 0));
+  if (needed != 0) {
+    REQUIRE((status == Status::kOk) == (needed <= kMost));
+    ExactBytes less(std::min(needed, kMost) - 1);
+    REQUIRE(make(less.bytes()) == Status::kOutOfMemory);
+  }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "bytes: what each function says of any arguments -> 0 exactly where make refuses them, else just "
+    "enough") {
+  misuse(60, 3000, [](OddValues& odd) {
+    // One number in a few is odd: where all are, nothing is ever made.
+    const auto number = [&odd](std::int32_t low, std::int32_t high) {
+      return odd.one_in(12) ? odd.any<std::int32_t>() : odd.between_32(low, high);
+    };
+    ParticleConfig config;
+    config.width = number(0, 110);
+    config.height = number(0, 110);
+    config.capacity = static_cast<std::uint32_t>(number(0, 12));
+    config.least_diameter = number(1, 8);
+    config.most_diameter = number(8, kMaxBallDiameter);
+    config.restitution_q16 = static_cast<std::uint32_t>(number(0, 65536));
+    config.gravity_q16 = {number(-kMaxAccelerationQ16, kMaxAccelerationQ16),
+                          number(-kMaxAccelerationQ16, kMaxAccelerationQ16)};
+    config.substeps_log2 = number(0, 4);
+    config.subpixel_bits = number(1, 15);
+    hold_to(particles_bytes(config), [&config](Bytes bytes) {
+      ParticleWorld world;
+      return ParticleWorld::make(config, bytes, &world);
+    });
+    const thimble_particle_config_t plain{config.width,          config.height,        config.capacity,
+                                          config.least_diameter, config.most_diameter, config.restitution_q16,
+                                          config.gravity_q16.x,  config.gravity_q16.y, config.seed,
+                                          config.substeps_log2,  config.subpixel_bits};
+    hold_to(thimble_particles_bytes(&plain), [&plain](Bytes bytes) {
+      thimble_particles_t world;
+      return static_cast<Status>(thimble_particles_make(&world, &plain, bytes.data, bytes.size));
+    });
+    const Vec3i size{number(1, 200), number(1, 200), number(1, 200)};
+    hold_to(dense_grid_bytes(size), [&size](Bytes bytes) {
+      DenseGrid grid;
+      return DenseGrid::make(size, bytes, &grid);
+    });
+    const int across = number(1, kMaxSamplesAcross);
+    const std::int32_t width = number(1, 300);
+    hold_to(samples_bytes(width, across), [across, width](Bytes bytes) {
+      ExactBytes row(kMost);
+      return average_samples(bytes, across, width, 0, PixelFormat::kRgb888, row.bytes());
+    });
+  });
+}
+
+TEST_CASE(
+    "bytes: worlds that are edited, with any room -> 0 exactly where make refuses it, else just enough") {
+  misuse(61, 400, [](OddValues& odd) {
+    ExactBytes pool(Octree::octree_bytes(64));
+    Octree octree;
+    REQUIRE(Octree::make(odd.between_32(kMinLevel, kMaxLevel), pool.bytes(), &octree) == Status::kOk);
+    REQUIRE(octree.insert({1, 1, 1}, 3) == Status::kOk);
+    ExactBytes packed(512);
+    CompactTree tree;
+    REQUIRE(CompactTree::make(octree, packed.bytes(), &tree) == Status::kOk);
+    const auto most = [&odd](std::uint32_t sound) {
+      return odd.one_in(4) ? odd.any<std::uint32_t>() : static_cast<std::uint32_t>(odd.between(12, sound));
+    };
+    const EditRoom room{most(200), most(200), most(20)};
+    const bool holds = room.nodes >= 12 && room.leaves >= 12 && room.bricks >= 12;
+    if (holds) {
+      hold_to(edited_world_bytes(tree.level(), room), [&](Bytes bytes) {
+        EditedWorld world;
+        return EditedWorld::make(tree, room, bytes, &world);
+      });
+    }
+    CHECK(edited_world_bytes(odd.one_in(2) ? kMaxBrickMapLevel + 1 : kMinBrickMapLevel - 1, room) == 0);
+  });
+}
+
+TEST_CASE("bytes: a pool at any address -> as many nodes as its bytes were asked for") {
+  misuse(62, 400, [](OddValues& odd) {
+    const auto nodes = static_cast<std::size_t>(odd.between(0, 1000));
+    const auto off = static_cast<std::size_t>(odd.between(0, 3));
+    ExactBytes room(Octree::octree_bytes(nodes) + off);
+    Octree octree;
+    REQUIRE(Octree::make(kMinLevel, room.bytes().subspan(off), &octree) == Status::kOk);
+    CHECK(octree.capacity_bytes() >= nodes * 8);
+    CHECK(octree.capacity_bytes() <= nodes * 8 + 3);
+  });
+}
+
+}  // namespace thimble::tests
