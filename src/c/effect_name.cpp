@@ -1,7 +1,7 @@
 #include "thimble/light/scene.h"
 #include "thimble/thimble_c.h"
 
-namespace thimble::c_face {
+namespace thimble {
 
 static_assert(THIMBLE_EFFECT_DIRECT_LIGHT == Effect::kDirectLight &&
               THIMBLE_EFFECT_SHADOWS == Effect::kShadows &&
@@ -15,8 +15,8 @@ static_assert(THIMBLE_EFFECT_DIRECT_LIGHT == Effect::kDirectLight &&
               THIMBLE_EFFECT_EDGES == Effect::kEdges && THIMBLE_EFFECT_RIPPLES == Effect::kRipples);
 static_assert(Effect::kCount == 15, "enum thimble_effects lacks an effect");
 
-extern "C" const char* thimble_effect_name(uint32_t effect) {
-  return effect_name(effect);
-}
+}  // namespace thimble
 
-}  // namespace thimble::c_face
+extern "C" const char* thimble_effect_name(uint32_t effect) {
+  return thimble::effect_name(effect);
+}

@@ -11,6 +11,12 @@
 #include "thimble/base/vec.h"
 #include "thimble/thimble_c.h"
 
+// The functions of thimble_c.h stand in namespace c_face here; `extern "C"` makes them the same ones, but gcc looks for
+// a declaration in that namespace.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmissing-declarations"
+#endif
+
 namespace thimble::c_face {
 
 /// Which kind of object: what a handle's first word says. A handle of another kind holds nothing.

@@ -19,10 +19,14 @@ done
 gcc -std=c99 -Wall -Wextra -Wpedantic -Werror -Iinclude -I"$work" -c tests/c/binding.c -o "$work/binding.o"
 g++ "$work/binding.o" "$library" -o "$work/in_c"
 "$work/in_c" >"$work/in_c.txt"
-# The library as a shared object that shows the face for C alone.
-echo '{ global: thimble_*; local: *; };' >"$work/face.map"
-g++ -shared -nostdlib -Wl,-Bsymbolic,--version-script="$work/face.map" -Wl,--whole-archive "$library" -Wl,--no-whole-archive \
-  -lc -o "$work/libthimble.so"
+# The shared object, by the line of the page.
+line=$(sed -n 's/^    \(g++ -shared .*\)/\1/p' src/c/README.md)
+case $line in
+  *\ build/release/libthimble.a\ *\ libthimble.so) ;;
+  *) echo "c_binding: src/c/README.md has no line that makes libthimble.so of build/release/libthimble.a" >&2 && exit 1 ;;
+esac
+line=${line% libthimble.so}
+${line%% build/release/libthimble.a *} "$library" ${line#* build/release/libthimble.a } "$work/libthimble.so"
 draw() {
   python3 -B tests/c/binding.py "$1" "$work/libthimble.so" "$work/scene.oct" >"$work/in_python.txt" 2>"$work/said" &&
     cmp -s "$work/in_c.txt" "$work/in_python.txt"
