@@ -167,6 +167,28 @@ void draw_text(Canvas* canvas, std::int32_t x, std::int32_t y, std::int32_t scal
   }
 }
 
+std::string folded(std::string_view text, std::size_t columns) {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t end = std::min(text.find('\n'), text.size());
+    std::size_t next = end;
+    if (end > columns) {
+      const std::size_t blank = text.substr(0, columns + 1).rfind(' ');
+      const bool has_words =
+          blank != std::string_view::npos && text.find_first_not_of(' ') < blank;  // not of indents alone
+      end = has_words ? text.find_last_not_of(' ', blank) + 1 : columns;
+      next = has_words ? std::min(text.find_first_not_of(' ', blank), text.size()) : columns;
+      out += text.substr(0, end);
+      out += '\n';
+    } else {
+      next = std::min(end + 1, text.size());
+      out += text.substr(0, next);
+    }
+    text.remove_prefix(next);
+  }
+  return out;
+}
+
 TextSize text_size(std::string_view text) {
   TextSize size;
   while (!text.empty()) {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -61,6 +62,8 @@ struct TextSize {
   std::int32_t lines = 0;
 };
 TextSize text_size(std::string_view text);
+/// Lines of at most `columns` (above 0), broken between words; a longer word is broken where it must be.
+std::string folded(std::string_view text, std::size_t columns);
 
 }  // namespace thimble::host
 

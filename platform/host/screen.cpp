@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <string>
+
 #include "host/headless.h"
 #include "host/terminal.h"
 #include "host/window_x11.h"
@@ -9,6 +11,7 @@
 namespace thimble::host {
 
 std::unique_ptr<Screen> open_screen(ScreenKind kind, const ScreenOptions& options) {
+  std::string fault;
   switch (kind) {
     case ScreenKind::kWindow:
       return open_window(options);
@@ -17,8 +20,8 @@ std::unique_ptr<Screen> open_screen(ScreenKind kind, const ScreenOptions& option
     case ScreenKind::kAuto:
       try {
         return open_window(options);
-      } catch (const ScreenError&) {
-        // No window system is the usual case over ssh.
+      } catch (const ScreenError& error) {
+        fault = error.what();  // no window system is the usual case over ssh
       }
       if (::isatty(STDOUT_FILENO) != 0) {
         try {
@@ -31,7 +34,7 @@ std::unique_ptr<Screen> open_screen(ScreenKind kind, const ScreenOptions& option
     case ScreenKind::kNone:
       break;
   }
-  return std::make_unique<HeadlessScreen>();
+  return std::make_unique<HeadlessScreen>(fault);
 }
 
 }  // namespace thimble::host

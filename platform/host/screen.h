@@ -1,6 +1,6 @@
 /// @file screen.h
 /// Where a program on a desktop shows pictures and hears keys and mouse: one interface for an X11 window, a
-/// terminal, and nothing at all.
+/// terminal, and nothing at all. A terminal whose locale is not UTF-8 gets ASCII alone, and half as many lines.
 ///
 /// A program opens a screen, and then, again and again, takes events until there are none and shows a
 /// picture. The screen decides how large a pixel becomes; the mouse is reported in pixels of the picture. All
@@ -130,6 +130,9 @@ class Screen {
   /// half cells. 0 where nothing is shown.
   virtual std::int32_t width_px() const = 0;
   virtual std::int32_t height_px() const = 0;
+  /// Why nobody sees it (any more), in words: the window system has ended, or cannot show it. Empty where the user sees it, or
+  /// has ended it.
+  virtual std::string fault() const { return {}; }
   /// "window", "terminal" or "none".
   virtual const char* name() const = 0;
 };

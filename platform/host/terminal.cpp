@@ -1,6 +1,8 @@
 #include "host/terminal.h"
 
 #include <fcntl.h>
+#include <langinfo.h>
+#include <locale.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -42,6 +44,21 @@ std::string environment(const char* name) {
 bool has_true_color() {
   const std::string color = environment("COLORTERM");
   return color == "truecolor" || color == "24bit" || environment("TERM").ends_with("-direct");
+}
+
+// Whether the user's locale writes UTF-8. One that is not installed here is known by its name.
+bool has_utf8() {
+  if (const locale_t own = ::newlocale(LC_CTYPE_MASK, "", nullptr); own != nullptr) {
+    const std::string codes = ::nl_langinfo_l(CODESET, own);
+    ::freelocale(own);
+    return codes == "UTF-8";
+  }
+  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    if (const std::string value = environment(name); !value.empty()) {
+      return value.find("UTF-8") != std::string::npos || value.find("utf8") != std::string::npos;
+    }
+  }
+  return false;
 }
 
 // The look in this terminal. Of 256 colours few are alike but for their brightness, except among the greys;
@@ -149,7 +166,7 @@ int open_descriptor() {
 Terminal::Terminal(const ScreenOptions& options)
     : descriptor_(open_descriptor()),
       mode_(descriptor_.get()),
-      cells_(has_true_color()),
+      cells_(has_true_color(), has_utf8()),
       look_(look_for(options.look, has_true_color())),
       fixed_scale_(options.scale),
       status_lines_(options.status_lines),

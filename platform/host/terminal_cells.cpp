@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 
@@ -25,6 +26,14 @@ int nearest_level(int value) {
 
 int distance(Rgb8 color, int r, int g, int b) {
   return (color.r - r) * (color.r - r) + (color.g - g) * (color.g - g) + (color.b - b) * (color.b - b);
+}
+
+// A channel's value stands for about its square in light (canvas.cpp).
+Rgb8 mean_of(Rgb8 one, Rgb8 other) {
+  const auto mean = [](int a, int b) {
+    return static_cast<std::uint8_t>(std::lround(std::sqrt((a * a + b * b) / 2.0)));
+  };
+  return {mean(one.r, other.r), mean(one.g, other.g), mean(one.b, other.b)};
 }
 
 }  // namespace
@@ -67,6 +76,11 @@ void TerminalCells::put_canvas(Canvas* canvas) {
     const Rgb8* lower = canvas->row(2 * row + 1);
     Cell* to = cell(0, row);
     for (std::int32_t column = 0; column < columns; ++column) {
+      if (!has_halves_) {
+        const std::uint32_t whole = code(mean_of(upper[column], lower[column]));
+        to[column] = Cell{' ', whole, whole};
+        continue;
+      }
       const std::uint32_t top = code(upper[column]);
       const std::uint32_t bottom = code(lower[column]);
       to[column] = top == bottom ? Cell{' ', top, top} : Cell{kHalf, top, bottom};

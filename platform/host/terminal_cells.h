@@ -18,7 +18,10 @@ std::uint8_t nearest_of_256(Rgb8 color);
 
 class TerminalCells {
  public:
-  explicit TerminalCells(bool has_true_color) : has_true_color_(has_true_color) {}
+  /// `has_halves`: whether it shows U+2580 in UTF-8. Without it a cell has the mean light of its two pixels, and all that is
+  /// sent is ASCII.
+  TerminalCells(bool has_true_color, bool has_halves)
+      : has_true_color_(has_true_color), has_halves_(has_halves) {}
 
   /// Another size, or a terminal that was cleared: nothing on it is known.
   void reset(std::int32_t columns, std::int32_t rows);
@@ -47,6 +50,7 @@ class TerminalCells {
   Cell* cell(std::int32_t column, std::int32_t row);
 
   bool has_true_color_;
+  bool has_halves_;
   std::int32_t columns_ = 0;
   std::int32_t rows_ = 0;
   std::vector<Cell> shown_;

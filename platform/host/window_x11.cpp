@@ -108,6 +108,7 @@ class Window final : public Screen {
   std::optional<Event> next_event(int timeout_ms) override;
   std::int32_t width_px() const override { return canvas_.width_px; }
   std::int32_t height_px() const override { return canvas_.height_px - panel_px(); }
+  std::string fault() const override { return lost_ ? "the display " + server_ + " has ended" : ""; }
   const char* name() const override { return "window"; }
 
  private:
@@ -130,6 +131,7 @@ class Window final : public Screen {
   void release_keys();
 
   Display* display_ = nullptr;
+  std::string server_;  // its name
   int screen_number_ = 0;
   XVisualInfo visual_{};
   ::Window window_ = 0;
@@ -175,6 +177,11 @@ Window::Window(const ScreenOptions& options)
                           ? std::string("there is no window system: DISPLAY is not set")
                           : "the display " + std::string(name) + " cannot be opened");
   }
+  server_ = DisplayString(display_);
+  // Without these two the library ends the program when the server goes, in its own words.
+  XSetIOErrorHandler([](Display*) { return 0; });
+  XSetIOErrorExitHandler(
+      display_, [](Display*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   try {
     choose_visual();
     open(options);
@@ -210,7 +217,9 @@ void Window::choose_visual() {
     XFree(found);
   }
   if (!usable && XMatchVisualInfo(display_, screen_number_, 24, TrueColor, &visual_) == 0) {
-    throw ScreenError("the display has no true colours");
+    throw ScreenError("the display " + server_ + " has " +
+                      std::to_string(DefaultDepth(display_, screen_number_)) +
+                      " bits a pixel; a window takes one of true colours, of 16 bits or more");
   }
 }
 
@@ -248,14 +257,13 @@ void Window::open(const ScreenOptions& options) {
   XClassHint hint{name, name};
   XSetClassHint(display_, window_, &hint);
   XkbSetDetectableAutoRepeat(display_, True, nullptr);  // a held key is pressed again, not let go in between
-  // Without these two the library ends the program when the server goes.
-  XSetIOErrorHandler([](Display*) { return 0; });
-  XSetIOErrorExitHandler(
-      display_, [](Display*, void* window) { static_cast<Window*>(window)->lost_ = true; }, this);
   set_title(options.title);
   XMapWindow(display_, window_);
   resize(width, height);
   XSync(display_, False);
+  if (lost_) {
+    throw ScreenError(fault());
+  }
   if (failed_requests != 0) {
     throw ScreenError("the display does not make a window of " + std::to_string(width) + " x " +
                       std::to_string(height) + " pixels");

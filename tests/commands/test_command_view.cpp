@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -551,4 +552,51 @@ TEST_CASE("view: --bench -> a line of CSV under its columns, on any machine") {
   CHECK(names.size() == 11);
   CHECK(lines[1].find("\"points:500,depth=6\",") == 0);
   CHECK(split(lines[1]).size() == names.size() + 1);
+}
+
+TEST_CASE("view, sim, particles: their display ends -> status 1 and one sentence that says so") {
+  const std::vector<Words> tools{{"view", "spheres,depth=5", "--size", "200x150"},
+                                 {"view", "water,depth=6", "--size", "600x500", "--samples", "64"},
+                                 {"sim", "--display", "window"},
+                                 {"particles", "--display", "window"}};
+  for (const Words& words : tools) {
+    CAPTURE(words[0]);
+    VirtualDisplay display("1000x800x24");
+    if (!can_test(display)) {
+      return;
+    }
+    const TemporaryFolder folder;
+    const std::string wanted = "thimble: the display " + std::string(std::getenv("DISPLAY")) + " has ended\n";
+    Viewing viewing(folder, words);
+    REQUIRE(display.xdotool("search --sync --onlyvisible --class thimble"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    display.stop();
+    CHECK(viewing.wait() == 1);
+    const std::string err = viewing.err();
+    CAPTURE(err);
+    CHECK(err.size() >= wanted.size());
+    CHECK(err.substr(err.size() - std::min(err.size(), wanted.size())) == wanted);
+    CHECK(err.find("X connection") == std::string::npos);
+  }
+}
+
+TEST_CASE("view: a window too small for its rays says so, and no more once it has grown") {
+  const VirtualDisplay display("1000x800x24");
+  if (!can_test(display)) {
+    return;
+  }
+  const TemporaryFolder folder;
+  Viewing viewing(folder, {"view", "spheres,depth=5", "--size", "900x300", "--samples", "1", "--fov", "120"});
+  REQUIRE(point_into(display));
+  // The panel of the text, on the line below the state: it is there for a message alone.
+  const auto has_message = [&] { return display.pixel(5, 8 + 20 + 12) == thimble::Rgb8{32, 34, 38}; };
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  CHECK_FALSE(has_message());
+  REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 900 1 sleep 0.5"));
+  REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 900 300 sleep 0.5"));
+  CHECK_FALSE(has_message());
+  REQUIRE(display.xdotool("mousemove 890 290 key p sleep 0.5"));
+  CHECK(has_message());  // where a message would have been
+  REQUIRE(display.xdotool("key q"));
+  CHECK(viewing.wait() == 0);
 }

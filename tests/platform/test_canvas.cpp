@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -64,4 +65,27 @@ TEST_CASE("canvas: text -> every printable character has dots of its own, within
   const TextSize size = text_size("ab\nabcd\n\nx");
   CHECK(size.columns == 4);
   CHECK(size.lines == 4);
+}
+
+TEST_CASE("canvas: a text is folded between words, and within one that is longer than a line") {
+  CHECK(folded("the picture is saved as soon", 12) == "the picture\nis saved as\nsoon");
+  CHECK(folded("twelve lette", 12) == "twelve lette");
+  CHECK(folded("twelve lette rs", 12) == "twelve lette\nrs");
+  CHECK(folded("aaaabbbbcccc dd", 4) == "aaaa\nbbbb\ncccc\ndd");
+  CHECK(folded("one\ntwo three\n\nfour", 9) == "one\ntwo three\n\nfour");
+  CHECK(folded("  indent", 4) == "  in\ndent");
+  CHECK(folded("a   b", 2) == "a\nb");
+  CHECK(folded("", 4).empty());
+  const std::string words =
+      "saved spheres-depth-5.png; the same picture by thimble render spheres,depth=5 -o a.png";
+  for (std::size_t columns = 1; columns < 90; ++columns) {
+    const std::string lines = folded(words, columns);
+    CHECK(static_cast<std::size_t>(text_size(lines).columns) <= columns);
+    std::string letters;
+    std::string wanted;
+    std::copy_if(lines.begin(), lines.end(), std::back_inserter(letters),
+                 [](char c) { return c != ' ' && c != '\n'; });
+    std::copy_if(words.begin(), words.end(), std::back_inserter(wanted), [](char c) { return c != ' '; });
+    CHECK(letters == wanted);
+  }
 }

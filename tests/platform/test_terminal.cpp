@@ -209,7 +209,7 @@ TEST_CASE("terminal input: random bytes -> no crash, and it comes to rest") {
 
 TEST_CASE("terminal cells: only cells that changed are sent, with the colours that the terminal has") {
   for (const bool true_color : {true, false}) {
-    TerminalCells cells(true_color);
+    TerminalCells cells(true_color, true);
     cells.reset(10, 4);
     Canvas canvas;
     canvas.resize(10, 6);
@@ -236,6 +236,65 @@ TEST_CASE("terminal cells: only cells that changed are sent, with the colours th
     cells.reset(10, 4);
     cells.put_canvas(&canvas);
     CHECK(cells.changes().size() > second.size());
+  }
+}
+
+TEST_CASE("terminal cells: without halves -> ASCII alone, and a cell has the light of both its pixels") {
+  TerminalCells cells(true, false);
+  cells.reset(3, 1);
+  Canvas canvas;
+  canvas.resize(3, 2);
+  canvas.fill(0, 0, 1, 1, {200, 100, 10});
+  canvas.fill(1, 0, 1, 2, {7, 8, 9});
+  cells.put_canvas(&canvas);
+  const std::string all = cells.changes();
+  CHECK(all.find("48;2;141;71;7m ") != std::string::npos);
+  CHECK(all.find("48;2;7;8;9m ") != std::string::npos);
+  CHECK(std::all_of(all.begin(), all.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; }));
+}
+
+TEST_CASE("terminal: the locale's codes -> halves in UTF-8, else not a byte beyond ASCII") {
+  struct Case {
+    const char* name;
+    const char* value;
+    bool has_halves;
+  };
+  // The last two are not installed here, so their names count.
+  const std::vector<Case> cases{{"LC_ALL", "C", false},        {"LC_ALL", "POSIX", false},
+                                {"LC_CTYPE", "C.UTF-8", true}, {"LANG", "C.UTF-8", true},
+                                {"LANG", "", false},           {"LC_ALL", "de_XY.ISO-8859-1", false},
+                                {"LC_ALL", "de_XY.utf8", true}};
+  for (const Case& one : cases) {
+    CAPTURE(one.name);
+    CAPTURE(one.value);
+    Pty pty(40, 13, [&] {
+      for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+        ::unsetenv(name);
+      }
+      ::setenv(one.name, one.value, 1);
+      ScreenOptions options;
+      options.title = "a title: \u00E4";
+      options.width_px = 40;
+      options.height_px = 26;
+      options.status_lines = 1;
+      std::vector<std::uint8_t> rgb(3 * 40 * 26);
+      for (std::size_t i = 0; i < rgb.size(); ++i) {
+        rgb[i] = static_cast<std::uint8_t>(i / 120 * 9);  // each row its own grey
+      }
+      const auto screen = open_terminal(options);
+      screen->set_status("caf\u00E9");
+      screen->set_overlay("\u2580");
+      screen->show({rgb.data(), 40, 26});
+      return 0;
+    });
+    CHECK(pty.wait_for_end());
+    CHECK(pty.exit_status() == 0);
+    const std::string& all = pty.output();
+    CHECK(all.size() > 500);
+    const bool is_ascii =
+        std::all_of(all.begin(), all.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+    CHECK(is_ascii == !one.has_halves);
+    CHECK((all.find("\u2580") != std::string::npos) == one.has_halves);
   }
 }
 

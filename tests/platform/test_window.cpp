@@ -2,6 +2,7 @@
 // missing.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -183,6 +184,29 @@ TEST_CASE("window: a display of 16 bits -> the same picture in its colours") {
   CHECK(display.pixel(4, 4) == Rgb8{0, 0, 0});
 }
 
+TEST_CASE("window: a display of 8 bits -> no window, and a sentence with its bits") {
+  const VirtualDisplay display("640x480x8");
+  if (!can_test(display)) {
+    return;
+  }
+  const std::string sentence = "the display " + std::string(std::getenv("DISPLAY")) +
+                               " has 8 bits a pixel; a window takes one of true colours, of 16 bits or more";
+  CHECK_THROWS_WITH_AS(open_screen(ScreenKind::kWindow, options_of(Theme::kPlain)), sentence.c_str(),
+                       ScreenError);
+  for (const char* tool : {"view", "sim", "particles"}) {
+    CAPTURE(tool);
+    std::vector<std::string> words{tool, "--display", "window"};
+    if (std::string(tool) == "view") {
+      words = {"view", "spheres,depth=4"};  // a window or a terminal; there is neither
+    }
+    const auto told = thimble::tests::run_command(words);
+    CAPTURE(told.describe());
+    CHECK(told.status == 1);
+    CHECK(told.err.find(sentence) != std::string::npos);
+    CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 1);
+  }
+}
+
 TEST_CASE("window: destroyed by somebody else, or its server gone -> close, and the program lives") {
   VirtualDisplay display("1280x900x24");
   if (!can_test(display)) {
@@ -199,8 +223,11 @@ TEST_CASE("window: destroyed by somebody else, or its server gone -> close, and 
   }
   const auto screen = open_screen(ScreenKind::kWindow, options_of(Theme::kPlain));
   screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
+  CHECK(screen->fault().empty());
+  const std::string sentence = "the display " + std::string(std::getenv("DISPLAY")) + " has ended";
   display.stop();
   CHECK(wait_for(screen.get(), of_kind(EventKind::kClose)));
+  CHECK(screen->fault() == sentence);
   screen->show({rgb.data(), kWindowWidthPx, kWindowHeightPx});
   screen->set_title("gone");
   CHECK_THROWS_AS(open_screen(ScreenKind::kWindow, options_of(Theme::kPlain)), ScreenError);

@@ -149,6 +149,9 @@ void run(const ParticlesCommand& given) {
   if (!command.play.quiet) {
     std::fputs(particle_summary(*populated, result.counts, result.step_seconds).c_str(), stderr);
   }
+  if (!result.screen_fault.empty()) {
+    throw OutputError(result.screen_fault);
+  }
 }
 
 // An option that is a finite number of low .. high.

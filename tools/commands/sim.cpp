@@ -309,7 +309,8 @@ int run_and_write(SimCommand* command, std::string* sentence) {
       std::fprintf(stderr, "%s: equal, pixel by pixel\n", printable(command->check_path).c_str());
     }
   }
-  return 0;
+  *sentence = result.screen_fault;
+  return result.screen_fault.empty() ? 0 : 1;
 }
 
 void run(const SimCommand& given) {

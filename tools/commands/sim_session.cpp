@@ -370,6 +370,7 @@ SessionResult SimSession::run() {
   // Frames that came between two questions cannot be told apart.
   result.mean_frame_seconds = frames_ == 0 || frames_ != pictures_ ? 0 : seconds_ / frames_;
   const bool was_hidden = uart_in_pane_;
+  result.screen_fault = watched() ? screen_->fault() : "";
   screen_.reset();
   if (was_hidden) {
     std::fputs(output_.c_str(), stdout);

@@ -35,7 +35,8 @@ struct SessionOptions {
 
 struct SessionResult {
   int status = 0;
-  std::string fault;  ///< a sentence where the application was stopped
+  std::string fault;         ///< a sentence where the application was stopped
+  std::string screen_fault;  ///< a sentence where the screen that somebody watched has gone
   std::uint32_t pictures = 0;
   std::uint64_t rows_sent = 0;  ///< to the display
   std::uint64_t rows_kept = 0;  ///< left there, unchanged

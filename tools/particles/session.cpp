@@ -240,7 +240,7 @@ PlayResult ParticleSession::run() {
     end.tick = player_.ticks();
     options_.input_recording->write(to_text(end));
   }
-  return {player_.counts(), step_seconds_, player_.figures(options_.rate)};
+  return {player_.counts(), step_seconds_, player_.figures(options_.rate), watched() ? screen_->fault() : ""};
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ inline constexpr std::uint64_t kUnseenSteps = 2000;
 struct PlayResult {
   PlayedCounts counts;
   double step_seconds = 0;
-  std::string figures;  ///< Player::figures at the end
+  std::string figures;       ///< Player::figures at the end
+  std::string screen_fault;  ///< a sentence where the screen that somebody watched has gone
 };
 
 /// Plays until the end. Throws host::ScreenError and OutputError.

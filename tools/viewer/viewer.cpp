@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/canvas.h"
 #include "output/output_file.h"
 #include "output/units.h"
 #include "scene/host_memory.h"
@@ -133,6 +134,7 @@ class Viewer {
   double frame_seconds_ = 0;
   std::string message_;
   double message_until_ = 0;
+  std::string camera_fault_;        // why there is no picture of the camera as it is
   std::vector<std::string> lines_;  // for standard output, once the terminal is free again
 };
 
@@ -154,7 +156,9 @@ void Viewer::open() {
     throw OutputError(error.what());
   }
   if (screen_->width_px() <= 0) {
-    throw OutputError("there is neither a display nor a terminal to look around in; thimble render " +
+    const std::string why = screen_->fault();
+    throw OutputError("there is neither a display nor a terminal to look around in" +
+                      (why.empty() ? "" : " (" + why + ")") + "; thimble render " +
                       quoted_for_shell(options_.scene.scene) + " -o picture.png draws a picture");
   }
   is_terminal_ = std::string(screen_->name()) == "terminal";
@@ -436,8 +440,14 @@ void Viewer::draw_frame() {
     picture = std::make_shared<FinishedPicture>(look_, wishes);
   } catch (const InputError& error) {
     tell(error.what());  // a camera that cannot be: the picture before it stays
+    camera_fault_ = message_;
     return;
   }
+  if (!camera_fault_.empty() && message_ == camera_fault_) {
+    message_.clear();
+    message_until_ = 0;
+  }
+  camera_fault_.clear();
   stop_refining();
   if (pool_ != nullptr) {
     picture->show_water(pool_->surface());
@@ -559,21 +569,6 @@ std::string Viewer::state_text() const {
   return text.data();
 }
 
-// Lines of at most `columns`, broken where they must be.
-std::string folded(const std::string& text, std::size_t columns) {
-  std::string out;
-  std::size_t used = 0;
-  for (const char c : text) {
-    if (c != '\n' && used == columns) {
-      out += '\n';
-      used = 0;
-    }
-    out += c;
-    used = c == '\n' ? 0 : used + 1;
-  }
-  return out;
-}
-
 void Viewer::show() {
   needs_showing_ = false;
   std::string overlay = state_text();
@@ -587,7 +582,7 @@ void Viewer::show() {
   }
   // Text in a window is up to twelve pixels wide a letter.
   const std::int32_t columns = is_terminal_ ? screen_->width_px() - 3 : (screen_->width_px() - 32) / 12;
-  screen_->set_overlay(folded(overlay, static_cast<std::size_t>(std::max(columns, 16))));
+  screen_->set_overlay(host::folded(overlay, static_cast<std::size_t>(std::max(columns, 16))));
   if (picture_ == nullptr) {
     const std::int32_t width = std::clamp(screen_->width_px(), 1, kMaxPicturePx);
     const std::int32_t height = std::clamp(screen_->height_px(), 1, kMaxPicturePx);
@@ -625,6 +620,7 @@ void Viewer::run() {
 }
 
 void Viewer::end() {
+  const std::string fault = screen_->fault();
   screen_.reset();
   for (const std::string& line : lines_) {
     std::printf("%s\n", line.c_str());
@@ -655,9 +651,16 @@ void Viewer::end() {
   const double until = now() + kGoodbyeSeconds;
   while (!all_ended()) {
     if (now() > until) {
-      std::_Exit(std::ferror(stdout) != 0 ? 1 : 0);  // in the middle of a row; nobody needs it
+      if (!fault.empty()) {
+        std::fprintf(stderr, "thimble: %s\n", fault.c_str());
+      }
+      // In the middle of a row; nobody needs it.
+      std::_Exit(std::ferror(stdout) != 0 || !fault.empty() ? 1 : 0);
     }
     sleep_ms(2);
+  }
+  if (!fault.empty()) {
+    throw OutputError(fault);
   }
 }
 
