@@ -82,9 +82,9 @@ inline void flush_again(const Band& band) {
 /// `begin_flush`, returns: at most one band is on its way. So an application with `band_buffers()` bands of
 /// memory, used by turns, never waits by itself. A port that sends while the next band is drawn (DMA) has
 /// both, and two bands; any other needs neither: there begin_flush is flush, one band is enough, and the
-/// compiler removes the rest. The host simulates boards of either kind, and stops an application that writes
-/// too early.
-#if defined(THIMBLE_PORT_DRAWS)
+/// compiler removes the rest. A host, or the page, simulates boards of either kind (THIMBLE_PORT_SIMULATES); the host
+/// stops an application that writes too early.
+#if defined(THIMBLE_PORT_SIMULATES)
 void begin_flush(const Band& band);
 void await_flush();
 int32_t band_buffers();
@@ -109,8 +109,8 @@ constexpr int32_t band_buffers() {
 /// `begin_share` has it call `share(argument)`, and `await_share` waits until that has returned. Between the two both
 /// cores run; what both touch, `begin_flush` and `await_flush` too, is touched between `lock` and `unlock`. The
 /// other functions of this file are for the first core.
-/// A port with one core has none of it, and the compiler removes what asks for it. The host, which simulates boards of
-/// either kind, has the number, so that memory is shared out as on the board, and no second core.
+/// A port with one core has none of it, and the compiler removes what asks for it. What simulates boards has the
+/// number, so that memory is shared out as on the board, and no second core.
 #if defined(THIMBLE_CORES)
 inline constexpr bool kCanShare = true;
 constexpr int32_t cores() {
@@ -123,7 +123,7 @@ void lock();
 void unlock();
 #else
 inline constexpr bool kCanShare = false;
-#if defined(THIMBLE_PORT_DRAWS)
+#if defined(THIMBLE_PORT_SIMULATES)
 int32_t cores();
 #else
 constexpr int32_t cores() {

@@ -96,6 +96,7 @@ function lookOn(now) {
   } else if (viewer.phase === 'waits' && viewer.view.camera !== viewer.camera) {
     if (asks) askLook(viewer);
   } else if (viewer.phase === 'waits' && !isPlaying() && now - viewer.since > 120) {
+    follow();
     nextPicture(viewer);
   } else if (crew === null && viewer.phase in PHASES) {
     const first = viewer.row;

@@ -1,7 +1,6 @@
-// What the page calls: which boards there are, and the memory of one of them, set up for an application.
+// What the page calls: the memory of a board, set up for an application.
 #include "boards/board_table.h"
 
-#include "apps/text.h"
 #include "web/layout.h"
 
 extern "C" uint8_t __heap_base;  // the linker's: the end of constants and variables
@@ -53,17 +52,6 @@ uint64_t sum_of(ConstBytes bytes) {
   return sum;
 }
 
-void field(const char* name, uint32_t value) {
-  apps::put(name);
-  apps::put_number(value);
-}
-
-void text_field(const char* name, const char* value) {
-  apps::put(name);
-  apps::put(value);
-  apps::put("\"");
-}
-
 }  // namespace
 
 // The stack lies at the bottom of the memory, from address 0 to the first variable.
@@ -81,30 +69,6 @@ __attribute__((noinline)) uint32_t used_stack() {
 using thimble::web::layout;
 
 extern "C" {
-
-// Writes the table of boards (boards/board_table.h) as JSON.
-[[clang::export_name("boards")]] void thimble_boards() {
-  using namespace thimble;
-  using web::field;
-  using web::text_field;
-  const char* between = "[";
-  for (const platform::BoardFacts& board : platform::boards()) {
-    apps::put(between);
-    text_field("{\"name\":\"", board.name);
-    text_field(",\"title\":\"", board.title);
-    field(",\"ram\":", board.ram_bytes);
-    field(",\"flash\":", board.flash_bytes);
-    field(",\"stack\":", board.stack_bytes);
-    field(",\"screen\":", static_cast<uint32_t>(board.screen));
-    field(",\"format\":", static_cast<uint32_t>(board.format));
-    field(",\"width\":", static_cast<uint32_t>(board.width_px));
-    field(",\"height\":", static_cast<uint32_t>(board.height_px));
-    field(",\"buttons\":", static_cast<uint32_t>(board.buttons));
-    apps::put("}");
-    between = ",\n";
-  }
-  apps::put("]");
-}
 
 // Sets the memory up for `app` on board number `index`, with a scene of so many bytes and `connected` saying
 // whether a display is shown: once in the life of a module. Where the scene is to be copied to; null where
@@ -139,6 +103,8 @@ extern "C" {
                   board.visits_a_second,
                   board.map_rays_a_second,
                   0};
+  layout.band_buffers = board.band_buffers;
+  layout.cores = board.cores;
   layout.scene = {web::at(scene), scene_bytes};
   layout.arena = {end - arena_bytes, arena_bytes};
   layout.guard = {layout.arena.data - web::kGuardBytes, web::kGuardBytes};

@@ -18,6 +18,8 @@ namespace thimble::web {
 
 struct Layout {
   port::Facts facts;
+  int32_t band_buffers;
+  int32_t cores;
   Bytes scene;
   Bytes guard;
   Bytes arena;

@@ -3,15 +3,8 @@
 // frame, until a slice of time is over.
 'use strict';
 
-// The order of PixelFormat (include/thimble/picture/pixel.h).
-const FORMATS = ['mono1', 'gray4', 'gray8', 'rgb565', 'rgb888'];
-const BITS_PER_PIXEL = [1, 4, 8, 16, 24];
 const STACK_PAINT = 0xA5;  // port.h
 const BUTTONS = {up: 1, down: 2, left: 4, right: 8, select: 16};
-
-function rowBytes(board) {
-  return Math.ceil(board.width * BITS_PER_PIXEL[board.format] / 8);
-}
 
 // A sentence that ends what a module does.
 class Fault extends Error {}
@@ -20,19 +13,23 @@ class Fault extends Error {}
 class Display {
   constructor(board) {
     this.board = board;
-    this.stride = rowBytes(board);
-    this.bytes = new Uint8Array(this.stride * board.height);
+    this.stride = board.row_bytes;
+    this.bytes = new Uint8Array(this.packed(board.height));
     this.has = new Uint8Array(board.height);
     this.rows = 0;
     this.pictures = 0;
     this.changed = [board.height, 0];  // rows that a canvas does not show yet
+  }
+  // Bytes of so many rows, of which some formats keep several together.
+  packed(rows) {
+    return this.stride * Math.ceil(rows / this.board.rows_together);
   }
   take(bytes, first, rows) {
     const {height} = this.board;
     if (rows <= 0 || first < 0 || first + rows > height) {
       throw new Fault(`it flushed rows ${first} to ${first + rows - 1}, and the display has ${height}`);
     }
-    if (bytes !== null && bytes.length < rows * this.stride) {
+    if (bytes !== null && bytes.length < this.packed(rows)) {
       throw new Fault(`it flushed ${bytes.length} bytes for ${rows} rows of ${this.stride}`);
     }
     if (bytes === null && this.pictures === 0) {
@@ -43,7 +40,7 @@ class Display {
       this.has[row] = 1;
     }
     if (bytes !== null) {
-      this.bytes.set(bytes.subarray(0, rows * this.stride), first * this.stride);
+      this.bytes.set(bytes.subarray(0, this.packed(rows)), this.packed(first));
       this.changed = [Math.min(this.changed[0], first), Math.max(this.changed[1], first + rows)];
     }
     this.rows += rows;
@@ -59,7 +56,7 @@ class Display {
 }
 
 class Machine {
-  // `module`: a WebAssembly.Module. `options`: board (of boardsOf), app, scene (Uint8Array), connected, slice_ms.
+  // `module`: a WebAssembly.Module. `options`: board (of Table.boards), app, scene (Uint8Array), connected, slice_ms.
   constructor(module, options) {
     this.board = options.board;
     this.app = options.app;
@@ -183,48 +180,30 @@ function faultOf(error) {
   return text;
 }
 
-// The table of boards that a module was built with.
-function boardsOf(module) {
-  let text = '';
-  const x = new WebAssembly.Instance(module, {env: {
-    flush() {}, running: () => 0, buttons: () => 0, read: () => -1, microseconds: () => 0,
-    write: (at, size) => { text += new TextDecoder().decode(new Uint8Array(x.memory.buffer, at, size)); },
-  }}).exports;
-  x.boards();
-  return JSON.parse(text).map((board, index) => ({...board, index}));
-}
-
-// Packed rows as RGBA, 8 bits each: what `thimble sim --shot` writes. `to` is of the whole picture.
-function expandRows(display, from, end, to) {
-  const {board, stride, bytes} = display;
-  const {width, format} = board;
-  for (let y = from; y < end; ++y) {
-    let at = 4 * width * y;
-    const row = y * stride;
-    for (let x = 0; x < width; ++x, at += 4) {
-      let r, g, b;
-      if (format === 0) {
-        r = g = b = (bytes[row + (x >> 3)] << (x & 7)) & 0x80 ? 255 : 0;
-      } else if (format === 1) {
-        r = g = b = ((bytes[row + (x >> 1)] >> (x & 1 ? 0 : 4)) & 15) * 17;
-      } else if (format === 2) {
-        r = g = b = bytes[row + x];
-      } else if (format === 3) {
-        const pixel = bytes[row + 2 * x] | (bytes[row + 2 * x + 1] << 8);
-        const red = pixel >> 11, green = (pixel >> 5) & 63, blue = pixel & 31;
-        r = (red << 3) | (red >> 2);
-        g = (green << 2) | (green >> 4);
-        b = (blue << 3) | (blue >> 2);
-      } else {
-        r = bytes[row + 3 * x];
-        g = bytes[row + 3 * x + 1];
-        b = bytes[row + 3 * x + 2];
-      }
-      to[at] = r;
-      to[at + 1] = g;
-      to[at + 2] = b;
-      to[at + 3] = 255;
+// The table of boards, and what their pixels look like, from the module that has both (table.cpp).
+class Table {
+  constructor(module) {
+    let text = '';
+    this.x = new WebAssembly.Instance(module, {env: {
+      flush() {}, running: () => 0, buttons: () => 0, read: () => -1, microseconds: () => 0,
+      write: (at, size) => { text += new TextDecoder().decode(new Uint8Array(this.x.memory.buffer, at, size)); },
+    }}).exports;
+    this.x.boards();
+    this.boards = JSON.parse(text).map((board, index) => ({...board, index}));
+  }
+  // Packed rows as RGBA, 8 bits each: what `thimble sim --shot` writes. `to` is of the whole picture.
+  expand(display, from, end, to) {
+    const {width, format, rows_together: together} = display.board;
+    const first = from - from % together;
+    const packed = display.bytes.subarray(display.packed(first), display.packed(end));
+    const room = this.x.room(packed.length + 8 + 4 * width * (end - first));
+    if (room === 0) throw new Fault('there is no memory for a picture here');
+    const pixels = room + packed.length + 8 & ~7;
+    new Uint8Array(this.x.memory.buffer).set(packed, room);
+    if (!this.x.expand(format, room, width, first, end, pixels)) {
+      throw new Fault(`this page knows no pixels of format ${format}, which ${display.board.name} has`);
     }
+    to.set(new Uint8Array(this.x.memory.buffer, pixels + 4 * width * (from - first), 4 * width * (end - from)), 4 * width * from);
   }
 }
 
@@ -240,5 +219,5 @@ function crc32(bytes) {
 }
 
 if (typeof module !== 'undefined') {
-  module.exports = {FORMATS, BUTTONS, Fault, Display, Machine, boardsOf, expandRows, crc32};
+  module.exports = {BUTTONS, Fault, Display, Machine, Table, crc32};
 }

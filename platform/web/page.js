@@ -27,7 +27,7 @@ const FIRST_EXPOSURE = 320;
 const FLIGHTS = {w: [0, 0, 1], a: [-1, 0, 0], s: [0, 0, -1], d: [1, 0, 0], PageUp: [0, 1, 0], PageDown: [0, -1, 0],
   ArrowUp: [0, 0, 1], ArrowLeft: [-1, 0, 0], ArrowDown: [0, 0, -1], ArrowRight: [1, 0, 0]};
 const $ = (id) => document.getElementById(id);
-const LIES = matchMedia('(orientation: landscape) and (max-height: 34rem)');  // page.css
+const LIES = matchMedia('(orientation: landscape) and (max-height: 34rem) and (min-width: 32rem)');  // page.css
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 const state = {
@@ -40,6 +40,7 @@ let machine = null;  // of the application that runs
 let viewer = null;
 let orbit = null;
 let baked = null;
+let table = null;
 let boards = [];
 let generation = 0;  // of what is shown: what belongs to an older one ends
 let nextFrame = 0;
@@ -175,8 +176,10 @@ async function start() {
       await openMachine(own, made, board);
     }
     if (own !== generation) return;
-    say(state.wanted === null ? sentenceOf(made, board) :
-      `This link shows ${state.wanted.file}, which stayed where it was made: drop that file here.`);
+    follow();
+    if (machine?.state === 'ended') tellEnd();
+    else if (state.wanted === null) say(sentenceOf(made, board));
+    else say(`This link shows ${state.wanted.file}, which stayed where it was made: drop that file here.`);
   } catch (error) {
     if (own !== generation) return;
     say(`${current().title}: ${error.message}`, true);
@@ -243,7 +246,8 @@ function fit() {
   const high = LIES.matches ? Math.max(200, innerHeight - canvas.parentElement.getBoundingClientRect().top - scrollY -
     parseFloat(style.paddingTop) - parseFloat(style.paddingBottom) - 10) : Math.max(240, innerHeight * 0.72);
   let scale = Math.min(room / canvas.width, high / canvas.height);
-  if (scale >= 1) scale = Math.floor(scale * devicePixelRatio) / devicePixelRatio;
+  const whole = Math.floor(scale * devicePixelRatio);
+  if (scale >= 1 && whole >= 1) scale = whole / devicePixelRatio;
   canvas.style.width = `${canvas.width * scale}px`;
   canvas.style.height = `${canvas.height * scale}px`;
   const gaps = $('gaps');
@@ -259,7 +263,7 @@ function fit() {
   }
 }
 function put(display, first, end) {
-  expandRows(display, first, end, image.data);
+  table.expand(display, first, end, image.data);
   $('canvas').getContext('2d').putImageData(image, 0, 0, 0, first, image.width, end - first);
 }
 function clear(board) {
@@ -311,6 +315,7 @@ function tick(now) {
   }
   if (machine === null || machine.state === 'ended') return;
   if (machine.state === 'frame') {
+    if (machine.saves) savePicture();
     if (now < nextFrame || (state.paused && !machine.wanted)) return;
     machine.wanted = false;
     nextFrame = Math.max(nextFrame + FRAME_MS, now);
@@ -427,6 +432,9 @@ for (const button of document.querySelectorAll('[data-hold]')) {
   });
 }
 
+const NOTCH = [100, 3, 1];  // of a wheel, in the units of WheelEvent.deltaMode: pixels, lines, pages
+const NOTCH_FACTOR = 0.12;
+let turned = 0;  // parts of a notch that water has not taken yet
 const pointers = new Map();
 const canvas = $('canvas');
 function pixelAt(event) {
@@ -439,7 +447,7 @@ canvas.addEventListener('pointerdown', (event) => {
   canvas.setPointerCapture(event.pointerId);
   pointed = pixelAt(event);
   pointers.set(event.pointerId, {x: event.clientX, y: event.clientY, from: [event.clientX, event.clientY]});
-  if (machine?.app === 'water') type(`${event.button === 0 ? '@' : '!'}${pixelAt(event)}.`);
+  if (machine?.app === 'water' && pointers.size === 1) type(`${event.button === 0 ? '@' : '!'}${pixelAt(event)}.`);
 });
 canvas.addEventListener('pointermove', (event) => {
   const pointer = pointers.get(event.pointerId);
@@ -457,6 +465,8 @@ canvas.addEventListener('pointermove', (event) => {
     moved(() => orbit.move(-dx / canvas.clientHeight / 1.6, dy / canvas.clientHeight / 1.6));
   } else if (viewer !== null) {
     moved(() => orbit.turn(5 * dx / canvas.clientWidth, 4 * dy / canvas.clientWidth));
+  } else if (machine?.app === 'water' && pointers.size === 2) {
+    goFarther(Math.log(before / Math.max(1, spread())) / NOTCH_FACTOR / 2);
   } else if (machine?.app === 'water') {
     if (event.buttons & 1) type(`@${pixelAt(event)}.`);
   } else {
@@ -488,11 +498,22 @@ function steerBy(dx, dy) {
   set('drag x', dx, 'left', 'right');
   set('drag y', dy, 'up', 'down');
 }
+// A wheel where it does something; elsewhere the page scrolls.
 canvas.addEventListener('wheel', (event) => {
+  if (viewer === null && machine?.app !== 'water') return;
   event.preventDefault();
-  if (viewer !== null) moved(() => orbit.approach(Math.exp(Math.sign(event.deltaY) * 0.12)));
-  else if (machine?.app === 'water') type(event.deltaY < 0 ? '+' : '-');
+  goFarther(event.deltaY / NOTCH[event.deltaMode]);
 }, {passive: false});
+// By notches of a wheel; water takes whole ones.
+function goFarther(notches) {
+  if (viewer !== null) {
+    moved(() => orbit.approach(Math.exp(notches * NOTCH_FACTOR)));
+    return;
+  }
+  turned += notches;
+  for (; turned >= 1; --turned) type('-');
+  for (; turned <= -1; ++turned) type('+');
+}
 
 // ---- files
 
@@ -571,9 +592,13 @@ function savePicture() {
     viewer.saves = viewer.phase !== 'finished';
     say(viewer.saves ? 'It is saved once it is finished.' : `It is saved; so makes the same one: ${renderCommand()}`);
     if (viewer.saves) return;
+    showViewer();  // its last rows may not be on the canvas yet
+  } else if (machine !== null) {
+    machine.saves = machine.state === 'band';  // of two frames none
+    if (machine.saves) return;
   }
   canvas.toBlob((blob) => {
-    saveAs(`thimble-${current().title.replace(/[^\w.-]+/g, '-').toLowerCase()}.png`, blob);
+    saveAs(`thimble-${(state.dropped?.title ?? state.scene).replace(/[^\p{L}\p{M}\p{N}._-]+/gu, '-')}.png`, blob);
   });
 }
 $('save').onclick = savePicture;
@@ -648,6 +673,13 @@ function fragment() {
   if (state.look) view.set('look', orbit === null || orbit.isOwn ? '1' : orbit.text());
   return view;
 }
+// The address shows what the page shows, so that it can be kept and loaded again.
+function follow() {
+  if (state.wanted !== null) return;  // the file that the address asks for
+  const view = fragment();
+  if (viewer?.plays) view.delete('frame');
+  if (`#${view}` !== location.hash) history.replaceState(null, '', `#${view}`);
+}
 // Whatever of it means something here.
 function readFragment() {
   const view = new URLSearchParams(location.hash.slice(1));
@@ -657,7 +689,7 @@ function readFragment() {
   if (/^([1-9]|1[0-2])$/.test(view.get('depth') ?? '')) wishes.depth = Number(view.get('depth'));
   if (/^\d{1,9}$/.test(view.get('frame') ?? '')) wishes.frame = Number(view.get('frame'));
   wishes.look = view.get('look');
-  state.wanted = view.has('file') ? {...wishes, file: view.get('file').slice(0, 100)} : null;
+  state.wanted = view.get('file') ? {...wishes, file: view.get('file').slice(0, 255)} : null;
   Object.assign(state, {dropped: null, ...AFRESH, look: false, view: null});
   if (state.wanted === null) grant(wishes);
 }
@@ -672,7 +704,8 @@ addEventListener('hashchange', () => {
 });
 
 async function main() {
-  boards = boardsOf(await moduleOf('scene'));
+  table = new Table(await moduleOf('plane'));
+  ({boards} = table);
   $('board').replaceChildren(...boards.map((board) => {
     const option = document.createElement('option');
     option.value = board.name;
@@ -684,4 +717,5 @@ async function main() {
   await start();
   requestAnimationFrame(tick);
 }
+say('');  // what the page says where no script runs
 main().catch((error) => say(`This browser does not run the page: ${error.message}`, true));

@@ -31,6 +31,17 @@ ConstBytes scene() {
 void flush(const Band& band) {
   page_flush(band.pixels.data, band.pixels.size, band.first_row, band.rows);
 }
+// The page has the bytes when flush returns.
+void begin_flush(const Band& band) {
+  flush(band);
+}
+void await_flush() {}
+int32_t band_buffers() {
+  return web::layout.band_buffers;
+}
+int32_t cores() {
+  return web::layout.cores;
+}
 uint32_t buttons() {
   return page_buttons();
 }

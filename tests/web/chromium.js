@@ -40,7 +40,7 @@ function send(method, params = {}, sessionId = undefined) {
 
 // A page of it, which shares nothing with others, and has the focus as if it were alone.
 class Chromium {
-  static async open(url, {width = 1280, height = 900, mobile = false, media = []} = {}) {
+  static async open(url, {width = 1280, height = 900, mobile = false, media = [], scripts = true} = {}) {
     program ??= start();
     const browser = new Chromium();
     browser.events = [];
@@ -54,6 +54,7 @@ class Chromium {
       {width, height, deviceScaleFactor: mobile ? 2 : 1, mobile});
     if (mobile) await browser.send('Emulation.setTouchEmulationEnabled', {enabled: true, maxTouchPoints: 5});
     await browser.send('Emulation.setEmulatedMedia', {features: media});
+    if (!scripts) await browser.send('Emulation.setScriptExecutionDisabled', {value: true});
     await browser.send('Page.navigate', {url});
     return browser;
   }
@@ -90,6 +91,15 @@ class Chromium {
       const rgb = new Uint8Array(3 * width * height);
       for (let from = 0, to = 0; to < rgb.length; ++from) if (from % 4 !== 3) rgb[to++] = rgba[from];
       return crc32(rgb); })()`);
+  }
+  // The CRC-32 of a picture that was saved, as RGB.
+  pngCrc(file) {
+    return this.eval(`(async () => {
+      const bytes = Uint8Array.from(atob('${fs.readFileSync(file).toString('base64')}'), (c) => c.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes], {type: 'image/png'}));
+      const copy = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      copy.drawImage(bitmap, 0, 0);
+      return crc32(copy.getImageData(0, 0, bitmap.width, bitmap.height).data.filter((_, i) => i % 4 !== 3)); })()`);
   }
   async changes(what, act) {
     const before = await this.canvasCrc();
@@ -151,6 +161,12 @@ class Chromium {
   async turnTo(width, height) {
     await this.send('Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: 2, mobile: true,
       screenOrientation: {type: width > height ? 'landscapePrimary' : 'portraitPrimary', angle: width > height ? 90 : 0}});
+    await this.eval('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))');
+  }
+  // As the browser's own zoom does: fewer pixels of the page, each as large as so many of the screen.
+  async zoom(ratio) {
+    await this.send('Emulation.setDeviceMetricsOverride',
+      {width: Math.round(1280 / ratio), height: Math.round(900 / ratio), deviceScaleFactor: ratio, mobile: false});
     await this.eval('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))');
   }
   async touch(type, points) {

@@ -4,7 +4,7 @@ const {spawnSync} = require('child_process');
 const fs = require('fs');
 const path = require('path');
 const zlib = require('zlib');
-const {Machine, boardsOf, crc32, expandRows} = require('../../platform/web/machine.js');
+const {Display, Machine, Table, crc32} = require('../../platform/web/machine.js');
 const {Baker} = require('../../platform/web/baker.js');
 const {Look, nameOf} = require('../../platform/web/look.js');
 const {Orbit} = require('../../platform/web/orbit.js');
@@ -17,7 +17,8 @@ const [, , folder, thimble] = process.argv;
 const work = 'build/web/tests';
 const moduleOf = (name) => new WebAssembly.Module(fs.readFileSync(path.join(folder, `${name}.wasm`)));
 const modules = {scene: moduleOf('scene'), plane: moduleOf('plane'), cases: moduleOf('cases'), bake: moduleOf('bake')};
-const boards = boardsOf(modules.scene);
+const table = new Table(modules.plane);
+const {boards} = table;
 const boardOf = (name) => boards.find((board) => board.name === name);
 
 function command(...words) {
@@ -62,9 +63,10 @@ async function main() {
   }
 
   // What a display shows is what `thimble sim` shows, byte for byte; with slices of time and without.
-  const shown = [['demo', 'demo', 'lm3s6965evb', 5], ['demo', 'demo', 'mps2-an500', 2], ['demo', 'castle', 'microbit', 2],
-    ['demo', 'room', 'lm3s6965evb', 2], ['water', 'waves', 'mps2-an500', 3], ['demo', 'demo', 'raspi0', 1]];
-  const sources = {castle: ['castle.vox'], room: ['room.scene'], waves: ['waves.scene'], demo: []};
+  const shown = [['demo', 'demo', 'lm3s6965evb', 5], ['demo', 'castle', 'lm3s6965evb', 2], ['demo', 'room', 'lm3s6965evb', 2],
+    ['water', 'waves', 'mps2-an500', 3], ['demo', 'demo', 'mps2-an500', 2],
+    ...boards.map(({name}) => ['demo', 'spheres', name, 2]), ['demo', 'spheres,depth=9', 'raspi0', 3]];
+  const sources = {castle: ['castle.vox'], room: ['room.scene'], waves: ['waves.scene'], demo: [], spheres: [], 'spheres,depth=9': []};
   for (const [app, scene, name, frames] of shown) {
     await test(`${app} ${scene} on ${name}`, () => {
       const board = boardOf(name);
@@ -83,12 +85,44 @@ async function main() {
         is('status', machine.status, 0);
         is('the display', crc32(machine.display.bytes), wanted.display_crc32);
         const rgba = new Uint8Array(4 * board.width * board.height);
-        expandRows(machine.display, 0, board.height, rgba);
+        table.expand(machine.display, 0, board.height, rgba);
         is('the canvas', crc32(rgba.filter((_, i) => i % 4 !== 3)), wanted.frame_crc32);
+        const {ram, ramLimit} = machine.use();
+        is('the RAM that there is', ramLimit, wanted.budget_bytes);
+        // An address takes 4 bytes here, as on the boards, and 8 on a host.
+        holds(`the RAM used, ${ram}, is about that of sim, ${wanted.high_water_bytes}`,
+          ram <= wanted.high_water_bytes && ram > 0.8 * wanted.high_water_bytes - 2048);
       }
     });
   }
 
+  await test('the pixels of every format are the core\'s, and one that there is not is an error', () => {
+    const [width, height] = [16, 9];
+    const rgba = new Uint8Array(4 * width * height);
+    const header = fs.readFileSync('include/thimble/picture/pixel.h', 'utf8');
+    const bits = [...header.matchAll(/case PixelFormat::k\w+:\s+return (?:has_format\([\w:]+\) \? )?(\d+)/g)].map((found) => Number(found[1]));
+    const shows = (format, rows_together) => {
+      const display = new Display({name: 'a board', format, width, height, row_bytes: width * (bits[format] ?? 24) / 8, rows_together});
+      display.bytes.set(display.bytes.map((_, i) => 37 * i));
+      rgba.fill(0);
+      table.expand(display, 0, height, rgba);
+      const whole = rgba.slice();
+      table.expand(display, 3, 5, rgba);
+      holds(`rows alone, of format ${format}`, Buffer.from(rgba).equals(Buffer.from(whole)));
+      holds(`format ${format} shows something`, new Set(rgba).size > 1);
+    };
+    const names = [...header.split('enum class PixelFormat')[1].split('}')[0]
+      .matchAll(/k\w+/g)].map(String);
+    is('formats that have bits', bits.length, names.length);
+    names.forEach((name, format) => shows(format, name === 'kMono1Pages' ? 8 : 1));
+    let said = '';
+    try {
+      shows(names.length, 1);
+    } catch (error) {
+      said = error.message;
+    }
+    is('one too many', said, `this page knows no pixels of format ${names.length}, which a board has`);
+  });
   await test('a scene beyond the flash is refused', () => {
     let said = '';
     try {
@@ -480,11 +514,10 @@ async function mistakes() {
   write('words.obj', 'v 0 0 zero\n');
   write('nan.xyz', '0 0 0\nnan 1 2\n');
   write('huge.xyz', '0 0 0\n1e999 1 2\n');
-  write('strange.foo', 'what is this');
   write('lonely.scene', 'model nowhere.vox at 0,0,0\n');
   const vox = fs.readFileSync('tools/gallery/scenes/castle.vox');
   fs.writeFileSync(path.join(work, 'cut.vox'), vox.subarray(0, 3000));
-  for (const name of ['empty.vox', 'words.obj', 'nan.xyz', 'huge.xyz', 'strange.foo', 'cut.vox']) {
+  for (const name of ['empty.vox', 'words.obj', 'nan.xyz', 'huge.xyz', 'cut.vox']) {
     await test(`${name} is refused as by the command`, () => {
       const file = path.join(work, name);
       const told = command('bake', file, '-o', path.join(work, 'never.oct'), '--quiet');
@@ -525,6 +558,50 @@ async function mistakes() {
     holds(`"${said}" names what is read`, /^is a glTF scene, which takes the thimble command; this page reads \.vox, .*\.npy, .*\.kvx$/.test(said));
     holds('and not what is not', !/gl(b|tf),/.test(said));
   });
+  await test('of a file that is nothing known it is said what this page reads', () => {
+    const strange = path.join(work, 'strange.foo');
+    fs.writeFileSync(strange, 'what is this');
+    let said = '';
+    try {
+      new Baker(modules.bake, filesOf(strange)).bake('strange.foo', boardOf('raspi0'));
+    } catch (error) {
+      said = error.message;
+    }
+    const told = command('bake', strange, '-o', path.join(work, 'never.oct'), '--quiet').stderr.trim();
+    holds('the command reads glTF', told.includes(' .glb, .gltf, '));
+    is('the sentence', said, told.slice(`thimble: ${strange}: `.length).replace(' .glb, .gltf,', ''));
+  });
+  for (const [what, files, wanted] of [['missing', {}, 'is not here: drop it together with the file that names it'],
+    ['empty', {'m.vox': ''}, 'is empty'], ['damaged', {'m.vox': 'VOX garbage'}, /^version \d+ at byte offset 4 is not supported/]]) {
+    await test(`a model that is ${what} is named, and what is wrong elsewhere is not its fault`, () => {
+      const bakes = (scene, more) => {
+        try {
+          new Baker(modules.bake, [{name: 's.scene', bytes: Buffer.from(scene)},
+            ...Object.entries(more).map(([name, text]) => ({name, bytes: Buffer.from(text)}))]).bake('./s.scene', boardOf('raspi0'));
+          return '';
+        } catch (error) {
+          return error.message;
+        }
+      };
+      const said = bakes('model m.vox at 0,0,0\n', files);
+      holds(`"${said}" names it`, said.startsWith('m.vox: '));
+      if (typeof wanted === 'string') is('the rest', said.slice(7), wanted);
+      else holds('the rest', wanted.test(said.slice(7)));
+      holds('a broken scene is itself', /^line 1, column/.test(bakes('modl m.vox\n', files)));
+      const castle = {'m.vox': fs.readFileSync('tools/gallery/scenes/castle.vox')};
+      const large = bakes('depth 12\nmodel m.vox at 0,0,0\nbox 1 from 0 0 0 to 4095 4095 4095\n', castle);
+      holds(`"${large.slice(0, 60)}" is not the model's`, large !== '' && !large.startsWith('m.vox'));
+    });
+  }
+  await test('the figures of the page\'s README are those of what was built, to half a per cent', () => {
+    const rows = [...fs.readFileSync('platform/web/README.md', 'utf8').matchAll(/^\| `([\w.]+)` \|.*\| ([\d,]+) \|$/gm)];
+    is('rows', rows.length, 4);
+    for (const [, name, figure] of rows) {
+      const size = fs.statSync(name.endsWith('.html') ? path.join(folder, '..', name) : path.join(folder, name)).size;
+      const said = Number(figure.replace(/,/g, ''));
+      holds(`${name} has ${size} bytes; README says ${figure}`, Math.abs(size - said) < size / 200);
+    }
+  });
   await test('a model that was not dropped is asked for', () => {
     let said = '';
     try {
@@ -533,7 +610,7 @@ async function mistakes() {
     } catch (error) {
       said = error.message;
     }
-    is('sentence', said, 'is not here: drop it together with the file that names it');
+    is('sentence', said, 'house.vox.gz: is not here: drop it together with the file that names it');
   });
   for (const board of boards) {
     await test(`what does not fit the flash of ${board.name} is said as by the command, with the depth that would`, () => {

@@ -10,6 +10,7 @@ const {test, is, holds, end} = require('./check.js');
 const {judgeCases} = require('./cases.js');
 const {judgeAccess} = require('./access.js');
 const {isWhatIsSaid, judgePlays} = require('./play_cases.js');
+const {judgeShown, judgeFiles, judgeWheels, judgeRefused} = require('./shown_cases.js');
 const made = require('./files.js');
 
 const [, , page, thimble, only] = process.argv;
@@ -23,6 +24,10 @@ async function began() {
   ++shown;
   await browser.until(`Number(document.documentElement.dataset.ready) >= ${shown}`, 30);
   shown = await browser.eval('Number(document.documentElement.dataset.ready)');
+}
+async function reloaded() {
+  shown = 0;
+  await began();
 }
 const text = (id) => browser.text(id);
 const canvasCrc = () => browser.canvasCrc();
@@ -96,6 +101,8 @@ async function desktop() {
     await browser.until(`/ of 4,186,112$/.test(document.getElementById('ram').textContent)`);
     await choose('lm3s6965evb');
   });
+  await judgeShown(browser, {work, began, choose, showsItsFrame, reloaded});
+  await judgeWheels(browser, {began});
   await test('? opens the help, Esc closes it', async () => {
     await browser.key('?', 'Slash');
     is('open', await browser.eval(`document.getElementById('dialog').open`), true);
@@ -274,6 +281,7 @@ async function hands() {
       await finish();
       for (let i = 0; i < 100 && !fs.existsSync(file); ++i) await pause(50);
       holds(`${what} it is saved`, fs.existsSync(file));
+      is(`what is saved ${what}`, await browser.pngCrc(file), await canvasCrc());
       await isWhatIsSaid(browser, thimble, what, 'tools/gallery/scenes/castle.vox');
     }
   });
@@ -401,12 +409,7 @@ async function links() {
     const wanted = await canvasCrc();
     await browser.click('#save');
     for (let i = 0; i < 100 && !fs.existsSync(file); ++i) await pause(50);
-    const png = fs.readFileSync(file).toString('base64');
-    is('its pixels', await browser.eval(`(async () => {
-      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob('${png}'), (c) => c.charCodeAt(0))], {type: 'image/png'}));
-      const copy = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-      copy.drawImage(bitmap, 0, 0);
-      return crc32(copy.getImageData(0, 0, bitmap.width, bitmap.height).data.filter((_, i) => i % 4 !== 3)); })()`), wanted);
+    is('its pixels', await browser.pngCrc(file), wanted);
   });
   await test('a link whose file stayed elsewhere asks for it, and then shows its view', async () => {
     const file = path.resolve('tools/gallery/scenes/fox.vox.gz');
@@ -434,11 +437,12 @@ async function links() {
   });
   await test('a broken link shows what of it means something', async () => {
     for (const hash of ['#', '#scene=__proto__&board=toString&look=1', '#look=NaN,1e9,,x,-,0', '#scene=castle&look=1,2,3,4,5,1e400',
-      '#scene=particles&look=1', '#%E0%A4%A&board=&depth=99&merge=2', '#file=&look=', `#file=${'x'.repeat(9000)}`]) {
+      '#scene=particles&look=1', '#%E0%A4%A&board=&depth=99&merge=2', '#file=&look=', '#file=', `#file=${'x'.repeat(9000)}`]) {
       const before = await browser.eval('generation');
       await browser.eval(`location.hash = ${JSON.stringify(hash)}`);
       await browser.until(`generation !== ${before} && document.getElementById('busy').hidden && (machine !== null || viewer !== null)`, 30);
       const said = await text('said');
+      holds(`${hash} asks for no file without a name: ${said}`, !/shows ,/.test(said));
       holds(`${hash}: "${said.slice(0, 80)}" is no fault`, /^(Valley|Castle|LM3S|This link shows)|Stellaris|voxels|\.$/.test(said) &&
         await browser.eval(`!document.getElementById('said').classList.contains('wrong')`));
     }
@@ -466,6 +470,7 @@ async function drops() {
     holds('the baked bytes', (await text('said')).startsWith('dropped.oct: 18,235 voxels in 64,588 bytes'));
     await choose('lm3s6965evb');
   });
+  await judgeFiles(browser, {work, began, sim});
   await test('what does not fit is said, with what would', async () => {
     const file = path.join(work, 'many.xyz');
     fs.writeFileSync(file, Array.from({length: 90000}, (_, i) =>
@@ -786,7 +791,8 @@ async function calm() {
   await browser.close();
 }
 
-(only === undefined ? desktop().then(telephone).then(served).then(calm).then(cases) : {telephone, served, calm, cases}[only]()).then(() => Chromium.quit()).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? desktop().then(telephone).then(served).then(() => judgeRefused(page, work)).then(calm).then(cases) :
+  {desktop, telephone, served, refused: () => judgeRefused(page, work), calm, cases}[only]()).then(() => Chromium.quit()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
   Chromium.kill();
   process.exit(1);

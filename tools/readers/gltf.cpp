@@ -379,6 +379,9 @@ class Scene {
 
 }  // namespace
 
+bool has_gltf_reader() {
+  return true;
+}
 bool looks_like_gltf(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   if (text.starts_with("glTF")) {

@@ -29,6 +29,8 @@ inline constexpr std::uint64_t kGltfValueLimit = std::uint64_t{1} << 19;
 inline constexpr int kGltfDepthLimit = 64;
 
 bool looks_like_gltf(std::span<const std::uint8_t> bytes);
+/// Whether this program has the reader: the page does without (tools/web/left_out.cpp).
+bool has_gltf_reader();
 
 /// Reads all of `file` and keeps none of it. Memory: 24 bytes a vertex (27 with colour), 12 a triangle. A
 /// mesh may be placed many times: what all places take is limited to three times the bytes read, and 64 MB.

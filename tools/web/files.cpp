@@ -23,7 +23,18 @@ std::map<std::string, std::span<const std::uint8_t>>& files() {
   return all;
 }
 
+std::string own_file;  // the first that was asked for
+std::string model;     // the last one beside it
+
 }  // namespace
+
+std::string model_at_fault() {
+  return model.empty() ? "" : model + ": ";
+}
+void end_of_reading() {
+  own_file.clear();
+  model.clear();
+}
 
 void add_file(const std::string& name, std::span<const std::uint8_t> bytes) {
   files()[name] = bytes;
@@ -32,7 +43,13 @@ void add_file(const std::string& name, std::span<const std::uint8_t> bytes) {
 // ---- readers/file_bytes.h
 
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
-  const auto found = files().find(file_name(path));
+  const std::string name = file_name(path);
+  if (own_file.empty()) {
+    own_file = name;
+  } else if (name != own_file) {
+    model = name;
+  }
+  const auto found = files().find(name);
   if (found == files().end()) {
     throw InputError("is not here: drop it together with the file that names it");
   }

@@ -68,6 +68,7 @@ extern "C" {
     arguments.frame = static_cast<std::uint32_t>(frame);
   }
   auto source = open_scene(arguments);
+  end_of_reading();
   ViewWishes view;
   view.side = NamedView::kBest;
   view.fov_degrees = kPictureFov;

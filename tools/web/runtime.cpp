@@ -12,6 +12,8 @@
 #include <string>
 #include <typeinfo>
 
+#include "web/files.h"
+
 // ---- exceptions
 //
 // Debian's C++ library for WebAssembly knows none, and clang is told to leave out what would catch one
@@ -34,7 +36,8 @@ void __cxa_free_exception(void* thrown) noexcept {
   const char* const what = std::strstr(type->name(), "Shortage") != nullptr
                                ? "does not fit the memory that the browser gives"
                                : static_cast<const std::exception*>(thrown)->what();
-  page_fail(what, std::strlen(what));
+  const std::string sentence = thimble::tools::model_at_fault() + what;
+  page_fail(sentence.data(), sentence.size());
 }
 [[noreturn]] void __cxa_rethrow() {
   std::abort();
