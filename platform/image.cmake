@@ -23,12 +23,17 @@ function(thimble_write_linker_script place)
   if(BOARD_FAST_RAM_BYTES)
     set(IMAGE_STACK FAST)
     set(IMAGE_FAST_MEMORY "  FAST (rwx) : ORIGIN = ${BOARD_FAST_RAM_ORIGIN}, LENGTH = ${BOARD_FAST_RAM_BYTES}\n")
+    # Frames with light by the map have the same loops once more, for which there is no room beside.
+    file(GLOB lit RELATIVE ${PROJECT_SOURCE_DIR}/src/light/flat ${PROJECT_SOURCE_DIR}/src/light/flat/*.cpp)
+    list(TRANSFORM lit REPLACE "(.+)" "*\\1.o*")
+    list(JOIN lit " " lit)
     set(functions)
     foreach(function IN LISTS BOARD_FAST_FUNCTIONS)
       if(function MATCHES "\\.o$")
         string(APPEND functions "    *${function}(.text .text.*)\n")
       else()
-        string(APPEND functions "    *(.text.*${function}* .rodata.*${function}*)\n")
+        string(APPEND functions
+          "    *(EXCLUDE_FILE(${lit}) .text.*${function}* EXCLUDE_FILE(${lit}) .rodata.*${function}*)\n")
       endif()
     endforeach()
     set(IMAGE_FAST_SECTIONS "  .boot :
