@@ -130,7 +130,7 @@ bench: deps-bench ## Build and run the benchmarks
 BOARD ?= lm3s6965evb
 APP ?= demo
 SCENE ?= auto
-export FRAMES EFFECTS SHOT CRC PLACE
+export FRAMES EFFECTS BAKE SHOT CRC PLACE
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
 	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"

@@ -2,7 +2,9 @@
 # Builds firmware for a board into build/firmware/BOARD and says what each image takes of it.
 #   build.sh BOARD|all APP[;APP...] [SCENE]     SCENE: what `thimble bake` takes, or a header (.h) that it made;
 #                                               "auto" is the demonstration's for the board; without it there is none
-# In the environment: EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
+# all: each board that can be built, then a table; exit status 1 where one cannot.
+# In the environment: BAKE="OPTION..." has more options of `thimble bake`, such as BAKE="--depth 6 --coarsen";
+# EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
 # SCENE=demo for the board's BOARD_DEMO_EFFECTS); FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then;
 # PANEL_FORMATS=MASK has other formats of panels than the board's (picture/pixel.h); HOLD_FPS=N holds a rate of frames;
 # CASE_STEP=N runs every Nth test case, MEASURED=ON has bench measure the fastest engine alone; THIMBLE_FIRMWARE is another
@@ -10,10 +12,28 @@
 set -eu
 cd "$(dirname "$0")/.."
 if [ "$1" = all ]; then
-  for board in platform/boards/*/; do
-    sh platform/build.sh "$(basename "$board")" "$2" "${3:-}"
+  work=${THIMBLE_FIRMWARE:-build/firmware}
+  mkdir -p "$work"
+  status=0
+  printf 'board\timage\tflash\tof\tdata, bss, stack\tof\n' >"$work/all.table"
+  for board in $(cd platform/boards && echo */board.cmake | sed 's,/board\.cmake,,g'); do
+    . platform/board_facts.sh
+    if sh platform/build.sh "$board" "$2" "${3:-}" 2>"$work/all.said"; then
+      cat "$work/all.said" >&2
+      for app in $(echo "$2" | tr ';' ' '); do
+        IFS=, read -r _ _ flash ram stack _ <"$work/$board/$app.memory.csv"
+        printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$board" "$app" "$flash" "$(fact FLASH_BYTES)" $((ram + stack)) \
+          "$(fact RAM_BYTES)" >>"$work/all.table"
+      done
+    else
+      cat "$work/all.said" >&2
+      status=1
+      printf '%s\tnot built: %s\n' "$board" "$(grep '^thimble: \|^build: ' "$work/all.said" | head -n 1 | cut -c 1-160)" >>"$work/all.table"
+    fi
   done
-  exit
+  echo
+  awk -F '\t' '$2 ~ /^not built/ { printf "%-18s %s\n", $1, $2; next } { printf "%-18s %-10s %10s %10s %17s %9s\n", $1, $2, $3, $4, $5, $6 }' "$work/all.table"
+  exit $status
 fi
 board=$1
 apps=$2
@@ -29,6 +49,9 @@ if [ "$scene" = auto ]; then
   fi
 fi
 case $scene in
+  *.h) [ -z "${BAKE:-}" ] || { echo "build: BAKE=\"$BAKE\" is for a scene that is baked, and $scene is" >&2 && exit 2; } ;;
+esac
+case $scene in
   "") header= ;;
   /*.h) header=$scene ;;
   *.h) header=$PWD/$scene ;;
@@ -38,7 +61,13 @@ case $scene in
     if [ -z "$effects" ]; then
       case $scene in demo | valley) effects=$(fact DEMO_EFFECTS) ;; esac
     fi
-    build/release/thimble bake "$scene" --board "$board" ${effects:+--effects "$effects"} -o "$header" --quiet
+    # Words, as BAKE has them. What was left out to make it fit is said.
+    # shellcheck disable=SC2086
+    build/release/thimble bake "$scene" --board "$board" ${effects:+--effects "$effects"} ${BAKE:-} -o "$header" 2>"$work/bake.log" || {
+      cat "$work/bake.log" >&2
+      exit 1
+    }
+    grep '^without \|^coarsened ' "$work/bake.log" || true
     ;;
 esac
 # A compiler cache would hand out objects without their call graphs.
@@ -56,8 +85,8 @@ if ! cmake --build "$work" -- --quiet >"$work/cmake.log" 2>&1; then
   if [ -n "$over" ] && [ "${bytes:-0}" -gt "$over" ]; then
     fits=$(((bytes - over) / 8 * 8))
     echo "build: $board $apps: image $over bytes larger than the flash, with $bytes bytes of scene." >&2
-    echo "Make the scene smaller: thimble bake SCENE --board $board --coarsen --memory $fits -o scene.h" >&2
-    echo "Then:                   make firmware BOARD=$board SCENE=scene.h" >&2
+    echo "The scene may take $fits: its brick map is left out first, then its light, then voxels merge; as options of bake" >&2
+    echo "  make firmware BOARD=$board SCENE=... BAKE=\"--memory $fits --coarsen\"" >&2
   else
     cat "$work/cmake.log" >&2
   fi

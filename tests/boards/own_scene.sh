@@ -86,15 +86,18 @@ TEXT
   say "baked for no effects the image holds none"
 }
 
-# What `bake` takes for the board's flash is too large beside demo, which draws more ways: the build says what is left.
+# What is too large beside demo is refused before anything is compiled, with the options that make it fit.
 too_large() {
-  "$thimble" bake demo,depth=8 --board "$board" --coarsen --effects none -o "$work/own.h" --quiet
-  ! sh platform/build.sh "$board" demo "$work/own.h" >"$work/own.log" 2>&1 || fail "a scene of all of the flash fits beside demo"
-  bytes=$(sed -n 's/.*--coarsen --memory \([0-9]*\) .*/\1/p' "$work/own.log")
-  [ -n "$bytes" ] || fail "the build does not say how large a scene may be"
-  "$thimble" bake demo,depth=8 --board "$board" --coarsen --memory "${bytes:-1}" --effects none -o "$work/own.h" --quiet
-  build demo "$work/own.h"
-  say "a scene that is too large beside demo is refused with the bytes that fit, $bytes, and these do"
+  rm -f "$work/demo.elf"
+  ! EFFECTS=none sh platform/build.sh "$board" demo demo,depth=8 >"$work/own.log" 2>&1 || fail "a scene larger than the flash is built"
+  grep -q 'bytes too many; --coarsen .* fits; --depth [1-7] fits .*BAKE=' "$work/own.log" || fail "it is not said how it fits: $(tail -n 1 "$work/own.log")"
+  [ ! -e "$work/demo.elf" ] || fail "a scene that is refused is compiled"
+  export BAKE=--coarsen EFFECTS=none
+  build demo demo,depth=8
+  unset BAKE EFFECTS
+  left=$(sed -n 's/.*flash \([0-9]*\) of \([0-9]*\),.*/\2 \1/p' "$work/own.log" | awk 'END { print $1 - $2 }')
+  [ "${left:-99999}" -lt 4096 ] || fail "coarsened to fit it leaves ${left:-no} bytes of the flash"
+  say "a scene that is too large beside demo is refused with what makes it fit; coarsened it leaves $left bytes"
 }
 
 # blocks: a room in the sun, for which a scene adds what it is about.

@@ -36,6 +36,10 @@ if [ "${1:-}" = --job ]; then
         ;;
       gba) sh "$here/cartridge.sh" gba || status=1 ;;
     esac
+    case $2 in
+      examples | emulate | frames) ;;
+      *) sh "$here/scenes.sh" "$2" || status=1 ;;
+    esac
   } >"$log" 2>&1
   cat "$log"
   exit $status

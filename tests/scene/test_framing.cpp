@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "apps/demo_view.h"
 #include "readers/source.h"
 #include "scene/best_view.h"
 #include "scene/framing.h"
+#include "scene/scene_source.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
@@ -249,6 +252,57 @@ TEST_CASE("framing: best -> the side with the many colours, from the front where
   CHECK(std::abs(painted(1, true).turn) > 90);
   CHECK(painted(0, false).turn < 0);
   CHECK(painted(0, true).turn > 0);
+}
+
+TEST_CASE(
+    "framing: round -> the demonstration's whole turn has everything in the picture, and no picture is "
+    "small") {
+  // A bar with a mast at its end, which is far from the middle of its box.
+  std::vector<std::uint8_t> pool(1U << 20);
+  Octree octree;
+  REQUIRE(Octree::make(5, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+  for (int i = 2; i < 30; ++i) {
+    REQUIRE(octree.insert({i, 20, 4}, 0) == Status::kOk);
+    REQUIRE(octree.insert({2, 20, 2 + i / 2}, 0) == Status::kOk);
+  }
+  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
+  CompactTree tree;
+  REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+  const tools::SceneShape shape = tools::shape_of(tree);
+  tools::SceneArguments arguments;
+  arguments.scene = "points:1,depth=5";
+  const auto source = tools::open_scene(arguments);  // without a camera of its own
+  for (const auto& [width, height] : {std::pair{128, 64}, {96, 96}, {48, 96}}) {
+    CAPTURE(width);
+    tools::ViewWishes wishes;
+    wishes.side = tools::NamedView::kBest;
+    wishes.fov_degrees = tools::kPictureFov;
+    wishes.width_px = width;
+    wishes.height_px = height;
+    // Pixels that meet something within `margin` pixels of the picture's edges, in all of a turn.
+    const auto met = [&, width = width, height = height](const SceneCamera& kept, int margin) {
+      const apps::Orbit orbit = apps::orbit_of(kept);
+      int pixels = 0;
+      for (std::uint32_t frame = 0; frame < apps::kFramesARound; ++frame) {
+        Camera camera;
+        REQUIRE(apps::view_at(orbit, tree, frame, {}, width, height, &camera) == Status::kOk);
+        for (int i = 0; i < width * height; ++i) {
+          const int x = i % width;
+          const int y = i / width;
+          if (std::min({x, y, width - 1 - x, height - 1 - y}) < margin) {
+            Hit hit;
+            REQUIRE(closest_hit(tree, camera.ray(x, y), &hit, {}) == Status::kOk);
+            pixels += hit.kind == HitKind::kHit ? 1 : 0;
+          }
+        }
+      }
+      return pixels;
+    };
+    const SceneCamera round = tools::frame_round(wishes, *source, shape).kept;
+    CHECK(met(round, 1) == 0);
+    CHECK(met(round, std::min(width, height) / 6) > 0);
+    CHECK(met(tools::frame_shape(wishes, shape).kept, 1) > 0);
+  }
 }
 
 TEST_CASE("framing: a turn of pictures -> one eye's distance, evenly round, everything in every picture") {

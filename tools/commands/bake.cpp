@@ -51,7 +51,10 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
     options.display = DisplayFacts{PixelFormat::kRgb888, command.view.width_px, command.view.height_px};
   }
   options.camera = [&command, &source, note](const CompactTree& tree) {
-    Framing framing = frame_scene(command.view, source, shape_of(tree));
+    const SceneShape shape = shape_of(tree);
+    const bool for_board = command.scene.board != nullptr;
+    Framing framing =
+        for_board ? frame_round(command.view, source, shape) : frame_scene(command.view, source, shape);
     if (note != nullptr && !framing.note.empty()) {
       *note = framing.note;
     }
@@ -60,32 +63,45 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   return options;
 }
 
-// What would fit instead: found by baking at every smaller depth until one does.
-std::string advice(const BakeCommand& command, const SceneSource& source, std::uint64_t limit) {
-  if (!source.is_scalable()) {
-    return "; this scene has one depth only, --coarsen merges blocks until it fits";
+// What would fit instead, what loses least first: found by baking so.
+std::string advice(const BakeCommand& command, const SceneSource& source, EffectSet effects) {
+  std::string text = ";";
+  const auto fits = [&](const BakeCommand& other, const SceneSource& from, Baked* baked) {
+    ProgressBar bar("trying what would fit", command.scene.quiet);
+    BakingOptions options = baking_options(other, from, nullptr);
+    *baked = bake_within(other.limit(), from, &options, [&](double done) { bar.update(done); });
+    return baked->fits;
+  };
+  Baked baked;
+  if (effects != Effect::kNone) {
+    BakeCommand plain = command;
+    plain.effects = {};
+    plain.effects.automatic = false;
+    plain.effects.is_given = true;
+    if (fits(plain, source, &baked)) {
+      text += " --effects none fits with all its voxels in " + grouped(baked.bytes.size()) + " bytes;";
+    }
   }
-  ProgressBar bar("trying smaller depths", command.scene.quiet);
-  SceneArguments arguments = command.scene.arguments;
-  for (int depth = source.level() - 1; depth >= kMinLevel; --depth) {
-    arguments.depth = depth;
+  text += source.is_scalable() ? " --coarsen makes the finest tree that fits"
+                               : " this scene has one depth only, --coarsen makes the finest tree that fits";
+  BakeCommand shallow = command;
+  for (int depth = source.level() - 1; source.is_scalable() && depth >= kMinLevel; --depth) {
+    shallow.scene.arguments.depth = depth;
     try {
-      const auto smaller = open_scene(arguments);
-      BakingOptions options = baking_options(command, *smaller, nullptr);
-      options.limit_bytes = limit;
-      const Baked baked = bake_scene(*smaller, options, [&](double done) { bar.update(done); });
-      if (baked.bytes.size() <= limit) {
-        return "; --depth " + std::to_string(depth) + " fits with " + grouped(baked.bytes.size()) +
-               " bytes, and --coarsen makes the finest tree that does";
+      const auto smaller = open_scene(shallow.scene.arguments);
+      if (fits(shallow, *smaller, &baked)) {
+        text += "; --depth " + std::to_string(depth) + " fits with " + grouped(baked.bytes.size()) + " bytes";
+        break;
       }
     } catch (const InputError&) {
       break;  // a pipe is read only once; and a camera may suit one world and not another
     }
   }
-  return "; --coarsen merges blocks until it fits";
+  return text + (command.scene.board == nullptr ? "" : " (make firmware takes such options as BAKE=\"...\")");
 }
 
-void report(const BakeCommand& command, const Baked& baked, const std::string& note) {
+void report(const BakeCommand& command, const BakingOptions& options, const Baked& baked, bool lost_light,
+            const std::string& note) {
   const CompactTree& tree = baked.scene.tree();
   const std::uint64_t bytes = baked.bytes.size();
   std::string text;
@@ -102,6 +118,13 @@ void report(const BakeCommand& command, const Baked& baked, const std::string& n
   if (baked.effects != Effect::kNone) {
     text += "for the effects " + effects_text(baked.effects) + "\n";
   }
+  if (command.scene.board != nullptr && options.brick_map && !tree.empty() &&
+      tree.level() <= options.most_map_level && baked.scene.section(SectionKind::kBrickMap).empty()) {
+    text += "without a brick map, for which there is no room: frames take several times longer\n";
+  }
+  if (lost_light) {
+    text += "without light, for which there is no room\n";
+  }
   if (tree.solid_added() != 0) {
     text += "coarsened to fit: " + grouped(tree.solid_added()) +
             (tree.solid_added() == 1 ? " voxel" : " voxels") + " of solid volume added\n";
@@ -110,8 +133,8 @@ void report(const BakeCommand& command, const Baked& baked, const std::string& n
     const std::uint64_t flash = scene_flash_bytes(*board, baked.effects);
     const std::uint64_t ram = drawing_ram_bytes(*board, baked.effects);
     text += std::string(board->name) + ": flash " + grouped(bytes) + " of the " + grouped(flash) +
-            " bytes beside the code's " + grouped(code_flash_bytes(baked.effects)) + "; RAM " + grouped(ram) +
-            " of " + grouped(board->ram_bytes) + " bytes (renderer " +
+            " bytes beside the demonstration's " + grouped(code_flash_bytes(*board, baked.effects)) +
+            "; RAM " + grouped(ram) + " of " + grouped(board->ram_bytes) + " bytes (renderer " +
             grouped(lit_render_bytes(baked.effects)) + ", band of " + std::to_string(kBoardBandRows) +
             " rows " + grouped(board_band_bytes(*board)) + ", stack " + grouped(board->stack_bytes) + ")" +
             (ram > board->ram_bytes ? ": too much" : "") + "\n";
@@ -149,15 +172,15 @@ void run(const BakeCommand& given) {
   std::string note;
   BakingOptions options = baking_options(command, *source, &note);
   options.coarsen = command.scene.coarsen;
+  const bool lit = options.default_look;
   Baked baked;
   {
     ProgressBar bar("baking", command.scene.quiet);
     baked = bake_within(command.limit(), *source, &options, [&](double done) { bar.update(done); });
   }
   if (!baked.fits) {
-    const std::uint64_t limit = *options.limit_bytes;
     throw InputError(too_large_text(command.limit(), baked, options, source->level()) +
-                     (options.coarsen ? "" : advice(command, *source, limit)));
+                     (options.coarsen ? "" : advice(command, *source, baked.effects)));
   }
 
   if (command.as_header) {
@@ -170,7 +193,7 @@ void run(const BakeCommand& given) {
   }
   outputs.commit();
   if (!command.scene.quiet) {
-    report(command, baked, note);
+    report(command, options, baked, lit && !options.default_look, note);
   }
 }
 
@@ -199,9 +222,10 @@ void add_bake(CLI::App& app) {
   add_bytes(*sub, "--memory", &command->scene.memory_bytes,
             "the most bytes that the baked scene may take, such as 65536, 64K or 2M (default: no limit)");
   add_board(*sub, &command->scene.board,
-            "the limit is the board's flash less " + grouped(kCodeFlashBytes) +
-                " bytes for code (the smaller counts if --memory is given too), and the camera frames the "
-                "scene for its display");
+            "the limit is what the demonstration leaves of the board's flash (the smaller counts if --memory "
+            "is given too), and the camera frames the scene for its display, so that all of it stays in the "
+            "picture while "
+            "it turns");
   add_flag(*sub, "--coarsen", &command->scene.coarsen,
            "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
   add_flag(*sub, "--brick-map", &command->brick_map,

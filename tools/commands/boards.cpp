@@ -36,6 +36,7 @@ struct SceneSizes {
   std::uint64_t baked_bytes = 0;
   std::uint64_t pool_bytes = 0;                 ///< to build it voxel by voxel
   std::map<int, std::uint64_t> bytes_of_depth;  ///< baked, for the depths tried
+  EffectSet effects = Effect::kNone;            ///< that the scene states
   bool is_scalable = false;
   int most_depth = 0;  ///< deeper ones were not to be tried
 };
@@ -58,6 +59,7 @@ const char* screen_name(platform::Screen screen) {
 struct BakedSize {
   std::uint64_t bytes = 0;
   std::uint64_t least_of_next = 0;
+  EffectSet effects = Effect::kNone;
 };
 
 BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& source, const Progress& progress) {
@@ -72,7 +74,7 @@ BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& sourc
   const CompactTree& tree = baked.scene.tree();
   std::uint64_t voxels = 0;
   for_each_block(tree, [&](const Vec3i&, int level, std::uint8_t) { voxels += level == 0 ? 1U : 0U; });
-  return {baked.bytes.size(), (tree.node_count() + voxels) / 8 * 7};
+  return {baked.bytes.size(), (tree.node_count() + voxels) / 8 * 7, baked.effects};
 }
 
 SceneSizes measure(const BoardsCommand& command) {
@@ -83,6 +85,7 @@ SceneSizes measure(const BoardsCommand& command) {
   sizes.depth = source->level();
   const BakedSize size = size_when_baked(command, *source, progress);
   sizes.baked_bytes = size.bytes;
+  sizes.effects = size.effects;
   BuildOptions pool;
   pool.structure = StructureKind::kPool;
   const BuiltScene built(*source, pool, progress);
@@ -101,8 +104,8 @@ SceneSizes measure(const BoardsCommand& command) {
   std::uint64_t least = UINT64_MAX;
   std::uint64_t most = 0;
   for (const BoardFacts& board : platform::boards()) {
-    least = std::min(least, scene_flash_bytes(board));
-    most = std::max(most, scene_flash_bytes(board));
+    least = std::min(least, scene_flash_bytes(board, sizes.effects));
+    most = std::max(most, scene_flash_bytes(board, sizes.effects));
   }
   SceneArguments arguments = command.scene.arguments;
   const auto try_depth = [&](int depth) {
@@ -130,7 +133,7 @@ SceneSizes measure(const BoardsCommand& command) {
 int deepest(const SceneSizes& sizes, const BoardFacts& board) {
   int result = 0;
   for (const auto& [depth, bytes] : sizes.bytes_of_depth) {
-    if (bytes <= scene_flash_bytes(board)) {
+    if (bytes <= scene_flash_bytes(board, sizes.effects)) {
       result = std::max(result, depth);
     }
   }
@@ -163,7 +166,7 @@ JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
   row["core_mhz"] = board.core_mhz;
   row["frame_instructions"] = board.frame_instructions;
   row["frames_per_second_estimate"] = frames_per_second(board);
-  row["scene_flash_bytes"] = scene_flash_bytes(board);
+  row["scene_flash_bytes"] = scene_flash_bytes(board, sizes == nullptr ? Effect::kNone : sizes->effects);
   row["state_bytes"] = render_bytes();
   row["band_bytes"] = board_band_bytes(board);
   row["drawing_ram_bytes"] = drawing_ram_bytes(board);
@@ -171,7 +174,7 @@ JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
     row["depth"] = sizes->depth;
     row["voxels"] = sizes->voxels;
     row["baked_bytes"] = sizes->baked_bytes;
-    row["fits_flash"] = sizes->baked_bytes <= scene_flash_bytes(board) ? 1 : 0;
+    row["fits_flash"] = sizes->baked_bytes <= scene_flash_bytes(board, sizes->effects) ? 1 : 0;
     row["pool_bytes"] = sizes->pool_bytes;
     row["building_ram_bytes"] = building_ram_bytes(*sizes, board);
     row["builds_in_ram"] = building_ram_bytes(*sizes, board) <= board.ram_bytes ? 1 : 0;
@@ -212,7 +215,7 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
   std::vector<Cells> rows{
       {"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits", "deepest"}};
   for (const BoardFacts& board : platform::boards()) {
-    const std::uint64_t flash = scene_flash_bytes(board);
+    const std::uint64_t flash = scene_flash_bytes(board, sizes.effects);
     const std::uint64_t building = building_ram_bytes(sizes, board);
     const auto yes = [](bool fits) { return fits ? "yes" : "no"; };
     std::array<char, 32> share{"no"};
@@ -229,8 +232,10 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
   }
   text += columns_of(rows, 1);
   text +=
-      "\nscene flash: flash less " + grouped(kCodeFlashBytes) +
-      " bytes for code; scene: the baked scene's part of it. RAM: renderer, a\nband of " +
+      "\nscene flash: what the demonstration leaves (make firmware), with the effects that the scene states; "
+      "scene:\n"
+      "the baked scene's part of it, without a brick map and light that bake adds where there is room. RAM: "
+      "renderer, a\nband of " +
       std::to_string(kBoardBandRows) +
       " rows and the stack; to build it also the pool. deepest: the deepest --depth that fits\nthe flash" +
       (sizes.is_scalable ? "" : "; this scene has one depth only") + ".\n";

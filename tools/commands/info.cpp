@@ -131,8 +131,11 @@ void describe(const BakedScene& baked, const Row& row) {
   row("palette entries", std::to_string(baked.palette().size));
   row("camera", baked.has_camera() ? describe(baked.camera()) : "none");
   std::string fits;
+  BakedLighting lighting;
+  const bool is_lit = BakedLighting::open(baked.section(SectionKind::kLighting), baked.tree().level(),
+                                          &lighting) == Status::kOk;
   for (const platform::BoardFacts& board : platform::boards()) {
-    if (baked.bytes().size <= scene_flash_bytes(board)) {
+    if (baked.bytes().size <= scene_flash_bytes(board, is_lit ? lighting.effects : Effect::kNone)) {
       fits += (fits.empty() ? "" : ", ") + std::string(board.name);
     }
   }

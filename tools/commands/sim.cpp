@@ -27,6 +27,7 @@
 #include "readers/picture.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/flash_baking.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 #include "scene/named_scenes.h"
@@ -91,7 +92,7 @@ bool has_water(const std::vector<std::uint8_t>& bytes) {
 std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
   const platform::BoardFacts& board = *command.session.board;
   const auto source = command.scene.open();
-  const std::uint64_t limit = scene_flash_bytes(board);
+  std::uint64_t limit = scene_flash_bytes(board);
   std::vector<std::uint8_t> bytes;
   if (const BakedScene* baked = source->baked()) {
     bytes.assign(baked->bytes().begin(), baked->bytes().end());
@@ -110,16 +111,11 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.display = DisplayFacts{board.format, board.width_px, board.height_px};
     view.side = NamedView::kBest;
     view.fov_degrees = kPictureFov;
-    options.camera = [&](const CompactTree& tree) { return frame_scene(view, *source, shape_of(tree)).kept; };
+    options.camera = [&](const CompactTree& tree) { return frame_round(view, *source, shape_of(tree)).kept; };
     ProgressBar bar("baking", command.scene.quiet);
-    const auto bake = [&] { return bake_scene(*source, options, [&](double done) { bar.update(done); }); };
-    Baked made = bake();
-    if (options.default_look && made.effects != Effect::kNone &&
-        (!made.fits || made.bytes.size() > scene_flash_bytes(board, made.effects) ||
-         drawing_ram_bytes(board, made.effects) > board.ram_bytes)) {
-      options.default_look = false;  // light that nobody asked for never costs a scene its place
-      made = bake();
-    }
+    Baked made =
+        bake_within({&board, std::nullopt}, *source, &options, [&](double done) { bar.update(done); });
+    limit = *options.limit_bytes;
     bytes = std::move(made.bytes);
   }
   if (bytes.size() > limit) {

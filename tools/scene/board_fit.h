@@ -3,38 +3,64 @@
 #ifndef THIMBLE_TOOLS_SCENE_BOARD_FIT_H
 #define THIMBLE_TOOLS_SCENE_BOARD_FIT_H
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "boards/board_table.h"
 #include "boards/effect_flash.h"
+#include "boards/program_flash.h"
+#include "thimble/light/map_render.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tools {
 
-/// Flash kept for the program. What draws a baked scene takes at most 29 KiB at -Os on a Cortex-M0, whose
-/// code is the largest (as one object a source; the linker drops what is not called); the rest is for
-/// start-up, drivers and the application. One that also builds scenes on the chip wants 13 KiB more and has
-/// to set a smaller limit (--memory).
-inline constexpr std::uint32_t kCodeFlashBytes = 40 * 1024;
 /// Rows of the band that the figures below are for; an application may choose another number.
 inline constexpr std::int32_t kBoardBandRows = 8;
 
-/// Flash kept for the program that draws with these effects: what they take as measured on a Cortex-M3
-/// (boards/effect_flash.h), one by one or all together, whichever is less.
-inline std::uint32_t code_flash_bytes(EffectSet effects) {
+/// What these effects take of the flash on a Cortex-M3: one by one or all together, whichever is less.
+inline std::uint32_t effect_flash_bytes(EffectSet effects) {
   if (effects == Effect::kNone) {
-    return kCodeFlashBytes;
+    return 0;
   }
   std::uint32_t bytes = kLitBaseFlashBytes;
   for (const EffectFlash& one : kEffectFlash) {
     bytes += (effects & one.effect) != 0 ? one.bytes : 0;
   }
-  return kCodeFlashBytes + (bytes < kAllEffectsFlashBytes ? bytes : kAllEffectsFlashBytes);
+  return bytes < kAllEffectsFlashBytes ? bytes : kAllEffectsFlashBytes;
 }
-/// Bytes of flash that a baked scene may take.
+/// Flash that the demonstration takes beside a scene with these effects (boards/program_flash.h). A board without a row there
+/// counts as the largest.
+inline std::uint32_t code_flash_bytes(const platform::BoardFacts& board, EffectSet effects = Effect::kNone) {
+  constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+  ProgramFlash program{};
+  for (const ProgramFlash& one : kProgramFlash) {
+    if (std::strcmp(one.board, board.name) == 0) {
+      program = one;
+      break;
+    }
+    program.plain_kib = std::max(program.plain_kib, one.plain_kib);
+    program.sun_kib = std::max(program.sun_kib, one.sun_kib);
+    program.effect_percent = std::max(program.effect_percent, one.effect_percent);
+  }
+  const auto scaled = [&](std::uint32_t bytes) { return bytes / 100 * program.effect_percent; };
+  // Boards with less stack draw water by the tree (platform/frames.cmake).
+  constexpr std::uint32_t kWetStackBytes = 4096;
+  const bool is_wet = (effects & Effect::kWater) != 0;
+  const EffectSet moving = effects & ~Effect::kEdges;
+  if (!is_flat(moving) || (is_wet && board.stack_bytes < kWetStackBytes)) {
+    return program.plain_kib * 1024 + scaled(effect_flash_bytes(effects));
+  }
+  std::uint32_t more = effect_flash_bytes(effects | kSun) - effect_flash_bytes(kSun);
+  more += (effects & Effect::kAmbientOcclusion) != 0 ? kMapOcclusionBytes : 0;
+  more += (effects & Effect::kMirror) != 0 ? kMapMirrorBytes : 0;
+  more += is_wet ? kMapWaterBytes : 0;
+  return program.sun_kib * 1024 + scaled(more);
+}
+/// Bytes of flash that a baked scene may take beside the demonstration.
 inline std::uint64_t scene_flash_bytes(const platform::BoardFacts& board, EffectSet effects = Effect::kNone) {
-  const std::uint32_t code = code_flash_bytes(effects);
+  const std::uint32_t code = code_flash_bytes(board, effects);
   return board.flash_bytes > code ? board.flash_bytes - code : 0;
 }
 /// Bytes of RAM that the stack leaves.

@@ -12,7 +12,8 @@ std::string limit_text(const FlashLimit& limit, EffectSet effects, std::uint64_t
   const platform::BoardFacts* const board = limit.board;
   if (board != nullptr && bytes == scene_flash_bytes(*board, effects)) {
     return std::string(board->name) + " has " + grouped(bytes) + " bytes of flash for a scene (" +
-           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(effects)) + " for code)";
+           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(*board, effects)) +
+           " for the demonstration)";
   }
   return "the limit is " + grouped(bytes) + " bytes (--memory)";
 }
@@ -36,15 +37,25 @@ std::optional<std::uint64_t> FlashLimit::bytes(EffectSet effects) const {
 
 Baked bake_within(const FlashLimit& limit, const SceneSource& source, BakingOptions* options,
                   const Progress& progress) {
+  const bool coarsen = options->coarsen;
+  options->coarsen = false;
   Baked baked = bake_scene(source, *options, progress);
+  const auto keep_limit = [&] {
+    // With the code of its effects it does not fit: without a brick map, or not at all.
+    options->limit_bytes = limit.bytes(baked.effects);
+    if (options->limit_bytes && (!baked.fits || baked.bytes.size() > *options->limit_bytes)) {
+      baked = bake_scene(source, *options, progress);
+    }
+  };
+  keep_limit();
   if (options->default_look && baked.effects != Effect::kNone && !has_room_for_light(limit, baked)) {
     options->default_look = false;  // light that nobody asked for never costs a scene its place
+    options->limit_bytes = limit.bytes();
     baked = bake_scene(source, *options, progress);
+    keep_limit();
   }
-  const std::optional<std::uint64_t> left = limit.bytes(baked.effects);
-  if (left < options->limit_bytes && (!baked.fits || baked.bytes.size() > *left)) {
-    // With the code of its effects it does not fit: smaller, without a brick map, or not at all.
-    options->limit_bytes = left;
+  options->coarsen = coarsen;
+  if (coarsen && !baked.fits) {
     baked = bake_scene(source, *options, progress);
   }
   return baked;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "output/units.h"
 #include "scene/best_view.h"
@@ -298,6 +300,8 @@ Camera orthographic_camera(const ViewWishes& wishes, int level, const Sight& sig
 }
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
+// By how much the demonstration's eye nods (apps/demo_view.h), in degrees.
+constexpr double kRoundNod = 360.0 / 256;
 
 // The way in, and what is up where that is upright.
 void look_from(const ViewAngles& angles, ViewWishes* wishes) {
@@ -435,6 +439,80 @@ ViewWishes fitted(const ViewWishes& wishes, const SceneShape& shape, const Sight
   return placed_view;
 }
 
+// What is seen of a scene while one goes round it: of each height the farthest from the upright.
+class RoundExtent {
+ public:
+  explicit RoundExtent(const SceneShape& shape) : axis_(middle_of(shape.bounds)) {
+    // The upright from which the farthest corner is least far.
+    const auto farthest = [&](const Real3& from) {
+      double most = 0;
+      for (const Vec3i& corner : shape.corners) {
+        most = std::max(most, std::hypot(corner.x - from[0], corner.y - from[1]));
+      }
+      return most;
+    };
+    double least = farthest(axis_);
+    for (double step = least / 2; step > 1.0 / 16;) {
+      bool moved = false;
+      for (const auto& [x, y] : {std::pair{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
+        const Real3 tried = plus(axis_, {x, y, 0});
+        if (const double most = farthest(tried); most < least) {
+          least = most;
+          axis_ = tried;
+          moved = true;
+        }
+      }
+      step = moved ? step : step / 2;
+    }
+    for (const Vec3i& corner : shape.corners) {
+      double& most = farthest_[corner.z];
+      most = std::max(most, std::hypot(corner.x - axis_[0], corner.y - axis_[1]));
+    }
+  }
+
+  /// Looks down by about `tilt` at a point of the upright: the one that is seen from nearest, and from where.
+  Real3 target(const Lens& lens, double tilt, double* distance) const {
+    double low = farthest_.begin()->first;
+    double high = farthest_.rbegin()->first;
+    for (int step = 0; step < 24; ++step) {  // the distance is convex in the height
+      const double third = (high - low) / 3;
+      if (distance_from(lens, tilt, low + third) < distance_from(lens, tilt, high - third)) {
+        high -= third;
+      } else {
+        low += third;
+      }
+    }
+    const double height = kept_q8((low + high) / 2);
+    *distance = distance_from(lens, tilt, height);
+    return {kept_q8(axis_[0]), kept_q8(axis_[1]), height};
+  }
+
+ private:
+  double distance_from(const Lens& lens, double tilt, double height) const {
+    constexpr int kSides = 16;  // of half a round; the other half mirrors it
+    const double slope_y = lens.tan_y * kPictureFill;
+    double distance = 0;
+    for (const double nod : {-kRoundNod, kRoundNod}) {
+      const double cosine = std::cos((tilt + nod) * kDegree);
+      const double sine = std::sin((tilt + nod) * kDegree);
+      for (const auto& [z, reach] : farthest_) {
+        for (int side = 0; side <= kSides; ++side) {
+          const double away = reach * std::cos(180 * kDegree * side / kSides);
+          const double across = reach * std::sin(180 * kDegree * side / kSides);
+          const double depth = away * cosine - (z - height) * sine;
+          const double up = away * sine + (z - height) * cosine;
+          distance =
+              std::max({distance, across / (slope_y * lens.aspect) - depth, std::abs(up) / slope_y - depth});
+        }
+      }
+    }
+    return distance;
+  }
+
+  Real3 axis_;
+  std::map<std::int32_t, double> farthest_;
+};
+
 }  // namespace
 
 ViewAngles angles_of(NamedView view) {
@@ -545,6 +623,30 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
 Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape) {
   return wishes.placed || source.camera() == nullptr ? frame_shape(wishes, shape)
                                                      : frame_scene(wishes, source, shape.level, shape.bounds);
+}
+
+Framing frame_round(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape) {
+  constexpr double kSteep = 80;
+  const bool is_free = !wishes.eye && !wishes.target && !wishes.up && !wishes.orthographic &&
+                       wishes.side != NamedView::kPaper && !shape.corners.empty();
+  if ((!wishes.placed && source.camera() != nullptr) || !is_free) {
+    return frame_scene(wishes, source, shape);
+  }
+  const ViewAngles angles = angles_for(wishes, shape);
+  if (std::abs(angles.tilt) > kSteep) {
+    return frame_scene(wishes, source, shape);
+  }
+  ViewWishes view = wishes;
+  look_from(angles, &view);
+  double distance = 0;
+  view.target = RoundExtent(shape).target(Lens(view), angles.tilt, &distance);
+  const Reach reach(shape.level);
+  view.eye = kept_q8(eye_at(sight_of(view, reach, corners_of(shape.bounds)), distance, reach));
+  try {
+    return frame_box(view, shape.level, shape.bounds);
+  } catch (const InputError&) {
+    return frame_scene(wishes, source, shape);  // beyond what a camera can do
+  }
 }
 
 std::vector<Framing> frame_turns(const ViewWishes& given, const SceneShape& shape, int count) {

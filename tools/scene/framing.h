@@ -94,6 +94,10 @@ Framing frame_shape(const ViewWishes& wishes, const SceneShape& shape);
 /// The camera that the scene brings along, unless `wishes.placed` or it has none; then the one above.
 Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape);
 
+/// As the last, but where nobody says where the camera is the eye may go all round the upright through its target, at its
+/// distance, with everything occupied in the picture: as the demonstration of a board turns (apps/demo_view.h).
+Framing frame_round(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape);
+
 /// Pictures all around, `count` of them: the view above turned by a whole turn, clockwise, in equal steps, about
 /// the upright through the middle of the scene, from as far away as the widest of them wants.
 std::vector<Framing> frame_turns(const ViewWishes& wishes, const SceneShape& shape, int count);

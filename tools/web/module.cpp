@@ -30,7 +30,7 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
   facts = "{\"level\":" + std::to_string(tree.level()) + number_field("voxels", tree.voxel_count()) +
           number_field("bytes", baked.bytes.size()) + number_field("added", tree.solid_added()) +
           number_field("effects", baked.effects) + number_field("points", source.points()) +
-          number_field("frames", source.frames()) + number_field("code", code_flash_bytes(baked.effects)) +
+          number_field("frames", source.frames()) + number_field("code", code_flash_bytes(board, baked.effects)) +
           number_field("ram", drawing_ram_bytes(board, baked.effects)) +
           number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
           source.kind() + "\"}";
@@ -83,7 +83,7 @@ extern "C" {
   options.coarsen = coarsen;
   options.default_look = source->baked() == nullptr && !parse_generator(scene);
   options.display = DisplayFacts{board.format, board.width_px, board.height_px};
-  options.camera = [&](const CompactTree& tree) { return frame_scene(view, *source, shape_of(tree)).kept; };
+  options.camera = [&](const CompactTree& tree) { return frame_round(view, *source, shape_of(tree)).kept; };
   baked = bake_within(limit, *source, &options);
   if (!baked.fits) {
     throw InputError(too_large_text(limit, baked, options, source->level()));
