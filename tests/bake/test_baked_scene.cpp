@@ -12,6 +12,7 @@
 #include <zlib.h>
 
 #include "support/baked_damage.h"
+#include "support/counts.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/octree.h"
@@ -21,11 +22,7 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kScale = 1;
-#else
-constexpr int kScale = 8;
-#endif
+const int kScale = thimble::tests::many_or_few(8, 1);
 
 constexpr Rgb8 kColors[] = {{1, 2, 3}, {200, 100, 50}, {9, 8, 7}};
 constexpr char kName[] = "a scene";

@@ -15,6 +15,7 @@
 #include "scene/board_fit.h"
 #include "support/baked_damage.h"
 #include "support/check_command.h"
+#include "support/counts.h"
 #include "support/file_bytes.h"
 #include "thimble/bake/baked_scene.h"
 
@@ -104,7 +105,7 @@ TEST_CASE("bake: with any camera -> the baked scene renders to the same pixels a
   std::size_t number = 0;
   for (const std::string& scene : {std::string("spheres,depth=5"), vox, points}) {
     for (const Words& camera : cameras) {
-      if (++number % 3 != 0 && kSanitized) {
+      if (++number % 3 != 0 && thimble::tests::takes_few()) {
         continue;
       }
       CAPTURE(scene);
@@ -151,7 +152,7 @@ TEST_CASE(
     "bake: without a word -> the baked scene's picture without a word is that of its file, byte for byte") {
   const TemporaryFolder folder;
   const std::string oct = folder.path("s.oct");
-  const Words small{"--size", kSanitized ? "40x30" : "80x60"};
+  const Words small{"--size", thimble::tests::takes_few() ? "40x30" : "80x60"};
   std::string strewn;
   for (int i = 0; i < 300; ++i) {
     strewn += std::to_string(i * 37 % 101) + " " + std::to_string(i * 53 % 97) + " " +
@@ -287,7 +288,7 @@ TEST_CASE("bake: --coarsen -> within the limit and close to it, only solid added
     const auto full = json_of(folder.path("full.json"));
     const std::size_t exact = std::filesystem::file_size(oct);
     for (const std::size_t percent : {100U, 99U, 80U, 50U, 30U}) {
-      if (kSanitized && percent != 99U && percent != 30U) {
+      if (thimble::tests::takes_few() && percent != 99U && percent != 30U) {
         continue;
       }
       const std::size_t limit = exact * percent / 100;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/run_command.h"
 
 namespace thimble::tests {
@@ -154,11 +155,7 @@ struct Command {
   std::size_t every = 1;  // one pair of so many, where a run takes long
 };
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::size_t kEach = 23;
-#else
-constexpr std::size_t kEach = 1;
-#endif
+const std::size_t kEach = thimble::tests::many_or_few<std::size_t>(1, 23);
 
 // Each pair of options, or each every-th: what came of it, counted by status.
 std::map<int, int> try_pairs(const TemporaryFolder& folder, const Command& command) {

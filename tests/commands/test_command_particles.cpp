@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/counts.h"
 #include "support/particle_shadow.h"
 #include "support/run_command.h"
 #include "thimble/plane/particles.h"
@@ -28,11 +29,7 @@ using thimble::tests::TemporaryFolder;
 using thimble::tools::in_disc;
 using Words = std::vector<std::string>;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr const char* kSteps = "150";
-#else
-constexpr const char* kSteps = "600";
-#endif
+const char* const kSteps = thimble::tests::many_or_few("600", "150");
 
 CommandResult particles(Words words) {
   words.insert(words.begin(), "particles");

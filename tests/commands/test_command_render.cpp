@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "commands/engine_options.h"
+#include "support/counts.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
 #include "support/run_command.h"
@@ -384,7 +385,7 @@ TEST_CASE("render: the default camera -> every corner of what is occupied is in 
          {std::pair(9, 7), std::pair(80, 60), std::pair(60, 80), std::pair(90, 9), std::pair(7, 63)}) {
       for (const char* fov : {"1", "5", "30", "60", "90", "120", ""}) {
         const bool parallel = std::string(fov).empty();
-        if (++runs % 7 != 0 && kSanitized) {
+        if (++runs % 7 != 0 && thimble::tests::takes_few()) {
           continue;
         }
         Words words{"render",
@@ -658,7 +659,7 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
     for (const char* structure : {"compact", "pool", "dense"}) {
       for (const char* size : {"16x12", "400x8"}) {
         const int place = turn++;
-        if (kSanitized && (place / 2 + place) % 2 != 0) {
+        if (thimble::tests::takes_few() && (place / 2 + place) % 2 != 0) {
           continue;  // half of the combinations, in which each scene, structure and size is met
         }
         const Words words =
@@ -677,8 +678,9 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
         CHECK(exact["high_water_bytes"] <= needed);
         CHECK(exact["solid_added"] == 0);
         const std::vector<std::uint64_t> too_small =
-            kSanitized ? std::vector<std::uint64_t>{needed - 1, needed / 2}
-                       : std::vector<std::uint64_t>{needed - 1, needed - 7, needed / 2, needed / 16, 100, 1};
+            thimble::tests::takes_few()
+                ? std::vector<std::uint64_t>{needed - 1, needed / 2}
+                : std::vector<std::uint64_t>{needed - 1, needed - 7, needed / 2, needed / 16, 100, 1};
         for (const std::uint64_t budget : too_small) {
           const CommandResult less = run_command(words + Words{"--memory", std::to_string(budget)});
           CHECK(less.status == 1);
@@ -686,8 +688,9 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
           CHECK(number_after(less.err, "needs ") == needed);
         }
         const std::vector<std::uint64_t> enough =
-            kSanitized ? std::vector<std::uint64_t>{needed + 1, needed * 3}
-                       : std::vector<std::uint64_t>{needed + 1, needed + 4000, needed * 3, needed * 100};
+            thimble::tests::takes_few()
+                ? std::vector<std::uint64_t>{needed + 1, needed * 3}
+                : std::vector<std::uint64_t>{needed + 1, needed + 4000, needed * 3, needed * 100};
         for (const std::uint64_t budget : enough) {
           CHECK(run_command(words + Words{"--memory", std::to_string(budget)}).status == 0);
           const json stats = json::parse(read_text(folder.path("s.json")));
@@ -714,7 +717,8 @@ TEST_CASE(
           run_command(shaded(Words{"render", "-o", folder.path("p.ppm"), "--memory", "0"} + words));
       const std::uint64_t needed = number_after(none.err, "needs ");
       int pictures = 0;
-      for (std::uint64_t budget = needed - 1; budget > 0; budget = kSanitized ? budget / 2 : budget * 3 / 5) {
+      for (std::uint64_t budget = needed - 1; budget > 0;
+           budget = thimble::tests::takes_few() ? budget / 2 : budget * 3 / 5) {
         CAPTURE(one.front());
         CAPTURE(structure);
         CAPTURE(budget);

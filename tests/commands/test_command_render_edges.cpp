@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/run_command.h"
 #include "thimble/picture/render.h"
 
@@ -147,8 +148,9 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
 TEST_CASE(
     "render --samples auto: more pixels than are drawn together -> as in small bands; behind them, as of one "
     "sample") {
-  for (const Words& scene : kSanitized ? std::vector<Words>{{"castle", "--effects", "direct-light"}}
-                                       : std::vector<Words>{{"castle"}, {"room"}}) {
+  for (const Words& scene : thimble::tests::takes_few()
+                                ? std::vector<Words>{{"castle", "--effects", "direct-light"}}
+                                : std::vector<Words>{{"castle"}, {"room"}}) {
     CAPTURE(scene);
     constexpr const char* kLarge = "260x200";
     const Picture whole = render(scene + Words{"--samples", "auto"}, kLarge);
@@ -169,7 +171,7 @@ TEST_CASE(
 }
 
 TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by half, with few rays") {
-  const std::string size = kSanitized ? "80x60" : "240x180";
+  const std::string size = thimble::tests::takes_few() ? "80x60" : "240x180";
   for (const Words& words : {Words{"castle", "--shade", "color"}, Words{"ship", "--shade", "color"},
                              Words{"castle", "--effects", "direct-light,shadows"}, Words{"castle"}}) {
     CAPTURE(words);

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
 #include "support/run_command.h"
@@ -251,11 +252,7 @@ TEST_CASE("trace: --direction-bits -> directions within them, and the default ta
 
 TEST_CASE("trace: random rays, many aimed at edges and corners -> every one as the exact reference says") {
   const TemporaryFolder folder;
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kRays = 1500;
-#else
-  constexpr int kRays = 15000;
-#endif
+  const int kRays = thimble::tests::many_or_few(15000, 1500);
   struct Case {
     WorldKind kind;
     reference::Voxel size;

@@ -9,15 +9,12 @@
 
 #include "instruments/hard_cases.h"
 #include "reference/textbook.h"
+#include "support/counts.h"
 
 namespace thimble::tools {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint64_t kRays = 4200;
-#else
-constexpr std::uint64_t kRays = 28000;
-#endif
+const std::uint64_t kRays = thimble::tests::many_or_few<std::uint64_t>(28000, 4200);
 
 std::size_t column(const std::string& key) {
   for (std::size_t i = 0; i < kTracers; ++i) {

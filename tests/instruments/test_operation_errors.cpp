@@ -7,15 +7,12 @@
 #include <string>
 
 #include "instruments/operation_errors.h"
+#include "support/counts.h"
 
 namespace thimble::tools {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint64_t kCases = 3000;
-#else
-constexpr std::uint64_t kCases = 100000;
-#endif
+const std::uint64_t kCases = thimble::tests::many_or_few<std::uint64_t>(100000, 3000);
 constexpr std::uint64_t kSeed = 41;
 
 TEST_CASE("operation errors: sweep -> none above its bound, and no bound above four times what is seen") {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/baked_damage.h"
+#include "support/counts.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/scene.h"
 #include "thimble/tree/octree.h"
@@ -18,11 +19,7 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kRounds = 20000;
-#else
-constexpr int kRounds = 200000;
-#endif
+const int kRounds = thimble::tests::many_or_few(200000, 20000);
 constexpr int kLevel = 5;
 
 // Everything that a section can say, none of it as it is by default.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <random>
 
+#include "support/counts.h"
 #include "support/lit_cases.h"
 #include "support/lit_world.h"
 #include "support/wide_cases.h"

@@ -7,6 +7,7 @@
 
 #include "reference/reference.h"
 #include "scene/random.h"
+#include "support/counts.h"
 #include "support/lit_world.h"
 #include "thimble/trace/secondary_ray.h"
 
@@ -89,11 +90,7 @@ ref::Ray ref_ray(const Ray& ray) {
 }
 
 TEST_CASE("shadows: in every pixel what the exact reference says of the ray to the light") {
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kWorlds = 3;
-#else
-  constexpr int kWorlds = 12;
-#endif
+  const int kWorlds = thimble::tests::many_or_few(12, 3);
   int shadowed = 0;
   int lit = 0;
   for (int seed = 0; seed < kWorlds; ++seed) {
@@ -146,11 +143,7 @@ TEST_CASE("shadows: in every pixel what the exact reference says of the ray to t
 }
 
 TEST_CASE("shadows of lamps: in every pixel what the exact reference says of the ray as far as the lamp") {
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kWorlds = 3;
-#else
-  constexpr int kWorlds = 12;
-#endif
+  const int kWorlds = thimble::tests::many_or_few(12, 3);
   int shadowed = 0;
   int lit = 0;
   int behind = 0;  // something solid, beyond the lamp

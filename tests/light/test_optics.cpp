@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/trace/ray.h"
@@ -26,11 +27,7 @@ using thimble::tests::pick;
 using Real = long double;
 using Reals = std::array<Real, 3>;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kSweep = 100000;
-#else
-constexpr int kSweep = 1000000;
-#endif
+const int kSweep = thimble::tests::many_or_few(1000000, 100000);
 
 std::uint64_t seed() {
   const char* text = std::getenv("THIMBLE_SEED");

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/counts.h"
 #include "thimble/light/water.h"
 
 namespace thimble::tools {
@@ -18,11 +19,7 @@ namespace {
 
 __extension__ typedef __int128 Wide;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kShare = 10;
-#else
-constexpr int kShare = 1;
-#endif
+const int kShare = thimble::tests::many_or_few(1, 10);
 
 // A pool with its bytes and its mask.
 struct Pool {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/counts.h"
 #include "thimble/light/water.h"
 
 namespace thimble::tools {
@@ -18,13 +19,7 @@ namespace {
 
 __extension__ typedef __int128 Wide;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::int64_t kRays = 60000;
-#elif !defined(__OPTIMIZE__)
-constexpr std::int64_t kRays = 60000;
-#else
-constexpr std::int64_t kRays = 1000000;
-#endif
+const std::int64_t kRays = thimble::tests::many_or_few<std::int64_t>(1000000, 60000);
 
 std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
   const char* text = std::getenv(name);

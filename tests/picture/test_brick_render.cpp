@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/compact_damage.h"
+#include "support/counts.h"
 #include "support/formats.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
@@ -21,13 +22,8 @@ using namespace thimble;
 using testing::kFormats;
 using namespace thimble::tests;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kScenes = 40;
-constexpr int kDamages = 150;
-#else
-constexpr int kScenes = 400;
-constexpr int kDamages = 1500;
-#endif
+const int kScenes = thimble::tests::many_or_few(400, 40);
+const int kDamages = thimble::tests::many_or_few(1500, 150);
 
 constexpr ShadeMode kModes[] = {ShadeMode::kColor, ShadeMode::kNormal, ShadeMode::kMono, ShadeMode::kDepth};
 

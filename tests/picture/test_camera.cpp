@@ -11,6 +11,7 @@
 
 #include "../../src/base/wide_arithmetic.h"
 #include "../../src/picture/cotangent.h"
+#include "support/counts.h"
 #include "thimble/picture/camera.h"
 #include "thimble/trace/ray.h"
 
@@ -20,11 +21,7 @@ namespace {
 using Real = long double;
 using Real3 = std::array<Real, 3>;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kCameras = 1000;
-#else
-constexpr int kCameras = 20000;
-#endif
+const int kCameras = thimble::tests::many_or_few(20000, 1000);
 
 Real dot(const Real3& a, const Real3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

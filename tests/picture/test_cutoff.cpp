@@ -12,6 +12,7 @@
 
 #include "golden/scenes.h"
 #include "reference/reference.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/cutoff.h"
@@ -19,13 +20,8 @@
 namespace thimble::tests {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kScenes = 6;
-constexpr int kRaysAScene = 150;
-#else
-constexpr int kScenes = 24;
-constexpr int kRaysAScene = 1500;
-#endif
+const int kScenes = thimble::tests::many_or_few(24, 6);
+const int kRaysAScene = thimble::tests::many_or_few(1500, 150);
 constexpr std::uint64_t kSeed = 20240611;
 
 using reference::Voxel;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/random.h"
+#include "support/counts.h"
 #include "thimble/picture/shading.h"
 
 namespace {
@@ -14,11 +15,7 @@ namespace {
 using namespace thimble;
 using thimble::tools::SplitMix64;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kCameras = 300;
-#else
-constexpr int kCameras = 3000;
-#endif
+const int kCameras = thimble::tests::many_or_few(3000, 300);
 constexpr std::int32_t kExtremes[] = {
     INT32_MIN, INT32_MIN + 1, -(1 << 26), -65536,        -1,       0, 1, 255, 256, 65536, 1 << 23,
     1 << 24,   (1 << 24) + 1, 1 << 30,    INT32_MAX - 1, INT32_MAX};

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "reference/reference.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "thimble/plane/bitfield.h"
 
@@ -21,11 +22,7 @@ namespace {
 using namespace thimble;
 using tests::pick;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kScale = 1;
-#else
-constexpr int kScale = 10;
-#endif
+const int kScale = thimble::tests::many_or_few(10, 1);
 
 std::string at(const Vec2i& cell) {
   return "(" + std::to_string(cell.x) + ", " + std::to_string(cell.y) + ")";

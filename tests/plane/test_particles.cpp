@@ -9,17 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"
 
 namespace thimble::tools {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kShare = 10;
-#else
-constexpr int kShare = 1;
-#endif
+const int kShare = thimble::tests::many_or_few(1, 10);
 
 bool long_runs() {
   return std::getenv("THIMBLE_LONG") != nullptr;
@@ -236,7 +233,7 @@ void check_stays_asleep(ShadowedWorld& shadow) {
 
 TEST_CASE(
     "particles: a heap of 693 under gravity -> all asleep within 1,500 steps, nobody in the air, for good") {
-  for (std::uint32_t seed = 1; seed <= 12U / kShare + 1; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 12U / static_cast<unsigned>(kShare) + 1; ++seed) {
     ParticleConfig config;
     config.seed = seed;
     if (seed % 4 == 3) {

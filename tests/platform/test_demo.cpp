@@ -17,6 +17,7 @@
 #include "scene/baking.h"
 #include "scene/random.h"
 #include "support/baked_demo.h"
+#include "support/counts.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
@@ -28,13 +29,8 @@ using namespace thimble;
 using tests::bake_demo;
 using tests::demo_scene;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint32_t kFrameStep = 8;
-constexpr int kWandering = 200;
-#else
-constexpr std::uint32_t kFrameStep = 1;
-constexpr int kWandering = 2000;
-#endif
+const std::uint32_t kFrameStep = thimble::tests::many_or_few<std::uint32_t>(1, 8);
+const int kWandering = thimble::tests::many_or_few(2000, 200);
 
 const tools::Baked& lit_scene() {
   static const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kShadows);
@@ -429,11 +425,8 @@ TEST_CASE("demo: on every board -> draws within its RAM, the golden frames where
   for (const platform::BoardFacts& board : platform::boards()) {
     CAPTURE(std::string(board.name));
     const bool golden_display = board.width_px == 128 && board.format == PixelFormat::kGray4;
-#ifdef __SANITIZE_ADDRESS__
-    const std::uint32_t frames = golden_display ? 18 : 1;
-#else
-    const std::uint32_t frames = golden_display ? 120 : 2;
-#endif
+    const bool few = thimble::tests::takes_few();
+    const std::uint32_t frames = golden_display ? (few ? 18 : 120) : (few ? 1 : 2);
     const Run run = run_demo(board, bytes_of(demo_scene().bytes), frames);
     CHECK(run.status == 0);
     CHECK(run.fault == "");

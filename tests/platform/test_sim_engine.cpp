@@ -15,6 +15,7 @@
 #include "readers/source.h"
 #include "scene/baking.h"
 #include "scene/wide_frames.h"
+#include "support/counts.h"
 #include "support/run_command.h"
 #include "support/simulated_run.h"
 #include "thimble/base/memory.h"
@@ -27,11 +28,7 @@ using namespace thimble::tests;
 using Words = std::vector<std::string>;
 using nlohmann::json;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint32_t kFrames = 6;
-#else
-constexpr std::uint32_t kFrames = 24;
-#endif
+const std::uint32_t kFrames = thimble::tests::many_or_few<std::uint32_t>(24, 6);
 
 constexpr const char* kScene = "spheres,depth=4";
 

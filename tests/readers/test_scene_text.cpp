@@ -17,6 +17,7 @@
 #include "readers/scene_text.h"
 #include "scene/scene_source.h"
 #include "scene/text_scene.h"
+#include "support/counts.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
 
@@ -27,11 +28,7 @@ using namespace thimble::tools;
 using tests::TemporaryFolder;
 using tools::test::contains;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kRounds = 4000;
-#else
-constexpr int kRounds = 60000;
-#endif
+const int kRounds = thimble::tests::many_or_few(60000, 4000);
 
 std::shared_ptr<const SceneText> parse(const std::string& text) {
   return std::get<std::shared_ptr<const SceneText>>(read_scene_text(SharedBytes::own(text)));

@@ -14,16 +14,13 @@
 #include "scene/random.h"
 #include "scene/voxelise.h"
 #include "scene/world_fit.h"
+#include "support/counts.h"
 
 namespace {
 
 using namespace thimble::tools;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kEffort = 1;
-#else
-constexpr int kEffort = 10;
-#endif
+const int kEffort = thimble::tests::many_or_few(10, 1);
 
 __extension__ typedef __int128 Wide;
 

@@ -11,6 +11,7 @@
 #include "scene/voxelise.h"
 #include "scene/voxelise_cells.h"
 #include "scene/world_fit.h"
+#include "support/counts.h"
 
 namespace {
 
@@ -101,11 +102,7 @@ TEST_CASE("voxelise: 20,000 triangles that fill a world of 512 -> seconds") {
     const auto corner = [&] { return random.below(3000); };
     mesh.triangles.push_back({corner(), corner(), corner()});
   }
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kLevel = 7;
-#else
-  constexpr int kLevel = 9;
-#endif
+  const int kLevel = thimble::tests::many_or_few(9, 7);
   // Processor time: what else the machine does is no matter.
   const std::clock_t start = std::clock();
   std::uint64_t volume = 0;

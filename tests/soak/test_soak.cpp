@@ -19,6 +19,7 @@
 
 #include "readers/source.h"
 #include "reference/reference.h"
+#include "support/counts.h"
 #include "support/deep_worlds.h"
 #include "support/hard_frames.h"
 #include "support/lit_cases.h"
@@ -401,7 +402,7 @@ void publish(const Soak& soak, std::uint64_t first_seed, double seconds) {
 
 TEST_CASE("soak: every renderer, hard cameras, random and real worlds -> every pixel is the core's") {
   const BestInstructionSet after;
-  constexpr std::uint64_t kPixels = many_or_few(4000000, 100000);
+  const std::uint64_t kPixels = many_or_few<std::uint64_t>(4000000, 100000);
   const auto first_seed = static_cast<std::uint64_t>(number_from("THIMBLE_SOAK_SEED", 1));
   const double minutes = number_from("THIMBLE_SOAK_MINUTES", 0);
   const auto begin = std::chrono::steady_clock::now();

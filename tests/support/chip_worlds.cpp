@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "support/counts.h"
 #include "support/random_up.h"
 #include "support/ray_cases.h"
 
@@ -79,15 +80,11 @@ ChipScene scene_of(int level, const Fill& fill_pool) {
 
 }  // namespace
 
-std::uint64_t pixels_to_draw(std::uint64_t longest, [[maybe_unused]] std::uint64_t slowly) {
+std::uint64_t pixels_to_draw(std::uint64_t longest, std::uint64_t slowly) {
   if (std::getenv("THIMBLE_LONG") != nullptr) {
     return longest;
   }
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-  return slowly;
-#else
-  return 1'000'000;
-#endif
+  return many_or_few<std::uint64_t>(1'000'000, slowly);
 }
 
 std::uint64_t seed_or(std::uint64_t otherwise) {

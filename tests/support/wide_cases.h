@@ -10,23 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/octree.h"
 #include "wide/renderer.h"
 
 namespace thimble::tests {
-
-// Sanitized builds take a tenth of the cases, and as long.
-#ifdef __SANITIZE_ADDRESS__
-constexpr int many_or_few(int /*many*/, int few) {
-  return few;
-}
-#else
-constexpr int many_or_few(int many, int /*few*/) {
-  return many;
-}
-#endif
 
 // A tree and its lists, in exactly the bytes that are asked for.
 struct WideScene {

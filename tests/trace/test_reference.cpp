@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "reference/reference.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 
 using namespace thimble::reference;
@@ -23,11 +24,7 @@ namespace {
 
 __extension__ typedef __int128 Int128;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kScale = 1;
-#else
-constexpr int kScale = 8;
-#endif
+const int kScale = thimble::tests::many_or_few(8, 1);
 
 Hit expect_hit(const Voxel& voxel, std::int64_t numerator, std::int64_t denominator, int axis) {
   return {true, voxel, numerator, denominator, axis};

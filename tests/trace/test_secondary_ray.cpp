@@ -16,6 +16,7 @@
 
 #include "reference/reference.h"
 #include "reference/secondary.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/host/optics.h"
@@ -37,11 +38,7 @@ std::uint64_t seed_or(std::int64_t otherwise) {
 }
 
 std::int64_t default_rays() {
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-  return 60000;
-#else
-  return 1000000;
-#endif
+  return thimble::tests::many_or_few(1000000, 60000);
 }
 
 constexpr int kAir = -1;

@@ -11,6 +11,7 @@
 
 #include "portable/rays.h"
 #include "reference/reference.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/trace/ray.h"
@@ -21,11 +22,7 @@ using namespace thimble;
 using namespace thimble::tests;
 using Voxels = std::vector<reference::Voxel>;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kScale = 1;
-#else
-constexpr int kScale = 10;
-#endif
+const int kScale = thimble::tests::many_or_few(10, 1);
 
 // A ray whose origin is given in 1/256 voxel.
 Ray ray_q8(const Vec3i& origin_q8, const Vec3i& direction) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/compact_damage.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/compact_tree.h"
@@ -22,11 +23,7 @@ using namespace thimble;
 using namespace thimble::tests;
 using Voxels = std::vector<reference::Voxel>;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kScale = 1;
-#else
-constexpr int kScale = 4;
-#endif
+const int kScale = thimble::tests::many_or_few(4, 1);
 
 // A pool that owns its bytes.
 struct OwnedPool {

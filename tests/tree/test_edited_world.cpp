@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/compact_damage.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"
@@ -19,11 +20,7 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kWorlds = 40;
-#else
-constexpr int kWorlds = 200;
-#endif
+const int kWorlds = thimble::tests::many_or_few(200, 40);
 
 /// The voxels of a world, one by one: a material, or -1.
 class VoxelModel {

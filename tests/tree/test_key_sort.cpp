@@ -11,6 +11,7 @@
 #include "scene/built_scene.h"
 #include "scene/key_sort.h"
 #include "scene/scene_source.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/compact_tree.h"
@@ -21,17 +22,10 @@ namespace {
 
 using tools::key_sort_scratch_bytes;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kLists = 10;
-constexpr std::int64_t kMostKeys = 150'000;
-constexpr int kWorlds = 12;
-constexpr std::int64_t kMostVoxels = 20'000;
-#else
-constexpr int kLists = 40;
-constexpr std::int64_t kMostKeys = 600'000;
-constexpr int kWorlds = 60;
-constexpr std::int64_t kMostVoxels = 60'000;
-#endif
+const int kLists = thimble::tests::many_or_few(40, 10);
+const std::int64_t kMostKeys = thimble::tests::many_or_few<std::int64_t>(600'000, 150'000);
+const int kWorlds = thimble::tests::many_or_few(60, 12);
+const std::int64_t kMostVoxels = thimble::tests::many_or_few<std::int64_t>(60'000, 20'000);
 
 // Keys anywhere, in few places, in long runs of equal ones, or in order.
 template <class Key>
@@ -206,11 +200,7 @@ TEST_CASE("key sort: any voxels, repeats, materials and threads -> the tree that
 }
 
 TEST_CASE("key sort: many points -> built within twice the bytes of their keys, whatever the threads") {
-#ifdef __SANITIZE_ADDRESS__
-  constexpr std::uint64_t kPoints = 500'000;
-#else
-  constexpr std::uint64_t kPoints = 2'000'000;
-#endif
+  const std::uint64_t kPoints = thimble::tests::many_or_few<std::uint64_t>(2'000'000, 500'000);
   for (const char* const name : {"points:", "cluster:"}) {
     tools::SceneArguments arguments;
     arguments.scene = name + std::to_string(kPoints);

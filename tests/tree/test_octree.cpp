@@ -1,5 +1,6 @@
 // The mutable octree, held to a map of voxels, to the canonical tree built from that map by recursion, and to
 // a coarsening that searches the whole tree for the cheapest merge at every step.
+#include "support/counts.h"
 #include "thimble/tree/octree.h"
 
 #include <doctest/doctest.h>
@@ -16,11 +17,7 @@
 namespace thimble::tools {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kEffort = 1;
-#else
-constexpr int kEffort = 6;
-#endif
+const int kEffort = thimble::tests::many_or_few(6, 1);
 
 using Random = std::mt19937_64;
 /// Morton index -> material.
@@ -695,7 +692,7 @@ TEST_CASE("octree: everything removed -> no node in use, and the pool serves aga
 }
 
 TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes, node by node") {
-  for (std::uint64_t seed = 1; seed <= 40U * kEffort; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 40U * static_cast<unsigned>(kEffort); ++seed) {
     CAPTURE(seed);
     Random random(seed);
     const int level = 1 + below(random, 5);
@@ -737,7 +734,7 @@ TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes
 
 TEST_CASE(
     "octree: edits between coarsenings -> only what was asked for changes, and the tree stays canonical") {
-  for (std::uint64_t seed = 1; seed <= 20U * kEffort; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 20U * static_cast<unsigned>(kEffort); ++seed) {
     CAPTURE(seed);
     Random random(seed);
     const int level = 1 + static_cast<int>(seed % 3);

@@ -12,6 +12,7 @@
 
 #include "golden/scenes.h"
 #include "support/compact_damage.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "support/subtree_count.h"
@@ -23,11 +24,7 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr int kWorldScale = 1;
-#else
-constexpr int kWorldScale = 8;
-#endif
+const int kWorldScale = thimble::tests::many_or_few(8, 1);
 
 // A shared tree that owns its bytes, exactly as many as it takes, made in exactly the workspace that it
 // takes.

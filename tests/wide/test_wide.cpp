@@ -12,7 +12,7 @@ namespace thimble::tests {
 
 TEST_CASE("wide: random scenes, cameras, shades, formats and bands -> every pixel is the core's") {
   const BestInstructionSet after;
-  constexpr int kScenes = many_or_few(1500, 120);
+  const int kScenes = many_or_few(1500, 120);
   int left_to_core = 0;
   int drawn = 0;
   std::uint64_t all_hits = 0;
@@ -56,7 +56,7 @@ TEST_CASE("wide: random scenes, cameras, shades, formats and bands -> every pixe
 
 TEST_CASE("wide: every instruction set, order and number of threads -> the same bytes") {
   const BestInstructionSet after;
-  constexpr int kScenes = many_or_few(100, 12);
+  const int kScenes = many_or_few(100, 12);
   const int sets = wide::instruction_set_count();
   std::vector<std::string> names;
   for (int set = 0; set < sets; ++set) {

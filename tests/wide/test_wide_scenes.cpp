@@ -16,7 +16,7 @@ namespace thimble::tests {
 
 TEST_CASE("wide: greys found as voxels are met -> every pixel is the core's, between any two planes") {
   const BestInstructionSet after;
-  constexpr int kFrames = many_or_few(800, 150);
+  const int kFrames = many_or_few(800, 150);
   std::uint64_t met = 0;
   std::uint64_t exact = 0;
   for (int i = 0; i < kFrames; ++i) {
@@ -67,14 +67,14 @@ TEST_CASE("wide: greys found as voxels are met -> every pixel is the core's, bet
     met += stats.counts.hits;
     exact += stats.counts.exact;
   }
-  CHECK(met > kFrames * std::uint64_t{20});
+  CHECK(met > 20 * static_cast<std::uint64_t>(kFrames));
   INFO(exact << " of " << met);
   CHECK(exact > met / 500);
 }
 
 TEST_CASE("wide: thick surfaces, voxels of about a pixel to many -> every pixel is the core's") {
   const BestInstructionSet after;
-  constexpr int kFrames = many_or_few(48, 4);
+  const int kFrames = many_or_few(48, 4);
   for (int i = 0; i < kFrames; ++i) {
     const std::uint64_t seed = 300 + static_cast<std::uint64_t>(i);
     std::mt19937_64 random(seed);
@@ -133,8 +133,8 @@ TEST_CASE("wide: thick surfaces, voxels of about a pixel to many -> every pixel 
 
 TEST_CASE("wide: clouds of voxels of a part of a pixel to some -> every pixel is the core's") {
   const BestInstructionSet after;
-  constexpr int kClouds = many_or_few(8, 2);
-  constexpr int kViews = many_or_few(12, 3);
+  const int kClouds = many_or_few(8, 2);
+  const int kViews = many_or_few(12, 3);
   std::uint64_t boxes = 0;
   std::uint64_t candidates = 0;
   for (int i = 0; i < kClouds; ++i) {
@@ -230,14 +230,10 @@ TEST_CASE("wide: clouds of voxels of a part of a pixel to some -> every pixel is
 }
 
 TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the core's") {
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kFrames = 2;
-  const std::vector<std::string> names{"spheres,depth=7"};
-#else
-  // Frames enough to see what goes wrong in one pixel of a hundred thousand.
-  constexpr int kFrames = 5;
-  const std::vector<std::string> names{"spheres,depth=9", "points:3000000", "water"};
-#endif
+  // Many: enough to see what goes wrong in one pixel of a hundred thousand.
+  const int kFrames = many_or_few(5, 2);
+  const auto names = many_or_few<std::vector<std::string>>({"spheres,depth=9", "points:3000000", "water"},
+                                                           {"spheres,depth=7"});
   for (const std::string& name : names) {
     tools::SceneArguments arguments;
     arguments.scene = name;
@@ -279,12 +275,9 @@ TEST_CASE("wide: whole frames of the generators' scenes -> every pixel is the co
 }
 
 TEST_CASE("wide: the order is chosen by what boxes hide -> few more tests than pixels, whatever the scene") {
-#ifdef __SANITIZE_ADDRESS__
-  const std::vector<std::string> names{"points:100000", "spheres", "water,depth=7"};
-#else
-  const std::vector<std::string> names{"points:100000", "points:2000000", "spheres", "spheres,depth=8",
-                                       "water,depth=9"};
-#endif
+  const auto names = many_or_few<std::vector<std::string>>(
+      {"points:100000", "points:2000000", "spheres", "spheres,depth=8", "water,depth=9"},
+      {"points:100000", "spheres", "water,depth=7"});
   for (const std::string& name : names) {
     tools::SceneArguments arguments;
     arguments.scene = name;

@@ -32,7 +32,7 @@ bool is_solid(const CompactTree& tree, const Vec3i& at) {
 
 TEST_CASE(
     "wide surface: random solid worlds -> the voxels with a neighbour that is not solid, and their nodes") {
-  constexpr int kScenes = many_or_few(60, 12);
+  const int kScenes = many_or_few(60, 12);
   int surfaces = 0;
   for (int i = 0; i < kScenes; ++i) {
     const std::uint64_t seed = 400 + static_cast<std::uint64_t>(i);
@@ -123,7 +123,7 @@ TEST_CASE(
 
 TEST_CASE("wide surface: solid worlds, rays along the lattice and from inside -> every pixel is the core's") {
   const BestInstructionSet after;
-  constexpr int kScenes = many_or_few(700, 40);
+  const int kScenes = many_or_few(700, 40);
   std::uint64_t asked = 0;
   int drawn = 0;
   int surfaces = 0;
@@ -171,7 +171,7 @@ TEST_CASE("wide surface: solid worlds, rays along the lattice and from inside ->
 
 TEST_CASE("wide surface: every instruction set, order, list and number of threads -> the same bytes") {
   const BestInstructionSet after;
-  constexpr int kScenes = many_or_few(40, 6);
+  const int kScenes = many_or_few(40, 6);
   for (int i = 0; i < kScenes; ++i) {
     const std::uint64_t seed = 77000 + static_cast<std::uint64_t>(i);
     std::mt19937_64 random(seed);

@@ -40,7 +40,7 @@ void look_at_corner(int view_number, std::int32_t width, std::int32_t height, Fr
 
 TEST_CASE("wide: several threads with a picture each -> put together, every pixel is the core's") {
   const BestInstructionSet after;
-  constexpr int kFrames = many_or_few(24, 2);
+  const int kFrames = many_or_few(24, 2);
   std::mt19937_64 random(77);
   const auto fill = [&](Octree* octree) {
     for (int i = 0; i < 200000; ++i) {
@@ -77,12 +77,12 @@ TEST_CASE("wide: several threads with a picture each -> put together, every pixe
 }
 
 TEST_CASE("wide: work in some rows, several threads -> parts change hands, every pixel is the core's") {
-  constexpr int kRepeats = many_or_few(10, 3);
-  constexpr std::int64_t kPoints = many_or_few(900000, 100000);
+  const int kRepeats = many_or_few(10, 3);
+  const std::int64_t kPoints = many_or_few<std::int64_t>(900000, 100000);
 #ifdef __SANITIZE_THREAD__
   constexpr int kLarge = 2;  // there every step takes ten times as long
 #else
-  constexpr int kLarge = many_or_few(5, 3);
+  const int kLarge = many_or_few(5, 3);
 #endif
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t first_clock = std::clock();
