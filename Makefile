@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install \
-  uninstall deb packages release sanitize clang fuzz check test coverage bench firmware emulate flash test-boards test-packages \
+  uninstall deb packages release sanitize clang fuzz check test test-all coverage bench firmware emulate flash test-boards test-packages \
   bench-frames bench-small3dlib test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
@@ -59,7 +59,7 @@ test-packages: ## Unpack every package in an empty folder and build it by its ec
 	@$(MAKE) --no-print-directory packages
 	@sh tests/packages/run.sh
 
-# What is tested is built in four ways; STEP says which of how many steps this is.
+# What is tested whole is built in four ways; STEP says which of how many steps this is.
 TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON
 release:
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
@@ -79,8 +79,14 @@ check: deps-test ## Build what is optimised and run its quick tests: one line a 
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
 	@.ci/build "optimised build" build/release thimble_tests thimble_golden_tests_O2
 	@sh tests/check.sh build/release
+# Every test once, optimised; what takes minutes (label `whole`) and more cases of a kind are left to test-all.
+test: deps-test ## Build and run every test once, optimised, and the quick checks: 8 minutes of two cores
+	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
+	@.ci/build "[1/2] optimised build" build/release src/all platform/all tools/all thimble_tests thimble_golden_tests_O2
+	@echo "[2/2] the tests; those that take longest begin"
+	@THIMBLE_FEW=all ctest --test-dir build/release --output-on-failure -j 2 -LE whole $(CTEST_ARGS)
 # One ctest over all builds, so that there is one summary.
-test: deps-test ## Build and run every test: optimised, sanitized, clang, fuzzing
+test-all: deps-test ## Build and run everything: optimised, sanitized, clang, fuzzing, mutants, every check
 	@$(MAKE) --no-print-directory release STEP='[1/5] '
 	@$(MAKE) --no-print-directory sanitize STEP='[2/5] '
 	@$(MAKE) --no-print-directory clang STEP='[3/5] '
@@ -165,14 +171,14 @@ test-framebuffer: ## Run thimble-fb on a real /dev/fb0 in an emulated PC; says f
 web: deps-web ## Make the page: one file that works from the disk and offline (build/web/thimble.html)
 	@sh platform/web/build.sh
 # BUILT=yes: of what was built.
-test-web: $(if $(BUILT),,web all) ## Test the page in headless Chromium (`make test` tests its modules under Node)
+test-web: $(if $(BUILT),,web all) ## Test the page in headless Chromium (`make test-all` tests its modules under Node)
 	@sh tests/web/run.sh
 bench-web: web ## Time frames in headless Chromium
 	@node tests/web/bench.js
 
 format: deps-format ## Format every source with clang-format
 	@$(FORMATTED) | xargs clang-format -i
-# What is linted; `make test` lints the core (src) too.
+# What is linted; `make test-all` lints the core (src) too.
 TIDY_FOLDERS ?= src tools platform tests/reference
 tidy: deps-test ## Lint the core, the tools and the ports with clang-tidy
 	@sh tests/checks/tidy.sh . build/tidy $(TIDY_FOLDERS)

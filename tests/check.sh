@@ -16,7 +16,7 @@ if [ "${2:-}" = "" ]; then
     echo "check: something failed, see above" >&2
     exit 1
   fi
-  echo "check: all passed; \`make test\` runs the rest: slow cases, sanitizers, clang, fuzzing, lint"
+  echo "check: all passed; \`make test\` runs slow cases, too; \`make test-all\` sanitizers, clang, fuzzing, lint"
   exit
 fi
 
@@ -31,7 +31,7 @@ case $group in
     ;;
   checks)
     : >"$log"
-    quick='layering words format sizes links'
+    quick='layering words format sizes links subjects'
     for check in $quick; do
       stamp=
       [ "$check" != format ] || stamp=$build/check/format.stamp

@@ -81,6 +81,7 @@ check() {
     readme_program) sh "$here/readme_program.sh" "$tree" "$work/program" "$work/libempty.a" ;;
     readme_commands) sh "$here/readme_commands.sh" "$tree" "$work/bin" "$work/commands" ;;
     panel_formats) sh "$here/panel_formats.sh" "$tree" "$work/formats" ;;
+    subjects) sh "$here/subjects.sh" "$tree" "$base" ;;
     *) sh "$here/$1.sh" "$tree" ;;
   esac >"$log" 2>&1
 }
@@ -117,6 +118,21 @@ for name in layering words format headers arduino one_unit tidy core.host core.c
   readme_program readme_commands; do
   passes $name
 done
+
+# Subjects of commits.
+commit() { git -C "$tree" -c user.name=n -c user.email=e commit -q --allow-empty -m "$1"; }
+long=$(printf '%073d' 0)
+base=none
+passes subjects  # no history: skipped
+if command -v git >/dev/null 2>&1; then
+  git -C "$tree" init -q
+  commit "$long"
+  base=$(git -C "$tree" rev-parse HEAD)
+  commit "${long#0}"
+  passes subjects
+  commit "$long"
+  catches subjects "$long"
+fi
 
 # The table of boards repeats the budgets.
 mkdir -p "$tree/platform" "$tree/tests/budgets"

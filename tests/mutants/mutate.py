@@ -17,6 +17,7 @@ import subprocess
 import sites
 
 PARTS = 4
+FLAT = "src/light/flat/"  # one template for all its sets of effects: a part of its own
 ONE_IN = 10  # of --quick
 QUICK = ("base", "bake", "c", "trace")  # rooms whose tests are quick
 
@@ -78,8 +79,11 @@ def write_tree(out, sources, parts, chosen):
     # A build tool knows the parts alone: they change with what they include.
     state = sites.digest(*texts.values())
     files = [file for file in sources if file.endswith(".cpp")]
+    flat = [file for file in files if file.startswith(FLAT)]
+    others = [file for file in files if file not in flat]
     for number, part in enumerate(parts):
-        write(out / part, f"// {state}\n" + "".join(f'#include "{out / f}"\n' for f in files[number::PARTS]))
+        held = others[number::PARTS] if number < PARTS else flat
+        write(out / part, f"// {state}\n" + "".join(f'#include "{out / f}"\n' for f in held))
 
 
 def refused(root, out, parts, chosen):
@@ -150,7 +154,7 @@ def main():
     chosen = seeded + chosen
     for number, mutant in enumerate(chosen, 1):
         mutant.number = number
-    parts = [f"part_{part}.cpp" for part in range(PARTS)]
+    parts = [f"part_{part}.cpp" for part in (*range(PARTS), "flat")]
     dropped = 0
     while True:
         write_tree(out, sources, parts, chosen)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Judges the page that `make web` built, in headless Chromium. Its modules are tested under Node by `make test`.
+# Judges the page that `make web` built, in headless Chromium. Its modules are tested under Node by `make test-all`.
 set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/web/tests
