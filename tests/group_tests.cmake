@@ -3,6 +3,15 @@
 # command and include nothing of the product stand together, so that a header that changes leaves them as they are.
 function(thimble_group_tests)
   set(before)
+  file(GLOB support CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/support/*.cpp)
+  # With macros of Xlib.h, functions in the place of the system's, and names that a neighbour has too.
+  list(FILTER support EXCLUDE REGEX "/(virtual_display|allocation_trap|pty|run_command|file_bytes|scene_under_test|wide_cases)[.]cpp$")
+  set(number_support 0)
+  foreach(source IN LISTS support)
+    math(EXPR number "${number_support} / 7")
+    math(EXPR number_support "${number_support} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP support_${number})
+  endforeach()
   foreach(source IN LISTS ARGN)
     if(source MATCHES "/(drivers|trace)/|/test_(linux_framebuffer|vox|grid_readers|file_bytes|command_render_edges)[.]cpp$")
       continue()
