@@ -1,5 +1,5 @@
 // Draws frames by bricks: rays go from voxel to voxel through the 64-bit bricks of a map, plane by plane along the axis
-// on which the rays of a tile move fastest. src/picture/README.md derives what is used here.
+// on which the rays of a tile move fastest. src/picture/BRICKS.md derives what is used here.
 #include "thimble/picture/render.h"
 
 #include "../base/bits.h"

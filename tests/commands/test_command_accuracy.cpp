@@ -428,7 +428,7 @@ TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near
   accuracy(
       {"demo", "--size", "128x64", "--shade", "color", "--rounds", "1", "--json", folder.path("d.json")});
   const Json rows = Json::parse(read_text(folder.path("d.json")));
-  // Ray by ray, setting the camera up included (src/picture/README.md, "Frames on a chip").
+  // Ray by ray, setting the camera up included (src/picture/BRICKS.md, "Frames on a chip").
   const double counted = 40.5e6;
   CHECK(rows[0]["lm3s6965evb_instructions"].get<double>() ==
         doctest::Approx(counted).epsilon(tools::kChipCostError));

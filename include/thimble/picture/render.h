@@ -105,7 +105,7 @@ Status render_band_32(const CompactTree& tree, const Camera& camera, const Shadi
 // A tile is drawn face by face where faces cover several pixels, else ray by ray.
 //
 // Cost on a Cortex-M3: some 360 instructions a pixel of 128 x 64 pixels, 161 of 320 x 240, 88 of 640 x 480;
-// 1.7 to 1.9 times that on a Cortex-M0 (src/picture/README.md, "Frames on a chip"). Stack: 6 KiB
+// 1.7 to 1.9 times that on a Cortex-M0 (src/picture/BRICKS.md, "Frames on a chip"). Stack: 6 KiB
 // (tests/budgets/stack.csv), most of it half-planes, colours and the state of a tile. Code: about 48 KB.
 //
 // Options with which the core is compiled (of a board: BOARD_FRAMES) choose what an image has:

@@ -7,7 +7,7 @@
 ///
 /// Like the tree, a map is bytes: position-independent, little-endian, baked into flash or built at start in
 /// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout,
-/// src/picture/README.md, "Frames on a chip", the reasons.
+/// src/picture/BRICKS.md, "Frames on a chip", the reasons.
 ///
 /// A map does not change with its tree (build it anew). Worlds of level 9 and 10 have maps where the core is compiled
 /// with THIMBLE_DEEP_WORLDS (hosts, and boards that can hold one); their directory has two levels.

@@ -1,5 +1,5 @@
 // Draws a tile face by face, nearest faces first: for pictures in which a face covers several pixels. Internal to src/;
-// src/picture/README.md derives it.
+// src/picture/BRICKS.md derives it.
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
 #define THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
 
