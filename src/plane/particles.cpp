@@ -372,6 +372,7 @@ Status ParticleWorld::set_gravity(Vec2i gravity_q16) {
   rest_speed_ = 2 * strength + (strength >> 1);
   gravity_part_ = {part_of(gravity_q16.x, config_.substeps_log2),
                    part_of(gravity_q16.y, config_.substeps_log2)};
+  owed_ = 0;
   wake_all();
   return Status::kOk;
 }
@@ -380,7 +381,10 @@ Status ParticleWorld::set_restitution(uint32_t restitution_q16) {
   if (restitution_q16 > 65536) {
     return Status::kOutOfRange;
   }
-  config_.restitution_q16 = restitution_q16;
+  if (restitution_q16 != config_.restitution_q16) {
+    config_.restitution_q16 = restitution_q16;
+    owed_ = 0;
+  }
   return Status::kOk;
 }
 

@@ -23,6 +23,8 @@ constexpr int kNormalBits = 12;
 constexpr int kAxisShift = kNormalBits - 1;
 constexpr int32_t kAxisNormal = int32_t{1} << kAxisShift;
 constexpr int kFactorBits = 24;
+// A collision may be wrong by what gravity gives in a step and a half.
+constexpr uint32_t kMostKicks = 2;
 // The rest_speed_ of a gravity of half a cell a step a step.
 constexpr int32_t kStrongRestSpeed = 5 * 65536 / 4;
 
@@ -303,16 +305,20 @@ void ParticleWorld::bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i aw
   } else {
     ++counters_.wall_hits;
   }
-  const bool slow = pulled_ && -along <= int64_t{rest_speed_} * rough_length(n);
-  const bool gentle =
-      slow || (pulled_ && ball.still >= kLastingSteps && (other == nullptr || other->still >= kLastingSteps));
+  const bool slow = -along <= int64_t{rest_speed_} * rough_length(n);
+  const bool lasts = ball.still >= kLastingSteps && (other == nullptr || other->still >= kLastingSteps);
+  const bool gentle = pulled_ && !lossless() && (slow || lasts);
   if (gentle && other != nullptr && (other->flags & (kAsleep | kGrounded)) != 0) {
     other = nullptr;  // what lies on the ground is ground
   }
   if (other != nullptr) {
     wake(other_id);
   }
+  const int64_t before = other != nullptr ? square_of(*other, gravity_part_) : 0;
   push(ball, other, n, along, gentle ? 0 : config_.restitution_q16);
+  if (pulled_ && other != nullptr) {
+    account(square_of(*other, gravity_part_) - before, uint32_t{other->diameter} * other->diameter);
+  }
   if (gentle && other == nullptr) {
     const Vec2i g = config_.gravity_q16;
     if (((axes & Blocked::kX) != 0 && int64_t{away.x} * g.x < 0) ||
@@ -397,6 +403,49 @@ void ParticleWorld::push(Ball& ball, Ball* other, Vec2i normal, int64_t along, u
     other->vx = held_within_limit(other->vx + second[0]);
     other->vy = held_within_limit(other->vy + second[1]);
   }
+}
+
+// Notes that a ball of `mass` gained so much of what square_of counts.
+void ParticleWorld::account(int64_t gain, uint32_t mass) {
+  constexpr int64_t kMost = int64_t{1} << 61;
+  const uint32_t low = static_cast<uint32_t>(static_cast<uint64_t>(-gain) & 255U) * mass + owed_rest_;
+  const int64_t owed = owed_ + (-gain >> 8) * mass + (low >> 8);
+  owed_rest_ = low & 255U;
+  owed_ = owed > kMost ? kMost : owed < -kMost ? -kMost : owed;
+}
+
+// After a way with collisions under gravity, in which `ball` gained `gain`: pays what is owed, along gravity
+// and at most kMostKicks steps of it. Where restitution takes energy anyway, only gains are paid back.
+void ParticleWorld::settle(Ball& ball, Vec2i kick, int64_t gain) {
+  const uint32_t mass = uint32_t{ball.diameter} * ball.diameter;
+  account(gain, mass);
+  if (owed_ >= 0 && !lossless()) {
+    return;
+  }
+  // What a whole kick more gives is four times this and as much as a kick alone gives, which must be less.
+  const int64_t along = (2 * int64_t{ball.vx} + kick.x) * kick.x + (2 * int64_t{ball.vy} + kick.y) * kick.y;
+  const uint64_t rate = magnitude(along);
+  const uint64_t alone = magnitude(int64_t{kick.x} * kick.x + int64_t{kick.y} * kick.y);
+  if (rate <= kMostKicks * alone) {
+    return;
+  }
+  const uint64_t wanted = magnitude(owed_);
+  const uint64_t whole = kMostKicks * (rate >> 6) * mass;
+  uint32_t kicks_q16 = kMostKicks << 16;
+  if (wanted < whole) {
+    const int excess = greater(width_of(whole) - 16, 0);
+    kicks_q16 = kMostKicks *
+                ((static_cast<uint32_t>(wanted >> excess) << 16) / static_cast<uint32_t>(whole >> excess));
+  }
+  const bool against = (owed_ < 0) != (along < 0);
+  const auto changed = [&](int32_t speed, int32_t by) {
+    const int64_t size = static_cast<int64_t>((uint64_t{magnitude_32(by)} * kicks_q16 + 32768) >> 16);
+    return held_within_limit(speed + ((by < 0) != against ? -size : size));
+  };
+  const int64_t before = square_of(ball, kick);
+  ball.vx = changed(ball.vx, kick.x);
+  ball.vy = changed(ball.vy, kick.y);
+  account(square_of(ball, kick) - before, mass);
 }
 
 }  // namespace thimble

@@ -146,7 +146,7 @@ void ParticleWorld::rest(uint32_t id) {
       return;
     }
   }
-  if (id == dragged_ || !lies_still(id)) {
+  if (id == dragged_ || lossless() || !lies_still(id)) {
     return;
   }
   ball.vx = 0;

@@ -8,6 +8,8 @@ using field_detail::Word;
 
 // Bounces of one ball in one substep; what is left of its way after that is not made.
 constexpr int kMostBounces = 4;
+// What is lost in blows covers the gains of later ones for about 2^this steps.
+constexpr int kForgetShift = 4;
 // Crossings of cell boundaries that are looked at together, by one look at the box around them.
 constexpr int32_t kStride = 16;
 // A ball takes the short way when the box around both places is at most this wide, and kBlock high.
@@ -92,6 +94,9 @@ void ParticleWorld::step() {
     } else {
       advance_all<false>(substep == substeps);
     }
+  }
+  if (owed_ > 0 && !lossless()) {
+    owed_ -= owed_ >> kForgetShift;
   }
   ++steps_;
 }
@@ -292,6 +297,11 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
     }
   }
   const Vec2i way{displacement(ball.vx), displacement(ball.vy)};
+  if (kPulled && lossless() && id != dragged_) {
+    // What the rounding of the way is worth.
+    const int64_t pulled = int64_t{gravity_part_.x} * ball.vx + int64_t{gravity_part_.y} * ball.vy;
+    account((pulled - fall(gravity_part_, way)) * 8, uint32_t{ball.diameter} * ball.diameter);
+  }
   if ((way.x | way.y) == 0) {
     return;
   }
@@ -365,6 +375,9 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
 // the box at least.
 void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
   Ball& ball = balls_[id];
+  const Vec2i start{ball.x, ball.y};
+  const Vec2i kick = id == dragged_ ? Vec2i{} : gravity_part_;
+  const int64_t before = square_of(ball, kick) - fall(kick, way) * 8;
   Window window;
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
     const Blocked blocked = walk(&ball, way, own, bounce == 0, looked && bounce == 0, &window);
@@ -390,6 +403,10 @@ void ParticleWorld::trace(uint32_t id, Vec2i way, Vec2i own, bool looked) {
     if ((way.x | way.y) == 0) {
       break;
     }
+  }
+  if (pulled_) {
+    const Vec2i made{ball.x - start.x, ball.y - start.y};
+    settle(ball, kick, square_of(ball, kick) - before - fall(kick, made) * 8);
   }
   const Vec2i corner = corner_of(ball);
   if (corner == own) {

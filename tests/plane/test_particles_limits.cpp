@@ -208,6 +208,7 @@ TEST_CASE("particles limits: what slides under gravity about half a cell a step 
     for (const std::int32_t sign : {1, -1}) {
       ParticleConfig config = weightless(200, 40, 1);
       config.gravity_q16 = {0, sign * pull};
+      config.restitution_q16 = 65535;
       UsedWorld used(config);
       const std::int32_t y = sign > 0 ? 38 * 65536 + 32767 : 2 * 65536 - 32767;
       REQUIRE(used.world.spawn(q16(50), y, 131072, 0, 4, nullptr) == Status::kOk);

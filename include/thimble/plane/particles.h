@@ -322,6 +322,12 @@ class ParticleWorld {
   Vec2i wall_normal(uint32_t id, Vec2i offset, Vec2i own) const;
   void bounce(Ball& ball, uint32_t other_id, Vec2i normal, Vec2i away, uint32_t axes);
   void push(Ball& ball, Ball* other, Vec2i normal, int64_t along, uint32_t restitution_q16);
+  bool lossless() const { return pulled_ && config_.restitution_q16 == 65536; }
+  int64_t fall(Vec2i kick, Vec2i way) const {
+    return (int64_t{kick.x} * way.x + int64_t{kick.y} * way.y) * (int32_t{1} << config_.substeps_log2);
+  }
+  void account(int64_t gain, uint32_t mass);
+  void settle(Ball& ball, Vec2i kick, int64_t gain);
 
   // particles_rest.cpp: sleep.
   void wake(uint32_t id);
@@ -360,7 +366,11 @@ class ParticleWorld {
   bool pulled_ = false;     // gravity is not zero
   int32_t rest_speed_ = 0;  // Q16; impacts below it do not bounce
   Vec2i gravity_part_;      // gravity a substep
-  int32_t unit_ = 2;        // 2^-16 cells in a unit of position
+  // What is due to the balls' energy under gravity (src/plane/PARTICLES.md): units of 256 of mass times
+  // square_of, and what is left over of them.
+  int64_t owed_ = 0;
+  uint32_t owed_rest_ = 0;
+  int32_t unit_ = 2;  // 2^-16 cells in a unit of position
   // As velocities, half a unit of position and what cuts to whole ones.
   int32_t round_ = 1;
   int32_t grid_ = -2;
