@@ -50,7 +50,8 @@ inline std::uint32_t code_flash_bytes(const platform::BoardFacts& board, EffectS
   const bool is_wet = (effects & Effect::kWater) != 0;
   const EffectSet moving = effects & ~Effect::kEdges;
   if (!is_flat(moving) || (is_wet && board.stack_bytes < kWetStackBytes)) {
-    return program.plain_kib * 1024 + scaled(effect_flash_bytes(effects));
+    const std::uint32_t light = effects == Effect::kNone ? 0 : effect_flash_bytes(effects) + kTreeLightBytes;
+    return program.plain_kib * 1024 + scaled(light);
   }
   std::uint32_t more = effect_flash_bytes(effects | kSun) - effect_flash_bytes(kSun);
   more += (effects & Effect::kAmbientOcclusion) != 0 ? kMapOcclusionBytes : 0;
