@@ -1,0 +1,23 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The kernels as SPIR-V: -DOCTREE traces the compact tree, -DPAIRS in pairs of words.
+layout(local_size_x_id = 0, local_size_y_id = 1) in;
+#include "parameters.inc"
+layout(std140, binding = 0) uniform Parameters { uvec4 words[kParameterWords / 4]; } parameters;
+layout(std430, binding = 1) readonly buffer Scene { uint words[]; } scene;
+layout(std430, binding = 2) buffer Output { uint words[]; } result;
+#define FN
+#define OUT(T) out T
+#define P(i) parameters.words[(i) >> 2][(i) & 3]
+#define S(i) scene.words[i]
+#define R(i) result.words[i]
+#define STORE(i, v) result.words[i] = v
+#include "numbers.inc"
+#include "picture.inc"
+#ifdef OCTREE
+#include "octree.inc"
+#else
+#include "cells.inc"
+#endif
+#include "invocation.inc"
+void main() { invocation(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y); }

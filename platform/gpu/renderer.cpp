@@ -1,0 +1,462 @@
+#include "gpu/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+
+#include "gpu/device.h"
+#include "gpu/kernel/cpp.h"
+#include "gpu/kernels.h"
+
+namespace thimble::gpu {
+namespace {
+
+// The output of a frame under way: every device lets a kernel see as much.
+constexpr std::size_t kMostOutputBytes = std::size_t{1} << 27;
+constexpr std::size_t kUploadBytes = std::size_t{1} << 26;
+constexpr std::uint32_t kRaysAtATime = std::uint32_t{1} << 20;
+constexpr std::uint32_t kRaysARow = 1024;
+constexpr std::uint64_t kForever = UINT64_MAX;
+
+void begin_once(VkCommandBuffer commands) {
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  require(vkBeginCommandBuffer(commands, &info), "take commands");
+}
+
+void wait_for(VkCommandBuffer commands, VkAccessFlags written, VkPipelineStageFlags by, VkAccessFlags read,
+              VkPipelineStageFlags before) {
+  VkMemoryBarrier barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  barrier.srcAccessMask = written;
+  barrier.dstAccessMask = read;
+  vkCmdPipelineBarrier(commands, by, before, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+}
+
+// A frame under way.
+struct Slot {
+  Buffer parameters;
+  Buffer output;
+  Buffer host;  // what of the output is read back, or was written for it
+  VkDescriptorSet descriptors = VK_NULL_HANDLE;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  VkFence fence = VK_NULL_HANDLE;
+  bool reads_back = false;
+};
+
+}  // namespace
+
+struct Renderer::State {
+  State(const CompactTree& tree, Span<const Rgb8> palette, const Options& options);
+  ~State() { release(); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void set_up(const SceneWords& words);
+  void upload(const std::vector<std::uint32_t>& words);
+  void make_layouts();
+  void make_slot(std::size_t number);
+  VkPipeline pipeline(bool pairs);
+  void fit(Slot* slot, std::size_t bytes);
+  // Starts a kernel over the width and height of `parameters`; `in_bytes` of the slot's host memory go to its output
+  // first, `out_bytes` come back.
+  void start(std::size_t number, const Parameters& parameters, bool pairs, std::size_t in_bytes,
+             std::size_t out_bytes);
+  double finish(std::size_t number);
+  void release();
+
+  const Options options;
+  Device device;
+  Structure structure = Structure::kOctree;
+  int level = 0;
+  Parameters parameters{};
+  Buffer scene;
+  std::vector<Slot> slots;
+  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkDescriptorPool descriptors = VK_NULL_HANDLE;
+  VkCommandPool commands = VK_NULL_HANDLE;
+  VkQueryPool queries = VK_NULL_HANDLE;
+  VkPipeline pipelines[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
+};
+
+Renderer::State::State(const CompactTree& tree, Span<const Rgb8> palette, const Options& chosen)
+    : options(chosen), device(chosen.robust) {
+  SceneWords words = make_scene_words(tree, options.structure);
+  set_palette(palette, words.words.data());
+  structure = words.structure;
+  level = words.level;
+  parameters = words.parameters;
+  try {
+    set_up(words);
+  } catch (const DeviceError&) {
+    release();
+    throw;
+  }
+}
+
+void Renderer::State::set_up(const SceneWords& words) {
+  make_layouts();
+  slots.resize(static_cast<std::size_t>(std::max(options.frames, 1)));
+  upload(words.words);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    make_slot(i);
+  }
+}
+
+void Renderer::State::make_layouts() {
+  VkDescriptorSetLayoutBinding bindings[3]{};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    bindings[i].binding = i;
+    bindings[i].descriptorType =
+        i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    bindings[i].descriptorCount = 1;
+    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+  }
+  VkDescriptorSetLayoutCreateInfo set{};
+  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  set.bindingCount = 3;
+  set.pBindings = bindings;
+  require(vkCreateDescriptorSetLayout(device.get(), &set, nullptr, &set_layout), "take the kernel's layout");
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = 1;
+  info.pSetLayouts = &set_layout;
+  require(vkCreatePipelineLayout(device.get(), &info, nullptr, &layout), "take the kernel's layout");
+  const auto frames = static_cast<std::uint32_t>(std::max(options.frames, 1));
+  const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, frames},
+                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * frames}};
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.maxSets = frames;
+  pool.poolSizeCount = 2;
+  pool.pPoolSizes = sizes;
+  require(vkCreateDescriptorPool(device.get(), &pool, nullptr, &descriptors), "take the kernel's layout");
+  VkCommandPoolCreateInfo command_pool{};
+  command_pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  command_pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  command_pool.queueFamilyIndex = device.family();
+  require(vkCreateCommandPool(device.get(), &command_pool, nullptr, &commands), "take commands");
+  if (device.tick_seconds() > 0) {
+    VkQueryPoolCreateInfo query{};
+    query.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    query.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    query.queryCount = 2 * frames;
+    require(vkCreateQueryPool(device.get(), &query, nullptr, &queries), "keep the time");
+  }
+}
+
+// By way of memory that both see, a part at a time.
+void Renderer::State::upload(const std::vector<std::uint32_t>& words) {
+  const std::size_t bytes = 4 * words.size();
+  if (bytes > device.most_bytes()) {
+    throw DeviceError("the scene takes " + std::to_string(bytes) + " bytes, and a kernel of " +
+                      device.info().name + " sees at most " + std::to_string(device.most_bytes()));
+  }
+  try {
+    scene = device.make_buffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                               Memory::kDevice);
+  } catch (const DeviceError&) {
+    throw DeviceError("the scene takes " + std::to_string(bytes) + " bytes, more than " + device.info().name +
+                      " has free");
+  }
+  const std::size_t part = std::min(bytes, kUploadBytes);
+  const Buffer from = device.make_buffer(part, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Memory::kReadBack);
+  VkCommandBufferAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  info.commandPool = commands;
+  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  info.commandBufferCount = 1;
+  VkCommandBuffer copy = VK_NULL_HANDLE;
+  require(vkAllocateCommandBuffers(device.get(), &info, &copy), "take commands");
+  for (std::size_t first = 0; first < bytes; first += part) {
+    const std::size_t size = std::min(part, bytes - first);
+    std::memcpy(from.words(), words.data() + first / 4, size);
+    begin_once(copy);
+    const VkBufferCopy region{0, first, size};
+    vkCmdCopyBuffer(copy, from.get(), scene.get(), 1, &region);
+    require(vkEndCommandBuffer(copy), "take commands");
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &copy;
+    require(vkQueueSubmit(device.queue(), 1, &submit, VK_NULL_HANDLE), "take the scene");
+    require(vkQueueWaitIdle(device.queue()), "take the scene");
+  }
+  vkFreeCommandBuffers(device.get(), commands, 1, &copy);
+}
+
+void Renderer::State::make_slot(std::size_t number) {
+  Slot& slot = slots[number];
+  slot.parameters =
+      device.make_buffer(sizeof(Parameters), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Memory::kWritten);
+  VkDescriptorSetAllocateInfo set{};
+  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  set.descriptorPool = descriptors;
+  set.descriptorSetCount = 1;
+  set.pSetLayouts = &set_layout;
+  require(vkAllocateDescriptorSets(device.get(), &set, &slot.descriptors), "take the kernel's layout");
+  VkCommandBufferAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  info.commandPool = commands;
+  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  info.commandBufferCount = 1;
+  require(vkAllocateCommandBuffers(device.get(), &info, &slot.commands), "take commands");
+  VkFenceCreateInfo fence{};
+  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  require(vkCreateFence(device.get(), &fence, nullptr, &slot.fence), "take commands");
+}
+
+VkPipeline Renderer::State::pipeline(bool pairs) {
+  VkPipeline& made = pipelines[pairs ? 1 : 0];
+  if (made != VK_NULL_HANDLE) {
+    return made;
+  }
+  const Kernel kernel = kernel_of(structure == Structure::kOctree, pairs);
+  VkShaderModuleCreateInfo module{};
+  module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  module.codeSize = 4 * kernel.words;
+  module.pCode = kernel.code;
+  VkShaderModule shader = VK_NULL_HANDLE;
+  require(vkCreateShaderModule(device.get(), &module, nullptr, &shader), "take the kernel");
+  const std::uint32_t sides[2] = {options.group_width, options.group_height};
+  const VkSpecializationMapEntry entries[2] = {{0, 0, 4}, {1, 4, 4}};
+  const VkSpecializationInfo constants{2, entries, sizeof sides, sides};
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = shader;
+  info.stage.pName = "main";
+  info.stage.pSpecializationInfo = &constants;
+  info.layout = layout;
+  const VkResult result = vkCreateComputePipelines(device.get(), VK_NULL_HANDLE, 1, &info, nullptr, &made);
+  vkDestroyShaderModule(device.get(), shader, nullptr);
+  require(result, "compile the kernel");
+  return made;
+}
+
+// Makes the slot's buffers large enough, and tells the kernel where they are.
+void Renderer::State::fit(Slot* slot, std::size_t bytes) {
+  if (slot->output.size() >= bytes) {
+    return;
+  }
+  slot->output = {};
+  slot->host = {};
+  constexpr VkBufferUsageFlags kCopied = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  slot->output = device.make_buffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | kCopied, Memory::kDevice);
+  slot->host = device.make_buffer(bytes, kCopied, Memory::kReadBack);
+  const VkDescriptorBufferInfo buffers[3] = {{slot->parameters.get(), 0, VK_WHOLE_SIZE},
+                                             {scene.get(), 0, VK_WHOLE_SIZE},
+                                             {slot->output.get(), 0, VK_WHOLE_SIZE}};
+  VkWriteDescriptorSet writes[3]{};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = slot->descriptors;
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    writes[i].pBufferInfo = &buffers[i];
+  }
+  vkUpdateDescriptorSets(device.get(), 3, writes, 0, nullptr);
+}
+
+void Renderer::State::start(std::size_t number, const Parameters& told, bool pairs, std::size_t in_bytes,
+                            std::size_t out_bytes) {
+  Slot& slot = slots[number];
+  VkPipeline const kernel = pipeline(pairs);
+  std::memcpy(slot.parameters.words(), told.data(), sizeof told);
+  slot.reads_back = out_bytes != 0;
+  const auto query = static_cast<std::uint32_t>(2 * number);
+  begin_once(slot.commands);
+  if (queries != VK_NULL_HANDLE) {
+    vkCmdResetQueryPool(slot.commands, queries, query, 2);
+  }
+  if (in_bytes != 0) {
+    const VkBufferCopy region{0, 0, in_bytes};
+    vkCmdCopyBuffer(slot.commands, slot.host.get(), slot.output.get(), 1, &region);
+    wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+  }
+  vkCmdBindPipeline(slot.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel);
+  vkCmdBindDescriptorSets(slot.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &slot.descriptors, 0,
+                          nullptr);
+  if (queries != VK_NULL_HANDLE) {
+    vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries, query);
+  }
+  const std::uint32_t width = told[kernel::kWidth] + options.group_width - 1;
+  const std::uint32_t height = told[kernel::kHeight] + options.group_height - 1;
+  vkCmdDispatch(slot.commands, width / options.group_width, height / options.group_height, 1);
+  if (queries != VK_NULL_HANDLE) {
+    vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, queries, query + 1);
+  }
+  if (out_bytes != 0) {
+    wait_for(slot.commands, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+             VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+    const VkBufferCopy region{0, 0, out_bytes};
+    vkCmdCopyBuffer(slot.commands, slot.output.get(), slot.host.get(), 1, &region);
+    wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+             VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
+  }
+  require(vkEndCommandBuffer(slot.commands), "take commands");
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &slot.commands;
+  require(vkQueueSubmit(device.queue(), 1, &submit, slot.fence), "draw");
+}
+
+double Renderer::State::finish(std::size_t number) {
+  Slot& slot = slots[number];
+  require(vkWaitForFences(device.get(), 1, &slot.fence, VK_TRUE, kForever), "draw");
+  require(vkResetFences(device.get(), 1, &slot.fence), "draw");
+  if (queries == VK_NULL_HANDLE) {
+    return 0;
+  }
+  std::uint64_t ticks[2] = {0, 0};
+  require(
+      vkGetQueryPoolResults(device.get(), queries, static_cast<std::uint32_t>(2 * number), 2, sizeof ticks,
+                            ticks, sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      "keep the time");
+  return static_cast<double>(ticks[1] - ticks[0]) * device.tick_seconds();
+}
+
+void Renderer::State::release() {
+  vkDeviceWaitIdle(device.get());
+  for (Slot& slot : slots) {
+    vkDestroyFence(device.get(), slot.fence, nullptr);
+  }
+  for (VkPipeline const made : pipelines) {
+    vkDestroyPipeline(device.get(), made, nullptr);
+  }
+  vkDestroyQueryPool(device.get(), queries, nullptr);
+  vkDestroyCommandPool(device.get(), commands, nullptr);
+  vkDestroyDescriptorPool(device.get(), descriptors, nullptr);
+  vkDestroyPipelineLayout(device.get(), layout, nullptr);
+  vkDestroyDescriptorSetLayout(device.get(), set_layout, nullptr);
+  slots.clear();
+  scene = {};
+}
+
+std::vector<DeviceInfo> devices() {
+  return Device::list();
+}
+
+Renderer::Renderer(const CompactTree& tree, Span<const Rgb8> palette, const Options& options)
+    : state_(std::make_unique<State>(tree, palette, options)) {}
+Renderer::~Renderer() = default;
+
+const DeviceInfo& Renderer::device() const {
+  return state_->device.info();
+}
+Structure Renderer::structure() const {
+  return state_->structure;
+}
+std::size_t Renderer::scene_bytes() const {
+  return static_cast<std::size_t>(state_->scene.size());
+}
+
+// Two words a pixel (kWantSteps).
+std::int32_t Renderer::most_rows(std::int32_t width_px) {
+  return static_cast<std::int32_t>(kMostOutputBytes / 8) / std::max(width_px, 1);
+}
+
+void Renderer::begin(int frame, const Camera& camera, const Shading& shading, bool read_back) {
+  Parameters parameters = state_->parameters;
+  set_frame(camera, shading, &parameters);
+  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(camera.width_px()) *
+                            static_cast<std::size_t>(camera.height_px());
+  const auto number = static_cast<std::size_t>(frame);
+  state_->fit(&state_->slots[number], bytes);
+  state_->start(number, parameters, needs_pairs(state_->structure, state_->level, largest_direction(camera)),
+                0, read_back ? bytes : 0);
+}
+
+Frame Renderer::end(int frame) {
+  const auto number = static_cast<std::size_t>(frame);
+  Frame ended;
+  ended.seconds = state_->finish(number);
+  const Slot& slot = state_->slots[number];
+  ended.pixels = slot.reads_back ? slot.host.words() : nullptr;
+  return ended;
+}
+
+Status Renderer::draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts) {
+  const std::int32_t width = camera.width_px();
+  const std::size_t stride = band.stride_bytes != 0 ? band.stride_bytes : row_bytes(band.format, width);
+  if (width == 0 || camera.level() != state_->level || band.first_row < 0 || band.rows < 0 ||
+      band.rows > camera.height_px() - band.first_row || band.rows > most_rows(width) ||
+      has_pages(band.format) || stride < row_bytes(band.format, width)) {
+    return Status::kBadArgument;
+  }
+  if (band.rows == 0) {
+    return Status::kOk;
+  }
+  if (row_bytes(band.format, width) + stride * static_cast<std::size_t>(band.rows - 1) > band.pixels.size) {
+    return Status::kOutOfMemory;
+  }
+  const Camera part = camera.window(0, band.first_row, width, band.rows);
+  Parameters parameters = state_->parameters;
+  set_frame(part, shading, &parameters);
+  parameters[kernel::kWantSteps] = 1;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.rows);
+  Slot& slot = state_->slots[0];
+  state_->fit(&slot, 8 * pixels);
+  state_->start(0, parameters, needs_pairs(state_->structure, state_->level, largest_direction(part)), 0,
+                8 * pixels);
+  state_->finish(0);
+  const std::uint32_t* from = slot.host.words();
+  RenderCounts drawn;
+  for (std::int32_t y = 0; y < band.rows; ++y) {
+    std::uint8_t* row = band.pixels.data + stride * static_cast<std::size_t>(y);
+    std::memset(row, 0, row_bytes(band.format, width));
+    for (std::int32_t x = 0; x < width; ++x, from += 2) {
+      const Rgb8 color{static_cast<std::uint8_t>(from[0]), static_cast<std::uint8_t>(from[0] >> 8),
+                       static_cast<std::uint8_t>(from[0] >> 16)};
+      store_pixel(row, x, band.first_row + y, band.format, color);
+      drawn.hits += from[1] & 1U;
+      drawn.node_visits += from[1] >> 1;
+    }
+  }
+  if (counts != nullptr) {
+    counts->rays += pixels;
+    counts->hits += drawn.hits;
+    counts->node_visits += drawn.node_visits;
+  }
+  return Status::kOk;
+}
+
+Status Renderer::trace(Span<const Ray> rays, Span<Hit> hits) {
+  if (hits.size < rays.size) {
+    return Status::kBadArgument;
+  }
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    const Status status = check_ray(rays[i], state_->level);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
+  constexpr std::size_t kBytes = 4 * std::size_t{kernel::kRecordWords};
+  for (std::size_t first = 0; first < rays.size; first += kRaysAtATime) {
+    const std::size_t count = std::min<std::size_t>(kRaysAtATime, rays.size - first);
+    const Span<const Ray> part{rays.data + first, count};
+    Slot& slot = state_->slots[0];
+    state_->fit(&slot, kBytes * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      set_record(part[i], slot.host.words() + kernel::kRecordWords * i);
+    }
+    Parameters parameters = state_->parameters;
+    set_rays(static_cast<std::uint32_t>(count), kRaysARow, &parameters);
+    state_->start(0, parameters, needs_pairs(state_->structure, state_->level, largest_direction(part)),
+                  kBytes * count, kBytes * count);
+    state_->finish(0);
+    for (std::size_t i = 0; i < count; ++i) {
+      hits[first + i] = hit_of_record(slot.host.words() + kernel::kRecordWords * i);
+    }
+  }
+  return Status::kOk;
+}
+
+}  // namespace thimble::gpu

@@ -1,0 +1,58 @@
+/// @file scene_words.h
+/// What the kernels read (kernel/parameters.inc), made from the core's tree, camera and shading. It needs no GPU: the
+/// tests run the kernels on these words as C++.
+#ifndef THIMBLE_PLATFORM_GPU_SCENE_WORDS_H
+#define THIMBLE_PLATFORM_GPU_SCENE_WORDS_H
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "thimble/base/memory.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
+#include "thimble/trace/ray.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::gpu {
+
+enum class Structure : std::uint8_t {
+  kAuto,   ///< cells where they take at most twice the compact tree's bytes
+  kCells,  ///< a tree of 4 x 4 x 4 cells (cell_tree.h)
+  kOctree  ///< the compact tree's own bytes
+};
+
+inline constexpr std::size_t kWordsOfParameters = 64;
+using Parameters = std::array<std::uint32_t, kWordsOfParameters>;
+
+struct SceneWords {
+  Structure structure = Structure::kOctree;
+  int level = 0;
+  Parameters parameters{};  ///< those of the scene; a frame's are added to a copy
+  std::vector<std::uint32_t> words;
+};
+
+/// The words of `tree`, at least one behind the palette. kCells of a tree that has no cells are its octree.
+SceneWords make_scene_words(const CompactTree& tree, Structure structure);
+
+/// Writes the colours of `palette` to the front of a scene's words.
+void set_palette(Span<const Rgb8> palette, std::uint32_t* words);
+
+/// Adds a frame's parameters.
+void set_frame(const Camera& camera, const Shading& shading, Parameters* parameters);
+/// The same for a list of `count` rays, in rows of `width`.
+void set_rays(std::uint32_t count, std::uint32_t width, Parameters* parameters);
+/// A ray as a record of such a list, and the hit that the kernel puts in its place.
+void set_record(const Ray& ray, std::uint32_t* record);
+Hit hit_of_record(const std::uint32_t* record);
+
+/// The largest components of the directions of a picture's rays, or of a list's.
+Vec3i largest_direction(const Camera& camera);
+Vec3i largest_direction(Span<const Ray> rays);
+/// Whether words of 32 bits order the planes that such rays cross, or pairs of them are needed (README.md).
+bool needs_pairs(Structure structure, int level, const Vec3i& largest_direction);
+
+}  // namespace thimble::gpu
+
+#endif

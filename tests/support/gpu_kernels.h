@@ -1,0 +1,38 @@
+/// @file gpu_kernels.h
+/// The GPU's kernels, compiled as C++: the same text, run pixel by pixel without a GPU.
+#ifndef THIMBLE_TESTS_SUPPORT_GPU_KERNELS_H
+#define THIMBLE_TESTS_SUPPORT_GPU_KERNELS_H
+
+#include <cstdint>
+#include <vector>
+
+#include "gpu/scene_words.h"
+#include "thimble/picture/render.h"
+
+namespace thimble::tests {
+
+enum class Pairs : std::uint8_t {
+  kAsNeeded,  ///< where words of 32 bits do not do
+  kAlways,
+};
+
+struct KernelRun {
+  std::vector<std::uint32_t> output;
+  std::uint64_t outside = 0;  ///< reads and writes beyond the buffers
+};
+
+/// The words that a frame's, or a list's, kernel writes.
+KernelRun run_kernel(const gpu::SceneWords& scene, const gpu::Parameters& parameters, bool pairs,
+                     std::vector<std::uint32_t> output);
+
+/// `band` as `render_band` draws it; rows may share bytes in no format. `outside` (may be null) is added to.
+std::vector<std::uint8_t> draw_by_kernel(const gpu::SceneWords& scene, const Camera& camera,
+                                         const Shading& shading, const Band& band, Pairs pairs,
+                                         std::uint64_t* outside);
+/// As `closest_hit`, but for the visits.
+std::vector<Hit> trace_by_kernel(const gpu::SceneWords& scene, Span<const Ray> rays, Pairs pairs,
+                                 std::uint64_t* outside);
+
+}  // namespace thimble::tests
+
+#endif
