@@ -23,7 +23,11 @@ VkInstance make_instance() {
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
   VkInstance instance = VK_NULL_HANDLE;
-  require(vkCreateInstance(&info, nullptr, &instance), "make an instance");
+  const VkResult made = vkCreateInstance(&info, nullptr, &instance);
+  if (made == VK_ERROR_INCOMPATIBLE_DRIVER) {
+    throw DeviceError("there is no Vulkan driver");
+  }
+  require(made, "be asked for its devices");
   volkLoadInstanceOnly(instance);
   return instance;
 }
@@ -185,7 +189,7 @@ Buffer Device::make_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage, Memory 
   const VkMemoryPropertyFlags most = memory == Memory::kDevice    ? kLocal
                                      : memory == Memory::kWritten ? kHost | kLocal
                                                                   : kHost | kCached;
-  const VkMemoryPropertyFlags least = memory == Memory::kDevice ? 0 : kHost;
+  const VkMemoryPropertyFlags least = memory == Memory::kDevice ? most : kHost;
   VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkDeviceMemory allocated = VK_NULL_HANDLE;
   for (const VkMemoryPropertyFlags flags : {most, least}) {

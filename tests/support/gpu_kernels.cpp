@@ -14,37 +14,40 @@ using namespace gpu::kernel;
 #define S(i) buffers.scene_word(i)
 #define R(i) buffers.output_word(i)
 #define STORE(i, v) buffers.store(i, v)
+// What follows uses what stands before.
+// clang-format off
 struct CellsKernel {
   const Buffers& buffers;
-#include "gpu/kernel/cells.inc"
-#include "gpu/kernel/invocation.inc"
 #include "gpu/kernel/numbers.inc"
 #include "gpu/kernel/picture.inc"
+#include "gpu/kernel/cells.inc"
+#include "gpu/kernel/invocation.inc"
 };
 struct OctreeKernel {
   const Buffers& buffers;
-#include "gpu/kernel/invocation.inc"
 #include "gpu/kernel/numbers.inc"
-#include "gpu/kernel/octree.inc"
 #include "gpu/kernel/picture.inc"
+#include "gpu/kernel/octree.inc"
+#include "gpu/kernel/invocation.inc"
 };
 #undef Order
 #undef State
 #define PAIRS
 struct CellsPairsKernel {
   const Buffers& buffers;
-#include "gpu/kernel/cells.inc"
-#include "gpu/kernel/invocation.inc"
 #include "gpu/kernel/numbers.inc"
 #include "gpu/kernel/picture.inc"
+#include "gpu/kernel/cells.inc"
+#include "gpu/kernel/invocation.inc"
 };
 struct OctreePairsKernel {
   const Buffers& buffers;
-#include "gpu/kernel/invocation.inc"
 #include "gpu/kernel/numbers.inc"
-#include "gpu/kernel/octree.inc"
 #include "gpu/kernel/picture.inc"
+#include "gpu/kernel/octree.inc"
+#include "gpu/kernel/invocation.inc"
 };
+// clang-format on
 
 template <class Kernel>
 void run_all(const Buffers& buffers) {
