@@ -1,5 +1,5 @@
 #!/bin/sh
-# The command without windows, without the wide renderer, and without both: each builds where the packages are not looked
+# The command without windows, without the wide renderer, and without both and the GPU: each builds where the packages are not looked
 # for, says what it lacks, and draws the same picture.      lean.sh ROOT WORK_DIR THIMBLE
 set -eu
 root=$1
@@ -13,7 +13,7 @@ complain() {
 }
 # A picture that is the core's, whatever draws it.
 "$whole" render castle --size 160x120 --quiet -o "$work/whole.ppm"
-for off in 'WINDOW WIDE' WIDE WINDOW; do
+for off in 'WINDOW WIDE GPU' WIDE WINDOW; do
   options=
   for package in WINDOW:X11 WIDE:TBB; do
     case " $off " in
@@ -21,6 +21,7 @@ for off in 'WINDOW WIDE' WIDE WINDOW; do
       *) options="$options -DTHIMBLE_${package%:*}=ON -DCMAKE_DISABLE_FIND_PACKAGE_${package#*:}=OFF" ;;
     esac
   done
+  case " $off " in *' GPU '*) options="$options -DTHIMBLE_GPU=OFF" ;; *) options="$options -DTHIMBLE_GPU=ON" ;; esac
   # Not optimised, in one folder: what the options do not touch is compiled once.
   cmake -S "$root" -B "$work/build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DTHIMBLE_TESTS=OFF \
     -DTHIMBLE_GOLDEN=OFF $options >"$work/log" 2>&1 && cmake --build "$work/build" --target thimble_command >"$work/log" 2>&1 || {
@@ -42,6 +43,14 @@ for off in 'WINDOW WIDE' WIDE WINDOW; do
       "$thimble" render castle --engine wide -o "$work/none.png" 2>"$work/why" || status=$?
       [ $status = 2 ] && grep -q 'THIMBLE_WIDE=OFF' "$work/why" || complain "without $off, --engine wide: exit $status, $(cat "$work/why")"
       "$thimble" sim spheres --app demo --display none --frames 1 --quiet >/dev/null || complain "without $off the simulator does not run"
+      ;;
+  esac
+  case " $off " in
+    *' GPU '*)
+      case $said in *'not in this build (-DTHIMBLE_GPU=OFF)'*) ;; *) complain "--version does not say that GPU is off" ;; esac
+      status=0
+      "$thimble" render castle --shade color --engine gpu -o "$work/none.png" 2>"$work/why" || status=$?
+      [ $status = 2 ] && grep -q 'THIMBLE_GPU=OFF' "$work/why" || complain "without $off, --engine gpu: exit $status, $(cat "$work/why")"
       ;;
   esac
   case " $off " in

@@ -177,7 +177,7 @@ TEST_CASE("command: values out of range -> status 2, the option, the value and t
   render("--shade", "pretty", {"depth, normal, color or mono"});
   render("--structure", "bvh", {"dense, pool or compact"});
   render("--projection", "fisheye", {"perspective or orthographic"});
-  render("--engine", "gpu", {"auto, wide, ray64 or ray32"});
+  render("--engine", "cpu", {"auto, wide, gpu, ray64 or ray32"});
   render("--threads", "0", {"1 to 256"});
   for (const char* value : {"7", "21", "auto"}) {
     render("--direction-bits", value, {"8 to 20"});

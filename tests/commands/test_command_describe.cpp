@@ -78,12 +78,12 @@ std::string unescaped(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("command: --version -> version, commit, instruction sets, windows") {
+TEST_CASE("command: --version -> version, commit, instruction sets, GPU, windows") {
   const CommandResult result = run_command({"--version"});
   CHECK(result.status == 0);
   CHECK(result.err.empty());
   const Words lines = lines_of(result.out);
-  REQUIRE(lines.size() == 4);
+  REQUIRE(lines.size() == 5);
   CHECK(lines[0].starts_with("thimble 0."));
   REQUIRE(lines[1].starts_with("commit         "));
   const std::string commit = lines[1].substr(15);
@@ -92,7 +92,8 @@ TEST_CASE("command: --version -> version, commit, instruction sets, windows") {
          (commit.size() >= 12 && commit.find_first_not_of("0123456789abcdef") == std::string::npos)));
   CHECK(lines[2].starts_with("wide renderer  "));
   CHECK(lines[2].find(" on this machine") != std::string::npos);
-  CHECK(lines[3] == "windows        X11");
+  CHECK(lines[3].starts_with("GPU            "));
+  CHECK(lines[4] == "windows        X11");
 }
 
 TEST_CASE("command: the manual -> every subcommand and option of --help, no empty name") {

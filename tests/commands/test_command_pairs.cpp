@@ -75,6 +75,7 @@ const std::multimap<std::string, std::string>& values() {
                                                              {"--direction-bits", "12"},
                                                              {"--effects", "all"},
                                                              {"--effects", "none"},
+                                                             {"--engine", "gpu"},
                                                              {"--engine", "ray32"},
                                                              {"--engine", "ray64"},
                                                              {"--engine", "wide"},

@@ -6,6 +6,7 @@
 
 #include "commands/arguments.h"
 #include "scene/built_scene.h"
+#include "scene/gpu_engine.h"
 #include "scene/lit_streams.h"
 #include "scene/wide_renderer.h"
 #include "thimble/light/render.h"
@@ -19,6 +20,9 @@ namespace {
 void choose(const std::string& name, std::string* chosen) {
   if (name == "wide" && WideRenderer::instruction_sets().empty()) {
     refuse_usage("--engine", "\"wide\" is not in this build (-DTHIMBLE_WIDE=OFF); auto and ray64 are");
+  }
+  if (name == "gpu" && !GpuEngine::is_in_build()) {
+    refuse_usage("--engine", "\"gpu\" is not in this build (-DTHIMBLE_GPU=OFF); auto and ray64 are");
   }
   *chosen = name;
 }
@@ -38,17 +42,18 @@ void add_threads(CLI::App& app, int* threads, const std::string& help) {
 }
 
 void EngineOptions::add_to(CLI::App& app, bool all_cores) {
-  static const std::vector<std::string> kNames{"auto", "wide", "ray64", "ray32"};
+  static const std::vector<std::string> kNames{"auto", "wide", "gpu", "ray64", "ray32"};
   add_choice_option(
       app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
-      "wide: object order, with vectors and threads, for --structure compact where there is room; ray64, "
+      "wide: object order, with vectors and threads, for --structure compact where there is room; gpu: the "
+      "best Vulkan device, without light, for --structure compact, without --memory and --board; ray64, "
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64")
       .default_str("auto");
   also_check(app, [&app, this] {
     const std::string structure = text_given(app, "--structure");
-    if (name == "wide" && !structure.empty() && structure != "compact") {
-      refuse_usage("--engine wide draws --structure compact only");
+    if ((name == "wide" || name == "gpu") && !structure.empty() && structure != "compact") {
+      refuse_usage("--engine " + name + " draws --structure compact only");
     }
   });
   threads = all_cores ? tools::all_cores() : 1;
@@ -63,14 +68,34 @@ void EngineOptions::add_to(CLI::App& app, bool all_cores) {
 }
 
 void EngineOptions::add_ray_engines_to(CLI::App& app) {
-  static const std::vector<std::string> kNames{"auto", "ray64", "ray32"};
+  static const std::vector<std::string> kNames{"auto", "gpu", "ray64", "ray32"};
   add_choice_option(
-      app, "--engine", kNames, [this](std::size_t index) { name = kNames[index]; },
-      "the width of the arithmetic; the answers are the same, but ray32 refuses rays that need more; auto: "
+      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+      "gpu: the best Vulkan device, for --structure compact, without --memory and --board (then nodes are "
+      "its "
+      "steps); ray64, ray32: products of that width; the answers are the same, but ray32 refuses rays that "
+      "need "
+      "more; auto: "
       "with vectors from 100,000 rays on, where there is room and not with --board (then nodes are its "
       "steps, "
       "else those of the tree), else ray64")
       .default_str("auto");
+  also_check(app, [&app, this] {
+    const std::string structure = text_given(app, "--structure");
+    if (name == "gpu" && !structure.empty() && structure != "compact") {
+      refuse_usage("--engine gpu traces --structure compact only");
+    }
+  });
+}
+
+std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built) const {
+  return name == "gpu" ? std::make_unique<GpuEngine>(built) : nullptr;
+}
+
+void EngineOptions::check_budget(bool has_budget) const {
+  if (name == "gpu" && has_budget) {
+    refuse_usage("--engine gpu keeps the scene in the GPU's memory, without --memory and --board");
+  }
 }
 
 std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, std::int32_t width_px,

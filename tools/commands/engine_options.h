@@ -24,6 +24,7 @@ int all_cores();
 void add_threads(CLI::App& app, int* threads, const std::string& help);
 
 class BuiltScene;
+class GpuEngine;
 class LitStreams;
 class WideRenderer;
 
@@ -43,6 +44,10 @@ struct EngineOptions {
   void add_board_engines_to(CLI::App& app);
   /// For single rays, whatever the engine.
   TraceOptions trace_options() const;
+  /// The GPU with the scene on it where it is to draw, else null. Throws InputError when it cannot be had.
+  std::unique_ptr<GpuEngine> gpu(const BuiltScene& built) const;
+  /// Refuses a budget of memory for what does not keep to it.
+  void check_budget(bool has_budget) const;
   /// The wide renderer for pictures of that size, where it is to draw and there is room for it within the
   /// scene's budget; else null. Throws InputError when it was asked for by name and cannot be had.
   std::unique_ptr<WideRenderer> wide_renderer(BuiltScene* built, std::int32_t width_px,
@@ -53,7 +58,9 @@ struct EngineOptions {
   /// How many threads draw lit pictures with the core: each keeps rays of its own, in what the budget has left.
   int lit_threads(BuiltScene* built, EffectSet effects) const;
   /// What was used.
-  std::string resolved(bool is_wide) const { return is_wide ? "wide" : name == "ray32" ? "ray32" : "ray64"; }
+  std::string resolved(bool is_wide) const {
+    return is_wide ? "wide" : name == "ray32" || name == "gpu" ? name : "ray64";
+  }
 };
 
 }  // namespace thimble::tools

@@ -20,6 +20,7 @@
 #include "output/progress.h"
 #include "output/units.h"
 #include "scene/framing.h"
+#include "scene/gpu_engine.h"
 #include "scene/lit_setup.h"
 #include "scene/lit_streams.h"
 #include "scene/painter.h"
@@ -69,16 +70,16 @@ void check_look(const RenderCommand& command) {
 // What contradicts itself whatever the scene is.
 void check_usage(const RenderCommand& command) {
   check_look(command);
-  const bool wide = command.engine.name == "wide";
+  const bool wide = command.engine.name == "wide" || command.engine.name == "gpu";
   if (wide && !command.quality.plain()) {
-    refuse_usage(
-        "--engine wide draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
+    refuse_usage("--engine " + command.engine.name +
+                 " draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
   }
   if (command.quality.cuts() && command.scene.structure != StructureKind::kCompact) {
     refuse_usage("--cutoff and --max-depth want --structure compact");
   }
   if (wide && (command.effects.named() || command.effects.bounces)) {
-    refuse_usage("--engine wide draws without --effects and --bounces");
+    refuse_usage("--engine " + command.engine.name + " draws without --effects and --bounces");
   }
   if (command.effects.named() && !command.shade_name.empty() && command.shade != ShadeMode::kColor) {
     refuse_usage("--shade " + command.shade_name + " shows no light, and so no --effects and no --normals");
@@ -202,7 +203,8 @@ Status paint_with(const std::unique_ptr<BandPainter>& painter, const Subject& su
 }
 
 // Throws InputError for a camera whose rays it does not take.
-Painting paint_without_effects(const Subject& subject, const QualityFrame& frame, const Progress& progress) {
+Painting paint_without_effects(const Subject& subject, const QualityFrame& frame, GpuEngine* gpu,
+                               const Progress& progress) {
   const RenderCommand& command = subject.command;
   const EngineOptions& engine = command.engine;
   const TraceOptions options = engine.trace_options();
@@ -215,6 +217,14 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
     if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
       fail_camera(command);
     }
+    return painting;
+  }
+  if (gpu != nullptr) {
+    if (paint_with(make_gpu_painter(gpu, subject.camera(), subject.shading), subject, progress, &painting) !=
+        Status::kOk) {
+      fail_camera(command);
+    }
+    painting.preparation_seconds = gpu->seconds();
     return painting;
   }
   // With --board the budget is the board's RAM, in which nothing of the host's is to stand unasked.
@@ -362,6 +372,7 @@ void run(const RenderCommand& given) {
                      std::to_string(kMaxPicturePx / kEdgeGrid) + " pixels a side");
   }
   check_part_size(&command);
+  command.engine.check_budget(command.scene.budget_bytes().has_value());
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
   OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},
                     {command.scene.arguments.scene, command.camera_path});
@@ -393,8 +404,10 @@ void run(const RenderCommand& given) {
   const QualityFrame frame(built, command.quality, subject.camera(), subject.fine, subject.shading, colors);
   ProgressBar bar("tracing", command.scene.quiet);
   const auto progress = [&](double done) { bar.update(done); };
-  const Painting painting = light.effects == Effect::kNone ? paint_without_effects(subject, frame, progress)
-                                                           : paint_lit(subject, light, progress);
+  const auto gpu = command.engine.gpu(built);
+  const Painting painting = light.effects == Effect::kNone
+                                ? paint_without_effects(subject, frame, gpu.get(), progress)
+                                : paint_lit(subject, light, progress);
   bar.clear();
 
   const Image shown = converted(painting.image, pixel_format(kind));
@@ -404,7 +417,7 @@ void run(const RenderCommand& given) {
     write_image(outputs[kPicture], kind, shown);
   }
   if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
-    write_hits(command, frame, subject.camera(), outputs[kHits], outputs[kDepths]);
+    write_hits(command, frame, gpu.get(), subject.camera(), outputs[kHits], outputs[kDepths]);
   }
   Stats stats = stats_of(subject, *source, light, painting);
   stats.frame_crc32 = crc_of(file_pixels(shown, kind));
@@ -498,21 +511,31 @@ std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std:
   return std::clamp(static_cast<std::int32_t>(rows), 1, command.view.height_px);
 }
 
-void write_hits(const RenderCommand& command, const QualityFrame& frame, const Camera& camera,
+void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
                 OutputFile* csv, OutputFile* pfm) {
   if (csv != nullptr) {
     csv->write(std::string("px,py,") + kHitColumns + "\n");
   }
   std::vector<float> distances;
+  std::vector<Ray> rays(static_cast<std::size_t>(camera.width_px()));
+  std::vector<Hit> hits(rays.size());
   ProgressBar bar("writing hits", command.scene.quiet);
   for (std::int32_t y = 0; y < camera.height_px(); ++y) {
     std::string text;
     for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      const Ray ray = camera.ray(x, y);
-      Hit hit;
-      if (frame.closest_hit(ray, &hit, command.engine.trace_options()) != Status::kOk) {
-        throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
+      const auto place = static_cast<std::size_t>(x);
+      rays[place] = camera.ray(x, y);
+      if (gpu == nullptr &&
+          frame.closest_hit(rays[place], &hits[place], command.engine.trace_options()) != Status::kOk) {
+        fail_camera(command);
       }
+    }
+    if (gpu != nullptr && gpu->trace({rays.data(), rays.size()}, {hits.data(), hits.size()}) != Status::kOk) {
+      fail_camera(command);
+    }
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      const Ray& ray = rays[static_cast<std::size_t>(x)];
+      const Hit& hit = hits[static_cast<std::size_t>(x)];
       if (csv != nullptr) {
         text += std::to_string(x) + ',' + std::to_string(y) + ',';
         append_hit(&text, ray, hit);

@@ -20,6 +20,8 @@
 
 namespace thimble::tools {
 
+class GpuEngine;
+
 struct RenderCommand {
   SceneOptions scene;
   EngineOptions engine;
@@ -51,8 +53,8 @@ enum RenderOutput : std::size_t { kPicture, kHits, kDepths, kStats };
 /// the room; at most `most`.
 std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std::int32_t most);
 
-/// Pixel by pixel once more, for the files that hold hits and distances.
-void write_hits(const RenderCommand& command, const QualityFrame& frame, const Camera& camera,
+/// Pixel by pixel once more, for the files that hold hits and distances; by `gpu` if it is not null.
+void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
                 OutputFile* csv, OutputFile* pfm);
 
 /// For a person: what the scene takes, and what came of it.

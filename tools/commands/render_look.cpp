@@ -234,7 +234,7 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
     const Camera& camera = studio.framing().camera;
     const QualityFrame frame(studio.built(), {}, camera, camera, {}, {});
-    write_hits(command, frame, camera, outputs[kHits], outputs[kDepths]);
+    write_hits(command, frame, nullptr, camera, outputs[kHits], outputs[kDepths]);
   }
   Stats stats = stats_of(command, source, studio, painting);
   stats.frame_crc32 = crc_text(add_crc(0, file_pixels(shown, kind)));

@@ -20,6 +20,7 @@
 #include "reference/reference.h"
 #include "scene/built_scene.h"
 #include "scene/generators.h"
+#include "scene/gpu_engine.h"
 #include "scene/scene_source.h"
 #include "scene/wide_renderer.h"
 
@@ -108,7 +109,7 @@ std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid
 }
 
 Row measure(const TableCommand& command, const BuiltScene& built, const reference::BitGrid& grid,
-            WideRenderer* wide, bool orthographic, std::uint64_t points,
+            WideRenderer* wide, GpuEngine* gpu, bool orthographic, std::uint64_t points,
             const std::function<void(double)>& progress) {
   const TraceOptions options = command.engine.trace_options();
   std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx));
@@ -128,8 +129,10 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
     band.rows = kHeightPx;
     RenderCounts counts;
     thimble::wide::Counts work;
-    Status status = wide != nullptr ? wide->render(camera, shading, band, &counts, &work) : Status::kTooFine;
-    row.engine = command.engine.resolved(status == Status::kOk);
+    Status status = gpu != nullptr    ? gpu->draw(camera, shading, band, &counts)
+                    : wide != nullptr ? wide->render(camera, shading, band, &counts, &work)
+                                      : Status::kTooFine;
+    row.engine = command.engine.resolved(gpu == nullptr && status == Status::kOk);
     if (status == Status::kTooFine && command.engine.name != "wide") {
       status = built.render_band(camera, shading, band, &counts, options);
     }
@@ -223,6 +226,7 @@ void run(const TableCommand& command) {
     build.threads = command.engine.threads;
     BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
     const auto wide = command.engine.wide_renderer(&built, kWidthPx, kHeightPx);
+    const auto gpu = command.engine.gpu(built);
     const int side = 1 << command.depth;
     reference::BitGrid grid({side, side, side});
     source->stream(
@@ -232,7 +236,7 @@ void run(const TableCommand& command) {
         [&](double done) { bar.update(0.3 + done * 0.3); });
     std::vector<Row> pair;
     for (const bool orthographic : {false, true}) {
-      pair.push_back(measure(command, built, grid, wide.get(), orthographic, points,
+      pair.push_back(measure(command, built, grid, wide.get(), gpu.get(), orthographic, points,
                              [&](double done) { bar.update(0.6 + 0.2 * (done + (orthographic ? 1 : 0))); }));
     }
     bar.clear();

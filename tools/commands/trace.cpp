@@ -19,6 +19,7 @@
 #include "output/progress.h"
 #include "readers/file_bytes.h"
 #include "scene/built_scene.h"
+#include "scene/gpu_engine.h"
 #include "scene/scene_source.h"
 #include "scene/wide_rays.h"
 #include "scene/workers.h"
@@ -82,14 +83,16 @@ struct Tracing {
 
 // Traces the rays of a chunk and writes their lines.
 void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built, const WideRays* wide,
-                 const TraceOptions& options, Tracing* tracing, std::string* lines) {
+                 GpuEngine* gpu, const TraceOptions& options, Tracing* tracing, std::string* lines) {
   std::size_t count = 0;
   (void)file.read(chunk, &tracing->rays, &count);  // judged before
   const std::vector<Ray>& rays = tracing->rays;
   std::vector<Hit>& hits = tracing->hits;
   hits.resize(rays.size());
   const auto start = Clock::now();
-  if (wide != nullptr) {
+  if (gpu != nullptr) {
+    (void)gpu->trace({rays.data(), rays.size()}, {hits.data(), hits.size()});
+  } else if (wide != nullptr) {
     (void)wide->first_hit({rays.data(), rays.size()}, {hits.data(), hits.size()});
   } else {
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -106,6 +109,7 @@ void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built
 }
 
 void run(const TraceCommand& command) {
+  command.engine.check_budget(command.scene.budget_bytes().has_value());
   OutputSet outputs({command.output, command.scene.stats_path},
                     {command.scene.arguments.scene, command.rays_path});
   OutputFile& output = *outputs[0];
@@ -127,6 +131,7 @@ void run(const TraceCommand& command) {
     stats.budget_bytes = built.budget_bytes();
     stats.high_water_bytes = built.high_water_bytes();
   }
+  const auto gpu = command.engine.gpu(built);
   stats.engine = command.engine.resolved(wide != nullptr);
   stats.threads = command.threads;
   if (command.scene.board != nullptr) {
@@ -141,8 +146,8 @@ void run(const TraceCommand& command) {
   for (std::size_t first = 0; first < file.chunks(); first += lines.size()) {
     const std::size_t count = std::min(lines.size(), file.chunks() - first);
     each_task(count, command.threads, [&](std::size_t task, std::size_t worker) {
-      trace_chunk(file, first + task, built, wide.get(), command.engine.trace_options(), &workers[worker],
-                  &lines[task]);
+      trace_chunk(file, first + task, built, wide.get(), gpu.get(), command.engine.trace_options(),
+                  &workers[worker], &lines[task]);
     });
     for (std::size_t task = 0; task < count; ++task) {
       output.write(lines[task]);

@@ -3,6 +3,7 @@
 
 #include "commands/commands.h"
 #include "host/window_kind.h"
+#include "scene/gpu_engine.h"
 #include "scene/wide_renderer.h"
 
 namespace thimble::tools {
@@ -12,12 +13,19 @@ std::string version_text() {
   for (const std::string& name : WideRenderer::instruction_sets()) {
     sets += (sets.empty() ? "" : ", ") + name;
   }
+  std::string gpus;
+  for (const std::string& name : GpuEngine::devices()) {
+    gpus += (gpus.empty() ? "" : ", ") + name;
+  }
+  const char* const no_gpu = GpuEngine::is_in_build()
+                                 ? "none: there is no Vulkan loader or device"
+                                 : "not in this build (-DTHIMBLE_GPU=OFF): the processor draws";
   const char* const windows = host::window_kind();
   return std::string("thimble ") + version_number() + "\ncommit         " + version_commit() +
          "\nwide renderer  " +
          (sets.empty() ? "not in this build (-DTHIMBLE_WIDE=OFF): the core draws ray by ray"
                        : sets + " on this machine; the first is used") +
-         "\nwindows        " +
+         "\nGPU            " + (gpus.empty() ? no_gpu : gpus) + "\nwindows        " +
          (windows == nullptr ? "not in this build (-DTHIMBLE_WINDOW=OFF): the terminal and files" : windows);
 }
 

@@ -5,6 +5,7 @@
 ///   quality painter  the same with several samples a pixel, a cut-off or a depth
 ///   edge painter     samples where edges are, of rays or of light
 ///   wide painter     object order, with vectors and threads (platform/wide)
+///   gpu painter      a GPU (platform/gpu)
 ///   lit painter      light, shadows, glass, water: the core's light/render.h, or the same by streams of rays
 ///
 /// The first three give the same picture where their options are the same.
@@ -26,6 +27,8 @@
 #include "thimble/picture/shading.h"
 
 namespace thimble::tools {
+
+class GpuEngine;
 
 struct PaintCounts {
   RenderCounts all;   ///< rays of every kind
@@ -68,6 +71,10 @@ std::unique_ptr<BandPainter> make_ray_edge_painter(const BuiltScene& built, cons
 /// For pictures of the size that `renderer` was made for.
 std::unique_ptr<BandPainter> make_wide_painter(WideRenderer* renderer, const Camera& camera,
                                                const Shading& shading);
+
+/// Of the scene that `engine` was made for.
+std::unique_ptr<BandPainter> make_gpu_painter(GpuEngine* engine, const Camera& camera,
+                                              const Shading& shading);
 
 /// What a lit picture is made of beside tree, camera and shading.
 struct LitPicture {

@@ -1,0 +1,210 @@
+// The GPU renderer on whatever Vulkan device there is, a software driver among them: the core's pictures and hits. The
+// tests' row has the validation layer, which must say nothing.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "golden/golden_table.h"
+#include "golden/scenes.h"
+#include "gpu/renderer.h"
+#include "support/hard_frames.h"
+#include "support/ray_cases.h"
+#include "support/wide_cases.h"
+
+namespace thimble::tests {
+namespace {
+
+// Says once why nothing is tested; the row is then skipped.
+bool has_device() {
+  if (!gpu::devices().empty()) {
+    return true;
+  }
+  MESSAGE("skipped: there is no Vulkan device");
+  return false;
+}
+
+gpu::Options options_of(int number) {
+  gpu::Options options;
+  options.structure = number % 2 == 0 ? gpu::Structure::kCells : gpu::Structure::kOctree;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("gpu device: the golden frames -> their CRCs") {
+  if (!has_device()) {
+    return;
+  }
+  std::vector<std::uint8_t> bytes(std::size_t{256} << 10);
+  for (int i = 0; i < golden::frame_count(); ++i) {
+    const golden::Frame& frame = golden::frame(i);
+    CAPTURE(frame.name);
+    Arena arena(Bytes(bytes.data(), bytes.size()));
+    golden::World world;
+    REQUIRE(golden::build_scene(frame.scene, golden::Structure::kCompact, &arena, &world) == Status::kOk);
+    Camera camera;
+    Shading shading;
+    REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
+    std::vector<std::uint8_t> pixels(band_bytes(frame.format, frame.width_px, frame.height_px));
+    Band band;
+    band.pixels = {pixels.data(), pixels.size()};
+    band.format = frame.format;
+    band.rows = frame.height_px;
+    RenderCounts expected;
+    REQUIRE(render_band(world.compact, camera, shading, band, &expected) == Status::kOk);
+    std::fill(pixels.begin(), pixels.end(), std::uint8_t{0xAB});
+    gpu::Renderer renderer(world.compact, shading.palette, options_of(i));
+    RenderCounts counts;
+    REQUIRE(renderer.draw(camera, shading, band, &counts) == Status::kOk);
+    CHECK(crc32({pixels.data(), pixels.size()}) == golden::kGoldenTable[i].crc32);
+    CHECK(counts.hits == expected.hits);
+    CHECK(counts.rays == expected.rays);
+  }
+}
+
+TEST_CASE("gpu device: hard cameras, bands of any rows -> every pixel is the core's") {
+  if (!has_device()) {
+    return;
+  }
+  int drawn = 0;
+  for (int i = 0; i < many_or_few(12, 2); ++i) {
+    const std::uint64_t seed = 61000 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    CAPTURE(seed);
+    const WideScene scene =
+        i % 2 == 0 ? random_scene(random) : solid_scene(random, static_cast<int>(pick(random, 4, 9)));
+    std::vector<Rgb8> palette;
+    for (int k = 0; k < 256; ++k) {
+      palette.push_back({static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(7 * k), 90});
+    }
+    const Span<const Rgb8> colors(palette.data(), palette.size());
+    gpu::Renderer renderer(scene.tree, colors, options_of(i / 2));
+    for (int k = 0; k < 12; ++k) {
+      FrameCase frame;
+      if (!(k % 3 == 0 ? random_frame(random, scene, &frame) : hard_frame(random, scene, &frame)) ||
+          has_pages(frame.band.format)) {
+        continue;
+      }
+      frame.shading.palette = colors;
+      frame.band.stride_bytes = 0;
+      std::vector<std::uint8_t> ours(band_size(frame));
+      frame.band.pixels = {ours.data(), ours.size()};
+      REQUIRE(renderer.draw(frame.camera, frame.shading, frame.band) == Status::kOk);
+      std::uint64_t hits = 0;
+      CHECK(count_different(ours, draw_core(scene, frame, &hits)) == 0);
+      ++drawn;
+    }
+  }
+  CHECK(drawn > 10);
+}
+
+TEST_CASE("gpu device: hard rays -> every hit is the core's") {
+  if (!has_device()) {
+    return;
+  }
+  int wrong = 0;
+  for (int i = 0; i < many_or_few(8, 2); ++i) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(i));
+    const WideScene scene = solid_scene(random, 3 + i);
+    const int side = 1 << scene.level;
+    RayCases cases(static_cast<std::uint64_t>(i), {side, side, side});
+    std::vector<Ray> rays;
+    for (int k = 0; k < 2000; ++k) {
+      const reference::Ray from = cases.next().ray;
+      Ray ray;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto place = static_cast<std::size_t>(axis);
+        ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(from.origin_q8[place]));
+        ray.direction[axis] = static_cast<std::int32_t>(from.direction[place]);
+      }
+      if (check_ray(ray, scene.level) == Status::kOk) {
+        rays.push_back(ray);
+      }
+    }
+    gpu::Renderer renderer(scene.tree, {}, options_of(i));
+    std::vector<Hit> hits(rays.size());
+    REQUIRE(renderer.trace({rays.data(), rays.size()}, {hits.data(), hits.size()}) == Status::kOk);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      Hit expected;
+      REQUIRE(closest_hit(scene.tree, rays[k], &expected) == Status::kOk);
+      const bool same =
+          hits[k].kind == expected.kind &&
+          (expected.kind != HitKind::kHit ||
+           (hits[k].voxel == expected.voxel && hits[k].axis == expected.axis &&
+            hits[k].material == expected.material && hits[k].t_numerator == expected.t_numerator &&
+            hits[k].t_denominator == expected.t_denominator));
+      wrong += same ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("gpu device: several frames under way -> each one is its camera's") {
+  if (!has_device()) {
+    return;
+  }
+  std::mt19937_64 random(5);
+  const WideScene scene = solid_scene(random, 6);
+  gpu::Options options;
+  options.frames = 3;
+  gpu::Renderer renderer(scene.tree, {}, options);
+  std::vector<FrameCase> frames;
+  while (frames.size() < 3) {
+    FrameCase frame;
+    if (hard_frame(random, scene, &frame)) {
+      frame.band.format = PixelFormat::kRgb888;
+      frame.shading.palette = {};
+      frames.push_back(frame);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    renderer.begin(i, frames[static_cast<std::size_t>(i)].camera, frames[static_cast<std::size_t>(i)].shading,
+                   true);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const gpu::Frame ended = renderer.end(i);
+    std::uint64_t hits = 0;
+    const auto expected = draw_core(scene, frames[static_cast<std::size_t>(i)], &hits);
+    int wrong = 0;
+    for (std::size_t at = 0; at < expected.size(); ++at) {
+      wrong += static_cast<std::uint8_t>(ended.pixels[at / 3] >> (8 * (at % 3))) == expected[at] ? 0 : 1;
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("gpu device: damaged trees -> every ray ends") {
+  if (!has_device()) {
+    return;
+  }
+  int traced = 0;
+  for (int i = 0; i < 12; ++i) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(900 + i));
+    const WideScene sound = solid_scene(random, 6);
+    std::vector<std::uint8_t> bytes(sound.tree.bytes(), sound.tree.bytes() + sound.tree.size_bytes());
+    for (int flips = 0; flips < 8; ++flips) {
+      bytes[static_cast<std::size_t>(pick(random, 56, static_cast<std::int64_t>(bytes.size()) - 1))] ^=
+          static_cast<std::uint8_t>(1U << pick(random, 0, 7));
+    }
+    CompactTree tree;
+    REQUIRE(CompactTree::open({bytes.data(), bytes.size()}, &tree) == Status::kOk);
+    gpu::Renderer renderer(tree, {}, options_of(i));
+    std::vector<Ray> rays;
+    for (int k = 0; k < 500; ++k) {
+      rays.push_back({{Q8::from_raw(-1000 + 7 * k), Q8::from_raw(-900), Q8::from_raw(9 * k)},
+                      {40, 100 + k, 3 * (k % 31) - 20}});
+    }
+    std::vector<Hit> hits(rays.size());
+    REQUIRE(renderer.trace({rays.data(), rays.size()}, {hits.data(), hits.size()}) == Status::kOk);
+    for (const Hit& hit : hits) {
+      CHECK(hit.kind != HitKind::kStepLimit);
+      ++traced;
+    }
+  }
+  CHECK(traced == 6000);
+}
+
+}  // namespace thimble::tests
