@@ -34,3 +34,13 @@ function(thimble_group_tests)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group}_${number})
   endforeach()
 endfunction()
+
+# thimble_validate_gpu(NAME): a row that draws on a GPU does so under the validation layer, which must say nothing; it is
+# skipped where there is no device.
+function(thimble_validate_gpu name)
+  if(name MATCHES "gpu_(device|command)$")
+    set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation)
+    set_property(TEST ${name} APPEND PROPERTY FAIL_REGULAR_EXPRESSION "Validation Error" "VUID-")
+    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: there is no Vulkan device" LABELS slow)
+  endif()
+endfunction()
