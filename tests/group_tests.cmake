@@ -5,7 +5,7 @@ function(thimble_group_tests)
   set(before)
   file(GLOB support CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/support/*.cpp)
   # With macros of Xlib.h, functions in the place of the system's, and names that a neighbour has too.
-  list(FILTER support EXCLUDE REGEX "/(virtual_display|allocation_trap|pty|run_command|file_bytes|scene_under_test|wide_cases)[.]cpp$")
+  list(FILTER support EXCLUDE REGEX "/(virtual_display|allocation_trap|pty|run_command|file_bytes|scene_under_test|wide_cases|gpu_kernels)[.]cpp$")
   set(number_support 0)
   foreach(source IN LISTS support)
     math(EXPR number "${number_support} / 7")

@@ -81,7 +81,7 @@ enum thimble_sizes {
   THIMBLE_WORDS_BRICKS = sizeof(void*) > 4 ? 12 : 9,
   THIMBLE_WORDS_LIGHT = sizeof(void*) > 4 ? 19 : 14,
   THIMBLE_WORDS_FRAME = sizeof(void*) > 4 ? 37 : 33,
-  THIMBLE_WORDS_PARTICLES = sizeof(void*) > 4 ? 31 : 26
+  THIMBLE_WORDS_PARTICLES = sizeof(void*) > 4 ? 33 : 29
 };
 
 /// A baked scene. Made by thimble_scene_open.

@@ -99,8 +99,8 @@ TEST_CASE("gpu kernels: the golden frames -> their CRCs") {
 }
 
 TEST_CASE("gpu kernels: hard cameras in random and solid scenes -> every pixel is the core's") {
-  constexpr int kScenes = many_or_few(40, 4);
-  constexpr int kFrames = many_or_few(75, 10);
+  const int kScenes = many_or_few(40, 4);
+  const int kFrames = many_or_few(75, 10);
   int drawn = 0;
   int in_cells = 0;
   std::uint64_t outside = 0;
@@ -135,7 +135,7 @@ TEST_CASE("gpu kernels: hard cameras in random and solid scenes -> every pixel i
 }
 
 TEST_CASE("gpu kernels: hard rays, whatever words they need -> every hit is the core's") {
-  constexpr int kScenes = many_or_few(120, 10);
+  const int kScenes = many_or_few(120, 10);
   int wrong = 0;
   std::uint64_t outside = 0;
   for (int i = 0; i < kScenes; ++i) {
@@ -180,7 +180,7 @@ TEST_CASE(
 }
 
 TEST_CASE("gpu kernels: damaged trees -> every ray ends within its bound, the bytes and the world") {
-  constexpr int kTrials = many_or_few(1500, 150);
+  const int kTrials = many_or_few(1500, 150);
   int traced = 0;
   int in_cells = 0;
   std::uint64_t outside = 0;
@@ -219,7 +219,7 @@ TEST_CASE("gpu kernels: damaged trees -> every ray ends within its bound, the by
 }
 
 TEST_CASE("gpu kernels: any words for a tree of cells -> every ray ends within its bound") {
-  constexpr int kTrials = many_or_few(400, 40);
+  const int kTrials = many_or_few(400, 40);
   std::uint64_t outside = 0;
   for (int i = 0; i < kTrials; ++i) {
     const std::uint64_t seed = 9000 + static_cast<std::uint64_t>(i);

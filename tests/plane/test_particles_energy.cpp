@@ -12,6 +12,8 @@
 namespace thimble::tools {
 namespace {
 
+__extension__ typedef __int128 Energy;
+
 struct Fall {
   const char* name;
   std::int32_t width, height;
@@ -40,10 +42,10 @@ struct FallingWorld {
   }
   // Sum of mass * (|2 v + k|^2 + 8 K * depth): a speed is that of half a step of gravity k before the time of
   // its place, and K is k in all substeps together. Depths are from where gravity pulls to.
-  __int128 energy() const {
+  Energy energy() const {
     const ParticleConfig& config = world.config();
     const std::int64_t parts = std::int64_t{1} << config.substeps_log2;
-    __int128 sum = 0;
+    Energy sum = 0;
     for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
       Particle ball;
       if (!world.particle(id, &ball)) {
@@ -59,7 +61,7 @@ struct FallingWorld {
                                        ? place[axis] - ball.radius_q16
                                        : size[axis] * std::int64_t{65536} - ball.radius_q16 - place[axis];
         const std::int64_t twice = 2 * std::int64_t{speed[axis]} + (gravity < 0 ? -kick : kick);
-        sum += (static_cast<__int128>(twice) * twice + static_cast<__int128>(8) * kick * parts * depth) *
+        sum += (static_cast<Energy>(twice) * twice + static_cast<Energy>(8) * kick * parts * depth) *
                ball.diameter * ball.diameter;
       }
     }
@@ -83,12 +85,12 @@ constexpr Fall kFalls[] = {
 // Millionths of the start by which the energy left it at most.
 std::int64_t greatest_change(const Fall& fall, std::uint32_t restitution_q16, int steps) {
   FallingWorld falling(fall, restitution_q16);
-  const __int128 start = falling.energy();
+  const Energy start = falling.energy();
   std::int64_t greatest = 0;
   for (int step = 1; step <= steps; ++step) {
     falling.world.step();
     if (step % 50 == 0 || step < 500) {
-      const __int128 change = falling.energy() - start;
+      const Energy change = falling.energy() - start;
       greatest =
           std::max(greatest, static_cast<std::int64_t>((change < 0 ? -change : change) * 1000000 / start));
     }
@@ -116,13 +118,13 @@ TEST_CASE("particles energy: bounciness below 1 -> never above the start, nor ab
       CAPTURE(fall.name);
       CAPTURE(restitution);
       FallingWorld falling(fall, restitution);
-      const __int128 start = falling.energy();
+      const Energy start = falling.energy();
       // What is still to be paid back: the less, the more is lost in the same blows.
-      const __int128 pending = start / (restitution < 65000 ? 1000 : 100);
-      std::vector<__int128> least{start};
+      const Energy pending = start / (restitution < 65000 ? 1000 : 100);
+      std::vector<Energy> least{start};
       for (std::size_t step = 1; step <= kSteps; ++step) {
         falling.world.step();
-        const __int128 now = falling.energy();
+        const Energy now = falling.energy();
         CHECK(now <= start + pending);
         CHECK(now <= least[step > kWhile ? step - kWhile : 0] + pending);
         least.push_back(std::min(least.back(), now));
@@ -137,10 +139,10 @@ TEST_CASE("particles energy: bounciness set to 1 -> what was lost before does no
     falling.world.step();
   }
   REQUIRE(falling.world.set_restitution(65536) == Status::kOk);
-  const __int128 then = falling.energy();
+  const Energy then = falling.energy();
   for (int step = 0; step < 3000; ++step) {
     falling.world.step();
-    const __int128 change = falling.energy() - then;
+    const Energy change = falling.energy() - then;
     REQUIRE((change < 0 ? -change : change) * 100 < then);
   }
 }
