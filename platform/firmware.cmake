@@ -70,20 +70,8 @@ add_library(thimble_port STATIC ${sources} ${generated}/scene.cpp)
 file(GLOB board_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME}/*.cpp
   ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP}/*.cpp)
 add_library(thimble_board OBJECT ${board_sources})
-# Applications and what they share; the frames and cases that the tests share with them.
-file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/apps/*.cpp
-  ${PROJECT_SOURCE_DIR}/tests/portable/*.cpp ${PROJECT_SOURCE_DIR}/tests/golden/scenes.cpp)
-# Not what no image asks for: the tests' cases and the larger applications take longer to compile than the demonstration.
-foreach(app bench dig water)
-  if(NOT app IN_LIST THIMBLE_APP)
-    list(FILTER sources EXCLUDE REGEX "/apps/${app}\\.cpp$")
-  endif()
-endforeach()
-set(cases ${THIMBLE_APP})
-list(REMOVE_ITEM cases demo bench dig water particles faults)
-if(NOT cases)
-  list(FILTER sources EXCLUDE REGEX "/tests/(portable|golden)/")
-endif()
+include(${THIMBLE_PLATFORM_DIR}/apps.cmake)
+thimble_list_app_sources(sources)
 add_library(thimble_apps STATIC ${sources})
 # They take objects from an arena, whose bytes are aligned as they asked.
 add_library(thimble_app_warnings INTERFACE)

@@ -110,16 +110,3 @@ endfunction()
 function(thimble_add_image app)
   thimble_add_image_in(flash ${app} ${ARGN})
 endfunction()
-
-# An application's image; for BOARD_UF2 also one for RAM, which is built by itself, since not all that fits into
-# flash fits there (build.sh).
-function(thimble_add_application app)
-  set(main ${THIMBLE_PLATFORM_DIR}/arch/common/main.cpp)
-  thimble_add_image(${app} ${main})
-  target_compile_definitions(${app} PRIVATE THIMBLE_APPLICATION=${app})
-  if(BOARD_UF2)
-    thimble_add_image_in(ram ${app}_ram ${main})
-    set_target_properties(${app}_ram PROPERTIES EXCLUDE_FROM_ALL ON)
-    target_compile_definitions(${app}_ram PRIVATE THIMBLE_APPLICATION=${app})
-  endif()
-endfunction()

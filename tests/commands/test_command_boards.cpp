@@ -79,7 +79,7 @@ TEST_CASE("boards: with a scene -> what fits is what bake and render say") {
         std::string::npos);
   const std::size_t second = text.find("scene flash");
   const std::uint64_t stack = platform::find_board("microbit")->stack_bytes;
-  CHECK(line_of(text, "microbit", second) == "microbit              221,184   5.7 %        " +
+  CHECK(line_of(text, "microbit", second) == "microbit              143,360   8.8 %        " +
                                                  tools::grouped(stack + 720) + "   yes        " +
                                                  tools::grouped(stack + 33088) + "    no        7");
   const auto rows = nlohmann::ordered_json::parse(read_text(json_path));

@@ -219,8 +219,9 @@ TEST_CASE(
   fs::remove(folder.path("log"));
   fs::remove(folder.path("p.ppm"));
   for (const char* const own : {"/dev/fd/3", "/dev/fd/4", "/dev/fd/5"}) {
-    const CommandResult result =
-        shell(folder, std::string("$T render spheres --quiet --size 8x8 -o p.ppm --stats ") + own);
+    const CommandResult result = shell(
+        folder,
+        std::string("exec 3>&- 4>&- 5>&-; $T render spheres --quiet --size 8x8 -o p.ppm --stats ") + own);
     CHECK_MESSAGE(result.status == 1, result.describe());
     CHECK(!fs::exists(folder.path("p.ppm")));
   }
@@ -397,7 +398,7 @@ TEST_CASE(
                                   p("h.csv"), "--stats", p("j")},
                                  {"trace", "spheres", "--rays", p("rays.csv")},
                                  {"castle", "--bench", "1"},
-                                 {"complete", "render", ""}};
+                                 {"complete", "thimble render "}};
   bool any = false;
   for (const Words& words : lines) {
     CAPTURE(words[1]);
@@ -441,11 +442,9 @@ TEST_CASE("outputs: no threads -> the command draws with one, the same picture, 
       {"trace", "spheres", "--rays", rays, "-o", picture},
       {"bake", "spheres", "-o", folder.path("b.oct"), "--quiet"},
       {"info", "points:100000"},
-      {"sim", "--display", "none", "--frames", "2", "--engine", "wide"},
       {"table", "--points", "10", "--quiet", "--threads", "2"},
       {"accuracy", "spheres", "--quiet", "--size", "16x12", "--rounds", "1"},
-      {"particles", "--steps", "2", "--display", "none"},
-      {"spheres", "--bench", "1", "--size", "40x30"}};
+      {"particles", "--steps", "2", "--display", "none"}};
   CommandLimits limits;
   // glibc asks by clone3, and where that is not there by clone.
   limits.refused = {{SYS_clone3, ENOSYS}, {SYS_clone, EAGAIN}};
@@ -464,6 +463,13 @@ TEST_CASE("outputs: no threads -> the command draws with one, the same picture, 
     CHECK_MESSAGE(without.status == 0, without.describe());
     CHECK((fs::exists(picture) ? read_text(picture) : "") == whole);
     CHECK(lines_of(without.err + "\n").size() == lines_of(with.err + "\n").size());
+  }
+  // The simulator's application has a board's stack, and the viewer draws while it listens.
+  for (const Words& words : {Words{"sim", "--display", "none", "--frames", "2"},
+                             Words{"spheres", "--bench", "1", "--size", "40x30"}}) {
+    const CommandResult without = run_command(words, limits);
+    CHECK_MESSAGE(without.status == 1, without.describe());
+    CHECK(without.err.find("Resource temporarily unavailable") != std::string::npos);
   }
 }
 

@@ -232,12 +232,11 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
   }
   text += columns_of(rows, 1);
   text +=
-      "\nscene flash: what the demonstration leaves (make firmware), with the effects that the scene states; "
-      "scene:\n"
-      "the baked scene's part of it, without a brick map and light that bake adds where there is room. RAM: "
-      "renderer, a\nband of " +
+      "\nscene flash: what the demonstration leaves (make firmware), with the effects that the scene\n"
+      "states; scene: the baked scene's part of it, without the brick map and the light that bake adds\n"
+      "where there is room. RAM: renderer, a band of " +
       std::to_string(kBoardBandRows) +
-      " rows and the stack; to build it also the pool. deepest: the deepest --depth that fits\nthe flash" +
+      " rows and the stack; to build it also the\npool. deepest: the deepest --depth that fits the flash" +
       (sizes.is_scalable ? "" : "; this scene has one depth only") + ".\n";
   return text;
 }

@@ -30,7 +30,8 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
   facts = "{\"level\":" + std::to_string(tree.level()) + number_field("voxels", tree.voxel_count()) +
           number_field("bytes", baked.bytes.size()) + number_field("added", tree.solid_added()) +
           number_field("effects", baked.effects) + number_field("points", source.points()) +
-          number_field("frames", source.frames()) + number_field("code", code_flash_bytes(board, baked.effects)) +
+          number_field("frames", source.frames()) +
+          number_field("code", code_flash_bytes(board, baked.effects)) +
           number_field("ram", drawing_ram_bytes(board, baked.effects)) +
           number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
           source.kind() + "\"}";
