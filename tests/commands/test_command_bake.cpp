@@ -445,13 +445,14 @@ TEST_CASE("bake: --board -> its flash is the limit, its display the picture; RAM
 TEST_CASE("render --board: the display's size and pixels as it shows them, its RAM as the budget") {
   const TemporaryFolder folder;
   const std::string oct = folder.path("s.oct");
-  check_ok({"bake", "spheres", "-o", oct, "--quiet"});  // for no board: seen as render sees the scene
+  check_ok({"bake", "spheres", "-o", oct, "--board", "lm3s6965evb", "--quiet"});
   // 16 greys, 17 apart, rounded from 256.
-  const std::string fine =
-      pixels_of(render(folder, "spheres", {"--size", "128x64", "--shade", "depth"}, "a.pgm"));
-  const std::string shown = pixels_of(
-      render(folder, oct, {"--board", "lm3s6965evb", "--shade", "depth", "--stats", folder.path("s.json")},
-             "b.pgm"));
+  const std::string fine = pixels_of(
+      render(folder, "spheres", {"--size", "128x64", "--view", "front", "--shade", "depth"}, "a.pgm"));
+  const std::string shown = pixels_of(render(
+      folder, oct,
+      {"--board", "lm3s6965evb", "--view", "front", "--shade", "depth", "--stats", folder.path("s.json")},
+      "b.pgm"));
   REQUIRE(fine.size() == 128 * 64);
   REQUIRE(shown.size() == fine.size());
   std::string packed;
@@ -512,7 +513,7 @@ TEST_CASE("render --board: the display's size and pixels as it shows them, its R
   // A baked scene that the flash does not hold.
   check_ok({"bake", "points:100000", "-o", oct, "--quiet"});
   check_refused({"render", oct, "-o", folder.path("f.ppm"), "--board", "lm3s6965evb"}, 1,
-                {oct, "442,764", "lm3s6965evb", "221,184"});
+                {oct, "442,764", "lm3s6965evb", "161,792"});
 }
 
 TEST_CASE("baked scenes: --memory counts the tree, and nothing to build it with") {
