@@ -423,7 +423,7 @@ void ParticleWorld::settle(Ball& ball, Vec2i kick, int64_t gain) {
     return;
   }
   // What a whole kick more gives is four times this and as much as a kick alone gives, which must be less.
-  const int64_t along = (2 * int64_t{ball.vx} + kick.x) * kick.x + (2 * int64_t{ball.vy} + kick.y) * kick.y;
+  const int64_t along = int64_t{2 * ball.vx + kick.x} * kick.x + int64_t{2 * ball.vy + kick.y} * kick.y;
   const uint64_t rate = magnitude(along);
   const uint64_t alone = magnitude(int64_t{kick.x} * kick.x + int64_t{kick.y} * kick.y);
   if (rate <= kMostKicks * alone) {

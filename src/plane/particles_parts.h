@@ -42,9 +42,9 @@ constexpr int32_t rough_length(Vec2i v) {
 
 // Four times the square of a ball's speed half of `kick` later, below 2^62.
 inline int64_t square_of(const particle_detail::Ball& ball, Vec2i kick) {
-  const int64_t x = 2 * int64_t{ball.vx} + kick.x;
-  const int64_t y = 2 * int64_t{ball.vy} + kick.y;
-  return x * x + y * y;
+  const int32_t x = 2 * ball.vx + kick.x;
+  const int32_t y = 2 * ball.vy + kick.y;
+  return int64_t{x} * x + int64_t{y} * y;
 }
 
 // Cells of the index, [x0, x1] x [y0, y1], inclusive.
