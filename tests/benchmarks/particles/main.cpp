@@ -1,4 +1,5 @@
-// The particle world beside a uniform grid and Box2D 2.4: cost, agreement, quality, energy, accuracy, as tables.
+// The particle world beside a uniform grid and Box2D 2.4: cost, agreement, quality, energy, accuracy, as
+// tables.
 //
 //   thimble_particle_table                     all tables, some minutes
 //   thimble_particle_table speed quality       some of: instructions speed scaling quality energy accuracy
@@ -385,8 +386,8 @@ void quality(const std::string& csv) {
 
 // --- Energy
 
-// Sum of diameter^2 * (speed^2 + 2 * gravity * height over the floor). Both engines add a step's gravity before
-// they move a ball, so what they give is the speed half a step before the time of the place.
+// Sum of diameter^2 * (speed^2 + 2 * gravity * height over the floor). Both engines add a step's gravity
+// before they move a ball, so what they give is the speed half a step before the time of the place.
 double energy_under_gravity(const Scene& scene, std::vector<BallState> balls) {
   double heights = 0;
   for (BallState& ball : balls) {
