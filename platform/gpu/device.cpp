@@ -130,7 +130,7 @@ std::vector<DeviceInfo> Device::list() {
   return infos;
 }
 
-Device::Device(bool robust) : instance_(make_instance()) {
+Device::Device() : instance_(make_instance()) {
   const std::vector<VkPhysicalDevice> devices = usable_devices(instance_);
   if (devices.empty()) {
     vkDestroyInstance(instance_, nullptr);
@@ -146,7 +146,7 @@ Device::Device(bool robust) : instance_(make_instance()) {
   family_ = compute_family(physical_, &timestamp_bits);
   tick_seconds_ = timestamp_bits != 0 ? 1e-9 * static_cast<double>(properties.limits.timestampPeriod) : 0;
   VkPhysicalDeviceFeatures wanted{};
-  wanted.robustBufferAccess = robust ? VK_TRUE : VK_FALSE;
+  wanted.robustBufferAccess = VK_TRUE;
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};
   queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -54,9 +54,8 @@ enum class Memory : std::uint8_t {
 
 class Device {
  public:
-  /// The best device: a GPU before a software driver. `robust`: reads outside a buffer stay inside it. Throws
-  /// DeviceError.
-  explicit Device(bool robust);
+  /// The best device: a GPU before a software driver. Reads outside a buffer stay inside it. Throws DeviceError.
+  Device();
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

@@ -1,7 +1,5 @@
 #include "gpu/kernels.h"
 
-#include <cells_pairs_spv.h>
-#include <cells_spv.h>
 #include <octree_pairs_spv.h>
 #include <octree_spv.h>
 
@@ -9,13 +7,9 @@
 
 namespace thimble::gpu {
 
-Kernel kernel_of(bool is_octree, bool pairs) {
-  if (is_octree) {
-    return pairs ? Kernel{octree_pairs_spv, std::size(octree_pairs_spv)}
-                 : Kernel{octree_spv, std::size(octree_spv)};
-  }
-  return pairs ? Kernel{cells_pairs_spv, std::size(cells_pairs_spv)}
-               : Kernel{cells_spv, std::size(cells_spv)};
+Kernel kernel_of(bool pairs) {
+  return pairs ? Kernel{octree_pairs_spv, std::size(octree_pairs_spv)}
+               : Kernel{octree_spv, std::size(octree_spv)};
 }
 
 }  // namespace thimble::gpu

@@ -13,8 +13,8 @@ struct Kernel {
   std::size_t words;
 };
 
-/// Of the compact tree, or of a tree of cells; in pairs of words where one does not do.
-Kernel kernel_of(bool is_octree, bool pairs);
+/// In pairs of words where one does not do.
+Kernel kernel_of(bool pairs);
 
 }  // namespace thimble::gpu
 

@@ -17,6 +17,7 @@ constexpr std::size_t kMostOutputBytes = std::size_t{1} << 27;
 constexpr std::size_t kUploadBytes = std::size_t{1} << 26;
 constexpr std::uint32_t kRaysAtATime = std::uint32_t{1} << 20;
 constexpr std::uint32_t kRaysARow = 1024;
+constexpr std::uint32_t kGroupSide = 8;  // threads of a group; kernel/frame.comp has it too
 constexpr std::uint64_t kForever = UINT64_MAX;
 
 void begin_once(VkCommandBuffer commands) {
@@ -69,7 +70,6 @@ struct Renderer::State {
 
   const Options options;
   Device device;
-  Structure structure = Structure::kOctree;
   int level = 0;
   Parameters parameters{};
   Buffer scene;
@@ -83,10 +83,9 @@ struct Renderer::State {
 };
 
 Renderer::State::State(const CompactTree& tree, Span<const Rgb8> palette, const Options& chosen)
-    : options(chosen), device(chosen.robust) {
-  SceneWords words = make_scene_words(tree, options.structure);
+    : options(chosen) {
+  SceneWords words = make_scene_words(tree);
   set_palette(palette, words.words.data());
-  structure = words.structure;
   level = words.level;
   parameters = words.parameters;
   try {
@@ -214,23 +213,19 @@ VkPipeline Renderer::State::pipeline(bool pairs) {
   if (made != VK_NULL_HANDLE) {
     return made;
   }
-  const Kernel kernel = kernel_of(structure == Structure::kOctree, pairs);
+  const Kernel kernel = kernel_of(pairs);
   VkShaderModuleCreateInfo module{};
   module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   module.codeSize = 4 * kernel.words;
   module.pCode = kernel.code;
   VkShaderModule shader = VK_NULL_HANDLE;
   require(vkCreateShaderModule(device.get(), &module, nullptr, &shader), "take the kernel");
-  const std::uint32_t sides[2] = {options.group_width, options.group_height};
-  const VkSpecializationMapEntry entries[2] = {{0, 0, 4}, {1, 4, 4}};
-  const VkSpecializationInfo constants{2, entries, sizeof sides, sides};
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   info.stage.module = shader;
   info.stage.pName = "main";
-  info.stage.pSpecializationInfo = &constants;
   info.layout = layout;
   const VkResult result = vkCreateComputePipelines(device.get(), VK_NULL_HANDLE, 1, &info, nullptr, &made);
   vkDestroyShaderModule(device.get(), shader, nullptr);
@@ -286,9 +281,8 @@ void Renderer::State::start(std::size_t number, const Parameters& told, bool pai
   if (queries != VK_NULL_HANDLE) {
     vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries, query);
   }
-  const std::uint32_t width = told[kernel::kWidth] + options.group_width - 1;
-  const std::uint32_t height = told[kernel::kHeight] + options.group_height - 1;
-  vkCmdDispatch(slot.commands, width / options.group_width, height / options.group_height, 1);
+  vkCmdDispatch(slot.commands, (told[kernel::kWidth] + kGroupSide - 1) / kGroupSide,
+                (told[kernel::kHeight] + kGroupSide - 1) / kGroupSide, 1);
   if (queries != VK_NULL_HANDLE) {
     vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, queries, query + 1);
   }
@@ -351,9 +345,6 @@ Renderer::~Renderer() = default;
 const DeviceInfo& Renderer::device() const {
   return state_->device.info();
 }
-Structure Renderer::structure() const {
-  return state_->structure;
-}
 std::size_t Renderer::scene_bytes() const {
   return static_cast<std::size_t>(state_->scene.size());
 }
@@ -370,8 +361,8 @@ void Renderer::begin(int frame, const Camera& camera, const Shading& shading, bo
                             static_cast<std::size_t>(camera.height_px());
   const auto number = static_cast<std::size_t>(frame);
   state_->fit(&state_->slots[number], bytes);
-  state_->start(number, parameters, needs_pairs(state_->structure, state_->level, largest_direction(camera)),
-                0, read_back ? bytes : 0);
+  state_->start(number, parameters, needs_pairs(state_->level, largest_direction(camera)), 0,
+                read_back ? bytes : 0);
 }
 
 Frame Renderer::end(int frame) {
@@ -404,8 +395,7 @@ Status Renderer::draw(const Camera& camera, const Shading& shading, const Band& 
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.rows);
   Slot& slot = state_->slots[0];
   state_->fit(&slot, 8 * pixels);
-  state_->start(0, parameters, needs_pairs(state_->structure, state_->level, largest_direction(part)), 0,
-                8 * pixels);
+  state_->start(0, parameters, needs_pairs(state_->level, largest_direction(part)), 0, 8 * pixels);
   state_->finish(0);
   const std::uint32_t* from = slot.host.words();
   RenderCounts drawn;
@@ -449,8 +439,8 @@ Status Renderer::trace(Span<const Ray> rays, Span<Hit> hits) {
     }
     Parameters parameters = state_->parameters;
     set_rays(static_cast<std::uint32_t>(count), kRaysARow, &parameters);
-    state_->start(0, parameters, needs_pairs(state_->structure, state_->level, largest_direction(part)),
-                  kBytes * count, kBytes * count);
+    state_->start(0, parameters, needs_pairs(state_->level, largest_direction(part)), kBytes * count,
+                  kBytes * count);
     state_->finish(0);
     for (std::size_t i = 0; i < count; ++i) {
       hits[first + i] = hit_of_record(slot.host.words() + kernel::kRecordWords * i);

@@ -34,11 +34,7 @@ struct DeviceInfo {
 std::vector<DeviceInfo> devices();
 
 struct Options {
-  Structure structure = Structure::kAuto;
-  int frames = 1;                 ///< that may be under way at a time, 1 or more
-  std::uint32_t group_width = 8;  ///< threads of a group, which are near one another in the picture
-  std::uint32_t group_height = 8;
-  bool robust = true;  ///< off: for measuring what it costs; sound trees only
+  int frames = 1;  ///< that may be under way at a time, 1 or more
 };
 
 /// What became of a frame.
@@ -58,7 +54,6 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   const DeviceInfo& device() const;
-  Structure structure() const;
   std::size_t scene_bytes() const;
 
   /// Most rows of a band for `draw`, of pictures of that width.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "gpu/cell_tree.h"
 #include "gpu/kernel/cpp.h"
 
 namespace thimble::gpu {
@@ -62,7 +61,7 @@ void set_direction(std::int32_t component, std::int32_t* largest) {
 
 }  // namespace
 
-SceneWords make_scene_words(const CompactTree& tree, Structure structure) {
+SceneWords make_scene_words(const CompactTree& tree) {
   SceneWords scene;
   scene.level = tree.level();
   Parameters& to = scene.parameters;
@@ -78,20 +77,7 @@ SceneWords make_scene_words(const CompactTree& tree, Structure structure) {
   to[kManyMaterials] = tree.many_materials() ? 1 : 0;
   to[kUniformMaterial] = tree.uniform_material();
   scene.words.assign(kSceneTree, 0);
-  CellTree cells;
-  const std::size_t most = structure == Structure::kAuto    ? 2 * tree.size_bytes()
-                           : structure == Structure::kCells ? SIZE_MAX
-                                                            : 0;
-  if (most != 0 && make_cell_tree(tree, most, &cells)) {
-    scene.structure = Structure::kCells;
-    to[kLevels] = static_cast<std::uint32_t>(cells.levels);
-    scene.words.insert(scene.words.end(), cells.words.begin(), cells.words.end());
-    to[kMaterials] = static_cast<std::uint32_t>(4 * cells.words.size());
-    append_bytes(cells.materials.data(), cells.materials.size(), &scene.words);
-    scene.words.push_back(0);  // of an empty tree
-  } else {
-    set_octree(tree, &scene);
-  }
+  set_octree(tree, &scene);
   return scene;
 }
 
@@ -182,13 +168,9 @@ Vec3i largest_direction(Span<const Ray> rays) {
   return largest;
 }
 
-bool needs_pairs(Structure structure, int level, const Vec3i& largest_direction) {
+bool needs_pairs(int level, const Vec3i& largest_direction) {
   std::int64_t components[3] = {largest_direction.x, largest_direction.y, largest_direction.z};
   std::sort(components, components + 3);
-  if (structure == Structure::kCells) {
-    const int root_cell = 2 * ((level + 1) / 2) - 2;  // as a power of two
-    return components[2] << (8 + root_cell) >= std::int64_t{1} << 31;
-  }
   return (components[1] + components[2]) << (level + 8) >= std::int64_t{1} << 32;
 }
 

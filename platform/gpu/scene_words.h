@@ -17,24 +17,17 @@
 
 namespace thimble::gpu {
 
-enum class Structure : std::uint8_t {
-  kAuto,   ///< cells where they take at most twice the compact tree's bytes
-  kCells,  ///< a tree of 4 x 4 x 4 cells (cell_tree.h)
-  kOctree  ///< the compact tree's own bytes
-};
-
 inline constexpr std::size_t kWordsOfParameters = 64;
 using Parameters = std::array<std::uint32_t, kWordsOfParameters>;
 
 struct SceneWords {
-  Structure structure = Structure::kOctree;
   int level = 0;
   Parameters parameters{};  ///< those of the scene; a frame's are added to a copy
   std::vector<std::uint32_t> words;
 };
 
-/// The words of `tree`, at least one behind the palette. kCells of a tree that has no cells are its octree.
-SceneWords make_scene_words(const CompactTree& tree, Structure structure);
+/// Room for a palette, then the bytes of `tree`.
+SceneWords make_scene_words(const CompactTree& tree);
 
 /// Writes the colours of `palette` to the front of a scene's words.
 void set_palette(Span<const Rgb8> palette, std::uint32_t* words);
@@ -51,7 +44,7 @@ Hit hit_of_record(const std::uint32_t* record);
 Vec3i largest_direction(const Camera& camera);
 Vec3i largest_direction(Span<const Ray> rays);
 /// Whether words of 32 bits order the planes that such rays cross, or pairs of them are needed (README.md).
-bool needs_pairs(Structure structure, int level, const Vec3i& largest_direction);
+bool needs_pairs(int level, const Vec3i& largest_direction);
 
 }  // namespace thimble::gpu
 

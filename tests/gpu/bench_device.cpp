@@ -325,15 +325,11 @@ Times time_frames(const Scene& scene, Size size, gpu::Renderer* renderer, double
   return times;
 }
 
-const char* name_of(gpu::Structure structure) {
-  return structure == gpu::Structure::kCells ? "cells" : "octree";
-}
-
 void print_row(const Scene& scene, const gpu::Renderer& renderer, Size size, const Times& times,
                const char* remark) {
   const double rays = 1e-6 * static_cast<double>(size.width) * static_cast<double>(size.height);
-  std::printf("| %s %s | %dx%d | %s, %.1f MB | %.4f | %.0f | %.0f | %.0f | %.0f | %s |\n", scene.name.c_str(),
-              kShades[static_cast<int>(scene.shade)], size.width, size.height, name_of(renderer.structure()),
+  std::printf("| %s %s | %dx%d | %.2f | %.4f | %.0f | %.0f | %.0f | %.0f | %s |\n", scene.name.c_str(),
+              kShades[static_cast<int>(scene.shade)], size.width, size.height,
               1e-6 * static_cast<double>(renderer.scene_bytes()), 1000 * times.device_median,
               1 / times.device_median, rays / times.device_median, 1 / times.wall_kept, 1 / times.wall,
               remark);
@@ -346,48 +342,25 @@ int check_scenes(const char* expected_path, const std::vector<std::string>& name
   const double seconds = quick ? 0 : 0.4;
   const int most_frames = quick ? 2 : 2000;
   int wrong = 0;
-  std::printf(
-      "| scene | picture | structure | kernel ms | frames/s, kernel alone | M rays/s | frames/s, queued | "
-      "frames/s, read back | pictures right |\n|---|---|---|---:|---:|---:|---:|---:|---|\n");
   for (const std::string& name : names) {
     const Scene scene = load(name);
-    struct Variant {
-      gpu::Structure structure;
-      std::uint32_t width;
-      std::uint32_t height;
-      bool robust;
-    };
-    // The first is what the product does.
-    const Variant variants[] = {
-        {gpu::Structure::kAuto, 8, 8, true},   {gpu::Structure::kCells, 8, 4, true},
-        {gpu::Structure::kCells, 16, 8, true}, {gpu::Structure::kCells, 8, 8, false},
-        {gpu::Structure::kOctree, 8, 4, true}, {gpu::Structure::kOctree, 8, 8, false}};
-    for (const Variant& variant : variants) {
-      gpu::Options options;
-      options.structure = variant.structure;
-      options.frames = kInFlight;
-      options.group_width = variant.width;
-      options.group_height = variant.height;
-      options.robust = variant.robust;
-      gpu::Renderer renderer(scene.tree, {scene.palette.data(), scene.palette.size()}, options);
-      if (&variant == variants && &name == names.data()) {
-        std::fprintf(stderr, "device: %s%s\n", renderer.device().name.c_str(),
-                     renderer.device().is_software ? " (software)" : "");
-      }
-      int checked = 0;
-      const int wrong_here = check_pictures(scene, &renderer, expected, &checked);
-      wrong += wrong_here;
-      char remark[80];
-      std::snprintf(remark, sizeof remark, "%d of %d%s", checked - wrong_here, checked,
-                    variant.structure == gpu::Structure::kAuto ? ""
-                    : variant.robust ? (variant.width == 16 ? ", groups of 16x8" : ", groups of 8x4")
-                                     : ", not robust");
-      for (const Size size : kSizes) {
-        if (variant.structure != gpu::Structure::kAuto && size.width != 1920) {
-          continue;
-        }
-        print_row(scene, renderer, size, time_frames(scene, size, &renderer, seconds, most_frames), remark);
-      }
+    gpu::Options options;
+    options.frames = kInFlight;
+    gpu::Renderer renderer(scene.tree, {scene.palette.data(), scene.palette.size()}, options);
+    if (&name == names.data()) {  // there is a device
+      std::fprintf(stderr, "device: %s%s\n", renderer.device().name.c_str(),
+                   renderer.device().is_software ? " (software)" : "");
+      std::printf(
+          "| scene | picture | tree MB | kernel ms | frames/s, kernel alone | M rays/s | frames/s, queued | "
+          "frames/s, read back | pictures right |\n|---|---|---:|---:|---:|---:|---:|---:|---|\n");
+    }
+    int checked = 0;
+    const int wrong_here = check_pictures(scene, &renderer, expected, &checked);
+    wrong += wrong_here;
+    char remark[40];
+    std::snprintf(remark, sizeof remark, "%d of %d", checked - wrong_here, checked);
+    for (const Size size : kSizes) {
+      print_row(scene, renderer, size, time_frames(scene, size, &renderer, seconds, most_frames), remark);
     }
     std::fprintf(stderr, "%s: %.1f s\n", name.c_str(), seconds_since(start));
   }

@@ -16,12 +16,13 @@ fi
 export LD_LIBRARY_PATH="${LD_LIBRARY_PATH:+$LD_LIBRARY_PATH:}$nvidia/lib64:$nvidia/lib"
 # Only what is missing is taken from lib.
 ldconfig=$(command -v ldconfig || echo /sbin/ldconfig)
-mkdir -p "${TMPDIR:-/tmp}/thimble-lib"
+lib=$(mktemp -d)
+trap 'rm -rf "$lib"' EXIT
 for library in "$folder"/lib/*; do
   name=$(basename "$library")
-  "$ldconfig" -p 2>/dev/null | grep -q "[[:space:]]$name " || cp -L "$library" "${TMPDIR:-/tmp}/thimble-lib/"
+  "$ldconfig" -p 2>/dev/null | grep -q "[[:space:]]$name " || cp -L "$library" "$lib/"
 done
-export LD_LIBRARY_PATH="$LD_LIBRARY_PATH:${TMPDIR:-/tmp}/thimble-lib"
+export LD_LIBRARY_PATH="$LD_LIBRARY_PATH:$lib"
 cd "$folder"
 chmod +x bench_device
 echo "$(uname -m), $(nproc) cores, $(getconf GNU_LIBC_VERSION)" >&2
@@ -31,8 +32,8 @@ run "$@" || status=$?
 if [ $status = 2 ] && [ -n "${VK_ICD_FILENAMES:-}" ]; then
   # NVIDIA's library for X11 does not open everywhere; that for EGL is a Vulkan driver, too.
   printf '{"file_format_version": "1.0.1", "ICD": {"library_path": "libEGL_nvidia.so.0", "api_version": "1.3.0"}}\n' \
-    >"${TMPDIR:-/tmp}/thimble-lib/icd.json"
-  export VK_ICD_FILENAMES="${TMPDIR:-/tmp}/thimble-lib/icd.json"
+    >"$lib/icd.json"
+  export VK_ICD_FILENAMES="$lib/icd.json"
   status=0
   run "$@" || status=$?
 fi

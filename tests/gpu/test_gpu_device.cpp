@@ -26,12 +26,6 @@ bool has_device() {
   return false;
 }
 
-gpu::Options options_of(int number) {
-  gpu::Options options;
-  options.structure = number % 2 == 0 ? gpu::Structure::kCells : gpu::Structure::kOctree;
-  return options;
-}
-
 }  // namespace
 
 TEST_CASE("gpu device: the golden frames -> their CRCs") {
@@ -56,7 +50,7 @@ TEST_CASE("gpu device: the golden frames -> their CRCs") {
     RenderCounts expected;
     REQUIRE(render_band(world.compact, camera, shading, band, &expected) == Status::kOk);
     std::fill(pixels.begin(), pixels.end(), std::uint8_t{0xAB});
-    gpu::Renderer renderer(world.compact, shading.palette, options_of(i));
+    gpu::Renderer renderer(world.compact, shading.palette, {});
     RenderCounts counts;
     REQUIRE(renderer.draw(camera, shading, band, &counts) == Status::kOk);
     CHECK(crc32({pixels.data(), pixels.size()}) == golden::kGoldenTable[i].crc32);
@@ -81,7 +75,7 @@ TEST_CASE("gpu device: hard cameras, bands of any rows -> every pixel is the cor
       palette.push_back({static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(7 * k), 90});
     }
     const Span<const Rgb8> colors(palette.data(), palette.size());
-    gpu::Renderer renderer(scene.tree, colors, options_of(i / 2));
+    gpu::Renderer renderer(scene.tree, colors, {});
     for (int k = 0; k < 12; ++k) {
       FrameCase frame;
       if (!(k % 3 == 0 ? random_frame(random, scene, &frame) : hard_frame(random, scene, &frame)) ||
@@ -124,7 +118,7 @@ TEST_CASE("gpu device: hard rays -> every hit is the core's") {
         rays.push_back(ray);
       }
     }
-    gpu::Renderer renderer(scene.tree, {}, options_of(i));
+    gpu::Renderer renderer(scene.tree, {}, {});
     std::vector<Hit> hits(rays.size());
     REQUIRE(renderer.trace({rays.data(), rays.size()}, {hits.data(), hits.size()}) == Status::kOk);
     for (std::size_t k = 0; k < rays.size(); ++k) {
@@ -191,7 +185,7 @@ TEST_CASE("gpu device: damaged trees -> every ray ends") {
     }
     CompactTree tree;
     REQUIRE(CompactTree::open({bytes.data(), bytes.size()}, &tree) == Status::kOk);
-    gpu::Renderer renderer(tree, {}, options_of(i));
+    gpu::Renderer renderer(tree, {}, {});
     std::vector<Ray> rays;
     for (int k = 0; k < 500; ++k) {
       rays.push_back({{Q8::from_raw(-1000 + 7 * k), Q8::from_raw(-900), Q8::from_raw(9 * k)},

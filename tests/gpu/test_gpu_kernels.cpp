@@ -10,7 +10,6 @@
 
 #include "golden/golden_table.h"
 #include "golden/scenes.h"
-#include "gpu/cell_tree.h"
 #include "gpu/kernel/cpp.h"
 #include "support/compact_damage.h"
 #include "support/gpu_kernels.h"
@@ -21,7 +20,6 @@
 namespace thimble::tests {
 namespace {
 
-constexpr gpu::Structure kStructures[] = {gpu::Structure::kCells, gpu::Structure::kOctree};
 constexpr Pairs kPairs[] = {Pairs::kAsNeeded, Pairs::kAlways};
 
 bool same_hit(const Hit& one, const Hit& other) {
@@ -51,18 +49,16 @@ std::vector<Ray> random_rays(std::uint64_t seed, int level, int count) {
   return rays;
 }
 
-// Every structure and width; adds the wrong hits and the reads outside.
+// Both widths; adds the wrong hits and the reads outside.
 void trace_everyhow(const CompactTree& tree, const std::vector<Ray>& rays, int* wrong,
                     std::uint64_t* outside) {
-  for (const gpu::Structure structure : kStructures) {
-    const gpu::SceneWords scene = gpu::make_scene_words(tree, structure);
-    for (const Pairs pairs : kPairs) {
-      const auto hits = trace_by_kernel(scene, {rays.data(), rays.size()}, pairs, outside);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        Hit expected;
-        REQUIRE(closest_hit(tree, rays[i], &expected) == Status::kOk);
-        *wrong += same_hit(hits[i], expected) ? 0 : 1;
-      }
+  const gpu::SceneWords scene = gpu::make_scene_words(tree);
+  for (const Pairs pairs : kPairs) {
+    const auto hits = trace_by_kernel(scene, {rays.data(), rays.size()}, pairs, outside);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Hit expected;
+      REQUIRE(closest_hit(tree, rays[i], &expected) == Status::kOk);
+      *wrong += same_hit(hits[i], expected) ? 0 : 1;
     }
   }
 }
@@ -84,25 +80,22 @@ TEST_CASE("gpu kernels: the golden frames -> their CRCs") {
     Band band;
     band.format = frame.format;
     band.rows = frame.height_px;
-    for (const gpu::Structure structure : kStructures) {
-      const gpu::SceneWords scene = gpu::make_scene_words(world.compact, structure);
-      for (const Pairs pairs : kPairs) {
-        std::uint64_t outside = 0;
-        const auto pixels = draw_by_kernel(scene, camera, shading, band, pairs, &outside);
-        CHECK(crc32({pixels.data(), pixels.size()}) == golden::kGoldenTable[i].crc32);
-        CHECK(outside == 0);
-        ++drawn;
-      }
+    const gpu::SceneWords scene = gpu::make_scene_words(world.compact);
+    for (const Pairs pairs : kPairs) {
+      std::uint64_t outside = 0;
+      const auto pixels = draw_by_kernel(scene, camera, shading, band, pairs, &outside);
+      CHECK(crc32({pixels.data(), pixels.size()}) == golden::kGoldenTable[i].crc32);
+      CHECK(outside == 0);
+      ++drawn;
     }
   }
-  CHECK(drawn == 4 * golden::frame_count());
+  CHECK(drawn == 2 * golden::frame_count());
 }
 
 TEST_CASE("gpu kernels: hard cameras in random and solid scenes -> every pixel is the core's") {
   const int kScenes = many_or_few(40, 4);
   const int kFrames = many_or_few(75, 10);
   int drawn = 0;
-  int in_cells = 0;
   std::uint64_t outside = 0;
   for (int i = 0; i < kScenes; ++i) {
     const std::uint64_t seed = 39000 + static_cast<std::uint64_t>(i);
@@ -110,6 +103,7 @@ TEST_CASE("gpu kernels: hard cameras in random and solid scenes -> every pixel i
     CAPTURE(seed);
     const WideScene scene =
         i % 2 == 0 ? random_scene(random) : solid_scene(random, static_cast<int>(pick(random, 4, 9)));
+    const gpu::SceneWords words = gpu::make_scene_words(scene.tree);
     for (int k = 0; k < kFrames; ++k) {
       CAPTURE(k);
       FrameCase frame;
@@ -120,18 +114,15 @@ TEST_CASE("gpu kernels: hard cameras in random and solid scenes -> every pixel i
       if (has_pages(frame.band.format)) {
         frame.band.format = PixelFormat::kRgb888;
       }
-      const gpu::SceneWords words = gpu::make_scene_words(scene.tree, kStructures[k % 2]);
       const auto ours = draw_by_kernel(words, frame.camera, frame.shading, frame.band,
                                        k % 8 == 7 ? Pairs::kAlways : Pairs::kAsNeeded, &outside);
       std::uint64_t hits = 0;
       CHECK(ours == draw_core(scene, frame, &hits));
-      in_cells += words.structure == gpu::Structure::kCells ? 1 : 0;
       ++drawn;
     }
   }
   CHECK(outside == 0);
   CHECK(drawn > kScenes * kFrames * 3 / 5);
-  CHECK(in_cells > drawn / 4);
 }
 
 TEST_CASE("gpu kernels: hard rays, whatever words they need -> every hit is the core's") {
@@ -182,7 +173,6 @@ TEST_CASE(
 TEST_CASE("gpu kernels: damaged trees -> every ray ends within its bound, the bytes and the world") {
   const int kTrials = many_or_few(1500, 150);
   int traced = 0;
-  int in_cells = 0;
   std::uint64_t outside = 0;
   for (int i = 0; i < kTrials; ++i) {
     const std::uint64_t seed = 5000 + static_cast<std::uint64_t>(i);
@@ -199,58 +189,19 @@ TEST_CASE("gpu kernels: damaged trees -> every ray ends within its bound, the by
       continue;
     }
     const std::vector<Ray> rays = random_rays(seed, tree.level(), 20);
-    for (const gpu::Structure structure : kStructures) {
-      const gpu::SceneWords scene = gpu::make_scene_words(tree, structure);
-      in_cells += scene.structure == gpu::Structure::kCells ? 1 : 0;
-      for (const Hit& hit : trace_by_kernel(scene, {rays.data(), rays.size()}, kPairs[i % 2], &outside)) {
-        CHECK(hit.kind != HitKind::kStepLimit);
-        CHECK(hit.visits <= scene.parameters[gpu::kernel::kMostSteps]);
-        for (int axis = 0; axis < 3 && hit.kind == HitKind::kHit; ++axis) {
-          CHECK(hit.voxel[axis] >= 0);
-          CHECK(hit.voxel[axis] < std::int32_t{1} << tree.level());
-        }
-        ++traced;
-      }
-    }
-  }
-  CHECK(traced > 20 * kTrials);
-  CHECK(in_cells > kTrials / 4);
-  CHECK(outside == 0);  // the maker of cells and the kernel check every index
-}
-
-TEST_CASE("gpu kernels: any words for a tree of cells -> every ray ends within its bound") {
-  const int kTrials = many_or_few(400, 40);
-  std::uint64_t outside = 0;
-  for (int i = 0; i < kTrials; ++i) {
-    const std::uint64_t seed = 9000 + static_cast<std::uint64_t>(i);
-    std::mt19937_64 random(seed);
-    CAPTURE(seed);
-    const WideScene sound = solid_scene(random, static_cast<int>(pick(random, 3, 8)));
-    gpu::SceneWords scene = gpu::make_scene_words(sound.tree, gpu::Structure::kCells);
-    REQUIRE(scene.structure == gpu::Structure::kCells);
-    for (int flips = 0; flips < 30; ++flips) {
-      scene.words[static_cast<std::size_t>(
-          pick(random, 256, static_cast<std::int64_t>(scene.words.size()) - 1))] ^= 1U << pick(random, 0, 31);
-    }
-    const std::vector<Ray> rays = random_rays(seed, sound.level, 40);
+    const gpu::SceneWords scene = gpu::make_scene_words(tree);
     for (const Hit& hit : trace_by_kernel(scene, {rays.data(), rays.size()}, kPairs[i % 2], &outside)) {
       CHECK(hit.kind != HitKind::kStepLimit);
+      CHECK(hit.visits <= scene.parameters[gpu::kernel::kMostSteps]);
+      for (int axis = 0; axis < 3 && hit.kind == HitKind::kHit; ++axis) {
+        CHECK(hit.voxel[axis] >= 0);
+        CHECK(hit.voxel[axis] < std::int32_t{1} << tree.level());
+      }
+      ++traced;
     }
   }
-  // They do read outside, and are given 0 there: what robust buffer access is for.
-  CHECK(outside > 0);
-}
-
-TEST_CASE("gpu cells: more bytes than allowed, and merged blocks -> the compact tree's own bytes") {
-  std::mt19937_64 random(1);
-  const WideScene scene = solid_scene(random, 6);
-  gpu::CellTree cells;
-  REQUIRE(gpu::make_cell_tree(scene.tree, SIZE_MAX, &cells));
-  const std::size_t bytes = cells.bytes();
-  CHECK(gpu::make_cell_tree(scene.tree, bytes, &cells));
-  CHECK_FALSE(gpu::make_cell_tree(scene.tree, bytes - 1, &cells));
-  CHECK(gpu::make_scene_words(scene.tree, gpu::Structure::kAuto).structure ==
-        (bytes <= 2 * scene.tree.size_bytes() ? gpu::Structure::kCells : gpu::Structure::kOctree));
+  CHECK(traced > 10 * kTrials);
+  CHECK(outside == 0);  // the kernel checks every index
 }
 
 }  // namespace thimble::tests

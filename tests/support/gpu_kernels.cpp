@@ -16,13 +16,6 @@ using namespace gpu::kernel;
 #define STORE(i, v) buffers.store(i, v)
 // What follows uses what stands before.
 // clang-format off
-struct CellsKernel {
-  const Buffers& buffers;
-#include "gpu/kernel/numbers.inc"
-#include "gpu/kernel/picture.inc"
-#include "gpu/kernel/cells.inc"
-#include "gpu/kernel/invocation.inc"
-};
 struct OctreeKernel {
   const Buffers& buffers;
 #include "gpu/kernel/numbers.inc"
@@ -30,16 +23,8 @@ struct OctreeKernel {
 #include "gpu/kernel/octree.inc"
 #include "gpu/kernel/invocation.inc"
 };
-#undef Order
 #undef State
 #define PAIRS
-struct CellsPairsKernel {
-  const Buffers& buffers;
-#include "gpu/kernel/numbers.inc"
-#include "gpu/kernel/picture.inc"
-#include "gpu/kernel/cells.inc"
-#include "gpu/kernel/invocation.inc"
-};
 struct OctreePairsKernel {
   const Buffers& buffers;
 #include "gpu/kernel/numbers.inc"
@@ -60,7 +45,7 @@ void run_all(const Buffers& buffers) {
 }
 
 bool takes_pairs(const gpu::SceneWords& scene, const Vec3i& largest, Pairs pairs) {
-  return pairs == Pairs::kAlways || gpu::needs_pairs(scene.structure, scene.level, largest);
+  return pairs == Pairs::kAlways || gpu::needs_pairs(scene.level, largest);
 }
 
 }  // namespace
@@ -70,12 +55,7 @@ KernelRun run_kernel(const gpu::SceneWords& scene, const gpu::Parameters& parame
   KernelRun run;
   run.output = std::move(output);
   const Buffers buffers{parameters, scene.words, run.output};
-  const bool cells = scene.structure == gpu::Structure::kCells;
-  if (pairs) {
-    cells ? run_all<CellsPairsKernel>(buffers) : run_all<OctreePairsKernel>(buffers);
-  } else {
-    cells ? run_all<CellsKernel>(buffers) : run_all<OctreeKernel>(buffers);
-  }
+  pairs ? run_all<OctreePairsKernel>(buffers) : run_all<OctreeKernel>(buffers);
   run.outside = buffers.outside;
   return run;
 }

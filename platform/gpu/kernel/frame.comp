@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The kernels as SPIR-V: -DOCTREE traces the compact tree, -DPAIRS in pairs of words.
-layout(local_size_x_id = 0, local_size_y_id = 1) in;
+// The kernel as SPIR-V; -DPAIRS: in pairs of words.
+layout(local_size_x = 8, local_size_y = 8) in;  // kGroupSide of renderer.cpp
 #include "parameters.inc"
 layout(std140, binding = 0) uniform Parameters { uvec4 words[kParameterWords / 4]; } parameters;
 layout(std430, binding = 1) readonly buffer Scene { uint words[]; } scene;
@@ -14,10 +14,6 @@ layout(std430, binding = 2) buffer Output { uint words[]; } result;
 #define STORE(i, v) result.words[i] = v
 #include "numbers.inc"
 #include "picture.inc"
-#ifdef OCTREE
 #include "octree.inc"
-#else
-#include "cells.inc"
-#endif
 #include "invocation.inc"
 void main() { invocation(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y); }
