@@ -5,7 +5,7 @@
 
 namespace thimble::tools {
 
-/// The number of CMakeLists.txt, such as 0.2.0.
+/// The number of CMakeLists.txt, such as 0.3.0.
 const char* version_number();
 /// The commit that was built, 12 hexadecimal digits; "unknown" where it was no clone of the repository.
 const char* version_commit();
