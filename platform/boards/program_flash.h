@@ -23,9 +23,9 @@ inline constexpr ProgramFlash kProgramFlash[] = {
     {"microbit", 116, 149, 120},
     {"mps2-an500", 108, 158, 105},
     {"netduinoplus2", 98, 126, 105},
-    {"pico", 126, 176, 120},
-    {"pico-lcd-2", 126, 176, 120},
-    {"raspi0", 226, 311, 170},
+    {"pico", 130, 176, 120},
+    {"pico-lcd-2", 130, 176, 120},
+    {"raspi0", 251, 312, 170},
     {"sifive_e", 119, 154, 130},
     {"stm32vldiscovery", 87, 115, 100},
 };

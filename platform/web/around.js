@@ -165,7 +165,7 @@ async function readFrame(own) {
   const next = own.next = {frame: ((state.frame ?? 0) + 1) % own.frames, camera: orbit.camera(), made: null};
   const {depth, coarsen} = state;
   try {
-    next.made = await own.baker.bakeAhead(current().scene, board, {depth, coarsen, frame: next.frame},
+    next.made = await own.baker.bakeAhead(current().scene, board, {depth, coarsen, frame: next.frame, look: true},
       [next.camera, board.width, board.height, exposure]);
   } catch (error) {
     if (own === viewer) stopFilm(error);

@@ -47,7 +47,8 @@ class Baker {
     return at;
   }
 
-  // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen, frame.
+  // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen, frame; look: to look
+  // around in, not for the board to turn.
   bake(scene, board, options = {}) {
     this.x = this.beside = null;  // of a scene that could not be baked there is no look
     const [x, made] = this.bakeIn(null, scene, board, options);
@@ -69,7 +70,8 @@ class Baker {
   bakeIn(given, scene, board, options) {
     try {
       const x = given ?? this.instance();
-      const size = x.bake(this.put(x, scene), board.index, options.depth ?? 0, options.coarsen ?? false, options.frame ?? -1);
+      const size = x.bake(this.put(x, scene), board.index, options.depth ?? 0, options.coarsen ?? false, options.frame ?? -1,
+        !options.look);
       const at = x.baked();
       const memory = new Uint8Array(x.memory.buffer);
       const facts = x.facts();

@@ -120,7 +120,7 @@ async function bakeCurrent(board) {
   const own = generation;
   const entry = current();
   if (entry.scene === null) return null;
-  const key = [entry.scene, board.name, state.depth, state.coarsen].join('|');
+  const key = [entry.scene, board.name, state.depth, state.coarsen, state.look].join('|');
   if (!state.look && state.dropped === null && cache.has(key)) return cache.get(key);
   await busy(`Baking for ${board.name} ...`);
   const files = state.dropped?.files ??
@@ -131,7 +131,8 @@ async function bakeCurrent(board) {
   const baker = worker === null ? new Baker(code, files) : farBaker = new FarBaker(worker, code, files);
   let stays = false;
   try {
-    const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen, frame: state.frame});
+    const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen, frame: state.frame,
+      look: state.look});
     if (state.dropped === null) cache.set(key, made);
     stays = state.look;
     return {...made, baker};

@@ -226,7 +226,7 @@ async function bakes() {
 function opened(scene, width, height) {
   const file = [scene, `tools/gallery/scenes/${scene}`].find((name) => fs.existsSync(name));
   const baker = new Baker(modules.bake, file === undefined ? [] : filesOf(file, ...modelsOf(file)));
-  const {baked} = baker.bake(path.basename(scene), boardOf('raspi0'));
+  const {baked} = baker.bake(path.basename(scene), boardOf('raspi0'), {look: true});
   const look = new Look(modules.scene, baked, width, height);
   const orbit = new Orbit(look.point(false), look.point(true), 1 << look.x.level(), look.isParallel());
   return {look, orbit, baker, width, height, file: file ?? scene};
@@ -325,7 +325,7 @@ async function looks() {
       look.see(orbit.camera());
       const csv = path.join(work, 'look_hits.csv');
       const oct = path.join(work, 'look.oct');
-      fs.writeFileSync(oct, baker.bake(scene, boardOf('raspi0')).baked);
+      fs.writeFileSync(oct, baker.bake(scene, boardOf('raspi0'), {look: true}).baked);
       rendered({file: oct, width, height}, '--effects', 'auto', '--hits', csv);
       const rows = fs.readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((row) => row.split(',').map(Number));
       let wrong = 0;
@@ -429,7 +429,7 @@ async function plays() {
     fs.writeFileSync(file, made.vox(16, 3));
     const baker = new Baker(modules.bake, filesOf(file));
     const board = boardOf('raspi0');
-    const first = baker.bake('film.vox', board);
+    const first = baker.bake('film.vox', board, {look: true});
     is('frames', first.frames, 3);
     const taken = baker.x.memory.buffer.byteLength;
     const look = new Look(modules.scene, first.baked, width, height);
@@ -440,7 +440,7 @@ async function plays() {
     const before = drawn(shown, 'fine');
     for (const frame of [1, 2, 0]) {
       const words = ['--frame', String(frame)];
-      const next = baker.bakeAhead('film.vox', board, {frame}, [held.camera(), width, height, 320]);
+      const next = baker.bakeAhead('film.vox', board, {look: true, frame}, [held.camera(), width, height, 320]);
       is('the frame before it is turn', pixelsThatDiffer(drawn(shown, 'fine'), shown.last ?? before), 0);
       const out = path.join(work, 'wanted.oct');
       command('bake', file, '--board', 'raspi0', '-o', out, '--quiet', ...words);
@@ -456,16 +456,16 @@ async function plays() {
     }
     let said = '';
     try {
-      baker.bakeAhead('film.vox', board, {frame: 3}, []);
+      baker.bakeAhead('film.vox', board, {look: true, frame: 3}, []);
     } catch (error) {
       said = error.message;
     }
     is('beyond the last', said, 'there is no frame 3; the file has frames 0 to 2');
-    baker.bakeAhead('film.vox', board, {frame: 2}, [held.camera(), width, height, 320]);
+    baker.bakeAhead('film.vox', board, {look: true, frame: 2}, [held.camera(), width, height, 320]);
     baker.turn();
     is('others come after it', baker.frame(1, width, height).eye.length, 3);
-    baker.bakeAhead('film.vox', board, {frame: 1}, [held.camera(), width, height, 320]);
-    baker.bakeAhead('film.vox', board, {frame: 0}, [held.camera(), width, height, 320]);
+    baker.bakeAhead('film.vox', board, {look: true, frame: 1}, [held.camera(), width, height, 320]);
+    baker.bakeAhead('film.vox', board, {look: true, frame: 0}, [held.camera(), width, height, 320]);
     holds('memory is taken once', baker.beside.memory.buffer.byteLength < 1.1 * taken);
   });
   write('pond.scene', 'depth 4\ncamera eye 8 -14 16 target 8 8 2 fov 40\nwater level 3 floor 0 from 0 0 to 16 16 color 120 180 200\n' +

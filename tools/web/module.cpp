@@ -54,9 +54,9 @@ extern "C" {
 }
 
 // Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own; `frame` below 0: the first.
-// How many bytes it takes.
+// `turns`: the board turns it, so that all of it stays in the picture. How many bytes it takes.
 [[clang::export_name("bake")]] std::size_t thimble_bake(const char* scene, std::uint32_t index, int depth,
-                                                        bool coarsen, std::int32_t frame) {
+                                                        bool coarsen, std::int32_t frame, bool turns) {
   using namespace thimble;
   using namespace thimble::tools;
   const platform::BoardFacts& board = platform::boards()[index];
@@ -84,7 +84,10 @@ extern "C" {
   options.coarsen = coarsen;
   options.default_look = source->baked() == nullptr && !parse_generator(scene);
   options.display = DisplayFacts{board.format, board.width_px, board.height_px};
-  options.camera = [&](const CompactTree& tree) { return frame_round(view, *source, shape_of(tree)).kept; };
+  options.camera = [&](const CompactTree& tree) {
+    return (turns ? frame_round(view, *source, shape_of(tree)) : frame_scene(view, *source, shape_of(tree)))
+        .kept;
+  };
   baked = bake_within(limit, *source, &options);
   if (!baked.fits) {
     throw InputError(too_large_text(limit, baked, options, source->level()));
