@@ -117,8 +117,8 @@ Buffer::~Buffer() {
 std::vector<DeviceInfo> Device::list() {
   std::vector<DeviceInfo> infos;
   try {
-    VkInstance const instance = make_instance();
-    for (VkPhysicalDevice const device : usable_devices(instance)) {
+    VkInstance instance = make_instance();
+    for (VkPhysicalDevice device : usable_devices(instance)) {
       VkPhysicalDeviceProperties properties;
       vkGetPhysicalDeviceProperties(device, &properties);
       infos.push_back(info_of(properties));
