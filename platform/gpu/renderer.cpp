@@ -261,7 +261,7 @@ void Renderer::State::fit(Slot* slot, std::size_t bytes) {
 void Renderer::State::start(std::size_t number, const Parameters& told, bool pairs, std::size_t in_bytes,
                             std::size_t out_bytes) {
   Slot& slot = slots[number];
-  VkPipeline const kernel = pipeline(pairs);
+  VkPipeline kernel = pipeline(pairs);
   std::memcpy(slot.parameters.words(), told.data(), sizeof told);
   slot.reads_back = out_bytes != 0;
   const auto query = static_cast<std::uint32_t>(2 * number);
@@ -322,7 +322,7 @@ void Renderer::State::release() {
   for (Slot& slot : slots) {
     vkDestroyFence(device.get(), slot.fence, nullptr);
   }
-  for (VkPipeline const made : pipelines) {
+  for (VkPipeline made : pipelines) {
     vkDestroyPipeline(device.get(), made, nullptr);
   }
   vkDestroyQueryPool(device.get(), queries, nullptr);

@@ -171,7 +171,7 @@ std::string folded(std::string_view text, std::size_t columns) {
   std::string out;
   while (!text.empty()) {
     std::size_t end = std::min(text.find('\n'), text.size());
-    std::size_t next = end;
+    std::size_t next = std::min(end + 1, text.size());
     if (end > columns) {
       const std::size_t blank = text.substr(0, columns + 1).rfind(' ');
       const bool has_words =
@@ -181,7 +181,6 @@ std::string folded(std::string_view text, std::size_t columns) {
       out += text.substr(0, end);
       out += '\n';
     } else {
-      next = std::min(end + 1, text.size());
       out += text.substr(0, next);
     }
     text.remove_prefix(next);
