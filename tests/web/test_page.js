@@ -145,6 +145,7 @@ async function looks() {
     await began();
     await browser.click('#look');
     await began();
+    await browser.key('0', 'Digit0');  // a view from before is kept
     await browser.until(`viewer.phase === 'fine'`, 60);  // s saves the finished one below
     const own = await camera();
     const cores = await browser.eval('crewSize');
