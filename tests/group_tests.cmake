@@ -35,9 +35,13 @@ function(thimble_group_tests)
   endforeach()
 endfunction()
 
-# thimble_validate_gpu(NAME): a row that draws on a GPU does so under the validation layer, which must say nothing; it is
+# thimble_label(NAME SOURCE): rows that take more cases for test-all than for test are `counted`. A row that draws on a GPU does so under the validation layer, which must say nothing; it is
 # skipped where there is no device.
-function(thimble_validate_gpu name)
+function(thimble_label name source)
+  file(STRINGS ${source} counted REGEX "many_or_few|support/counts[.]h")
+  if(counted)
+    set_property(TEST ${name} APPEND PROPERTY LABELS counted)
+  endif()
   if(name MATCHES "gpu_(device|command)$")
     set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation)
     set_property(TEST ${name} APPEND PROPERTY FAIL_REGULAR_EXPRESSION "Validation Error" "VUID-")
