@@ -19,9 +19,9 @@
 
 namespace thimble::c_face {
 
-/// Which kind of object: what a handle's first word says. A handle of another kind holds nothing.
+/// Which kind of object: what a handle's first word says. A handle of another kind holds nothing. 0: of none.
 template <class Object>
-struct Kind;
+inline constexpr uint32_t kMark = 0;
 
 template <class Object>
 struct Held {
@@ -31,6 +31,7 @@ struct Held {
 
 template <class Object, class Handle>
 constexpr bool fits() {
+  static_assert(kMark<Object> != 0, "kinds.h has no mark for this object");
   static_assert(__is_trivially_copyable(Object), "C copies handles as bytes");
   static_assert(sizeof(Held<Object>) <= sizeof(Handle),
                 "enum thimble_sizes has too few words for this handle");
@@ -52,7 +53,7 @@ Object* held(Handle* handle) {
     return nullptr;
   }
   Held<Object>* const here = reinterpret_cast<Held<Object>*>(handle);
-  return here->mark == Kind<Object>::kMark ? &here->object : nullptr;
+  return here->mark == kMark<Object> ? &here->object : nullptr;
 }
 template <class Object, class Handle>
 const Object* held(const Handle* handle) {
@@ -67,7 +68,7 @@ int32_t hold(Status status, const Object& object, Handle* handle) {
     Held<Object>* const here = reinterpret_cast<Held<Object>*>(handle);
     // As bytes, which makes an object of them.
     __builtin_memcpy(&here->object, &object, sizeof object);
-    here->mark = Kind<Object>::kMark;
+    here->mark = kMark<Object>;
   }
   return static_cast<int32_t>(status);
 }

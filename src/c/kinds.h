@@ -19,37 +19,21 @@ namespace c_face {
 
 // Four letters each, the first 'T'; none is 0.
 template <>
-struct Kind<BakedScene> {
-  static constexpr uint32_t kMark = 0x4E435354;  // TSCN
-};
+inline constexpr uint32_t kMark<BakedScene> = 0x4E435354;  // TSCN
 template <>
-struct Kind<CompactTree> {
-  static constexpr uint32_t kMark = 0x45525454;  // TTRE
-};
+inline constexpr uint32_t kMark<CompactTree> = 0x45525454;  // TTRE
 template <>
-struct Kind<Octree> {
-  static constexpr uint32_t kMark = 0x54434F54;  // TOCT
-};
+inline constexpr uint32_t kMark<Octree> = 0x54434F54;  // TOCT
 template <>
-struct Kind<Camera> {
-  static constexpr uint32_t kMark = 0x4D414354;  // TCAM
-};
+inline constexpr uint32_t kMark<Camera> = 0x4D414354;  // TCAM
 template <>
-struct Kind<BrickMap> {
-  static constexpr uint32_t kMark = 0x4B524254;  // TBRK
-};
+inline constexpr uint32_t kMark<BrickMap> = 0x4B524254;  // TBRK
 template <>
-struct Kind<BakedLighting> {
-  static constexpr uint32_t kMark = 0x54474C54;  // TLGT
-};
+inline constexpr uint32_t kMark<BakedLighting> = 0x54474C54;  // TLGT
 template <>
-struct Kind<AnytimeFrame> {
-  static constexpr uint32_t kMark = 0x4D524654;  // TFRM
-};
+inline constexpr uint32_t kMark<AnytimeFrame> = 0x4D524654;  // TFRM
 template <>
-struct Kind<ParticleWorld> {
-  static constexpr uint32_t kMark = 0x54525054;  // TPRT
-};
+inline constexpr uint32_t kMark<ParticleWorld> = 0x54525054;  // TPRT
 
 }  // namespace c_face
 }  // namespace thimble
