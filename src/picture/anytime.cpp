@@ -58,6 +58,9 @@ bool is_near(Rgb8 a, Rgb8 b, int32_t tolerance) {
 
 // What a display shows of a colour, in 8 bits a channel: grey formats as a grey.
 Rgb8 shown(Rgb8 color, int32_t x, int32_t y, PixelFormat format) {
+  if (is_panel(format)) {
+    return shown_by_panel(color, x, y, format);
+  }
   const uint8_t gray = gray_of(color);
   switch (format) {
     case PixelFormat::kMono1: {
@@ -74,65 +77,9 @@ Rgb8 shown(Rgb8 color, int32_t x, int32_t y, PixelFormat format) {
       return {static_cast<uint8_t>((color.r & 0xF8) | color.r >> 5),
               static_cast<uint8_t>((color.g & 0xFC) | color.g >> 6),
               static_cast<uint8_t>((color.b & 0xF8) | color.b >> 5)};
-    case PixelFormat::kRgb888:
-      return color;
-    case PixelFormat::kRgb565Be:
-    case PixelFormat::kBgr565:
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-    case PixelFormat::kRgb332:
-      if constexpr (kHasPanelFormats) {
-        return shown_by_panel(color, x, y, format);
-      }
+    default:
       return color;
   }
-  return color;
-}
-
-// What a display shows of a stored pixel; the inverse of store_pixel.
-Rgb8 stored(const uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
-  const size_t column = static_cast<size_t>(x);
-  switch (format) {
-    case PixelFormat::kMono1: {
-      const uint8_t lit = (row[column >> 3] << (column & 7U) & 0x80) != 0 ? 255 : 0;
-      return {lit, lit, lit};
-    }
-    case PixelFormat::kGray4: {
-      const unsigned level = (column & 1U) != 0 ? row[column >> 1] & 15U : row[column >> 1] >> 4;
-      const uint8_t gray = static_cast<uint8_t>(level * 17U);
-      return {gray, gray, gray};
-    }
-    case PixelFormat::kGray8:
-      return {row[column], row[column], row[column]};
-    case PixelFormat::kRgb565: {
-      const unsigned packed = row[2 * column] | static_cast<unsigned>(row[2 * column + 1]) << 8;
-      const unsigned r = packed >> 11;
-      const unsigned g = packed >> 5 & 63U;
-      const unsigned b = packed & 31U;
-      return {static_cast<uint8_t>(r << 3 | r >> 2), static_cast<uint8_t>(g << 2 | g >> 4),
-              static_cast<uint8_t>(b << 3 | b >> 2)};
-    }
-    case PixelFormat::kRgb888:
-      return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
-    case PixelFormat::kRgb565Be:
-    case PixelFormat::kBgr565:
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-    case PixelFormat::kRgb332:
-      if constexpr (kHasPanelFormats) {
-        return load_pixel(row, x, y, format);
-      }
-      return {};
-  }
-  return {};
 }
 
 // store_pixel over a pixel that holds something.
@@ -142,18 +89,14 @@ void replace_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format, Rgb8 
     row[column >> 3] = static_cast<uint8_t>(row[column >> 3] & ~(0x80U >> (column & 7U)));
   } else if (format == PixelFormat::kGray4) {
     row[column >> 1] = static_cast<uint8_t>(row[column >> 1] & ((column & 1U) != 0 ? 0xF0U : 0x0FU));
-  } else if (kHasPanelFormats && format > PixelFormat::kRgb888) {
+  } else if (is_panel(format)) {
     clear_panel_pixel(row, x, y, format);
   }
   store_pixel(row, x, y, format, color);
 }
 
-bool is_gray2(PixelFormat format) {
-  return has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2;
-}
 bool is_paper(PixelFormat format) {
-  return (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) ||
-         (has_format(PixelFormat::kPaper7) && format == PixelFormat::kPaper7);
+  return is_format<PixelFormat::kPaper3>(format) || is_format<PixelFormat::kPaper7>(format);
 }
 
 // The greys that were seen, as the least and the greatest.
@@ -171,7 +114,8 @@ struct GrayRange {
       return;
     }
     // The dither is looked at when the range is known.
-    const bool dithers = format == PixelFormat::kMono1 || has_pages(format) || is_gray2(format);
+    const bool dithers =
+        format == PixelFormat::kMono1 || has_pages(format) || is_format<PixelFormat::kGray2>(format);
     const int gray = gray_of(dithers ? color : shown(color, 0, 0, format));
     low = gray < low ? gray : low;
     high = gray > high ? gray : high;
@@ -180,7 +124,7 @@ struct GrayRange {
     if (is_paper(format)) {
       return differ ? 255 : 0;
     }
-    if (is_gray2(format) && low < high) {
+    if (is_format<PixelFormat::kGray2>(format) && low < high) {
       const int levels = (high * 3 + 254) / 255 - low * 3 / 255;  // 1 .. 3
       return levels * 85;
     }
@@ -388,7 +332,7 @@ bool AnytimeFrame::neighbours_differ() const {
       if (x < 0 || x >= camera_.width_px() || !exact(x, y)) {
         continue;  // x_, y_ itself is not exact
       }
-      const Rgb8 here = stored(row, x, y, format_);
+      const Rgb8 here = load_pixel(row, x, y, format_);
       if (!found) {
         first = here;
         found = true;
@@ -427,7 +371,7 @@ void AnytimeFrame::take_sample(Rgb8 color) {
     if (place == 4 || x < 0 || y < 0 || x >= width || y >= height || !exact(x, y)) {
       continue;
     }
-    const Rgb8 other = stored(picture_ + row_bytes_ * row_place(format_, y), x, y, format_);
+    const Rgb8 other = load_pixel(picture_ + row_bytes_ * row_place(format_, y), x, y, format_);
     const bool is_like = is_near(mine, other, kAlike);
     there |= uint32_t{1} << place;
     alike |= is_like ? uint32_t{1} << place : 0;

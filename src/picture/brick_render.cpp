@@ -22,11 +22,6 @@ using namespace bricks;
 
 namespace {
 
-bool is_halfword(PixelFormat format) {
-  return format == PixelFormat::kRgb565 ||
-         (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
-         (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565);
-}
 // Whether pixels share bytes, among the formats behind kRgb888. (A page is as high as a tile, so clearing it once for
 // each of its rows harms nothing: no tile is drawn yet.)
 bool shares_bytes(PixelFormat format) {

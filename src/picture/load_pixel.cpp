@@ -29,14 +29,14 @@ Rgb8 load_565(unsigned packed) {
 }
 
 Rgb8 load_panel_pixel(const uint8_t* row, size_t column, int32_t y, PixelFormat format) {
-  if (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) {
+  if (is_format<PixelFormat::kRgb565Be>(format)) {
     return load_565(static_cast<unsigned>(row[2 * column]) << 8 | row[2 * column + 1]);
   }
-  if (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565) {
+  if (is_format<PixelFormat::kBgr565>(format)) {
     const Rgb8 swapped = load_565(row[2 * column] | static_cast<unsigned>(row[2 * column + 1]) << 8);
     return {swapped.b, swapped.g, swapped.r};
   }
-  if (has_format(PixelFormat::kRgb444) && format == PixelFormat::kRgb444) {
+  if (is_format<PixelFormat::kRgb444>(format)) {
     const uint8_t* const pair = row + column / 2 * 3;
     if ((column & 1U) == 0) {
       return {from_4(pair[0] >> 4U), from_4(pair[0] & 15U), from_4(pair[1] >> 4U)};
@@ -46,21 +46,21 @@ Rgb8 load_panel_pixel(const uint8_t* row, size_t column, int32_t y, PixelFormat 
   if (has_pages(format)) {
     return gray((row[column] >> (y & 7) & 1) != 0 ? 255 : 0);
   }
-  if (has_format(PixelFormat::kGray4Low) && format == PixelFormat::kGray4Low) {
+  if (is_format<PixelFormat::kGray4Low>(format)) {
     return gray(nibble(row, column, false) * 17);
   }
-  if (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2) {
+  if (is_format<PixelFormat::kGray2>(format)) {
     return gray((static_cast<unsigned>(row[column >> 2]) >> (6 - 2 * (column & 3U)) & 3U) * 85);
   }
-  if (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) {
+  if (is_format<PixelFormat::kPaper3>(format)) {
     const unsigned bit = 0x80U >> (column & 7U);
     const uint8_t* const pair = row + 2 * (column >> 3);
     return (pair[1] & bit) != 0 ? Rgb8{255, 0, 0} : gray((pair[0] & bit) != 0 ? 255 : 0);
   }
-  if (has_format(PixelFormat::kPaper7) && format == PixelFormat::kPaper7) {
+  if (is_format<PixelFormat::kPaper7>(format)) {
     return panels::kPaperColors[nibble(row, column, true) & 7U];
   }
-  if (has_format(PixelFormat::kRgb332) && format == PixelFormat::kRgb332) {
+  if (is_format<PixelFormat::kRgb332>(format)) {
     const unsigned packed = row[column];
     const auto from_3 = [](unsigned level) {
       return static_cast<uint8_t>(level << 5 | level << 2 | level >> 1);
@@ -85,18 +85,9 @@ Rgb8 load_pixel(const uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
       return load_565(row[2 * column] | static_cast<unsigned>(row[2 * column + 1]) << 8);
     case PixelFormat::kRgb888:
       return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
-    case PixelFormat::kRgb565Be:
-    case PixelFormat::kBgr565:
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-    case PixelFormat::kRgb332:
-      break;
+    default:
+      return load_panel_pixel(row, column, y, format);
   }
-  return load_panel_pixel(row, column, y, format);
 }
 
 }  // namespace thimble

@@ -41,19 +41,19 @@ void drop(uint8_t* bytes, size_t place, unsigned mask) {
 void clear_panel_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
   const size_t column = static_cast<size_t>(x);
   const bool left = (column & 1U) == 0;
-  if (has_format(PixelFormat::kRgb444) && format == PixelFormat::kRgb444) {
+  if (is_format<PixelFormat::kRgb444>(format)) {
     drop(row, column / 2 * 3 + (left ? 0 : 2), 0xFFU);
     drop(row, column / 2 * 3 + 1, left ? 0xF0U : 0x0FU);
   } else if (has_pages(format)) {
     drop(row, column, 1U << (y & 7));
-  } else if (has_format(PixelFormat::kGray4Low) && format == PixelFormat::kGray4Low) {
+  } else if (is_format<PixelFormat::kGray4Low>(format)) {
     drop(row, column >> 1, left ? 0x0FU : 0xF0U);
-  } else if (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2) {
+  } else if (is_format<PixelFormat::kGray2>(format)) {
     drop(row, column >> 2, 0xC0U >> 2 * (column & 3U));
-  } else if (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) {
+  } else if (is_format<PixelFormat::kPaper3>(format)) {
     drop(row, 2 * (column >> 3), 0x80U >> (column & 7U));
     drop(row, 2 * (column >> 3) + 1, 0x80U >> (column & 7U));
-  } else if (has_format(PixelFormat::kPaper7) && format == PixelFormat::kPaper7) {
+  } else if (is_format<PixelFormat::kPaper7>(format)) {
     drop(row, column >> 1, left ? 0xF0U : 0x0FU);
   }
 }
@@ -61,61 +61,27 @@ void clear_panel_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format) {
 void store_panel_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat format, Rgb8 color) {
   const size_t column = static_cast<size_t>(x);
   const unsigned threshold = threshold_of(x, y);
-  switch (format) {
-    case PixelFormat::kMono1:
-    case PixelFormat::kGray4:
-    case PixelFormat::kGray8:
-    case PixelFormat::kRgb565:
-    case PixelFormat::kRgb888:
-      return;
-    case PixelFormat::kRgb565Be:
-      if constexpr (has_format(PixelFormat::kRgb565Be)) {
-        store_halfword(row, column, rgb565_be(color));
-      }
-      return;
-    case PixelFormat::kBgr565:
-      if constexpr (has_format(PixelFormat::kBgr565)) {
-        store_halfword(row, column, bgr565(color));
-      }
-      return;
-    case PixelFormat::kRgb444:
-      if constexpr (has_format(PixelFormat::kRgb444)) {
-        store_rgb444(row, column, color);
-      }
-      return;
-    case PixelFormat::kMono1Pages:
-      if constexpr (has_format(PixelFormat::kMono1Pages)) {
-        set_bits(row, column, gray_of(color) > threshold ? 1U << (y & 7) : 0);
-      }
-      return;
-    case PixelFormat::kGray4Low:
-      if constexpr (has_format(PixelFormat::kGray4Low)) {
-        set_bits(row, column >> 1, level_of_16(gray_of(color)) << ((column & 1U) != 0 ? 4 : 0));
-      }
-      return;
-    case PixelFormat::kGray2:
-      if constexpr (has_format(PixelFormat::kGray2)) {
-        set_bits(row, column >> 2, gray2(gray_of(color), threshold) << (6 - 2 * (column & 3U)));
-      }
-      return;
-    case PixelFormat::kPaper3:
-      if constexpr (has_format(PixelFormat::kPaper3)) {
-        const Paper3 ink = paper3(color, threshold);
-        const unsigned bit = 0x80U >> (column & 7U);
-        set_bits(row, 2 * (column >> 3), ink == Paper3::kWhite ? bit : 0);
-        set_bits(row, 2 * (column >> 3) + 1, ink == Paper3::kRed ? bit : 0);
-      }
-      return;
-    case PixelFormat::kPaper7:
-      if constexpr (has_format(PixelFormat::kPaper7)) {
-        set_bits(row, column >> 1, paper7(color, threshold) << ((column & 1U) != 0 ? 0 : 4));
-      }
-      return;
-    case PixelFormat::kRgb332:
-      if constexpr (has_format(PixelFormat::kRgb332)) {
-        row[column] = static_cast<uint8_t>(rgb332(color));
-      }
-      return;
+  if (is_format<PixelFormat::kRgb565Be>(format)) {
+    store_halfword(row, column, rgb565_be(color));
+  } else if (is_format<PixelFormat::kBgr565>(format)) {
+    store_halfword(row, column, bgr565(color));
+  } else if (is_format<PixelFormat::kRgb444>(format)) {
+    store_rgb444(row, column, color);
+  } else if (is_format<PixelFormat::kMono1Pages>(format)) {
+    set_bits(row, column, gray_of(color) > threshold ? 1U << (y & 7) : 0);
+  } else if (is_format<PixelFormat::kGray4Low>(format)) {
+    set_bits(row, column >> 1, level_of_16(gray_of(color)) << ((column & 1U) != 0 ? 4 : 0));
+  } else if (is_format<PixelFormat::kGray2>(format)) {
+    set_bits(row, column >> 2, gray2(gray_of(color), threshold) << (6 - 2 * (column & 3U)));
+  } else if (is_format<PixelFormat::kPaper3>(format)) {
+    const Paper3 ink = paper3(color, threshold);
+    const unsigned bit = 0x80U >> (column & 7U);
+    set_bits(row, 2 * (column >> 3), ink == Paper3::kWhite ? bit : 0);
+    set_bits(row, 2 * (column >> 3) + 1, ink == Paper3::kRed ? bit : 0);
+  } else if (is_format<PixelFormat::kPaper7>(format)) {
+    set_bits(row, column >> 1, paper7(color, threshold) << ((column & 1U) != 0 ? 0 : 4));
+  } else if (is_format<PixelFormat::kRgb332>(format)) {
+    row[column] = static_cast<uint8_t>(rgb332(color));
   }
 }
 

@@ -86,11 +86,11 @@ inline constexpr Rgb8 kPaperColors[8] = {{0, 0, 0},   {255, 255, 255}, {0, 255, 
 /// leaves a paper's own colour as it is.
 constexpr Rgb8 flat(Rgb8 color, PixelFormat format) {
   constexpr unsigned kMiddle = 126;
-  if (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) {
+  if (is_format<PixelFormat::kPaper3>(format)) {
     const Paper3 ink = paper3(color, kMiddle);
     return kPaperColors[ink == Paper3::kWhite ? 1 : ink == Paper3::kRed ? 4 : 0];
   }
-  if (has_format(PixelFormat::kPaper7) && format == PixelFormat::kPaper7) {
+  if (is_format<PixelFormat::kPaper7>(format)) {
     return kPaperColors[paper7(color, kMiddle)];
   }
   return color;

@@ -83,54 +83,38 @@ struct Rgb8 {
   }
 };
 
+/// Whether it is one of those behind kRgb888, and any of them is there.
+constexpr bool is_panel(PixelFormat format) {
+  return kHasPanelFormats && format > PixelFormat::kRgb888;
+}
+/// Whether it is `kFormat`, and that is there: where it was left out nothing is compared.
+template <PixelFormat kFormat>
+constexpr bool is_format(PixelFormat format) {
+  return has_format(kFormat) && format == kFormat;
+}
+
 /// What `bits_per_pixel` says of a format that was left out: more than anybody has bytes for.
 inline constexpr int kAbsentFormatBits = 1 << 16;
 
+namespace detail {
+inline constexpr uint8_t kFormatBits[kPixelFormats] = {1, 4, 8, 16, 24, 16, 16, 12, 1, 4, 2, 2, 4, 8};
+}  // namespace detail
+
 constexpr int bits_per_pixel(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono1:
-      return 1;
-    case PixelFormat::kGray4:
-      return 4;
-    case PixelFormat::kGray8:
-      return 8;
-    case PixelFormat::kRgb565:
-      return 16;
-    case PixelFormat::kRgb888:
-      return 24;
-    case PixelFormat::kRgb565Be:
-      return has_format(PixelFormat::kRgb565Be) ? 16 : kAbsentFormatBits;
-    case PixelFormat::kBgr565:
-      return has_format(PixelFormat::kBgr565) ? 16 : kAbsentFormatBits;
-    case PixelFormat::kRgb444:
-      return has_format(PixelFormat::kRgb444) ? 12 : kAbsentFormatBits;
-    case PixelFormat::kMono1Pages:
-      return has_format(PixelFormat::kMono1Pages) ? 1 : kAbsentFormatBits;
-    case PixelFormat::kGray4Low:
-      return has_format(PixelFormat::kGray4Low) ? 4 : kAbsentFormatBits;
-    case PixelFormat::kGray2:
-      return has_format(PixelFormat::kGray2) ? 2 : kAbsentFormatBits;
-    case PixelFormat::kPaper3:
-      return has_format(PixelFormat::kPaper3) ? 2 : kAbsentFormatBits;
-    case PixelFormat::kPaper7:
-      return has_format(PixelFormat::kPaper7) ? 4 : kAbsentFormatBits;
-    case PixelFormat::kRgb332:
-      return has_format(PixelFormat::kRgb332) ? 8 : kAbsentFormatBits;
-  }
-  return kAbsentFormatBits;
+  const unsigned number = static_cast<unsigned>(format);
+  return number < kPixelFormats && has_format(format) ? detail::kFormatBits[number] : kAbsentFormatBits;
 }
 
 /// Whether the format shows greys only.
 constexpr bool is_gray(PixelFormat format) {
   return format == PixelFormat::kMono1 || format == PixelFormat::kGray4 || format == PixelFormat::kGray8 ||
-         (has_format(PixelFormat::kMono1Pages) && format == PixelFormat::kMono1Pages) ||
-         (has_format(PixelFormat::kGray4Low) && format == PixelFormat::kGray4Low) ||
-         (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2);
+         is_format<PixelFormat::kMono1Pages>(format) || is_format<PixelFormat::kGray4Low>(format) ||
+         is_format<PixelFormat::kGray2>(format);
 }
 
 /// Whether 8 rows share the bytes of one, the page.
 constexpr bool has_pages(PixelFormat format) {
-  return has_format(PixelFormat::kMono1Pages) && format == PixelFormat::kMono1Pages;
+  return is_format<PixelFormat::kMono1Pages>(format);
 }
 /// Rows that a format keeps together: a band starts at a multiple of them and holds one, unless it ends with
 /// the picture. 8 for kMono1Pages, else 1.
@@ -155,7 +139,7 @@ constexpr size_t row_bytes(PixelFormat format, int32_t width_px) {
   if (has_pages(format)) {
     return static_cast<size_t>(width_px);
   }
-  if (has_format(PixelFormat::kPaper3) && format == PixelFormat::kPaper3) {
+  if (is_format<PixelFormat::kPaper3>(format)) {
     return (static_cast<size_t>(width_px) + 7) / 8 * 2;  // pairs of bytes
   }
   return (static_cast<size_t>(width_px) * static_cast<size_t>(bits_per_pixel(format)) + 7) / 8;
@@ -224,15 +208,7 @@ constexpr void store_pixel(uint8_t* row, int32_t x, int32_t y, PixelFormat forma
       row[3 * column + 1] = color.g;
       row[3 * column + 2] = color.b;
       return;
-    case PixelFormat::kRgb565Be:
-    case PixelFormat::kBgr565:
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-    case PixelFormat::kRgb332:
+    default:
       if constexpr (kHasPanelFormats) {
         store_panel_pixel(row, x, y, format, color);
       }

@@ -35,38 +35,33 @@ struct Inks {
   }
 };
 
+// Formats of one byte a pixel, and of two.
+constexpr bool is_byte(PixelFormat format) {
+  return format == PixelFormat::kGray8 || is_format<PixelFormat::kRgb332>(format);
+}
+constexpr bool is_halfword(PixelFormat format) {
+  return format == PixelFormat::kRgb565 || is_format<PixelFormat::kRgb565Be>(format) ||
+         is_format<PixelFormat::kBgr565>(format);
+}
+
 uint32_t ink_of(PixelFormat format, Rgb8 color) {
-  switch (format) {
-    case PixelFormat::kGray4:
-      return ((gray_of(color) + 8U) * 241U) >> 12;
-    case PixelFormat::kMono1:
-    case PixelFormat::kGray8:
-      return gray_of(color);
-    case PixelFormat::kRgb565:
-      return (color.r & 0xF8U) << 8 | (color.g & 0xFCU) << 3 | color.b >> 3U;
-    case PixelFormat::kRgb565Be:
-      if constexpr (has_format(PixelFormat::kRgb565Be)) {
-        return panels::rgb565_be(color);
-      }
-      break;
-    case PixelFormat::kBgr565:
-      if constexpr (has_format(PixelFormat::kBgr565)) {
-        return panels::bgr565(color);
-      }
-      break;
-    case PixelFormat::kRgb332:
-      if constexpr (has_format(PixelFormat::kRgb332)) {
-        return panels::rgb332(color);
-      }
-      break;
-    case PixelFormat::kRgb888:
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-      break;
+  if (format == PixelFormat::kGray4) {
+    return panels::level_of_16(gray_of(color));
+  }
+  if (format == PixelFormat::kMono1 || format == PixelFormat::kGray8) {
+    return gray_of(color);
+  }
+  if (format == PixelFormat::kRgb565) {
+    return (color.r & 0xF8U) << 8 | (color.g & 0xFCU) << 3 | color.b >> 3U;
+  }
+  if (is_format<PixelFormat::kRgb565Be>(format)) {
+    return panels::rgb565_be(color);
+  }
+  if (is_format<PixelFormat::kBgr565>(format)) {
+    return panels::bgr565(color);
+  }
+  if (is_format<PixelFormat::kRgb332>(format)) {
+    return panels::rgb332(color);
   }
   return static_cast<uint32_t>(color.r) | static_cast<uint32_t>(color.g) << 8 |
          static_cast<uint32_t>(color.b) << 16;
@@ -75,46 +70,22 @@ uint32_t ink_of(PixelFormat format, Rgb8 color) {
 // Stores an ink as `store_pixel` stores its colour.
 [[maybe_unused]] void store_ink(uint8_t* line, int32_t x, int32_t y, PixelFormat format, uint32_t ink) {
   const uint8_t low = static_cast<uint8_t>(ink);
-  switch (format) {
-    case PixelFormat::kGray4:
-      line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | low << ((x & 1) != 0 ? 0 : 4));
-      return;
-    case PixelFormat::kGray8:
-      line[x] = low;
-      return;
-    case PixelFormat::kMono1:
-      store_pixel(line, x, y, format, {low, low, low});
-      return;
-    case PixelFormat::kRgb565:
-      line[2 * x] = low;
-      line[2 * x + 1] = static_cast<uint8_t>(ink >> 8);
-      return;
-    case PixelFormat::kRgb565Be:
-    case PixelFormat::kBgr565:
-      if constexpr (has_format(PixelFormat::kRgb565Be) || has_format(PixelFormat::kBgr565)) {
-        line[2 * x] = low;
-        line[2 * x + 1] = static_cast<uint8_t>(ink >> 8);
-      }
-      return;
-    case PixelFormat::kRgb332:
-      if constexpr (has_format(PixelFormat::kRgb332)) {
-        line[x] = low;
-      }
-      return;
-    case PixelFormat::kRgb888:
-      store_pixel(line, x, y, format, {low, static_cast<uint8_t>(ink >> 8), static_cast<uint8_t>(ink >> 16)});
-      return;
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-      if constexpr (kHasPanelFormats) {
-        store_panel_pixel(line, x, y, format,
-                          {low, static_cast<uint8_t>(ink >> 8), static_cast<uint8_t>(ink >> 16)});
-      }
-      return;
+  if (format == PixelFormat::kGray4) {
+    line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | low << ((x & 1) != 0 ? 0 : 4));
+  } else if (is_byte(format)) {
+    line[x] = low;
+  } else if (is_halfword(format)) {
+    line[2 * x] = low;
+    line[2 * x + 1] = static_cast<uint8_t>(ink >> 8);
+  } else if (format == PixelFormat::kMono1) {
+    store_pixel(line, x, y, PixelFormat::kMono1, {low, low, low});
+  } else {
+    const Rgb8 color{low, static_cast<uint8_t>(ink >> 8), static_cast<uint8_t>(ink >> 16)};
+    if (is_panel(format)) {
+      store_panel_pixel(line, x, y, format, color);
+    } else {
+      store_pixel(line, x, y, PixelFormat::kRgb888, color);
+    }
   }
 }
 

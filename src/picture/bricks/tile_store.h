@@ -143,8 +143,7 @@ template <class Pixel>
                                                   const BrickFrame& frame, uint32_t ink) {
   if (frame.halfwords) {
     store_whole<Half>(place, pixels, ink);
-  } else if (frame.format == PixelFormat::kGray8 ||
-             (has_format(PixelFormat::kRgb332) && frame.format == PixelFormat::kRgb332)) {
+  } else if (is_byte(frame.format)) {
     store_whole<uint8_t>(place, pixels, ink);
   } else if (frame.format == PixelFormat::kRgb888) {
     store_triples(place, pixels, ink);
