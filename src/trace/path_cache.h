@@ -66,14 +66,9 @@ class PathCache {
   PathCache() {}
 };
 
-// As the public functions (ray.h), with a cache that stays with the structure.
-Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache);
-Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache);
-Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache);
-Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options,
+// As the public functions (ray.h), with a cache that stays with the structure. trace.cpp has it for each kind of these.
+template <class Structure>
+Status closest_hit(const Structure& structure, const Ray& ray, Hit* hit, const TraceOptions& options,
                    PathCache* cache);
 
 // As closest_hit_32, with the path of the last direction.

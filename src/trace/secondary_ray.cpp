@@ -6,6 +6,7 @@
 #include "../base/bits.h"
 #include "../base/wide_arithmetic.h"
 #include "crossings.h"
+#include "descent.h"
 #include "width.h"
 
 namespace thimble {
@@ -82,14 +83,11 @@ class SearchWalk {
   // The block of `level` at `corner`, in which the walk ends; `state` is its. What is not merged is gone down
   // into, to the voxel by which the ray enters it.
   void report(typename Path::State state, Vec3i corner, int level, bool inside, bool merged, Hit* hit) const;
-  void report_cell(const Vec3i& corner, int level, Hit* hit) const;
-  Vec3i corner_of(int level) const {
-    Vec3i corner;
-    for (int above = level_; above > level; --above) {
-      add_octant(stack_[above].octant, above, &corner);
-    }
-    return corner;
+  void report_cell(const Vec3i& corner, int level, Hit* hit) const {
+    hit->kind = HitKind::kHit;
+    thimble::report(ray_, side_, crossings_, corner, level, hit);
   }
+  Vec3i corner_of(int level) const { return thimble::corner_of(stack_, level, level_); }
   uint8_t voxel_material(const SearchStep<Path>& step, unsigned octant) const {
     return tree_.many_materials() ? tree_.voxel_material(child_number(step.link, step.mask, octant))
                                   : tree_.uniform_material();
@@ -104,23 +102,6 @@ class SearchWalk {
   Vec3i start_;  // the cell in which the search begins; mirrored
   SearchStep<Path> stack_[kMaxLevel + 1];
 };
-
-template <class Int, class Unsigned>
-void SearchWalk<Int, Unsigned>::report_cell(const Vec3i& corner, int level, Hit* hit) const {
-  const int axis = crossings_.entered(corner);
-  hit->kind = HitKind::kHit;
-  hit->axis = static_cast<int8_t>(axis);
-  hit->block_level = static_cast<uint8_t>(level);
-  for (int a = 0; a < 3; ++a) {
-    hit->voxel[a] = (ray_.flip >> a & 1U) != 0 ? side_ - (int32_t{1} << level) - corner[a] : corner[a];
-  }
-  if (axis >= 0) {
-    hit->t_numerator = ray_.distance(axis, corner[axis]);
-    hit->t_denominator = ray_.direction[axis] * Q8::kOne;
-    THIMBLE_NOTE(Range::kNumerator, Exact(hit->t_numerator));
-    THIMBLE_NOTE(Range::kDenominator, Exact(ray_.direction[axis]) * Exact(Q8::kOne));
-  }
-}
 
 template <class Int, class Unsigned>
 void SearchWalk<Int, Unsigned>::report(typename Path::State state, Vec3i corner, int level, bool inside,
@@ -293,8 +274,9 @@ MirroredRay in_all_of(int level, const Ray& ray) {
   return MirroredRay(ray, side, {{0, 0, 0}, {side, side, side}});
 }
 
-// Both widths, and the narrow one alone, with nothing of the other behind it. Inlined, so that they have no
-// frame of their own on a small stack.
+// kOnly32: with nothing of the other width behind it. Inlined, as its callers, so that they have no frame of their own on
+// a small stack.
+template <bool kOnly32>
 [[gnu::always_inline]] inline Status search_from(const CompactTree& tree, const Ray& ray,
                                                  const RayPoint& from, Search search, Width width,
                                                  bool* in_world, MediumExit* exit) {
@@ -304,26 +286,18 @@ MirroredRay in_all_of(int level, const Ray& ray) {
     return status;
   }
   bool narrow = false;
-  if (!choose_width(width, &narrow, [&] { return accepts_32_from(ray, level, search); })) {
+  if (!choose_width(kOnly32 ? Width::k32 : width, &narrow,
+                    [&] { return accepts_32_from(ray, level, search); })) {
     return Status::kOutOfRange;
   }
   const MirroredRay mirrored = in_all_of(level, ray);
-  *in_world = narrow ? walk_search<int32_t, uint32_t>(tree, mirrored, search, exit)
-                     : walk_search<int64_t, uint64_t>(tree, mirrored, search, exit);
-  return Status::kOk;
-}
-[[gnu::always_inline]] inline Status search_from_32(const CompactTree& tree, const Ray& ray,
-                                                    const RayPoint& from, Search search, bool* in_world,
-                                                    MediumExit* exit) {
-  const int level = tree.level();
-  const Status status = begin_at(ray, level, from, &search);
-  if (status != Status::kOk) {
-    return status;
+  if constexpr (!kOnly32) {
+    if (!narrow) {
+      *in_world = walk_search<int64_t, uint64_t>(tree, mirrored, search, exit);
+      return Status::kOk;
+    }
   }
-  if (!accepts_32_from(ray, level, search)) {
-    return Status::kOutOfRange;
-  }
-  *in_world = walk_search<int32_t, uint32_t>(tree, in_all_of(level, ray), search, exit);
+  *in_world = walk_search<int32_t, uint32_t>(tree, mirrored, search, exit);
   return Status::kOk;
 }
 
@@ -343,7 +317,14 @@ void only_from(const RayPoint& from, Hit* hit) {
   }
 }
 
-Status finish(Status status, const Ray& ray, bool in_world, const MediumExit& found, MediumExit* exit) {
+template <bool kOnly32>
+[[gnu::always_inline]] inline Status leave(const CompactTree& tree, const Ray& ray, uint8_t material,
+                                           MediumExit* exit, const RayPoint& from,
+                                           const TraceOptions& options) {
+  MediumExit found;
+  bool in_world = true;
+  const Status status = search_from<kOnly32>(tree, ray, from, {true, material, options.max_visits, 0, 1},
+                                             options.width, &in_world, &found);
   if (status == Status::kOk) {
     *exit = found;
     if (!in_world) {
@@ -351,6 +332,27 @@ Status finish(Status status, const Ray& ray, bool in_world, const MediumExit& fo
       exit->hit.voxel = starting_voxel(ray);
       exit->left_world = true;
     }
+  }
+  return status;
+}
+
+template <bool kOnly32>
+[[gnu::always_inline]] inline Status hit_from(const CompactTree& tree, const Ray& ray, const RayPoint& from,
+                                              Hit* hit, const TraceOptions& options) {
+  MediumExit found;
+  bool in_world = true;
+  Status status = search_from<kOnly32>(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options.width,
+                                       &in_world, &found);
+  if (status == Status::kOk && !in_world) {
+    if constexpr (kOnly32) {
+      status = closest_hit_32(tree, ray, &found.hit, options.max_visits);
+    } else {
+      status = closest_hit(tree, ray, &found.hit, options);
+    }
+    only_from(from, &found.hit);
+  }
+  if (status == Status::kOk) {
+    *hit = found.hit;
   }
   return status;
 }
@@ -443,49 +445,20 @@ bool material_at(const CompactTree& tree, const Vec3i& voxel, uint8_t* material)
 
 Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
                     const RayPoint& from, const TraceOptions& options) {
-  MediumExit found;
-  bool in_world = true;
-  const Status status = search_from(tree, ray, from, {true, material, options.max_visits, 0, 1},
-                                    options.width, &in_world, &found);
-  return finish(status, ray, in_world, found, exit);
+  return leave<false>(tree, ray, material, exit, from, options);
 }
 Status leave_medium_32(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
                        const RayPoint& from, uint32_t max_visits) {
-  MediumExit found;
-  bool in_world = true;
-  const Status status =
-      search_from_32(tree, ray, from, {true, material, max_visits, 0, 1}, &in_world, &found);
-  return finish(status, ray, in_world, found, exit);
+  return leave<true>(tree, ray, material, exit, from, {max_visits, Width::k32});
 }
 
 Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
                         const TraceOptions& options) {
-  MediumExit found;
-  bool in_world = true;
-  Status status =
-      search_from(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options.width, &in_world, &found);
-  if (status == Status::kOk && !in_world) {
-    status = closest_hit(tree, ray, &found.hit, options);
-    only_from(from, &found.hit);
-  }
-  if (status == Status::kOk) {
-    *hit = found.hit;
-  }
-  return status;
+  return hit_from<false>(tree, ray, from, hit, options);
 }
 Status closest_hit_from_32(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
                            uint32_t max_visits) {
-  MediumExit found;
-  bool in_world = true;
-  Status status = search_from_32(tree, ray, from, {false, 0, max_visits, 0, 1}, &in_world, &found);
-  if (status == Status::kOk && !in_world) {
-    status = closest_hit_32(tree, ray, &found.hit, max_visits);
-    only_from(from, &found.hit);
-  }
-  if (status == Status::kOk) {
-    *hit = found.hit;
-  }
-  return status;
+  return hit_from<true>(tree, ray, from, hit, {max_visits, Width::k32});
 }
 
 Status any_hit_before(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,

@@ -186,37 +186,31 @@ bool accepts_32(const Ray& ray, int level) {
   return bits::bit_length(distances) + bits::bit_length(directions) <= 31;
 }
 
+template <class Structure>
+Status closest_hit(const Structure& structure, const Ray& ray, Hit* hit, const TraceOptions& options,
+                   PathCache* cache) {
+  return trace(structure, ray, options, false, hit, cache);
+}
+template Status closest_hit(const CompactTree&, const Ray&, Hit*, const TraceOptions&, PathCache*);
+template Status closest_hit(const Octree&, const Ray&, Hit*, const TraceOptions&, PathCache*);
+template Status closest_hit(const SharedTree&, const Ray&, Hit*, const TraceOptions&, PathCache*);
+template Status closest_hit(const DenseGrid&, const Ray&, Hit*, const TraceOptions&, PathCache*);
+
 Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options) {
   PathCache cache;
   return trace(tree, ray, options, false, hit, &cache);
-}
-Status closest_hit(const CompactTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache) {
-  return trace(tree, ray, options, false, hit, cache);
 }
 Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options) {
   PathCache cache;
   return trace(tree, ray, options, false, hit, &cache);
 }
-Status closest_hit(const Octree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache) {
-  return trace(tree, ray, options, false, hit, cache);
-}
 Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options) {
   PathCache cache;
   return trace(tree, ray, options, false, hit, &cache);
 }
-Status closest_hit(const SharedTree& tree, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache) {
-  return trace(tree, ray, options, false, hit, cache);
-}
 Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options) {
   PathCache cache;
   return trace(grid, ray, options, false, hit, &cache);
-}
-Status closest_hit(const DenseGrid& grid, const Ray& ray, Hit* hit, const TraceOptions& options,
-                   PathCache* cache) {
-  return trace(grid, ray, options, false, hit, cache);
 }
 Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_t max_visits,
                       DirectionPath<uint32_t>* cache) {
