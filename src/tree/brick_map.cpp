@@ -87,7 +87,6 @@ bool is_aligned(const uint8_t* data) {
 }
 
 using brick_parts::bits_of_node;
-using brick_parts::material_in_node;
 
 // A map in the making: directory and bricks as they will be, sources from the end of the bytes downwards.
 class MapBuilder {
@@ -176,65 +175,28 @@ class MapBuilder {
     }
   }
 
-  // Depth first over the nodes of level 2 and up. Not inlined, nor is `share_uniform`: their frames would lie
-  // below that of whatever opens the finished map.
+  // Not inlined, nor is `share_uniform`: their frames would lie below that of whatever opens the finished map.
   [[gnu::noinline]] Status place_all() {
-    struct OpenNode {
-      uint32_t child;
-      uint8_t mask;
-      uint8_t next;
-    } stack[kMaxBrickMapLevel + 1];
-    const int top = tree_.level();
-    int level = top;
-    uint32_t node = 0;
-    Vec3i corner;
-    bool arrive = true;
+    Status status = Status::kOk;
     bool first = true;
-    while (level <= top) {
-      if (arrive) {
-        arrive = false;
-        const bool known = node < tree_.node_count();
-        const unsigned mask = known ? tree_.mask(node) : 0;
-        if (!known || mask == 0 || level == 2) {
-          Status status = Status::kOk;
-          uint32_t number = 0;
-          if (known && mask == 0) {
-            status = solid(tree_.block_material(node), &number);
-          } else if (known) {
-            if (first) {
-              first_node_ = node;
-              first = false;
-            }
-            const uint32_t where = node - first_node_;
-            status = where < kUniform ? add(bits_of_node(tree_, node), where, &number) : Status::kOutOfRange;
-          }
-          if (status != Status::kOk) {
-            return status;
-          }
-          enter(corner, level, number);
-          ++level;
-          continue;
+    walk_leaves(tree_, 2, [&](uint32_t node, const Vec3i& corner, int level) {
+      uint32_t number = 0;
+      if (node < tree_.node_count()) {
+        if (tree_.mask(node) == 0) {
+          status = solid(tree_.block_material(node), &number);
+        } else {
+          first_node_ = first ? node : first_node_;
+          first = false;
+          const uint32_t where = node - first_node_;
+          status = where < kUniform ? add(bits_of_node(tree_, node), where, &number) : Status::kOutOfRange;
         }
-        stack[level] = {tree_.first_child(node), static_cast<uint8_t>(mask), 0};
       }
-      OpenNode& frame = stack[level];
-      while (frame.next < 8 && (frame.mask >> frame.next & 1) == 0) {
-        ++frame.next;
+      if (status == Status::kOk) {
+        enter({corner.x >> 2, corner.y >> 2, corner.z >> 2}, level, number);
       }
-      if (frame.next == 8) {
-        ++level;
-        continue;
-      }
-      const unsigned octant = frame.next++;
-      node = frame.child++;
-      --level;
-      const int32_t side = int32_t{1} << (level - 2);
-      for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] = (corner[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
-      }
-      arrive = true;
-    }
-    return Status::kOk;
+      return status == Status::kOk;
+    });
+    return status;
   }
 
   bool is_solid(const Vec3i& voxel) const {
@@ -248,21 +210,6 @@ class MapBuilder {
     return (brick(number)[bit >> 3] >> (bit & 7) & 1) != 0;
   }
 
-  // Whether a ray can come to `voxel` from an empty neighbour: one of 26, since it may pass through an edge
-  // or a corner between solid ones.
-  bool is_seen(const Vec3i& voxel) const {
-    for (int32_t z = -1; z <= 1; ++z) {
-      for (int32_t y = -1; y <= 1; ++y) {
-        for (int32_t x = -1; x <= 1; ++x) {
-          if (!is_solid({voxel.x + x, voxel.y + y, voxel.z + z})) {
-            return true;
-          }
-        }
-      }
-    }
-    return false;
-  }
-
   // Where all that can be seen of a brick has one material, its source says so; where such a brick is solid
   // through, it is the shared one of that material.
   [[gnu::noinline]] void share_uniform() {
@@ -272,18 +219,11 @@ class MapBuilder {
       const uint32_t where = bits::load16(source(number));
       if (where < kUniform) {
         const uint64_t brick_bits = bits::load64(brick(number));
-        int material = -1;
-        bool uniform = true;
-        for (int32_t bit = 0; bit < 64 && uniform; ++bit) {
-          if ((brick_bits >> bit & 1U) != 0 &&
-              is_seen({4 * at.x + (bit & 3), 4 * at.y + (bit >> 2 & 3), 4 * at.z + (bit >> 4)})) {
-            const int own = material_in_node(tree_, first_node_ + where, static_cast<unsigned>(bit));
-            uniform = material < 0 || material == own;
-            material = own;
-          }
-        }
-        if (uniform) {
-          const uint8_t seen = static_cast<uint8_t>(material < 0 ? 0 : material);
+        const int material =
+            brick_parts::material_seen(tree_, first_node_ + where, brick_bits, {4 * at.x, 4 * at.y, 4 * at.z},
+                                       [this](const Vec3i& voxel) { return is_solid(voxel); });
+        if (material >= 0) {
+          const auto seen = static_cast<uint8_t>(material);
           bits::store16(source(number), kUniform | seen);
           if (brick_bits == ~uint64_t{0}) {
             share(index, number, seen);

@@ -76,6 +76,37 @@ inline uint64_t spread(unsigned octant, unsigned mask) {
   return tree.voxel_material(tree.first_child(child) + bits::popcount8(voxels & ((1U << voxel) - 1)));
 }
 
+// The one material of all that can be seen of a brick, 0 where nothing is; -1 for several. `node` is the brick's, `brick`
+// its bits, `at` its lowest voxel as `is_solid(voxel)` counts. A voxel is seen where one of its 26 neighbours is empty: a
+// ray may come through an edge or a corner between solid ones.
+template <class IsSolid>
+[[gnu::always_inline]] inline int material_seen(const CompactTree& tree, uint32_t node, uint64_t brick,
+                                                const Vec3i& at, const IsSolid& is_solid) {
+  const auto is_seen = [&](const Vec3i& voxel) {
+    for (int32_t z = voxel.z - 1; z <= voxel.z + 1; ++z) {
+      for (int32_t y = voxel.y - 1; y <= voxel.y + 1; ++y) {
+        for (int32_t x = voxel.x - 1; x <= voxel.x + 1; ++x) {
+          if (!is_solid(Vec3i{x, y, z})) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  };
+  int material = -1;
+  for (int32_t bit = 0; bit < 64; ++bit) {
+    if ((brick >> bit & 1U) != 0 && is_seen({at.x + (bit & 3), at.y + (bit >> 2 & 3), at.z + (bit >> 4)})) {
+      const int own = material_in_node(tree, node, static_cast<unsigned>(bit));
+      if (material >= 0 && material != own) {
+        return -1;
+      }
+      material = own;
+    }
+  }
+  return material < 0 ? 0 : material;
+}
+
 }  // namespace thimble::brick_parts
 
 #endif

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../base/bits.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble {
@@ -56,6 +57,42 @@ constexpr CompactSections sections_of(const CompactShape& shape) {
   at.block_ranks = at.merged + (shape.merged ? ((nodes + 31) >> 5) * 4 : 0);
   at.materials = at.block_ranks + (shape.many_materials && shape.solid_blocks != 0 ? 4 * blocks : 0);
   return at;
+}
+
+// Calls leaf(node, corner, level) for what a tree that is not empty holds, in Morton order: solid blocks, and nodes of
+// level `lowest`; also for numbers of no node, which a damaged tree has. `leaf` may be false to stop.
+template <class Leaf>
+[[gnu::always_inline]] inline void walk_leaves(const CompactTree& tree, int lowest, const Leaf& leaf) {
+  struct OpenNode {
+    uint32_t child;
+    uint8_t rest;  // the octants of the children still to come
+  } stack[kMaxLevel + 1];
+  Vec3i corner;
+  uint32_t node = 0;
+  int level = tree.level();
+  for (;;) {
+    const uint8_t mask = node < tree.node_count() ? tree.mask(node) : uint8_t{0};
+    stack[level] = {0, 0};
+    if (mask != 0 && level > lowest) {
+      stack[level] = {tree.first_child(node), mask};
+    } else if (!leaf(node, corner, level)) {
+      return;
+    }
+    while (stack[level].rest == 0) {
+      if (++level > tree.level()) {
+        return;
+      }
+    }
+    OpenNode& open = stack[level];
+    const unsigned octant = bits::lowest_bit(open.rest);
+    open.rest = static_cast<uint8_t>(open.rest & (open.rest - 1));
+    node = open.child++;
+    --level;
+    const int32_t side = int32_t{1} << level;
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
+    }
+  }
 }
 
 // The solid voxels of a tree whose masks are sound, depth first; `bounds` gets the least box that holds them.

@@ -63,46 +63,13 @@ uint64_t solid_volume(const CompactTree& tree, VoxelBox* bounds) {
   if (tree.empty()) {
     return 0;
   }
-  struct OpenNode {
-    uint32_t first_child;
-    uint8_t mask;
-    uint8_t next;
-  } stack[kMaxLevel + 1];
   uint64_t volume = 0;
-  Vec3i corner;
-  bool arrive = true;
-  uint32_t node = 0;
-  int level = tree.level();
-  while (level <= tree.level()) {
-    if (arrive) {
-      const uint8_t mask = tree.mask(node);
-      if (mask == 0 || level == 1) {
-        volume += mask == 0 ? uint64_t{1} << (3 * level) : bits::popcount8(mask);
-        grow_box(bounds, corner, level, mask);
-        arrive = false;
-        ++level;
-        continue;
-      }
-      stack[level] = {tree.first_child(node), mask, 0};
-    }
-    OpenNode& open = stack[level];
-    while (open.next < 8 && ((open.mask >> open.next) & 1) == 0) {
-      ++open.next;
-    }
-    if (open.next == 8) {
-      arrive = false;
-      ++level;
-      continue;
-    }
-    const unsigned octant = open.next++;
-    --level;
-    node = open.first_child++;
-    const int32_t side = int32_t{1} << level;
-    for (int axis = 0; axis < 3; ++axis) {
-      corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
-    }
-    arrive = true;
-  }
+  walk_leaves(tree, 1, [&](uint32_t node, const Vec3i& corner, int level) {
+    const uint8_t mask = tree.mask(node);
+    volume += mask == 0 ? uint64_t{1} << (3 * level) : bits::popcount8(mask);
+    grow_box(bounds, corner, level, mask);
+    return true;
+  });
   return volume;
 }
 

@@ -331,16 +331,6 @@ class DeepBuilder {
     const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
     return (brick_at(number_at(at))[bit >> 3] >> (bit & 7) & 1) != 0;
   }
-  // Whether a ray can come to `voxel` from one of its 26 neighbours.
-  bool is_seen(const Vec3i& voxel) const {
-    for (int32_t i = 0; i < 27; ++i) {
-      if (!is_solid({voxel.x + i % 3 - 1, voxel.y + i / 3 % 3 - 1, voxel.z + i / 9 - 1})) {
-        return true;
-      }
-    }
-    return false;
-  }
-
   // Finds for each brick the material of all of it that is seen, or writes its origin.
   Status name_materials(size_t room) {
     uint32_t bricks = 1;
@@ -370,20 +360,12 @@ class DeepBuilder {
   }
 
   Status name_material(uint32_t number, uint32_t node, const Vec3i& at, size_t room) {
-    const uint64_t brick_bits = bits::load64(brick_at(number));
-    int material = -1;
-    for (int32_t bit = 0; bit < 64; ++bit) {
-      if ((brick_bits >> bit & 1U) == 0 ||
-          !is_seen({at.x + (bit & 3), at.y + (bit >> 2 & 3), at.z + (bit >> 4)})) {
-        continue;
-      }
-      const int own = brick_parts::material_in_node(tree_, node, static_cast<unsigned>(bit));
-      if (material >= 0 && material != own) {
-        return add_origin(number, node, room);
-      }
-      material = own;
+    const int material = brick_parts::material_seen(tree_, node, bits::load64(brick_at(number)), at,
+                                                    [this](const Vec3i& voxel) { return is_solid(voxel); });
+    if (material < 0) {
+      return add_origin(number, node, room);
     }
-    *material_at(number) = static_cast<uint8_t>(material < 0 ? 0 : material);
+    *material_at(number) = static_cast<uint8_t>(material);
     return Status::kOk;
   }
 
