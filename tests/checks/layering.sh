@@ -38,6 +38,7 @@ rooms_below() {
     picture) echo base tree trace ;;
     light) echo base tree trace picture ;;
     plane) echo base ;;
+    extras) echo base tree ;;
     bake | drivers) echo base tree trace picture ;;
     c) echo base tree trace picture light plane bake ;;
     *) echo "layering: src/$1 is no room that tests/checks/layering.sh knows" >&2 && return 1 ;;

@@ -1,6 +1,6 @@
 // Byte offsets of a shared tree's header (src/FORMAT.md), for its writer and its reader. Internal to src/.
-#ifndef THIMBLE_SRC_TREE_SHARED_HEADER_H
-#define THIMBLE_SRC_TREE_SHARED_HEADER_H
+#ifndef THIMBLE_SRC_EXTRAS_SHARED_HEADER_H
+#define THIMBLE_SRC_EXTRAS_SHARED_HEADER_H
 
 #include <stdint.h>
 
