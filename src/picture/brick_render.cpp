@@ -89,21 +89,10 @@ template <class OneCourse>
   const size_t line_bytes = row_bytes(band.format, width);
   Inks inks;
   inks.forget();
-  BrickFrame frame{tree, map, camera, shading, band.format, false, 0, {}, {}, {}, {}, {}, {}, {}};
+  BrickFrame frame = brick_frame<OneCourse::kDeep>(tree, map, camera, shading, band.format);
   frame.halfwords =
       is_halfword(band.format) && ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
   frame.background = ink_of(band.format, shade(Hit{}, Ray{}, camera, shading));
-  for (int axis = 0; axis < 3; ++axis) {
-    frame.side[axis] = map.box().high[axis] - map.box().low[axis];
-    frame.eye[axis] = camera.eye()[axis].raw - map.box().low[axis] * (4 * Q8::kOne);
-  }
-  if constexpr (OneCourse::kDeep) {
-    frame.stride = {deep_place::kStride[0], deep_place::kStride[1], deep_place::kStride[2]};
-  } else {
-    frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  }
-  margins_of(camera, kTileAcrossPx, kBrickTilePx, &frame.tile_low, &frame.tile_high);
-  margins_of(camera, kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
   RenderCounts done;
   Sweep sweep;
   sweep.misses = 0;

@@ -651,7 +651,7 @@ template <EffectSet kSet, bool kGoesOn>
   FlatSink<kSet, kGoesOn> sink(frame, map, band, stride, counts != nullptr);
   sink.note_in(progress);
   sink.set_lights(suns);
-  const BrickFrame sights = sight_frame(frame.tree, map, frame.camera, frame.shading, band.format);
+  const BrickFrame sights = brick_frame(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
   sweep.begin(map);
   const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);

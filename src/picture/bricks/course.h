@@ -77,6 +77,8 @@ struct Course {
   int32_t one_step[3];  // what a step adds to a voxel's place
   bool far;             // the rays start far from anything: their beam became too wide to be followed
 #endif
+
+  void set_signs() {}  // where the signs are data (SightCourse), sets these
 };
 
 // The same in worlds of level 9 and 10.

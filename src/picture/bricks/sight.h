@@ -6,12 +6,9 @@
 #ifndef THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
 #define THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
 
-#include "beam.h"
 #include "place_across.h"
 #include "shadow.h"
-#include "sweep.h"
-#include "thimble/picture/render.h"
-#include "tile.h"
+#include "tile_painter.h"
 
 namespace thimble::bricks {
 namespace {
@@ -191,112 +188,31 @@ struct SightPaint {
 //   face(pixels, face)    all of these pixels show that face
 //   miss(place, pixels)   all of these pixels show nothing
 template <class Sink>
-class SightPainter {
+class SightPainter : public TilePainter<SightCourse, SightPainter<Sink>> {
+  using Tiles = TilePainter<SightCourse, SightPainter>;
+  friend Tiles;
+
  public:
-  SightPainter(const BrickFrame& frame, Sweep* sweep, Sink& sink)
-      : frame_(frame), sweep_(sweep), sink_(sink) {
-    course_.frame = &frame;
+  SightPainter(const BrickFrame& frame, Sweep* sweep, Sink& sink) : Tiles(frame, sweep), sink_(sink) {
     course_.inks = nullptr;
-    course_.directory = frame.map.directory();
-    course_.bricks = frame.map.bricks();
     course_.exact_ties = false;
-    course_.wide = frame.camera.direction_bits() > kNarrowDirectionBits;
-    course_.most_cells = (1U << (23 - frame.camera.direction_bits())) - 1;
     course_.near_cell[0] = 0;
     course_.near_cell[1] = 0;
-    set(0, 0);  // NOLINT: where rays start is set_start's
-  }
-
-  void draw_tile(const Tile& tile) {
-    if (frame_.map.empty()) {
-      miss(tile);
-      return;
-    }
-    Camera::Vec3Q32 row;
-    const Camera::Affine& affine = frame_.camera.affine();
-    for (int axis = 0; axis < 3; ++axis) {
-      row[axis] = affine.base[axis] + wide_multiple(tile.x0, affine.step_x[axis]) +
-                  wide_multiple(tile.y0, affine.step_y[axis]);
-    }
-    const Fan fan(row, frame_.tile_low, frame_.tile_high);
-    int32_t slab = 0;
-    bool begun = false;  // by the sweep
-    if (fan.usable()) {
-      use(fan.mirrored, fan.c);
-      if (kSlots != 0 && sweep_ != nullptr && fan.mixed == 0) {
-        const int32_t origin = course_.origin[fan.c];
-        slab = origin < 0 ? 0 : origin >> 8;
-        if (slab >= 4 * frame_.side[fan.c]) {
-          miss(tile);
-          return;
-        }
-        begun = sweep_tile(tile, row, fan, &slab);
-        if (begun && sweep_->done()) {
-          return;
-        }
-      }
-      if (!begun) {
-        slab = first_slab_along(course_, fan, slab);
-        if (slab == 4 * frame_.side[fan.c]) {
-          miss(tile);
-          return;
-        }
-      }
-    }
-    for (int32_t y = tile.y0; y < tile.y1; y += kQuadDownPx) {
-      Camera::Vec3Q32 at = row;
-      for (int32_t x = tile.x0; x < tile.x1; x += kQuadAcrossPx) {
-        if (!begun || sweep_->has_quad(x - tile.x0, y - tile.y0)) {
-          draw_quad({x, x + kQuadAcrossPx < tile.x1 ? x + kQuadAcrossPx : tile.x1, y,
-                     y + kQuadDownPx < tile.y1 ? y + kQuadDownPx : tile.y1},
-                    at, fan, slab);
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-          at[axis] += wide_multiple(kQuadAcrossPx, affine.step_x[axis]);
-        }
-      }
-      for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += wide_multiple(kQuadDownPx, affine.step_y[axis]);
-      }
-    }
   }
 
  private:
-  // Does as BrickPainter::sweep_tile.
-  [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
-                                    int32_t* slab) {
-    Sweep& sweep = *sweep_;
-    set_sweep_course(course_, &sweep);
-    const TilePlace place{nullptr, 0, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
-    const FirstDirection first = first_direction(course_, value);
-    TileSweep<SightPaint<Sink>> tile_sweep({sweep, course_, first, place, sink_});
-    course_.waiting = kWaiting;
-    set_start(course_, *slab);
-    *slab = tile_sweep.run(fan, *slab);
-    if (!tile_sweep.begun()) {
-      return false;
-    }
-    if (*slab != 4 * frame_.side[fan.c]) {
-      set_start(course_, *slab);
-      tile_sweep.draw_parts_of_quads();
-    } else if (!sweep.done()) {
-      sink_.miss(place, sweep.left);
-      sweep.left = {};
-    }
-    return true;
-  }
+  using Tiles::course_;
+  using Tiles::sweep_;
 
-  void set(unsigned mirrored, int c) {
-    set_course(course_, mirrored, c);
-    course_.set_signs();
+  using Paint = SightPaint<Sink>;
+  static TilePlace place_of(const Tile& tile) {
+    return {nullptr, 0, tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0};
   }
-  void use(unsigned mirrored, int c) {
-    if (mirrored != course_.mirrored || c != course_.c) {
-      set(mirrored, c);
-    }
+  Paint paint(const FirstDirection& first, const TilePlace& place) {
+    return {*sweep_, course_, first, place, sink_};
   }
-
-  void miss(const Tile& tile) {
+  void miss(const TilePlace& place, const Pixels& pixels) { sink_.miss(place, pixels); }
+  [[gnu::noinline]] void miss(const Tile& tile) {
     for (int32_t y = tile.y0; y < tile.y1; ++y) {
       for (int32_t x = tile.x0; x < tile.x1; ++x) {
         sink_.miss(x, y);
@@ -304,8 +220,7 @@ class SightPainter {
     }
   }
 
-  void draw_quad(const Tile& quad, const Camera::Vec3Q32& value, const Fan& tile_fan, int32_t slab) {
-    const Fan fan(value, frame_.quad_low, frame_.quad_high);
+  void trace_quad(const Tile& quad, const Camera::Vec3Q32& value, const Fan& fan, int32_t slab) {
     if (!fan.usable()) {
       for (int32_t y = quad.y0; y < quad.y1; ++y) {
         for (int32_t x = quad.x0; x < quad.x1; ++x) {
@@ -314,13 +229,6 @@ class SightPainter {
       }
       return;
     }
-    use(fan.mirrored, fan.c);
-    slab = first_slab_along(course_, fan, tile_fan.usable() && tile_fan.c == fan.c ? slab : 0);
-    if (slab == 4 * frame_.side[fan.c]) {
-      miss(quad);
-      return;
-    }
-    set_start(course_, slab);
     if (fan.mixed != 0) {
       trace_mixed(quad, value, fan.c, slab);
       return;
@@ -334,69 +242,26 @@ class SightPainter {
     for (int32_t y = quad.y0; y < quad.y1; ++y) {
       Vec3<uint64_t> at = row;
       for (int32_t x = quad.x0; x < quad.x1; ++x) {
-        trace(x, y,
-              {static_cast<uint32_t>(at.x >> 32), static_cast<uint32_t>(at.y >> 32),
-               static_cast<uint32_t>(at.z >> 32)});
+        see(sink_, course_, x, y,
+            {static_cast<uint32_t>(at.x >> 32), static_cast<uint32_t>(at.y >> 32),
+             static_cast<uint32_t>(at.z >> 32)});
         at.x += static_cast<uint64_t>(course_.step_x.x);
         at.y += static_cast<uint64_t>(course_.step_x.y);
         at.z += static_cast<uint64_t>(course_.step_x.z);
       }
-      row.x += static_cast<uint64_t>(course_.step_y.x);
-      row.y += static_cast<uint64_t>(course_.step_y.y);
-      row.z += static_cast<uint64_t>(course_.step_y.z);
-    }
-  }
-
-  [[gnu::always_inline]] void trace(int32_t x, int32_t y, const Vec3<uint32_t>& d) {
-    see(sink_, course_, x, y, d);
-  }
-
-  // Traces a quad whose rays have different signs, so that each takes its own course.
-  [[gnu::noinline]] void trace_mixed(const Tile& quad, const Camera::Vec3Q32& value, int c, int32_t slab) {
-    const Camera::Affine& affine = frame_.camera.affine();
-    Camera::Vec3Q32 row = value;
-    for (int32_t y = quad.y0; y < quad.y1; ++y) {
-      Camera::Vec3Q32 at = row;
-      for (int32_t x = quad.x0; x < quad.x1; ++x) {
-        const Vec3i d{Camera::rounded(at.x), Camera::rounded(at.y), Camera::rounded(at.z)};
-        const unsigned signs = signs_of(d);
-        if (signs != course_.mirrored) {
-          set(signs, c);
-          set_start(course_, slab);
-        }
-        const auto size = [](int32_t component) {
-          return static_cast<uint32_t>(component < 0 ? -component : component);
-        };
-        trace(x, y, {size(d.x), size(d.y), size(d.z)});
-        for (int axis = 0; axis < 3; ++axis) {
-          at[axis] += affine.step_x[axis];
-        }
-      }
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += affine.step_y[axis];
+        row[axis] += static_cast<uint64_t>(course_.step_y[axis]);
       }
     }
   }
 
-  const BrickFrame& frame_;
-  Sweep* sweep_;  // null where tiles are not swept
-  Sink& sink_;
-  SightCourse course_;
-};
-
-// Makes what the rays of a band share, where no inks are wanted.
-BrickFrame sight_frame(const CompactTree& tree, const BrickMap& map, const Camera& camera,
-                       const Shading& shading, PixelFormat format) {
-  BrickFrame frame{tree, map, camera, shading, format, false, 0, {}, {}, {}, {}, {}, {}, {}};
-  for (int axis = 0; axis < 3; ++axis) {
-    frame.side[axis] = map.box().high[axis] - map.box().low[axis];
-    frame.eye[axis] = camera.eye()[axis].raw - map.box().low[axis] * (4 * Q8::kOne);
+  [[gnu::noinline]] void trace_mixed(const Tile& quad, const Camera::Vec3Q32& value, int c, int32_t slab) {
+    this->trace_each(quad, value, c, slab,
+                     [&](int32_t x, int32_t y, const Vec3<uint32_t>& d) { see(sink_, course_, x, y, d); });
   }
-  frame.stride = {2, 2 * frame.side.x, 2 * frame.side.x * frame.side.y};
-  margins_of(camera, kTileAcrossPx, kTileDownPx, &frame.tile_low, &frame.tile_high);
-  margins_of(camera, kQuadAcrossPx, kQuadDownPx, &frame.quad_low, &frame.quad_high);
-  return frame;
-}
+
+  Sink& sink_;
+};
 
 }  // namespace
 }  // namespace thimble::bricks
