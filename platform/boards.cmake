@@ -21,7 +21,7 @@ macro(thimble_read_board name)
     unset(BOARD_${fact})
   endforeach()
   foreach(fact CHIP FRAMES WORLDS UF2 IMAGE CORE_MHZ MAP_RAYS_A_SECOND BAND_BUFFERS CORES FAST_RAM_ORIGIN FAST_RAM_BYTES FAST_SOURCES
-      FAST_FUNCTIONS FLUSHES_AGAIN)
+      FAST_OBJECTS FLUSHES_AGAIN)
     unset(BOARD_${fact})
   endforeach()
   include(${PROJECT_SOURCE_DIR}/platform/boards/${name}/board.cmake)

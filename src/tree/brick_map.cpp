@@ -2,6 +2,7 @@
 #include "thimble/tree/brick_map.h"
 
 #include "../base/bits.h"
+#include "../base/hot.h"
 #include "brick_parts.h"
 #include "compact_header.h"
 #include "deep_map.h"
@@ -455,7 +456,7 @@ bool BrickMap::belongs_to(const CompactTree& tree) const {
          bits::load32(tree.bytes() + compact_header::kChecksumOffset) == tree_checksum_;
 }
 
-uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const {
+[[THIMBLE_HOT]] uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const {
   const uint8_t* origin = origins_ + kOriginBytes * (number - 1);
   if constexpr (kDeepWorlds) {
     if (DeepMap::is_deep(level_)) {

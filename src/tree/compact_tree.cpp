@@ -4,6 +4,7 @@
 
 #include "../base/bits.h"
 #include "../base/fault.h"
+#include "../base/hot.h"
 #include "compact_header.h"
 #include "thimble/base/memory.h"
 
@@ -158,7 +159,7 @@ uint8_t CompactTree::block_material(uint32_t index) const {
   return material_of_block(blocks_before(index));
 }
 
-uint8_t CompactTree::voxel_material(uint32_t number) const {
+[[THIMBLE_HOT]] uint8_t CompactTree::voxel_material(uint32_t number) const {
   if (materials_ == nullptr) {
     return uniform_material_;
   }

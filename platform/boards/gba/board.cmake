@@ -10,13 +10,7 @@ set(BOARD_RAM_BYTES 262144)
 set(BOARD_FAST_RAM_ORIGIN 0x03000000)
 set(BOARD_FAST_RAM_BYTES 32512)
 set(BOARD_FAST_SOURCES src/picture/brick_render.cpp src/tree/brick_map.cpp platform/boards/gba/board.cpp)
-# By parts of their mangled names, with the constants of that name; with .o, an object of a library. What saves most cycles
-# a byte in pictures of the valley.
-set(BOARD_FAST_FUNCTIONS sweep_tile draw_layer draw_cell draw_face 6decide find_half_plane set_all find_direction
-  find_exposed 5kRows kAllPixels kNoPixels store_pixels store_wholeIt look_up mixed_material 14voxel_material
-  material_ink 6ink_of Inks6forget 9draw_tile far_slab 11trace_mixed 6answer set_start
-  3FanC slope_of first_slab 10set_course trace_one trace_any_quad widen_pixelsILj2E board5flush 11flush_again memset memcpy
-  libgcc.a:_udivsi3.o libgcc.a:_clzsi2.o)
+set(BOARD_FAST_OBJECTS memory.cpp.o* libgcc.a:_udivsi3.o libgcc.a:_clzsi2.o)
 # The tests' bound is 6,672; what is left holds code.
 set(BOARD_STACK_BYTES 6688)
 set(BOARD_DISPLAY plain)

@@ -72,7 +72,7 @@ int board::get() {
 #define THIMBLE_SHOWN(r) \
   "and r12, " #r ", %[red]\n and " #r ", %[others], " #r ", lsr #1\n orr " #r ", " #r ", r12\n"
 
-void board::flush(const Band& band) {
+[[gnu::hot]] void board::flush(const Band& band) {
   static_assert(kFacts.display.width_px % 16 == 0);
   const size_t row_bytes = static_cast<size_t>(kFacts.display.width_px) * 2;
   uintptr_t to = gba::kPicture + static_cast<size_t>(band.first_row) * row_bytes;
@@ -94,7 +94,7 @@ void board::flush(const Band& band) {
 }
 
 // Within the display, where no bit is lost any more.
-void board::flush_again(const Band& band) {
+[[gnu::hot]] void board::flush_again(const Band& band) {
   constexpr size_t kRowBytes = static_cast<size_t>(kFacts.display.width_px) * 2;
   uintptr_t to = gba::kPicture + static_cast<size_t>(band.first_row) * kRowBytes;
   uintptr_t from = to - kRowBytes;

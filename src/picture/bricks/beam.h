@@ -23,7 +23,7 @@ struct Fan {
   unsigned mixed = 0;     // bit a: not all rays have the same sign on axis a
 
   // Directions lie from value + least to value + greatest (`margins_of`).
-  Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
+  [[THIMBLE_HOT]] Fan(const Camera::Vec3Q32& value, const Vec3i& least, const Vec3i& greatest) {
     int32_t most = -1;
     for (int axis = 0; axis < 3; ++axis) {
       const int32_t at = static_cast<int32_t>(value[axis] >> (32 - kFanBits));
@@ -77,7 +77,7 @@ constexpr int32_t kDeepBeamBricks = 8;  // of level 9 and 10: a word has bits fo
 
 // Divides for a slope, which is at most 2 either way: where the compiler's library would divide, code in fast RAM finds
 // the 12 bits one by one.
-[[THIMBLE_OWN_FUNCTION]] int32_t slope_of(int32_t rise, int32_t run) {
+[[THIMBLE_HOT]] int32_t slope_of(int32_t rise, int32_t run) {
   if constexpr (!kFastRam) {
     return rise / run;
   }
@@ -206,7 +206,7 @@ bool has_empty_layer(const DeepCourse& course, const Shadow& a, const Shadow& b,
 // there is none. Sets `waiting` of the fan's course: whether rays may still be outside of the box at that slab; and `far`.
 // kC is kAnyAxis where one function serves all courses.
 template <int kC, bool kDeep>
-[[gnu::noinline]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
+[[gnu::noinline, THIMBLE_HOT]] int32_t first_slab(Course& course, const Fan& fan, int32_t slab) {
   const int along = kC == kAnyAxis ? course.c : kC;
   const int axis_a = other_a(along);
   const int axis_b = other_b(along);

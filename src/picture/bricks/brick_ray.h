@@ -570,7 +570,8 @@ class BrickRay {
 };
 
 template <int kC, unsigned kMirrored, class OneCourse>
-[[gnu::noinline]] int32_t trace_one(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+[[gnu::noinline, THIMBLE_HOT]] int32_t trace_one(const OneCourse& course, uint32_t d_a, uint32_t d_b,
+                                                 uint32_t d_c) {
   return BrickRay<kC, kMirrored, OneCourse>(course, d_a, d_b, d_c).trace();
 }
 

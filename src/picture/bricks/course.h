@@ -105,7 +105,7 @@ struct DeepCourse : Course {
 
 // Sets all members but those that say where the rays start.
 template <bool kDeep = false>
-void set_course(Course& course, unsigned mirrored, int c) {
+[[THIMBLE_HOT]] void set_course(Course& course, unsigned mirrored, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
   course.c = c;
@@ -144,7 +144,7 @@ void set_course(Course& course, unsigned mirrored, int c) {
 }
 
 // Lets the rays start in slab `slab` of voxels along c.
-void set_start(Course& course, int32_t slab) {
+[[THIMBLE_HOT]] void set_start(Course& course, int32_t slab) {
   const int32_t distance = slab * Q8::kOne - course.origin[course.c];
   course.plane = distance > 0 ? static_cast<uint32_t>(distance) : 0;
   course.behind = distance > 0 ? 0 : static_cast<uint32_t>(-distance);

@@ -96,8 +96,8 @@ Cells uncovered_on(int axis, bool mirrored, const Cells& own, const Cells& befor
 
 // Finds the exposed faces of the brick at `place` in the directory, the box's brick number `bricks` along a, b and c.
 template <bool kDeep>
-[[gnu::noinline]] void find_exposed(const Course& course, int32_t place, const int32_t (&bricks)[3],
-                                    Exposed* exposed) {
+[[gnu::noinline, THIMBLE_HOT]] void find_exposed(const Course& course, int32_t place,
+                                                 const int32_t (&bricks)[3], Exposed* exposed) {
   const Cells own = cells_of<kDeep>(course, place);
   exposed->place = place;
   for (int k = 0; k < 3; ++k) {

@@ -29,8 +29,8 @@ struct FarPlace {
 // The first slab of voxels from `slab` on in which a ray of direction (d_a, d_b, d_c) may meet something, or the number of
 // slabs if there is none. A ray that is faster on a or b than on c may enter several bricks of a layer: its start is
 // `slab`.
-[[gnu::noinline, maybe_unused]] int32_t far_slab(const Course& course, int32_t slab, uint32_t d_a,
-                                                 uint32_t d_b, uint32_t d_c) {
+[[gnu::noinline, maybe_unused, THIMBLE_HOT]] int32_t far_slab(const Course& course, int32_t slab,
+                                                              uint32_t d_a, uint32_t d_b, uint32_t d_c) {
   if (d_a > d_c || d_b > d_c) {
     return slab;
   }

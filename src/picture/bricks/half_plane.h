@@ -166,7 +166,7 @@ void walk_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, int 
 template <bool kDeep>
 using WholeOf = Choose<kDeep, int64_t, int32_t>;
 
-[[gnu::noinline]] void set_all(HalfPlane* plane, uint32_t word) {
+[[gnu::noinline, THIMBLE_HOT]] void set_all(HalfPlane* plane, uint32_t word) {
   for (int i = 0; i < kTileWords; ++i) {
     plane->certain.word[i] = word;
     plane->possible.word[i] = word;
@@ -176,8 +176,8 @@ using WholeOf = Choose<kDeep, int64_t, int32_t>;
 // Finds the pixels that meet the plane of axis i (0 a, 1 b, 2 c) at distance `s_i` before that of axis j at `s_j`.
 // Planes at or behind the eye count as met before all others.
 template <bool kDeep>
-[[gnu::noinline]] void find_half_plane(const TileRays& rays, int i, int j, int32_t s_i, int32_t s_j,
-                                       HalfPlane* plane) {
+[[gnu::noinline, THIMBLE_HOT]] void find_half_plane(const TileRays& rays, int i, int j, int32_t s_i,
+                                                    int32_t s_j, HalfPlane* plane) {
   if (((s_i - 1) | (s_j - 1)) < 0) {
     set_all(plane, s_i <= 0 ? UINT32_MAX : 0);
     return;

@@ -23,7 +23,7 @@ struct Inks {
 
   static uint32_t slot(uint32_t key) { return (key ^ key >> 6) % kFaces; }
 
-  [[THIMBLE_OWN_FUNCTION]] void forget() {
+  [[THIMBLE_HOT]] void forget() {
     for (Seen& seen : face) {
       seen.key = kNone;
     }
@@ -44,7 +44,7 @@ constexpr bool is_halfword(PixelFormat format) {
          is_format<PixelFormat::kBgr565>(format);
 }
 
-uint32_t ink_of(PixelFormat format, Rgb8 color) {
+[[THIMBLE_HOT]] uint32_t ink_of(PixelFormat format, Rgb8 color) {
   if (format == PixelFormat::kGray4) {
     return panels::level_of_16(gray_of(color));
   }
@@ -116,7 +116,7 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
 }
 
 // Shades a face of a material; returns an entry of `Inks::material`.
-[[gnu::noinline]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
+[[gnu::noinline, THIMBLE_HOT]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
   const BrickFrame& frame = *course.frame;
   Ray ray;
   const Hit hit = face_hit(course, axis, material, &ray);
@@ -126,7 +126,7 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
 
 // Finds and keeps the ink of a face that was not seen lately: of `voxel` (64 times the brick's number, plus the voxel's
 // bit), entered on `axis`.
-[[gnu::noinline, maybe_unused]] int32_t look_up(const Course& course, uint32_t voxel, int axis) {
+[[gnu::noinline, maybe_unused, THIMBLE_HOT]] int32_t look_up(const Course& course, uint32_t voxel, int axis) {
   const BrickFrame& frame = *course.frame;
   const uint8_t material = frame.map.material(frame.tree, voxel >> 6, voxel & 63U);
   const uint32_t face = course.face[axis];

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "../../base/bits.h"
+#include "../../base/hot.h"
 #include "../../tree/deep_map.h"
 #include "thimble/base/vec.h"
 
@@ -111,10 +112,8 @@ constexpr bool kHasReciprocals = false;
 // signs, where others have eight, and tiles are drawn by a function that fits there.
 #ifdef THIMBLE_FAST_RAM
 constexpr bool kFastRam = true;
-#define THIMBLE_OWN_FUNCTION gnu::noinline
 #else
 constexpr bool kFastRam = false;
-#define THIMBLE_OWN_FUNCTION
 #endif
 
 // Tells the compiler which way a branch mostly goes.

@@ -51,8 +51,9 @@ template <int kC, unsigned kMirrored, class OneCourse>
 
 #ifdef THIMBLE_FAST_RAM
 // The same by one function for all courses. The rays start in slab `slab`, or from farther on (far_ray.h).
-[[gnu::noinline]] int32_t trace_any_quad(Course& course, int32_t slab, const Camera::Vec3Q32& from,
-                                         int32_t across, int32_t down, int32_t* inks) {
+[[gnu::noinline, THIMBLE_HOT]] int32_t trace_any_quad(Course& course, int32_t slab,
+                                                      const Camera::Vec3Q32& from, int32_t across,
+                                                      int32_t down, int32_t* inks) {
   const int c = course.c;
   const int a = other_a(c);
   const int b = other_b(c);
@@ -176,8 +177,8 @@ class BrickPainter : public TilePainter<OneCourse, BrickPainter<OneCourse>> {
   }
 
   // Traces a quad whose rays have different signs; those without a fastest axis are left to `answer`.
-  [[gnu::noinline]] void trace_mixed(const Tile& quad, const Camera::Vec3Q32& value, const Fan& fan,
-                                     int32_t slab, int32_t* inks) {
+  [[gnu::noinline, THIMBLE_HOT]] void trace_mixed(const Tile& quad, const Camera::Vec3Q32& value,
+                                                  const Fan& fan, int32_t slab, int32_t* inks) {
     if (fan.usable()) {
       this->trace_each(quad, value, fan.c, slab,
                        [&](int32_t, int32_t, const Vec3<uint32_t>& d) { *inks++ = trace_along(course_, d); });
@@ -225,7 +226,7 @@ class BrickPainter : public TilePainter<OneCourse, BrickPainter<OneCourse>> {
 
   // Turns the answers that are no inks into inks: asks the tree where only it can tell, and takes the background where
   // nothing is hit.
-  [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
+  [[gnu::noinline, THIMBLE_HOT]] void answer(const Tile& quad, int32_t* inks) {
     for (int32_t y = quad.y0; y < quad.y1; ++y) {
       for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
         if (*inks == kAsk) {  // NOLINT: all of a quad are set

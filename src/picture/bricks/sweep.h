@@ -159,7 +159,8 @@ FirstDirection first_direction(const Course& course, const Camera::Vec3Q32& valu
 }
 
 // Finds a pixel's exact direction on a, b and c; the pixel's ray has the course's signs.
-void find_direction(const Course& course, const FirstDirection& first, uint32_t pixel, uint32_t (&d)[3]) {
+[[THIMBLE_HOT]] void find_direction(const Course& course, const FirstDirection& first, uint32_t pixel,
+                                    uint32_t (&d)[3]) {
   const uint32_t x = pixel & (kTileAcrossPx - 1);
   const uint32_t y = pixel / kTileAcrossPx;
   for (int k = 0; k < 3; ++k) {
@@ -555,8 +556,8 @@ class TileSweep : private Paint {
   }
 
   // Draws bricks of one layer from its slab `slab` on.
-  [[THIMBLE_OWN_FUNCTION]] void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick,
-                                           const SweptBrick* end) {
+  [[THIMBLE_HOT]] void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick,
+                                  const SweptBrick* end) {
     // The shadow's voxels as bits, from the first brick on. All rays have entered the lowest of them before the slab
     // begins, so none enters it by a plane of a or of b: `entered` leaves it out.
     uint32_t cells[2][4];
@@ -614,8 +615,8 @@ class TileSweep : private Paint {
   }
 
   // Draws faces of a brick's voxels in one slab.
-  [[THIMBLE_OWN_FUNCTION]] void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a,
-                                           uint32_t on_b, uint32_t on_c) {
+  [[THIMBLE_HOT]] void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a, uint32_t on_b,
+                                  uint32_t on_c) {
     for (uint32_t any = on_a | on_b | on_c; any != 0; any &= any - 1) {
       const uint32_t bit = bits::lowest_bit(any);
       const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
@@ -679,7 +680,8 @@ class TileSweep : private Paint {
   }
 
   // Draws the face of `cell` on axis k.
-  [[gnu::noinline]] void draw_face(int32_t place, const int32_t (&cell)[3], int k, const CellFace& face) {
+  [[gnu::noinline, THIMBLE_HOT]] void draw_face(int32_t place, const int32_t (&cell)[3], int k,
+                                                const CellFace& face) {
     const HalfPlane& met0 = face.met0;
     const HalfPlane& met1 = face.met1;
     const HalfPlane& past0 = face.past0;
@@ -708,7 +710,7 @@ class TileSweep : private Paint {
   }
 
   // Decides open pixels of word `i` by their exact rays. Returns those that are the face's.
-  [[gnu::noinline]] uint32_t decide(const int32_t (&cell)[3], int k, uint32_t i, uint32_t open) {
+  [[gnu::noinline, THIMBLE_HOT]] uint32_t decide(const int32_t (&cell)[3], int k, uint32_t i, uint32_t open) {
     uint32_t mine = 0;
     for (; open != 0; open &= open - 1) {
       const uint32_t bit = bits::lowest_bit(open);

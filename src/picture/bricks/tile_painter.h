@@ -42,7 +42,7 @@ BrickFrame brick_frame(const CompactTree& tree, const BrickMap& map, const Camer
 template <class OneCourse, class Own>
 class TilePainter {
  public:
-  [[THIMBLE_OWN_FUNCTION]] void draw_tile(const Tile& tile) {
+  [[THIMBLE_HOT]] void draw_tile(const Tile& tile) {
     if (frame_.map.empty()) {
       own().miss(tile);
       return;
@@ -144,8 +144,8 @@ class TilePainter {
 
   // Draws a tile face by face, as far as that pays. Returns false when nothing was drawn; else quads may be left, which
   // are to be drawn from `slab` on.
-  [[gnu::noinline]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value, const Fan& fan,
-                                    int32_t* slab) {
+  [[gnu::noinline, THIMBLE_HOT]] bool sweep_tile(const Tile& tile, const Camera::Vec3Q32& value,
+                                                 const Fan& fan, int32_t* slab) {
     Sweep& sweep = *sweep_;
     set_sweep_course(course_, &sweep);
     const TilePlace place = own().place_of(tile);

@@ -30,7 +30,7 @@ struct TilePlace {
 
 // Stores pixels of one or two bytes each.
 template <class Pixel>
-[[gnu::noinline]] void store_whole(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
+[[gnu::noinline, THIMBLE_HOT]] void store_whole(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
   const Pixel value = bits::little(static_cast<Pixel>(ink));
   uint8_t* line = place.line + static_cast<size_t>(place.x) * sizeof(Pixel);
   for (int i = 0; i < kTileWords; ++i) {
@@ -139,8 +139,8 @@ template <class Pixel>
   }
 }
 
-[[gnu::noinline, maybe_unused]] void store_pixels(const TilePlace& place, const Pixels& pixels,
-                                                  const BrickFrame& frame, uint32_t ink) {
+[[gnu::noinline, maybe_unused, THIMBLE_HOT]] void store_pixels(const TilePlace& place, const Pixels& pixels,
+                                                               const BrickFrame& frame, uint32_t ink) {
   if (frame.halfwords) {
     store_whole<Half>(place, pixels, ink);
   } else if (is_byte(frame.format)) {
