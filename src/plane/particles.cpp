@@ -94,13 +94,6 @@ void ParticleWorld::link(uint32_t id) {
   head = id;
 }
 
-// After ball `id` moved from cell `from` to cell `to`.
-void ParticleWorld::relink(uint32_t id, uint32_t from, uint32_t to) {
-  unlink(id, from);
-  static_cast<void>(to);
-  link(id);
-}
-
 void ParticleWorld::unlink(uint32_t id, uint32_t cell) {
   const Ball& ball = balls_[id];
   if (ball.previous != kNoBall) {

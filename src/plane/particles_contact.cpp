@@ -55,12 +55,6 @@ constexpr uint64_t divide_by_small(uint64_t value, uint32_t divisor) {
   return quotient + (twice > divisor || (twice == divisor && (low_quotient & 1U) != 0) ? 1 : 0);
 }
 
-constexpr int32_t held_within_limit(int64_t speed) {
-  return speed > kMaxSpeedQ16    ? kMaxSpeedQ16
-         : speed < -kMaxSpeedQ16 ? -kMaxSpeedQ16
-                                 : static_cast<int32_t>(speed);
-}
-
 // The longer component with kNormalBits bits, the components cut towards zero; along an axis it is
 // kAxisNormal.
 constexpr Vec2i short_normal(Vec2i v) {

@@ -31,13 +31,23 @@ inline constexpr uint8_t kLastingSteps = 4;
 inline constexpr int kFrictionShift = 5;
 
 // Between 0.97 and 1.03 times the length, for normals, velocities and accelerations alike.
-constexpr int32_t rough_length(Vec2i v) {
-  const int32_t x = v.x < 0 ? -v.x : v.x;
-  const int32_t y = v.y < 0 ? -v.y : v.y;
-  const int32_t larger = x > y ? x : y;
-  const int32_t smaller = x > y ? y : x;
-  const int32_t slanted = larger - (larger >> 3) + (smaller >> 1);
+template <class Number>
+constexpr Number rough_length(Number x, Number y) {
+  x = x < 0 ? -x : x;
+  y = y < 0 ? -y : y;
+  const Number larger = x > y ? x : y;
+  const Number smaller = x > y ? y : x;
+  const Number slanted = larger - (larger >> 3) + (smaller >> 1);
   return larger > slanted ? larger : slanted;
+}
+constexpr int32_t rough_length(Vec2i v) {
+  return rough_length(v.x, v.y);
+}
+
+constexpr int32_t held_within_limit(int64_t speed) {
+  return speed > kMaxSpeedQ16    ? kMaxSpeedQ16
+         : speed < -kMaxSpeedQ16 ? -kMaxSpeedQ16
+                                 : static_cast<int32_t>(speed);
 }
 
 // Four times the square of a ball's speed half of `kick` later, below 2^62.
@@ -52,33 +62,16 @@ struct ParticleWorld::CellRange {
   int32_t x0, y0, x1, y1;
 };
 
-// Rows of the field or of a disc that are worked on together: four where the compiler has registers of four
-// words (then a ball of any size takes the same way through the code, sixteen rows with masks that are empty
-// where there is nothing to do, so that the processor need not guess), else one by one, as many as needed.
-#if defined(__SSE2__) || defined(__ARM_NEON)
-typedef uint32_t Rows __attribute__((vector_size(16)));
-typedef uint32_t RowsInMemory __attribute__((vector_size(16), aligned(4), may_alias));
-inline bool any_of(Rows rows) {
-  typedef uint64_t Halves __attribute__((vector_size(16)));
-  const Halves halves = reinterpret_cast<Halves>(rows);
-  return (halves[0] | halves[1]) != 0;
-}
-#else
-typedef uint32_t Rows;
-typedef uint32_t RowsInMemory __attribute__((may_alias));
-inline bool any_of(Rows rows) {
-  return rows != 0;
-}
-#endif
-inline constexpr int32_t kLanes = sizeof(Rows) / 4;
+// Rows of the field or of a disc that are worked on together (bitfield.h). Where there are four, a ball of any size takes the
+// same way through the code, sixteen rows with masks that are empty where there is nothing to do, so that the processor
+// need not guess.
+using Rows = field_detail::Block;
+using field_detail::any_of;
+using field_detail::load;
+using field_detail::store;
+inline constexpr int32_t kLanes = field_detail::kRowsAtOnce;
 inline constexpr int32_t kBlock = kMaxSmallDisc;  // rows of a disc, and of a small window
 
-inline Rows load_rows(const uint32_t* rows) {
-  return *reinterpret_cast<const RowsInMemory*>(rows);
-}
-inline void store_rows(uint32_t* rows, Rows value) {
-  *reinterpret_cast<RowsInMemory*>(rows) = value;
-}
 // Bits 0 .. 15 for the rows that are not empty: gathered a few rows at a time, then put together.
 #if defined(__SSE2__) || defined(__ARM_NEON)
 inline Rows rows_that_have(Rows rows, int32_t first_row) {
@@ -157,8 +150,8 @@ struct ParticleWorld::Window {
     const int32_t shift = place.x - base.x;
     Rows set{};
     for_rows(disc.diameter, [&](int32_t row) {
-      const Rows found = (load_rows(from + row) >> shift) & load_rows(disc.rows + row);
-      store_rows(out + row, found);
+      const Rows found = (load(from + row) >> shift) & load(disc.rows + row);
+      store(out + row, found);
       set |= rows_that_have(found, row);
     });
     return together(set);
@@ -167,8 +160,7 @@ struct ParticleWorld::Window {
     const uint32_t* const from = rows + (place.y - base.y);
     const int32_t shift = place.x - base.x;
     Rows any{};
-    for_rows(disc.diameter,
-             [&](int32_t row) { any |= (load_rows(from + row) >> shift) & load_rows(disc.rows + row); });
+    for_rows(disc.diameter, [&](int32_t row) { any |= (load(from + row) >> shift) & load(disc.rows + row); });
     return !any_of(any);
   }
 };

@@ -110,13 +110,7 @@ void ParticleWorld::pull_balls(int32_t sign) {
         // In 1/16 cell, below 2^16 within the radius.
         const int64_t dx = (int64_t{pointer_.x} * 65536 + 32768 - ball.x) / 4096;
         const int64_t dy = (int64_t{pointer_.y} * 65536 + 32768 - ball.y) / 4096;
-        const int64_t ax = dx < 0 ? -dx : dx;
-        const int64_t ay = dy < 0 ? -dy : dy;
-        const int64_t larger = ax > ay ? ax : ay;
-        const int64_t smaller = ax > ay ? ay : ax;
-        const int64_t slanted = larger - (larger >> 3) + (smaller >> 1);
-        const int64_t distance = larger > slanted ? larger : slanted;
-        const int64_t inward = int64_t{radius} * 16 - distance;
+        const int64_t inward = int64_t{radius} * 16 - rough_length(dx, dy);
         if (inward <= 0) {
           continue;
         }
@@ -127,13 +121,8 @@ void ParticleWorld::pull_balls(int32_t sign) {
           const int64_t part = static_cast<int64_t>((size * factor) >> excess >> 6);
           return (d < 0) == (sign < 0) ? part : -part;
         };
-        const auto limited = [](int64_t speed) {
-          return static_cast<int32_t>(speed > kMaxSpeedQ16    ? kMaxSpeedQ16
-                                      : speed < -kMaxSpeedQ16 ? -kMaxSpeedQ16
-                                                              : speed);
-        };
-        ball.vx = limited(ball.vx + change(dx));
-        ball.vy = limited(ball.vy + change(dy));
+        ball.vx = held_within_limit(ball.vx + change(dx));
+        ball.vy = held_within_limit(ball.vy + change(dy));
       }
     }
   }

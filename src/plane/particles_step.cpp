@@ -53,8 +53,8 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   const Word* const first = words_ + greater(column, 0) * config_.height + box.low.y;
   const Word* const next = has_next ? words_ + (column + 1) * config_.height + box.low.y : first;
   for (int32_t row = top; row < bottom; row += kLanes) {
-    store_rows(out + row, ((load_rows(first + row) & first_mask) >> shift) |
-                              ((load_rows(next + row) & next_mask) << back) | outside);
+    store(out + row,
+          ((load(first + row) & first_mask) >> shift) | ((load(next + row) & next_mask) << back) | outside);
   }
   for (int32_t row = 0; row < top; ++row) {
     out[row] = UINT32_MAX;
@@ -66,7 +66,7 @@ void ParticleWorld::load_window(const CellBox& box, const DiscStamp& disc, Vec2i
   const int32_t down = own.y - box.low.y;
   if (right >= 0 && down >= 0 && right < Window::kSide && down < Window::kSide) {
     for_rows(disc.diameter, [&](int32_t row) {
-      store_rows(out + down + row, load_rows(out + down + row) & ~(load_rows(disc.rows + row) << right));
+      store(out + down + row, load(out + down + row) & ~(load(disc.rows + row) << right));
     });
   } else if (right > -Window::kSide && right < Window::kSide) {
     const int32_t last = lesser(disc.diameter, height - down);
@@ -175,16 +175,15 @@ struct Shift {
   }
   // The cells that differ.
   Rows changed(int32_t row) const {
-    return (load_rows(own + row) << own_right) ^ (load_rows(next + row) << next_right);
+    return (load(own + row) << own_right) ^ (load(next + row) << next_right);
   }
   // Makes them differ.
   void put() const {
-    for_rows(height, [this](int32_t row) {
-      store_rows(column + row, load_rows(column + row) ^ (changed(row) << right));
-    });
+    for_rows(height,
+             [this](int32_t row) { store(column + row, load(column + row) ^ (changed(row) << right)); });
     if (wide) {
       for_rows(height, [this](int32_t row) {
-        store_rows(beyond + row, load_rows(beyond + row) ^ (changed(row) >> (32 - right)));
+        store(beyond + row, load(beyond + row) ^ (changed(row) >> (32 - right)));
       });
     }
   }
@@ -196,8 +195,8 @@ struct Shift {
 struct RoundSweep {
   int32_t across;
   Rows operator()(const Shift& shift, int32_t row) const {
-    const Rows own = load_rows(shift.own + row);
-    const Rows either = own | load_rows(shift.next + row);
+    const Rows own = load(shift.own + row);
+    const Rows either = own | load(shift.next + row);
     return (either | (either << across)) & ~(own << shift.own_right);
   }
 };
@@ -206,7 +205,7 @@ struct BoxSweep {
   const uint32_t* lines;
   uint32_t columns;
   Rows operator()(const Shift& shift, int32_t row) const {
-    return load_rows(lines + row) & columns & ~(load_rows(shift.own + row) << shift.own_right);
+    return load(lines + row) & columns & ~(load(shift.own + row) << shift.own_right);
   }
 };
 
@@ -236,11 +235,11 @@ __attribute__((always_inline)) inline bool put_if_free(const Shift& shift, const
       const int32_t row = i * kLanes;
       const Rows swept = sweep(shift, row);
       const Rows changed = shift.changed(row);
-      const Rows cells = load_rows(shift.column + row);
+      const Rows cells = load(shift.column + row);
       found |= cells & (swept << shift.right);
       low[i] = cells ^ (changed << shift.right);
       if constexpr (kWide) {
-        const Rows cells_beyond = load_rows(shift.beyond + row);
+        const Rows cells_beyond = load(shift.beyond + row);
         found |= cells_beyond & (swept >> back);
         high[i] = cells_beyond ^ (changed >> back);
       }
@@ -248,22 +247,21 @@ __attribute__((always_inline)) inline bool put_if_free(const Shift& shift, const
     if (any_of(found)) {
       return false;
     }
-    for_blocks<kMostRows>([&](int32_t i) __attribute__((always_inline)) {
-      store_rows(shift.column + i * kLanes, low[i]);
-    });
+    for_blocks<kMostRows>([&](int32_t i)
+                              __attribute__((always_inline)) { store(shift.column + i * kLanes, low[i]); });
     if constexpr (kWide) {
       // After those, some of which may be the same words, where the field is less high than these rows.
       for_blocks<kMostRows>([&](int32_t i) __attribute__((always_inline)) {
-        store_rows(shift.beyond + i * kLanes, high[i]);
+        store(shift.beyond + i * kLanes, high[i]);
       });
     }
     return true;
   }
   for (int32_t row = 0; row < shift.height; ++row) {
     const Rows swept = sweep(shift, row);
-    found |= load_rows(shift.column + row) & (swept << shift.right);
+    found |= load(shift.column + row) & (swept << shift.right);
     if constexpr (kWide) {
-      found |= load_rows(shift.beyond + row) & (swept >> back);
+      found |= load(shift.beyond + row) & (swept >> back);
     }
   }
   if (any_of(found)) {
@@ -344,7 +342,8 @@ __attribute__((always_inline)) inline void ParticleWorld::advance(uint32_t id) {
   // Both cells as one difference: the coordinates of a cell are what stands above its side.
   const int32_t in_cell = 16 + cell_shift_;
   if ((((end.x ^ start.x) | (end.y ^ start.y)) >> in_cell) != 0) {
-    relink(id, cell_of(start.x, start.y), cell_of(end.x, end.y));
+    unlink(id, cell_of(start.x, start.y));
+    link(id);
   }
   if (kPulled) {
     if ((gone.x | gone.y) != 0) {

@@ -133,7 +133,9 @@ inline void store(Word* rows, Block block) {
   *reinterpret_cast<UnalignedBlock*>(rows) = block;
 }
 inline bool any_of(Block block) {
-  return ((block[0] | block[1]) | (block[2] | block[3])) != 0;
+  typedef uint64_t Halves __attribute__((vector_size(16)));
+  const Halves halves = reinterpret_cast<Halves>(block);
+  return (halves[0] | halves[1]) != 0;
 }
 #else
 inline constexpr int32_t kRowsAtOnce = 1;

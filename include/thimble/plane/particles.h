@@ -301,7 +301,6 @@ class ParticleWorld {
   CellRange cells_around(const CellBox& box, int32_t reach) const;
   void link(uint32_t id);
   void unlink(uint32_t id, uint32_t cell);
-  void relink(uint32_t id, uint32_t from, uint32_t to);
   void set_awake_bit(uint32_t id);
   void clear_awake_bit(uint32_t id);
   uint32_t next_awake(uint32_t from) const;
