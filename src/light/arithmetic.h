@@ -1,4 +1,4 @@
-// Shares and mixtures of colours. Internal to src/.
+// Shares and mixtures of colours; how bright lights are, what metals mirror, what occlusion takes. Internal to src/.
 #ifndef THIMBLE_SRC_LIGHT_ARITHMETIC_H
 #define THIMBLE_SRC_LIGHT_ARITHMETIC_H
 
@@ -81,6 +81,98 @@ inline bool is_clear(const Frame& frame, uint8_t material) {
   const SurfaceKind kind = surface_of(frame, material).kind;
   return (kind == SurfaceKind::kGlass && (frame.effects & Effect::kGlass) != 0) ||
          (kind == SurfaceKind::kMedia && (frame.effects & Effect::kMedia) != 0);
+}
+
+// --- Lights
+
+/// Bits of a direction to a light: what the 32-bit tracer takes in worlds of up to 64, seen from within.
+inline constexpr int kLightBits = 15;
+
+/// The ray from a point to a light; false where there is none.
+[[gnu::always_inline]] inline bool aim_at(const Light& light, const Vec3Q8& from, LightRay* ray) {
+  ray->is_point = light.is_point;
+  if (light.is_point) {
+    const Vec3Q8 place{Q8::from_raw(light.place.x), Q8::from_raw(light.place.y), Q8::from_raw(light.place.z)};
+    return ray_towards(from, place, kLightBits, &ray->ray, &ray->place);
+  }
+  ray->ray = {from, shorten(light.place)};
+  return true;
+}
+
+/// Brightness of a point light at a distance: 1 / (1 + d / reach)^2, 2^16 = 1.
+constexpr uint32_t falloff_q16(uint32_t distance, uint32_t reach) {
+  if (reach == 0) {
+    return 0;
+  }
+  const uint32_t ratio_q8 = 256 + distance / reach;
+  return ratio_q8 > UINT16_MAX ? 0 : UINT32_MAX / (ratio_q8 * ratio_q8);
+}
+
+/// Sets the brightness of a ray that brings a share of its light (2^16 = 1); returns whether there is any.
+[[gnu::always_inline]] inline bool set_brightness(const Light& light, uint32_t share_q16, LightRay* ray) {
+  bool shines = false;
+  for (int i = 0; i < 3; ++i) {
+    ray->brightness[i] = (light.color_q8[i] * share_q16 + 2048) >> 12;  // 16 bits by 16
+    shines = shines || ray->brightness[i] != 0;
+  }
+  return shines;
+}
+
+// --- Mirrors
+
+/// Whether it mirrors any light.
+constexpr bool is_mirror(const Surface& metal) {
+  return metal.kind == SurfaceKind::kMetal && metal.mirror != 0;
+}
+
+/// Divides a ray's weight into what the metal mirrors and what it shows of itself. `cosine`: of the ray, Q14.
+[[gnu::always_inline]] inline void divide_weight(const Surface& metal, int32_t cosine, Weight* own,
+                                                 Weight* mirrored) {
+  const uint32_t share = metal.mirror * 257U;  // 65535 = all
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t reflected = fresnel_q16(cosine, channel_of(metal.albedo, i) * 257U);
+    mirrored->c[i] = weighed(weighed(own->c[i], reflected), share + share / 65535);
+    own->c[i] = weighed(own->c[i], 65535 - share);
+  }
+}
+
+/// The direction of ray `number` of a rough metal, of what a smooth one would mirror at a face of `axis`.
+[[gnu::always_inline]] inline Vec3i spread(const Vec3i& mirrored, const Surface& metal, int axis,
+                                           bool towards_smaller, int number) {
+  Vec3i direction = shorten(roughen(unit_q14(mirrored), metal.roughness, number));
+  if (!leaves_face(direction, axis, towards_smaller)) {
+    direction = reflect(direction, axis);  // back from the face
+  }
+  return direction;
+}
+
+// --- Occlusion
+
+/// How much light comes by a ray that meets nothing.
+inline constexpr uint32_t kOpenShare = 1U << 12;
+
+/// How many rays a point sends.
+constexpr int occlusion_rays(const Occlusion& occlusion) {
+  return occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
+}
+
+/// How open the way of one is that meets something at `way` (1/256 voxel) along an axis of which its direction has
+/// `component`.
+/// All directions of the pattern have one length, 7 bits; the way has 23.
+[[gnu::always_inline]] inline uint32_t share_of_way(const Occlusion& occlusion, uint32_t way,
+                                                    uint32_t component) {
+  const uint32_t distance_q8 = way * kOcclusionLength / component;
+  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
+  return distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpenShare;  // 24 bits by 4
+}
+
+/// Lets a face have as much light as its rays, of which `open` is the sum.
+[[gnu::always_inline]] inline void darken(const Occlusion& occlusion, uint32_t open, int rays, Color* light) {
+  const uint32_t closed = kOpenShare - open / static_cast<uint32_t>(rays);
+  const uint32_t factor = kOpenShare - closed * occlusion.strength / 255;
+  for (uint32_t& channel : light->c) {
+    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
+  }
 }
 
 }  // namespace thimble::lit

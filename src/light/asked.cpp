@@ -1,9 +1,9 @@
-// Lit pictures whose rays somebody else traces: the loop of detail/pixel.h, compiled with a frame that is told the
-// answers. As many of them as in dispatch.cpp.
+// Lit pictures with deferred queries: the loop of detail/pixel.h, instantiated with an AskedFrame. As many of them as in
+// dispatch.cpp.
 #include "thimble/light/host/asked.h"
 
-#include "folded.h"
-#include "through.h"
+#include "dispatch.h"
+#include "transmission.h"
 
 namespace thimble::lit {
 namespace {
@@ -16,7 +16,7 @@ void follow_asked(AskedFrame& frame, const PendingRay& now, PendingRay* pending,
 template <EffectSet kSet>
 void shine(AskedFrame& frame, Color* sum) {
   KnownRay& ray = *frame.ray;
-  const Color color = slope_color<kSet>(frame, ray.spot, ray.slope);
+  const Color color = face_color<kSet>(frame, ray.spot, ray.slope);
   ray.has_lights = true;
   add(color, ray.weight, sum);
 }
@@ -137,8 +137,8 @@ bool light_ray_of(AskedFrame& frame, size_t number, const Spot& spot, const Slop
 }
 
 Steps steps_of(EffectSet effects) {
-  return choose<kFolded, Effect::kWater, Effect::kGlass | Effect::kMedia, Effect::kMirror, Effect::kShadows,
-                Effect::kAmbientOcclusion>(effects);
+  return choose<kAlwaysCompiled, Effect::kWater, Effect::kGlass | Effect::kMedia, Effect::kMirror,
+                Effect::kShadows, Effect::kAmbientOcclusion>(effects);
 }
 
 }  // namespace thimble::lit

@@ -2,7 +2,7 @@
 #include "thimble/light/render.h"
 
 #include "arithmetic.h"
-#include "asking.h"
+#include "queries.h"
 
 namespace thimble {
 namespace {

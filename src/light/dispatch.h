@@ -1,12 +1,16 @@
 // Picks the renderer for a set of effects that is known only now: one for each choice of those that trace rays of their
-// own. The others are in all of them, and cost a test a ray where they are off. Internal to src/.
+// own. Internal to src/.
 #ifndef THIMBLE_SRC_LIGHT_DISPATCH_H
 #define THIMBLE_SRC_LIGHT_DISPATCH_H
 
-#include "folded.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {
+
+/// Compiled into each of them: effects that trace no rays of their own, and cost a test a ray where they are off.
+inline constexpr EffectSet kAlwaysCompiled = Effect::kDirectLight | Effect::kEmission | Effect::kFog |
+                                             Effect::kSky | Effect::kDepthCue | Effect::kSmoothNormals |
+                                             Effect::kEdges | Effect::kRipples;
 
 /// With or without each of the effects that are left to choose.
 template <EffectSet kChosen, class AnyFrame>
@@ -40,8 +44,9 @@ Status choose_clear(const AnyFrame& frame, const Band& band, LitCounts* counts) 
 
 template <class AnyFrame>
 Status choose_renderer(const AnyFrame& frame, const Band& band, LitCounts* counts) {
-  return (frame.effects & Effect::kWater) != 0 ? choose_clear<kFolded | Effect::kWater>(frame, band, counts)
-                                               : choose_clear<kFolded>(frame, band, counts);
+  return (frame.effects & Effect::kWater) != 0
+             ? choose_clear<kAlwaysCompiled | Effect::kWater>(frame, band, counts)
+             : choose_clear<kAlwaysCompiled>(frame, band, counts);
 }
 
 }  // namespace thimble::lit

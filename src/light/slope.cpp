@@ -8,11 +8,55 @@
 // where it leaves its course by kEdgeStep at once, it is taken to go on as before. So a cube stays a cube.
 #include "thimble/light/host/slope.h"
 
-#include "slope_parts.h"
+#include "../base/bits.h"
+#include "../base/integers.h"
+#include "thimble/light/host/optics.h"
+#include "thimble/light/host/slope_window.h"
 #include "thimble/trace/secondary_ray.h"
 
 namespace thimble::lit {
 namespace {
+
+// A solid block; corner in voxels of the window, which the block may exceed.
+void fill(const Vec3i& corner, int32_t side, SlopeWindow* window) {
+  const int32_t from = greater(corner.x, 0);
+  const unsigned bits = (1U << lesser(corner.x + side, kSlopeSide)) - (1U << from);
+  for (int32_t z = greater(corner.z, 0); z < lesser(corner.z + side, kSlopeSide); ++z) {
+    for (int32_t y = greater(corner.y, 0); y < lesser(corner.y + side, kSlopeSide); ++y) {
+      window->rows[z][y] = static_cast<uint16_t>(window->rows[z][y] | bits);
+    }
+  }
+}
+
+// Octants of a node of half side `half` at `corner` (of the window) that reach into the window.
+unsigned octants_inside(const Vec3i& corner, int32_t half) {
+  constexpr uint8_t kLower[3] = {0x55, 0x33, 0x0F};
+  unsigned octants = 0xFF;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int32_t low = corner[axis];
+    const bool lower = low < kSlopeSide && low + half > 0;
+    const bool upper = low + half < kSlopeSide && low + 2 * half > 0;
+    octants &= (lower ? kLower[axis] : 0U) | (upper ? 0xFFU & ~kLower[axis] : 0U);
+  }
+  return octants;
+}
+
+// The voxels of a node of level 1, which begins at an even place of the window and so lies inside.
+void put_voxels(const CompactTree& tree, const Body& body, uint32_t index, unsigned mask, const Vec3i& corner,
+                SlopeWindow* window) {
+  if (!body.holds_all()) {
+    unsigned kept = 0;
+    uint32_t number = tree.first_child(index);
+    for (unsigned left = mask; left != 0; left &= left - 1, ++number) {
+      kept |= body.holds(tree.voxel_material(number)) ? left & (0U - left) : 0U;
+    }
+    mask = kept;
+  }
+  for (int pair = 0; pair < 4; ++pair) {
+    uint16_t& row = window->rows[corner.z + (pair >> 1)][corner.y + (pair & 1)];
+    row = static_cast<uint16_t>(row | ((mask >> (2 * pair)) & 3U) << corner.x);
+  }
+}
 
 // What R^2 - d^2 adds up to over the whole voxels between two planes needs these sums for each plane.
 struct Sums {
@@ -218,6 +262,10 @@ bool is_shell(const SlopeWindow& window, Vec3i voxel, const Vec3i& out) {
   return false;
 }
 
+bool is_along(const Vec3i& normal, int axis) {
+  return normal[axis == 0 ? 1 : 0] == 0 && normal[axis == 2 ? 1 : 2] == 0;
+}
+
 }  // namespace
 
 bool Body::holds(uint8_t material) const {
@@ -235,6 +283,85 @@ bool Body::has(const CompactTree& tree, const Vec3i& voxel) const {
   return material_at(tree, voxel, &material) && holds(material);
 }
 
+// Reads the window off the tree: every node that reaches into it once. Levels fall with every step down, and
+// an octant is taken off a list fixed on the way in, so that it ends whatever the tree holds.
+void read_slope_window(const CompactTree& tree, const Body& body, SlopeWindow* window, uint32_t* visits) {
+  struct OpenNode {
+    uint32_t first_child;
+    uint8_t mask;
+    uint8_t left;
+  } stack[kMaxLevel + 1];
+  const Vec3i& low = window->low;
+  uint32_t index = 0;
+  int level = tree.level();
+  Vec3i place;  // of the node in the world
+  for (;;) {
+    if (index < tree.node_count()) {
+      const uint8_t mask = tree.mask(index);
+      const Vec3i corner{place.x - low.x, place.y - low.y, place.z - low.z};
+      ++*visits;
+      if (mask == 0) {
+        if (body.holds_all() || body.holds(tree.block_material(index))) {
+          fill(corner, int32_t{1} << level, window);
+        }
+      } else if (level == 1) {
+        put_voxels(tree, body, index, mask, corner, window);
+      } else {
+        const unsigned left = mask & octants_inside(corner, int32_t{1} << (level - 1));
+        stack[level] = {tree.first_child(index), mask, static_cast<uint8_t>(left)};
+        --level;
+      }
+    }
+    // On to the next octant of the lowest node that has one left.
+    do {
+      ++level;
+    } while (level <= tree.level() && stack[level].left == 0);
+    if (level > tree.level()) {
+      return;
+    }
+    OpenNode& open = stack[level];
+    const unsigned octant = bits::lowest_bit(open.left);
+    open.left = static_cast<uint8_t>(open.left & (open.left - 1U));
+    index = open.first_child + bits::popcount8(open.mask & ((1U << octant) - 1U));
+    --level;
+    const int32_t side = int32_t{1} << level;
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = (place[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
+    }
+  }
+}
+
+int slope_axis(const Vec3i& normal, const Face& face) {
+  if (is_along(normal, face.axis)) {
+    return -1;
+  }
+  int along = face.axis;
+  for (int axis = 0; axis < 3; ++axis) {
+    along = magnitude_32(normal[axis]) > magnitude_32(normal[along]) ? axis : along;
+  }
+  return along;
+}
+
+Vec3i unit_of_slope(const Vec3i& normal, const Face& face) {
+  Vec3i left = normal;
+  if (face.negative ? left[face.axis] > 0 : left[face.axis] < 0) {
+    left[face.axis] = 0;  // a face within a slope that leans the other way
+  }
+  if (is_along(left, face.axis)) {
+    left = {};
+    left[face.axis] = face.negative ? -kUnitQ14 : kUnitQ14;
+    return left;
+  }
+  // `unit_q14` takes 20 bits.
+  const int excess =
+      bits::bit_length(magnitude_32(left.x) | magnitude_32(left.y) | magnitude_32(left.z)) - 20;
+  for (int axis = 0; axis < 3 && excess > 0; ++axis) {
+    const auto shifted = static_cast<int32_t>(magnitude_32(left[axis]) >> excess);
+    left[axis] = left[axis] < 0 ? -shifted : shifted;
+  }
+  return unit_q14(left);
+}
+
 Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at, const Face& face,
                      uint32_t* visits) {
   Vec3i flat;
@@ -248,7 +375,7 @@ Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at
     middle[axis] = voxel - window.low[axis] - (axis == face.axis && !face.negative ? 1 : 0);
     point[axis] = (at[axis].raw - window.low[axis] * Q8::kOne) / (Q8::kOne / kSlopeUnit);
   }
-  *visits += read_window(tree, body, &window);
+  read_slope_window(tree, body, &window, visits);
   Vec3i out;
   out[face.axis] = face.negative ? -1 : 1;
   if (is_shell(window, middle, out)) {
@@ -256,14 +383,9 @@ Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at
     Columns(&window, middle, face.axis, !face.negative, false).follow(out);
   }
   Vec3i normal = gradient(window, point);
-  const int side = face.axis == 0 ? 1 : 0;
-  const int other = face.axis == 2 ? 1 : 2;
-  if (normal[side] == 0 && normal[other] == 0) {
+  const int along = slope_axis(normal, face);
+  if (along < 0) {
     return flat;
-  }
-  int along = face.axis;
-  for (int axis = 0; axis < 3; ++axis) {
-    along = magnitude_32(normal[axis]) > magnitude_32(normal[along]) ? axis : along;
   }
   Columns columns(&window, middle, along, along == face.axis ? !face.negative : normal[along] > 0, true);
   const bool wall = columns.follow(out);
@@ -276,22 +398,7 @@ Vec3i surface_normal(const CompactTree& tree, const Body& body, const Vec3Q8& at
   if (columns.changed) {
     normal = gradient(window, point);
   }
-  if (face.negative ? normal[face.axis] > 0 : normal[face.axis] < 0) {
-    normal[face.axis] = 0;  // a face within a slope that leans the other way
-  }
-  if (normal[side] == 0 && normal[other] == 0) {
-    return flat;
-  }
-  // `unit_q14` takes 20 bits.
-  const uint32_t largest = magnitude_32(normal.x) | magnitude_32(normal.y) | magnitude_32(normal.z);
-  const int excess = bits::bit_length(largest) - 20;
-  if (excess > 0) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const int32_t shifted = static_cast<int32_t>(magnitude_32(normal[axis]) >> excess);
-      normal[axis] = normal[axis] < 0 ? -shifted : shifted;
-    }
-  }
-  return unit_q14(normal);
+  return unit_of_slope(normal, face);
 }
 
 }  // namespace thimble::lit

@@ -130,7 +130,7 @@ struct DrawnBalls {
 
 namespace lit {
 
-/// A frame with balls: what asks the tree asks them, too.
+/// A frame with balls: each query of the tree is one of the balls, too.
 struct BallFrame : Frame {
   BallFrame(const Frame& frame, const DrawnBalls& all) : Frame(frame), drawn(all) {}
   DrawnBalls drawn;

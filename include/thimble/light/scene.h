@@ -99,14 +99,14 @@ struct Effect {
   static constexpr EffectSet kFog = 1U << 8;        ///< the air itself
   static constexpr EffectSet kSky = 1U << 9;        ///< a gradient where rays leave the world
   static constexpr EffectSet kDepthCue = 1U << 10;  ///< the paper's: brightness falls with depth
-  /// Light sees the slope of a surface, not the faces of its voxels. Only who asks for it gets it.
+  /// Light sees the slope of a surface, not the faces of its voxels. Off by default.
   static constexpr EffectSet kSmoothNormals = 1U << 11;
   /// What glows lights what is around it: lamps in `LitScene::lights` that whoever makes the scene puts where
   /// it glows. Drawn by kDirectLight and kShadows, which it needs; no code of its own.
   static constexpr EffectSet kEmitterLight = 1U << 12;
-  /// Edges between faces of about the same grey are dark, for displays of few greys. Only who asks for it gets it.
+  /// Edges between faces of about the same grey are dark, for displays of few greys. Off by default.
   static constexpr EffectSet kEdges = 1U << 13;
-  /// Small waves on the surface of water, which show the sun. Drawn with kWater. Only who asks for it gets it.
+  /// Small waves on the surface of water, which show the sun. Drawn with kWater. Off by default.
   static constexpr EffectSet kRipples = 1U << 14;
   static constexpr int kCount = 15;
   static constexpr EffectSet kAll = (1U << kCount) - 1;

@@ -1,7 +1,8 @@
-// Boundaries of clear media: reflection and refraction by Snell's law, shared out by Schlick's formula, and
-// absorption between them (Beer and Lambert).
-#include "../arithmetic.h"
-#include "thimble/light/detail/pixel.h"
+// Boundaries of clear media, by their faces or (Effect::kSmoothNormals) by their slopes: reflection and refraction by
+// Snell's law, shared out by Schlick's formula, and absorption between them (Beer and Lambert).
+#include "../queries.h"
+#include "boundary.h"
+#include "thimble/light/host/slope.h"
 
 namespace thimble::lit {
 namespace {
@@ -25,56 +26,6 @@ uint32_t index_q12(const Frame& frame, const Medium& medium) {
   }
   const uint32_t index = surface.index_q12;
   return index < kMinIndexQ12 ? kMinIndexQ12 : index > kMaxIndexQ12 ? kMaxIndexQ12 : index;
-}
-
-// Least component along the normal of a ray that is sent from a bent surface, of 2^14: what the bend turns
-// the wrong way through the flat face runs along it.
-constexpr int32_t kLeastRise = 128;
-
-Vec3i turned_to(Vec3i direction, int axis, bool upwards) {
-  if (upwards ? direction[axis] < kLeastRise : direction[axis] > -kLeastRise) {
-    direction[axis] = upwards ? kLeastRise : -kLeastRise;
-  }
-  return direction;
-}
-
-// Where a ray that is sent from the surface of the water begins, so that it is on the side where it belongs,
-// also where it begins in the next column: what is reflected by a step of the wave runs towards it, and a
-// point rounded to 1/256 voxel may lie on a column's edge. It is moved up or down to that column's top.
-Vec3Q8 on_its_side(const Frame& frame, const Meeting& meeting, const Vec3Q8& at, const Vec3i& direction,
-                   bool in_water) {
-  const WaterSurface& water = frame.scene.water;
-  if (!meeting.at_surface) {
-    return at;
-  }
-  const Vec3i voxel = starting_voxel({at, direction});
-  const int32_t x = voxel.x - water.corner.x;
-  const int32_t y = voxel.y - water.corner.y;
-  if (x < 0 || y < 0 || x >= water.width || y >= water.depth || water.height_q16(x, y) < 0) {
-    return at;
-  }
-  const int32_t top = water.corner.z * Q8::kOne + water.height_q8(x, y);
-  Vec3Q8 moved = at;
-  if (in_water ? at.z.raw > top : at.z.raw < top) {
-    moved.z = Q8::from_raw(top);
-  }
-  return moved;
-}
-
-void send(Frame& frame, const PendingRay& from, LitRayKind kind, int8_t axis, const Vec3Q8& at,
-          const Vec3i& direction, uint32_t share_q16, PendingRay* pending, size_t* count) {
-  PendingRay out;
-  out.ray = {at, direction};
-  out.bounces = static_cast<uint8_t>(from.bounces + 1);
-  out.kind = kind;
-  out.axis = axis;
-  for (int i = 0; i < 3; ++i) {
-    out.weight.c[i] = weighed(from.weight.c[i], share_q16);
-  }
-  if (is_seen(out.weight)) {
-    count_ray(frame, kind);
-    pending[(*count)++] = out;
-  }
 }
 
 }  // namespace
@@ -106,7 +57,6 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   }
   const Vec3Q8 at = meeting.at_water ? meeting.at : start_on_face(now->ray, meeting.hit);
   const Vec3i unit = unit_q14(now->ray.direction);
-  const uint32_t eta = eta_q12(here, there);
   // Which way what is reflected goes. At a step of a wave a ray may come to the surface from the wrong side;
   // it then goes straight on: into a crest where it is; out of one that it has entered from above not at all,
   // but on below the next column's top, or it would be bent twice.
@@ -115,14 +65,9 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
   if (meeting.at_surface && upwards != (now->ray.direction[axis] < 0)) {
     go_straight(frame, now, leg, meeting);
     // Out of the water downwards: on in it.
-    now->ray.origin = on_its_side(frame, meeting, at, now->ray.direction, true);
+    now->ray.origin = beside_surface(frame.scene.water, at, now->ray.direction, true);
     return true;
   }
-  Vec3i reflected = reflect(now->ray.direction, axis);
-  Vec3i refracted;
-  int32_t cosine_in = unit[axis];
-  bool passes = false;
-  int32_t cosine_out = 0;
   Vec3i normal;
   bool bent = false;
   if (meeting.at_surface) {
@@ -130,30 +75,100 @@ bool cross(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, Pend
     // A ray that comes from behind the slope meets the flat surface.
     bent = (normal.x != 0 || normal.y != 0) && (dot_q14(unit, normal) < 0) == upwards;
   }
+  Split split;
   if (bent) {
-    normal = unit_q14(normal);
-    cosine_in = dot_q14(unit, normal);
-    reflected = turned_to(shorten(reflect(unit, normal)), axis, upwards);
-    passes = refract(unit, normal, eta, &refracted);
-    if (passes) {
-      cosine_out = dot_q14(refracted, normal);
-      refracted = turned_to(refracted, axis, !upwards);
-    }
+    split = split_at(unit, unit_q14(normal), here, there);
+    split.reflected = turned_from(split.reflected, axis, upwards);
+    split.refracted = turned_from(split.refracted, axis, !upwards);
   } else {
-    passes = refract(unit, axis, eta, &refracted);
-    cosine_out = refracted[axis];
+    split.reflected = reflect(now->ray.direction, axis);
+    if (refract(unit, axis, eta_q12(here, there), &split.refracted)) {
+      split.back = fresnel_q16(here < there ? unit[axis] : split.refracted[axis], r0_q16(here, there));
+    }
   }
-  const int32_t cosine = here < there ? cosine_in : cosine_out;
-  const uint32_t back = passes ? fresnel_q16(cosine, r0_q16(here, there)) : kOneQ16;
   const LitRayKind kind = meeting.at_water ? LitRayKind::kWaterRay : LitRayKind::kGlassRay;
   const bool is_wet = leg->medium.kind == Medium::kWaterBody;
-  send(frame, *now, kind, meeting.hit.axis, on_its_side(frame, meeting, at, reflected, is_wet), reflected,
-       back, pending, count);
-  if (passes) {
-    send(frame, *now, kind, meeting.hit.axis, on_its_side(frame, meeting, at, refracted, !is_wet), refracted,
-         kOneQ16 - back, pending, count);
+  for (int part = 0; part < (split.back == kOneQ16 ? 1 : 2); ++part) {
+    const Vec3i& direction = part == 0 ? split.reflected : split.refracted;
+    const Vec3Q8 start =
+        meeting.at_surface ? beside_surface(frame.scene.water, at, direction, is_wet == (part == 0)) : at;
+    send_share(frame, *now, kind, axis, {start, direction}, part == 0 ? split.back : kOneQ16 - split.back,
+               pending, count);
   }
   return false;
+}
+
+namespace {
+
+// Whether a point is in what the ray is sent into.
+bool is_in(const Frame& frame, const Medium& medium, const Vec3Q8& at) {
+  uint8_t material = 0;
+  const bool solid = material_at(frame.tree, {at.x.floor(), at.y.floor(), at.z.floor()}, &material);
+  return medium.kind == Medium::kSolid ? solid && material == medium.material : !solid;
+}
+
+template <class AnyFrame>
+[[gnu::always_inline]] inline bool cross_bent(AnyFrame& frame, PendingRay* now, Leg* leg,
+                                              const Meeting& meeting, PendingRay* pending, size_t* count) {
+  const uint32_t here = index_q12(frame, leg->medium);
+  const uint32_t there = index_q12(frame, meeting.beyond);
+  const int8_t axis = meeting.hit.axis;
+  if (meeting.at_water || here == there || axis < 0 || now->bounces >= frame.scene.bounces) {
+    return cross(frame, now, leg, meeting, pending, count);
+  }
+  // The slope is that of the solid it goes into or, where there is none or one that bends less, out of.
+  const bool entering =
+      meeting.beyond.kind == Medium::kSolid && (leg->medium.kind != Medium::kSolid || there > here);
+  const bool forwards = now->ray.direction[axis] > 0;
+  const Body body{frame.scene.surfaces, frame.effects, static_cast<uint16_t>(entering ? there : here)};
+  const Vec3Q8 at = start_on_face(now->ray, meeting.hit);
+  uint32_t visits = 0;
+  Vec3i normal = surface_normal(source_of_slopes(frame), body, at, {axis, forwards == entering}, &visits);
+  if constexpr (AnyFrame::kIsAsked) {
+    if (frame.is_open) {
+      return false;
+    }
+  }
+  frame.counts.node_visits[static_cast<int>(now->kind)] += visits;
+  if (magnitude_32(normal[axis]) == static_cast<uint32_t>(kUnitQ14)) {
+    return cross(frame, now, leg, meeting, pending, count);
+  }
+  if (!entering) {
+    normal = {-normal.x, -normal.y, -normal.z};
+  }
+  const Vec3i unit = unit_q14(now->ray.direction);
+  // From behind the slope it is grazed, and all light goes straight on.
+  Split split;
+  split.reflected = unit;
+  if (dot_q14(unit, normal) < 0) {
+    split = split_at(unit, normal, here, there);
+  }
+  // Rays start above the steps of the slope, or below them where they go into the body; where that is something else, on
+  // the face and away from it.
+  for (int part = 0; part < (split.back == kOneQ16 ? 1 : 2); ++part) {
+    const bool back = part == 0;
+    const Vec3i direction = back ? split.reflected : shorten(split.refracted);
+    Vec3Q8 start = at;
+    for (int i = 0; i < 3; ++i) {
+      start[i].raw += (back ? normal[i] : -normal[i]) * kSlopeRise / kUnitQ14;
+    }
+    const bool raised = is_in(frame, back ? leg->medium : meeting.beyond, start);
+    const Ray out{raised ? start : at, raised ? direction : turned_from(direction, axis, forwards != back)};
+    send_share(frame, *now, LitRayKind::kGlassRay, raised ? int8_t{-1} : axis, out,
+               back ? split.back : kOneQ16 - split.back, pending, count);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool cross_slope(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count) {
+  return cross_bent(frame, now, leg, meeting, pending, count);
+}
+bool cross_slope(AskedFrame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
+                 size_t* count) {
+  return cross_bent(frame, now, leg, meeting, pending, count);
 }
 
 }  // namespace thimble::lit

@@ -1,6 +1,6 @@
 // Metals: what they mirror takes on their colour, and less of it the flatter it comes in (Schlick). A rough
 // one spreads what the camera sees in it over four rays.
-#include "../metal.h"
+#include "../arithmetic.h"
 
 namespace thimble::lit {
 

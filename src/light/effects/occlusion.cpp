@@ -1,8 +1,7 @@
 // Ambient occlusion: how much of the hemisphere above a face is open. A fixed pattern of rays; what is met
 // darkens the less the farther away it is, so that no edge of a layer shows.
 #include "../arithmetic.h"
-#include "../asking.h"
-#include "../occluding.h"
+#include "../queries.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {

@@ -1,10 +1,6 @@
-// Ripples: the surface of the water is bent by waves that are too small for its
-// columns, and shows the sun. Apart from glass.cpp and the sky, with small
-// parts of its own, so that images without ripples keep their bytes.
+// Ripples: the surface of the water is bent by waves that are too small for its columns, and shows the sun.
 #include "../../base/integers.h"
-#include "../arithmetic.h"
-#include "slope_rays.h"
-#include "thimble/light/detail/pixel.h"
+#include "boundary.h"
 
 namespace thimble::lit {
 namespace {
@@ -58,36 +54,6 @@ uint32_t water_index(const Frame& frame) {
       clamped(int32_t{frame.scene.water_material.index_q12}, kMinIndexQ12, kMaxIndexQ12));
 }
 
-// As in glass.cpp: a point that lies in the next column is moved to that one's top, to the side where the ray belongs.
-Vec3Q8 beside_surface(const WaterSurface& water, Vec3Q8 at, const Vec3i& direction, bool in_water) {
-  const Vec3i voxel = starting_voxel({at, direction});
-  const int32_t x = voxel.x - water.corner.x;
-  const int32_t y = voxel.y - water.corner.y;
-  if (x >= 0 && y >= 0 && x < water.width && y < water.depth && water.height_q16(x, y) >= 0) {
-    const int32_t top = water.corner.z * Q8::kOne + water.height_q8(x, y);
-    if (in_water ? at.z.raw > top : at.z.raw < top) {
-      at.z = Q8::from_raw(top);
-    }
-  }
-  return at;
-}
-
-void send_rippled(Frame& frame, const PendingRay& from, const Vec3Q8& at, const Vec3i& direction,
-                  bool in_water, uint32_t share_q16, PendingRay* pending, size_t* count) {
-  PendingRay out;
-  out.ray = {beside_surface(frame.scene.water, at, direction, in_water), direction};
-  out.bounces = static_cast<uint8_t>(from.bounces + 1);
-  out.kind = LitRayKind::kWaterRay;
-  out.axis = 2;
-  for (int i = 0; i < 3; ++i) {
-    out.weight.c[i] = weighed(from.weight.c[i], share_q16);
-  }
-  if (is_seen(out.weight)) {
-    count_ray(frame, LitRayKind::kWaterRay);
-    pending[(*count)++] = out;
-  }
-}
-
 }  // namespace
 
 bool cross_ripples(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting, PendingRay* pending,
@@ -105,16 +71,14 @@ bool cross_ripples(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeti
   }
   const uint32_t here = is_wet ? index : kOneQ12;
   const uint32_t there = is_wet ? kOneQ12 : index;
-  Vec3i refracted;
-  uint32_t back = kOneQ16;
-  if (refract(unit, normal, eta_q12(here, there), &refracted)) {
-    back = fresnel_q16(is_wet ? dot_q14(refracted, normal) : along, r0_q16(here, there));
-  }
-  send_rippled(frame, *now, meeting.at, turned_from(shorten(reflect(unit, normal)), 2, !is_wet), is_wet, back,
-               pending, count);
-  if (back != kOneQ16) {
-    send_rippled(frame, *now, meeting.at, turned_from(refracted, 2, is_wet), !is_wet, kOneQ16 - back, pending,
-                 count);
+  const Split split = split_at(unit, normal, here, there);
+  for (int part = 0; part < (split.back == kOneQ16 ? 1 : 2); ++part) {
+    const bool back = part == 0;
+    const Vec3i direction =
+        back ? turned_from(split.reflected, 2, !is_wet) : turned_from(split.refracted, 2, is_wet);
+    const Vec3Q8 start = beside_surface(frame.scene.water, meeting.at, direction, is_wet == back);
+    send_share(frame, *now, LitRayKind::kWaterRay, 2, {start, direction},
+               back ? split.back : kOneQ16 - split.back, pending, count);
   }
   return false;
 }

@@ -1,7 +1,7 @@
 // Hard shadows: whether something solid is between a spot and a light. Exact, since the ray starts on the
 // face: the reference of the tests traces the same one.
 #include "../arithmetic.h"
-#include "../asking.h"
+#include "../queries.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {

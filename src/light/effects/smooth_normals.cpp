@@ -1,21 +1,12 @@
 // Smooth normals: light sees the slope of a surface instead of the faces of its voxels. What is hit, and what
 // a ray then meets, is as exact as without; only where rays go out from changes, and only where the slope is
 // not the face's own: from above the steps of the slope, or each of them would lie in the shadow of the next.
-#include "../arithmetic.h"
-#include "../asking.h"
-#include "slope_rays.h"
-#include "thimble/light/detail/pixel.h"
+#include "../queries.h"
+#include "boundary.h"
 #include "thimble/light/host/slope.h"
 
 namespace thimble::lit {
 namespace {
-
-// As those of direct_light.cpp, which keeps its own so that an image without slopes keeps its bytes.
-constexpr int kDirectionBits = 15;
-uint32_t fading_q16(uint32_t distance, uint32_t reach) {
-  const uint32_t ratio_q8 = reach == 0 ? UINT32_MAX : 256 + distance / reach;
-  return ratio_q8 > UINT16_MAX ? 0 : UINT32_MAX / (ratio_q8 * ratio_q8);
-}
 
 // A direction of the occlusion pattern round the normal: by half a turn about the line half way between the
 // normal and its largest axis.
@@ -51,12 +42,11 @@ template <class AnyFrame>
 [[gnu::always_inline]] inline void occlude_slope(AnyFrame& frame, const Spot& spot, const Slope& slope,
                                                  Color* light) {
   const Occlusion& occlusion = frame.scene.occlusion;
-  const int rays = occlusion.rays < kOcclusionDirections ? occlusion.rays : kOcclusionDirections;
+  const int rays = occlusion_rays(occlusion);
   if (!slope.raised || rays == 0 || occlusion.reach == 0) {
     occlude(frame, spot, light);
     return;
   }
-  constexpr uint32_t kOpen = 1U << 12;
   const Turn turn(slope.normal);
   const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
   uint32_t open = 0;
@@ -64,16 +54,16 @@ template <class AnyFrame>
     const auto share_along = [&](const Vec3i& direction, const Hit& hit) {
       const uint32_t distance =
           static_cast<uint32_t>(distance_q8(direction, hit.t_numerator, hit.t_denominator));
-      return distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpen;  // 24 bits by 4
+      return distance < reach_q8 ? (distance << 4) / occlusion.reach : kOpenShare;  // 24 bits by 4
     };
-    uint32_t share = kOpen;
+    uint32_t share = kOpenShare;
     if constexpr (AnyFrame::kIsAsked) {
-      // Most answers are misses, for which nobody wants to know the direction.
+      // Most answers are misses, which need no direction.
       const auto aimed = [&] { return Ray{slope.start, turn.direction(i)}; };
       count_ray(frame, LitRayKind::kOcclusion);
       Hit hit;
       find_around(frame, aimed, &hit);
-      share = is_opaque(frame, hit) ? share_along(aimed().direction, hit) : kOpen;
+      share = is_opaque(frame, hit) ? share_along(aimed().direction, hit) : kOpenShare;
     } else {
       const Ray ray{slope.start, turn.direction(i)};
       count_ray(frame, LitRayKind::kOcclusion);
@@ -86,11 +76,7 @@ template <class AnyFrame>
     }
     open += share;
   }
-  const uint32_t closed = kOpen - open / static_cast<uint32_t>(rays);
-  const uint32_t factor = kOpen - closed * occlusion.strength / 255;
-  for (uint32_t& channel : light->c) {
-    channel = ((channel < UINT16_MAX ? channel : UINT16_MAX) * factor) >> 12;
-  }
+  darken(occlusion, open, rays, light);
 }
 
 template <class AnyFrame>
@@ -132,33 +118,21 @@ Slope slope_at(AskedFrame& frame, LitRayKind kind, const Spot& spot) {
 }
 
 bool light_ray(const Light& light, const Spot& spot, const Slope& slope, LightRay* ray) {
-  uint32_t share_q16 = UINT16_MAX;
-  ray->is_point = light.is_point;
-  if (light.is_point) {
-    const Vec3Q8 place{Q8::from_raw(light.place.x), Q8::from_raw(light.place.y), Q8::from_raw(light.place.z)};
-    if (!ray_towards(slope.start, place, kDirectionBits, &ray->ray, &ray->place)) {
-      return false;
-    }
-    const int32_t distance =
-        distance_q8(ray->ray.direction, ray->place.t_numerator, ray->place.t_denominator);
-    share_q16 = fading_q16(static_cast<uint32_t>(distance), light.reach);
-  } else {
-    ray->ray = {slope.start, shorten(light.place)};
-  }
-  if (!slope.raised && !leaves_face(ray->ray.direction, spot.face.axis, spot.face.negative)) {
+  if (!aim_at(light, slope.start, ray) ||
+      (!slope.raised && !leaves_face(ray->ray.direction, spot.face.axis, spot.face.negative))) {
     return false;
   }
   const int32_t cosine = dot_q14(unit_q14(ray->ray.direction), slope.normal);
   if (cosine <= 0) {
     return false;
   }
-  share_q16 = (share_q16 * static_cast<uint32_t>(lesser(cosine, kUnitQ14))) >> 14;
-  bool shines = false;
-  for (int i = 0; i < 3; ++i) {
-    ray->brightness[i] = (light.color_q8[i] * share_q16 + 2048) >> 12;  // 16 bits by 16
-    shines = shines || ray->brightness[i] != 0;
+  uint32_t share_q16 = UINT16_MAX;
+  if (light.is_point) {
+    const int32_t distance =
+        distance_q8(ray->ray.direction, ray->place.t_numerator, ray->place.t_denominator);
+    share_q16 = falloff_q16(static_cast<uint32_t>(distance), light.reach);
   }
-  return shines;
+  return set_brightness(light, (share_q16 * static_cast<uint32_t>(lesser(cosine, kUnitQ14))) >> 14, ray);
 }
 
 void occlude(Frame& frame, const Spot& spot, const Slope& slope, Color* light) {
@@ -174,7 +148,7 @@ void occlude(BallFrame& frame, const Spot& spot, const Slope& slope, Color* ligh
 void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope& slope, PendingRay* pending,
                    size_t* count) {
   const Surface& metal = spot.surface;
-  if (metal.kind != SurfaceKind::kMetal || metal.mirror == 0 || now->bounces >= frame.scene.bounces) {
+  if (!is_mirror(metal) || now->bounces >= frame.scene.bounces) {
     return;
   }
   const int axis = spot.face.axis;
@@ -184,12 +158,7 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope&
   const int32_t cosine = along < 0 ? -along : 0;
   const Vec3i mirrored = along < 0 ? shorten(reflect(unit, slope.normal)) : unit;
   Weight weight;
-  const uint32_t share = metal.mirror * 257U;  // 65535 = all
-  for (int i = 0; i < 3; ++i) {
-    const uint32_t reflected = fresnel_q16(cosine, channel_of(metal.albedo, i) * 257U);
-    weight.c[i] = weighed(weighed(now->weight.c[i], reflected), share + share / 65535);
-    now->weight.c[i] = weighed(now->weight.c[i], 65535 - share);
-  }
+  divide_weight(metal, cosine, &now->weight, &weight);
   PendingRay out;
   out.bounces = static_cast<uint8_t>(now->bounces + 1);
   out.kind = LitRayKind::kMirrorRay;

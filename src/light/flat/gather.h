@@ -5,7 +5,6 @@
 
 #include "../../picture/bricks/near.h"
 #include "../arithmetic.h"
-#include "../occluding.h"
 #include "thimble/light/map_render.h"
 
 namespace thimble::lit {

@@ -3,7 +3,7 @@
 #ifndef THIMBLE_SRC_LIGHT_FLAT_MIRRORED_H
 #define THIMBLE_SRC_LIGHT_FLAT_MIRRORED_H
 
-#include "../metal.h"
+#include "../arithmetic.h"
 #include "gather.h"
 
 namespace thimble::lit {

@@ -1,7 +1,7 @@
 /// @file pixel.h
 /// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
 /// which the set names. Not for callers; it is here because the loop is compiled with the caller's set. A
-/// frame asks the tree itself; or it is asked.h's, to which somebody else gives the answers; or one with balls (light/render.h).
+/// frame traces the tree; or it is asked.h's, which defers its queries; or one with balls (light/render.h).
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
 /// since the weights of a pixel's rays never add up to more than 1.
@@ -53,7 +53,7 @@ struct PendingRay {
   int8_t axis = -1;  ///< of the face that it starts on
 };
 
-/// The most rays that wait at once: two come out of one, so a bounce adds one; four out of the first rough
+/// The most pending rays: two come out of one, so a bounce adds one; four out of the first rough
 /// metal.
 constexpr size_t pending_rays(EffectSet effects) {
   const size_t rough = (effects & Effect::kMirror) != 0 ? 3 : 0;
@@ -240,65 +240,30 @@ inline constexpr bool kHasRipples = kHasWater<kSet> && (kSet & Effect::kRipples)
 template <EffectSet kSet>
 inline constexpr bool kBends = (kSet & (Effect::kGlass | Effect::kWater)) != 0;
 
-/// The colour that a face shows of itself.
-template <EffectSet kSet, class AnyFrame>
-Color face_color(AnyFrame& frame, const Spot& spot) {
+/// The colour that a face shows of itself; with a slope, what the surface shows whose slope is bent there.
+template <EffectSet kSet, class AnyFrame, class... AnySlope>
+Color face_color(AnyFrame& frame, const Spot& spot, const AnySlope&... slope) {
+  constexpr bool kIsSlope = sizeof...(AnySlope) != 0;
+  const bool is_lit = has<kSet, Effect::kDirectLight>(frame);
+  const bool is_outside = kIsSlope || !spot.inside;
   Color light;
-  if (has<kSet, Effect::kDirectLight>(frame)) {
+  if constexpr (kIsSlope) {
+    light_on_slope(frame, slope..., is_lit, &light);
+  } else if (is_lit) {
     ambient_light(frame, spot, &light);
   } else {
     plain_light(frame, spot, &light);
   }
   if constexpr ((kSet & Effect::kAmbientOcclusion) != 0) {
-    if (!spot.inside) {
-      occlude(frame, spot, &light);
+    if (is_outside && has<kSet, Effect::kAmbientOcclusion>(frame)) {
+      occlude(frame, spot, slope..., &light);
     }
   }
   if constexpr ((kSet & Effect::kDirectLight) != 0) {
-    const size_t lights =
-        has<kSet, Effect::kDirectLight>(frame) && !spot.inside ? frame.scene.lights.size : 0;
+    const size_t lights = is_lit && is_outside ? frame.scene.lights.size : 0;
     for (size_t i = 0; i < lights; ++i) {
       LightRay ray;
-      if (!light_ray_of(frame, i, spot, &ray)) {
-        continue;
-      }
-      if constexpr ((kSet & Effect::kShadows) != 0) {
-        if constexpr (kHasClear<kSet>) {
-          if (!light_arrives_through(frame, &ray)) {
-            continue;
-          }
-        } else if (!light_arrives(frame, ray)) {
-          continue;
-        }
-        if constexpr (kHasWater<kSet>) {
-          filter_by_water(frame, &ray);
-        }
-      }
-      add_light(ray, &light);
-    }
-  }
-  Color color = lit_color(spot, light);
-  if constexpr ((kSet & Effect::kEmission) != 0) {
-    if (has<kSet, Effect::kEmission>(frame)) {
-      add_emission(spot, &color);
-    }
-  }
-  return color;
-}
-
-/// The same by the slope at the spot, where it is bent.
-template <EffectSet kSet, class AnyFrame>
-Color slope_color(AnyFrame& frame, const Spot& spot, const Slope& slope) {
-  Color light;
-  light_on_slope(frame, slope, has<kSet, Effect::kDirectLight>(frame), &light);
-  if constexpr ((kSet & Effect::kAmbientOcclusion) != 0) {
-    occlude(frame, spot, slope, &light);
-  }
-  if constexpr ((kSet & Effect::kDirectLight) != 0) {
-    const size_t lights = has<kSet, Effect::kDirectLight>(frame) ? frame.scene.lights.size : 0;
-    for (size_t i = 0; i < lights; ++i) {
-      LightRay ray;
-      if (!light_ray_of(frame, i, spot, slope, &ray)) {
+      if (!light_ray_of(frame, i, spot, slope..., &ray)) {
         continue;
       }
       if constexpr ((kSet & Effect::kShadows) != 0) {
@@ -436,7 +401,7 @@ void follow(AnyFrame& frame, PendingRay now, PendingRay* pending, size_t* count,
             if constexpr (AnyFrame::kIsAsked) {
               frame.show(spot, &slope, now.weight);
             } else {
-              add(slope_color<kSet>(frame, spot, slope), now.weight, sum);
+              add(face_color<kSet>(frame, spot, slope), now.weight, sum);
             }
             return;
           }
@@ -484,7 +449,7 @@ Color pixel(AnyFrame& frame, const Ray& ray) {
   if constexpr (pending_rays(kSet) == 0) {
     follow<kSet>(frame, first, nullptr, nullptr, &sum);
   } else {
-    // The last one first, so that few wait. It ends: every ray comes out of one with a bounce less.
+    // The last one first, so that few are pending. It ends: every ray comes out of one with a bounce less.
     PendingRay pending[pending_rays(kSet)];
     pending[0] = first;
     size_t count = 1;

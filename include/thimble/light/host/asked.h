@@ -1,6 +1,5 @@
 /// @file asked.h
-/// Lit pictures whose rays somebody else traces, many at once: the code of render.h, with its questions to
-/// the tree written down instead of answered.
+/// Lit pictures with deferred queries: the code of render.h, whose rays a driver traces, many at once.
 ///
 /// What a picture is made of stands in detail/pixel.h and is compiled twice: with a `Frame` that asks the
 /// tree at once, as a chip does, and with an `AskedFrame`, whose questions are noted and answered by whoever
@@ -26,7 +25,7 @@
 ///
 /// Between two calls the driver answers `questions` and `slopes`, and sets their counts to 0. Light through
 /// clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for each
-/// light. What is rare is asked of the tree at once all the same: single voxels, water.
+/// light. Rare queries are not deferred: single voxels, water.
 #ifndef THIMBLE_LIGHT_HOST_ASKED_H
 #define THIMBLE_LIGHT_HOST_ASKED_H
 
@@ -101,7 +100,7 @@ struct LightWay {
   uint32_t brightness[3] = {};
 };
 
-/// The ray to a light, from when it was asked about.
+/// The ray to a light, from its first query on.
 struct KnownLight {
   LightRay ray;
   LightWay way;
@@ -122,7 +121,7 @@ struct KnownRay {
   Weight weight;
 };
 
-/// A frame that is told the answers of one ray after another.
+/// A frame that defers its queries, for one ray after another.
 struct AskedFrame : Frame {
   static constexpr bool kIsAsked = true;
 
@@ -194,12 +193,12 @@ struct AskedFrame : Frame {
   Answer* answers = nullptr;
   KnownRay* ray = nullptr;
   KnownLight* lights = nullptr;
-  LightWay* way = nullptr;  ///< of the light that is asked about
+  LightWay* way = nullptr;  ///< of the light that is queried
   uint32_t number = 0;
   uint32_t known = 0;
   uint32_t asked = 0;
-  bool is_open = false;  ///< the ray's own way is asked: nothing that follows it counts
-  bool waits = false;    ///< an answer that was there has led to another question in its place
+  bool is_open = false;  ///< a query of the ray's own way is deferred: nothing that follows it counts
+  bool waits = false;    ///< an answer has led to another query in its place
 };
 
 /// The steps with the effects of a set compiled in, and those that `AskedFrame::effects` has not left out.

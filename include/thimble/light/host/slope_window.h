@@ -45,7 +45,7 @@ constexpr int32_t slope_window_low(int32_t voxel) {
   return (voxel - kSlopeColumns) & ~1;
 }
 
-// --- slope_steps.cpp: the parts of surface_normal, for a host -------------------------------------------
+// --- The parts of surface_normal ------------------------------------------------------------------------
 
 /// Reads the voxels of the window at `window->low`, which is even, off the tree; adds the nodes read to
 /// `*visits`.

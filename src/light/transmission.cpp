@@ -1,8 +1,8 @@
 // Through clear solids and media: how far a ray goes in them, and what they take from light on a straight
 // way.
+#include "transmission.h"
 #include "arithmetic.h"
 #include "thimble/light/detail/pixel.h"
-#include "through.h"
 
 namespace thimble::lit {
 
@@ -43,7 +43,7 @@ void go_straight(Frame& frame, PendingRay* now, Leg* leg, const Meeting& meeting
                                              : LitRayKind::kGlassRay;
   count_ray(frame, kind);
   if ((frame.effects & Effect::kWater) != 0) {
-    // The water is asked from the beginning of a ray only: a new one, from the face on.
+    // Water is looked up from the beginning of a ray only: a new one starts on the face.
     now->ray.origin = meeting.at_water ? meeting.at : start_on_face(now->ray, meeting.hit);
     now->axis = meeting.hit.axis;
     leg->from = {};

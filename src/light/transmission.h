@@ -1,10 +1,10 @@
-// Through clear solids: what a ray meets there, and whether light arrives, for both kinds of frame. Internal to
+// Transmission by clear solids: what a ray meets in them, and whether light arrives, for both kinds of frame. Internal to
 // src/.
-#ifndef THIMBLE_SRC_LIGHT_THROUGH_H
-#define THIMBLE_SRC_LIGHT_THROUGH_H
+#ifndef THIMBLE_SRC_LIGHT_TRANSMISSION_H
+#define THIMBLE_SRC_LIGHT_TRANSMISSION_H
 
 #include "arithmetic.h"
-#include "asking.h"
+#include "queries.h"
 #include "thimble/light/detail/pixel.h"
 
 namespace thimble::lit {
@@ -65,7 +65,7 @@ static void begin_way(const Frame& frame, const Ray& ray, Leg* leg) {
   }
 }
 
-/// Whether light goes on past what a stretch of its way comes to.
+/// What the end of a stretch does to light.
 enum class Passage : uint8_t { kBlocked, kArrives, kOn };
 
 /// Takes from the light what the stretch absorbs, and goes to its end.

@@ -1,7 +1,7 @@
-// What the parts of a lit picture ask the tree, for each kind of frame: one that asks at once, one with
-// balls beside the tree (render.h), and one that is told the answers (asked.h). Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_ASKING_H
-#define THIMBLE_SRC_LIGHT_ASKING_H
+// The queries of the parts of a lit picture, for each kind of frame: Frame traces the tree at once, BallFrame looks at balls
+// beside it (render.h), AskedFrame defers the query to its driver (asked.h). Internal to src/.
+#ifndef THIMBLE_SRC_LIGHT_QUERIES_H
+#define THIMBLE_SRC_LIGHT_QUERIES_H
 
 #include "arithmetic.h"
 #include "thimble/light/detail/pixel.h"
@@ -12,7 +12,7 @@
 
 namespace thimble::lit {
 
-/// The solid voxel met first, counted; a frame that is told may leave out what is not before `place()`.
+/// The solid voxel met first, counted. An AskedFrame may report a miss for hits at or beyond place().
 template <class Place>
 [[gnu::always_inline]] inline void find_before(Frame& frame, LitRayKind kind, const Ray& ray,
                                                const Place& /*place*/, Hit* hit) {
@@ -69,7 +69,7 @@ inline bool is_opaque(const BallFrame& frame, const Hit& hit) {
   return frame.met != nullptr || is_opaque(static_cast<const Frame&>(frame), hit);
 }
 
-/// What a frame that is told says where there is no answer yet.
+/// The status of a deferred query whose answer is not there yet.
 inline constexpr Status kUnknown = Status::kBadArgument;
 
 /// Whether there is a hit, not counted.
@@ -101,41 +101,38 @@ inline Status find_any(AskedFrame& frame, const Ray& ray, HitKind* kind, uint32_
                                                const TraceOptions& options) {
   return leave_medium(frame.tree, ray, material, exit, from, options);
 }
-/// Without an answer the frame is open.
-inline Status find_closest(AskedFrame& frame, const Ray& ray, Hit* hit, const TraceOptions& /*options*/) {
+/// The answer to a deferred query of a ray's own way; without one the frame is open.
+inline Status take_answer(AskedFrame& frame, Question question, const Ray& ray, const RayPoint& from,
+                          uint16_t in, MediumExit* exit) {
   const Answer* answer = frame.look();
   if (answer == nullptr) {
-    frame.note(Question::kClosest, ray, {});
-    frame.is_open = true;
-    return kUnknown;
-  }
-  *hit = answer->hit;
-  return Status::kOk;
-}
-inline Status find_from(AskedFrame& frame, const Ray& ray, const RayPoint& from, Hit* hit,
-                        const TraceOptions& /*options*/) {
-  const Answer* answer = frame.look();
-  if (answer == nullptr) {
-    frame.note(Question::kOn, ray, from);
-    frame.is_open = true;
-    return kUnknown;
-  }
-  *hit = answer->hit;
-  return Status::kOk;
-}
-inline Status find_exit(AskedFrame& frame, const Ray& ray, uint8_t material, const RayPoint& from,
-                        MediumExit* exit, const TraceOptions& /*options*/) {
-  const Answer* answer = frame.look();
-  if (answer == nullptr) {
-    frame.note(Question::kOn, ray, from, material);
+    frame.note(question, ray, from, in);
     frame.is_open = true;
     return kUnknown;
   }
   *exit = *answer;
   return Status::kOk;
 }
+inline Status take_hit(AskedFrame& frame, Question question, const Ray& ray, const RayPoint& from, Hit* hit) {
+  MediumExit exit;
+  exit.hit = *hit;
+  const Status status = take_answer(frame, question, ray, from, kInNothing, &exit);
+  *hit = exit.hit;
+  return status;
+}
+inline Status find_closest(AskedFrame& frame, const Ray& ray, Hit* hit, const TraceOptions& /*options*/) {
+  return take_hit(frame, Question::kClosest, ray, {}, hit);
+}
+inline Status find_from(AskedFrame& frame, const Ray& ray, const RayPoint& from, Hit* hit,
+                        const TraceOptions& /*options*/) {
+  return take_hit(frame, Question::kOn, ray, from, hit);
+}
+inline Status find_exit(AskedFrame& frame, const Ray& ray, uint8_t material, const RayPoint& from,
+                        MediumExit* exit, const TraceOptions& /*options*/) {
+  return take_answer(frame, Question::kOn, ray, from, material, exit);
+}
 
-/// What is asked for slopes.
+/// Where slopes are looked up.
 [[gnu::always_inline]] inline const CompactTree& source_of_slopes(Frame& frame) {
   return frame.tree;
 }
