@@ -85,13 +85,12 @@ endif()
 if(BOARD_VISITS_A_SECOND EQUAL 0)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_NO_HOLD)
 endif()
-# Lit frames by the map whose points send rays of their own (occlusion, mirrors, water; lamps) take a third of the core's
-# time to compile: where no image draws them, they are left out.
+# Lit frames by the map whose points send rays of their own (occlusion, mirrors, water; lamps) take long to compile: where no
+# image draws them, they are left out.
 math(EXPR sends_rays "${THIMBLE_IMAGE_EFFECTS} & 0x94")
 if(sends_rays EQUAL 0 AND NOT THIMBLE_IMAGE_LAMPS AND NOT "map_light" IN_LIST THIMBLE_APP)
-  file(GLOB sources ${PROJECT_SOURCE_DIR}/src/light/flat/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/flat\\.cpp$")
-  set_source_files_properties(${sources} TARGET_DIRECTORY thimble PROPERTIES HEADER_FILE_ONLY ON)
+  set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/light/flat/flat.cpp TARGET_DIRECTORY thimble APPEND PROPERTY
+    COMPILE_DEFINITIONS THIMBLE_FLAT_SUNS_ALONE)
 endif()
 thimble_choose_frames()
 thimble_choose_formats()

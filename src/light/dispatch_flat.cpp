@@ -8,7 +8,7 @@ namespace {
 
 Status draw_flat_set(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                      LitCounts* counts) {
-  switch (frame.effects) {
+  switch (flat_specialisation(frame.effects)) {
 #define THIMBLE_CASE(set) \
   case set:               \
     return draw_flat<set>(frame, map, suns, band, counts);

@@ -20,7 +20,6 @@
 #include "../base/vec.h"
 #include "../picture/render.h"
 #include "../tree/brick_map.h"
-#include "detail/flat_sets.h"
 #include "render.h"
 
 namespace thimble {
@@ -87,27 +86,38 @@ namespace lit {
 /// In a set of the fast way: lamps, too. The bit is that of the effect that calls for them and has no code of its own.
 inline constexpr EffectSet kLamps = Effect::kEmitterLight;
 
+/// The specialisations of `draw_flat`, in src/light/flat; those of suns alone send no rays but to them.
+#define THIMBLE_FLAT_SUNS(DO) DO(0x001) DO(0x003) DO(0x20B)
+#define THIMBLE_FLAT_SETS(DO) \
+  THIMBLE_FLAT_SUNS(DO)       \
+  DO(0x20F) DO(0x120B) DO(0x120F) DO(0x21B) DO(0x21F) DO(0x121F) DO(0x28B) DO(0x428B)
+
+/// The specialisation that draws a set which `is_flat`. Emission and the sky cost a test where a set leaves them out, as
+/// does occlusion beside both mirrors and lamps; the sun alone, which most boards show, has none of their code.
+constexpr EffectSet flat_specialisation(EffectSet set) {
+  if ((set & ~Effect::kShadows) == Effect::kDirectLight) {
+    return set;
+  }
+  constexpr EffectSet kMirrorsAndLamps = Effect::kMirror | kLamps;
+  return set | Effect::kEmission | Effect::kSky |
+         ((set & kMirrorsAndLamps) == kMirrorsAndLamps ? Effect::kAmbientOcclusion : Effect::kNone);
+}
+
 /// Whether the fast way takes the frame, whose set `is_flat`.
 bool draws_flat(const Frame& frame, const BrickMap& map);
-/// Draws the band where `draws_flat`. `suns` has what is proven of the distant lights, in their order; it may be empty.
-/// An entry that does not belong to its light is not looked at. The frame's counts are 0, and are so again at the end. A
-/// function of its own in src/light/flat for each set that `is_flat`: the stack of an image is added up from their call graph.
+/// Draws the band where `draws_flat`; kSet is the specialisation of the frame's set. `suns` has what is proven of the
+/// distant lights, in their order; it may be empty. An entry that does not belong to its light is not looked at. The
+/// frame's counts are 0, and are so again at the end.
 template <EffectSet kSet>
 Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts);
-#define THIMBLE_DECLARE_FLAT(set)                                                                         \
-  template <>                                                                                             \
-  Status draw_flat<set>(Frame & frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band, \
-                        LitCounts* counts);
-THIMBLE_FLAT_SETS(THIMBLE_DECLARE_FLAT)
-#undef THIMBLE_DECLARE_FLAT
 
 }  // namespace lit
 
 /// As `render_lit_band` (render.h) with `map`, which belongs to `tree`. `suns` (may be empty) has what is proven of
 /// each distant light of the scene, in their order. `kHasLamps`: lamps go through the map, too; without it a scene with
 /// any is drawn by the tree. The counters of nodes stay as they are for rays that read none; rays to lamps and of
-/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach; no ray of a mirror waits; a metal
+/// occlusion hit nothing that is more than a voxel behind the lamp or beyond the reach; no ray of a mirror is pending; a metal
 /// all of whose light is mirrored sends no rays to lights and none of occlusion; and of water only columns are counted that
 /// a ray may come to.
 /// Errors, with nothing drawn: those of render.h, and kDamaged when the map is another tree's.
@@ -126,7 +136,7 @@ template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight
         (kEffects & ~Effect::kEmitterLight) | (kTakesLamps ? lit::kLamps : Effect::kNone);
     lit::Frame frame{tree, camera, shading, scene, options, kSet};
     if (lit::draws_flat(frame, map)) {
-      return lit::draw_flat<kSet>(frame, map, suns, band, counts);
+      return lit::draw_flat<lit::flat_specialisation(kSet)>(frame, map, suns, band, counts);
     }
   }
   return render_lit_band<kEffects>(tree, camera, shading, scene, band, counts, options);

@@ -1,4 +1,4 @@
-// Chooses the lit frames by bricks of a set, and holds those of distant lights alone.
+// Chooses the lit frames by bricks of a set, and holds their specialisations.
 #include "../../tree/deep_map.h"
 #include "flat_frame.h"
 
@@ -23,6 +23,12 @@ bool draws_flat(const Frame& frame, const BrickMap& map) {
   return suns <= kMaxFlatSuns;
 }
 
+#define THIMBLE_DRAW_FLAT(set) \
+  template Status draw_flat<set>(Frame&, const BrickMap&, Span<const SunBricks>, const Band&, LitCounts*);
+#ifdef THIMBLE_FLAT_SUNS_ALONE  // the image sends no others, and compiles sooner
 THIMBLE_FLAT_SUNS(THIMBLE_DRAW_FLAT)
+#else
+THIMBLE_FLAT_SETS(THIMBLE_DRAW_FLAT)
+#endif
 
 }  // namespace thimble::lit

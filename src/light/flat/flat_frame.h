@@ -1,7 +1,6 @@
 // Draws lit frames by bricks: a pixel's light is that of its face and of the distant lights that reach it. Rays of the
 // camera and to the lights go through the map; colours are looked up. Where a set has occlusion or lamps, each point
-// gathers its light by rays of its own (gather.h). ../README.md derives what is used. Internal to src/; each source of
-// this folder includes it for a few sets.
+// gathers its light by rays of its own (point_lighting.h). ../README.md derives what is used. For flat.cpp alone.
 #ifndef THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
 #define THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
 
@@ -17,10 +16,10 @@
 
 #include "../../picture/bricks/face_light.h"
 #include "../../picture/bricks/sight.h"
-#include "gather.h"
-#include "inks.h"
-#include "mirrored.h"
-#include "watered.h"
+#include "mirror_rays.h"
+#include "point_lighting.h"
+#include "stored_colors.h"
+#include "water_rays.h"
 
 namespace thimble::lit {
 namespace {
@@ -42,18 +41,18 @@ uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
   return band.pixels.data + stride * row_place(band.format, y - band.first_row);
 }
 
-// Draws what SightPainter finds: it is a sink of that. Where rays go on, which is in its name, by which stacks are told
-// apart, they do so from its own points; but in water from what another has noted.
-template <EffectSet kSet, bool kGoesOn>
-class FlatSink : Gathering<kSet, kGoesOn>,
-                 Mirroring<kSet, FlatSink<kSet, kGoesOn>>,
-                 Watering<kSet, FlatSink<kSet, kGoesOn>, kGoesOn> {
-  friend class Mirroring<kSet, FlatSink<kSet, kGoesOn>>;
+// Shades and stores what SightPainter finds. kSecondary: rays leave its points, as they do from mirrors; in water a second
+// sink sends them, for the pixels that the first has noted.
+template <EffectSet kSet, bool kSecondary = kMirrors<kSet>>
+class FlatSink : PointLighting<kSet, kSecondary>,
+                 MirrorRays<kSet, FlatSink<kSet, kSecondary>>,
+                 WaterRays<kSet, FlatSink<kSet, kSecondary>, kSecondary> {
+  friend class MirrorRays<kSet, FlatSink<kSet, kSecondary>>;
   friend struct MapFrame<FlatSink>;
 
  public:
   FlatSink(Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
-      : Watering<kSet, FlatSink<kSet, kGoesOn>, kGoesOn>(frame, *this),
+      : WaterRays<kSet, FlatSink<kSet, kSecondary>, kSecondary>(frame, *this),
         frame_(frame),
         map_(map),
         band_(band),
@@ -72,7 +71,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     for (uint32_t& seen : seen_) {
       seen = kNoFace;
     }
-    if constexpr ((kSet & Effect::kSky) == 0) {
+    if (!has_sky()) {
       make_ink(background(frame), &sky_);
     }
   }
@@ -153,10 +152,10 @@ class FlatSink : Gathering<kSet, kGoesOn>,
       }
     }
     ++misses_;
-    if constexpr ((kSet & Effect::kSky) == 0) {
-      store(x, y, sky_);
+    if (has_sky()) {
+      lit::store(frame_, band_, line_of(y), x, y, beyond(frame_.camera.ray(x, y).direction));
     } else {
-      lit::store(frame_, band_, line_of(y), x, y, sky_color(frame_, frame_.camera.ray(x, y).direction));
+      store(x, y, sky_);
     }
   }
 
@@ -214,7 +213,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
   }
 
   void miss(const TilePlace& place, const Pixels& pixels) {
-    if constexpr ((kSet & (Effect::kSky | Effect::kWater)) == 0) {
+    if (!kIsWet<kSet> && !has_sky()) {
       misses_ += counts_ ? count_of(pixels) : 0;
       store(place, pixels, sky_);
     } else {
@@ -235,7 +234,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
       asked_[i] = asked[i];
     }
   }
-  // Hands over the pixels of a tile that only the tree can tell; returns whether there are any.
+  // Hands over the ties of a tile; returns whether there are any.
   bool take_asked(uint32_t (*asked)[kAskedWords]) {
     uint32_t any = 0;
     for (int i = 0; i < kAskedWords; ++i) {
@@ -262,14 +261,14 @@ class FlatSink : Gathering<kSet, kGoesOn>,
   }
   uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
 
-  // Tells where notes are made.
+  // Sets where notes are made.
   template <class Progress>
   void note_in(Progress* progress) {
     if constexpr (kIsWet<kSet>) {
       this->set_notes(progress->notes);
     }
   }
-  // Draws what was noted of the tile at (x0, y0); asks for the pixels that only the tree can tell.
+  // Draws the notes of the tile at (x0, y0); defers ties.
   void draw_noted(int32_t x0, int32_t y0, const WetNotes& notes, LitCounts* counts) {
     for (int32_t pixel = 0; pixel < kTileAcrossPx * kTileDownPx; ++pixel) {
       const uint32_t note = notes.of[pixel];
@@ -298,7 +297,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
   static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
   static constexpr bool kHasLamps = (kSet & kLamps) != 0;
   static constexpr bool kGathers = kGathersLight<kSet>;
-  static constexpr bool kKeepsSuns = Gathering<kSet, kGoesOn>::kKeepsSuns;
+  static constexpr bool kKeepsSuns = PointLighting<kSet, kSecondary>::kKeepsSuns;
 
   static uint32_t count_of(const Pixels& pixels) {
     uint32_t count = 0;
@@ -358,7 +357,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     });
   }
 
-  // Stores a point that gathers its light; the suns of `reach` shine on it.
+  // Stores a point lit by secondary rays; the suns of `reach` shine on it.
   [[gnu::noinline]] void show_gathered(int32_t x, int32_t y, const FacePoint& point, uint8_t material,
                                        unsigned side, unsigned reach) {
     Spot spot;
@@ -369,12 +368,8 @@ class FlatSink : Gathering<kSet, kGoesOn>,
       return;
     }
     spot.surface = surface_of(frame_, material);
-    Color color = lit_color(spot, light);
-    if constexpr ((kSet & Effect::kEmission) != 0) {
-      add_emission(spot, &color);
-    }
     FlatInk ink;
-    make_ink(color, &ink);
+    make_ink(shown_by(spot, light), &ink);
     store(x, y, ink);
   }
 
@@ -428,7 +423,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     store(x, y, ink);
   }
 
-  // For Mirroring.
+  // For MirrorRays.
   [[gnu::noinline]] Color point_color(const FacePoint& point, const Surface& surface) {
     Spot spot;
     spot.face = face_of(point);
@@ -438,12 +433,14 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     return shown_by(spot, light);
   }
   Color beyond(const Vec3i& direction) const {
-    if constexpr ((kSet & Effect::kSky) == 0) {
-      return background(frame_);
-    } else {
-      return sky_color(frame_, direction);
+    if constexpr ((kSet & Effect::kSky) != 0) {
+      if (has_sky()) {
+        return sky_color(frame_, direction);
+      }
     }
+    return background(frame_);
   }
+  bool has_sky() const { return has<kSet, Effect::kSky>(frame_); }
 
   // A face's key has 25 bits: its place in the table says the lower ones, the entry keeps the others beside the material.
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
@@ -481,10 +478,12 @@ class FlatSink : Gathering<kSet, kGoesOn>,
     }
     return shown_by(spot, light);
   }
-  [[gnu::always_inline]] static Color shown_by(const Spot& spot, const Color& light) {
+  [[gnu::always_inline]] Color shown_by(const Spot& spot, const Color& light) const {
     Color color = lit_color(spot, light);
     if constexpr ((kSet & Effect::kEmission) != 0) {
-      add_emission(spot, &color);
+      if (has<kSet, Effect::kEmission>(frame_)) {
+        add_emission(spot, &color);
+      }
     }
     return color;
   }
@@ -630,7 +629,7 @@ class FlatSink : Gathering<kSet, kGoesOn>,
   uint32_t shadows_ = 0;
   uint32_t asked_[kAskedWords] = {};
   FlatInk sky_;
-  static constexpr bool kFindsFaces = !(kGoesOn && kIsWet<kSet>);
+  static constexpr bool kFindsFaces = !(kSecondary && kIsWet<kSet>);
   FlatInk inks_[kFindsFaces ? kInks<kSet> : 1];
   uint32_t seen_[kFindsFaces ? kFaces<kSet> : 1];  // material, from bit 8 on the face
   ShadowCourse suns_[kHasShadows ? kMaxFlatSuns : 1];
@@ -642,20 +641,20 @@ bool shares_bytes(PixelFormat format) {
   return format == PixelFormat::kMono1 || format == PixelFormat::kGray4 || format > PixelFormat::kRgb888;
 }
 
-// Draws tiles up to the first with pixels that only the tree can tell. Not inlined, so that its frame has left the
-// stack when the tree is asked.
-template <EffectSet kSet, bool kGoesOn>
+// Draws tiles up to the first with deferred pixels. Not inlined, so that its frame has left the stack when the tree
+// traces them.
+template <EffectSet kSet>
 [[gnu::noinline]] void draw_tiles(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, ProgressOf<kSet>* progress,
                                   LitCounts* counts) {
-  FlatSink<kSet, kGoesOn> sink(frame, map, band, stride, counts != nullptr);
+  FlatSink<kSet> sink(frame, map, band, stride, counts != nullptr);
   sink.note_in(progress);
   sink.set_lights(suns);
   const BrickFrame sights = brick_frame(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
   sweep.begin(map);
   const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
-  SightPainter<FlatSink<kSet, kGoesOn>> painter(sights, swept ? &sweep : nullptr, sink);
+  SightPainter<FlatSink<kSet>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();
   const int32_t end = band.first_row + band.rows;
   for (bool open = false; progress->y < end && !open;) {
@@ -676,7 +675,7 @@ template <EffectSet kSet, bool kGoesOn>
   }
 }
 
-// Draws what was noted of the tile before.
+// Draws the notes of the tile before.
 template <EffectSet kSet>
 [[gnu::noinline]] void draw_noted(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, WetProgress* progress, LitCounts* counts) {
@@ -694,21 +693,21 @@ template <EffectSet kSet>
   }
 }
 
-// Draws tiles up to the first in which rays come to water, or only the tree can tell. Not inlined, so that its notes have
-// left the stack when the tree is asked.
+// Draws tiles up to the first with deferred pixels, those of rays that come to water included. Not inlined, so that its
+// notes have left the stack when the tree traces ties.
 template <EffectSet kSet>
 [[gnu::noinline]] void draw_wet_tiles(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                       const Band& band, size_t stride, WetProgress* progress,
                                       LitCounts* counts) {
   WetNotes notes;
   progress->notes = &notes;
-  draw_tiles<kSet, false>(frame, map, suns, band, stride, progress, counts);
+  draw_tiles<kSet>(frame, map, suns, band, stride, progress, counts);
   if (notes.any) {
     draw_noted<kSet>(frame, map, suns, band, stride, progress, counts);
   }
 }
 
-// Draws the pixels that were asked for in the tile at (x, y).
+// Draws the ties of the tile at (x, y) by the tree.
 template <EffectSet kSet>
 [[gnu::noinline]] void draw_asked(const Frame& of, const Band& band, size_t stride, int32_t x, int32_t y,
                                   const FlatProgress& progress, LitCounts* counts) {
@@ -726,9 +725,11 @@ template <EffectSet kSet>
   }
 }
 
+}  // namespace
+
 template <EffectSet kSet>
-Status draw_faces(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                  LitCounts* counts) {
+Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                 LitCounts* counts) {
   size_t stride = 0;
   const Status status = check_frame(frame, band, &stride);
   if (status != Status::kOk) {
@@ -746,7 +747,7 @@ Status draw_faces(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
     if constexpr (kIsWet<kSet>) {
       draw_wet_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
     } else {
-      draw_tiles<kSet, kMirrors<kSet>>(frame, map, suns, band, stride, &progress, counts);
+      draw_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
     }
     if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
       continue;
@@ -760,15 +761,6 @@ Status draw_faces(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
   return Status::kOk;
 }
 
-}  // namespace
 }  // namespace thimble::lit
-
-// What a source of this folder has of each of its sets.
-#define THIMBLE_DRAW_FLAT(set)                                                                            \
-  template <>                                                                                             \
-  Status draw_flat<set>(Frame & frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band, \
-                        LitCounts* counts) {                                                              \
-    return draw_faces<set>(frame, map, suns, band, counts);                                               \
-  }
 
 #endif

@@ -19,7 +19,7 @@ class StillWater {
     uint32_t speed = 1;
   };
 
-  // False where the water moves or leaves the world of `level`: then nothing else may be asked.
+  // False where the water moves or leaves the world of `level`: then nothing else may be called.
   bool set(const WaterSurface& water, int level) {
     const int32_t side = Q8::kOne << level;
     const int32_t size[3] = {Q8::kOne * water.width, Q8::kOne * water.depth, water.highest_q8};

@@ -1,11 +1,12 @@
-// How far a band is drawn, and what is left of a tile for others to draw. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_PROGRESS_H
-#define THIMBLE_SRC_LIGHT_FLAT_PROGRESS_H
+// How far a band is drawn, and the deferred pixels of a tile: ties for the tree, notes for secondary rays in water. Internal
+// to src/.
+#ifndef THIMBLE_SRC_LIGHT_FLAT_DEFERRED_PIXELS_H
+#define THIMBLE_SRC_LIGHT_FLAT_DEFERRED_PIXELS_H
 
 #include "../../base/choose.h"
 #include "../../picture/bricks/sight.h"
-#include "gather.h"
-#include "mirrored.h"
+#include "mirror_rays.h"
+#include "point_lighting.h"
 
 namespace thimble::lit {
 namespace {
@@ -15,7 +16,7 @@ using namespace bricks;
 constexpr int kAskedWords = kTileAcrossPx * kTileDownPx / 32;
 static_assert(kAskedWords == 4);
 
-// How far a band is drawn: the next tile, and the pixels of the tile before it that only the tree can tell.
+// How far a band is drawn: the next tile, and the ties of the tile before it, which are left to the tree.
 struct FlatProgress {
   int32_t x;
   int32_t y;
@@ -53,7 +54,7 @@ inline FacePoint landed_on(const SightCourse& course) {
   return face;
 }
 
-// The same with what is noted of the tile for another to draw.
+// The same with the notes of the tile.
 struct WetProgress : FlatProgress {
   WetNotes* notes;
 };

@@ -1,18 +1,18 @@
-// What is seen in water and through it: the loop of the tree's own pixels (pixel.h), with the rays through the map.
+// Secondary rays in water and through it: the loop of the tree's own pixels (pixel.h), traced through the map.
 // Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_WATERED_H
-#define THIMBLE_SRC_LIGHT_FLAT_WATERED_H
+#ifndef THIMBLE_SRC_LIGHT_FLAT_WATER_RAYS_H
+#define THIMBLE_SRC_LIGHT_FLAT_WATER_RAYS_H
 
-#include "gather.h"
-#include "mirrored.h"
-#include "progress.h"
+#include "deferred_pixels.h"
+#include "mirror_rays.h"
+#include "point_lighting.h"
 #include "still_water.h"
 
 namespace thimble::lit {
 namespace {
 
-// A frame, as its caller has it, whose rays ask the map. It is open where only the tree knows what a ray meets. A Sink has
-// the map_, from() where rays go on, and point_color(frame, spot, point) of what is seen.
+// A frame whose rays the map traces. It is open after a tie, which is left to the tree. A Sink has the map_, from(), where
+// secondary rays start, and point_color(frame, spot, point) of what is seen.
 template <class Sink>
 struct MapFrame {
   static constexpr bool kIsAsked = true;
@@ -191,19 +191,19 @@ void filter_by_water(MapFrame<Sink>& frame, LightRay* light) {
   }
 }
 
-// A set without water keeps nothing.
-template <EffectSet kSet, class Sink, bool kGoesOn, bool = kIsWet<kSet>>
-class Watering {
+// Empty: this set has no water.
+template <EffectSet kSet, class Sink, bool kSecondary, bool = kIsWet<kSet>>
+class WaterRays {
  public:
-  Watering(const Frame& /*frame*/, const Sink& /*sink*/) {}
+  WaterRays(const Frame& /*frame*/, const Sink& /*sink*/) {}
 };
 
-// The part of a Sink that finds what the camera sees: pixels whose rays may come to water it notes, for one that draws
-// these when the other has left the stack.
+// Part of the sink that takes primary hits: it defers the pixels whose rays may come to water, as notes for a second sink
+// that draws them when the first has left the stack.
 template <EffectSet kSet, class Sink>
-class Watering<kSet, Sink, false, true> {
+class WaterRays<kSet, Sink, false, true> {
  public:
-  Watering(const Frame& frame, const Sink& /*sink*/) {
+  WaterRays(const Frame& frame, const Sink& /*sink*/) {
     const WaterSurface& water = frame.scene.water;
     bool goes_down = false;
     for (const Light& light : frame.scene.lights) {
@@ -237,13 +237,13 @@ class Watering<kSet, Sink, false, true> {
   int32_t least_;  // faces that look sideways or down from there on are dry
 };
 
-// The part of the Sink that draws what was noted.
+// Part of the second sink, which draws the notes.
 template <EffectSet kSet, class Sink>
-class Watering<kSet, Sink, true, true> {
+class WaterRays<kSet, Sink, true, true> {
  public:
-  Watering(Frame& frame, Sink& sink) : wet_(frame, sink) {}
+  WaterRays(Frame& frame, Sink& sink) : wet_(frame, sink) {}
 
-  // The colour of the camera's ray that meets what was noted. False where only the tree knows.
+  // The colour of a primary ray whose hit is the note. False: a tie, left to the tree.
   [[gnu::noinline]] bool find_wet(const Ray& ray, uint32_t note, Color* color) {
     wet_.counts = {};
     wet_.is_open = false;

@@ -1,10 +1,9 @@
-// What metals mirror, by rays through the map: from a point on one to what it shows, and on from there where that is a
-// metal, too. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_MIRRORED_H
-#define THIMBLE_SRC_LIGHT_FLAT_MIRRORED_H
+// Secondary rays of metals through the map: from a point on one to what it mirrors, and from there to the next where that
+// is a metal, too. Internal to src/.
+#ifndef THIMBLE_SRC_LIGHT_FLAT_MIRROR_RAYS_H
+#define THIMBLE_SRC_LIGHT_FLAT_MIRROR_RAYS_H
 
-#include "../arithmetic.h"
-#include "gather.h"
+#include "point_lighting.h"
 
 namespace thimble::lit {
 namespace {
@@ -16,17 +15,16 @@ inline unsigned side_of(const FacePoint& point) {
   return 2 * static_cast<unsigned>(point.axis) + (point.faces_up ? 1U : 0U);
 }
 
-// A set without mirrors keeps nothing.
+// Empty: this set has no mirrors.
 template <EffectSet kSet, class Sink, bool = kMirrors<kSet>>
-class Mirroring {};
+class MirrorRays {};
 
-// The part of a Sink, which says what is seen: point_color(point, surface) without mirrors, beyond(direction) where a
-// ray leaves the world, material_of(voxel, side).
+// Part of a Sink that has point_color(point, surface) without mirrors, beyond(direction) where a ray leaves the world, and
+// material_of(voxel, side).
 template <EffectSet kSet, class Sink>
-class Mirroring<kSet, Sink, true> {
+class MirrorRays<kSet, Sink, true> {
  public:
-  // Adds what a point of a metal shows of itself and what it mirrors to a ray of the camera. False where only the tree
-  // knows.
+  // Adds what a point of a metal shows of itself and what it mirrors to a primary ray. False: a tie, left to the tree.
   bool add_mirrored(const Frame& frame, const FacePoint& point, uint8_t material, const Vec3i& arriving,
                     Color* sum) {
     const uint32_t rays = rays_;
@@ -75,7 +73,7 @@ class Mirroring<kSet, Sink, true> {
     return spread(mirrored, metal, point.axis, !point.faces_up, number);
   }
 
-  // Goes from metal to metal. A ray that comes by one goes on as one, so that none waits.
+  // Follows a ray from metal to metal. Each metal sends at most one on, so no ray is pending.
   [[gnu::noinline]] bool follow(const Frame& frame, const FacePoint& from, Vec3i direction, Weight weight,
                                 Color* sum) {
     FacePoint point = from;
@@ -106,7 +104,7 @@ class Mirroring<kSet, Sink, true> {
     }
   }
 
-  // What a metal of which all is mirrored has of itself is not asked for.
+  // Skips the metal's own light if its weight is 0.
   void add_own(const FacePoint& point, const Surface& surface, const Weight& weight, Color* sum) {
     if ((weight.c[0] | weight.c[1] | weight.c[2]) != 0) {
       add(sink().point_color(point, surface), weight, sum);

@@ -1,7 +1,6 @@
-// Gathers the light of a point by rays of its own through the map: occlusion, and lamps with their shadows. Internal to
-// src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_GATHER_H
-#define THIMBLE_SRC_LIGHT_FLAT_GATHER_H
+// The light of a point by secondary rays through the map: occlusion, and lamps with their shadows. Internal to src/.
+#ifndef THIMBLE_SRC_LIGHT_FLAT_POINT_LIGHTING_H
+#define THIMBLE_SRC_LIGHT_FLAT_POINT_LIGHTING_H
 
 #include "../../picture/bricks/near.h"
 #include "../arithmetic.h"
@@ -20,7 +19,7 @@ template <EffectSet kSet>
 constexpr bool kIsWet = (kSet & Effect::kWater) != 0;
 
 // What rays leave from.
-template <EffectSet kSet, bool kGoesOn>
+template <EffectSet kSet, bool kSecondary>
 struct PointOf {
   using Type = NearPoint<(kSet & kLamps) != 0>;
 };
@@ -29,7 +28,7 @@ struct PointOf<kSet, true> {
   using Type = MirrorPoint<(kSet & kLamps) != 0>;
 };
 
-// Where the distant lights are, as their rays have it; where these go through water alone.
+// Directions to the distant lights. Empty: no water filters their rays.
 template <bool kKept>
 struct SunDirections {};
 template <>
@@ -37,16 +36,16 @@ struct SunDirections<true> {
   Vec3i towards[kMaxFlatSuns];
 };
 
-// Where nothing is gathered and no ray goes on nothing is kept.
-template <EffectSet kSet, bool kGoesOn, bool = kGathersLight<kSet> || kGoesOn>
-class Gathering {
+// Empty: this set keeps no state per point.
+template <EffectSet kSet, bool kSecondary, bool = kGathersLight<kSet> || kSecondary>
+class PointLighting {
  public:
   static constexpr bool kKeepsSuns = false;
 };
 
-// Where rays go on the light of a point is asked without a face, and what the suns give is kept for that alone.
-template <EffectSet kSet, bool kGoesOn>
-class Gathering<kSet, kGoesOn, true> : protected SunDirections<kIsWet<kSet>> {
+// Keeps what the suns give each face, since the light of points is not looked up by their face.
+template <EffectSet kSet, bool kSecondary>
+class PointLighting<kSet, kSecondary, true> : protected SunDirections<kIsWet<kSet>> {
  public:
   static constexpr bool kKeepsSuns = true;
   // Rays to lamps and of occlusion, and those of them that meet something.
@@ -60,7 +59,8 @@ class Gathering<kSet, kGoesOn, true> : protected SunDirections<kIsWet<kSet>> {
   void begin(const Frame& frame, const BrickMap& map) {
     from_.set_map(map);
     const Occlusion& occlusion = frame.scene.occlusion;
-    rays_ = kOccludes && occlusion.reach != 0 ? occlusion_rays(occlusion) : 0;
+    rays_ =
+        has<kSet, Effect::kAmbientOcclusion>(frame) && occlusion.reach != 0 ? occlusion_rays(occlusion) : 0;
     // Along any direction of the pattern a ray leaves a box of 256 voxels a side within 512.
     const uint32_t reach = occlusion.reach < 512 ? occlusion.reach : 512;
     reach_q12_ = ((reach << 20) + kOcclusionLength - 1) / kOcclusionLength;
@@ -130,14 +130,13 @@ class Gathering<kSet, kGoesOn, true> : protected SunDirections<kIsWet<kSet>> {
     counts->rays[kOcclusion] += counted_.occlusion_rays;
     counts->hits[kOcclusion] += counted_.occlusion_hits;
   }
-  typename PointOf<kSet, kGoesOn>::Type& from() { return from_; }
+  typename PointOf<kSet, kSecondary>::Type& from() { return from_; }
   const Counted& counted() const { return counted_; }
   void set_counted(const Counted& counted) { counted_ = counted; }
 
  private:
   static constexpr bool kOccludes = (kSet & Effect::kAmbientOcclusion) != 0;
   static constexpr bool kHasLamps = (kSet & kLamps) != 0;
-  static constexpr bool kHasEmission = (kSet & Effect::kEmission) != 0;
   static unsigned number_of(const Face& face) {
     return 2 * static_cast<unsigned>(face.axis) + (face.negative ? 0U : 1U);
   }
@@ -218,14 +217,14 @@ class Gathering<kSet, kGoesOn, true> : protected SunDirections<kIsWet<kSet>> {
     if (hit.way >= lamp_at * d[hit.axis]) {
       return true;
     }
-    if constexpr (kHasEmission) {
+    if (has<kSet, Effect::kEmission>(frame)) {
       return surface_of(frame, map.material(frame.tree, hit.voxel >> 6, hit.voxel & 63U)).kind ==
              SurfaceKind::kEmit;
     }
     return false;
   }
 
-  typename PointOf<kSet, kGoesOn>::Type from_;
+  typename PointOf<kSet, kSecondary>::Type from_;
   LightRay ray_;            // to a lamp
   int rays_ = 0;            // of occlusion, a point
   uint32_t reach_q12_ = 0;  // of occlusion: 1/256 voxel for each unit of a direction, in 1/2^12

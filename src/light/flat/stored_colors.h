@@ -1,6 +1,6 @@
 // Colours as they are stored, and the dither. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_INKS_H
-#define THIMBLE_SRC_LIGHT_FLAT_INKS_H
+#ifndef THIMBLE_SRC_LIGHT_FLAT_STORED_COLORS_H
+#define THIMBLE_SRC_LIGHT_FLAT_STORED_COLORS_H
 
 #include "../../picture/panels.h"
 #include "../exposure.h"
