@@ -134,7 +134,7 @@ draws_by_the_map() {
 mirror() {
   grep -v bottle "$work/own.scene" >"$work/own_mirror.scene"
   effects=direct-light,shadows,mirror
-  draws_by_the_map 539 sun-mirror "a mirror and the sun" "$work/own_mirror.scene"
+  draws_by_the_map 19 sun-mirror "a mirror and the sun" "$work/own_mirror.scene"
 }
 
 lamp() {

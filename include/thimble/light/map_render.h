@@ -90,17 +90,16 @@ inline constexpr EffectSet kLamps = Effect::kEmitterLight;
 #define THIMBLE_FLAT_SUNS(DO) DO(0x001) DO(0x003) DO(0x20B)
 #define THIMBLE_FLAT_SETS(DO) \
   THIMBLE_FLAT_SUNS(DO)       \
-  DO(0x20F) DO(0x120B) DO(0x120F) DO(0x21B) DO(0x21F) DO(0x121F) DO(0x28B) DO(0x428B)
+  DO(0x20F) DO(0x120B) DO(0x120F) DO(0x013) DO(0x21F) DO(0x121F) DO(0x28B) DO(0x428B)
 
 /// The specialisation that draws a set which `is_flat`. Emission and the sky cost a test where a set leaves them out, as
-/// does occlusion beside both mirrors and lamps; the sun alone, which most boards show, has none of their code.
+/// does occlusion beside mirrors; the sun alone, and the sun with mirrors, have none of their code.
 constexpr EffectSet flat_specialisation(EffectSet set) {
-  if ((set & ~Effect::kShadows) == Effect::kDirectLight) {
+  if ((set & ~(Effect::kShadows | Effect::kMirror)) == Effect::kDirectLight) {
     return set;
   }
-  constexpr EffectSet kMirrorsAndLamps = Effect::kMirror | kLamps;
   return set | Effect::kEmission | Effect::kSky |
-         ((set & kMirrorsAndLamps) == kMirrorsAndLamps ? Effect::kAmbientOcclusion : Effect::kNone);
+         ((set & Effect::kMirror) != 0 ? Effect::kAmbientOcclusion : Effect::kNone);
 }
 
 /// Whether the fast way takes the frame, whose set `is_flat`.
