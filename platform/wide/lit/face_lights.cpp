@@ -74,6 +74,32 @@ void FaceLightsParts::lay_out(const FaceLightsShape& shape, Taker* taker) {
   exits = taker->take<MediumExit>(of_ways);
 }
 
+// Rays were checked when they were asked, so none is refused.
+void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
+                 lit::Answer* answers) {
+  const auto put_hits = [&](lit::Asked* asked) {
+    for (uint32_t i = 0; i < asked->count; ++i) {
+      answers[asked->answer[i]].hit = hits[i];
+      answers[asked->answer[i]].into_solid = false;
+    }
+    asked->count = 0;
+  };
+  lit::Asked& closest = questions[static_cast<int>(lit::Question::kClosest)];
+  (void)first_hit(map, {closest.rays, closest.count}, {hits, closest.count});
+  put_hits(&closest);
+  lit::Asked& before = questions[static_cast<int>(lit::Question::kBefore)];
+  (void)first_hit_before(map, {before.rays, before.count}, {before.before, before.count},
+                         {hits, before.count});
+  put_hits(&before);
+  static_assert(lit::kInNothing == kInAir);
+  lit::Asked& on = questions[static_cast<int>(lit::Question::kOn)];
+  (void)first_change(map, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count}, {exits, on.count});
+  for (uint32_t i = 0; i < on.count; ++i) {
+    answers[on.answer[i]] = exits[i];
+  }
+  on.count = 0;
+}
+
 FaceLights::FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker)
     : frame_(frame),
       once_(frame),
@@ -280,29 +306,6 @@ lit::LightRay FaceLights::ray_of(const Light& light, uint32_t number) const {
   return ray;
 }
 
-// Answers the questions of rays that go through something clear.
-void FaceLights::answer() {
-  lit::Asked& closest = parts_.questions[static_cast<int>(lit::Question::kClosest)];
-  (void)first_hit(map_, {closest.rays, closest.count}, {parts_.hits, closest.count});
-  for (uint32_t i = 0; i < closest.count; ++i) {
-    parts_.answers[closest.answer[i]].hit = parts_.hits[i];
-  }
-  lit::Asked& before = parts_.questions[static_cast<int>(lit::Question::kBefore)];
-  (void)first_hit_before(map_, {before.rays, before.count}, {before.before, before.count},
-                         {parts_.hits, before.count});
-  for (uint32_t i = 0; i < before.count; ++i) {
-    parts_.answers[before.answer[i]].hit = parts_.hits[i];
-  }
-  static_assert(lit::kInNothing == kInAir);
-  lit::Asked& on = parts_.questions[static_cast<int>(lit::Question::kOn)];
-  (void)first_change(map_, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count},
-                     {parts_.exits, on.count});
-  for (uint32_t i = 0; i < on.count; ++i) {
-    parts_.answers[on.answer[i]] = parts_.exits[i];
-  }
-  closest.count = before.count = on.count = 0;
-}
-
 // Follows the rays that enter something clear first, stretch by stretch, by the core's own function. (A ray enters
 // first what it begins in.)
 void FaceLights::go_through(const Light& light, uint32_t asking) {
@@ -332,7 +335,7 @@ void FaceLights::go_through(const Light& light, uint32_t asking) {
       std::copy_n(ray.brightness, 3, parts_.bright[i].c);
     }
     count = left;
-    answer();
+    answer_ways(map_, parts_.questions, parts_.hits, parts_.exits, parts_.answers);
   }
 }
 

@@ -60,6 +60,11 @@ struct FaceLightsParts {
   MediumExit* exits;
 };
 
+/// Answers the questions of rays' ways, which are of the kinds kClosest, kBefore and kOn; then none is left of these.
+/// `hits` and `exits` have room for as many as there are questions of a kind.
+void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
+                 lit::Answer* answers);
+
 class FaceLights {
  public:
   static constexpr uint32_t kInside = 6;  ///< the first face number of voxels in which a ray begins
@@ -93,7 +98,6 @@ class FaceLights {
   void filter_by_water(const Light& light, uint32_t number);
   void find_shadows(const Light& light, uint32_t asking);
   void go_through(const Light& light, uint32_t asking);
-  void answer();
   lit::LightRay ray_of(const Light& light, uint32_t number) const;
 
   lit::Frame frame_;

@@ -28,12 +28,7 @@ OpaqueShape::OpaqueShape(EffectSet effects, const LitScene& scene, uint32_t slot
     : slots(slot_count), lights(effects, scene, slot_count) {}
 
 size_t OpaqueShape::bytes() const {
-  Taker taker(nullptr);
-  OpaqueParts parts;
-  parts.lay_out(*this, &taker);
-  FaceLightsParts lit;
-  lit.lay_out(lights, &taker);
-  return taker.used() + Taker::kAlignment;
+  return Taker::bytes_of<OpaqueParts, FaceLightsParts>(*this, lights);
 }
 
 void OpaqueParts::lay_out(const OpaqueShape& shape, Taker* taker) {
@@ -46,22 +41,11 @@ void OpaqueParts::lay_out(const OpaqueShape& shape, Taker* taker) {
   places = taker->take<PixelSlot>(slots);
 }
 
-namespace {
-
-// Finds where the parts begin; returns what their arrays are taken from.
-Taker laid_out(const OpaqueShape& shape, Bytes bytes, OpaqueParts* parts) {
-  Taker taker(Taker::aligned(bytes.data));
-  parts->lay_out(shape, &taker);
-  return taker;
-}
-
-}  // namespace
-
 OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes)
     : frame_(frame),
       map_(map),
       shape_(shape),
-      taker_(laid_out(shape, bytes, &parts_)),
+      taker_(Taker::laid_out(shape, bytes.data, &parts_)),
       beyond_(frame, map, parts_.sky, shape.slots),
       lights_(frame, map, shape.lights, &taker_) {
   for (uint32_t material = 0; material < 256; ++material) {

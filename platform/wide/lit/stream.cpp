@@ -80,24 +80,8 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
 }
 
 size_t StreamShape::bytes() const {
-  Taker taker(nullptr);
-  StreamParts parts;
-  parts.lay_out(*this, &taker);
-  FaceLightsParts lit;
-  lit.lay_out(of_faces, &taker);
-  return taker.used() + Taker::kAlignment;
+  return Taker::bytes_of<StreamParts, FaceLightsParts>(*this, of_faces);
 }
-
-namespace {
-
-// Finds where the parts begin; returns what their arrays are taken from.
-Taker laid_out(const StreamShape& shape, Bytes bytes, StreamParts* parts) {
-  Taker taker(Taker::aligned(bytes.data));
-  parts->lay_out(shape, &taker);
-  return taker;
-}
-
-}  // namespace
 
 Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes)
     : frame_(frame),
@@ -110,7 +94,7 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
       is_wet_((frame.effects & Effect::kWater) != 0),
       is_smooth_((frame.effects & Effect::kSmoothNormals) != 0),
       is_open_beyond_((frame.effects & (Effect::kWater | Effect::kFog)) == 0),
-      taker_(laid_out(shape, bytes, &parts_)),
+      taker_(Taker::laid_out(shape, bytes.data, &parts_)),
       beyond_(frame, map, parts_.sky, shape.of_faces.faces),
       slopes_(frame, parts_.known_slopes, parts_.known_windows, shape.known_slopes),
       lights_(frame, map, shape.of_faces, &taker_) {
@@ -297,53 +281,29 @@ void Stream::answer_slopes() {
 
 void Stream::answer() {
   answer_slopes();
-  const auto asked = [&](lit::Question question) -> lit::Asked& {
-    return parts_.questions[static_cast<int>(question)];
-  };
-  const auto put = [&](uint32_t number, const Hit& hit) {
-    lit::Answer& answer = parts_.answers[number];
-    answer.hit = hit;
-    answer.into_solid = false;
-  };
-  // Rays were checked when they were asked, so none is refused.
-  lit::Asked& closest = asked(lit::Question::kClosest);
-  (void)first_hit(map_, {closest.rays, closest.count}, {parts_.hits, closest.count});
-  for (uint32_t i = 0; i < closest.count; ++i) {
-    put(closest.answer[i], parts_.hits[i]);
-  }
-  lit::Asked& before = asked(lit::Question::kBefore);
-  (void)first_hit_before(map_, {before.rays, before.count}, {before.before, before.count},
-                         {parts_.hits, before.count});
-  for (uint32_t i = 0; i < before.count; ++i) {
-    put(before.answer[i], parts_.hits[i]);
-  }
+  answer_ways(map_, parts_.questions, parts_.hits, parts_.exits, parts_.answers);
   // What is clear hides nothing. Where nothing is clear, materials do not matter.
   const Occlusion& occlusion = frame_.scene.occlusion;
-  const auto find_within = [&](const lit::Asked& near, const RayPoint& end) {
+  const auto find_within = [&](lit::Question question, const RayPoint& end) {
+    lit::Asked& near = parts_.questions[static_cast<int>(question)];
     (void)first_hit_within(map_, {near.rays, near.count}, end, {parts_.hits, near.count}, is_clear_);
     for (uint32_t i = 0; i < near.count; ++i) {
-      put(near.answer[i], parts_.hits[i]);
+      lit::Answer& answer = parts_.answers[near.answer[i]];
+      answer.hit = parts_.hits[i];
+      answer.into_solid = false;
     }
+    near.count = 0;
   };
-  find_within(asked(lit::Question::kNear), {occlusion.reach, kOcclusionLength});
-  find_within(asked(lit::Question::kAround), lit::slope_reach(occlusion));
-  static_assert(lit::kInNothing == kInAir);
-  lit::Asked& on = asked(lit::Question::kOn);
-  (void)first_change(map_, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count},
-                     {parts_.exits, on.count});
-  for (uint32_t i = 0; i < on.count; ++i) {
-    parts_.answers[on.answer[i]] = parts_.exits[i];
-  }
-  lit::Asked& any = asked(lit::Question::kAny);
+  find_within(lit::Question::kNear, {occlusion.reach, kOcclusionLength});
+  find_within(lit::Question::kAround, lit::slope_reach(occlusion));
+  lit::Asked& any = parts_.questions[static_cast<int>(lit::Question::kAny)];
   (void)any_hit(map_, {any.rays, any.count}, {parts_.any, any.count});
   for (uint32_t i = 0; i < any.count; ++i) {
     lit::Answer& answer = parts_.answers[any.answer[i]];
     answer.hit.kind = parts_.any[i] != 0 ? HitKind::kHit : HitKind::kMiss;
     answer.hit.visits = 0;  // the call does not count these
   }
-  for (lit::Asked& one : parts_.questions) {
-    one.count = 0;
-  }
+  any.count = 0;
 }
 
 LitCounts Stream::counts() const {

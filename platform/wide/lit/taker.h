@@ -35,6 +35,23 @@ class Taker {
   }
   size_t used() const { return used_; }
 
+  /// Lays out the arrays of `parts` from `bytes` on; returns what further arrays are taken from.
+  template <class Shape, class Parts>
+  static Taker laid_out(const Shape& shape, uint8_t* bytes, Parts* parts) {
+    Taker taker(bytes == nullptr ? nullptr : aligned(bytes));
+    parts->lay_out(shape, &taker);
+    return taker;
+  }
+  /// The bytes that two sets of arrays, one behind the other, take at any address.
+  template <class Parts, class MoreParts, class Shape, class MoreShape>
+  static size_t bytes_of(const Shape& shape, const MoreShape& more) {
+    Parts parts;
+    MoreParts more_parts;
+    Taker taker = laid_out(shape, nullptr, &parts);
+    more_parts.lay_out(more, &taker);
+    return taker.used() + kAlignment;
+  }
+
  private:
   uint8_t* at_;
   size_t used_ = 0;
