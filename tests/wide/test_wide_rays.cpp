@@ -235,9 +235,11 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   CHECK(wide::first_hit_before(map, rays, before, to_hits) == Status::kOk);
   check_each("first_hit_before", batch,
              [&](std::size_t i) { return same(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
-  CHECK(wide::first_hit_from(map, rays, from, to_hits) == Status::kOk);
-  check_each("first_hit_from", batch, [&](std::size_t i) { return same(hits[i], batch.first_from[i]); });
   std::vector<MediumExit> exits(count);
+  const std::vector<std::uint16_t> air(count, wide::kInAir);
+  CHECK(wide::first_change(map, rays, from, {air.data(), count}, {exits.data(), count}) == Status::kOk);
+  check_each("first_change in air", batch,
+             [&](std::size_t i) { return same(exits[i].hit, batch.first_from[i]); });
   CHECK(wide::first_change(map, rays, from, {batch.in.data(), count}, {exits.data(), count}) == Status::kOk);
   check_each("first_change", batch, [&](std::size_t i) { return same(exits[i], batch.change[i]); });
 }

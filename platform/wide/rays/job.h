@@ -14,22 +14,22 @@ enum class Bound : uint8_t {
 };
 
 struct Job {
-  const RayMap* map;
-  const Ray* rays;
-  size_t count;
-  const RayPoint* points;  ///< only with a bound
-  Bound bound;
+  const RayMap* map = nullptr;
+  const Ray* rays = nullptr;
+  size_t count = 0;
+  const RayPoint* points = nullptr;  ///< only with a bound
+  Bound bound = Bound::kNone;
+  size_t point_step = 1;  ///< from a ray's point to the next ray's; 0: all rays share one
   // One of these is wanted and not null; before the call all its elements say "a miss".
-  uint8_t* any;
-  Hit* hits;
+  uint8_t* any = nullptr;
+  Hit* hits = nullptr;
   RayPoint* entries = nullptr;
-  bool names = true;            ///< whether hits want materials
-  size_t point_step = 1;        ///< from a ray's point to the next ray's; 0: all rays share one
-  Status status = Status::kOk;  ///< the first error
   MediumExit* exits = nullptr;
+  bool names = true;             ///< whether hits want materials
   const uint16_t* in = nullptr;  ///< only with `exits`
   /// By material: with `any`, the value that `any` gets; with `entries`, 0 where the voxel counts as a miss.
   const uint8_t* classes = nullptr;
+  Status status = Status::kOk;  ///< the first error
 };
 
 /// Traces all rays of a job that has a map. kernels/trace.cpp.

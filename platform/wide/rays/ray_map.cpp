@@ -23,27 +23,27 @@ uint32_t child_of(const CompactTree& tree, uint32_t node, const Vec3i& voxel, in
   return tree.first_child(node) + static_cast<uint32_t>(__builtin_popcount(before));
 }
 
-Status run(Job* job) {
-  if (job->count == 0) {
-    return Status::kOk;
-  }
-  if (job->any != nullptr) {
-    std::fill_n(job->any, job->count, uint8_t{0});
-  } else if (job->entries != nullptr) {
-    std::fill_n(job->entries, job->count, RayPoint{0, 0});
-  } else if (job->exits != nullptr) {
-    std::fill_n(job->exits, job->count, MediumExit{});
+Status run(const RayMap& map, Span<const Ray> rays, Job job) {
+  job.map = &map;
+  job.rays = rays.data;
+  job.count = rays.size;
+  if (job.any != nullptr) {
+    std::fill_n(job.any, job.count, uint8_t{0});
+  } else if (job.entries != nullptr) {
+    std::fill_n(job.entries, job.count, RayPoint{0, 0});
+  } else if (job.exits != nullptr) {
+    std::fill_n(job.exits, job.count, MediumExit{});
   } else {
-    std::fill_n(job->hits, job->count, Hit{});
+    std::fill_n(job.hits, job.count, Hit{});
   }
-  if (job->map->cells() != nullptr) {
-    trace_in_vectors(job);
-  } else {
-    for (size_t i = 0; i < job->count; ++i) {
-      trace_by_core(job, i);
-    }
+  if (map.cells() != nullptr && job.count != 0) {
+    trace_in_vectors(&job);
+    return job.status;
   }
-  return job->status;
+  for (size_t i = 0; i < job.count; ++i) {
+    trace_by_core(&job, i);
+  }
+  return job.status;
 }
 
 // What the map says about a voxel's leaf.
@@ -325,25 +325,61 @@ void put_no_exit(Job* job, size_t ray, uint32_t visits) {
 }
 
 Status any_hit(const RayMap& map, Span<const Ray> rays, Span<uint8_t> hit) {
-  Job job{&map, rays.data, rays.size, nullptr, Bound::kNone, hit.data, nullptr};
-  return run(&job);
+  return run(map, rays, {.any = hit.data});
 }
 
 Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
                       Span<uint8_t> hit) {
-  Job job{&map, rays.data, rays.size, before.data, Bound::kBefore, hit.data, nullptr};
-  return run(&job);
+  return run(map, rays, {.points = before.data, .bound = Bound::kBefore, .any = hit.data});
 }
 
 Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
-  Job job{&map, rays.data, rays.size, nullptr, Bound::kNone, nullptr, hits.data};
-  return run(&job);
+  return run(map, rays, {.hits = hits.data});
 }
 
 Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
-  Job job{&map, rays.data, rays.size, nullptr, Bound::kNone, nullptr, hits.data};
-  job.names = false;
-  return run(&job);
+  return run(map, rays, {.hits = hits.data, .names = false});
+}
+
+Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
+                        Span<Hit> hits) {
+  return run(map, rays, {.points = before.data, .bound = Bound::kBefore, .hits = hits.data});
+}
+
+Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint& before, Span<Hit> hits,
+                        bool with_materials) {
+  return run(map, rays,
+             {.points = &before,
+              .bound = Bound::kBefore,
+              .point_step = 0,
+              .hits = hits.data,
+              .names = with_materials});
+}
+
+Status first_class(const RayMap& map, Span<const Ray> rays, const uint8_t* classes, Span<uint8_t> found) {
+  return run(map, rays, {.any = found.data, .classes = classes});
+}
+
+Status first_class_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
+                          const uint8_t* classes, Span<uint8_t> found) {
+  return run(map, rays,
+             {.points = before.data, .bound = Bound::kBefore, .any = found.data, .classes = classes});
+}
+
+Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries,
+                          const uint8_t* classes) {
+  return run(map, rays,
+             {.points = &before,
+              .bound = Bound::kBefore,
+              .point_step = 0,
+              .entries = entries.data,
+              .names = false,
+              .classes = classes});
+}
+
+Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from,
+                    Span<const uint16_t> in, Span<MediumExit> exits) {
+  return run(map, rays, {.points = from.data, .bound = Bound::kFrom, .exits = exits.data, .in = in.data});
 }
 
 uint8_t unnamed_material(const RayMap& map, const Hit& hit) {
@@ -393,53 +429,6 @@ bool RayMap::is_empty(const VoxelBox& box) const {
     }
   }
   return true;
-}
-
-Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
-                        Span<Hit> hits) {
-  Job job{&map, rays.data, rays.size, before.data, Bound::kBefore, nullptr, hits.data};
-  return run(&job);
-}
-
-Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint& before, Span<Hit> hits,
-                        bool with_materials) {
-  Job job{&map, rays.data, rays.size, &before, Bound::kBefore, nullptr, hits.data};
-  job.names = with_materials;
-  job.point_step = 0;
-  return run(&job);
-}
-
-Status first_class(const RayMap& map, Span<const Ray> rays, const uint8_t* classes, Span<uint8_t> found) {
-  Job job{&map, rays.data, rays.size, nullptr, Bound::kNone, found.data, nullptr};
-  job.classes = classes;
-  return run(&job);
-}
-
-Status first_class_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
-                          const uint8_t* classes, Span<uint8_t> found) {
-  Job job{&map, rays.data, rays.size, before.data, Bound::kBefore, found.data, nullptr};
-  job.classes = classes;
-  return run(&job);
-}
-
-Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries,
-                          const uint8_t* classes) {
-  Job job{&map, rays.data, rays.size, &before, Bound::kBefore, nullptr, nullptr, entries.data, false, 0};
-  job.classes = classes;
-  return run(&job);
-}
-
-Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits) {
-  Job job{&map, rays.data, rays.size, from.data, Bound::kFrom, nullptr, hits.data};
-  return run(&job);
-}
-
-Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from,
-                    Span<const uint16_t> in, Span<MediumExit> exits) {
-  Job job{&map, rays.data, rays.size, from.data, Bound::kFrom, nullptr, nullptr};
-  job.exits = exits.data;
-  job.in = in.data;
-  return run(&job);
 }
 
 }  // namespace thimble::wide

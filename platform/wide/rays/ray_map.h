@@ -123,10 +123,6 @@ Status first_class_before(const RayMap& map, Span<const Ray> rays, Span<const Ra
 Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries,
                           const uint8_t* classes = nullptr);
 
-/// Finds the first solid voxel in which each ray spends a positive length after `from[i]`, as `closest_hit_from`: so a
-/// ray goes on behind glass that it passed.
-Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits);
-
 /// For `first_change`: the ray is in nothing solid. (Other numbers are the material that it is in.)
 inline constexpr uint16_t kInAir = 256;
 
